@@ -107,7 +107,7 @@ impl Window {
 
 /// Changes the lateral speed of the bullet, from 3 m/s to 4 m/s as `share` goes from 0 to 1.
 fn move_slider(state: &mut State, share: f64) {
-    state.project.force.scenario.bullet_velocity_m_s[1] = 3.0 + share;
+    state.project.force.scenario.striking_velocity_m_s[1] = 3.0 + share;
 }
 
 /// Prints a row with the median, the 90th and the 99th percentile of the durations in ms, and the

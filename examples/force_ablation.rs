@@ -60,8 +60,8 @@ impl Variant {
                 false => case.scenario.clone(),
                 true => ForceScenario {
                     contact_m: None,
-                    bullet_position_m: None,
-                    bullet_body: None,
+                    striking_position_m: None,
+                    striking_body: None,
                     ..case.scenario.clone()
                 },
             };

@@ -36,12 +36,12 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 const QUANTITIES: [ReconstructedQuantity; 6] = [
-    ReconstructedQuantity::TargetSpeed,
-    ReconstructedQuantity::BulletSpeed,
+    ReconstructedQuantity::StruckSpeed,
+    ReconstructedQuantity::StrikingSpeed,
     ReconstructedQuantity::ClosingSpeed,
     ReconstructedQuantity::HeadingDifference,
     ReconstructedQuantity::RoadFriction,
-    ReconstructedQuantity::DeltaVTarget,
+    ReconstructedQuantity::DeltaVStruck,
 ];
 
 /// Draws of a collision until one can be simulated to rest.

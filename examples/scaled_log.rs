@@ -85,7 +85,7 @@ impl Row {
 
 /// Draws the parameters of the simulated vehicle, which differ from its data sheet.
 fn true_vehicle(rng: &mut ChaCha8Rng) -> VehicleParameters {
-    let mut vehicle = Preset::ScaledTarget.parameters();
+    let mut vehicle = Preset::ScaledStruck.parameters();
     vehicle.mass.yaw_inertia_kg_m2 *= rng.random_range(0.85..1.2);
     vehicle.tires.friction *= rng.random_range(0.7..1.0);
     vehicle.tires.cornering_coefficient_front_per_rad *= rng.random_range(0.8..1.2);
@@ -152,7 +152,7 @@ fn next_case(truth: &VehicleParameters, rng: &mut ChaCha8Rng) -> Answer<Response
         Manoeuvre { initial, contact_load: Some(load), duration_s: 4.0, ..Manoeuvre::default() };
     let inputs = manoeuvre.inputs(STEP_S, 400);
     let states = rollout(truth, initial, &inputs, |_, _| [0.0; N_RESIDUAL]);
-    let data_sheet = Preset::ScaledTarget.parameters();
+    let data_sheet = Preset::ScaledStruck.parameters();
     Ok(ResponseCase::of_motion("next".to_owned(), data_sheet, states, inputs))
 }
 
@@ -238,7 +238,7 @@ fn main() -> Answer<()> {
                 let name = format!("log_{seed}_{hz}hz_{n_kinds}.csv");
                 write(&arguments.out, &name, &series)?;
                 let log = MotionLog { path: arguments.out.join(name), series };
-                let vehicle = Preset::ScaledTarget.parameters();
+                let vehicle = Preset::ScaledStruck.parameters();
                 let settings = LogSettings { vehicle, impact_s: None, duration_s: 4.0 };
                 for (of, load) in [("measured", Some(struck.1.clone())), ("estimated", None)] {
                     let name = format!("{hz} Hz, {channels}, force {of}");

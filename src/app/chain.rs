@@ -59,18 +59,18 @@ impl State {
     }
 
     /// The change of velocity of the struck vehicle: of a scenario by the momentum solution, which the
-    /// scenario panel shows; of a recorded force over its contact, with what the tyres add.
+    /// scenario panel shows; of a recorded force over its contact, with what the tires add.
     fn impact_link(&self, report: Option<&SimulateReport>) -> Link {
         let is_scenario = self.project.subject == Some(Subject::Scenario);
         let solved = self.session.impact.ok().filter(|_| is_scenario && report.is_some());
         let (delta_v, source, pane) = match (is_scenario, solved) {
             (true, solved) => {
-                let delta_v = solved.map(|answer| answer.report.target.delta_v_magnitude_m_s);
+                let delta_v = solved.map(|answer| answer.report.struck.delta_v_magnitude_m_s);
                 (delta_v, "momentum solution", Pane::Scenario)
             }
             (false, _) => {
                 let delta_v = report.and_then(|report| report.delta_v_magnitude_m_s);
-                (delta_v, "4DOF model, over the contact, with what the tyres add", Pane::Force)
+                (delta_v, "4DOF model, over the contact, with what the tires add", Pane::Force)
             }
         };
         let units = self.view.units;

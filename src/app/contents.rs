@@ -8,7 +8,7 @@ use crate::app::panes::Pane;
 use crate::app::source::{Content, Source};
 use crate::app::state::{Project, State, Subject};
 use impactlab_core::units::Quantity;
-use impactlab_study::{DEFAULT_BULLET, DEFAULT_VEHICLE, VehicleChoice};
+use impactlab_study::{DEFAULT_STRIKING, DEFAULT_VEHICLE, VehicleChoice};
 
 /// A part of the case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,9 +103,9 @@ impl State {
     }
 
     fn vehicle_entries(&self) -> [ContentsEntry; 2] {
-        let Project { vehicle, bullet, .. } = &self.project;
+        let Project { vehicle, striking, .. } = &self.project;
         let struck = choice_text(vehicle, DEFAULT_VEHICLE.id());
-        let striking = choice_text(bullet, DEFAULT_BULLET.id());
+        let striking = choice_text(striking, DEFAULT_STRIKING.id());
         [("Struck", struck), ("Striking", striking)].map(|(label, detail)| {
             let show = Command::Show(Pane::Vehicle);
             ContentsEntry::new(Group::Vehicles, (label, detail), show)

@@ -33,7 +33,7 @@ impl State {
         let project = &self.project;
         Some(SimulateRequest {
             vehicle: project.vehicle.clone(),
-            bullet: project.bullet.clone(),
+            striking: project.striking.clone(),
             equations: project.equations,
             integrator: project.integrator,
             duration_s: project.duration_s,

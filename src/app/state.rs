@@ -105,7 +105,8 @@ pub struct Project {
     /// The struck vehicle (target).
     pub vehicle: VehicleChoice,
     /// The striking vehicle (bullet), for subjects in which it is simulated.
-    pub bullet: VehicleChoice,
+    #[serde(rename = "bullet")]
+    pub striking: VehicleChoice,
     /// The equations of motion; `None` takes those of the vehicle file.
     pub equations: Option<Equations>,
     /// The method that integrates the equations of motion.
@@ -150,7 +151,7 @@ impl Default for Project {
         Self {
             subject: None,
             vehicle: VehicleChoice::default(),
-            bullet: VehicleChoice::default(),
+            striking: VehicleChoice::default(),
             equations: None,
             integrator: Integrator::default(),
             duration_s: DEFAULT_DURATION_S,

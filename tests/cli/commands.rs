@@ -374,7 +374,7 @@ fn a_scene_is_drawn_from_above_and_in_perspective() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("scene.png");
     let scene = ["render", "scene", TRAJECTORIES, "--case", "FE_c002", "--time", "1.5", "--json"];
-    let target = ["--size", "320x240", "--scale", "1", "--out", text(&out), "--overwrite"];
+    let struck = ["--size", "320x240", "--scale", "1", "--out", text(&out), "--overwrite"];
     let mut pictures = Vec::new();
     for (options, seen) in [
         (&["--view", "above"][..], "from above"),
@@ -386,7 +386,7 @@ fn a_scene_is_drawn_from_above_and_in_perspective() {
         ),
         (&["--ghosts", "8"][..], "from above"),
     ] {
-        let ran = impactlab(&[&scene[..], options, &target].concat());
+        let ran = impactlab(&[&scene[..], options, &struck].concat());
         assert_eq!(ran.code, 0, "{options:?}: {}", ran.err);
         assert_eq!(ran.json()["title"], format!("FE_c002: scene {seen} at 1.50 s"));
         let picture = fs::read(&out).unwrap();

@@ -11,14 +11,14 @@ use crate::answers::{refusal, scenario_with, write};
 use crate::program::{SCENARIO, answer, ok, program, text};
 
 /// The example scenario with the bullet at a position, by the outlines.
-fn placed(folder: &TempDir, [x_m, y_m]: [f64; 2], bullet_speed_km_h: f64) -> PathBuf {
+fn placed(folder: &TempDir, [x_m, y_m]: [f64; 2], striking_speed_km_h: f64) -> PathBuf {
     let scenario = std::fs::read_to_string(SCENARIO).unwrap();
     let position = format!("[bullet]\nx_m = {x_m}\ny_m = {y_m}");
     let mut scenario = scenario.replacen("[bullet]", &position, 1);
     for (old, new) in [
         ("from = \"side\"\nside = \"right\"\n", "from = \"footprints\"\n".to_owned()),
         ("offset_m = -1.4         # just behind the rear axle\n", String::new()),
-        ("speed_km_h = 62", format!("speed_km_h = {bullet_speed_km_h}")),
+        ("speed_km_h = 62", format!("speed_km_h = {striking_speed_km_h}")),
     ] {
         assert!(scenario.contains(old), "{old}");
         scenario = scenario.replacen(old, &new, 1);
@@ -158,11 +158,11 @@ fn a_predicted_impulse_is_told_as_restitution_and_impulse_ratio() {
 #[test]
 fn standing_and_slow_targets_have_the_force_of_a_contact() {
     let folder = TempDir::new().unwrap();
-    let struck = |target_m_s: f64, bullet_vx_m_s: f64| {
+    let struck = |struck_m_s: f64, striking_vx_m_s: f64| {
         let scenario = std::fs::read_to_string(SCENARIO).unwrap();
         let scenario = scenario
-            .replacen("speed_km_h = 54", &format!("speed_m_s = {target_m_s}"), 1)
-            .replacen("speed_km_h = 62", &format!("vx_m_s = {bullet_vx_m_s}\nvy_m_s = 4.5"), 1);
+            .replacen("speed_km_h = 54", &format!("speed_m_s = {struck_m_s}"), 1)
+            .replacen("speed_km_h = 62", &format!("vx_m_s = {striking_vx_m_s}\nvy_m_s = 4.5"), 1);
         let scenario = write(&folder, "struck.toml", &scenario);
         answer(&["predict", "force", "--scenario", text(&scenario)])
     };
@@ -171,13 +171,13 @@ fn standing_and_slow_targets_have_the_force_of_a_contact() {
         mean.map(|p| p.as_f64().unwrap()).collect()
     };
     let moving = struck(15.0, 16.5);
-    for target_m_s in [0.0, 1.0, 3.0] {
-        let slow = struck(target_m_s, target_m_s + 1.5);
+    for struck_m_s in [0.0, 1.0, 3.0] {
+        let slow = struck(struck_m_s, struck_m_s + 1.5);
         for (slow, moving) in mean(&slow).into_iter().zip(mean(&moving)) {
-            assert!((slow / moving - 1.0).abs() < 1e-3, "{target_m_s}: {slow} {moving}");
+            assert!((slow / moving - 1.0).abs() < 1e-3, "{struck_m_s}: {slow} {moving}");
         }
         assert!(slow["implied_contact"]["warning"].is_null(), "{slow}");
-        let fast = struck(target_m_s, 17.0);
+        let fast = struck(struck_m_s, 17.0);
         assert_eq!(fast["applicability"], 0.0, "{fast}");
         assert!(fast["implied_contact"]["warning"].is_null(), "{fast}");
     }

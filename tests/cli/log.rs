@@ -47,7 +47,7 @@ common = 0.99
 ";
 
 fn truth() -> VehicleParameters {
-    let mut vehicle = Preset::ScaledTarget.parameters().with_friction(0.6);
+    let mut vehicle = Preset::ScaledStruck.parameters().with_friction(0.6);
     vehicle.mass.yaw_inertia_kg_m2 *= 1.1;
     vehicle
 }
@@ -111,7 +111,7 @@ fn error(command: &mut Command) -> String {
 /// the model in the file, m.
 fn errors_m(model: &Path) -> [f64; 2] {
     let model = ResponseModel::load(model).unwrap();
-    let data_sheet = Preset::ScaledTarget.parameters();
+    let data_sheet = Preset::ScaledStruck.parameters();
     let predictor = model.predictor(&data_sheet).unwrap();
     let mut sums = [0.0; 2];
     let next = [(5.0, 110.0), (7.0, 80.0), (6.5, 60.0)];

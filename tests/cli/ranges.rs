@@ -139,10 +139,11 @@ fn options_out_of_range_are_wrong_usage() {
 fn what_goes_wrong_together_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let scenario = fs::read_to_string(SCENARIO).unwrap();
-    let with = |contact: &str, bullet: &str| {
+    let with = |contact: &str, striking: &str| {
         let path = folder.path().join("s.toml");
         let (vehicles, _) = scenario.split_once("[contact]").unwrap();
-        let vehicles = vehicles.replace("heading_deg = 18", &format!("heading_deg = 18\n{bullet}"));
+        let vehicles =
+            vehicles.replace("heading_deg = 18", &format!("heading_deg = 18\n{striking}"));
         fs::write(&path, format!("{vehicles}[contact]\n{contact}\n")).unwrap();
         path
     };

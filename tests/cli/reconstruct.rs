@@ -71,11 +71,11 @@ fn a_figure_shows_the_paths_a_quantity_or_the_budget() {
     {
         let out = folder.path().join("cars.png");
         let args = ["--plot", "cars-perspective", "--particles", "60", "--json"];
-        let target = ["--size", "320x240", "--scale", "1", "--out", text(&out)];
+        let struck = ["--size", "320x240", "--scale", "1", "--out", text(&out)];
         let ran = ok(program()
             .args(["render", "reconstruction", EVIDENCE])
             .args(args)
-            .args(target)
+            .args(struck)
             .output()
             .unwrap());
         assert!(json(&ran)["title"].as_str().unwrap().contains("in perspective"), "{ran}");

@@ -67,7 +67,7 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("pit.impactlab");
     let mut harness = pit();
-    let speed = |state: &State| state.project.scenario.target.vx_m_s;
+    let speed = |state: &State| state.project.scenario.struck.vx_m_s;
     let before = speed(state(&harness));
     let mut shown = Vec::new();
     for (name, factor) in [("base", 1.0), ("slower", 0.9), ("slow", 0.8)] {
@@ -75,7 +75,7 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
             variant(&mut harness, VariantCommand::Duplicate);
             variant(&mut harness, VariantCommand::Rename(name.to_owned()));
         }
-        harness.state_mut().state_mut().project.scenario.target.vx_m_s = before * factor;
+        harness.state_mut().state_mut().project.scenario.struck.vx_m_s = before * factor;
         harness.run_steps(2);
         step_until(&mut harness, "the forecast", is_answered);
         let answer = state(&harness).session.response.forecast.ok().expect("a forecast");
@@ -283,7 +283,7 @@ fn example(harness: &mut Harness<'_, App>) {
     answered(harness);
     variant(harness, VariantCommand::Duplicate);
     variant(harness, VariantCommand::Rename("target of 1500 kg".to_owned()));
-    let target = &mut harness.state_mut().state_mut().project.scenario.target;
+    let target = &mut harness.state_mut().state_mut().project.scenario.struck;
     target.yaw_inertia_kg_m2 *= 1500.0 / target.mass_kg;
     target.mass_kg = 1500.0;
     answered(harness);
@@ -389,7 +389,7 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
     assert!(figure.starts_with(&format!("X {x}")), "{figure} {x}");
     // Two figures of one quantity do not differ: that of the scenario panel is the chain's.
     let delta_v_m_s =
-        state(&harness).session.impact.ok().unwrap().report.target.delta_v_magnitude_m_s;
+        state(&harness).session.impact.ok().unwrap().report.struck.delta_v_magnitude_m_s;
     let delta_v = Quantity::Speed.shown(delta_v_m_s, UnitSystem::Si);
     assert_eq!(chain[1].figure, Some(format!("Δv {delta_v}")));
     // The second contact is warned of where it matters.

@@ -28,7 +28,7 @@ fn write_drive(
     (speed_m_s, peak_n): (f64, f64),
     noise: [f64; 2],
 ) -> f64 {
-    // Tyres and road are not those that the rules for data sheets assume.
+    // Tires and road are not those that the rules for data sheets assume.
     let mut car = built_in_vehicle(CAR).expect("a car of the library");
     car.tires.cornering_coefficient_front_per_rad *= 1.15;
     car.tires.cornering_coefficient_rear_per_rad *= 1.3;

@@ -141,7 +141,7 @@ fn the_forecast_stays_while_the_scenario_changes() {
     step_until(&mut harness, "drawn curves", is_forecast_current);
     for i in 0..60 {
         let scenario = &mut harness.state_mut().state_mut().project.force.scenario;
-        scenario.bullet_velocity_m_s[1] = 3.0 + 0.02 * f64::from(i);
+        scenario.striking_velocity_m_s[1] = 3.0 + 0.02 * f64::from(i);
         harness.step();
         let curves = state(&harness).force_forecast().map(|answer| answer.forecast.curves.len());
         assert_eq!(curves, Some(20), "frame {i}");
@@ -282,14 +282,14 @@ fn the_collision_follows_the_scenario_until_it_is_edited() {
     harness.run_steps(2);
     let mass_kg =
         |harness: &Harness<'_, App>| harness.state().state().project.force.scenario.mass_kg[0];
-    for of_target in [1500.0, 1800.0] {
-        harness.state_mut().state_mut().project.scenario.target.mass_kg = of_target;
+    for of_struck in [1500.0, 1800.0] {
+        harness.state_mut().state_mut().project.scenario.struck.mass_kg = of_struck;
         harness.run_steps(2);
-        assert_eq!(mass_kg(&harness), of_target, "the mass of the scenario");
+        assert_eq!(mass_kg(&harness), of_struck, "the mass of the scenario");
     }
     harness.state_mut().state_mut().project.force.scenario.mass_kg[0] = 1234.0;
     harness.run_steps(2);
-    harness.state_mut().state_mut().project.scenario.target.mass_kg = 2000.0;
+    harness.state_mut().state_mut().project.scenario.struck.mass_kg = 2000.0;
     harness.run_steps(2);
     assert_eq!(mass_kg(&harness), 1234.0, "what was edited stays");
 }

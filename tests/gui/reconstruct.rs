@@ -223,7 +223,7 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
     assert!(!harness.get_by_label("Run").accesskit_node().is_disabled());
     harness.get_by_label("Add evidence").click();
     harness.run_steps(4);
-    harness.get_by_label("Tyre mark").click();
+    harness.get_by_label("Tire mark").click();
     harness.run_steps(4);
     assert_eq!(evidence(&harness).marks.len(), 1);
     assert!(harness.query_by_label_contains("needs at least two points").is_some());

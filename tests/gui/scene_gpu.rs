@@ -65,7 +65,7 @@ fn forecast_scene() -> Scene {
     scene
 }
 
-/// A struck car that is braked: marks of tyres, dented outlines, locked wheels.
+/// A struck car that is braked: marks of tires, dented outlines, locked wheels.
 fn braked_scene() -> Scene {
     let (analysis, trust) = (braked_pit(), Trust::default());
     let units = UnitSystem::Us;

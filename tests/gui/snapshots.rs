@@ -32,8 +32,8 @@ fn analysis(dataset: &str, case: &str) -> Analysis {
 
 fn settings() -> Settings {
     Settings {
-        target: Preset::Reference.parameters(),
-        bullet: Preset::Bullet2000.parameters(),
+        struck: Preset::Reference.parameters(),
+        striking: Preset::Bullet2000.parameters(),
         integrator: Integrator::Rk4,
         duration_s: 4.0,
         ending: impactlab_core::vehicle::Ending::default(),
@@ -72,7 +72,7 @@ fn motion() {
 }
 
 #[test]
-fn scene_with_bullet_and_scene_with_reference() {
+fn scene_with_striking_and_scene_with_reference() {
     let force_case = analysis("fea", "c002");
     let shown = (&force_case, &Trust::default());
     check(&analysis_scene_figure(shown, 0.4, UnitSystem::Si), false, "scene_bullet");

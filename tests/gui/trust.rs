@@ -85,10 +85,10 @@ fn copied(harness: &Harness<'_, App>) -> Option<String> {
 }
 
 /// The window on a collision with a bullet that is heavier than any that the force network knows.
-fn with_heavy_bullet() -> Harness<'static, App> {
+fn with_heavy_striking() -> Harness<'static, App> {
     let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
     step_until(&mut harness, "the first case", is_idle);
-    harness.state_mut().state_mut().project.scenario.bullet.mass_kg = 3900.0;
+    harness.state_mut().state_mut().project.scenario.striking.mass_kg = 3900.0;
     apply(&mut harness, Command::PredictScenario);
     apply(&mut harness, Command::Show(Pane::ForcePrediction));
     step_until(&mut harness, "the prediction", |state| {
@@ -101,7 +101,7 @@ fn with_heavy_bullet() -> Harness<'static, App> {
 
 #[test]
 fn what_the_window_exports_says_what_restricts_it() {
-    let mut harness = with_heavy_bullet();
+    let mut harness = with_heavy_striking();
     let answer = state(&harness).session.force.forecast.ok().expect("an answer").clone();
     let is_outside = |badge: &&Badge| badge.kind == BadgeKind::OutsideDomain;
     let sentence =

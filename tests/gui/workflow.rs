@@ -198,7 +198,7 @@ fn a_scenario_is_solved_simulated_and_survives_a_kill() {
     harness.get_by_label("Simulate in the scene").click();
     step_until(&mut harness, "the scenario", shows("PIT, right rear quarter"));
     let analysis = &state(&harness).analysis().unwrap().analysis;
-    assert!(analysis.bullet.is_some() && analysis.simulation.is_some());
+    assert!(analysis.striking.is_some() && analysis.simulation.is_some());
 
     // The state is on disk after about a second. The app is then dropped without being closed, as
     // if it had been killed.

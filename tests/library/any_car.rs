@@ -183,7 +183,7 @@ fn far_outside_only_the_physics_is_left_and_the_bands_are_wider() {
     });
     assert!(far.1 < 0.1, "{} m from the 4DOF model", far.1);
     assert!(near.1 > 0.2, "{} m from the 4DOF model", near.1);
-    // On ice the tyres hardly matter; of a heavy car nothing is known of them.
+    // On ice the tires hardly matter; of a heavy car nothing is known of them.
     let of = |mass_kg: f64| {
         let vehicle = car(mass_kg, 0.7);
         let inputs = struck([0.5, 2.0], &vehicle, 300);
@@ -226,7 +226,7 @@ fn trajectories_of_a_car_narrow_its_bands_and_leave_other_cars_alone() {
     assert!(matches!(again, LearningError::NothingNew), "{again}");
 }
 
-/// Motions of a car whose tyres grip less than its data sheet says.
+/// Motions of a car whose tires grip less than its data sheet says.
 fn slippery_car(mass_kg: f64, grip: f64) -> Vec<ResponseCase> {
     let vehicle = car(mass_kg, 0.8);
     let mut truth = vehicle.clone();
@@ -240,7 +240,7 @@ fn slippery_car(mass_kg: f64, grip: f64) -> Vec<ResponseCase> {
     [0.3, -0.6, 0.9].map(motion).into()
 }
 
-/// Motions of four cars whose tyres grip less than their data sheets say, each by a share of its own.
+/// Motions of four cars whose tires grip less than their data sheets say, each by a share of its own.
 fn small_fleet() -> TrainingSet<ResponseCase> {
     let cars = [(1200.0, 0.95), (1400.0, 0.9), (1600.0, 0.85), (1800.0, 0.8)];
     let train = cars.into_iter().flat_map(|(mass_kg, grip)| slippery_car(mass_kg, grip)).collect();
@@ -335,8 +335,8 @@ fn a_network_of_one_car_fades_for_others() {
 
 /// Two cars that meet anywhere, as the command line asks about them.
 fn scenario(
-    [target_kg, bullet_kg]: [f64; 2],
-    [target_m_s, bullet_m_s]: [f64; 2],
+    [struck_kg, striking_kg]: [f64; 2],
+    [struck_m_s, striking_m_s]: [f64; 2],
     (side, place, angle_rad): (Side, f64, f64),
 ) -> Scenario {
     let mut scenario = Scenario::example();
@@ -347,14 +347,14 @@ fn scenario(
         Side::Right => -FRAC_PI_2,
     };
     let half_m = match side {
-        Side::Front | Side::Rear => scenario.target.width_m / 2.0,
-        Side::Left | Side::Right => scenario.target.length_m / 2.0,
+        Side::Front | Side::Rear => scenario.struck.width_m / 2.0,
+        Side::Left | Side::Right => scenario.struck.length_m / 2.0,
     };
     // The bullet heads for the side, up to some angle off its normal.
     let heading_rad = outwards_rad + PI + angle_rad;
     for (vehicle, mass_kg, speed_m_s, heading_rad) in [
-        (&mut scenario.target, target_kg, target_m_s, 0.0),
-        (&mut scenario.bullet, bullet_kg, bullet_m_s, heading_rad),
+        (&mut scenario.struck, struck_kg, struck_m_s, 0.0),
+        (&mut scenario.striking, striking_kg, striking_m_s, heading_rad),
     ] {
         (vehicle.mass_kg, vehicle.yaw_inertia_kg_m2) = (mass_kg, 1.8 * mass_kg);
         vehicle.heading_rad = heading_rad;
@@ -388,7 +388,7 @@ fn forecast(
 #[test]
 fn a_car_that_spins_fast_goes_where_the_physics_takes_it() {
     let mut fast = Scenario::example();
-    for (vehicle, speed_m_s) in [(&mut fast.target, 80.0), (&mut fast.bullet, 296.0 / 3.6)] {
+    for (vehicle, speed_m_s) in [(&mut fast.struck, 80.0), (&mut fast.striking, 296.0 / 3.6)] {
         let (sin, cos) = vehicle.heading_rad.sin_cos();
         (vehicle.vx_m_s, vehicle.vy_m_s) = (speed_m_s * cos, speed_m_s * sin);
     }

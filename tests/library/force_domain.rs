@@ -71,7 +71,7 @@ fn random_scenario(rng: &mut ChaCha8Rng) -> ForceScenario {
     let mut between = |low: f64, high: f64| low + (high - low) * rng.random::<f64>();
     let mass_kg = [between(700.0, 4000.0), between(700.0, 4000.0)];
     let theta_b_rad = between(-PI, PI);
-    let (target, bullet) = (between(0.0, 70.0), between(0.0, 70.0));
+    let (struck, striking) = (between(0.0, 70.0), between(0.0, 70.0));
     let (length, width) = (between(3.5, 5.5), between(1.6, 2.0));
     let along = between(-0.5, 0.5);
     // The struck side, the contact on it, and the normal into the target.
@@ -84,14 +84,14 @@ fn random_scenario(rng: &mut ChaCha8Rng) -> ForceScenario {
     let (sin, cos) = theta_b_rad.sin_cos();
     ForceScenario {
         mass_kg,
-        target_velocity_m_s: [target, 0.0],
-        bullet_velocity_m_s: [bullet * cos, bullet * sin],
+        struck_velocity_m_s: [struck, 0.0],
+        striking_velocity_m_s: [striking * cos, striking * sin],
         theta_b_rad,
         side: if contact_m[1] > 0.0 { StruckSide::Left } else { StruckSide::Right },
         contact_m: Some(contact_m),
         normal_rad: Some(normal_rad),
-        bullet_position_m: Some([contact_m[0] - 2.0 * cos, contact_m[1] - 2.0 * sin]),
-        bullet_body: None,
+        striking_position_m: Some([contact_m[0] - 2.0 * cos, contact_m[1] - 2.0 * sin]),
+        striking_body: None,
         yaw_inertia_kg_m2: mass_kg.map(|mass_kg| Some(1.8 * mass_kg)),
     }
 }
@@ -158,7 +158,7 @@ fn any_collision_is_finite_and_outside_of_the_training_as_uncertain_as_the_physi
 
 /// Applicability falls steadily as a collision leaves the training, and the band grows.
 #[test]
-fn the_network_fades_as_the_target_gets_lighter() {
+fn the_network_fades_as_the_struck_gets_lighter() {
     let (model, seen) = (model(), cases("fea-wide")[0].scenario.clone());
     let mut before = (1.0, 0.0);
     for mass_kg in [1500.0, 1450.0, 1400.0, 1350.0, 1300.0, 1200.0, 1000.0] {

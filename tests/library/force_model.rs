@@ -233,8 +233,8 @@ fn a_mirrored_scenario_has_the_mirrored_force() {
 #[test]
 fn a_common_speed_changes_nothing() {
     let mut faster = scenario();
-    faster.target_velocity_m_s[0] += 8.0;
-    faster.bullet_velocity_m_s[0] += 8.0;
+    faster.struck_velocity_m_s[0] += 8.0;
+    faster.striking_velocity_m_s[0] += 8.0;
     assert_eq!(model().predict(&faster).unwrap(), model().predict(&scenario()).unwrap());
 }
 
@@ -245,7 +245,7 @@ fn what_is_left_open_widens_the_bands() {
     let spread = |open: bool| -> f64 {
         let ask = |case: &ForceCase| {
             let known = case.scenario.clone();
-            let asked = ForceScenario { contact_m: None, bullet_body: None, ..known.clone() };
+            let asked = ForceScenario { contact_m: None, striking_body: None, ..known.clone() };
             let prediction = model().predict(if open { &asked } else { &known }).unwrap();
             assert_eq!([prediction.is_contact_open, prediction.is_body_open], [open, open]);
             prediction.mixture.std().fy_n.iter().sum::<f64>()
@@ -268,7 +268,7 @@ fn the_force_vanishes_after_the_contact() {
 
 #[test]
 fn wrong_questions_are_answered_with_what_is_wrong() {
-    let unknown = ForceScenario { bullet_body: Some("tank".to_owned()), ..scenario() };
+    let unknown = ForceScenario { striking_body: Some("tank".to_owned()), ..scenario() };
     let error = model().predict(&unknown).unwrap_err();
     assert!(matches!(error, ForceError::UnknownBody { .. }), "{error}");
     assert!(error.to_string().contains("expected one of A, B"), "{error}");
@@ -277,7 +277,7 @@ fn wrong_questions_are_answered_with_what_is_wrong() {
     assert_eq!(error, "target mass [kg] is 0, expected 1 to 1e8");
     for nonsense in [f64::NAN, f64::INFINITY, 1e300] {
         let mut broken = scenario();
-        broken.bullet_velocity_m_s[1] = nonsense;
+        broken.striking_velocity_m_s[1] = nonsense;
         assert!(model().predict(&broken).is_err(), "{nonsense}");
     }
 }

@@ -287,8 +287,8 @@ fn scenarios_in_questions_are_checked() {
             set(&mut scenario, number, value);
             assert_eq!(scenario.ranges()[number].1.to_bits(), value.to_bits(), "{name}");
             // What depends on the length is checked with the length.
-            scenario.target.cg_from_front_m = scenario.target.cg_from_front_m.min(0.1);
-            scenario.bullet.cg_from_front_m = scenario.bullet.cg_from_front_m.min(0.1);
+            scenario.struck.cg_from_front_m = scenario.struck.cg_from_front_m.min(0.1);
+            scenario.striking.cg_from_front_m = scenario.striking.cg_from_front_m.min(0.1);
             if name.ends_with("cg_from_front_m") {
                 set(&mut scenario, number, value);
             }
@@ -303,9 +303,9 @@ fn scenarios_in_questions_are_checked() {
 
 /// Sets one of the numbers of a scenario, in the order of [`Scenario::ranges`].
 fn set(scenario: &mut Scenario, number: usize, value: f64) {
-    let Scenario { target_x_m, target_y_m, target, bullet, contact, .. } = scenario;
-    let mut numbers = vec![target_x_m, target_y_m];
-    for vehicle in [target, bullet] {
+    let Scenario { struck_x_m, struck_y_m, struck, striking, contact, .. } = scenario;
+    let mut numbers = vec![struck_x_m, struck_y_m];
+    for vehicle in [struck, striking] {
         numbers.extend([
             &mut vehicle.mass_kg,
             &mut vehicle.yaw_inertia_kg_m2,
@@ -343,7 +343,7 @@ fn collisions_in_numbers_are_checked() {
         ask(ForceScenario { mass_kg: [mass, 2000.0], ..numbers.clone() })
     });
     probe("speed", &SPEED, |speed| {
-        ask(ForceScenario { bullet_velocity_m_s: [speed, 0.0], ..numbers.clone() })
+        ask(ForceScenario { striking_velocity_m_s: [speed, 0.0], ..numbers.clone() })
     });
     probe("contact", &CONTACT_X, |x| {
         ask(ForceScenario { contact_m: Some([x, -0.9]), ..numbers.clone() })

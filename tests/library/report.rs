@@ -123,7 +123,7 @@ fn the_example_has_every_section_and_the_numbers_of_its_answers() {
         match answer {
             Report::Impact(report) => {
                 kinds[0] += 1;
-                for body in [&report.target, &report.bullet] {
+                for body in [&report.struck, &report.striking] {
                     assert_says(document, &shown(Quantity::Speed, body.delta_v_magnitude_m_s));
                     assert_says(document, &shown(Quantity::AngularVelocity, body.yaw_rate_rad_s));
                     assert_says(
@@ -291,7 +291,7 @@ fn german_has_its_decimal_sign_date_and_words_and_us_units_their_symbols() {
     let Some(Report::Impact(answer)) = answers.variants[0].reports().next() else {
         panic!("an impact");
     };
-    let delta_v = Quantity::Speed.shown(answer.target.delta_v_magnitude_m_s, UnitSystem::Us);
+    let delta_v = Quantity::Speed.shown(answer.struck.delta_v_magnitude_m_s, UnitSystem::Us);
     assert!(delta_v.ends_with("mph"));
     assert_says(&german, &delta_v.replace('.', ","));
     assert_eq!(german.date, "24.11.2026");

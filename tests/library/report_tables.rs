@@ -1,4 +1,4 @@
-//! Tables of reports: who gave each distribution of the prior, and marks of tyres.
+//! Tables of reports: who gave each distribution of the prior, and marks of tires.
 
 use std::path::PathBuf;
 
@@ -74,13 +74,13 @@ fn simulated(answers: &CaseReport) -> &SimulateReport {
 }
 
 #[test]
-fn computed_tyre_marks_have_the_figures_of_the_answer_in_both_languages_and_units() {
+fn computed_tire_marks_have_the_figures_of_the_answer_in_both_languages_and_units() {
     let case = braked_simulation();
     for (language, units, caption, to, [locked, struck]) in [
         (
             Language::En,
             UnitSystem::Si,
-            "Tyre marks that the simulation leaves",
+            "Tire marks that the simulation leaves",
             "to",
             ["locked", "struck, "],
         ),
@@ -93,7 +93,7 @@ fn computed_tyre_marks_have_the_figures_of_the_answer_in_both_languages_and_unit
         ),
     ] {
         let (document, answers) = report(&case, &settings(language, units, Paper::A4));
-        let marks = &simulated(&answers).tyre_marks;
+        let marks = &simulated(&answers).tire_marks;
         assert!(marks.len() > 3, "{marks:?}");
         let [table] = tables(&document, caption)[..] else { panic!("{caption}: one table") };
         assert_eq!(table.rows.len(), marks.len());
@@ -115,16 +115,16 @@ fn computed_tyre_marks_have_the_figures_of_the_answer_in_both_languages_and_unit
     }
     // Without a simulation there are no marks and no table of them.
     let (document, _) = report(&impact_case("pit", ""), &english());
-    assert!(tables(&document, "Tyre marks").is_empty());
+    assert!(tables(&document, "Tire marks").is_empty());
 }
 
 #[test]
-fn found_tyre_marks_stand_beside_the_computed_ones() {
+fn found_tire_marks_stand_beside_the_computed_ones() {
     let (_, _, document, answers) = staged();
     let Some(Report::Reconstruct(report)) = answers.variants[0].reports().next() else {
         panic!("a reconstruction");
     };
-    let [table] = tables(document, "Tyre marks that were found")[..] else { panic!("one table") };
+    let [table] = tables(document, "Tire marks that were found")[..] else { panic!("one table") };
     assert_eq!((report.marks.len(), table.rows.len()), (4, 4));
     let shown = |si: Option<f64>| {
         si.map_or_else(|| "no mark".to_owned(), |si| Quantity::Length.shown(si, UnitSystem::Si))

@@ -12,7 +12,7 @@ use impactlab_networks::response::{
     ResponseTrainSettings, ResponseTrainingSet, average_error_m, fine_tune, pretrain, rollout,
 };
 
-/// Returns the motion of a car with an initial yaw rate, whose tyres differ from its data sheet.
+/// Returns the motion of a car with an initial yaw rate, whose tires differ from its data sheet.
 fn case(yaw_rate_rad_s: f64) -> ResponseCase {
     let vehicle = Preset::Reference.parameters();
     let mut truth = vehicle.clone();

@@ -27,7 +27,7 @@ fn carpenter_welcher_barrier() {
     let energy = unit(Quantity::Energy, "ft lbf");
     let arm = |x: f64, y: f64| [length.to_si(x), length.to_si(-y)];
     let impact = Impact {
-        target: ImpactBody {
+        struck: ImpactBody {
             mass_kg: mass.to_si(3574.2 / 32.2),
             yaw_inertia_kg_m2: inertia.to_si(2336.3),
             heading_rad: 0.0,
@@ -35,7 +35,7 @@ fn carpenter_welcher_barrier() {
             yaw_rate_rad_s: 0.0,
             contact_arm_m: arm(3.620925, -2.007083),
         },
-        bullet: ImpactBody {
+        striking: ImpactBody {
             mass_kg: mass.to_si(1e7 / 32.2),
             yaw_inertia_kg_m2: inertia.to_si(173_611_111.111),
             heading_rad: std::f64::consts::PI,
@@ -57,9 +57,9 @@ fn carpenter_welcher_barrier() {
     let got = [
         impulse.from_si(solution.impulse_tangential_n_s),
         impulse.from_si(solution.impulse_normal_n_s),
-        speed.from_si(solution.target.delta_v_m_s[0]),
-        -speed.from_si(solution.target.delta_v_m_s[1]),
-        -solution.target.delta_yaw_rate_rad_s.to_degrees(),
+        speed.from_si(solution.struck.delta_v_m_s[0]),
+        -speed.from_si(solution.struck.delta_v_m_s[1]),
+        -solution.struck.delta_yaw_rate_rad_s.to_degrees(),
         energy.from_si(solution.dissipated_energy_j),
     ];
     let printed = [-351.773, 5936.161, -35.7275, 7.5998, -176.430, 170_421.5];
@@ -88,12 +88,12 @@ fn carpenter_welcher_scenario_file() {
 /// rear turns the nose to the right, and the principal direction of force is from the right and
 /// behind.
 #[test]
-fn a_pit_turns_the_target_towards_the_bullet() {
+fn a_pit_turns_the_struck_towards_the_striking() {
     let solution = solve_scenario("pit_right_rear.toml");
     assert!(solution.impulse_n_s[1] > 1000.0, "{solution:?}");
-    assert!(solution.target.yaw_rate_rad_s < -0.2, "{solution:?}");
+    assert!(solution.struck.yaw_rate_rad_s < -0.2, "{solution:?}");
     assert!(solution.dissipated_energy_j > 0.0, "{solution:?}");
-    let clock = solution.target.pdof.map(PrincipalDirectionOfForce::clock);
+    let clock = solution.struck.pdof.map(PrincipalDirectionOfForce::clock);
     assert!(matches!(clock, Some(3 | 4)), "{solution:?}");
 }
 
@@ -121,7 +121,7 @@ fn impact_case(headers: &csv::StringRecord, row: &csv::StringRecord) -> ImpactCa
         izz_t_kg_m2: cell("izz_t_kg_m2"),
         izz_b_kg_m2: cell("izz_b_kg_m2"),
         contact_m: [cell("contact_x_m"), cell("contact_y_m")],
-        bullet_m: [cell("bullet_x0_m"), cell("bullet_y0_m")],
+        striking_m: [cell("bullet_x0_m"), cell("bullet_y0_m")],
     }
 }
 

@@ -165,7 +165,7 @@ fn steady_cornering_is_that_of_the_linear_bicycle() {
     let front = vehicle.tires.cornering_coefficient_front_per_rad * axle_load(lr);
     let rear = vehicle.tires.cornering_coefficient_rear_per_rad * axle_load(lf);
     let understeer = vehicle.mass.mass_kg / wheelbase * (lr / front - lf / rear);
-    // The ε in the slip angle reduces the stiffness of each tyre by the factor u/(u + ε).
+    // The ε in the slip angle reduces the stiffness of each tire by the factor u/(u + ε).
     let softened = understeer * (speed + 0.5) / speed;
     let expected = speed * steer / (wheelbase + softened * speed * speed);
     assert!(
@@ -176,7 +176,7 @@ fn steady_cornering_is_that_of_the_linear_bicycle() {
 
 #[test]
 fn a_spin_ends_at_rest_and_stays_there() {
-    for preset in [Preset::Reference, Preset::ScaledTarget] {
+    for preset in [Preset::Reference, Preset::ScaledStruck] {
         let vehicle = preset.parameters();
         let manoeuvre = Manoeuvre {
             initial: VehicleState { yaw_rate_rad_s: 8.0, ..VehicleState::driving_straight(8.0) },

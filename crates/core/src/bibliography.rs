@@ -123,8 +123,8 @@ sources! {
     /// | label | equation |
     /// | --- | --- |
     /// | `eq:state_vector` | state of the 4DOF vehicle: v_x, v_y, yaw, yaw rate, roll, roll rate, X, Y |
-    /// | `eq:4dof`, `eq:4dof2` | equations of motion of the 4DOF vehicle; sums of the tyre forces and moments |
-    /// | `eq:tire_model` to `eq:tire_model4` | lateral force of a tyre; slip angles; rolling resistance; vertical loads |
+    /// | `eq:4dof`, `eq:4dof2` | equations of motion of the 4DOF vehicle; sums of the tire forces and moments |
+    /// | `eq:tire_model` to `eq:tire_model4` | lateral force of a tire; slip angles; rolling resistance; vertical loads |
     /// | `eq:collision_model1`, `eq:collision_model2` | conservation of momentum and of angular momentum in a planar impact |
     /// | `eq:restitution_coefficient` to `eq:friction_coefficient2` | restitution; ratio of tangential to normal impulse |
     /// | `eq:pinn-gmmframework` | the force network: scenario and time to the impact force |

@@ -54,7 +54,7 @@ pub struct CollisionMotion {
     /// Path of the struck car.
     pub path: Path,
     /// Path of the striking car, where its rest pose is evidence.
-    pub bullet_path: Option<Path>,
+    pub striking_path: Option<Path>,
 }
 
 /// The forward model of a case.
@@ -66,7 +66,7 @@ pub struct ForwardModel {
     blocked: Option<Vec<Wheel>>,
     near: [Wheel; 2],
     pub(super) restitution: Option<[f64; 2]>,
-    follows_bullet: bool,
+    follows_striking: bool,
     zones: Vec<FrictionZone>,
     limit: PathLimit,
 }
@@ -77,7 +77,7 @@ struct Prepared {
     impact: ImpactState,
     vehicle: VehicleParameters,
     manoeuvre: Manoeuvre,
-    bullet: Option<(VehicleParameters, Manoeuvre)>,
+    striking: Option<(VehicleParameters, Manoeuvre)>,
 }
 
 impl ForwardModel {
@@ -103,7 +103,7 @@ impl ForwardModel {
             blocked: evidence.after.blocked_wheels.clone(),
             near: wheels_near(side, cars.is_hit_behind_cg(evidence)),
             restitution: evidence.prior.restitution,
-            follows_bullet: evidence.striking_rest.is_some(),
+            follows_striking: evidence.striking_rest.is_some(),
             zones: Vec::new(),
             limit: PathLimit { distance_m },
             cars,
@@ -147,12 +147,12 @@ impl ForwardModel {
             .iter()
             .map(|of| SimulationRun { vehicle: &of.vehicle, manoeuvre: &of.manoeuvre })
             .collect();
-        let bullets: Vec<SimulationRun<'_>> = prepared
+        let striking_vehicles: Vec<SimulationRun<'_>> = prepared
             .iter()
-            .filter_map(|of| of.bullet.as_ref())
+            .filter_map(|of| of.striking.as_ref())
             .map(|(vehicle, manoeuvre)| SimulationRun { vehicle, manoeuvre })
             .collect();
-        let bullet_paths = simulate_paths(&bullets, self.limit, |_, path| path);
+        let striking_paths = simulate_paths(&striking_vehicles, self.limit, |_, path| path);
         simulate_paths(&runs, self.limit, |idx, path| {
             let of = &prepared[idx];
             told(CollisionMotion {
@@ -161,7 +161,7 @@ impl ForwardModel {
                 vehicle: of.vehicle.clone(),
                 manoeuvre: of.manoeuvre.clone(),
                 path,
-                bullet_path: bullet_paths.get(idx).cloned(),
+                striking_path: striking_paths.get(idx).cloned(),
             })
         })
     }
@@ -173,21 +173,21 @@ impl ForwardModel {
         let [x_m, y_m] = impact.contact_m;
         let load = contact_load(impact.solution.impulse_n_s, &values, [x_m, y_m]);
         let manoeuvre = Manoeuvre {
-            initial: VehicleState::driving_straight(impact.target_speed_m_s),
+            initial: VehicleState::driving_straight(impact.struck_speed_m_s),
             contact_load: Some(load),
             controls: ending.controls(&vehicle),
             duration_s: LONGEST_MOTION_S,
             ends_at_rest: true,
             friction_zones: self.zones_under(&values, values.get(Latent::TireFrictionFactor)),
         };
-        let bullet = self.follows_bullet.then(|| self.bullet(&values, &impact));
-        Prepared { values, impact, vehicle, manoeuvre, bullet }
+        let striking = self.follows_striking.then(|| self.striking(&values, &impact));
+        Prepared { values, impact, vehicle, manoeuvre, striking }
     }
 
     /// The struck car of a particle.
     fn vehicle(&self, values: &LatentValues) -> VehicleParameters {
         let sheet = &self.cars.struck.parameters;
-        let mass_kg = values.get(Latent::TargetMass);
+        let mass_kg = values.get(Latent::StruckMass);
         let yaw_inertia = sheet.mass.yaw_inertia_kg_m2 * mass_kg / sheet.mass.mass_kg
             * values.get(Latent::YawInertiaFactor);
         let mut vehicle = sheet.clone().scaled_to_mass(mass_kg, Some(yaw_inertia));
@@ -225,7 +225,7 @@ impl ForwardModel {
             let shift = values.get(Latent::FrontBrakeShift);
             Braking {
                 front_share: Some(brake.ideal_front_share(vehicle) + shift),
-                lock_delay_s: lock_delay_s(vehicle, &brake, values.get(Latent::TargetSpeed)),
+                lock_delay_s: lock_delay_s(vehicle, &brake, values.get(Latent::StruckSpeed)),
                 ..brake
             }
         });
@@ -244,10 +244,10 @@ impl ForwardModel {
     /// The zones of the ground with the friction that a car has in them, within the range of a zone:
     ///
     /// ```text
-    /// μ = μ_site · f_zone · f_tyre
+    /// μ = μ_site · f_zone · f_tire
     /// ```
     ///
-    /// - `tire_factor`: f_tyre, friction of the tyres of the car over that which was measured.
+    /// - `tire_factor`: f_tire, friction of the tires of the car over that which was measured.
     fn zones_under(&self, values: &LatentValues, tire_factor: f64) -> Vec<FrictionZone> {
         let factor = values.get(Latent::ZoneFrictionFactor) * tire_factor;
         let under = |zone: &FrictionZone| FrictionZone {
@@ -258,31 +258,31 @@ impl ForwardModel {
     }
 
     /// The striking car and what happens to it.
-    fn bullet(
+    fn striking(
         &self,
         values: &LatentValues,
         impact: &ImpactState,
     ) -> (VehicleParameters, Manoeuvre) {
-        let mass_kg = values.get(Latent::BulletMass);
+        let mass_kg = values.get(Latent::StrikingMass);
         let mut vehicle = self.cars.striking.parameters.clone().scaled_to_mass(mass_kg, None);
         vehicle.tires.friction = values.get(Latent::RoadFriction);
         let brake = Some(Braking::new(
-            values.get(Latent::BulletBrakeStart),
-            values.get(Latent::BulletBrakeShare),
+            values.get(Latent::StrikingBrakeStart),
+            values.get(Latent::StrikingBrakeShare),
             DEFAULT_BRAKE_RISE_S,
         ));
         let (sin, cos) = impact.heading_difference_rad.sin_cos();
         let in_body = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
-        let [vx_m_s, vy_m_s] = in_body(impact.bullet_velocity_m_s);
-        let arm_m = [0, 1].map(|i| impact.contact_m[i] - impact.bullet_m[i]);
+        let [vx_m_s, vy_m_s] = in_body(impact.striking_velocity_m_s);
+        let arm_m = [0, 1].map(|i| impact.contact_m[i] - impact.striking_m[i]);
         let impulse = impact.solution.impulse_n_s.map(|p| -p);
         let manoeuvre = Manoeuvre {
             initial: VehicleState {
                 vx_m_s,
                 vy_m_s,
                 yaw_rad: impact.heading_difference_rad,
-                x_m: impact.bullet_m[0],
-                y_m: impact.bullet_m[1],
+                x_m: impact.striking_m[0],
+                y_m: impact.striking_m[1],
                 ..VehicleState::default()
             },
             contact_load: Some(contact_load(impulse, values, in_body(arm_m))),

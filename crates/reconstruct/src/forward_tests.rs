@@ -98,7 +98,7 @@ fn one_scale_that_weighed_both_cars_errs_for_both_alike() {
     let mut z = particles(target.dim()).swap_remove(0);
     let masses = |z: &[f64]| {
         let values = prior.values(z);
-        [Latent::TargetMass, Latent::BulletMass].map(|mass| values.get(mass))
+        [Latent::StruckMass, Latent::StrikingMass].map(|mass| values.get(mass))
     };
     z[scale] = 0.0;
     let before = masses(&z);
@@ -117,7 +117,7 @@ fn every_distribution_says_who_gave_it() {
     };
     let found = evidence();
     let mut ranged = found.clone();
-    ranged.prior.target_speed_m_s = Some([10.0, 30.0]);
+    ranged.prior.struck_speed_m_s = Some([10.0, 30.0]);
     ranged.prior.restitution = Some([0.1, 0.3]);
     ranged.shared_scale_sigma = Some(0.01);
     let mut unknown = found.clone();
@@ -128,8 +128,8 @@ fn every_distribution_says_who_gave_it() {
     assert!(known.sheet.is_none(), "every parameter of it is known");
     let any = None;
     for (evidence, vehicle, latent, source) in [
-        (&found, any, Latent::TargetSpeed, Some(PriorSource::Assumed)),
-        (&ranged, any, Latent::TargetSpeed, Some(PriorSource::Given)),
+        (&found, any, Latent::StruckSpeed, Some(PriorSource::Assumed)),
+        (&ranged, any, Latent::StruckSpeed, Some(PriorSource::Given)),
         (&found, any, Latent::RestitutionShare, Some(PriorSource::Assumed)),
         (&ranged, any, Latent::RestitutionShare, Some(PriorSource::Given)),
         (&ranged, any, Latent::MassScaleFactor, Some(PriorSource::Given)),
@@ -138,9 +138,9 @@ fn every_distribution_says_who_gave_it() {
         (&found, any, Latent::ContactAlong, Some(PriorSource::Measured)),
         (&found, any, Latent::RoadFriction, Some(PriorSource::Measured)),
         (&unknown, any, Latent::RoadFriction, Some(PriorSource::Assumed)),
-        (&found, any, Latent::TargetMass, Some(PriorSource::Measured)),
-        (&unknown, any, Latent::TargetMass, Some(PriorSource::Estimated)),
-        (&unknown, Some(&known), Latent::TargetMass, Some(PriorSource::Given)),
+        (&found, any, Latent::StruckMass, Some(PriorSource::Measured)),
+        (&unknown, any, Latent::StruckMass, Some(PriorSource::Estimated)),
+        (&unknown, Some(&known), Latent::StruckMass, Some(PriorSource::Given)),
         (&found, any, Latent::YawInertiaFactor, Some(PriorSource::Estimated)),
         // What is known is not in the prior.
         (&found, Some(&known), Latent::YawInertiaFactor, None),
@@ -261,7 +261,7 @@ fn the_wheels_stand_on_the_zones_of_the_ground() {
     let (on_road, of_road) = travelled_m(&road, &z[..n]);
     let (on_ice, of_ice) = travelled_m(&icy, &z);
     assert_eq!(of_road, None);
-    assert!((of_ice.unwrap() - 0.2 * 1.02).abs() < 1e-3, "tyres are a little better: {of_ice:?}");
+    assert!((of_ice.unwrap() - 0.2 * 1.02).abs() < 1e-3, "tires are a little better: {of_ice:?}");
     assert!(on_ice > 1.5 * on_road, "{on_ice} m on ice, {on_road} m on the road");
     // A zone that is better than the site says stops the car earlier; the friction stays in its range.
     z[n] = 2.0;

@@ -40,7 +40,7 @@ const USUAL_DELTA_V_M_S: Measured = Measured { value: 1.2, sigma: 0.5 };
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandCalculation {
     /// Speed of the struck car before the impact, m/s.
-    pub target_speed_m_s: Measured,
+    pub struck_speed_m_s: Measured,
     /// Closing speed across the struck side, m/s.
     pub closing_speed_m_s: Measured,
 }
@@ -70,8 +70,8 @@ impl HandCalculation {
         let along = evidence.edr.delta_v_x_m_s.map_or(0.0, |[low, high]| (low + high) / 2.0);
         let by_record = evidence.edr.speed_before_m_s;
         let own = Measured { value: (after - along).max(0.0), sigma: relative * after };
-        let target_speed_m_s = by_record.map_or(own, |record| combined(own, record));
-        Some(Self { target_speed_m_s, closing_speed_m_s: closing(evidence, cars) })
+        let struck_speed_m_s = by_record.map_or(own, |record| combined(own, record));
+        Some(Self { struck_speed_m_s, closing_speed_m_s: closing(evidence, cars) })
     }
 }
 
@@ -119,13 +119,13 @@ fn closing(evidence: &Evidence, cars: &Cars) -> Measured {
         sigma: (high - low).abs() / 3.5,
     };
     let delta_v = recorded.map_or(USUAL_DELTA_V_M_S, of_record);
-    let (target, bullet) = (&cars.struck.parameters, &cars.striking.parameters);
+    let (struck, striking) = (&cars.struck.parameters, &cars.striking.parameters);
     let arm = |arm_m: f64, inertia: f64| arm_m * arm_m / inertia;
-    let inverse = 1.0 / target.mass.mass_kg
-        + 1.0 / bullet.mass.mass_kg
-        + arm(damage.along_m.value, target.mass.yaw_inertia_kg_m2)
-        + arm(bullet.geometry.cg_to_front_end_m, bullet.mass.yaw_inertia_kg_m2);
-    let factor = target.mass.mass_kg * inverse / (1.0 + RESTITUTION);
+    let inverse = 1.0 / struck.mass.mass_kg
+        + 1.0 / striking.mass.mass_kg
+        + arm(damage.along_m.value, struck.mass.yaw_inertia_kg_m2)
+        + arm(striking.geometry.cg_to_front_end_m, striking.mass.yaw_inertia_kg_m2);
+    let factor = struck.mass.mass_kg * inverse / (1.0 + RESTITUTION);
     // Restitution ± 0.15.
     let relative = (delta_v.sigma / delta_v.value).hypot(0.15 / (1.0 + RESTITUTION));
     let value = delta_v.value * factor;
@@ -155,19 +155,19 @@ mod tests {
         let file = TomlFile { path: std::path::Path::new("case.toml"), text };
         let mut evidence = Evidence::from_toml(file).unwrap();
         let cars = Cars::of(&evidence, None, None);
-        let hand = HandCalculation::of(&evidence, &cars, &[]).unwrap().target_speed_m_s;
+        let hand = HandCalculation::of(&evidence, &cars, &[]).unwrap().struck_speed_m_s;
         let expected = (2.0 * 9.806_65 * 0.7 * 0.8 * 30.0_f64).sqrt();
         assert!((hand.value - expected).abs() < 1e-6, "{hand:?}, expected {expected}");
         // A recorder that is as good moves it half way, and narrows it.
         evidence.edr.speed_before_m_s = Some(Measured { value: expected + 1.0, ..hand });
-        let both = HandCalculation::of(&evidence, &cars, &[]).unwrap().target_speed_m_s;
+        let both = HandCalculation::of(&evidence, &cars, &[]).unwrap().struck_speed_m_s;
         assert!((both.value - expected - 0.5).abs() < 1e-6, "{both:?}");
         assert!((both.sigma * 2_f64.sqrt() / hand.sigma - 1.0).abs() < 1e-9, "{both:?}");
         // The second half of the way on ice takes the friction that both halves have on the average.
         evidence.edr.speed_before_m_s = None;
         let border_m = vec![[15.0, -5.0], [40.0, -5.0], [40.0, 5.0], [15.0, 5.0]];
         let ice = FrictionZone { name: "ice".to_owned(), border_m, friction: 0.1 };
-        let icy = HandCalculation::of(&evidence, &cars, &[ice]).unwrap().target_speed_m_s;
+        let icy = HandCalculation::of(&evidence, &cars, &[ice]).unwrap().struck_speed_m_s;
         let share = (0.4_f64 / 0.7).sqrt();
         assert!((icy.value / expected - share).abs() < 1e-6, "{icy:?}, expected {share} of it");
         evidence.rest = None;

@@ -22,17 +22,17 @@ const RESTITUTION_OVER_SPEED: [(f64, [f64; 2]); 2] = [(5.0, [0.24, 0.66]), (15.0
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImpactState {
     /// Speed of the struck car before it, m/s.
-    pub target_speed_m_s: f64,
+    pub struck_speed_m_s: f64,
     /// Speed of the striking car before it, m/s.
-    pub bullet_speed_m_s: f64,
+    pub striking_speed_m_s: f64,
     /// Size of the difference of the velocities of both CGs, m/s.
     pub closing_speed_m_s: f64,
     /// Heading of the striking car against that of the struck car, rad.
     pub heading_difference_rad: f64,
     /// Where the striking car moves, world axes, m/s.
-    pub bullet_velocity_m_s: [f64; 2],
+    pub striking_velocity_m_s: [f64; 2],
     /// CG of the striking car at first contact, world axes, m.
-    pub bullet_m: [f64; 2],
+    pub striking_m: [f64; 2],
     /// Contact point from the CG of the struck car, m.
     pub contact_m: [f64; 2],
     /// Coefficient of restitution.
@@ -43,55 +43,55 @@ pub struct ImpactState {
 
 impl ImpactState {
     /// Size of the change of velocity of the struck car by the contact, m/s.
-    pub fn delta_v_target_m_s(&self) -> f64 {
-        let [x, y] = self.solution.target.delta_v_m_s;
+    pub fn delta_v_struck_m_s(&self) -> f64 {
+        let [x, y] = self.solution.struck.delta_v_m_s;
         x.hypot(y)
     }
 
     /// Whether the cars push each other: they do not if they draw apart where they touch.
     pub fn is_collision(&self) -> bool {
-        self.delta_v_target_m_s() > 0.0
+        self.delta_v_struck_m_s() > 0.0
     }
 }
 
 impl ForwardModel {
     /// The impact of a particle, without the motion after it.
     pub fn impact(&self, values: &LatentValues) -> ImpactState {
-        let target_speed_m_s = values.get(Latent::TargetSpeed);
+        let struck_speed_m_s = values.get(Latent::StruckSpeed);
         let difference = values.get(Latent::SpeedDifference);
-        let bullet_speed_m_s = match difference.is_nan() {
-            true => values.get(Latent::BulletSpeed),
-            false => (target_speed_m_s + difference).max(0.0),
+        let striking_speed_m_s = match difference.is_nan() {
+            true => values.get(Latent::StrikingSpeed),
+            false => (struck_speed_m_s + difference).max(0.0),
         };
         let sign = towards(self.side);
         let heading_rad = sign * values.get(Latent::HeadingTowards);
         let course_rad = heading_rad + sign * values.get(Latent::SideslipTowards);
-        let bullet_velocity_m_s =
-            [bullet_speed_m_s * course_rad.cos(), bullet_speed_m_s * course_rad.sin()];
+        let striking_velocity_m_s =
+            [striking_speed_m_s * course_rad.cos(), striking_speed_m_s * course_rad.sin()];
         let along_across = [values.get(Latent::ContactAlong), values.get(Latent::ContactAcross)];
         let (contact_m, side_rad) = contact(self.side, along_across);
         let to_heading_rad = wrap_angle_rad(heading_rad - side_rad);
         let normal_rad = side_rad + values.get(Latent::NormalTilt) * to_heading_rad.signum();
-        let arm_m = self.bullet_arm_m(heading_rad, side_rad);
+        let arm_m = self.striking_arm_m(heading_rad, side_rad);
         let inertia = |mass_kg: f64, of: &VehicleParameters| {
             of.mass.yaw_inertia_kg_m2 * mass_kg / of.mass.mass_kg
         };
-        let [target_kg, bullet_kg] =
-            [values.get(Latent::TargetMass), values.get(Latent::BulletMass)];
-        let target = ImpactBody {
-            mass_kg: target_kg,
-            yaw_inertia_kg_m2: inertia(target_kg, &self.cars.struck.parameters)
+        let [struck_kg, striking_kg] =
+            [values.get(Latent::StruckMass), values.get(Latent::StrikingMass)];
+        let struck = ImpactBody {
+            mass_kg: struck_kg,
+            yaw_inertia_kg_m2: inertia(struck_kg, &self.cars.struck.parameters)
                 * values.get(Latent::YawInertiaFactor),
             heading_rad: 0.0,
-            velocity_m_s: [target_speed_m_s, 0.0],
+            velocity_m_s: [struck_speed_m_s, 0.0],
             yaw_rate_rad_s: 0.0,
             contact_arm_m: contact_m,
         };
-        let bullet = ImpactBody {
-            mass_kg: bullet_kg,
-            yaw_inertia_kg_m2: inertia(bullet_kg, &self.cars.striking.parameters),
+        let striking = ImpactBody {
+            mass_kg: striking_kg,
+            yaw_inertia_kg_m2: inertia(striking_kg, &self.cars.striking.parameters),
             heading_rad,
-            velocity_m_s: bullet_velocity_m_s,
+            velocity_m_s: striking_velocity_m_s,
             yaw_rate_rad_s: 0.0,
             contact_arm_m: arm_m,
         };
@@ -102,17 +102,17 @@ impl ForwardModel {
             friction_limit: values.get(Latent::ContactFriction),
             friction_model: FrictionModel::Limit,
         };
-        let mut impact = Impact { target, bullet, surface };
+        let mut impact = Impact { struck, striking, surface };
         let restitution = self.restitution(values, impact.closing_velocity_m_s()[0]);
         impact.surface.restitution = restitution;
-        let closing = [bullet_velocity_m_s[0] - target_speed_m_s, bullet_velocity_m_s[1]];
+        let closing = [striking_velocity_m_s[0] - struck_speed_m_s, striking_velocity_m_s[1]];
         ImpactState {
-            target_speed_m_s,
-            bullet_speed_m_s,
+            struck_speed_m_s,
+            striking_speed_m_s,
             closing_speed_m_s: closing[0].hypot(closing[1]),
             heading_difference_rad: wrap_angle_rad(heading_rad),
-            bullet_velocity_m_s,
-            bullet_m: [contact_m[0] - arm_m[0], contact_m[1] - arm_m[1]],
+            striking_velocity_m_s,
+            striking_m: [contact_m[0] - arm_m[0], contact_m[1] - arm_m[1]],
             contact_m,
             restitution,
             solution: solved(&impact),
@@ -132,7 +132,7 @@ impl ForwardModel {
 
     /// From the CG of the striking car to the contact point, world axes, m: the corner that is nearest
     /// to the struck side, or the middle of an edge that lies along it.
-    fn bullet_arm_m(&self, heading_rad: f64, normal_rad: f64) -> [f64; 2] {
+    fn striking_arm_m(&self, heading_rad: f64, normal_rad: f64) -> [f64; 2] {
         let geometry = &self.cars.striking.parameters.geometry;
         let (across, ahead) = (normal_rad - heading_rad).sin_cos();
         let edge = |sine: f64| (sine / CORNER_SINE).clamp(-1.0, 1.0);

@@ -43,9 +43,11 @@ macro_rules! latents {
 
 latents! {
     /// Speed of the struck car before the impact, m/s.
-    TargetSpeed: "target_speed_m_s", "m/s", "speed of the struck car";
+    #[serde(rename = "target_speed")]
+    StruckSpeed: "target_speed_m_s", "m/s", "speed of the struck car";
     /// Speed of the striking car before the impact, m/s, where it has a range of its own.
-    BulletSpeed: "bullet_speed_m_s", "m/s", "speed of the striking car";
+    #[serde(rename = "bullet_speed")]
+    StrikingSpeed: "bullet_speed_m_s", "m/s", "speed of the striking car";
     /// Speed of the striking car beyond that of the struck car, m/s, where it has none.
     SpeedDifference: "speed_difference_m_s", "m/s", "striking car faster by";
     /// Heading of the striking car, rad, turned towards the struck side.
@@ -67,24 +69,26 @@ latents! {
     PulseDuration: "pulse_duration_s", "s", "duration of the contact";
     /// Peak friction of the road.
     RoadFriction: "road_friction", "", "friction of the road";
-    /// Friction of the tyres of the struck car over that of the road.
-    TireFrictionFactor: "tire_friction_factor", "", "tyre friction over that of the road";
+    /// Friction of the tires of the struck car over that of the road.
+    TireFrictionFactor: "tire_friction_factor", "", "tire friction over that of the road";
     /// Mass of the struck car, kg.
-    TargetMass: "target_mass_kg", "kg", "mass of the struck car";
+    #[serde(rename = "target_mass")]
+    StruckMass: "target_mass_kg", "kg", "mass of the struck car";
     /// Mass of the striking car, kg.
-    BulletMass: "bullet_mass_kg", "kg", "mass of the striking car";
+    #[serde(rename = "bullet_mass")]
+    StrikingMass: "bullet_mass_kg", "kg", "mass of the striking car";
     /// True weight over what the one scale that weighed both cars shows: a factor of both masses.
     MassScaleFactor: "mass_scale_factor", "", "true weight over that of the scale";
     /// Yaw inertia of the struck car over that of its data sheet.
     YawInertiaFactor: "yaw_inertia_factor", "", "yaw inertia over the estimate";
-    /// Cornering coefficient of the front tyres over that of the data sheet.
+    /// Cornering coefficient of the front tires over that of the data sheet.
     FrontCorneringFactor: "front_cornering_factor", "", "front cornering over the estimate";
-    /// The same of the rear tyres.
+    /// The same of the rear tires.
     RearCorneringFactor: "rear_cornering_factor", "", "rear cornering over the estimate";
     /// Sliding friction over peak friction.
     SlidingRatio: "sliding_friction_ratio", "", "sliding over peak friction";
     /// Friction of a wheel along its plane over that across it.
-    LongitudinalFrictionRatio: "longitudinal_friction_ratio", "", "tyre friction along over across";
+    LongitudinalFrictionRatio: "longitudinal_friction_ratio", "", "tire friction along over across";
     /// Rolling resistance over vertical load.
     RollingResistance: "rolling_resistance", "", "rolling resistance";
     /// Whether the driver brakes: below its threshold he does.
@@ -107,9 +111,11 @@ latents! {
     /// How far it is blocked: drag over what the road can hold; more than 1 is locked.
     BlockedDrag: "blocked_drag", "", "drag of the blocked wheel";
     /// When the driver of the striking car brakes, s after the first contact.
-    BulletBrakeStart: "bullet_brake_start_s", "s", "striking driver brakes from";
+    #[serde(rename = "bullet_brake_start")]
+    StrikingBrakeStart: "bullet_brake_start_s", "s", "striking driver brakes from";
     /// Its braking force over the largest that the road can hold.
-    BulletBrakeShare: "bullet_brake_share", "", "braking of the striking car";
+    #[serde(rename = "bullet_brake_share")]
+    StrikingBrakeShare: "bullet_brake_share", "", "braking of the striking car";
     /// Friction of the zones of the ground over that which the site says, in all of them alike.
     ZoneFrictionFactor: "zone_friction_factor", "", "friction of the zones over that of the site";
 }

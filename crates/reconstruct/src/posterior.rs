@@ -45,9 +45,9 @@ macro_rules! quantities {
 
 quantities! {
     /// Speed of the struck car before the impact, m/s.
-    TargetSpeed: "target_speed_m_s", "m/s", |_, impact| impact.target_speed_m_s;
+    StruckSpeed: "target_speed_m_s", "m/s", |_, impact| impact.struck_speed_m_s;
     /// Speed of the striking car before the impact, m/s.
-    BulletSpeed: "bullet_speed_m_s", "m/s", |_, impact| impact.bullet_speed_m_s;
+    StrikingSpeed: "bullet_speed_m_s", "m/s", |_, impact| impact.striking_speed_m_s;
     /// Size of the difference of both velocities, m/s.
     ClosingSpeed: "closing_speed_m_s", "m/s", |_, impact| impact.closing_speed_m_s;
     /// Heading of the striking car against that of the struck car, rad.
@@ -55,35 +55,35 @@ quantities! {
     /// Peak friction of the road.
     RoadFriction: "road_friction", "", |values, _| values.get(Latent::RoadFriction);
     /// Change of velocity of the struck car by the contact, m/s.
-    DeltaVTarget: "delta_v_target_m_s", "m/s", |_, impact| impact.delta_v_target_m_s();
+    DeltaVStruck: "delta_v_target_m_s", "m/s", |_, impact| impact.delta_v_struck_m_s();
     /// Yaw rate of the struck car after the impact, rad/s.
-    TargetYawRate: "target_yaw_rate_after_rad_s", "rad/s",
-        |_, impact| impact.solution.target.yaw_rate_rad_s;
+    StruckYawRate: "target_yaw_rate_after_rad_s", "rad/s",
+        |_, impact| impact.solution.struck.yaw_rate_rad_s;
 }
 
 impl ReconstructedQuantity {
     /// What it is called.
     pub fn label(self) -> &'static str {
         match self {
-            Self::TargetSpeed => "speed of the struck car",
-            Self::BulletSpeed => "speed of the striking car",
+            Self::StruckSpeed => "speed of the struck car",
+            Self::StrikingSpeed => "speed of the striking car",
             Self::ClosingSpeed => "closing speed",
             Self::HeadingDifference => "relative heading of the cars",
             Self::RoadFriction => "friction of the road",
-            Self::DeltaVTarget => "Δv of the struck car",
-            Self::TargetYawRate => "yaw rate after the impact",
+            Self::DeltaVStruck => "Δv of the struck car",
+            Self::StruckYawRate => "yaw rate after the impact",
         }
     }
 
     /// What kind of quantity it is.
     pub fn quantity(self) -> Quantity {
         match self {
-            Self::TargetSpeed | Self::BulletSpeed | Self::ClosingSpeed | Self::DeltaVTarget => {
+            Self::StruckSpeed | Self::StrikingSpeed | Self::ClosingSpeed | Self::DeltaVStruck => {
                 Quantity::Speed
             }
             Self::HeadingDifference => Quantity::Angle,
             Self::RoadFriction => Quantity::Ratio,
-            Self::TargetYawRate => Quantity::AngularVelocity,
+            Self::StruckYawRate => Quantity::AngularVelocity,
         }
     }
 }
@@ -157,8 +157,8 @@ const FIT_PARTICLES: usize = 300;
 
 impl Posterior {
     /// What follows from particles.
-    pub fn of(target: &ReconstructionTarget, particles: &Particles) -> Self {
-        Self::of_points(target.model(), &particles.z)
+    pub fn of(struck: &ReconstructionTarget, particles: &Particles) -> Self {
+        Self::of_points(struck.model(), &particles.z)
     }
 
     /// What follows from points.
@@ -193,7 +193,7 @@ impl Posterior {
         members: &[usize],
         quantities: &[QuantityEstimate],
     ) -> Option<usize> {
-        let speed = ReconstructedQuantity::TargetSpeed;
+        let speed = ReconstructedQuantity::StruckSpeed;
         let median = quantities.iter().find(|of| of.name == speed.key())?.median;
         let speeds = self.of_quantity(speed);
         let off = |idx: &usize| speeds.get(*idx).map_or(f64::INFINITY, |v| (v - median).abs());
@@ -238,17 +238,17 @@ impl Posterior {
     ///
     /// - `(ess, seed)`: effective sample size of the particles, seed of the errors of measurements.
     pub fn budget(&self, (ess, seed): (f64, u64)) -> Vec<BudgetItem> {
-        let speeds = self.of_quantity(ReconstructedQuantity::TargetSpeed);
+        let speeds = self.of_quantity(ReconstructedQuantity::StruckSpeed);
         let latent = |latent: Latent| self.values.iter().map(|v| v.get(latent)).collect::<Vec<_>>();
         let quantity = |quantity: ReconstructedQuantity| self.of_quantity(quantity);
         [
             ("road_friction", 0.02, latent(Latent::RoadFriction)),
             ("tire_friction_factor", 0.02, latent(Latent::TireFrictionFactor)),
-            ("target_mass_kg", 20.0, latent(Latent::TargetMass)),
-            ("bullet_mass_kg", 20.0, latent(Latent::BulletMass)),
+            ("target_mass_kg", 20.0, latent(Latent::StruckMass)),
+            ("bullet_mass_kg", 20.0, latent(Latent::StrikingMass)),
             ("contact_along_m", 0.03, latent(Latent::ContactAlong)),
             ("brake_start_s", 0.1, latent(Latent::BrakeStart)),
-            ("delta_v_target_m_s", 0.1, quantity(ReconstructedQuantity::DeltaVTarget)),
+            ("delta_v_target_m_s", 0.1, quantity(ReconstructedQuantity::DeltaVStruck)),
             ("heading_difference_rad", 0.05, quantity(ReconstructedQuantity::HeadingDifference)),
             ("target_speed_m_s", 0.9, speeds.clone()),
         ]
@@ -276,7 +276,7 @@ impl BudgetItem {
     pub fn measurement(&self) -> &'static str {
         match self.known {
             "road_friction" => "friction test",
-            "tire_friction_factor" => "tyre test",
+            "tire_friction_factor" => "tire test",
             "target_mass_kg" => "struck car weighed",
             "bullet_mass_kg" => "striking car weighed",
             "contact_along_m" => "damage measured",

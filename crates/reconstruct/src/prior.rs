@@ -15,7 +15,7 @@
 //! | restitution | uniform, 0.24 to 0.66 up to 5 m/s of approach, falling to 0 to 0.3 at 15 m/s | [`ContactDistribution`], [`Brach2011`](impactlab_core::bibliography::Brach2011) |
 //! | friction of the contact | normal, 0.28 ± 0.15 | [`ContactDistribution`] |
 //! | normal of the contact turned towards where the striking car points | normal, 9° ± 7° hit behind the CG, else 0° ± 7° | a corner that digs in: tuning cases |
-//! | friction of the tyres over that of the road | log-normal, 1.02, factor 1.09 | other tyres: tuning cases |
+//! | friction of the tires over that of the road | log-normal, 1.02, factor 1.09 | other tires: tuning cases |
 //! | friction of a wheel along its plane over that across it | log-normal, 1.15, factor 1.07 | tuning cases |
 //! | duration of the contact | log-normal, 0.12 s, factor 1.35 | finite-element runs of the project |
 //! | driver brakes | 3 of 4 | assumed |
@@ -29,7 +29,7 @@
 //! | mass of a car of which no mass is known | log-normal, by its length and width where they are known, else 1790 kg, factor 1.19 | vehicles of the library |
 //! | one scale that weighed both cars, over what it shows | log-normal, 1, as said | [`Evidence::shared_scale_sigma`] |
 //! | friction of the zones of a site over that which the site says, in all zones alike | log-normal, 1, factor 1.16 | assumed: grass, gravel and wet patches are known less well than the road |
-//! | yaw inertia, tyre curves, sliding friction, rolling resistance | the rules of the data sheet with their scatter | [`DataSheet`](impactlab_core::vehicle::DataSheet) |
+//! | yaw inertia, tire curves, sliding friction, rolling resistance | the rules of the data sheet with their scatter | [`DataSheet`](impactlab_core::vehicle::DataSheet) |
 
 use std::f64::consts::PI;
 
@@ -80,7 +80,7 @@ pub struct Prior {
 /// Highest speed that the prior takes to be possible, m/s.
 const HIGHEST_SPEED_M_S: f64 = 60.0;
 
-/// Friction of a tyre over that which was measured on the road, and its scatter: other tyres differ.
+/// Friction of a tire over that which was measured on the road, and its scatter: other tires differ.
 const TIRE_FRICTION_FACTOR: f64 = 1.02;
 const TIRE_FRICTION_SCATTER: f64 = 0.09;
 
@@ -134,7 +134,7 @@ impl Prior {
         }
         let scale = values.get(Latent::MassScaleFactor);
         if !scale.is_nan() {
-            for mass in [Latent::TargetMass, Latent::BulletMass] {
+            for mass in [Latent::StruckMass, Latent::StrikingMass] {
                 values.set(mass, scale * values.get(mass));
             }
         }
@@ -167,12 +167,12 @@ impl Prior {
         let ranges = &evidence.prior;
         let any = Distribution::Uniform { low: 0.0, high: HIGHEST_SPEED_M_S };
         let any = (PriorSource::Assumed, any);
-        self.open(Latent::TargetSpeed, ranges.target_speed_m_s, any);
-        match ranges.bullet_speed_m_s {
+        self.open(Latent::StruckSpeed, ranges.struck_speed_m_s, any);
+        match ranges.striking_speed_m_s {
             None if self.is_pit => {
                 self.assume(Latent::SpeedDifference, normal(1.0, 3.0, -20.0, 20.0));
             }
-            range => self.open(Latent::BulletSpeed, range, any),
+            range => self.open(Latent::StrikingSpeed, range, any),
         }
         // Angles are turned towards the struck side, so that the mirror of a case is the same prior.
         let turned = |[low, high]: [f64; 2]| match towards(evidence.damage.side) > 0.0 {
@@ -192,7 +192,7 @@ impl Prior {
         let by_side = (PriorSource::Assumed, by_side);
         let heading = ranges.heading_difference_rad.map(turned);
         self.open(Latent::HeadingTowards, heading, by_damage.unwrap_or(by_side));
-        let sideslip = ranges.bullet_sideslip_rad.map(turned);
+        let sideslip = ranges.striking_sideslip_rad.map(turned);
         let mean = if self.is_pit { -0.10 } else { 0.0 };
         let usual = (PriorSource::Assumed, normal(mean, 0.20, -0.8, 0.8));
         self.open(Latent::SideslipTowards, sideslip, usual);
@@ -236,8 +236,8 @@ impl Prior {
             log_normal(LONGITUDINAL_FRICTION_RATIO, LONGITUDINAL_FRICTION_SCATTER, 0.8, 1.5),
         );
         for (latent, measured, vehicle) in [
-            (Latent::TargetMass, evidence.struck_car.mass_kg, &cars.struck),
-            (Latent::BulletMass, evidence.striking_car.mass_kg, &cars.striking),
+            (Latent::StruckMass, evidence.struck_car.mass_kg, &cars.struck),
+            (Latent::StrikingMass, evidence.striking_car.mass_kg, &cars.striking),
         ] {
             let (source, distribution) = mass_of(measured, vehicle);
             self.add(latent, source, distribution);
@@ -311,8 +311,8 @@ impl Prior {
             self.assume(Latent::BlockedDrag, Distribution::Uniform { low: 0.2, high: 1.6 });
         }
         if evidence.striking_rest.is_some() {
-            self.assume(Latent::BulletBrakeStart, log_normal(0.9, 0.47, 0.1, 6.0));
-            self.assume(Latent::BulletBrakeShare, log_normal(0.6, 0.8, 0.02, 3.0));
+            self.assume(Latent::StrikingBrakeStart, log_normal(0.9, 0.47, 0.1, 6.0));
+            self.assume(Latent::StrikingBrakeShare, log_normal(0.6, 0.8, 0.02, 3.0));
         }
     }
 }

@@ -18,11 +18,13 @@ pub enum AssumedQuantity {
     /// The struck vehicle.
     Vehicle,
     /// The striking vehicle.
-    Bullet,
+    #[serde(rename = "bullet")]
+    Striking,
     /// A parameter of the struck vehicle that its data sheet does not state.
     VehicleParameter,
     /// Parameters of the striking vehicle that its data sheet does not state.
-    BulletParameter,
+    #[serde(rename = "bullet_parameter")]
+    StrikingParameter,
     /// Speed of the struck vehicle before the impact.
     Speed,
     /// Where the force acts on the struck vehicle.
@@ -60,9 +62,9 @@ impl AssumedQuantity {
     pub fn label(self) -> &'static str {
         match self {
             Self::Vehicle => "struck vehicle",
-            Self::Bullet => "striking vehicle",
+            Self::Striking => "striking vehicle",
             Self::VehicleParameter => "parameter of the vehicle",
-            Self::BulletParameter => "parameters of the striking vehicle",
+            Self::StrikingParameter => "parameters of the striking vehicle",
             Self::Speed => "speed before the impact",
             Self::ContactPoint => "contact point",
             Self::ContactHeight => "height of the contact",

@@ -83,7 +83,7 @@ impl Drive {
                 let loaded = library.series(file)?;
                 notes.extend(loaded.notes.iter().map(ToString::to_string));
                 let force = force_of(&loaded, self.sampling, file)?;
-                Some(acting_force(force, (self.contact, &settings.target), assumptions))
+                Some(acting_force(force, (self.contact, &settings.struck), assumptions))
             }
             None => None,
         };
@@ -92,10 +92,10 @@ impl Drive {
             yaw_rate_rad_s: self.yaw_rate_rad_s,
             ..VehicleState::driving_straight(speed_m_s)
         };
-        let steer = self.steer((&settings.target, &initial), assumptions)?;
+        let steer = self.steer((&settings.struck, &initial), assumptions)?;
         let held = steer.as_ref().and_then(|steer| held_steer(steer, settings.duration_s));
         assumptions.extend(held);
-        let wheels = self.wheels.as_ref().map(|file| wheel_history(file, &settings.target));
+        let wheels = self.wheels.as_ref().map(|file| wheel_history(file, &settings.struck));
         Ok(DriveSetup { initial, load, steer, wheels: wheels.transpose()?, notes })
     }
 

@@ -65,9 +65,11 @@ pub struct ImpactReport {
     /// Kinetic energy lost in the contact, J.
     pub dissipated_energy_j: f64,
     /// The struck vehicle after the impact.
-    pub target: BodyReport,
+    #[serde(rename = "target")]
+    pub struck: BodyReport,
     /// The striking vehicle after the impact.
-    pub bullet: BodyReport,
+    #[serde(rename = "bullet")]
+    pub striking: BodyReport,
     /// What was assumed: where the vehicles first touched, if their outlines overlap; default
     /// restitution and friction.
     pub assumptions: Vec<Assumption>,
@@ -161,8 +163,8 @@ impl Question for ImpactRequest {
             struck_surface: geometry.surface,
             overlap_m: geometry.overlap_m,
             dissipated_energy_j: solution.dissipated_energy_j,
-            target: (&solution.target).into(),
-            bullet: (&solution.bullet).into(),
+            struck: (&solution.struck).into(),
+            striking: (&solution.striking).into(),
             badges: overlap.chain(badges::of_assumptions(&assumptions)).collect(),
             assumptions,
             provenance: Provenance::default(),

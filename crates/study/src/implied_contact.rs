@@ -153,7 +153,7 @@ mod tests {
         let mut seen = Vec::new();
         for quarter in [0.0, 1.0] {
             let mut scenario = Scenario::example();
-            for vehicle in [&mut scenario.target, &mut scenario.bullet] {
+            for vehicle in [&mut scenario.struck, &mut scenario.striking] {
                 vehicle.heading_rad += quarter * FRAC_PI_2;
                 [vehicle.vx_m_s, vehicle.vy_m_s] =
                     turned([vehicle.vx_m_s, vehicle.vy_m_s], quarter * FRAC_PI_2);
@@ -161,7 +161,7 @@ mod tests {
             let numbers = ForceScenario::from_scenario(&scenario).unwrap();
             let prediction = model.predict(&numbers).unwrap();
             let mut impact = scenario.impact().unwrap();
-            let heading_rad = scenario.target.heading_rad;
+            let heading_rad = scenario.struck.heading_rad;
             let report = ImpliedContactReport::of(&prediction, (&impact, heading_rad), 0).unwrap();
             assert!((report.momentum.restitution - scenario.contact.restitution).abs() < 1e-12);
             impact.surface.restitution = report.restitution.median;

@@ -60,10 +60,10 @@ mod recorded_force;
 mod simulate;
 mod simulate_dataset;
 mod simulate_report;
+mod tire_marks;
 mod train_force;
 mod train_response;
 mod trust;
-mod tyre_marks;
 mod unused;
 mod vehicle_uncertainty;
 
@@ -93,7 +93,7 @@ pub use fine_tune::{FineTuneRequest, Learning};
 pub use impact::{BodyReport, ImpactAnswer, ImpactReport, ImpactRequest};
 pub use implied_contact::{ImpliedContactReport, MomentumReport};
 pub use inputs::{
-    BadCases, ConfigChoice, DEFAULT_BULLET, DEFAULT_VEHICLE, EvaluatedCases, ModelChoice,
+    BadCases, ConfigChoice, DEFAULT_STRIKING, DEFAULT_VEHICLE, EvaluatedCases, ModelChoice,
     ScenarioChoice, SeriesFile, TrainingOptions, VehicleChoice, checkpoint_beside,
 };
 pub use library::Library;
@@ -119,9 +119,9 @@ pub use simulate_dataset::{
 pub use simulate_report::{
     EndState, FlagReport, ForceReport, FrictionZoneReport, RestState, SimulateReport,
 };
+pub use tire_marks::TireMarkReport;
 pub use train_force::{TrainForceAnswer, TrainForceReport, TrainForceRequest};
 pub use train_response::{ResponseTrainingAnswer, ResponseTrainingReport, TrainResponseRequest};
 pub use trust::{Trust, TrustLine};
-pub use tyre_marks::TyreMarkReport;
 pub use vehicle_uncertainty::VehicleUncertainty;
 pub use word::word;

@@ -170,7 +170,7 @@ impl ForceQuestion {
                 let numbers = ForceScenario::from_scenario(&scenario);
                 let numbers = numbers.map_err(|source| choice.unsolved(source))?;
                 let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
-                (scenario.name, numbers, Some((impact, scenario.target.heading_rad)))
+                (scenario.name, numbers, Some((impact, scenario.struck.heading_rad)))
             }
             Self::Case { dataset: root, case } => {
                 let Outcome::Complete(dataset) = library.dataset(root, observer)? else {
@@ -222,7 +222,7 @@ impl Question for PredictForceRequest {
         let AskedCollision { name, numbers: mut collision, mut impact, mut unused, overlap } =
             asked;
         if let Some(body) = &self.body {
-            collision.bullet_body = Some(body.clone());
+            collision.striking_body = Some(body.clone());
             if model.bodies().len() == 1 {
                 let reason = "the cases that the force network has learned from have one kind";
                 unused.push(not_used(format!("kind of bullet body, {body}"), reason));
@@ -230,7 +230,7 @@ impl Question for PredictForceRequest {
         }
         if self.open_contact {
             (collision.contact_m, collision.normal_rad) = (None, None);
-            (collision.bullet_position_m, impact) = (None, None);
+            (collision.striking_position_m, impact) = (None, None);
         }
         let prediction = model.predict(&collision)?;
         let settings = ForecastSettings { n_curves: self.samples, seed: self.seed };

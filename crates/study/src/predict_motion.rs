@@ -331,7 +331,7 @@ impl PredictMotionRequest {
         };
         let scenario = choice.load()?;
         let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
-        let at = (&impact, scenario.target.heading_rad);
+        let at = (&impact, scenario.struck.heading_rad);
         Ok(ImpliedContactReport::of(prediction, at, self.seed))
     }
 
@@ -349,16 +349,16 @@ impl PredictMotionRequest {
     /// Whether the vehicles meet again, over the draws. The striking vehicle moves as in the
     /// simulation where the force is that of the simulation.
     fn second_contact(&self, forecast: &MotionForecast, analysis: &Analysis) -> Option<FlagReport> {
-        let bullet = analysis.bullet.as_ref()?;
+        let striking = analysis.striking.as_ref()?;
         let is_own = self.force == ForceSource::Given;
-        let met = SecondContacts::of(forecast, (analysis.footprint, bullet), is_own)?;
+        let met = SecondContacts::of(forecast, (analysis.footprint, striking), is_own)?;
         Some(FlagReport::from(&met))
     }
 
     /// Whether the motion of the struck vehicle depends on what was assumed for the simulation.
     fn rests_on(&self, assumption: &Assumption) -> bool {
         match assumption.quantity {
-            AssumedQuantity::Bullet | AssumedQuantity::BulletParameter => false,
+            AssumedQuantity::Striking | AssumedQuantity::StrikingParameter => false,
             AssumedQuantity::Pulse | AssumedQuantity::Restitution => {
                 self.force == ForceSource::Given
             }

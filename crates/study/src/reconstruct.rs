@@ -281,7 +281,7 @@ impl Question for ReconstructRequest {
         let ground = target.model().zones();
         let by_hand = HandCalculation::of(target.evidence(), target.model().cars(), ground);
         let by_hand_m_s = by_hand.map(|hand| {
-            let speed = hand.target_speed_m_s;
+            let speed = hand.struck_speed_m_s;
             [speed.value, speed.sigma]
         });
         let mut badges = of_particles(&particles);
@@ -402,7 +402,7 @@ fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Assumption> {
     let mut add = |quantity, value: &str, reason: &str| {
         all.push(Assumption::new(quantity, value, reason));
     };
-    if evidence.prior.bullet_speed_m_s.is_none() && cars.is_hit_behind_cg(evidence) {
+    if evidence.prior.striking_speed_m_s.is_none() && cars.is_hit_behind_cg(evidence) {
         let value = "the striking car was faster by 1 ± 3 m/s";
         let reason = "it hit a flank behind the CG, as in a PIT manoeuvre; otherwise: [prior] \
                       bullet_speed_m_s";
@@ -437,7 +437,7 @@ fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Assumption> {
     if estimated > 0 {
         let value = format!("{estimated} estimated from the rest, at their medians");
         let reason = "the evidence does not say them; a data sheet: --striking";
-        add(AssumedQuantity::BulletParameter, &value, reason);
+        add(AssumedQuantity::StrikingParameter, &value, reason);
     }
     all
 }

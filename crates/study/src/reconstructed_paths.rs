@@ -14,7 +14,7 @@ pub struct ReconstructedPaths {
     pub drawn: Vec<Path>,
     /// Path of the particle whose speed of the struck car is nearest to the median.
     pub median: Option<Path>,
-    /// The marks that the tyres of the struck car leave in the motion of that particle.
+    /// The marks that the tires of the struck car leave in the motion of that particle.
     pub marks: Vec<TireMark>,
 }
 

@@ -38,7 +38,8 @@ pub struct SimulateRequest {
     pub vehicle: VehicleChoice,
     /// The striking vehicle, where it is simulated.
     #[serde(default)]
-    pub bullet: VehicleChoice,
+    #[serde(rename = "bullet")]
+    pub striking: VehicleChoice,
     /// Which equations of motion; those of the vehicle file if not given.
     #[serde(default)]
     pub equations: Option<Equations>,
@@ -99,7 +100,7 @@ impl SimulateRequest {
         Self {
             source,
             vehicle: VehicleChoice::default(),
-            bullet: VehicleChoice::default(),
+            striking: VehicleChoice::default(),
             equations: None,
             integrator: Integrator::default(),
             friction: None,
@@ -114,17 +115,17 @@ impl SimulateRequest {
 
     fn settings(
         &self,
-        (open, named_bullet): (&OpenVehicle<'_>, Option<&str>),
+        (open, named_striking): (&OpenVehicle<'_>, Option<&str>),
         assumptions: &mut Vec<Assumption>,
     ) -> Result<Settings, StudyError> {
-        let mut target = struck_vehicle(&self.vehicle, open, assumptions)?;
+        let mut struck = struck_vehicle(&self.vehicle, open, assumptions)?;
         if let Some(equations) = self.equations {
-            target = target.with_equations(equations);
+            struck = struck.with_equations(equations);
         }
         if let Some(friction) = self.friction {
-            target = target.with_friction(friction);
+            struck = struck.with_friction(friction);
         }
-        let has_bullet = match &self.source {
+        let has_striking = match &self.source {
             MotionSource::Scenario { .. } => true,
             MotionSource::Case { dataset, .. } => {
                 DatasetKind::of_folder(dataset) == Some(DatasetKind::Force)
@@ -132,12 +133,12 @@ impl SimulateRequest {
             MotionSource::Trajectory { .. } | MotionSource::Drive(_) => false,
         };
         let mut unused = Vec::new();
-        let assumed = if has_bullet { assumptions } else { &mut unused };
-        let bullet = striking_vehicle(&self.bullet, named_bullet, assumed)?;
-        assumed.extend(Assumption::medians(AssumedQuantity::BulletParameter, &bullet));
+        let assumed = if has_striking { assumptions } else { &mut unused };
+        let striking = striking_vehicle(&self.striking, named_striking, assumed)?;
+        assumed.extend(Assumption::medians(AssumedQuantity::StrikingParameter, &striking));
         Ok(Settings {
-            target,
-            bullet,
+            struck,
+            striking,
             ending: self.ending.clone().unwrap_or_default(),
             integrator: self.integrator,
             duration_s: self.duration_s,
@@ -215,7 +216,7 @@ impl Question for SimulateRequest {
                     assumptions.extend(start_of_record(&loaded));
                 }
                 let load = force.map(|force| {
-                    let vehicle = &settings.target;
+                    let vehicle = &settings.struck;
                     acting_force(force, (*contact, vehicle), &mut assumptions)
                 });
                 let title = file.title();
@@ -236,8 +237,8 @@ impl Question for SimulateRequest {
             MotionSource::Scenario { scenario, pulse } => {
                 assumptions.extend(pulse_assumptions(pulse));
                 let scenario = scenario.load()?;
-                let open = OpenVehicle::OfScenario(scenario.target_vehicle.as_deref());
-                let vehicles = (&open, scenario.bullet_vehicle.as_deref());
+                let open = OpenVehicle::OfScenario(scenario.struck_vehicle.as_deref());
+                let vehicles = (&open, scenario.striking_vehicle.as_deref());
                 let mut settings = self.settings(vehicles, &mut assumptions)?;
                 if let (None, Some(ending)) = (&self.ending, &scenario.ending) {
                     settings.ending.clone_from(ending);

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::analysis::{Analysis, MotionEnd, SecondContacts};
 use crate::{
-    Assumption, MomentumReport, Provenance, SimulateRequest, TyreMarkReport, VehicleUncertainty,
+    Assumption, MomentumReport, Provenance, SimulateRequest, TireMarkReport, VehicleUncertainty,
     word,
 };
 use impactlab_core::collision::{PrincipalDirectionOfForce, SecondContact};
@@ -62,7 +62,7 @@ pub struct SimulateReport {
     pub force: Option<ForceReport>,
     /// The momentum solution whose impulse the force carries, world axes; none without a scenario.
     pub momentum: Option<MomentumReport>,
-    /// Change of the velocity of the CG over the contact [x, y], world axes, tyres included, m/s.
+    /// Change of the velocity of the CG over the contact [x, y], world axes, tires included, m/s.
     pub delta_v_m_s: Option<[f64; 2]>,
     /// Its size, m/s.
     pub delta_v_magnitude_m_s: Option<f64>,
@@ -74,8 +74,9 @@ pub struct SimulateReport {
     pub rest: Option<RestState>,
     /// Largest change of yaw from the start, rad.
     pub largest_yaw_change_rad: Option<f64>,
-    /// The marks that tyres leave in the simulation, of the struck vehicle and of the striking one.
-    pub tyre_marks: Vec<TyreMarkReport>,
+    /// The marks that tires leave in the simulation, of the struck vehicle and of the striking one.
+    #[serde(rename = "tyre_marks")]
+    pub tire_marks: Vec<TireMarkReport>,
     /// How far the simulation lies from the recorded motion, where there is one.
     pub error: Option<MotionError>,
     /// How the end varies with what the data sheet of the struck vehicle leaves open.
@@ -296,7 +297,7 @@ impl SimulateReport {
             distance_m: series.map(distance_m).transpose()?,
             rest: motion.map(RestState::of).transpose()?.flatten(),
             largest_yaw_change_rad: series.map(largest_yaw_change_rad).transpose()?,
-            tyre_marks: TyreMarkReport::all(analysis),
+            tire_marks: TireMarkReport::all(analysis),
             error: analysis.error.clone(),
             uncertainty: None,
             flags: motion
@@ -339,7 +340,7 @@ impl ForceReport {
     }
 }
 
-/// Change of the CG's velocity over the contact, world axes, m/s: tyres included.
+/// Change of the CG's velocity over the contact, world axes, m/s: tires included.
 fn delta_v_m_s(series: &TimeSeries, (start_s, end_s): (f64, f64)) -> Result<[f64; 2], SeriesError> {
     let [vx, vy, yaw] = [Channel::Vx, Channel::Vy, Channel::Yaw].map(|c| series.require(c));
     let (vx, vy, yaw) = (vx?, vy?, yaw?);
@@ -452,9 +453,9 @@ mod tests {
             let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
             let motion = SimulateRequest::new(source).answer(&library, &mut go_on).unwrap();
             let force = motion.complete().unwrap().report.force.unwrap();
-            let (expected, got) = (impact.report.target.pdof_deg.unwrap(), force.pdof_deg.unwrap());
+            let (expected, got) = (impact.report.struck.pdof_deg.unwrap(), force.pdof_deg.unwrap());
             assert!((expected - got).abs() < 1e-6, "{heading_deg}: {expected} {got}");
-            assert_eq!(force.pdof_clock, impact.report.target.pdof_clock, "{heading_deg}");
+            assert_eq!(force.pdof_clock, impact.report.struck.pdof_clock, "{heading_deg}");
         }
     }
 }

@@ -145,7 +145,7 @@ fn impact_record(case: &ForceCase, vehicle: &VehicleParameters) -> Option<Impact
     let contact_m = scenario.contact_m?;
     let vehicle = vehicle.clone().with_mass(scenario.mass_kg[0], scenario.yaw_inertia_kg_m2[0]);
     let force = case.curve.to_history();
-    Some(ImpactRecord::under_force(vehicle, scenario.target_velocity_m_s, contact_m, force))
+    Some(ImpactRecord::under_force(vehicle, scenario.struck_velocity_m_s, contact_m, force))
 }
 
 /// What a person should know about the data of a training.

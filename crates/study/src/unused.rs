@@ -36,7 +36,7 @@ pub(super) fn zones_by_network(struck: &StruckVehicle) -> Option<Assumption> {
         not_used(
             format!("friction zones: {}", names.join(", ")),
             "the response network has learned motions on one ground: the forecast has the friction of \
-             the vehicle's tyres everywhere",
+             the vehicle's tires everywhere",
         )
     })
 }
@@ -53,8 +53,8 @@ pub(super) fn by_force_network(
     let geometry = scenario.geometry().map_err(|source| choice.unsolved(source))?;
     refuse_fast_turning(choice, scenario, &geometry)?;
     let vehicles = [
-        ("struck", &scenario.target, Preset::Target),
-        ("striking", &scenario.bullet, Preset::Bullet2000),
+        ("struck", &scenario.struck, Preset::Target),
+        ("striking", &scenario.striking, Preset::Bullet2000),
     ];
     let mut unused = Vec::new();
     for (name, vehicle, of_training) in vehicles {
@@ -103,17 +103,17 @@ fn refuse_fast_turning(
     scenario: &Scenario,
     geometry: &ScenarioGeometry,
 ) -> Result<(), StudyError> {
-    let (target, bullet) = (&scenario.target, &scenario.bullet);
+    let (struck, striking) = (&scenario.struck, &scenario.striking);
     let [x, y] = geometry.contact_point_m;
     // Velocity of the point of contact by turning alone: r × arm.
     let turning = |vehicle: &ScenarioVehicle, pose: &Pose| {
         let rate = vehicle.yaw_rate_rad_s;
         [-rate * (y - pose.y_m), rate * (x - pose.x_m)]
     };
-    let (of_target, of_bullet) =
-        (turning(target, &geometry.target), turning(bullet, &geometry.bullet));
-    let turning_m_s = f64::hypot(of_bullet[0] - of_target[0], of_bullet[1] - of_target[1]);
-    let moving_m_s = f64::hypot(bullet.vx_m_s - target.vx_m_s, bullet.vy_m_s - target.vy_m_s);
+    let (of_struck, of_striking) =
+        (turning(struck, &geometry.struck), turning(striking, &geometry.striking));
+    let turning_m_s = f64::hypot(of_striking[0] - of_struck[0], of_striking[1] - of_struck[1]);
+    let moving_m_s = f64::hypot(striking.vx_m_s - struck.vx_m_s, striking.vy_m_s - struck.vy_m_s);
     if turning_m_s > MAX_TURNING_SHARE * moving_m_s {
         return Err(StudyError::TurningVehicles { name: choice.name(), turning_m_s, moving_m_s });
     }
@@ -147,10 +147,10 @@ pub(super) fn by_simulation(request: &SimulateRequest, is_recorded: bool) -> Vec
             unused.push(not_used("simulation until rest", by_case));
         }
     }
-    let has_bullet =
+    let has_striking =
         !matches!(request.source, MotionSource::Trajectory { .. } | MotionSource::Drive(_))
             && !is_recorded;
-    if !has_bullet && request.bullet != VehicleChoice::Automatic {
+    if !has_striking && request.striking != VehicleChoice::Automatic {
         unused.push(not_used("striking vehicle", "only the struck vehicle is simulated here"));
     }
     if let MotionSource::Drive(drive) = &request.source

@@ -51,15 +51,15 @@ pub(super) fn vehicle_uncertainty(
     (settings, central): (&Settings, &Analysis),
     analyse: &(impl Fn(&Settings) -> Result<Analysis, AnalysisError> + Sync + ?Sized),
 ) -> Option<VehicleUncertainty> {
-    let sheet = settings.target.sheet.as_ref()?;
+    let sheet = settings.struck.sheet.as_ref()?;
     central.simulation.as_ref()?;
     let draws = VehicleDraws::of(sheet, n_draws, seed);
     if draws.is_empty() {
         return None;
     }
-    let vehicles = draws.vehicles(&settings.target);
-    let end = |target| {
-        let analysis = analyse(&Settings { target, ..settings.clone() }).ok()?;
+    let vehicles = draws.vehicles(&settings.struck);
+    let end = |struck| {
+        let analysis = analyse(&Settings { struck, ..settings.clone() }).ok()?;
         let motion = analysis.simulation?;
         Some(DrawnEnd {
             state: EndState::of(&motion.series).ok()?,
@@ -100,7 +100,7 @@ pub(super) fn vehicle_uncertainty(
         yaw_rad: of(|end| end.yaw_rad),
         speed_m_s: of(|end| end.speed_m_s),
         rest: settings.ends_at_rest.then(rest).flatten(),
-        second_contact_probability: central.bullet.is_some().then_some(share_met),
+        second_contact_probability: central.striking.is_some().then_some(share_met),
         sensitivity,
     })
 }

@@ -23,18 +23,18 @@ pub fn set_mass(scenario: &mut ForceScenario, vehicle: usize, mass_kg: f64) {
 
 /// Sets the heading of the bullet relative to the target, rad. The position of its CG, which
 /// depends on it, is no longer known then.
-pub fn set_bullet_heading(scenario: &mut ForceScenario, theta_b_rad: f64) {
+pub fn set_striking_heading(scenario: &mut ForceScenario, theta_b_rad: f64) {
     scenario.theta_b_rad = theta_b_rad;
-    scenario.bullet_position_m = None;
+    scenario.striking_position_m = None;
 }
 
 /// Moves the first contact to `x_m` along the target, from its CG, and moves the bullet by the same
 /// distance. Nothing changes if the contact point is unknown.
 pub fn set_contact_x(scenario: &mut ForceScenario, x_m: f64) {
     if let Some([old_m, _]) = scenario.contact_m
-        && let Some([bullet_m, _]) = &mut scenario.bullet_position_m
+        && let Some([striking_m, _]) = &mut scenario.striking_position_m
     {
-        *bullet_m += x_m - old_m;
+        *striking_m += x_m - old_m;
     }
     if let Some([contact_m, _]) = &mut scenario.contact_m {
         *contact_m = x_m;
@@ -43,14 +43,14 @@ pub fn set_contact_x(scenario: &mut ForceScenario, x_m: f64) {
 
 /// Marks the contact point, its normal and the position of the bullet as unknown.
 pub fn forget_contact(scenario: &mut ForceScenario) {
-    (scenario.contact_m, scenario.bullet_position_m) = (None, None);
+    (scenario.contact_m, scenario.striking_position_m) = (None, None);
     scenario.normal_rad = None;
 }
 
 /// Proposes a contact point on the struck side, 1.5 m behind the CG and at half the width of the
 /// example scenario's target.
 pub fn know_contact(scenario: &mut ForceScenario) {
-    let half_width_m = Scenario::example().target.width_m / 2.0;
+    let half_width_m = Scenario::example().struck.width_m / 2.0;
     let y_m = if scenario.side == StruckSide::Left { half_width_m } else { -half_width_m };
     scenario.contact_m = Some([USUAL_CONTACT_X_M, y_m]);
 }
@@ -71,16 +71,16 @@ mod tests {
     }
 
     #[test]
-    fn the_bullet_moves_with_the_contact() {
+    fn the_striking_moves_with_the_contact() {
         let (before, mut after) = (scenario(), scenario());
         let [x, y] = before.contact_m.unwrap();
         set_contact_x(&mut after, x + 0.3);
         assert_eq!(after.contact_m, Some([x + 0.3, y]));
-        let [before_x, _] = before.bullet_position_m.unwrap();
-        assert!((after.bullet_position_m.unwrap()[0] - before_x - 0.3).abs() < 1e-12);
+        let [before_x, _] = before.striking_position_m.unwrap();
+        assert!((after.striking_position_m.unwrap()[0] - before_x - 0.3).abs() < 1e-12);
         forget_contact(&mut after);
         set_contact_x(&mut after, 1.0);
-        assert_eq!((after.contact_m, after.bullet_position_m), (None, None));
+        assert_eq!((after.contact_m, after.striking_position_m), (None, None));
     }
 
     #[test]
@@ -101,7 +101,7 @@ mod tests {
         set_mass(&mut scenario, 1, 3000.0);
         assert!(scenario.yaw_inertia_kg_m2[0].is_some());
         assert_eq!((scenario.mass_kg[1], scenario.yaw_inertia_kg_m2[1]), (3000.0, None));
-        set_bullet_heading(&mut scenario, 0.5);
-        assert_eq!((scenario.theta_b_rad, scenario.bullet_position_m), (0.5, None));
+        set_striking_heading(&mut scenario, 0.5);
+        assert_eq!((scenario.theta_b_rad, scenario.striking_position_m), (0.5, None));
     }
 }

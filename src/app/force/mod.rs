@@ -7,7 +7,7 @@ mod settings;
 mod update;
 
 pub use edit::{
-    forget_contact, know_contact, set_bullet_heading, set_contact_x, set_mass, set_side,
+    forget_contact, know_contact, set_contact_x, set_mass, set_side, set_striking_heading,
 };
 pub use follow::FollowedScenario;
 pub use settings::{ForceProject, ForceTrainingForm, ForceView, Statistic};

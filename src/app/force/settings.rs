@@ -115,14 +115,14 @@ impl Default for ForceProject {
         // used.
         let scenario = ForceScenario::from_scenario(&example).unwrap_or(ForceScenario {
             mass_kg: [2000.0, 2000.0],
-            target_velocity_m_s: [15.0, 0.0],
-            bullet_velocity_m_s: [16.0, 3.0],
+            struck_velocity_m_s: [15.0, 0.0],
+            striking_velocity_m_s: [16.0, 3.0],
             theta_b_rad: 0.3,
             side: StruckSide::Right,
             contact_m: None,
             normal_rad: None,
-            bullet_position_m: None,
-            bullet_body: None,
+            striking_position_m: None,
+            striking_body: None,
             yaw_inertia_kg_m2: [None; 2],
         });
         Self { scenario, name: example.name, model: None, training: ForceTrainingForm::default() }

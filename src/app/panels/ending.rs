@@ -17,7 +17,7 @@ use impactlab_core::vehicle::{
 const HARD_BRAKING: f64 = 0.8;
 /// Time from the impact to the reaction of a driver, s.
 const REACTION_S: f64 = 0.7;
-/// Drag of bent bodywork on a tyre, as a share of the friction.
+/// Drag of bent bodywork on a tire, as a share of the friction.
 const USUAL_DRAG: f64 = 0.5;
 /// Deceleration by an engine in a high gear, m/s².
 const USUAL_ENGINE_BRAKING_M_S2: f64 = 0.5;

@@ -7,8 +7,8 @@ use egui::{ComboBox, Grid, Ui};
 
 use crate::app::command::Command;
 use crate::app::force::{
-    ForceSession, forget_contact, know_contact, set_bullet_heading, set_contact_x, set_mass,
-    set_side,
+    ForceSession, forget_contact, know_contact, set_contact_x, set_mass, set_side,
+    set_striking_heading,
 };
 use crate::app::state::{Project, View};
 use crate::app::widgets::{SliderRange, quantity_slider};
@@ -98,8 +98,8 @@ fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
             set_mass(scenario, vehicle, mass_kg);
         }
     }
-    let [v_tx, v_ty] = &mut scenario.target_velocity_m_s;
-    let [v_bx, v_by] = &mut scenario.bullet_velocity_m_s;
+    let [v_tx, v_ty] = &mut scenario.struck_velocity_m_s;
+    let [v_bx, v_by] = &mut scenario.striking_velocity_m_s;
     for (value, label, hint, most) in [
         (v_tx, "Target v_tx", "Speed of the target along its heading", 50.0),
         (v_ty, "Target v_ty", "Speed of the target to its left", 10.0),
@@ -119,7 +119,7 @@ fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
         possible: HEADING,
     };
     if let Some(theta_b_rad) = quantity_slider(ui, &range, scenario.theta_b_rad, units) {
-        set_bullet_heading(scenario, theta_b_rad);
+        set_striking_heading(scenario, theta_b_rad);
     }
 }
 
@@ -172,11 +172,11 @@ fn body_ui(ui: &mut Ui, scenario: &mut ForceScenario, bodies: &[String]) {
     let label = |body: &Option<String>| body.clone().unwrap_or_else(|| "unknown".to_owned());
     let known = bodies.iter().filter(|body| !body.is_empty());
     ComboBox::from_id_salt("bullet body")
-        .selected_text(label(&scenario.bullet_body))
+        .selected_text(label(&scenario.striking_body))
         .show_ui(ui, |ui| {
             for option in std::iter::once(None).chain(known.map(|body| Some(body.clone()))) {
                 let text = label(&option);
-                ui.selectable_value(&mut scenario.bullet_body, option, text);
+                ui.selectable_value(&mut scenario.striking_body, option, text);
             }
         })
         .response

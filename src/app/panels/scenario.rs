@@ -58,8 +58,8 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         }
         ui.separator();
         contact_form(ui, project, view.units);
-        let Scenario { ending, bullet_ending, .. } = &mut project.scenario;
-        for (vehicle, ending) in [("target", ending), ("bullet", bullet_ending)] {
+        let Scenario { ending, striking_ending, .. } = &mut project.scenario;
+        for (vehicle, ending) in [("target", ending), ("bullet", striking_ending)] {
             ending_form(ui, vehicle, (ending, &mut project.steering_ratio), view.units);
         }
         vehicles_form(ui, project, view.units);
@@ -67,8 +67,8 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 }
 
 fn vehicles_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
-    let Scenario { target, bullet, .. } = &mut project.scenario;
-    for (title, vehicle) in [("Target (struck)", target), ("Bullet (strikes)", bullet)] {
+    let Scenario { struck, striking, .. } = &mut project.scenario;
+    for (title, vehicle) in [("Target (struck)", struck), ("Bullet (strikes)", striking)] {
         egui::CollapsingHeader::new(title).default_open(true).show(ui, |ui| {
             Grid::new(title).num_columns(2).show(ui, |ui| vehicle_form(ui, vehicle, units));
         });
@@ -187,16 +187,16 @@ fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem)
             ui.end_row();
             length(ui, "Offset from its middle", offset_m, &CONTACT_OFFSET);
         }
-        ContactLocation::Footprints { bullet_x_m, bullet_y_m } => {
-            length(ui, "Bullet's CG, X", bullet_x_m, &POSITION);
-            length(ui, "Bullet's CG, Y", bullet_y_m, &POSITION);
+        ContactLocation::Footprints { striking_x_m, striking_y_m } => {
+            length(ui, "Bullet's CG, X", striking_x_m, &POSITION);
+            length(ui, "Bullet's CG, Y", striking_y_m, &POSITION);
         }
-        ContactLocation::Point { x_m, y_m, normal_rad, bullet_x_m, bullet_y_m } => {
+        ContactLocation::Point { x_m, y_m, normal_rad, striking_x_m, striking_y_m } => {
             length(ui, "Contact ahead of CG", x_m, &CONTACT_COORDINATE);
             length(ui, "Contact left of CG", y_m, &CONTACT_COORDINATE);
             quantity_field(ui, "Normal", normal_rad, (&HEADING, units));
-            length(ui, "Bullet's CG, X", bullet_x_m, &POSITION);
-            length(ui, "Bullet's CG, Y", bullet_y_m, &POSITION);
+            length(ui, "Bullet's CG, X", striking_x_m, &POSITION);
+            length(ui, "Bullet's CG, Y", striking_y_m, &POSITION);
         }
     }
 }
@@ -227,7 +227,7 @@ fn solution_ui(ui: &mut Ui, report: &ImpactReport, units: UnitSystem, commands: 
         value_row(ui, "Closing speed", &closing);
         let energy = Quantity::Energy.shown(report.dissipated_energy_j, units);
         value_row(ui, "Dissipated energy", &energy);
-        for (name, after) in [("target", &report.target), ("bullet", &report.bullet)] {
+        for (name, after) in [("target", &report.struck), ("bullet", &report.striking)] {
             for (label, text) in body_rows(after, units) {
                 value_row(ui, &format!("{label}, {name}"), &text);
             }

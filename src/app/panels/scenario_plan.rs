@@ -96,19 +96,19 @@ impl Drag {
     fn apply(&self, [from, to]: [[f64; 2]; 2], scenario: &mut Scenario) {
         let moved = [to[0] - from[0], to[1] - from[1]];
         let before = &self.before;
-        let [target, bullet] = poses(before);
-        let pose = if self.is_target { target } else { bullet };
+        let [struck, striking] = poses(before);
+        let pose = if self.is_target { struck } else { striking };
         let Some(pose) = pose else { return };
-        let vehicle = if self.is_target { &mut scenario.target } else { &mut scenario.bullet };
+        let vehicle = if self.is_target { &mut scenario.struck } else { &mut scenario.striking };
         let (dx, dy) = (to[0] - pose.x_m, to[1] - pose.y_m);
         match self.handle {
             Handle::Position if self.is_target => {
-                let place = [before.target_x_m + moved[0], before.target_y_m + moved[1]];
+                let place = [before.struck_x_m + moved[0], before.struck_y_m + moved[1]];
                 if place.iter().all(|value| POSITION.contains(*value)) {
-                    [scenario.target_x_m, scenario.target_y_m] = place;
+                    [scenario.struck_x_m, scenario.struck_y_m] = place;
                 }
             }
-            Handle::Position => move_bullet(before, moved, &mut scenario.contact.location),
+            Handle::Position => move_striking(before, moved, &mut scenario.contact.location),
             Handle::Heading => {
                 let heading = rounded(dy.atan2(dx), 0.1_f64.to_radians());
                 if HEADING.contains(heading) {
@@ -126,32 +126,32 @@ impl Drag {
 }
 
 /// Moves the bullet, in the way in which the scenario places it.
-fn move_bullet(before: &Scenario, [dx, dy]: [f64; 2], location: &mut ContactLocation) {
+fn move_striking(before: &Scenario, [dx, dy]: [f64; 2], location: &mut ContactLocation) {
     match (before.contact.location, location) {
         (
             ContactLocation::Side { side, offset_m: start },
             ContactLocation::Side { offset_m, .. },
         ) => {
-            let (sin, cos) = before.target.heading_rad.sin_cos();
+            let (sin, cos) = before.struck.heading_rad.sin_cos();
             let along = match side {
                 Side::Left | Side::Right => dx * cos + dy * sin,
                 Side::Front | Side::Rear => dy * cos - dx * sin,
             };
             let half = match side {
-                Side::Left | Side::Right => before.target.length_m / 2.0,
-                Side::Front | Side::Rear => before.target.width_m / 2.0,
+                Side::Left | Side::Right => before.struck.length_m / 2.0,
+                Side::Front | Side::Rear => before.struck.width_m / 2.0,
             };
             *offset_m = rounded((start + along).clamp(-half, half), 1e-3);
         }
         (
-            ContactLocation::Footprints { bullet_x_m: x, bullet_y_m: y }
-            | ContactLocation::Point { bullet_x_m: x, bullet_y_m: y, .. },
-            ContactLocation::Footprints { bullet_x_m, bullet_y_m }
-            | ContactLocation::Point { bullet_x_m, bullet_y_m, .. },
+            ContactLocation::Footprints { striking_x_m: x, striking_y_m: y }
+            | ContactLocation::Point { striking_x_m: x, striking_y_m: y, .. },
+            ContactLocation::Footprints { striking_x_m, striking_y_m }
+            | ContactLocation::Point { striking_x_m, striking_y_m, .. },
         ) => {
             let place = [x + dx, y + dy];
             if place.iter().all(|value| POSITION.contains(*value)) {
-                [*bullet_x_m, *bullet_y_m] = place.map(|value| rounded(value, 1e-3));
+                [*striking_x_m, *striking_y_m] = place.map(|value| rounded(value, 1e-3));
             }
         }
         _ => {}
@@ -166,21 +166,23 @@ fn rounded(value: f64, step: f64) -> f64 {
 /// Poses of target and bullet. The bullet has none where it is placed so that it touches, and cannot.
 fn poses(scenario: &Scenario) -> [Option<Pose>; 2] {
     if let Ok(geometry) = scenario.geometry() {
-        return [Some(geometry.target), Some(geometry.bullet)];
+        return [Some(geometry.struck), Some(geometry.striking)];
     }
     let pose = |[x_m, y_m]: [f64; 2], vehicle: &ScenarioVehicle| Pose {
         x_m,
         y_m,
         yaw_rad: vehicle.heading_rad,
     };
-    let bullet = match scenario.contact.location {
-        ContactLocation::Footprints { bullet_x_m, bullet_y_m }
-        | ContactLocation::Point { bullet_x_m, bullet_y_m, .. } => Some([bullet_x_m, bullet_y_m]),
+    let striking = match scenario.contact.location {
+        ContactLocation::Footprints { striking_x_m, striking_y_m }
+        | ContactLocation::Point { striking_x_m, striking_y_m, .. } => {
+            Some([striking_x_m, striking_y_m])
+        }
         ContactLocation::Side { .. } => None,
     };
     [
-        Some(pose([scenario.target_x_m, scenario.target_y_m], &scenario.target)),
-        bullet.map(|place| pose(place, &scenario.bullet)),
+        Some(pose([scenario.struck_x_m, scenario.struck_y_m], &scenario.struck)),
+        striking.map(|place| pose(place, &scenario.striking)),
     ]
 }
 
@@ -196,14 +198,15 @@ fn handles(vehicle: &ScenarioVehicle, pose: &Pose) -> [(Handle, [f64; 2]); 3] {
 
 /// The handle that is nearest to a point, if one is within reach: whether it is of the target, and which.
 fn nearest_handle(scenario: &Scenario, [x, y]: [f64; 2], reach_m: f64) -> Option<(bool, Handle)> {
-    let [target, bullet] = poses(scenario);
+    let [struck, striking] = poses(scenario);
     let of = |is_target: bool, vehicle: &ScenarioVehicle, pose: Option<Pose>| {
         let places = pose.into_iter().flat_map(|pose| handles(vehicle, &pose));
         let apart =
             places.map(move |(handle, [px, py])| ((px - x).hypot(py - y), (is_target, handle)));
         apart.collect::<Vec<_>>()
     };
-    let all = [of(true, &scenario.target, target), of(false, &scenario.bullet, bullet)].concat();
+    let all =
+        [of(true, &scenario.struck, struck), of(false, &scenario.striking, striking)].concat();
     let near = all.into_iter().filter(|(distance_m, _)| *distance_m <= reach_m);
     near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
 }
@@ -213,8 +216,8 @@ fn outlines_figure(scenario: &Scenario, units: UnitSystem) -> Figure {
     let x = Axis::shown("X, along the road", Quantity::Length, units);
     let y = Axis::shown("Y, to the left", Quantity::Length, units);
     let vehicles = [
-        ("target", Role::Simulation, &scenario.target),
-        ("bullet", Role::Bullet, &scenario.bullet),
+        ("target", Role::Simulation, &scenario.struck),
+        ("bullet", Role::Striking, &scenario.striking),
     ];
     let placed = vehicles.into_iter().zip(poses(scenario));
     let elements = placed.filter_map(|((name, role, vehicle), pose)| {
@@ -231,8 +234,8 @@ fn with_handles(mut figure: Figure, scenario: &Scenario) -> Figure {
     let unit = figure.x.unit;
     let shown = |point: [f64; 2]| point.map(|value| unit.from_si(value));
     let vehicles = [
-        ("target", Role::Simulation, &scenario.target),
-        ("bullet", Role::Bullet, &scenario.bullet),
+        ("target", Role::Simulation, &scenario.struck),
+        ("bullet", Role::Striking, &scenario.striking),
     ];
     for ((name, role, vehicle), pose) in vehicles.into_iter().zip(poses(scenario)) {
         let Some(pose) = pose else { continue };
@@ -252,10 +255,10 @@ mod tests {
 
     fn dragged(handle: Handle, is_target: bool, to: [f64; 2]) -> Scenario {
         let mut scenario = Scenario::example();
-        let [target, bullet] = poses(&scenario).map(Option::unwrap);
+        let [struck, striking] = poses(&scenario).map(Option::unwrap);
         let (vehicle, pose) = match is_target {
-            true => (&scenario.target, target),
-            false => (&scenario.bullet, bullet),
+            true => (&scenario.struck, struck),
+            false => (&scenario.striking, striking),
         };
         let places = handles(vehicle, &pose);
         let from = places.iter().find(|(of, _)| *of == handle).unwrap().1;
@@ -271,11 +274,11 @@ mod tests {
     fn each_handle_changes_what_it_stands_for() {
         let before = Scenario::example();
         let moved = dragged(Handle::Position, true, [2.0, -1.0]);
-        assert_eq!([moved.target_x_m, moved.target_y_m], [2.0, -1.0]);
+        assert_eq!([moved.struck_x_m, moved.struck_y_m], [2.0, -1.0]);
         let faster = dragged(Handle::Velocity, true, [1.25, 0.0]);
-        assert!((faster.target.vx_m_s - before.target.vx_m_s - 5.0).abs() < 0.011);
+        assert!((faster.struck.vx_m_s - before.struck.vx_m_s - 5.0).abs() < 0.011);
         let turned = dragged(Handle::Heading, false, [0.0, 0.3]);
-        assert!(turned.bullet.heading_rad > before.bullet.heading_rad);
+        assert!(turned.striking.heading_rad > before.striking.heading_rad);
         let ContactLocation::Side { offset_m, .. } =
             dragged(Handle::Position, false, [0.2, 3.0]).contact.location
         else {
@@ -291,7 +294,7 @@ mod tests {
     fn a_vehicle_that_touches_nothing_is_still_drawn() {
         let mut scenario = Scenario::example();
         scenario.contact.location =
-            ContactLocation::Footprints { bullet_x_m: -40.0, bullet_y_m: 0.0 };
+            ContactLocation::Footprints { striking_x_m: -40.0, striking_y_m: 0.0 };
         assert!(scenario.geometry().is_err());
         let figure = with_handles(outlines_figure(&scenario, UnitSystem::Si), &scenario);
         let n_outlines =

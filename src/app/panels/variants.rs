@@ -14,7 +14,7 @@ use impactlab_study::analysis::Spread;
 /// The columns of the table.
 const COLUMNS: [&str; 8] = [
     "Variant",
-    "Δv with tyres",
+    "Δv with tires",
     "4DOF: X, Y at the end",
     "4DOF: at rest after",
     "Forecast: X (90 %)",
@@ -23,7 +23,7 @@ const COLUMNS: [&str; 8] = [
     "Warnings",
 ];
 /// What the columns are, as the hint of their headings.
-const MEANING: &str = "Δv: of the 4DOF model over the contact, with what the tyres add (the momentum \
+const MEANING: &str = "Δv: of the 4DOF model over the contact, with what the tires add (the momentum \
     solution alone stands in the Scenario panel). 4DOF: without an interval. Forecast: median and \
     interval of 90 % where the car is at the end.";
 /// What stands where a variant has no such figure.

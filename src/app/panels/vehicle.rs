@@ -19,7 +19,7 @@ use impactlab_core::units::Quantity;
 use impactlab_core::vehicle::{
     DataSheet, Equations, Integrator, LibraryVehicle, Preset, VehicleParameters, built_in_vehicle,
 };
-use impactlab_study::{DEFAULT_BULLET, DEFAULT_DURATION_S, DEFAULT_VEHICLE, VehicleChoice};
+use impactlab_study::{DEFAULT_DURATION_S, DEFAULT_STRIKING, DEFAULT_VEHICLE, VehicleChoice};
 
 /// Largest width of the lists of vehicles, points.
 const LIST_WIDTH: f32 = 240.0;
@@ -48,7 +48,7 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             ui.end_row();
         });
         for (title, choice) in
-            [("Struck vehicle", &mut project.vehicle), ("Striking vehicle", &mut project.bullet)]
+            [("Struck vehicle", &mut project.vehicle), ("Striking vehicle", &mut project.striking)]
         {
             if let VehicleChoice::Sheet(sheet) = choice {
                 ui.separator();
@@ -125,13 +125,13 @@ fn choice_ui(ui: &mut Ui, project: &mut Project, commands: &mut Vec<Command>) {
         (&mut project.vehicle, &open, &default),
         commands,
     );
-    let open = format!("not known, assumed to be {}", DEFAULT_BULLET.id());
+    let open = format!("not known, assumed to be {}", DEFAULT_STRIKING.id());
     let hint = "With the mass and yaw inertia of the case or the scenario";
-    let default = DEFAULT_BULLET.parameters();
+    let default = DEFAULT_STRIKING.parameters();
     vehicle_choice_ui(
         ui,
         ("Striking vehicle", hint),
-        (&mut project.bullet, &open, &default),
+        (&mut project.striking, &open, &default),
         commands,
     );
 }
@@ -179,7 +179,7 @@ pub(in crate::app) fn file_vehicle_ui(ui: &mut Ui, choice: &mut VehicleChoice) {
     let name = ui.label("Struck vehicle");
     let open = format!("{} (assumed)", DEFAULT_VEHICLE.id());
     let label = chosen_label(choice, &open);
-    let hint = "Its mass, inertia and tyres: the file does not say them";
+    let hint = "Its mass, inertia and tires: the file does not say them";
     choice_list_ui(ui, ("vehicle of the file", &name, hint), (choice, &open, &[]), &label);
     ui.end_row();
 }

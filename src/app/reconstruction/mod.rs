@@ -114,7 +114,7 @@ impl ReconstructionSession {
         }
     }
 
-    /// The marks that tyres leave along the path that is followed, where they are known.
+    /// The marks that tires leave along the path that is followed, where they are known.
     pub fn followed_marks(&self) -> Option<&[TireMark]> {
         let is_median = self.followed == FollowedParticle::Median;
         let paths = self.answer().filter(|_| is_median)?.paths_of(self.mode);

@@ -76,7 +76,7 @@ pub struct ReconstructionView {
 impl Default for ReconstructionView {
     fn default() -> Self {
         Self {
-            quantity: ReconstructedQuantity::TargetSpeed,
+            quantity: ReconstructedQuantity::StruckSpeed,
             against: ReconstructedQuantity::RoadFriction,
             shows_cars: false,
             scene: SceneSettings::default(),

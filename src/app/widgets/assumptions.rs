@@ -79,7 +79,7 @@ fn assumption_ui(
 fn place(quantity: AssumedQuantity) -> Place {
     Some(match quantity {
         AssumedQuantity::Vehicle
-        | AssumedQuantity::Bullet
+        | AssumedQuantity::Striking
         | AssumedQuantity::Speed
         | AssumedQuantity::ContactPoint => {
             ("Click to set it in the Vehicle pane", Some(Pane::Vehicle))
@@ -90,7 +90,7 @@ fn place(quantity: AssumedQuantity) -> Place {
         | AssumedQuantity::Pulse => {
             ("Click to set it: Contact in the Scenario pane", Some(Pane::Scenario))
         }
-        AssumedQuantity::VehicleParameter | AssumedQuantity::BulletParameter => {
+        AssumedQuantity::VehicleParameter | AssumedQuantity::StrikingParameter => {
             ("Click, and state it in a copy of the vehicle: Edit a copy", Some(Pane::Vehicle))
         }
         AssumedQuantity::StartOfRecord | AssumedQuantity::Steer | AssumedQuantity::NotUsed => {

@@ -194,7 +194,7 @@ fn print_answer(
 fn print_impact(out: &mut dyn Write, report: &ImpactReport, units: UnitSystem) -> io::Result<()> {
     let impulse = shown_vector(Quantity::Impulse, report.impulse_n_s, ["x", "y"], units);
     writeln!(out, "{}: impulse on the target {impulse}", report.name)?;
-    for (who, vehicle) in [("target", &report.target), ("bullet", &report.bullet)] {
+    for (who, vehicle) in [("target", &report.struck), ("bullet", &report.striking)] {
         let delta_v = shown(Quantity::Speed, vehicle.delta_v_magnitude_m_s, units);
         writeln!(out, "{who}: change of velocity {delta_v}")?;
     }

@@ -111,7 +111,7 @@ fn print_text(out: &mut dyn Write, answer: &ImpactAnswer, units: UnitSystem) -> 
         ("energy loss", number(Quantity::Energy, solution.dissipated_energy_j)),
     ];
     print_facts(out, &facts)?;
-    for (name, body) in [("target", &solution.target), ("bullet", &solution.bullet)] {
+    for (name, body) in [("target", &solution.struck), ("bullet", &solution.striking)] {
         let pdof = body.pdof.map_or("none".to_owned(), |pdof| {
             format!("{:.1} deg, {} o'clock", pdof.angle_deg(), pdof.clock())
         });

@@ -120,8 +120,8 @@ pub(super) struct VehicleArgs {
     #[arg(long, value_name = "V.toml|PRESET")]
     vehicle: Option<VehicleArg>,
     /// The striking vehicle, where a force data set records it; mass and inertia are the case's
-    #[arg(long, value_name = "V.toml|PRESET")]
-    bullet: Option<VehicleArg>,
+    #[arg(long = "bullet", value_name = "V.toml|PRESET")]
+    striking: Option<VehicleArg>,
     /// For a single force file: forward speed at the start, as in simulate
     #[arg(long, value_parser = number(SPEED), allow_hyphen_values = true)]
     speed: Option<f64>,
@@ -143,7 +143,7 @@ impl VehicleArgs {
     /// The options that say nothing of a reconstruction, each with whether it is there.
     pub(super) fn given(&self) -> [(&'static str, bool); 3] {
         [
-            ("--bullet", self.bullet.is_some()),
+            ("--bullet", self.striking.is_some()),
             ("--speed", self.speed.is_some()),
             ("--contact", self.contact.is_some()),
         ]
@@ -158,7 +158,7 @@ impl VehicleArgs {
         let start = Drive { speed_m_s: self.speed, contact: self.contact, ..Drive::default() };
         Ok(SimulateRequest {
             vehicle: self.struck(),
-            bullet: VehicleArg::choice(&self.bullet),
+            striking: VehicleArg::choice(&self.striking),
             vehicle_draws: 0,
             site: self.site.clone(),
             ..SimulateRequest::new(source.motion_source(library, start)?)

@@ -41,9 +41,9 @@ enum PlotArg {
     /// The same in perspective
     CarsPerspective,
     /// The speed of the struck car before and after the evidence
-    TargetSpeed,
+    StruckSpeed,
     /// The speed of the striking car
-    BulletSpeed,
+    StrikingSpeed,
     /// The closing speed
     ClosingSpeed,
     /// The friction of the road
@@ -59,11 +59,11 @@ impl PlotArg {
     fn quantity(self) -> Option<ReconstructedQuantity> {
         match self {
             Self::Scene | Self::CarsAbove | Self::CarsPerspective | Self::Budget => None,
-            Self::TargetSpeed => Some(ReconstructedQuantity::TargetSpeed),
-            Self::BulletSpeed => Some(ReconstructedQuantity::BulletSpeed),
+            Self::StruckSpeed => Some(ReconstructedQuantity::StruckSpeed),
+            Self::StrikingSpeed => Some(ReconstructedQuantity::StrikingSpeed),
             Self::ClosingSpeed => Some(ReconstructedQuantity::ClosingSpeed),
             Self::RoadFriction => Some(ReconstructedQuantity::RoadFriction),
-            Self::DeltaV => Some(ReconstructedQuantity::DeltaVTarget),
+            Self::DeltaV => Some(ReconstructedQuantity::DeltaVStruck),
         }
     }
 }

@@ -52,8 +52,8 @@ pub(in crate::cli) struct SimulateArgs {
     #[arg(long, value_name = "V.toml|PRESET")]
     vehicle: Option<VehicleArg>,
     /// The striking vehicle, where it is simulated; mass and inertia are those of the case
-    #[arg(long, value_name = "V.toml|PRESET")]
-    bullet: Option<VehicleArg>,
+    #[arg(long = "bullet", value_name = "V.toml|PRESET")]
+    striking: Option<VehicleArg>,
     /// How the equations of motion are integrated
     #[arg(long, value_enum, default_value_t)]
     integrator: IntegratorArg,
@@ -218,7 +218,7 @@ fn simulate_one(
     let request = SimulateRequest {
         source,
         vehicle: VehicleArg::choice(&args.vehicle),
-        bullet: VehicleArg::choice(&args.bullet),
+        striking: VehicleArg::choice(&args.striking),
         equations: args.equations.map(Equations::from),
         integrator: args.integrator.into(),
         friction: args.single.friction,

@@ -75,7 +75,7 @@ fn print_marks(out: &mut dyn Write, marks: &[MarkComparison], units: UnitSystem)
         [vec![mark.wheel.label().to_owned()], lengths.to_vec(), distances.to_vec()].concat()
     };
     let rows: Vec<_> = marks.iter().map(row).collect();
-    writeln!(out, "\ntyre marks and those of a particle of median speed, {}", unit.symbol)?;
+    writeln!(out, "\ntire marks and those of a particle of median speed, {}", unit.symbol)?;
     let titles = ["wheel", "found", "computed", "mean distance", "largest distance"];
     print_table(out, &titles, &rows)
 }

@@ -12,7 +12,7 @@ use crate::cli::text::sensitivity::print_sensitivity;
 use impactlab_core::units::{Quantity, UnitSystem, percent};
 use impactlab_study::analysis::Spread;
 use impactlab_study::{
-    ForceReport, FrictionZoneReport, RestState, SimulateReport, TyreMarkReport, VehicleUncertainty,
+    ForceReport, FrictionZoneReport, RestState, SimulateReport, TireMarkReport, VehicleUncertainty,
 };
 
 /// A name and a value.
@@ -57,17 +57,17 @@ pub(in crate::cli) fn print_simulation(
     facts.extend(report.notes.iter().map(|note| ("note", note.clone())));
     facts.extend(out.map(|path| ("written", shown_path(path))));
     print_facts(text, &facts)?;
-    print_tyre_marks(text, &report.tyre_marks, units)?;
+    print_tire_marks(text, &report.tire_marks, units)?;
     if let Some(uncertainty) = &report.uncertainty {
         print_uncertainty(text, uncertainty, units)?;
     }
     print_badges(text, &report.badges, &report.assumptions)
 }
 
-/// Prints the marks that tyres leave.
-fn print_tyre_marks(
+/// Prints the marks that tires leave.
+fn print_tire_marks(
     text: &mut dyn Write,
-    marks: &[TyreMarkReport],
+    marks: &[TireMarkReport],
     units: UnitSystem,
 ) -> io::Result<()> {
     if marks.is_empty() {
@@ -75,7 +75,7 @@ fn print_tyre_marks(
     }
     let unit = Quantity::Length.display_unit(units);
     let length = |si: f64| format!("{:.1}", unit.from_si(si));
-    let row = |mark: &TyreMarkReport| {
+    let row = |mark: &TireMarkReport| {
         let end =
             |time_s: f64, [x, y]: [f64; 2]| vec![format!("{time_s:.2}"), length(x), length(y)];
         let wheel = format!("{}, {}", mark.vehicle, mark.wheel.label());
@@ -86,7 +86,7 @@ fn print_tyre_marks(
     };
     let rows: Vec<Vec<String>> = marks.iter().map(row).collect();
     let [long, x, y] = ["length", "X", "Y"].map(|name| format!("{name} [{}]", unit.symbol));
-    writeln!(text, "\ntyre marks, computed")?;
+    writeln!(text, "\ntire marks, computed")?;
     print_table(text, &["wheel", "by", &long, "from [s]", &x, &y, "to [s]", &x, &y], &rows)
 }
 

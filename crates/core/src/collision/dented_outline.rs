@@ -153,24 +153,24 @@ mod tests {
     fn the_overlap_is_divided_and_nothing_else_changes() {
         let car_m2 = CAR.length_m * CAR.width_m;
         // A corner in a side, a front in a front with an offset, a side in a corner.
-        for (target, bullet) in [
+        for (struck, striking) in [
             (pose(0.0, 0.0, 0.0), pose(-4.3, -1.3, 20.0)),
             (pose(0.0, 0.0, 0.0), pose(4.0, 0.7, 180.0)),
             (pose(1.0, 2.0, 70.0), pose(-0.5, -0.6, -10.0)),
         ] {
-            let cars = [(&CAR, &target), (&CAR, &bullet)];
+            let cars = [(&CAR, &struck), (&CAR, &striking)];
             let none = DentedOutlines::of(cars, 0.0).unwrap();
             let all = DentedOutlines::of(cars, 1.0).unwrap();
             let half = DentedOutlines::of(cars, 0.5).unwrap();
             let overlap_m2 = car_m2 - area_m2(&all.outlines_m[0]);
-            assert!(overlap_m2 > 0.01, "{target:?}: overlap of {overlap_m2} m²");
-            assert!((area_m2(&none.outlines_m[0]) - car_m2).abs() < 1e-2, "{target:?}");
+            assert!(overlap_m2 > 0.01, "{struck:?}: overlap of {overlap_m2} m²");
+            assert!((area_m2(&none.outlines_m[0]) - car_m2).abs() < 1e-2, "{struck:?}");
             assert!((area_m2(&none.outlines_m[1]) - car_m2 + overlap_m2).abs() < 2e-2);
             let lost: Vec<f64> = half.outlines_m.iter().map(|of| car_m2 - area_m2(of)).collect();
             assert!((lost[0] + lost[1] - overlap_m2).abs() < 2e-2, "{lost:?} of {overlap_m2} m²");
             assert!(lost.iter().all(|lost| *lost > 0.0), "{lost:?}");
             for outline in &half.outlines_m {
-                assert_eq!(outline.first(), outline.last(), "{target:?}");
+                assert_eq!(outline.first(), outline.last(), "{struck:?}");
                 assert!(half.dent_m.iter().all(|place| outline.contains(place)));
             }
         }
@@ -178,10 +178,10 @@ mod tests {
 
     #[test]
     fn outlines_that_do_not_cross_have_no_dent() {
-        let (target, apart, inside) =
+        let (struck, apart, inside) =
             (pose(0.0, 0.0, 0.0), pose(0.0, 5.0, 0.0), pose(0.0, 0.0, 90.0));
         for other in [apart, inside] {
-            assert_eq!(DentedOutlines::of([(&CAR, &target), (&CAR, &other)], 0.5), None);
+            assert_eq!(DentedOutlines::of([(&CAR, &struck), (&CAR, &other)], 0.5), None);
         }
     }
 }

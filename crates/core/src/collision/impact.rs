@@ -8,7 +8,7 @@
 //! another one, which is selectable; see [`RestitutionForm`].
 //!
 //! Assumptions: the impact is instantaneous, so neither vehicle moves or turns during it; the force
-//! acts at one contact point and has no moment about it; tyre forces are negligible beside the
+//! acts at one contact point and has no moment about it; tire forces are negligible beside the
 //! contact force.
 //!
 //! Departures from the paper:
@@ -133,9 +133,9 @@ pub struct ContactSurface<T = f64> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Impact<T = f64> {
     /// The vehicle that is struck. Impulses are those that act ON this vehicle.
-    pub target: ImpactBody<T>,
+    pub struck: ImpactBody<T>,
     /// The vehicle that strikes.
-    pub bullet: ImpactBody<T>,
+    pub striking: ImpactBody<T>,
     /// The contact surface.
     pub surface: ContactSurface<T>,
 }
@@ -203,9 +203,9 @@ pub struct ImpactSolution<T = f64> {
     /// each other.
     pub closing_velocity_m_s: [T; 2],
     /// Motion of the target after the impact.
-    pub target: BodyAfter<T>,
+    pub struck: BodyAfter<T>,
     /// Motion of the bullet after the impact.
-    pub bullet: BodyAfter<T>,
+    pub striking: BodyAfter<T>,
     /// Kinetic energy of both vehicles that the impact dissipates, J.
     pub dissipated_energy_j: T,
 }
@@ -243,9 +243,9 @@ impl<T: Scalar> Impact<T> {
     ///
     /// The matrix is symmetric and positive definite.
     pub fn inverse_mass_1_kg(&self) -> [[T; 2]; 2] {
-        let central = self.target.mass_kg.recip() + self.bullet.mass_kg.recip();
+        let central = self.struck.mass_kg.recip() + self.striking.mass_kg.recip();
         let mut k = [[central, T::from(0.0)], [T::from(0.0), central]];
-        for body in [&self.target, &self.bullet] {
+        for body in [&self.struck, &self.striking] {
             let lever = perpendicular(body.contact_arm_m);
             for (row, a) in k.iter_mut().zip(lever) {
                 for (entry, b) in row.iter_mut().zip(lever) {
@@ -259,8 +259,8 @@ impl<T: Scalar> Impact<T> {
     /// Velocity of the contact point of the bullet relative to that of the target before the
     /// impact, in world axes, m/s.
     pub fn relative_velocity_m_s(&self) -> [T; 2] {
-        let [tx, ty] = self.target.contact_velocity_m_s();
-        let [bx, by] = self.bullet.contact_velocity_m_s();
+        let [tx, ty] = self.struck.contact_velocity_m_s();
+        let [bx, by] = self.striking.contact_velocity_m_s();
         [bx - tx, by - ty]
     }
 
@@ -350,8 +350,8 @@ impl<T: Scalar> Impact<T> {
             impulse_tangential_n_s: p_t,
             regime,
             closing_velocity_m_s: closing,
-            target: self.target.after(p),
-            bullet: self.bullet.after([-p[0], -p[1]]),
+            struck: self.struck.after(p),
+            striking: self.striking.after([-p[0], -p[1]]),
             dissipated_energy_j: contact_work_j(
                 self.relative_velocity_m_s(),
                 self.inverse_mass_1_kg(),
@@ -369,7 +369,7 @@ impl Impact<f64> {
     /// [`ImpactError::Range`] names the first input that is out of range; [`ImpactError::Jammed`]
     /// if [`FrictionModel::Paper`] has no solution.
     pub fn solve(&self) -> Result<ImpactSolution, ImpactError> {
-        for (body, of) in [(&self.target, "target"), (&self.bullet, "bullet")] {
+        for (body, of) in [(&self.struck, "target"), (&self.striking, "bullet")] {
             let [vx, vy] = body.velocity_m_s;
             let [rx, ry] = body.contact_arm_m;
             let inertia = body.yaw_inertia_kg_m2;

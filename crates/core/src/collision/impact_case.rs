@@ -28,7 +28,7 @@ pub struct ImpactCase {
     /// Position `[x, y]` of the contact point relative to the CG of the target, m.
     pub contact_m: [f64; 2],
     /// Position `[x, y]` of the CG of the bullet relative to the CG of the target, m.
-    pub bullet_m: [f64; 2],
+    pub striking_m: [f64; 2],
 }
 
 impl ImpactCase {
@@ -48,7 +48,7 @@ impl ImpactCase {
     ) -> Result<Impact, ScenarioError> {
         let [x, y] = self.contact_m;
         Ok(Impact {
-            target: ImpactBody {
+            struck: ImpactBody {
                 mass_kg: self.m_t_kg,
                 yaw_inertia_kg_m2: self.izz_t_kg_m2,
                 heading_rad: 0.0,
@@ -56,13 +56,13 @@ impl ImpactCase {
                 yaw_rate_rad_s: 0.0,
                 contact_arm_m: [x, y],
             },
-            bullet: ImpactBody {
+            striking: ImpactBody {
                 mass_kg: self.m_b_kg,
                 yaw_inertia_kg_m2: self.izz_b_kg_m2,
                 heading_rad: self.theta_b_rad,
                 velocity_m_s: self.v_b_m_s,
                 yaw_rate_rad_s: 0.0,
-                contact_arm_m: [x - self.bullet_m[0], y - self.bullet_m[1]],
+                contact_arm_m: [x - self.striking_m[0], y - self.striking_m[1]],
             },
             surface: ContactSurface {
                 normal_angle_rad: self.normal_rad()?,
@@ -84,14 +84,14 @@ impl ImpactCase {
 
     /// The scenario that gives the same impact as [`ImpactCase::to_impact`], to be shown or saved.
     ///
-    /// - `target`, `bullet`: outlines of the vehicles; they are used for drawing only.
+    /// - `struck`, `striking`: outlines of the vehicles; they are used for drawing only.
     /// - `restitution`, `friction_limit`: as for [`ImpactCase::to_impact`].
     ///
     /// # Errors
     /// [`ScenarioError::NoSide`] if the y coordinate of the contact point is zero or not finite.
     pub fn to_scenario(
         &self,
-        [target, bullet]: [Footprint; 2],
+        [struck, striking]: [Footprint; 2],
         (restitution, friction_limit): (f64, f64),
     ) -> Result<Scenario, ScenarioError> {
         let [x_m, y_m] = self.contact_m;
@@ -112,20 +112,20 @@ impl ImpactCase {
         Ok(Scenario {
             name: String::new(),
             notes: String::new(),
-            target_x_m: 0.0,
-            target_y_m: 0.0,
-            target: vehicle(self.m_t_kg, self.izz_t_kg_m2, self.v_t_m_s, target),
-            bullet: ScenarioVehicle {
+            struck_x_m: 0.0,
+            struck_y_m: 0.0,
+            struck: vehicle(self.m_t_kg, self.izz_t_kg_m2, self.v_t_m_s, struck),
+            striking: ScenarioVehicle {
                 heading_rad: self.theta_b_rad,
-                ..vehicle(self.m_b_kg, self.izz_b_kg_m2, self.v_b_m_s, bullet)
+                ..vehicle(self.m_b_kg, self.izz_b_kg_m2, self.v_b_m_s, striking)
             },
             contact: ScenarioContact {
                 location: ContactLocation::Point {
                     x_m,
                     y_m,
                     normal_rad,
-                    bullet_x_m: self.bullet_m[0],
-                    bullet_y_m: self.bullet_m[1],
+                    striking_x_m: self.striking_m[0],
+                    striking_y_m: self.striking_m[1],
                 },
                 restitution,
                 restitution_form: RestitutionForm::Normal,
@@ -134,9 +134,9 @@ impl ImpactCase {
                 friction_model: FrictionModel::Limit,
             },
             ending: None,
-            bullet_ending: None,
-            target_vehicle: None,
-            bullet_vehicle: None,
+            striking_ending: None,
+            struck_vehicle: None,
+            striking_vehicle: None,
         })
     }
 }

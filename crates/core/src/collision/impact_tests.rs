@@ -24,9 +24,9 @@ fn bodies() -> impl Strategy<Value = ImpactBody> {
 
 fn impacts(friction_model: FrictionModel) -> impl Strategy<Value = Impact> {
     let surface = (-4.0..4.0, 0.0..=1.0, 0.0..2.0);
-    (bodies(), bodies(), surface).prop_map(move |(target, bullet, (gamma, e, mu))| Impact {
-        target,
-        bullet,
+    (bodies(), bodies(), surface).prop_map(move |(struck, striking, (gamma, e, mu))| Impact {
+        struck,
+        striking,
         surface: ContactSurface {
             normal_angle_rad: gamma,
             restitution: e,
@@ -40,8 +40,8 @@ fn impacts(friction_model: FrictionModel) -> impl Strategy<Value = Impact> {
 /// Linear momentum along x and y, angular momentum about the contact point and kinetic energy of
 /// both bodies together, before and after the impact.
 fn totals(impact: &Impact, solution: &ImpactSolution) -> [[f64; 4]; 2] {
-    let [target, bullet] = after(impact, solution);
-    [[impact.target, impact.bullet], [target, bullet]].map(|bodies| {
+    let [struck, striking] = after(impact, solution);
+    [[impact.struck, impact.striking], [struck, striking]].map(|bodies| {
         let mut sum = [0.0; 4];
         for body in bodies {
             let [px, py] = body.velocity_m_s.map(|v| body.mass_kg * v);
@@ -61,13 +61,13 @@ fn after(impact: &Impact, solution: &ImpactSolution) -> [ImpactBody; 2] {
         yaw_rate_rad_s: to.yaw_rate_rad_s,
         ..body
     };
-    [moved(impact.target, &solution.target), moved(impact.bullet, &solution.bullet)]
+    [moved(impact.struck, &solution.struck), moved(impact.striking, &solution.striking)]
 }
 
 /// Relative velocity of the contact points after the impact along normal and tangent, m/s.
 fn closing_after(impact: &Impact, solution: &ImpactSolution) -> [f64; 2] {
-    let [target, bullet] = after(impact, solution);
-    let ([tx, ty], [bx, by]) = (target.contact_velocity_m_s(), bullet.contact_velocity_m_s());
+    let [struck, striking] = after(impact, solution);
+    let ([tx, ty], [bx, by]) = (struck.contact_velocity_m_s(), striking.contact_velocity_m_s());
     let (sin, cos) = impact.surface.normal_angle_rad.sin_cos();
     let (x, y) = (bx - tx, by - ty);
     [x * cos + y * sin, y * cos - x * sin]
@@ -75,8 +75,8 @@ fn closing_after(impact: &Impact, solution: &ImpactSolution) -> [f64; 2] {
 
 /// Momentum, N s, and energy, J, relative to which rounding errors are judged.
 fn scales(impact: &Impact) -> (f64, f64) {
-    let energy = impact.target.kinetic_energy_j() + impact.bullet.kinetic_energy_j();
-    let mass = impact.target.mass_kg + impact.bullet.mass_kg;
+    let energy = impact.struck.kinetic_energy_j() + impact.striking.kinetic_energy_j();
+    let mass = impact.struck.mass_kg + impact.striking.mass_kg;
     ((2.0 * energy * mass).sqrt() + 1.0, energy + 1.0)
 }
 
@@ -215,8 +215,8 @@ proptest! {
         };
         let gamma = -impact.surface.normal_angle_rad;
         let image = Impact {
-            target: mirror(impact.target),
-            bullet: mirror(impact.bullet),
+            struck: mirror(impact.struck),
+            striking: mirror(impact.striking),
             surface: ContactSurface { normal_angle_rad: gamma, ..impact.surface },
         };
         let (one, other) = (impact.solve().unwrap(), image.solve().unwrap());
@@ -237,8 +237,8 @@ proptest! {
             ..body
         };
         let moving = Impact {
-            target: pushed(impact.target),
-            bullet: pushed(impact.bullet),
+            struck: pushed(impact.struck),
+            striking: pushed(impact.striking),
             ..impact
         };
         let (one, other) = (impact.solve().unwrap(), moving.solve().unwrap());
@@ -263,7 +263,7 @@ proptest! {
     fn the_derivative_is_exact(impact in impacts(FrictionModel::Limit)) {
         let at = |push: f64| {
             let mut impact = impact;
-            impact.bullet.velocity_m_s[0] += push;
+            impact.striking.velocity_m_s[0] += push;
             impact.solve().unwrap()
         };
         let step = 1e-5;
@@ -316,11 +316,11 @@ fn dual(impact: &Impact) -> Impact<Dual64> {
         yaw_rate_rad_s: body.yaw_rate_rad_s.into(),
         contact_arm_m: body.contact_arm_m.map(Dual64::from),
     };
-    let mut bullet = body(&impact.bullet);
-    bullet.velocity_m_s[0] = bullet.velocity_m_s[0].derivative();
+    let mut striking = body(&impact.striking);
+    striking.velocity_m_s[0] = striking.velocity_m_s[0].derivative();
     Impact {
-        target: body(&impact.target),
-        bullet,
+        struck: body(&impact.struck),
+        striking,
         surface: ContactSurface {
             normal_angle_rad: impact.surface.normal_angle_rad.into(),
             restitution: impact.surface.restitution.into(),
@@ -343,8 +343,8 @@ fn central(restitution: f64) -> Impact {
         contact_arm_m: [arm, 0.0],
     };
     Impact {
-        target: car(1000.0, 3.0, -2.5),
-        bullet: car(3000.0, 15.0, 2.2),
+        struck: car(1000.0, 3.0, -2.5),
+        striking: car(3000.0, 15.0, 2.2),
         surface: ContactSurface {
             normal_angle_rad: 0.0,
             restitution,
@@ -362,10 +362,10 @@ fn a_central_impact_loses_the_textbook_energy() {
         let m_eff = 1000.0 * 3000.0 / 4000.0;
         let lost = 0.5 * m_eff * 12.0_f64.powi(2) * (1.0 - e * e);
         assert!((solution.dissipated_energy_j - lost).abs() < 1e-8, "e = {e}: {solution:?}");
-        let [dvx, dvy] = solution.target.delta_v_m_s;
+        let [dvx, dvy] = solution.struck.delta_v_m_s;
         assert!((dvx - (1.0 + e) * m_eff * 12.0 / 1000.0).abs() < 1e-12, "e = {e}: {solution:?}");
-        assert!(dvy.abs() < 1e-12 && solution.target.yaw_rate_rad_s == 0.0, "{solution:?}");
-        let clocks = [solution.target.pdof, solution.bullet.pdof].map(|p| p.map(|p| p.clock()));
+        assert!(dvy.abs() < 1e-12 && solution.struck.yaw_rate_rad_s == 0.0, "{solution:?}");
+        let clocks = [solution.struck.pdof, solution.striking.pdof].map(|p| p.map(|p| p.clock()));
         assert_eq!(clocks, [Some(6), Some(12)], "e = {e}");
     }
 }
@@ -374,8 +374,8 @@ fn a_central_impact_loses_the_textbook_energy() {
 #[test]
 fn with_restitution_and_without_sliding_the_forms_differ() {
     let mut impact = central(0.3);
-    impact.bullet.contact_arm_m = [2.2, 0.8];
-    impact.bullet.velocity_m_s[1] = 1.5;
+    impact.striking.contact_arm_m = [2.2, 0.8];
+    impact.striking.velocity_m_s[1] = 1.5;
     impact.surface.friction_limit = 2.0;
     let [normal, common] =
         RestitutionForm::ALL.map(|form| with_form(impact, form).solve().unwrap());
@@ -423,10 +423,10 @@ fn the_work_of_a_force_depends_on_its_impulse_alone() {
 fn friction_is_held_where_it_would_create_energy() {
     let mut impact = central(1.0);
     impact.surface.friction_limit = 2.0;
-    impact.bullet.contact_arm_m = [2.2, 1.6];
-    impact.bullet.yaw_inertia_kg_m2 = 1000.0;
+    impact.striking.contact_arm_m = [2.2, 1.6];
+    impact.striking.yaw_inertia_kg_m2 = 1000.0;
     let regimes = [-6.0, -3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0, 6.0].map(|slide| {
-        impact.bullet.velocity_m_s[1] = slide;
+        impact.striking.velocity_m_s[1] = slide;
         let solution = impact.solve().unwrap();
         assert!(solution.dissipated_energy_j > -1e-9, "{slide}: {solution:?}");
         solution.regime
@@ -440,7 +440,7 @@ fn friction_is_held_where_it_would_create_energy() {
 #[test]
 fn the_papers_model_always_slides() {
     let mut impact = central(0.1);
-    impact.bullet.velocity_m_s[1] = 0.5;
+    impact.striking.velocity_m_s[1] = 0.5;
     impact.surface.friction_limit = 0.9;
     assert_eq!(impact.solve().unwrap().regime, Regime::NoSlide);
     impact.surface.friction_model = FrictionModel::Paper;
@@ -458,13 +458,13 @@ fn senseless_numbers_are_refused_by_name() {
         change(&mut impact);
         impact.solve().unwrap_err().to_string()
     };
-    assert_eq!(refused(|i| i.target.mass_kg = 0.0), "target: mass_kg is 0, expected more than 0");
+    assert_eq!(refused(|i| i.struck.mass_kg = 0.0), "target: mass_kg is 0, expected more than 0");
     assert_eq!(
         refused(|i| i.surface.restitution = 1.5),
         "contact: restitution is 1.5, expected 0 to 1"
     );
     assert_eq!(
-        refused(|i| i.bullet.velocity_m_s[1] = f64::NAN),
+        refused(|i| i.striking.velocity_m_s[1] = f64::NAN),
         "bullet: velocity_m_s[1] is NaN, expected a finite number"
     );
 }

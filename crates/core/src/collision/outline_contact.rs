@@ -35,7 +35,8 @@ pub enum StruckSurface {
     /// A side of the target, which is struck by a corner or a side of the bullet.
     Target(Side),
     /// A side of the bullet, into which a corner of the target penetrates.
-    Bullet(Side),
+    #[serde(rename = "bullet")]
+    Striking(Side),
 }
 
 impl fmt::Display for StruckSurface {
@@ -43,7 +44,7 @@ impl fmt::Display for StruckSurface {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Target(side) => write!(f, "into the target's {}", side.label()),
-            Self::Bullet(side) => write!(f, "out of the bullet's {}", side.label()),
+            Self::Striking(side) => write!(f, "out of the bullet's {}", side.label()),
         }
     }
 }
@@ -125,13 +126,13 @@ struct Candidate {
 
 /// Overlap of two outlines along the axis on which it is smallest, m; negative for a gap. Outlines
 /// overlap if and only if it is positive.
-pub fn overlap_m(target: &MovingFootprint, bullet: &MovingFootprint) -> f64 {
-    candidates(target, bullet).map(|of| of.depth_m).into_iter().fold(f64::INFINITY, f64::min)
+pub fn overlap_m(struck: &MovingFootprint, striking: &MovingFootprint) -> f64 {
+    candidates(struck, striking).map(|of| of.depth_m).into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// Centroid of the overlap of two outlines in world axes, m; `None` if they do not overlap.
-pub fn overlap_centre_m(target: &MovingFootprint, bullet: &MovingFootprint) -> Option<[f64; 2]> {
-    centroid(&clip(&target.corners_m(), &bullet.corners_m()))
+pub fn overlap_centre_m(struck: &MovingFootprint, striking: &MovingFootprint) -> Option<[f64; 2]> {
+    centroid(&clip(&struck.corners_m(), &striking.corners_m()))
 }
 
 /// Finds the contact of two vehicles that touch or overlap.
@@ -162,12 +163,12 @@ pub fn overlap_centre_m(target: &MovingFootprint, bullet: &MovingFootprint) -> O
 /// normal, or if the side of first contact is not that of the smallest overlap and the first contact
 /// is more than [`MAX_APPROACH_TIME_S`] ago; [`FootprintError::Range`] if a number is out of range.
 pub fn find_contact(
-    target: &MovingFootprint,
-    bullet: &MovingFootprint,
+    struck: &MovingFootprint,
+    striking: &MovingFootprint,
 ) -> Result<Contact, FootprintError> {
-    target.check()?;
-    bullet.check()?;
-    let candidates = candidates(target, bullet);
+    struck.check()?;
+    striking.check()?;
+    let candidates = candidates(struck, striking);
     let shallowest = shallowest_of(&candidates);
     let depth_m = shallowest.depth_m;
     if depth_m < -TOUCH_TOLERANCE_M {
@@ -175,55 +176,55 @@ pub fn find_contact(
     }
     let push = (PROBE_DEPTH_M - depth_m).max(0.0);
     let normal = shallowest.normal;
-    let pushed = bullet.corners_m().map(|[x, y]| [x + push * normal[0], y + push * normal[1]]);
-    let [x, y] = centroid(&clip(&target.corners_m(), &pushed))
+    let pushed = striking.corners_m().map(|[x, y]| [x + push * normal[0], y + push * normal[1]]);
+    let [x, y] = centroid(&clip(&struck.corners_m(), &pushed))
         .ok_or(FootprintError::Apart { gap_m: -depth_m })?;
     // The bullet alone was pushed, but the contact point lies midway between the vehicles.
     let point_m = [x - push / 2.0 * normal[0], y - push / 2.0 * normal[1]];
-    let struck = if depth_m > TOUCH_TOLERANCE_M {
+    let touched = if depth_m > TOUCH_TOLERANCE_M {
         let ([tx, ty], [bx, by]) =
-            (target.velocity_at_m_s(point_m), bullet.velocity_at_m_s(point_m));
-        let struck = first_touch(&candidates, shallowest, [bx - tx, by - ty])?;
-        let apart = [target.pose.x_m - bullet.pose.x_m, target.pose.y_m - bullet.pose.y_m];
-        if dot(apart, struck.normal) <= 0.0 {
-            return Err(FootprintError::TooDeep { depth_m: struck.depth_m, time_s: 0.0 });
+            (struck.velocity_at_m_s(point_m), striking.velocity_at_m_s(point_m));
+        let first = first_touch(&candidates, shallowest, [bx - tx, by - ty])?;
+        let apart = [struck.pose.x_m - striking.pose.x_m, struck.pose.y_m - striking.pose.y_m];
+        if dot(apart, first.normal) <= 0.0 {
+            return Err(FootprintError::TooDeep { depth_m: first.depth_m, time_s: 0.0 });
         }
-        struck
+        first
     } else {
         shallowest
     };
     Ok(Contact {
         point_m,
-        normal_angle_rad: struck.normal[1].atan2(struck.normal[0]),
-        depth_m: struck.depth_m,
-        surface: struck.surface,
+        normal_angle_rad: touched.normal[1].atan2(touched.normal[0]),
+        depth_m: touched.depth_m,
+        surface: touched.surface,
     })
 }
 
 /// The four sides of the target, then those of the bullet.
-fn candidates(target: &MovingFootprint, bullet: &MovingFootprint) -> [Candidate; 8] {
-    let (target_m, bullet_m) = (target.corners_m(), bullet.corners_m());
+fn candidates(struck: &MovingFootprint, striking: &MovingFootprint) -> [Candidate; 8] {
+    let (struck_m, striking_m) = (struck.corners_m(), striking.corners_m());
     let [front, left, rear, right] = Side::ALL;
-    let of_target = |side: Side| {
-        let outward = direction(target.pose.yaw_rad + side.outward_angle_rad());
+    let of_struck = |side: Side| {
+        let outward = direction(struck.pose.yaw_rad + side.outward_angle_rad());
         let inward = outward.map(|c| -c);
-        let depth_m = reach(&target_m, outward) + reach(&bullet_m, inward);
+        let depth_m = reach(&struck_m, outward) + reach(&striking_m, inward);
         Candidate { depth_m, normal: inward, surface: StruckSurface::Target(side) }
     };
-    let of_bullet = |side: Side| {
-        let outward = direction(bullet.pose.yaw_rad + side.outward_angle_rad());
-        let depth_m = reach(&bullet_m, outward) + reach(&target_m, outward.map(|c| -c));
-        Candidate { depth_m, normal: outward, surface: StruckSurface::Bullet(side) }
+    let of_striking = |side: Side| {
+        let outward = direction(striking.pose.yaw_rad + side.outward_angle_rad());
+        let depth_m = reach(&striking_m, outward) + reach(&struck_m, outward.map(|c| -c));
+        Candidate { depth_m, normal: outward, surface: StruckSurface::Striking(side) }
     };
     [
-        of_target(front),
-        of_target(left),
-        of_target(rear),
-        of_target(right),
-        of_bullet(front),
-        of_bullet(left),
-        of_bullet(rear),
-        of_bullet(right),
+        of_struck(front),
+        of_struck(left),
+        of_struck(rear),
+        of_struck(right),
+        of_striking(front),
+        of_striking(left),
+        of_striking(rear),
+        of_striking(right),
     ]
 }
 
@@ -282,27 +283,27 @@ fn first_touch<'a>(
 /// [`FootprintError::Apart`] if the offset lies so far beyond the end of the side that the outlines
 /// do not touch; [`FootprintError::Range`] if an outline or a pose is out of range.
 pub fn place_touching(
-    (target, target_pose): (&Footprint, &Pose),
+    (struck, struck_pose): (&Footprint, &Pose),
     (side, offset_m): (Side, f64),
-    (bullet, heading_rad): (&Footprint, f64),
+    (striking, heading_rad): (&Footprint, f64),
 ) -> Result<Pose, FootprintError> {
-    target.check()?;
-    bullet.check()?;
-    let [mx, my] = target.side_middle_m(side);
-    let point = target_pose.world_from_body(match side {
+    struck.check()?;
+    striking.check()?;
+    let [mx, my] = struck.side_middle_m(side);
+    let point = struck_pose.world_from_body(match side {
         Side::Front | Side::Rear => [mx, my + offset_m],
         Side::Left | Side::Right => [mx + offset_m, my],
     });
-    let inward = direction(target_pose.yaw_rad + side.outward_angle_rad()).map(|c| -c);
+    let inward = direction(struck_pose.yaw_rad + side.outward_angle_rad()).map(|c| -c);
     let turned = Pose { x_m: 0.0, y_m: 0.0, yaw_rad: heading_rad };
-    let corners = bullet.corners_m(&turned);
+    let corners = striking.corners_m(&turned);
     let foremost = reach(&corners, inward);
     let touching: Vec<_> =
         corners.into_iter().filter(|&corner| dot(corner, inward) > foremost - 1e-9).collect();
     let n = touching.len().max(1) as f64;
     let middle = [0, 1].map(|i| touching.iter().map(|corner| corner[i]).sum::<f64>() / n);
     let pose = Pose { x_m: point[0] - middle[0], y_m: point[1] - middle[1], yaw_rad: heading_rad };
-    let [still, placed] = [(target, target_pose), (bullet, &pose)]
+    let [still, placed] = [(struck, struck_pose), (striking, &pose)]
         .map(|(footprint, pose)| MovingFootprint::at_rest(*footprint, *pose));
     find_contact(&still, &placed)?;
     Ok(pose)

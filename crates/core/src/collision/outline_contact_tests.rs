@@ -7,15 +7,15 @@ use super::*;
 use crate::collision::footprint::examples::{CAR, pose};
 
 /// The contact of two cars at rest.
-fn still(target: Pose, bullet: Pose) -> Result<Contact, FootprintError> {
-    let [target, bullet] = [target, bullet].map(|at| MovingFootprint::at_rest(CAR, at));
-    find_contact(&target, &bullet)
+fn still(struck: Pose, striking: Pose) -> Result<Contact, FootprintError> {
+    let [struck, striking] = [struck, striking].map(|at| MovingFootprint::at_rest(CAR, at));
+    find_contact(&struck, &striking)
 }
 
 #[test]
 fn a_rear_end_hit_touches_in_the_middle_of_the_shared_width() {
-    let (target, bullet) = (pose(0.0, 0.0, 0.0), pose(-4.8, 0.6, 0.0));
-    let contact = still(target, bullet).unwrap();
+    let (struck, striking) = (pose(0.0, 0.0, 0.0), pose(-4.8, 0.6, 0.0));
+    let contact = still(struck, striking).unwrap();
     assert_eq!(contact.surface, StruckSurface::Target(Side::Rear));
     assert!(contact.normal_angle_rad.abs() < 1e-12, "{contact:?}");
     assert!((contact.point_m[0] + 2.6).abs() < 1e-9, "{contact:?}");
@@ -23,41 +23,41 @@ fn a_rear_end_hit_touches_in_the_middle_of_the_shared_width() {
 }
 
 #[test]
-fn a_pit_touches_at_the_bullets_corner_with_the_normal_across_the_target() {
+fn a_pit_touches_at_the_striking_vehicles_corner_with_the_normal_across_the_struck() {
     for (side, theta_deg, normal_deg) in [(Side::Right, 12.0, 90.0), (Side::Left, -12.0, -90.0)] {
-        let target = pose(3.0, -2.0, 30.0);
+        let struck = pose(3.0, -2.0, 30.0);
         let heading_rad = (30.0_f64 + theta_deg).to_radians();
         let place = (side, -1.2);
-        let bullet = place_touching((&CAR, &target), place, (&CAR, heading_rad)).unwrap();
-        let contact = still(target, bullet).unwrap();
+        let striking = place_touching((&CAR, &struck), place, (&CAR, heading_rad)).unwrap();
+        let contact = still(struck, striking).unwrap();
         assert_eq!(contact.surface, StruckSurface::Target(side));
         let normal = contact.normal_angle_rad.to_degrees();
         assert!((normal - 30.0 - normal_deg).abs() < 1e-9, "{contact:?}");
         assert!(contact.depth_m.abs() < 1e-9, "{contact:?}");
-        let [x, y] = target.body_from_world(contact.point_m);
+        let [x, y] = struck.body_from_world(contact.point_m);
         let expected_y = CAR.side_middle_m(side)[1];
         assert!((x + 1.4).abs() < 3e-3 && (y - expected_y).abs() < 1e-3, "{x} {y}");
     }
 }
 
 #[test]
-fn the_targets_corner_in_the_bullets_side_takes_the_bullets_normal() {
+fn the_targets_corner_in_the_striking_vehicles_side_takes_the_striking_vehicles_normal() {
     let contact = still(pose(0.0, 0.0, 0.0), pose(3.45, 1.0, 60.0)).unwrap();
-    assert_eq!(contact.surface, StruckSurface::Bullet(Side::Left));
+    assert_eq!(contact.surface, StruckSurface::Striking(Side::Left));
     assert!((contact.normal_angle_rad.to_degrees() - 150.0).abs() < 1e-9);
 }
 
 #[test]
 fn placing_touches_for_every_side_and_heading() {
-    let target = pose(1.0, 2.0, -40.0);
+    let struck = pose(1.0, 2.0, -40.0);
     for side in Side::ALL {
         for heading_deg in (0..360).step_by(5) {
             let heading_rad = f64::from(heading_deg).to_radians();
-            let bullet = place_touching((&CAR, &target), (side, 0.3), (&CAR, heading_rad));
-            let contact = still(target, bullet.unwrap()).unwrap();
+            let striking = place_touching((&CAR, &struck), (side, 0.3), (&CAR, heading_rad));
+            let contact = still(struck, striking.unwrap()).unwrap();
             assert!(contact.depth_m.abs() < 1e-9, "{side:?} {heading_deg}: {contact:?}");
             let normal = direction(contact.normal_angle_rad);
-            let outward = direction(target.yaw_rad + side.outward_angle_rad());
+            let outward = direction(struck.yaw_rad + side.outward_angle_rad());
             assert!(dot(normal, outward) < -1.0 + 1e-9, "{side:?} {heading_deg}: {contact:?}");
         }
     }
@@ -73,10 +73,10 @@ fn vehicles_apart_are_refused() {
 }
 
 /// Two cars, of which the bullet approaches with `velocity_m_s` relative to the target.
-fn approaching(bullet: Pose, velocity_m_s: [f64; 2]) -> Result<Contact, FootprintError> {
-    let target = MovingFootprint::at_rest(CAR, pose(0.0, 0.0, 0.0));
-    let bullet = MovingFootprint { velocity_m_s, ..MovingFootprint::at_rest(CAR, bullet) };
-    find_contact(&target, &bullet)
+fn approaching(striking: Pose, velocity_m_s: [f64; 2]) -> Result<Contact, FootprintError> {
+    let struck = MovingFootprint::at_rest(CAR, pose(0.0, 0.0, 0.0));
+    let striking = MovingFootprint { velocity_m_s, ..MovingFootprint::at_rest(CAR, striking) };
+    find_contact(&struck, &striking)
 }
 
 /// A deep overlap flipped the normal to the side along which it happened to be smaller: out of
@@ -112,13 +112,13 @@ fn an_overlap_that_no_contact_brings_about_is_refused() {
 
 #[test]
 fn the_approach_is_that_of_the_contact_points() {
-    let target = MovingFootprint::at_rest(CAR, pose(0.0, 0.0, 0.0));
+    let struck = MovingFootprint::at_rest(CAR, pose(0.0, 0.0, 0.0));
     let at = MovingFootprint::at_rest(CAR, pose(-4.2, -1.1, 0.0));
     // The bullet's front swings to the left with no velocity of its CG.
     let swinging = MovingFootprint { yaw_rate_rad_s: 3.0, ..at };
-    let contact = find_contact(&target, &swinging).unwrap();
+    let contact = find_contact(&struck, &swinging).unwrap();
     assert_eq!(contact.surface, StruckSurface::Target(Side::Right));
-    assert_eq!(find_contact(&target, &at).unwrap().surface, StruckSurface::Target(Side::Rear));
+    assert_eq!(find_contact(&struck, &at).unwrap().surface, StruckSurface::Target(Side::Rear));
 }
 
 proptest! {
@@ -135,8 +135,8 @@ proptest! {
         at in (-3.0..3.0, -3.0..3.0, -4.0..4.0),
         velocity in [-20.0..20.0, -20.0..20.0],
     ) {
-        let bullet = Pose { x_m: at.0, y_m: at.1, yaw_rad: at.2 };
-        let Ok(contact) = approaching(bullet, velocity) else { return Ok(()) };
+        let striking = Pose { x_m: at.0, y_m: at.1, yaw_rad: at.2 };
+        let Ok(contact) = approaching(striking, velocity) else { return Ok(()) };
         if contact.depth_m > TOUCH_TOLERANCE_M {
             let closing = dot(velocity, direction(contact.normal_angle_rad));
             prop_assert!(closing > 0.0, "{closing} {contact:?}");
@@ -171,8 +171,8 @@ proptest! {
         }
         let moved = car(scene.0, scene.1, scene.2);
         let [x, y] = moved.world_from_body([at.0, at.1]);
-        let bullet = car(x, y, at.2 + scene.2);
-        let other = still(moved, bullet).unwrap();
+        let striking = car(x, y, at.2 + scene.2);
+        let other = still(moved, striking).unwrap();
         prop_assert!((other.depth_m - contact.depth_m).abs() < 1e-9);
         // If two sides have the same overlap, rounding decides which of them is found.
         if other.surface == contact.surface {

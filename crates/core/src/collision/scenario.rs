@@ -67,9 +67,11 @@ pub enum ContactLocation {
     /// both vehicles ([`find_contact`]).
     Footprints {
         /// X coordinate of the CG of the bullet in world axes, m.
-        bullet_x_m: f64,
+        #[serde(rename = "bullet_x_m")]
+        striking_x_m: f64,
         /// Y coordinate of the CG of the bullet in world axes, m.
-        bullet_y_m: f64,
+        #[serde(rename = "bullet_y_m")]
+        striking_y_m: f64,
     },
     /// The touching point on a side of the target is given. The bullet is placed so that it just
     /// touches there ([`place_touching`]); contact point and normal follow from the outlines.
@@ -91,9 +93,11 @@ pub enum ContactLocation {
         /// target.
         normal_rad: f64,
         /// X coordinate of the CG of the bullet in world axes, m.
-        bullet_x_m: f64,
+        #[serde(rename = "bullet_x_m")]
+        striking_x_m: f64,
         /// Y coordinate of the CG of the bullet in world axes, m.
-        bullet_y_m: f64,
+        #[serde(rename = "bullet_y_m")]
+        striking_y_m: f64,
     },
 }
 
@@ -128,13 +132,17 @@ pub struct Scenario {
     /// Origin of the data, as free text for the user; may be empty.
     pub notes: String,
     /// X coordinate of the CG of the target in world axes, m.
-    pub target_x_m: f64,
+    #[serde(rename = "target_x_m")]
+    pub struck_x_m: f64,
     /// Y coordinate of the CG of the target in world axes, m.
-    pub target_y_m: f64,
+    #[serde(rename = "target_y_m")]
+    pub struck_y_m: f64,
     /// The vehicle that is struck.
-    pub target: ScenarioVehicle,
+    #[serde(rename = "target")]
+    pub struck: ScenarioVehicle,
     /// The vehicle that strikes.
-    pub bullet: ScenarioVehicle,
+    #[serde(rename = "bullet")]
+    pub striking: ScenarioVehicle,
     /// The contact between the two vehicles.
     pub contact: ScenarioContact,
     /// What happens to the wheels of the target after the first contact; `None` if the scenario does
@@ -143,22 +151,25 @@ pub struct Scenario {
     pub ending: Option<Ending>,
     /// The same of the bullet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bullet_ending: Option<Ending>,
+    #[serde(rename = "bullet_ending")]
+    pub striking_ending: Option<Ending>,
     /// The struck vehicle by its name among those that come with the program, if the scenario says it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub target_vehicle: Option<String>,
+    #[serde(rename = "target_vehicle")]
+    pub struck_vehicle: Option<String>,
     /// The striking vehicle, likewise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bullet_vehicle: Option<String>,
+    #[serde(rename = "bullet_vehicle")]
+    pub striking_vehicle: Option<String>,
 }
 
 /// Poses and contact of the two vehicles of a scenario, in world axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScenarioGeometry {
     /// Pose of the target.
-    pub target: Pose,
+    pub struck: Pose,
     /// Pose of the bullet.
-    pub bullet: Pose,
+    pub striking: Pose,
     /// Contact point, m.
     pub contact_point_m: [f64; 2],
     /// Angle Γ of the contact normal, rad. The normal points into the target.
@@ -259,18 +270,18 @@ impl ScenarioContact {
         ];
         let of_critical = self.friction_of_critical;
         numbers.extend(of_critical.map(|s| ("friction_of_critical", s, FRICTION_OF_CRITICAL)));
-        let mut bullet = |x_m, y_m| {
+        let mut striking = |x_m, y_m| {
             numbers.extend([("bullet_x_m", x_m, POSITION), ("bullet_y_m", y_m, POSITION)]);
         };
         match self.location {
-            ContactLocation::Footprints { bullet_x_m, bullet_y_m } => {
-                bullet(bullet_x_m, bullet_y_m);
+            ContactLocation::Footprints { striking_x_m, striking_y_m } => {
+                striking(striking_x_m, striking_y_m);
             }
             ContactLocation::Side { offset_m, .. } => {
                 numbers.push(("offset_m", offset_m, CONTACT_OFFSET));
             }
-            ContactLocation::Point { x_m, y_m, normal_rad, bullet_x_m, bullet_y_m } => {
-                bullet(bullet_x_m, bullet_y_m);
+            ContactLocation::Point { x_m, y_m, normal_rad, striking_x_m, striking_y_m } => {
+                striking(striking_x_m, striking_y_m);
                 numbers.extend([
                     ("x_m", x_m, CONTACT_COORDINATE),
                     ("y_m", y_m, CONTACT_COORDINATE),
@@ -286,16 +297,16 @@ impl Scenario {
     /// Every number of the scenario with its name and its range.
     pub fn ranges(&self) -> Vec<(String, f64, Range)> {
         let mut numbers = vec![
-            ("target_x_m".to_owned(), self.target_x_m, POSITION),
-            ("target_y_m".to_owned(), self.target_y_m, POSITION),
+            ("target_x_m".to_owned(), self.struck_x_m, POSITION),
+            ("target_y_m".to_owned(), self.struck_y_m, POSITION),
         ];
-        for (name, vehicle) in [("target", &self.target), ("bullet", &self.bullet)] {
+        for (name, vehicle) in [("target", &self.struck), ("bullet", &self.striking)] {
             let own = vehicle.ranges().into_iter();
             numbers.extend(own.map(|(key, value, range)| (format!("{name}.{key}"), value, range)));
         }
         let own = self.contact.ranges().into_iter();
         numbers.extend(own.map(|(key, value, range)| (format!("contact.{key}"), value, range)));
-        for (name, ending) in [("ending", &self.ending), ("bullet_ending", &self.bullet_ending)] {
+        for (name, ending) in [("ending", &self.ending), ("bullet_ending", &self.striking_ending)] {
             let own = ending.iter().flat_map(Ending::ranges);
             numbers.extend(own.map(|(key, value, range)| (format!("{name}.{key}"), value, range)));
         }
@@ -309,39 +320,39 @@ impl Scenario {
     /// [`ScenarioError::NormalPointsOut`] if a normal that the user gave points away from the CG of
     /// the target.
     pub fn geometry(&self) -> Result<ScenarioGeometry, ScenarioError> {
-        let target =
-            Pose { x_m: self.target_x_m, y_m: self.target_y_m, yaw_rad: self.target.heading_rad };
-        let heading_rad = self.bullet.heading_rad;
-        let bullet_at = |x_m, y_m| Pose { x_m, y_m, yaw_rad: heading_rad };
-        let outlines = [self.target.footprint(), self.bullet.footprint()];
-        let bullet = match self.contact.location {
-            ContactLocation::Footprints { bullet_x_m, bullet_y_m } => {
-                bullet_at(bullet_x_m, bullet_y_m)
+        let struck =
+            Pose { x_m: self.struck_x_m, y_m: self.struck_y_m, yaw_rad: self.struck.heading_rad };
+        let heading_rad = self.striking.heading_rad;
+        let striking_at = |x_m, y_m| Pose { x_m, y_m, yaw_rad: heading_rad };
+        let outlines = [self.struck.footprint(), self.striking.footprint()];
+        let striking = match self.contact.location {
+            ContactLocation::Footprints { striking_x_m, striking_y_m } => {
+                striking_at(striking_x_m, striking_y_m)
             }
             ContactLocation::Side { side, offset_m } => {
                 let place = (side, offset_m);
-                place_touching((&outlines[0], &target), place, (&outlines[1], heading_rad))?
+                place_touching((&outlines[0], &struck), place, (&outlines[1], heading_rad))?
             }
-            ContactLocation::Point { x_m, y_m, normal_rad, bullet_x_m, bullet_y_m } => {
+            ContactLocation::Point { x_m, y_m, normal_rad, striking_x_m, striking_y_m } => {
                 let (sin, cos) = normal_rad.sin_cos();
                 if x_m * cos + y_m * sin > 0.0 {
                     let normal_deg = normal_rad.to_degrees();
                     return Err(ScenarioError::NormalPointsOut { normal_deg });
                 }
-                let contact_point_m = target.world_from_body([x_m, y_m]);
-                let bullet = bullet_at(bullet_x_m, bullet_y_m);
+                let contact_point_m = struck.world_from_body([x_m, y_m]);
+                let striking = striking_at(striking_x_m, striking_y_m);
                 for (of, outline, pose) in
-                    [("target", outlines[0], &target), ("bullet", outlines[1], &bullet)]
+                    [("target", outlines[0], &struck), ("bullet", outlines[1], &striking)]
                 {
                     outline
                         .check_contact(pose.body_from_world(contact_point_m))
                         .map_err(|source| ScenarioError::ContactOffOutline { of, source })?;
                 }
                 return Ok(ScenarioGeometry {
-                    target,
-                    bullet,
+                    struck,
+                    striking,
                     contact_point_m,
-                    normal_angle_rad: target.yaw_rad + normal_rad,
+                    normal_angle_rad: struck.yaw_rad + normal_rad,
                     overlap_m: None,
                     surface: None,
                 });
@@ -353,12 +364,11 @@ impl Scenario {
             velocity_m_s: [vehicle.vx_m_s, vehicle.vy_m_s],
             yaw_rate_rad_s: vehicle.yaw_rate_rad_s,
         };
-        let [struck, striking] =
-            [(&self.target, target), (&self.bullet, bullet)].map(|(of, pose)| moving(of, pose));
-        let contact = find_contact(&struck, &striking)?;
+        let contact =
+            find_contact(&moving(&self.struck, struck), &moving(&self.striking, striking))?;
         Ok(ScenarioGeometry {
-            target,
-            bullet,
+            struck,
+            striking,
             contact_point_m: contact.point_m,
             normal_angle_rad: contact.normal_angle_rad,
             overlap_m: Some(contact.depth_m),
@@ -375,8 +385,8 @@ impl Scenario {
         let geometry = self.geometry()?;
         let point = geometry.contact_point_m;
         let mut impact = Impact {
-            target: self.target.body(&geometry.target, point),
-            bullet: self.bullet.body(&geometry.bullet, point),
+            struck: self.struck.body(&geometry.struck, point),
+            striking: self.striking.body(&geometry.striking, point),
             surface: ContactSurface {
                 normal_angle_rad: geometry.normal_angle_rad,
                 restitution: self.contact.restitution,

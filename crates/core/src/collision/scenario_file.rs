@@ -72,28 +72,28 @@ impl Scenario {
         let mut top = TomlTable::root(file, &root);
         let name = top.string("name")?.unwrap_or_default();
         let notes = top.string("notes")?.unwrap_or_default();
-        let (mut target, mut bullet) = (top.table("target")?, top.table("bullet")?);
+        let (mut struck, mut striking) = (top.table("target")?, top.table("bullet")?);
         let mut contact = top.table("contact")?;
         let ending = top.optional_table("ending")?.map(Ending::read).transpose()?;
-        let bullet_ending = top.optional_table("bullet_ending")?.map(Ending::read).transpose()?;
+        let striking_ending = top.optional_table("bullet_ending")?.map(Ending::read).transpose()?;
         top.finish()?;
-        let target_x_m = position(&mut target, "x")?.unwrap_or(0.0);
-        let target_y_m = position(&mut target, "y")?.unwrap_or(0.0);
-        let location = read_location(&mut contact, &mut bullet)?;
-        let (target_vehicle, of_target) = named_vehicle(&mut target)?;
-        let (bullet_vehicle, of_bullet) = named_vehicle(&mut bullet)?;
+        let struck_x_m = position(&mut struck, "x")?.unwrap_or(0.0);
+        let struck_y_m = position(&mut struck, "y")?.unwrap_or(0.0);
+        let location = read_location(&mut contact, &mut striking)?;
+        let (struck_vehicle, of_struck) = named_vehicle(&mut struck)?;
+        let (striking_vehicle, of_striking) = named_vehicle(&mut striking)?;
         Ok(Self {
             name,
             notes,
-            target_x_m,
-            target_y_m,
-            target: read_vehicle(target, of_target)?,
-            bullet: read_vehicle(bullet, of_bullet)?,
+            struck_x_m,
+            struck_y_m,
+            struck: read_vehicle(struck, of_struck)?,
+            striking: read_vehicle(striking, of_striking)?,
             contact: read_contact(contact, location)?,
             ending,
-            bullet_ending,
-            target_vehicle,
-            bullet_vehicle,
+            striking_ending,
+            struck_vehicle,
+            striking_vehicle,
         })
     }
 }
@@ -172,16 +172,16 @@ fn read_vehicle(
 
 fn read_location(
     contact: &mut TomlTable<'_>,
-    bullet: &mut TomlTable<'_>,
+    striking: &mut TomlTable<'_>,
 ) -> Result<ContactLocation, TomlError> {
-    let mut bullet_at = || -> Result<(f64, f64), TomlError> {
-        let x_m = bullet.require("x", &POSITION)?;
-        Ok((x_m, bullet.require("y", &POSITION)?))
+    let mut striking_at = || -> Result<(f64, f64), TomlError> {
+        let x_m = striking.require("x", &POSITION)?;
+        Ok((x_m, striking.require("y", &POSITION)?))
     };
     match contact.choice("from", &LOCATIONS)?.ok_or_else(|| contact.missing("from"))? {
         0 => {
-            let (bullet_x_m, bullet_y_m) = bullet_at()?;
-            Ok(ContactLocation::Footprints { bullet_x_m, bullet_y_m })
+            let (striking_x_m, striking_y_m) = striking_at()?;
+            Ok(ContactLocation::Footprints { striking_x_m, striking_y_m })
         }
         1 => {
             let names = Side::ALL.map(Side::name);
@@ -193,13 +193,13 @@ fn read_location(
             })
         }
         _ => {
-            let (bullet_x_m, bullet_y_m) = bullet_at()?;
+            let (striking_x_m, striking_y_m) = striking_at()?;
             Ok(ContactLocation::Point {
                 x_m: contact.require("x", &CONTACT_COORDINATE)?,
                 y_m: contact.require("y", &CONTACT_COORDINATE)?,
                 normal_rad: contact.require("normal", &HEADING)?,
-                bullet_x_m,
-                bullet_y_m,
+                striking_x_m,
+                striking_y_m,
             })
         }
     }
@@ -255,9 +255,9 @@ mod tests {
     #[test]
     fn units_are_in_the_keys() {
         let pit = read(PIT).unwrap();
-        assert!((pit.target.vx_m_s - 15.0).abs() < 1e-12, "{pit:?}");
-        assert!((pit.bullet.heading_rad - 18_f64.to_radians()).abs() < 1e-15, "{pit:?}");
-        let speed = pit.bullet.vx_m_s.hypot(pit.bullet.vy_m_s);
+        assert!((pit.struck.vx_m_s - 15.0).abs() < 1e-12, "{pit:?}");
+        assert!((pit.striking.heading_rad - 18_f64.to_radians()).abs() < 1e-15, "{pit:?}");
+        let speed = pit.striking.vx_m_s.hypot(pit.striking.vy_m_s);
         assert!((speed * 3.6 - 62.0).abs() < 1e-9, "{pit:?}");
         for (key, value) in [
             ("speed_m_s", "15"),
@@ -267,7 +267,7 @@ mod tests {
         ] {
             let text = PIT.replacen("speed_km_h = 54", &format!("{key} = {value}"), 1);
             let other = read(&text).unwrap();
-            assert!((other.target.vx_m_s - 15.0).abs() < 1e-9, "{key}: {other:?}");
+            assert!((other.struck.vx_m_s - 15.0).abs() < 1e-9, "{key}: {other:?}");
         }
     }
 
@@ -278,14 +278,14 @@ mod tests {
         let named = "vehicle = \"toyota-camry-2018\"\n";
         let scenario = read(&format!("{head}{named}speed_km_h{tail}")).unwrap();
         let camry = built_in_vehicle("toyota-camry-2018").unwrap();
-        assert_eq!(scenario.target_vehicle.as_deref(), Some("toyota-camry-2018"));
-        assert_eq!(scenario.target.mass_kg, camry.mass.mass_kg);
-        assert_eq!(scenario.target.yaw_inertia_kg_m2, camry.mass.yaw_inertia_kg_m2);
-        assert_eq!(scenario.target.length_m, camry.geometry.outer_length_m);
+        assert_eq!(scenario.struck_vehicle.as_deref(), Some("toyota-camry-2018"));
+        assert_eq!(scenario.struck.mass_kg, camry.mass.mass_kg);
+        assert_eq!(scenario.struck.yaw_inertia_kg_m2, camry.mass.yaw_inertia_kg_m2);
+        assert_eq!(scenario.struck.length_m, camry.geometry.outer_length_m);
         assert_eq!(read(&scenario.to_toml()).unwrap(), scenario);
         // The inertia follows the mass that the scenario gives.
         let heavy = read(&format!("{head}{named}mass_kg = 1900\nspeed_km_h{tail}")).unwrap();
-        let ratio = heavy.target.yaw_inertia_kg_m2 / camry.mass.yaw_inertia_kg_m2;
+        let ratio = heavy.struck.yaw_inertia_kg_m2 / camry.mass.yaw_inertia_kg_m2;
         assert!((ratio - 1900.0 / camry.mass.mass_kg).abs() < 1e-9, "{heavy:?}");
         let error = read(&format!("{head}vehicle = \"camry\"\nspeed_km_h{tail}")).unwrap_err();
         let error = error.to_string();

@@ -11,17 +11,17 @@ impl Scenario {
         let mut top = Lines::default();
         top.line("name", quoted(&self.name));
         top.line("notes", quoted(&self.notes));
-        let mut target = vehicle_lines("target", &self.target);
-        target.vehicle(self.target_vehicle.as_deref());
-        target.number("x_m", self.target_x_m);
-        target.number("y_m", self.target_y_m);
-        let mut bullet = vehicle_lines("bullet", &self.bullet);
-        bullet.vehicle(self.bullet_vehicle.as_deref());
+        let mut struck = vehicle_lines("target", &self.struck);
+        struck.vehicle(self.struck_vehicle.as_deref());
+        struck.number("x_m", self.struck_x_m);
+        struck.number("y_m", self.struck_y_m);
+        let mut striking = vehicle_lines("bullet", &self.striking);
+        striking.vehicle(self.striking_vehicle.as_deref());
         let mut contact = Lines("\n[contact]\n".to_owned());
         match self.contact.location {
-            ContactLocation::Footprints { bullet_x_m, bullet_y_m } => {
-                bullet.number("x_m", bullet_x_m);
-                bullet.number("y_m", bullet_y_m);
+            ContactLocation::Footprints { striking_x_m, striking_y_m } => {
+                striking.number("x_m", striking_x_m);
+                striking.number("y_m", striking_y_m);
                 contact.line("from", quoted(LOCATIONS[0]));
             }
             ContactLocation::Side { side, offset_m } => {
@@ -29,9 +29,9 @@ impl Scenario {
                 contact.line("side", quoted(side.name()));
                 contact.number("offset_m", offset_m);
             }
-            ContactLocation::Point { x_m, y_m, normal_rad, bullet_x_m, bullet_y_m } => {
-                bullet.number("x_m", bullet_x_m);
-                bullet.number("y_m", bullet_y_m);
+            ContactLocation::Point { x_m, y_m, normal_rad, striking_x_m, striking_y_m } => {
+                striking.number("x_m", striking_x_m);
+                striking.number("y_m", striking_y_m);
                 contact.line("from", quoted(LOCATIONS[2]));
                 contact.number("x_m", x_m);
                 contact.number("y_m", y_m);
@@ -50,14 +50,14 @@ impl Scenario {
         };
         contact.line("friction_model", quoted(model));
         let mut ending = Lines::default();
-        for (name, given) in [("ending", &self.ending), ("bullet_ending", &self.bullet_ending)] {
+        for (name, given) in [("ending", &self.ending), ("bullet_ending", &self.striking_ending)] {
             let Some(given) = given else { continue };
             ending.0.push_str(&format!("\n[{name}]\n"));
             for (key, value) in given.entries() {
                 ending.line(&key, value);
             }
         }
-        [top.0, target.0, bullet.0, contact.0, ending.0].concat()
+        [top.0, struck.0, striking.0, contact.0, ending.0].concat()
     }
 }
 
@@ -121,21 +121,21 @@ mod tests {
     fn what_is_written_reads_back_the_same() {
         let mut scenario = read(PIT).unwrap();
         scenario.name = "a \"quoted\"\nname \\ µ".to_owned();
-        scenario.target_y_m = -1e-9;
+        scenario.struck_y_m = -1e-9;
         scenario.contact.friction_model = FrictionModel::Paper;
         scenario.ending =
             Some(Ending { brake: Some(Braking::new(0.1 + 0.2, 1.2, 0.5)), ..Ending::default() });
-        scenario.bullet_ending = scenario.ending.clone();
+        scenario.striking_ending = scenario.ending.clone();
         scenario.contact.restitution_form = RestitutionForm::CommonVelocity;
         for location in [
             scenario.contact.location,
-            ContactLocation::Footprints { bullet_x_m: 0.1 + 0.2, bullet_y_m: -3.0 },
+            ContactLocation::Footprints { striking_x_m: 0.1 + 0.2, striking_y_m: -3.0 },
             ContactLocation::Point {
                 x_m: -1.4,
                 y_m: -0.9,
                 normal_rad: std::f64::consts::FRAC_PI_2,
-                bullet_x_m: -3.0,
-                bullet_y_m: 1e5,
+                striking_x_m: -3.0,
+                striking_y_m: 1e5,
             },
         ] {
             scenario.contact.location = location;

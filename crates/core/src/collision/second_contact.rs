@@ -35,27 +35,27 @@ impl SecondContact {
     /// Follows two vehicles from the end of their first contact; `None` if they do not meet again,
     /// or if a motion has no X or Y.
     ///
-    /// - `target`, `bullet`: outlines and motions, of which X, Y and yaw are used;
+    /// - `struck`, `striking`: outlines and motions, of which X, Y and yaw are used;
     /// - `contact_end_s`: end of the force of the first contact, s.
     pub fn find(
-        target: (Footprint, &TimeSeries),
-        bullet: (Footprint, &TimeSeries),
+        struck: (Footprint, &TimeSeries),
+        striking: (Footprint, &TimeSeries),
         contact_end_s: f64,
     ) -> Option<Self> {
         let at = |time_s: f64| -> Option<[MovingFootprint; 2]> {
             let still = |(footprint, motion): (Footprint, &TimeSeries)| {
                 Some(MovingFootprint::at_rest(footprint, pose_at(motion, time_s)?))
             };
-            Some([still(target)?, still(bullet)?])
+            Some([still(struck)?, still(striking)?])
         };
         let overlap_at = |time_s: f64| at(time_s).map(|[t, b]| overlap_m(&t, &b));
         // Where a motion has ended, nothing is known of it.
         let last_s = |motion: &TimeSeries| motion.time_s().last().copied();
-        let end_s = last_s(target.1)?.min(last_s(bullet.1)?);
+        let end_s = last_s(struck.1)?.min(last_s(striking.1)?);
         let followed = contact_end_s..=end_s;
         let mut before = (contact_end_s, overlap_at(contact_end_s)?);
         let (crushed_m, mut was_apart) = (before.1.max(0.0), false);
-        for &time_s in target
+        for &time_s in struck
             .1
             .time_s()
             .iter()
@@ -103,16 +103,16 @@ mod tests {
         series
     }
 
-    fn meet(target: &TimeSeries, bullet: &TimeSeries) -> Option<SecondContact> {
-        SecondContact::find((CAR, target), (CAR, bullet), 0.1)
+    fn meet(struck: &TimeSeries, striking: &TimeSeries) -> Option<SecondContact> {
+        SecondContact::find((CAR, struck), (CAR, striking), 0.1)
     }
 
     #[test]
-    fn a_target_that_slows_down_is_struck_again() {
+    fn a_struck_that_slows_down_is_struck_again() {
         // Apart at 2 m/s after the impact, then the target stops in front of the bullet.
-        let target = motion(|t| if t < 1.0 { 12.0 * t } else { 12.0 }, |_| 0.0);
-        let bullet = motion(|t| -4.8 + 10.0 * t, |_| 0.5);
-        let second = meet(&target, &bullet).unwrap();
+        let struck = motion(|t| if t < 1.0 { 12.0 * t } else { 12.0 }, |_| 0.0);
+        let striking = motion(|t| -4.8 + 10.0 * t, |_| 0.5);
+        let second = meet(&struck, &striking).unwrap();
         assert!((second.time_s - 1.2).abs() < 1e-9, "{second:?}");
         assert!((second.closing_speed_m_s - 10.0).abs() < 1e-9, "{second:?}");
         assert!(second.was_apart);
@@ -123,18 +123,18 @@ mod tests {
 
     #[test]
     fn vehicles_that_part_or_stay_as_they_are_do_not_meet_again() {
-        let target = motion(|t| 12.0 * t, |_| 0.0);
+        let struck = motion(|t| 12.0 * t, |_| 0.0);
         for (gap_m, speed_m_s) in [(0.0, 10.0), (-0.3, 12.0), (-0.3, 12.02), (0.5, 12.0)] {
-            let bullet = motion(|t| -4.8 - gap_m + speed_m_s * t, |_| 0.5);
-            assert_eq!(meet(&target, &bullet), None, "{gap_m} {speed_m_s}");
+            let striking = motion(|t| -4.8 - gap_m + speed_m_s * t, |_| 0.5);
+            assert_eq!(meet(&struck, &striking), None, "{gap_m} {speed_m_s}");
         }
     }
 
     #[test]
     fn crushed_vehicles_that_go_deeper_are_in_contact_again() {
-        let target = motion(|t| 12.0 * t, |_| 0.0);
-        let bullet = motion(|t| -4.5 + 13.0 * t, |_| 0.5);
-        let second = meet(&target, &bullet).unwrap();
+        let struck = motion(|t| 12.0 * t, |_| 0.0);
+        let striking = motion(|t| -4.5 + 13.0 * t, |_| 0.5);
+        let second = meet(&struck, &striking).unwrap();
         assert!(!second.was_apart, "{second:?}");
         assert!((second.time_s - 0.2).abs() < 1e-9, "{second:?}");
     }

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::{Attributes, CaseBraking, DataError, DatasetKind};
 use crate::ranges::{
-    BODY_MASS, BODY_YAW_INERTIA, BULLET_OFFSET, CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, HEADING,
-    ROAD_FRICTION, Range, SPEED,
+    BODY_MASS, BODY_YAW_INERTIA, CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, HEADING, ROAD_FRICTION,
+    Range, SPEED, STRIKING_OFFSET,
 };
 
 const NO_COLLISION: &str = "the collision cannot be computed";
@@ -44,14 +44,15 @@ const AT_Y: AttributeColumn = needed("contact_y_m", CONTACT_Y);
 const AT_Z: AttributeColumn = optional("contact_z_m", CONTACT_HEIGHT);
 const IZZ_T: AttributeColumn = optional("izz_t_kg_m2", BODY_YAW_INERTIA);
 const IZZ_B: AttributeColumn = optional("izz_b_kg_m2", BODY_YAW_INERTIA);
-const BULLET_X: AttributeColumn = optional("bullet_x0_m", BULLET_OFFSET);
-const BULLET_Y: AttributeColumn = optional("bullet_y0_m", BULLET_OFFSET);
+const STRIKING_X: AttributeColumn = optional("bullet_x0_m", STRIKING_OFFSET);
+const STRIKING_Y: AttributeColumn = optional("bullet_y0_m", STRIKING_OFFSET);
 const SPEED_BEFORE: AttributeColumn = needed("speed_m_s", SPEED);
 const MU: AttributeColumn = needed("mu", ROAD_FRICTION);
 const HEIGHT: AttributeColumn = needed("contact_height_m", CONTACT_HEIGHT);
 
 const FORCE_COLUMNS: &[AttributeColumn] = &[
-    M_T, M_B, V_TX, V_TY, V_BX, V_BY, THETA_B, AT_X, AT_Y, AT_Z, IZZ_T, IZZ_B, BULLET_X, BULLET_Y,
+    M_T, M_B, V_TX, V_TY, V_BX, V_BY, THETA_B, AT_X, AT_Y, AT_Z, IZZ_T, IZZ_B, STRIKING_X,
+    STRIKING_Y,
 ];
 
 const TRAJECTORY_COLUMNS: &[AttributeColumn] = &[SPEED_BEFORE, MU, AT_X, AT_Y, HEIGHT];
@@ -75,9 +76,9 @@ pub struct ForceAttributes {
     /// not give one.
     pub yaw_inertia_kg_m2: [Option<f64>; 2],
     /// Velocity `[x, y]` of the centre of gravity of the target, world axes, m/s.
-    pub target_velocity_m_s: [f64; 2],
+    pub struck_velocity_m_s: [f64; 2],
     /// Velocity `[x, y]` of the centre of gravity of the bullet, world axes, m/s.
-    pub bullet_velocity_m_s: [f64; 2],
+    pub striking_velocity_m_s: [f64; 2],
     /// Heading of the bullet relative to that of the target, rad, counter-clockwise positive.
     pub theta_b_rad: f64,
     /// Point of first contact `[x, y]` in the body axes of the target, from its centre of gravity,
@@ -127,8 +128,8 @@ impl ForceAttributes {
         Ok(Self {
             mass_kg: [need(&M_T)?, need(&M_B)?],
             yaw_inertia_kg_m2: [known(&IZZ_T)?, known(&IZZ_B)?],
-            target_velocity_m_s: [need(&V_TX)?, need(&V_TY)?],
-            bullet_velocity_m_s: [need(&V_BX)?, need(&V_BY)?],
+            struck_velocity_m_s: [need(&V_TX)?, need(&V_TY)?],
+            striking_velocity_m_s: [need(&V_BX)?, need(&V_BY)?],
             theta_b_rad: need(&THETA_B)?,
             contact_m: [need(&AT_X)?, need(&AT_Y)?],
             contact_height_m: known(&AT_Z)?,

@@ -13,7 +13,7 @@ macro_rules! channels {
         /// Force and moment act ON the target. World axes are X along the road and Y to its left.
         /// Body axes are the heading axes at the centre of gravity (ISO 8855: x forward, y left);
         /// they turn with the yaw angle. Forces are in world axes unless the name says `Body`.
-        /// Velocity and acceleration are in body axes unless the name says `Target` or `Bullet`:
+        /// Velocity and acceleration are in body axes unless the name says `Target` or `Striking`:
         /// those are in world axes.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
         pub enum Channel {
@@ -135,21 +135,21 @@ channels! {
     /// Vertical load of the rear right wheel.
     FzRr: "fz_rr_n", Force, "F_z RR", ["fzrr"];
     /// Velocity of the target along the X axis of the world.
-    TargetVx: "target_vx_m_s", Speed, "Target v_x", ["targetvx"];
+    StruckVx: "target_vx_m_s", Speed, "Target v_x", ["targetvx"];
     /// Velocity of the target along the Y axis of the world.
-    TargetVy: "target_vy_m_s", Speed, "Target v_y", ["targetvy"];
+    StruckVy: "target_vy_m_s", Speed, "Target v_y", ["targetvy"];
     /// Yaw rate of the target.
-    TargetYawRate: "target_yaw_rate_rad_s", AngularVelocity, "Target yaw rate", ["targetyawrate"];
+    StruckYawRate: "target_yaw_rate_rad_s", AngularVelocity, "Target yaw rate", ["targetyawrate"];
     /// Yaw angle of the target.
-    TargetYaw: "target_yaw_rad", Angle, "Target yaw", ["targetyaw"];
+    StruckYaw: "target_yaw_rad", Angle, "Target yaw", ["targetyaw"];
     /// Velocity of the bullet along the X axis of the world.
-    BulletVx: "bullet_vx_m_s", Speed, "Bullet v_x", ["bulletvx"];
+    StrikingVx: "bullet_vx_m_s", Speed, "Bullet v_x", ["bulletvx"];
     /// Velocity of the bullet along the Y axis of the world.
-    BulletVy: "bullet_vy_m_s", Speed, "Bullet v_y", ["bulletvy"];
+    StrikingVy: "bullet_vy_m_s", Speed, "Bullet v_y", ["bulletvy"];
     /// Yaw rate of the bullet.
-    BulletYawRate: "bullet_yaw_rate_rad_s", AngularVelocity, "Bullet yaw rate", ["bulletyawrate"];
+    StrikingYawRate: "bullet_yaw_rate_rad_s", AngularVelocity, "Bullet yaw rate", ["bulletyawrate"];
     /// Yaw angle of the bullet.
-    BulletYaw: "bullet_yaw_rad", Angle, "Bullet yaw", ["bulletyaw"];
+    StrikingYaw: "bullet_yaw_rad", Angle, "Bullet yaw", ["bulletyaw"];
 }
 
 #[cfg(test)]

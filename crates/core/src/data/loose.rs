@@ -55,7 +55,7 @@ impl Loaded {
     /// centred intervals. A motion with a force in heading axes holds means over the coming
     /// interval. In any other file the samples are values at an instant.
     pub fn force_sampling(&self) -> Sampling {
-        if self.series.get(Channel::TargetVx).is_some() {
+        if self.series.get(Channel::StruckVx).is_some() {
             Sampling::CentredMean
         } else if self.kind == FileKind::Trajectory && self.series.get(Channel::FxBody).is_some() {
             Sampling::ComingMean
@@ -348,8 +348,8 @@ fn si_values(
 /// (SAE J670). A roll is the same in both.
 fn changes_sign_with_y(channel: Channel) -> bool {
     use Channel::{
-        Ay, BulletVy, BulletYaw, BulletYawRate, Fy, FyBody, Mz, Steer, SteerFl, SteerFr,
-        SteeringWheel, TargetVy, TargetYaw, TargetYawRate, Vy, Y, Yaw, YawRate,
+        Ay, Fy, FyBody, Mz, Steer, SteerFl, SteerFr, SteeringWheel, StrikingVy, StrikingYaw,
+        StrikingYawRate, StruckVy, StruckYaw, StruckYawRate, Vy, Y, Yaw, YawRate,
     };
     matches!(
         channel,
@@ -364,12 +364,12 @@ fn changes_sign_with_y(channel: Channel) -> bool {
             | SteerFl
             | SteerFr
             | SteeringWheel
-            | TargetVy
-            | TargetYaw
-            | TargetYawRate
-            | BulletVy
-            | BulletYaw
-            | BulletYawRate
+            | StruckVy
+            | StruckYaw
+            | StruckYawRate
+            | StrikingVy
+            | StrikingYaw
+            | StrikingYawRate
     )
 }
 

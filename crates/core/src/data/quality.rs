@@ -399,7 +399,7 @@ fn momentum_change_n_s(case: &Case) -> Option<(f64, f64)> {
         let velocity = case.series.get(channel)?;
         Some(mass_kg * (velocity.last()? - velocity.first()?))
     };
-    change(Channel::TargetVx).zip(change(Channel::TargetVy))
+    change(Channel::StruckVx).zip(change(Channel::StruckVy))
 }
 
 fn momentum_residual(force: &ForceHistory, expected_n_s: (f64, f64)) -> Option<Flag> {

@@ -38,7 +38,7 @@ ranges! {
     STEER_ANGLE: "steer angle" = real(Quantity::Angle, [-0.9, 0.9]),
         "angle of a road wheel; say an angle of the steering wheel as such, with the steering ratio";
     ROAD_FRICTION: "road friction" = real(Quantity::Ratio, [0.01, 2.0]),
-        "peak friction between tyre and road; 0.8 on dry asphalt, 0.1 on ice";
+        "peak friction between tire and road; 0.8 on dry asphalt, 0.1 on ice";
 }
 
 ranges! {
@@ -100,7 +100,7 @@ ranges! {
         "touching point from the middle of the struck side";
     CONTACT_COORDINATE: "contact coordinate" = real(Quantity::Length, [-100.0, 100.0]),
         "contact point of a scenario from the CG of the target, in its body axes";
-    BULLET_OFFSET: "bullet position" = real(Quantity::Length, [-100.0, 100.0]),
+    STRIKING_OFFSET: "bullet position" = real(Quantity::Length, [-100.0, 100.0]),
         "CG of the bullet from the CG of the target at first contact";
     OFF_OUTLINE: "distance from the outline" = real(Quantity::Ratio, [0.0, 0.1]),
         "distance of a contact point outside a vehicle, as a share of the vehicle's length";
@@ -162,9 +162,9 @@ ranges! {
     LONGITUDINAL_FRICTION_RATIO: "longitudinal friction ratio" = real(Quantity::Ratio, [0.5, 2.0]),
         "friction of a wheel along its plane over that across it";
     ROLLING_RADIUS: "rolling radius" = real(Quantity::Length, [0.02, 1.0]),
-        "rolling radius of the tyres";
+        "rolling radius of the tires";
     WHEEL_INERTIA: "wheel inertia" = in_unit("kg m²", [0.0, 100.0]),
-        "moment of inertia of a wheel with its tyre about its axis";
+        "moment of inertia of a wheel with its tire about its axis";
     ROLLING_RESISTANCE: "rolling resistance" = real(Quantity::Ratio, [0.0, 0.5]),
         "rolling resistance over vertical load";
     ROLLING_RESISTANCE_PER_SPEED: "rolling resistance per speed" = in_unit("s/m", [0.0, 0.01]),

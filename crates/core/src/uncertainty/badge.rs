@@ -56,7 +56,7 @@ pub struct Badge {
     pub kind: BadgeKind,
     /// A sentence for a person, without a full stop.
     pub text: String,
-    /// The quantity concerned with its unit, such as `bullet mass [kg]`.
+    /// The quantity concerned with its unit, such as `striking mass [kg]`.
     pub quantity: Option<String>,
     /// Value of the quantity, in that unit.
     pub value: Option<f64>,
@@ -107,7 +107,7 @@ impl Badge {
 
     /// The same badge about the value of a quantity. A value that is not finite is left out.
     ///
-    /// - `quantity`: name and unit, such as `bullet mass [kg]`.
+    /// - `quantity`: name and unit, such as `striking mass [kg]`.
     #[must_use]
     pub fn with_value(self, quantity: impl Into<String>, value: f64) -> Self {
         let value = value.is_finite().then_some(value);

@@ -5,13 +5,13 @@
 //! Source: `eq:4dof` to `eq:tire_model4` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper),
 //! with the printed signs:
 //!
-//! - The tyre force has a leading minus, which together with the printed slip angle supplies energy
+//! - The tire force has a leading minus, which together with the printed slip angle supplies energy
 //!   to the vehicle.
 //! - The rolling resistance acts in the direction of motion.
 //! - Vertical loads may become negative.
 //! - The lateral acceleration does not enter the roll equation. Yaw influences roll by I_xz, but
 //!   roll does not influence yaw.
-//! - The front tyre forces are not rotated by the steer angle δ.
+//! - The front tire forces are not rotated by the steer angle δ.
 //!
 //! Zones of the ground with their own friction are honoured as by the corrected equations.
 //!
@@ -85,7 +85,7 @@ impl<P: Copy> VehicleConstants<P> {
         }
     }
 
-    /// Tyre forces by `eq:tire_model` to `eq:tire_model3`, summed by `eq:4dof2`: `[F_x, F_y]`, N,
+    /// Tire forces by `eq:tire_model` to `eq:tire_model3`, summed by `eq:4dof2`: `[F_x, F_y]`, N,
     /// and the yaw moment M_z, N m.
     #[inline(always)]
     fn tires_as_printed<T: Lanes + LanesOver<P>>(

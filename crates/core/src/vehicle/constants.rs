@@ -101,11 +101,11 @@ constants! {
 }
 
 constants! {
-    /// Constants of the tyres; see [`TireParameters`].
+    /// Constants of the tires; see [`TireParameters`].
     TireConstants {
-        /// C = c/μ of the front tyres, 1/rad.
+        /// C = c/μ of the front tires, 1/rad.
         front_stiffness_1_rad,
-        /// C = c/μ of the rear tyres, 1/rad.
+        /// C = c/μ of the rear tires, 1/rad.
         rear_stiffness_1_rad,
         /// μ.
         friction,
@@ -161,7 +161,7 @@ pub struct VehicleConstants<P> {
 }
 
 impl TireParameters {
-    /// The constants of the tyres.
+    /// The constants of the tires.
     pub(super) fn constants(&self) -> TireConstants<f64> {
         TireConstants {
             front_stiffness_1_rad: self.cornering_coefficient_front_per_rad / self.friction,

@@ -7,7 +7,7 @@ use crate::vehicle::{
 /// A vehicle with what brakes and locks its wheels, and the ground that it moves on.
 #[derive(Debug, Clone, Copy)]
 pub struct ControlledVehicle<'a> {
-    /// The vehicle, whose tyres have the friction of the ground outside the zones.
+    /// The vehicle, whose tires have the friction of the ground outside the zones.
     pub vehicle: &'a VehicleParameters,
     /// What steers, drives, brakes and locks the wheels.
     pub controls: &'a Controls,
@@ -16,7 +16,7 @@ pub struct ControlledVehicle<'a> {
 }
 
 impl ControlledVehicle<'_> {
-    /// The tyres with the friction of the ground at a place `[X, Y]`, m.
+    /// The tires with the friction of the ground at a place `[X, Y]`, m.
     pub fn tires_at(&self, place_m: [f64; 2]) -> TireParameters {
         let tires = self.vehicle.tires;
         TireParameters {

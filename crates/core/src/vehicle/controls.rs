@@ -56,7 +56,7 @@ impl Controls {
     }
 
     /// Whether a wheel is locked at a time, by damage or by a brake that asks for more than the road can
-    /// hold along the plane of the wheel; as in the tyre model, with the peak of the friction.
+    /// hold along the plane of the wheel; as in the tire model, with the peak of the friction.
     ///
     /// - `velocity_m_s`: velocity of its centre along and across its own plane, m/s;
     /// - `load_n`: its vertical load, N.

@@ -58,7 +58,7 @@ pub struct Braking {
     /// When the force begins to rise, s after the first contact.
     pub start_s: f64,
     /// Braking force over what the road can hold at most, μ m g, with the friction μ of the vehicle's
-    /// tyres: the pedal does not know of friction zones. More than 1 locks all wheels; on a zone with
+    /// tires: the pedal does not know of friction zones. More than 1 locks all wheels; on a zone with
     /// less friction less does.
     pub share_of_friction: f64,
     /// How long the force rises, s.
@@ -132,7 +132,7 @@ pub struct DamagedWheel {
     #[serde(default)]
     pub start_s: f64,
     /// Drag over what the road can hold at the static load of the wheel, μ F_z, with the friction μ of
-    /// the vehicle's tyres, also on friction zones; a locked wheel if `None`.
+    /// the vehicle's tires, also on friction zones; a locked wheel if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drag_share_of_friction: Option<f64>,
 }

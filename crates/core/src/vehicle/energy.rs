@@ -27,7 +27,7 @@ impl VehicleParameters {
 }
 
 /// Growth of the energy without a force beyond which a motion is wrong, as a share of the energy at
-/// the end of the force. The roll model takes some energy from the tyres that it does not take from
+/// the end of the force. The roll model takes some energy from the tires that it does not take from
 /// the planar motion, since a wheel is not moved sideways by roll; of ordinary vehicles, that is less
 /// than a tenth of this.
 pub const MAX_ENERGY_GAIN: f64 = 0.01;

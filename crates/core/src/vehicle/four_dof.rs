@@ -1,5 +1,5 @@
 //! The equations of motion of the 4DOF vehicle: longitudinal, lateral, yaw and roll motion under
-//! tyre and collision forces. They are written only here and are generic over the scalar type, so
+//! tire and collision forces. They are written only here and are generic over the scalar type, so
 //! that the same lines serve for simulation and for exact Jacobians.
 //!
 //! ```text
@@ -11,7 +11,7 @@
 //! ```
 //!
 //! Source: `eq:4dof`, `eq:4dof2` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
-//! Assumes a rigid sprung mass on a roll axis along x, no pitch, no heave and no tyre relaxation.
+//! Assumes a rigid sprung mass on a roll axis along x, no pitch, no heave and no tire relaxation.
 //! A wheel turns freely, turns against a brake or is locked; the inertia of its spin is that of a
 //! steady rotation of the vehicle (`tire.rs`).
 //! Aligning moments and suspension kinematics are left out.
@@ -19,11 +19,11 @@
 //!
 //! Departures from the paper:
 //! - The roll equation contains m_s h a_y, and the coupling of yaw and roll by I_xz acts both ways.
-//!   In the printed equations the tyre forces do not excite roll except through the yaw
+//!   In the printed equations the tire forces do not excite roll except through the yaw
 //!   acceleration, and roll does not influence yaw.
-//! - The front tyre forces are rotated by the steer angle δ into body axes.
-//! - Tyre forces and vertical loads depart from the paper as described in `tire.rs` and `loads.rs`.
-//! - Tyre forces depend on the vertical loads and these on the tyre forces. This loop is resolved
+//! - The front tire forces are rotated by the steer angle δ into body axes.
+//! - Tire forces and vertical loads depart from the paper as described in `tire.rs` and `loads.rs`.
+//! - Tire forces depend on the vertical loads and these on the tire forces. This loop is resolved
 //!   by two fixed-point passes that start from the static loads, so that the right-hand side
 //!   remains a pure function of state and input.
 //!
@@ -42,7 +42,7 @@ use crate::vehicle::loads::{LoadTransfer, vertical_loads_n};
 use crate::vehicle::tire::{WheelEffort, WheelSlip};
 use crate::vehicle::{Equations, N_STATE, VehicleParameters, VehicleState};
 
-/// Number of fixed-point passes by which vertical loads and tyre forces are made consistent.
+/// Number of fixed-point passes by which vertical loads and tire forces are made consistent.
 pub(super) const LOAD_PASSES: usize = 2;
 
 /// Point of the vehicle at which the collision force acts.
@@ -80,8 +80,8 @@ pub struct VehicleInput<T> {
     /// What drives, brakes or locks each wheel, in the order of [`Wheel::ALL`](crate::vehicle::Wheel::ALL). With `None` all
     /// wheels roll freely.
     pub wheels: Option<[WheelEffort<T>; 4]>,
-    /// Friction of the ground under each wheel over that of the tyres of the vehicle, more than 0, in
-    /// the same order. With `None` it is that of the tyres.
+    /// Friction of the ground under each wheel over that of the tires of the vehicle, more than 0, in
+    /// the same order. With `None` it is that of the tires.
     pub friction_share: Option<[T; 4]>,
     /// Collision force; `None` if there is no contact.
     pub collision: Option<CollisionForce<T>>,
@@ -272,9 +272,9 @@ impl<P: Copy> VehicleConstants<P> {
         speed_squared * self.body.half_mass_kg + spin_squared * self.body.half_yaw_inertia_kg_m2
     }
 
-    /// Resultant of the tyre forces, and the vertical loads of the wheels, N.
+    /// Resultant of the tire forces, and the vertical loads of the wheels, N.
     ///
-    /// - `of_body`: load transfer by everything except the tyre forces.
+    /// - `of_body`: load transfer by everything except the tire forces.
     #[inline(always)]
     fn tire_wrench<T: Lanes + LanesOver<P>>(
         &self,

@@ -1,4 +1,4 @@
-//! A part of the ground on which the tyres grip differently: ice, a wet patch, gravel, a verge.
+//! A part of the ground on which the tires grip differently: ice, a wet patch, gravel, a verge.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ pub struct FrictionZone {
     pub name: String,
     /// Corners `[X, Y]` of its border in either sense, m; the last is joined to the first.
     pub border_m: Vec<[f64; 2]>,
-    /// Peak friction coefficient μ between tyre and ground in it, in the range
+    /// Peak friction coefficient μ between tire and ground in it, in the range
     /// [`ROAD_FRICTION`](crate::ranges::ROAD_FRICTION).
     pub friction: f64,
 }

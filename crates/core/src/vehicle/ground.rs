@@ -18,7 +18,7 @@ struct PreparedZone<'a> {
     zone: &'a FrictionZone,
     /// Lowest and highest `[X, Y]` of the border, m.
     box_m: [[f64; 2]; 2],
-    /// Friction of the zone over that of the tyres of the vehicle.
+    /// Friction of the zone over that of the tires of the vehicle.
     share: f64,
 }
 
@@ -44,7 +44,7 @@ impl<'a> Ground<'a> {
         !self.zones.is_empty()
     }
 
-    /// Friction of the ground under each wheel over that of the tyres, in the order of
+    /// Friction of the ground under each wheel over that of the tires, in the order of
     /// [`Wheel::ALL`]; `None` where no wheel stands in a zone.
     pub fn friction_share(&self, x: &VehicleState<f64>) -> Option<[f64; 4]> {
         if self.zones.is_empty() {
@@ -59,7 +59,7 @@ impl<'a> Ground<'a> {
         stands_in_zone.then(|| of_wheels.map(|share| share.unwrap_or(1.0)))
     }
 
-    /// Friction over that of the tyres in the zone at a place; `None` where there is none.
+    /// Friction over that of the tires in the zone at a place; `None` where there is none.
     fn zone_share(&self, place_m: [f64; 2]) -> Option<f64> {
         let zone = self.zones.iter().rev().find(|zone| zone.holds(place_m))?;
         Some(zone.share)

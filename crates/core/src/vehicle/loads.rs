@@ -4,7 +4,7 @@
 //! The load transfer is quasi-static: pitch and roll accelerations do not enter.
 //!
 //! Departures from the paper:
-//! - Load is transferred by the forces that cause it, each with its own height: the tyre forces at
+//! - Load is transferred by the forces that cause it, each with its own height: the tire forces at
 //!   the ground and the collision force at the contact height. The paper uses the total
 //!   acceleration of the CG. With it, a hard impact at the height of the CG would lift wheels,
 //!   although such a force has no lever arm about the CG.

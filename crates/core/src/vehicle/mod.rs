@@ -1,4 +1,4 @@
-//! The 4DOF vehicle model: axes, parameters, tyre forces, vertical loads, the equations of motion
+//! The 4DOF vehicle model: axes, parameters, tire forces, vertical loads, the equations of motion
 //! and their integration over time.
 
 mod constants;

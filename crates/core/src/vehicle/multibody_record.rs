@@ -12,7 +12,7 @@ use crate::vehicle::parameters::{
 };
 use crate::vehicle::tire::{SAME_IN_ALL_DIRECTIONS, TireParameters};
 
-/// Vertical load at which the record states the cornering stiffnesses of the tyres, N.
+/// Vertical load at which the record states the cornering stiffnesses of the tires, N.
 const TIRE_REFERENCE_LOAD_N: f64 = 4905.0;
 /// Air density at 15 °C and sea level, kg/m³ (ISO 2533 standard atmosphere).
 const AIR_DENSITY_KG_M3: f64 = 1.225;
@@ -34,7 +34,8 @@ pub struct MultibodyRecord {
     geometry: GeometryRecord,
     wheel: WheelRecord,
     suspension: SuspensionRecord,
-    tyre: TyreRecord,
+    #[serde(rename = "tire")]
+    tire: TireRecord,
     aero: AeroRecord,
     equivalent: EquivalentRecord,
 }
@@ -64,7 +65,8 @@ struct GeometryRecord {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 struct WheelRecord {
     effective_rolling_radius: f64,
-    wheel_and_tyre_spin_inertia: f64,
+    #[serde(rename = "wheel_and_tyre_spin_inertia")]
+    wheel_and_tire_spin_inertia: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -76,7 +78,7 @@ struct SuspensionRecord {
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-struct TyreRecord {
+struct TireRecord {
     cornering_stiffness_front: f64,
     cornering_stiffness_rear: f64,
     sliding_over_peak: f64,
@@ -102,7 +104,7 @@ impl MultibodyRecord {
     ///
     /// - `folder`: the folder of the file, after which a car is named that its file does not name.
     pub fn parameters(&self, folder: Option<&str>) -> VehicleParameters {
-        let Self { mass, geometry, wheel, tyre, aero, .. } = self;
+        let Self { mass, geometry, wheel, tire, aero, .. } = self;
         let sprung_kg = mass.total_kg - mass.unsprung_kg;
         let unsprung_moment = mass.unsprung_kg * wheel.effective_rolling_radius;
         let sprung_height = (mass.total_kg * geometry.cg_height - unsprung_moment) / sprung_kg;
@@ -135,17 +137,17 @@ impl MultibodyRecord {
             },
             suspension: self.suspension_parameters(sprung_kg, roll_arm_m),
             tires: TireParameters {
-                cornering_coefficient_front_per_rad: tyre.cornering_stiffness_front
+                cornering_coefficient_front_per_rad: tire.cornering_stiffness_front
                     / TIRE_REFERENCE_LOAD_N,
-                cornering_coefficient_rear_per_rad: tyre.cornering_stiffness_rear
+                cornering_coefficient_rear_per_rad: tire.cornering_stiffness_rear
                     / TIRE_REFERENCE_LOAD_N,
                 friction: 0.8,
-                sliding_friction_ratio: tyre.sliding_over_peak,
-                rolling_resistance: tyre.rolling_resistance,
+                sliding_friction_ratio: tire.sliding_over_peak,
+                rolling_resistance: tire.rolling_resistance,
                 rolling_resistance_s_m: 0.0,
                 rolling_resistance_s2_m2: drag_over_weight,
                 rolling_radius_m: wheel.effective_rolling_radius,
-                wheel_inertia_kg_m2: wheel.wheel_and_tyre_spin_inertia,
+                wheel_inertia_kg_m2: wheel.wheel_and_tire_spin_inertia,
                 longitudinal_friction_ratio: SAME_IN_ALL_DIRECTIONS,
             },
             estimates: estimates(),

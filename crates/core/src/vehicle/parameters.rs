@@ -40,7 +40,7 @@ pub struct VehicleParameters {
     pub geometry: GeometryParameters,
     /// Roll axis, roll stiffness and roll damping.
     pub suspension: SuspensionParameters,
-    /// Parameters of tyres and road.
+    /// Parameters of tires and road.
     pub tires: TireParameters,
     /// Estimated values: for each key of the file, such as `tires.friction`, the rule by which its
     /// value was estimated.

@@ -8,7 +8,7 @@
 //! h = min(h_max, K/λ(v)),   at least h_ref        λ(v) = λ₀ ε/(|v| + ε)      |v| = √(v_x² + v_y²) + 1.5 m |r|
 //! ```
 //!
-//! The fastest modes are those of the tyres, whose rates λ fall as 1/|v| (`stability.rs`); h_ref is the
+//! The fastest modes are those of the tires, whose rates λ fall as 1/|v| (`stability.rs`); h_ref is the
 //! step of [`VehicleParameters::simulate`]. While a contact force acts and where the ground has friction
 //! zones, h is at most 5 ms; the mean of the force over a step keeps the impulse exact.
 //! Below 0.3 m/s a car that only slows down is not followed by small steps: it comes to rest at its
@@ -34,7 +34,7 @@ pub const MAX_PATH_STEP_S: f64 = 0.02;
 /// Longest step while a contact force acts or where the ground has friction zones, s.
 const CONTACT_STEP_S: f64 = 5e-3;
 
-/// K: step times rate of the tyres, of 2.8 at the most for stability.
+/// K: step times rate of the tires, of 2.8 at the most for stability.
 const RATE_TIMES_STEP: f64 = 1.4;
 
 /// Speed below which the rest of the way is not followed, m/s.

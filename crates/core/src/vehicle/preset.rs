@@ -47,7 +47,7 @@ presets! {
     /// The bullet of the paper on a scale of 1:4, 290 kg.
     ScaledBullet: "scaled-bullet-290";
     /// The target of the paper on a scale of 1:4, 100 kg.
-    ScaledTarget: "scaled-target-100";
+    ScaledStruck: "scaled-target-100";
 }
 
 impl Preset {

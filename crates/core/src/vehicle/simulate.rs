@@ -74,7 +74,7 @@ pub struct Manoeuvre {
     /// Whether the motion ends before its duration where the vehicle has come to rest: after the end
     /// of the force and the last change of the controls, see [`Motion::rest_s`].
     pub ends_at_rest: bool,
-    /// Parts of the ground with their own friction; elsewhere it is that of the vehicle's tyres. Each
+    /// Parts of the ground with their own friction; elsewhere it is that of the vehicle's tires. Each
     /// wheel has the friction of the ground below its centre at the start of a step of the
     /// integration, over the step. The controls do not know of them: a braking force that is a share
     /// of μ m g has the μ of the vehicle.

@@ -14,7 +14,7 @@
 //! ```
 //!
 //! x is the distance of the axle from the CG; each bound puts the whole weight on one axle. At speed
-//! the modes of the tyres are slower, so that the bound holds for every motion.
+//! the modes of the tires are slower, so that the bound holds for every motion.
 //! Source of the limits: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed.,
 //! 1996, section IV.2.
 
@@ -24,7 +24,7 @@ use crate::vehicle::tire::{
 };
 use crate::vehicle::{FrictionZone, VehicleParameters};
 
-/// Largest h λ of a step: half of what the linear modes would bear, as the tyres are not linear. The
+/// Largest h λ of a step: half of what the linear modes would bear, as the tires are not linear. The
 /// vehicles that come with the program have at most 0.96 at the reference step of 1 ms.
 const MAX_RATE_TIMES_STEP: f64 = 1.4;
 
@@ -152,7 +152,7 @@ impl VehicleParameters {
         parts(self.roll_rate_bound_1_s(), step_s)
     }
 
-    /// λ₀: fastest rate of the tyres at rest, 1/s. At a speed v it is `λ₀ ε/(v + ε)`.
+    /// λ₀: fastest rate of the tires at rest, 1/s. At a speed v it is `λ₀ ε/(v + ε)`.
     pub(super) fn tire_rate_at_rest_1_s(&self) -> f64 {
         self.fastest_rates_1_s().tires_1_s
     }

@@ -1,4 +1,4 @@
-//! Horizontal force of the road on one tyre.
+//! Horizontal force of the road on one tire.
 //!
 //! Computes the lateral force, the rolling resistance and the drive or brake force of a wheel for
 //! any motion of its centre: rolling forwards or backwards, sliding sideways, or at rest.
@@ -15,7 +15,7 @@
 //!   wheel that rolls backwards, where atan(w/u) has the wrong sign and atan2(w, u) gives the full
 //!   lateral force at α = π. The force decreases linearly to zero as the wheel comes to rest.
 //! - The stiffness factor is `C = c/μ` with the cornering coefficient c (cornering stiffness over
-//!   vertical load). The slope at zero slip is then that of the tyre for any friction of the road.
+//!   vertical load). The slope at zero slip is then that of the tire for any friction of the road.
 //! - Rolling resistance opposes the motion and vanishes at rest: −f(|u|) F_z tanh(u/u₀).
 //! - A braked wheel stays inside the friction circle, and locks where the brake asks for more than
 //!   the road can hold (see [`WheelSlip::force_n`]).
@@ -36,8 +36,8 @@ pub(super) const SLIP_ANGLE_SPEED_M_S: f64 = 0.5;
 pub(super) const ROLLING_RESISTANCE_SPEED_M_S: f64 = 0.05;
 
 /// Slip angle over which friction decreases from its peak to its sliding value, rad. It is about
-/// three times the slip angle at the peak (0.15 to 0.17 rad for the reference tyres), since car
-/// tyres slide fully at a slip of 0.6 to 0.8. The value was chosen and not fitted;
+/// three times the slip angle at the peak (0.15 to 0.17 rad for the reference tires), since car
+/// tires slide fully at a slip of 0.6 to 0.8. The value was chosen and not fitted;
 /// `docs/VALIDATION.md` reports the results for other values.
 const SLIDING_SLIP_ANGLE_RAD: f64 = 0.5;
 
@@ -63,16 +63,16 @@ const SPIN_LAG_PASSES: usize = 2;
 /// inertia: median of 13 multibody cars, which lie between 0.0095 and 0.0137.
 pub(super) const WHEEL_MASS_SHARE: f64 = 0.0115;
 
-/// Parameters of the tyres of one vehicle and of the road under them. Both axles have the same
+/// Parameters of the tires of one vehicle and of the road under them. Both axles have the same
 /// friction and rolling resistance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TireParameters {
-    /// Cornering coefficient c of the front tyres, 1/rad: cornering stiffness over vertical load.
+    /// Cornering coefficient c of the front tires, 1/rad: cornering stiffness over vertical load.
     pub cornering_coefficient_front_per_rad: f64,
-    /// Cornering coefficient c of the rear tyres, 1/rad: cornering stiffness over vertical load.
+    /// Cornering coefficient c of the rear tires, 1/rad: cornering stiffness over vertical load.
     pub cornering_coefficient_rear_per_rad: f64,
-    /// Peak friction coefficient μ between tyre and road.
+    /// Peak friction coefficient μ between tire and road.
     pub friction: f64,
     /// Ratio of sliding friction to peak friction. With a value of 1, friction does not decrease
     /// beyond the peak.
@@ -84,10 +84,10 @@ pub struct TireParameters {
     /// Coefficient f_r2 of the part of f that is proportional to the square of the speed, s²/m². It
     /// may represent the air drag of the vehicle.
     pub rolling_resistance_s2_m2: f64,
-    /// Rolling radius of the tyres, m, by which a torque becomes a force at the road.
+    /// Rolling radius of the tires, m, by which a torque becomes a force at the road.
     #[serde(default = "usual_rolling_radius_m")]
     pub rolling_radius_m: f64,
-    /// Moment of inertia I_w of one wheel with its tyre about its axis of rotation, kg m². With a
+    /// Moment of inertia I_w of one wheel with its tire about its axis of rotation, kg m². With a
     /// value of 0 a wheel follows every change of speed at once.
     #[serde(default)]
     pub wheel_inertia_kg_m2: f64,
@@ -107,12 +107,12 @@ fn is_same_in_all_directions(ratio: &f64) -> bool {
     *ratio == SAME_IN_ALL_DIRECTIONS
 }
 
-/// Rolling radius of a usual car tyre, such as 205/55 R16, m.
+/// Rolling radius of a usual car tire, such as 205/55 R16, m.
 fn usual_rolling_radius_m() -> f64 {
     0.31
 }
 
-/// Quantities of the tyre force that depend on the motion of a wheel only, and not on its vertical
+/// Quantities of the tire force that depend on the motion of a wheel only, and not on its vertical
 /// load.
 #[derive(Debug, Clone, Copy)]
 pub struct WheelSlip<T> {
@@ -158,7 +158,7 @@ pub(super) struct FreeWheel<T> {
 /// What drives, brakes or locks a wheel, beside its rolling resistance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WheelEffort<T> {
-    /// Drive torque over the rolling radius of the tyre, N, positive forwards.
+    /// Drive torque over the rolling radius of the tire, N, positive forwards.
     pub drive_n: T,
     /// Torque of brake, engine or bent bodywork against the rotation of the wheel, over the rolling
     /// radius, N, 0 or more. It acts against the rolling in either direction and holds at rest.
@@ -191,11 +191,11 @@ impl<T> WheelEffort<T> {
     }
 }
 
-/// Width of a tyre over its rolling radius where nobody says it: 0.2 m for 0.31 m.
+/// Width of a tire over its rolling radius where nobody says it: 0.2 m for 0.31 m.
 pub const TIRE_WIDTH_RATIO: f64 = 0.65;
 
 impl TireParameters {
-    /// Width of a tyre by a rule, m: 0.65 rolling radii, as of 205/55 R16.
+    /// Width of a tire by a rule, m: 0.65 rolling radii, as of 205/55 R16.
     pub fn width_m(&self) -> f64 {
         TIRE_WIDTH_RATIO * self.rolling_radius_m
     }
@@ -207,11 +207,11 @@ impl TireParameters {
 }
 
 impl<T: Lanes> TireConstants<T> {
-    /// The tyres on a ground of another friction: peak, sliding and locked friction change alike.
+    /// The tires on a ground of another friction: peak, sliding and locked friction change alike.
     ///
-    /// The cornering stiffness stays, as it belongs to the tyre: C = c/μ is divided by the share.
+    /// The cornering stiffness stays, as it belongs to the tire: C = c/μ is divided by the share.
     ///
-    /// - `share`: friction of the ground over that of the tyres.
+    /// - `share`: friction of the ground over that of the tires.
     #[inline(always)]
     pub(super) fn on_ground(mut self, share: T) -> Self {
         self.friction *= share;
@@ -298,7 +298,7 @@ impl<T: Lanes> WheelSlip<T> {
         FreeWheel { slip: self, along, side, size, drag: squared / size }
     }
 
-    /// Force `[F_x, F_y]` of the road on the tyre in the axes of the wheel, N, which lies inside the
+    /// Force `[F_x, F_y]` of the road on the tire in the axes of the wheel, N, which lies inside the
     /// friction ellipse `(F_x/κ)² + F_y² = (μ F_z)²`, a circle if the wheel holds as much along its
     /// plane as across it (κ = 1).
     ///
@@ -323,7 +323,7 @@ impl<T: Lanes> WheelSlip<T> {
     /// u_w = (u − τ r w)/(1 + (r τ)²)    τ = m_w S/|F|    S² = (u − u_w)² + w²    m_w = I_w/R²
     /// ```
     ///
-    /// with |F| the force of the tyre without the delay. At small slip angles F_x is the inertia
+    /// with |F| the force of the tire without the delay. At small slip angles F_x is the inertia
     /// force −m_w r w; of a spinning car it is a drag.
     /// Source of the wheel with slip: H. B. Pacejka, Tire and Vehicle Dynamics, 3rd ed., 2012,
     /// sections 1.2 and 8.2; the solution for a steady rotation is ours.
@@ -385,7 +385,7 @@ impl<T: Lanes> WheelSlip<T> {
     /// u − u_w = a (u a + w b)/(a² + b²)
     /// ```
     ///
-    /// - `force_n`: force of the tyre without the lag, N.
+    /// - `force_n`: force of the tire without the lag, N.
     #[inline(always)]
     fn spin_lag(&self, force_n: T) -> [T; 2] {
         let [u, w] = self.velocity_m_s;

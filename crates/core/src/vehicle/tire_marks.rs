@@ -1,8 +1,8 @@
-//! Where and how strongly the tyres of a moving vehicle mark the ground.
+//! Where and how strongly the tires of a moving vehicle mark the ground.
 //!
 //! A wheel leaves a mark where it moves faster than 1 m/s and is locked, or slides sideways by more than
-//! 8°: tyres reach their largest side force at slip angles of 6° to 10°, where the whole tread slides
-//! ([`Brach2011`], tyre marks).
+//! 8°: tires reach their largest side force at slip angles of 6° to 10°, where the whole tread slides
+//! ([`Brach2011`], tire marks).
 //!
 //! How dark and how wide a mark is drawn are rules of ours, which order marks and are not measured:
 //!
@@ -12,7 +12,7 @@
 //! ```
 //!
 //! with the load F_z and its value F_z0 at rest, the friction μ of the ground, the velocity u in the
-//! plane of the wheel and w across it, the width of the tyre b, 0.65 rolling radii, and the length of its
+//! plane of the wheel and w across it, the width of the tire b, 0.65 rolling radii, and the length of its
 //! contact patch ℓ, 0.6 rolling radii. A wheel that slides sideways marks with its outer shoulder first.
 //! Not said: striations, scrubs where a wheel is dented, marks of rims, and what rain and time do.
 //!
@@ -24,7 +24,7 @@ use crate::data::{Channel, TimeSeries};
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{ControlledVehicle, Wheel};
 
-/// Slip angle beyond which a tyre leaves a mark, rad: 8°.
+/// Slip angle beyond which a tire leaves a mark, rad: 8°.
 pub const MARK_SLIP_RAD: f64 = 0.139_626_340_159_546_36;
 
 /// Speed of the wheel above which it leaves a mark, m/s.

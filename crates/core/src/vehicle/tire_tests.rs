@@ -1,4 +1,4 @@
-//! Tests of the tyre: its curve, the friction circle, rolling, braking and locking.
+//! Tests of the tire: its curve, the friction circle, rolling, braking and locking.
 
 use proptest::prelude::*;
 
@@ -118,7 +118,7 @@ fn a_wheel_may_hold_more_along_its_plane_than_across_it() {
 
 proptest! {
     #[test]
-    fn a_tyre_never_puts_energy_in(
+    fn a_tire_never_puts_energy_in(
         u in -60.0..60.0, w in -60.0..60.0, load in 0.0..2e4, braking_n in 0.0..2e4,
         locked in 0.0..1.0, yaw_rate in -10.0..10.0,
     ) {

@@ -31,7 +31,7 @@ const SURFACES: [Surface; 10] = [
     Surface::HeadLamp,
     Surface::TailLamp,
     Surface::Underbody,
-    Surface::Tyre,
+    Surface::Tire,
     Surface::Hub,
     Surface::HubGap,
 ];

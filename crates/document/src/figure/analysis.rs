@@ -73,9 +73,9 @@ pub fn analysis_scene_figure(
     units: UnitSystem,
 ) -> Figure {
     let footprint = analysis.footprint;
-    let bullet = analysis.bullet.as_ref().map(|track| SceneVehicle {
+    let striking = analysis.striking.as_ref().map(|track| SceneVehicle {
         name: "bullet",
-        role: Role::Bullet,
+        role: Role::Striking,
         style: LineStyle::Solid,
         motion: &track.motion,
         footprint: track.footprint,
@@ -94,7 +94,7 @@ pub fn analysis_scene_figure(
         motion: &motion.series,
         footprint,
     });
-    let vehicles: Vec<_> = [bullet, reference, simulation].into_iter().flatten().collect();
+    let vehicles: Vec<_> = [striking, reference, simulation].into_iter().flatten().collect();
     let second = analysis.second_contact.as_ref();
     let met = second.filter(|second| second.time_s <= time_s);
     let after = if met.is_some() { ", after a second contact that is not computed" } else { "" };

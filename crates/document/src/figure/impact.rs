@@ -31,11 +31,17 @@ pub fn impact_figure(
     let (sin, cos) = geometry.normal_angle_rad.sin_cos();
     let surface = [[cx - sin, cy + cos], [cx + sin, cy - cos]].map(shown).to_vec();
     let vehicles = [
-        ("target", Role::Simulation, scenario.target.footprint(), geometry.target, solution.target),
-        ("bullet", Role::Bullet, scenario.bullet.footprint(), geometry.bullet, solution.bullet),
+        ("target", Role::Simulation, scenario.struck.footprint(), geometry.struck, solution.struck),
+        (
+            "bullet",
+            Role::Striking,
+            scenario.striking.footprint(),
+            geometry.striking,
+            solution.striking,
+        ),
     ];
-    let [target_dv, bullet_dv] = vehicles.map(|(.., after)| after.delta_v_m_s);
-    let longest = [target_dv, bullet_dv].map(|[x, y]| x.hypot(y)).into_iter().fold(0.0, f64::max);
+    let [struck_dv, striking_dv] = vehicles.map(|(.., after)| after.delta_v_m_s);
+    let longest = [struck_dv, striking_dv].map(|[x, y]| x.hypot(y)).into_iter().fold(0.0, f64::max);
     let scaled = |[dx, dy]: [f64; 2], full: f64| {
         let scale = if full > 0.0 { ARROW_LENGTH_M / full } else { 0.0 };
         [dx * scale, dy * scale]

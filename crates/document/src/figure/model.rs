@@ -131,7 +131,7 @@ pub enum Role {
     /// The struck vehicle.
     Target,
     /// The striking vehicle.
-    Bullet,
+    Striking,
     /// The component of a vector along x.
     ComponentX,
     /// The component of a vector along y.

@@ -44,7 +44,7 @@ pub struct ReconstructionScene<'a> {
     pub drawn: &'a [VehiclePath],
     /// The path in front of them.
     pub followed: Option<FollowedPath<'a>>,
-    /// The marks that the tyres leave along that path.
+    /// The marks that the tires leave along that path.
     pub marks: &'a [TireMark],
 }
 
@@ -90,7 +90,7 @@ pub fn reconstruction_scene_figure(
     elements.extend(contact_elements(scene, &shown, units));
     elements.extend(scene.marks.iter().map(|mark| {
         let points = mark.points.iter().map(|point| shown(point.place_m)).collect();
-        FigureElement::line("tyre marks, computed", Role::Simulation, points)
+        FigureElement::line("tire marks, computed", Role::Simulation, points)
     }));
     elements.extend(evidence_elements(scene, &shown, units));
     if let Some(FollowedPath { name, path: followed, time_s }) = scene.followed {
@@ -153,8 +153,8 @@ fn evidence_elements(
     for mark in &evidence.marks {
         let name = format!("mark, {}", mark.wheel.label());
         let points: Vec<[f64; 2]> = mark.points_m.iter().map(|at| shown(*at)).collect();
-        elements.push(FigureElement::dashed(&name, Role::Bullet, points.clone()));
-        elements.push(FigureElement::points(&name, Role::Bullet, points));
+        elements.push(FigureElement::dashed(&name, Role::Striking, points.clone()));
+        elements.push(FigureElement::points(&name, Role::Striking, points));
     }
     let positions: Vec<[f64; 2]> =
         evidence.positions.iter().map(|at| shown([at.x_m, at.y_m])).collect();

@@ -7,8 +7,8 @@ use impactlab_core::vehicle::{TIRE_WIDTH_RATIO, VehicleParameters, Wheel};
 /// Wheels of a car, in the order of [`Wheel::ALL`].
 pub const N_WHEELS: usize = 4;
 
-/// Share of the half width of the body within which the outer side of a tyre lies.
-const TYRE_INSIDE: f64 = 0.985;
+/// Share of the half width of the body within which the outer side of a tire lies.
+const TIRE_INSIDE: f64 = 0.985;
 
 /// Outer dimensions of a car and places of its wheels.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,7 +52,7 @@ impl CarBody {
         self.front_m - self.length_m
     }
 
-    /// Width of a tyre, m.
+    /// Width of a tire, m.
     pub fn wheel_width_m(&self) -> f64 {
         TIRE_WIDTH_RATIO * self.wheel_radius_m
     }
@@ -62,7 +62,7 @@ impl CarBody {
     pub fn wheel_m(&self, wheel: Wheel) -> [f64; 3] {
         let [front, rear] = self.axles_m;
         let x = if wheel.is_front() { front } else { -rear };
-        let widest = TYRE_INSIDE * self.width_m / 2.0 - self.wheel_width_m() / 2.0;
+        let widest = TIRE_INSIDE * self.width_m / 2.0 - self.wheel_width_m() / 2.0;
         let side = (self.track_m / 2.0).min(widest.max(0.0));
         let is_left = matches!(wheel, Wheel::FrontLeft | Wheel::RearLeft);
         [x, if is_left { side } else { -side }, self.wheel_radius_m]

@@ -69,8 +69,8 @@ fn largest_overlap(
     for step in 0..=n_steps {
         let time_s = start_s + (end_s - start_s) * step as f64 / n_steps as f64;
         let poses = cars.map(|car| car.at(time_s).pose);
-        let [target, bullet] = [0, 1].map(|i| MovingFootprint::at_rest(footprints[i], poses[i]));
-        let depth_m = overlap_m(&target, &bullet);
+        let [struck, striking] = [0, 1].map(|i| MovingFootprint::at_rest(footprints[i], poses[i]));
+        let depth_m = overlap_m(&struck, &striking);
         if largest.as_ref().is_none_or(|(most_m, ..)| depth_m > *most_m) {
             largest = Some((depth_m, time_s, poses));
         }

@@ -17,8 +17,8 @@ pub enum Surface {
     TailLamp,
     /// Underside and wheel houses.
     Underbody,
-    /// Tyre.
-    Tyre,
+    /// Tire.
+    Tire,
     /// Light sectors of a wheel disc.
     Hub,
     /// Dark sectors of a wheel disc, which show how far it has turned.
@@ -38,7 +38,7 @@ impl Surface {
             Self::HeadLamp => [250, 246, 226],
             Self::TailLamp => [176, 24, 32],
             Self::Underbody => [24, 25, 27],
-            Self::Tyre => [38, 39, 41],
+            Self::Tire => [38, 39, 41],
             Self::Hub => [206, 209, 212],
             Self::HubGap => [96, 100, 104],
         }

@@ -100,7 +100,7 @@ pub struct SceneLine {
     pub points_m: Vec<[f64; 2]>,
 }
 
-/// The mark of a tyre on the ground, which grows as time passes.
+/// The mark of a tire on the ground, which grows as time passes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneMark {
     /// Name in the legend.
@@ -213,7 +213,7 @@ pub struct Scene {
     pub paths: Vec<ScenePath>,
     /// Lines on the ground.
     pub lines: Vec<SceneLine>,
-    /// Computed marks of tyres.
+    /// Computed marks of tires.
     pub marks: Vec<SceneMark>,
     /// Dented outlines of cars.
     pub crushes: Vec<SceneCrush>,

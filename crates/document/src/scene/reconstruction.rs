@@ -34,7 +34,7 @@ pub struct ReconstructionParts<'a> {
     pub drawn: &'a [Path],
     /// The path that the car drives, with its name.
     pub followed: Option<(&'a str, &'a Path)>,
-    /// The marks that tyres leave along that path.
+    /// The marks that tires leave along that path.
     pub marks: &'a [TireMark],
     /// System of units of the labels.
     pub units: UnitSystem,
@@ -130,7 +130,7 @@ fn motion_of(path: &Path, body: &CarBody) -> Option<CarMotion> {
     Some(CarMotion::of_poses(&poses?, step_s, body)?.later_by(start_s))
 }
 
-/// Marks of tyres, and positions in a video.
+/// Marks of tires, and positions in a video.
 fn add_found(scene: &mut Scene, evidence: &Evidence) {
     for mark in &evidence.marks {
         scene.lines.push(SceneLine {

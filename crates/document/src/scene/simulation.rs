@@ -93,7 +93,7 @@ pub(super) fn struck_shape(analysis: &Analysis) -> Arc<CarShape> {
 
 /// Adds the striking vehicle, if it is known.
 pub(super) fn add_striking(scene: &mut Scene, analysis: &Analysis) {
-    let Some(track) = &analysis.bullet else { return };
+    let Some(track) = &analysis.striking else { return };
     let body = CarBody::new(&track.start.vehicle, &track.footprint);
     let controls = track.start.controlled();
     add_marks(scene, &tire_marks(&track.motion, controls));
@@ -103,10 +103,10 @@ pub(super) fn add_striking(scene: &mut Scene, analysis: &Analysis) {
     add(scene, (named, SceneRole::Striking, CarLook::Solid), (&shape, motion));
 }
 
-/// Adds marks of tyres that are computed.
+/// Adds marks of tires that are computed.
 pub(super) fn add_marks(scene: &mut Scene, marks: &[TireMark]) {
     scene.marks.extend(marks.iter().map(|mark| SceneMark {
-        name: "tyre marks, computed".to_owned(),
+        name: "tire marks, computed".to_owned(),
         points: mark.points.clone(),
     }));
 }

@@ -9,12 +9,12 @@ use crate::scene::mesh::Mesh;
 const N_PIECES: usize = 20;
 /// Radius of the disc over that of the wheel.
 const DISC_RATIO: f64 = 0.66;
-/// How far the disc stands out of the tyre, m.
+/// How far the disc stands out of the tire, m.
 const DISC_LIFT_M: f64 = 0.004;
 
 /// A wheel around the y axis with its centre at the origin; its disc shows on both sides.
 ///
-/// - `radius_m`, `width_m`: of the tyre.
+/// - `radius_m`, `width_m`: of the tire.
 pub(super) fn wheel_mesh(radius_m: f64, width_m: f64) -> Mesh {
     let mut mesh = Mesh::default();
     let half_m = width_m / 2.0;
@@ -30,10 +30,10 @@ pub(super) fn wheel_mesh(radius_m: f64, width_m: f64) -> Mesh {
             point(next, radius_m, -half_m),
             point(piece, radius_m, -half_m),
         ];
-        mesh.add(Surface::Tyre, &tread, [0.0; 3]);
+        mesh.add(Surface::Tire, &tread, [0.0; 3]);
         let side =
             [[0.0, half_m, 0.0], point(piece, radius_m, half_m), point(next, radius_m, half_m)];
-        mesh.add_mirrored(Surface::Tyre, &side, [0.0; 3]);
+        mesh.add_mirrored(Surface::Tire, &side, [0.0; 3]);
         let disc_m = half_m + DISC_LIFT_M;
         let surface = if piece / 2 % 2 == 0 { Surface::Hub } else { Surface::HubGap };
         let radius_m = DISC_RATIO * radius_m;

@@ -1,7 +1,7 @@
 //! The pixels of a scene, drawn on the CPU.
 //!
 //! What does not change with time (ground, grid, density, lines) is drawn when the camera, the size or
-//! the scene changes, and kept, as are the pieces of tyre marks in the order of time. A picture at another
+//! the scene changes, and kept, as are the pieces of tire marks in the order of time. A picture at another
 //! time copies it and adds the marks up to then, shadows, cars, and the few lines that change. Rows are spread over threads of the canvas's own, so that a long computation
 //! elsewhere does not make a picture wait.
 
@@ -54,7 +54,7 @@ pub struct SceneCanvas {
     /// The time of the picture.
     time_s: Option<f64>,
     ground: Vec<Color32>,
-    /// Marks of tyres as the camera sees them.
+    /// Marks of tires as the camera sees them.
     marks: MarkStrokes,
     pixels: Vec<Color32>,
     frame: Frame,
@@ -132,7 +132,7 @@ impl SceneCanvas {
     }
 }
 
-/// Draws what does not change with time, but for marks of tyres.
+/// Draws what does not change with time, but for marks of tires.
 ///
 /// - `pixels`: those of a picture of the size `width` and `height`, row by row from the top.
 pub fn draw_ground(ground: &Ground<'_>, [width, _]: [usize; 2], pixels: &mut [Color32]) {

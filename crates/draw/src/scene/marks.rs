@@ -1,4 +1,4 @@
-//! Marks of tyres on the ground, in the picture and in the order of time.
+//! Marks of tires on the ground, in the picture and in the order of time.
 
 use egui::Color32;
 

@@ -27,7 +27,7 @@ pub fn role_color(role: SceneRole, dark: bool) -> Color32 {
         SceneRole::Recorded => Role::Reference,
         SceneRole::Simulated => Role::Simulation,
         SceneRole::Forecast => Role::Target,
-        SceneRole::Striking => Role::Bullet,
+        SceneRole::Striking => Role::Striking,
         SceneRole::Evidence => Role::Pulse,
         SceneRole::Variant(idx) => Role::Variant(idx),
         SceneRole::Muted => Role::Muted,

@@ -113,7 +113,7 @@ impl ForceModel {
             outside,
             badges,
             is_contact_open: canonical.contact_m.is_none(),
-            is_body_open: canonical.bullet_body.is_none() && self.bodies().len() > 1,
+            is_body_open: canonical.striking_body.is_none() && self.bodies().len() > 1,
         })
     }
 
@@ -211,7 +211,7 @@ impl ForceModel {
 
     fn variants(&self, scenario: &ForceScenario) -> Result<Vec<Variant>, ForceError> {
         let names = self.bodies();
-        let bodies: Vec<(usize, f64)> = match (&scenario.bullet_body, names.len()) {
+        let bodies: Vec<(usize, f64)> = match (&scenario.striking_body, names.len()) {
             (_, 1) => vec![(0, 1.0)],
             (None, _) => self.open.body.iter().copied().enumerate().collect(),
             (Some(name), _) => match names.iter().position(|known| known == name) {
@@ -294,13 +294,13 @@ fn mean_curve<'a>(curves: impl Iterator<Item = (&'a ForceCurve, f64)>) -> ForceC
 
 /// Checks the ranges within which the physics can be solved.
 fn check(scenario: &ForceScenario) -> Result<(), ForceError> {
-    let [target, bullet] = scenario.mass_kg;
+    let [struck, striking] = scenario.mass_kg;
     let [vx, vy] = scenario.relative_velocity_m_s();
     let within = |value: f64, low: f64, high: f64| (low..=high).contains(&value);
     let [x, y] = scenario.contact_m.unwrap_or_default();
     let checks = [
-        ("target mass [kg]", target, within(target, 1.0, 1e8), "1 to 1e8"),
-        ("bullet mass [kg]", bullet, within(bullet, 1.0, 1e8), "1 to 1e8"),
+        ("target mass [kg]", struck, within(struck, 1.0, 1e8), "1 to 1e8"),
+        ("bullet mass [kg]", striking, within(striking, 1.0, 1e8), "1 to 1e8"),
         ("v_bx − v_tx [m/s]", vx, within(vx, -150.0, 150.0), "-150 to 150"),
         ("v_by − v_ty [m/s]", vy, within(vy, -150.0, 150.0), "-150 to 150"),
         (

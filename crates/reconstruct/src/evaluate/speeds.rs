@@ -12,9 +12,9 @@ use impactlab_core::uncertainty::{NormalMixture, NormalPart, sample_crps};
 
 /// The speeds that are compared with the truth.
 pub const SPEEDS: [ReconstructedQuantity; 3] = [
-    ReconstructedQuantity::TargetSpeed,
+    ReconstructedQuantity::StruckSpeed,
     ReconstructedQuantity::ClosingSpeed,
-    ReconstructedQuantity::BulletSpeed,
+    ReconstructedQuantity::StrikingSpeed,
 ];
 
 /// How the speeds are estimated.
@@ -134,7 +134,7 @@ impl SpeedEstimates {
                 distribution: SpeedDistribution::Normal(measured),
             };
             vec![
-                speed(ReconstructedQuantity::TargetSpeed, hand.target_speed_m_s),
+                speed(ReconstructedQuantity::StruckSpeed, hand.struck_speed_m_s),
                 speed(ReconstructedQuantity::ClosingSpeed, hand.closing_speed_m_s),
             ]
         };
@@ -153,13 +153,13 @@ impl SpeedEstimates {
     ///
     /// - `(n_draws, seed)`: number and seed of the draws.
     pub fn by_swarm(
-        target: &ReconstructionTarget,
+        struck: &ReconstructionTarget,
         found: Option<&PointOptimum>,
         (n_draws, seed): (usize, u64),
         seconds: f64,
     ) -> Self {
         let drawn = found.and_then(|found| found.draws(n_draws, seed));
-        let of = |z: Vec<Vec<f64>>| speeds(&Posterior::of_points(target.model(), &z));
+        let of = |z: Vec<Vec<f64>>| speeds(&Posterior::of_points(struck.model(), &z));
         Self {
             method: ReconstructionMethod::Swarm,
             seconds,

@@ -82,9 +82,9 @@ impl StagedCollisions {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrueSpeeds {
     /// Of the struck car.
-    pub target_m_s: f64,
+    pub struck_m_s: f64,
     /// Of the striking car.
-    pub bullet_m_s: f64,
+    pub striking_m_s: f64,
     /// Size of the difference of both velocities.
     pub closing_m_s: f64,
 }
@@ -109,17 +109,17 @@ impl TrueSpeeds {
             let velocity = car.point("velocity_before_m_s", &SPEED)?;
             Ok((speed_m_s, velocity.ok_or_else(|| car.missing("velocity_before_m_s"))?))
         };
-        let (target_m_s, target) = car("struck_car")?;
-        let (bullet_m_s, bullet) = car("striking_car")?;
-        let closing_m_s = (bullet[0] - target[0]).hypot(bullet[1] - target[1]);
-        Ok(Self { target_m_s, bullet_m_s, closing_m_s })
+        let (struck_m_s, struck) = car("struck_car")?;
+        let (striking_m_s, striking) = car("striking_car")?;
+        let closing_m_s = (striking[0] - struck[0]).hypot(striking[1] - struck[1]);
+        Ok(Self { struck_m_s, striking_m_s, closing_m_s })
     }
 
     /// The true value of a quantity; `None` if it is no speed before the impact.
     pub fn of(&self, quantity: ReconstructedQuantity) -> Option<f64> {
         match quantity {
-            ReconstructedQuantity::TargetSpeed => Some(self.target_m_s),
-            ReconstructedQuantity::BulletSpeed => Some(self.bullet_m_s),
+            ReconstructedQuantity::StruckSpeed => Some(self.struck_m_s),
+            ReconstructedQuantity::StrikingSpeed => Some(self.striking_m_s),
             ReconstructedQuantity::ClosingSpeed => Some(self.closing_m_s),
             _ => None,
         }
@@ -147,7 +147,7 @@ mod tests {
                     velocity_before_m_s = [13, 4]\n";
         let truth = |text: &str| TrueSpeeds::from_toml(TomlFile { path: Path::new("t"), text });
         let found = truth(text).unwrap();
-        assert_eq!(found, TrueSpeeds { target_m_s: 10.0, bullet_m_s: 13.6, closing_m_s: 5.0 });
+        assert_eq!(found, TrueSpeeds { struck_m_s: 10.0, striking_m_s: 13.6, closing_m_s: 5.0 });
         assert_eq!(found.of(ReconstructedQuantity::RoadFriction), None);
         let error = truth(&text.replace("velocity_before_m_s = [13, 4]", "")).unwrap_err();
         assert!(error.to_string().contains("velocity_before_m_s is missing"), "{error}");

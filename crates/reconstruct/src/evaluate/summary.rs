@@ -136,7 +136,7 @@ mod tests {
     /// A case whose struck car was estimated at 20 ± 2 m/s.
     fn score(truth_m_s: f64, seconds: f64, ess: f64) -> CaseScore {
         let distribution = SpeedDistribution::Normal(Measured { value: 20.0, sigma: 2.0 });
-        let quantity = ReconstructedQuantity::TargetSpeed;
+        let quantity = ReconstructedQuantity::StruckSpeed;
         let estimates = SpeedEstimates {
             method: ReconstructionMethod::Reconstruction,
             seconds,
@@ -144,7 +144,7 @@ mod tests {
             n_simulations: 7,
             speeds: vec![EstimatedSpeed { quantity, distribution }],
         };
-        let truth = TrueSpeeds { target_m_s: truth_m_s, bullet_m_s: 0.0, closing_m_s: 0.0 };
+        let truth = TrueSpeeds { struck_m_s: truth_m_s, striking_m_s: 0.0, closing_m_s: 0.0 };
         CaseScore::of("case", KnownEvidence::RestOnly, &estimates, &truth)
     }
 

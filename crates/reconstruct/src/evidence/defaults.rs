@@ -6,7 +6,7 @@
 pub const DEFAULT_REST_SIGMA_M: f64 = 0.15;
 /// Rest heading, rad: 2°, read off a sketch to scale or a photograph from above. Assumed.
 pub const DEFAULT_HEADING_SIGMA_RAD: f64 = 0.035;
-/// Point of a tyre mark along each axis, m: half the width of a tyre's tread. Assumed.
+/// Point of a tire mark along each axis, m: half the width of a tire's tread. Assumed.
 pub const DEFAULT_MARK_SIGMA_M: f64 = 0.10;
 /// First contact along the struck side, m: a third of the width of a usual dent. Assumed.
 pub const DEFAULT_DAMAGE_SIGMA_M: f64 = 0.10;

@@ -334,10 +334,10 @@ fn read_position(mut table: TomlTable<'_>) -> Result<VideoPosition, TomlError> {
 
 fn read_prior(mut table: TomlTable<'_>) -> Result<PriorRanges, TomlError> {
     let prior = PriorRanges {
-        target_speed_m_s: table.interval("target_speed", &EVIDENCE_SPEED)?,
-        bullet_speed_m_s: table.interval("bullet_speed", &EVIDENCE_SPEED)?,
+        struck_speed_m_s: table.interval("target_speed", &EVIDENCE_SPEED)?,
+        striking_speed_m_s: table.interval("bullet_speed", &EVIDENCE_SPEED)?,
         heading_difference_rad: table.interval("heading_difference", &HEADING)?,
-        bullet_sideslip_rad: table.interval("bullet_sideslip", &EVIDENCE_HEADING)?,
+        striking_sideslip_rad: table.interval("bullet_sideslip", &EVIDENCE_HEADING)?,
         restitution: table.interval("restitution", &RESTITUTION)?,
         contact_friction: table.interval("contact_friction", &FRICTION_LIMIT)?,
         brake_start_s: table.interval("brake_start", &CONTROL_TIME)?,

@@ -71,7 +71,7 @@ fn a_file_is_read_with_units_and_defaults() {
     assert!((evidence.edr.speed_before_m_s.unwrap().value - 20.0).abs() < 1e-9);
     assert_eq!(evidence.edr.sensor_m, [0.2, 0.0]);
     assert_eq!(evidence.positions[0].sigma_m, DEFAULT_VIDEO_SIGMA_M);
-    let [low, high] = evidence.prior.target_speed_m_s.unwrap();
+    let [low, high] = evidence.prior.struck_speed_m_s.unwrap();
     assert!((low - 5.0).abs() < 1e-9 && (high - 50.0).abs() < 1e-9);
     assert_eq!(evidence.mirrored().mirrored(), evidence);
     assert_ne!(evidence.mirrored(), evidence);

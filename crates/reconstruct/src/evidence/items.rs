@@ -41,7 +41,7 @@ pub struct Evidence {
     pub striking_rest: Option<RestPose>,
     /// What driver and damage did to the wheels of the struck car.
     pub after: After,
-    /// Tyre marks of the struck car.
+    /// Tire marks of the struck car.
     pub marks: Vec<Mark>,
     /// Event data recorder of the struck car.
     pub edr: Edr,
@@ -137,7 +137,7 @@ pub enum MarkKind {
     Locked,
 }
 
-/// A tyre mark.
+/// A tire mark.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mark {
@@ -188,13 +188,16 @@ pub struct VideoPosition {
 #[serde(default, deny_unknown_fields)]
 pub struct PriorRanges {
     /// Speed of the struck car before the impact, m/s.
-    pub target_speed_m_s: Option<[f64; 2]>,
+    #[serde(rename = "target_speed_m_s")]
+    pub struck_speed_m_s: Option<[f64; 2]>,
     /// Speed of the striking car before the impact, m/s.
-    pub bullet_speed_m_s: Option<[f64; 2]>,
+    #[serde(rename = "bullet_speed_m_s")]
+    pub striking_speed_m_s: Option<[f64; 2]>,
     /// Heading of the striking car against that of the struck car, rad, positive to the left.
     pub heading_difference_rad: Option<[f64; 2]>,
     /// Direction in which the striking car moves against its heading, rad, positive to the left.
-    pub bullet_sideslip_rad: Option<[f64; 2]>,
+    #[serde(rename = "bullet_sideslip_rad")]
+    pub striking_sideslip_rad: Option<[f64; 2]>,
     /// Coefficient of restitution.
     pub restitution: Option<[f64; 2]>,
     /// Largest ratio of tangential to normal impulse.
@@ -253,7 +256,7 @@ impl Evidence {
         mirror.positions.iter_mut().for_each(|at| at.y_m = -at.y_m);
         let prior = &mut mirror.prior;
         prior.heading_difference_rad = prior.heading_difference_rad.map(span);
-        prior.bullet_sideslip_rad = prior.bullet_sideslip_rad.map(span);
+        prior.striking_sideslip_rad = prior.striking_sideslip_rad.map(span);
         mirror
     }
 }

@@ -156,10 +156,10 @@ fn position_table(at: &VideoPosition) -> Table {
 fn prior_table(prior: &PriorRanges) -> Table {
     let mut table = Table::new();
     for (key, range) in [
-        ("target_speed_m_s", prior.target_speed_m_s),
-        ("bullet_speed_m_s", prior.bullet_speed_m_s),
+        ("target_speed_m_s", prior.struck_speed_m_s),
+        ("bullet_speed_m_s", prior.striking_speed_m_s),
         ("heading_difference_rad", prior.heading_difference_rad),
-        ("bullet_sideslip_rad", prior.bullet_sideslip_rad),
+        ("bullet_sideslip_rad", prior.striking_sideslip_rad),
         ("restitution", prior.restitution),
         ("contact_friction", prior.contact_friction),
         ("brake_start_s", prior.brake_start_s),

@@ -42,7 +42,7 @@ impl ReconstructionTarget {
         }
         if let Some(speed) = &mut evidence.edr.speed_before_m_s {
             let error: f64 = StandardNormal.sample(rng);
-            speed.value = motion.impact.target_speed_m_s + speed.sigma * error;
+            speed.value = motion.impact.struck_speed_m_s + speed.sigma * error;
         }
         Some(evidence)
     }
@@ -79,7 +79,7 @@ mod tests {
             squares.iter_mut().zip(&found).for_each(|(sum, at)| *sum += at.residual.powi(2));
             both += found[3].residual * found[5].residual;
             let speed = drawn.edr.speed_before_m_s.unwrap().value;
-            speeds += ((speed - motion.impact.target_speed_m_s) / 0.8_f64).powi(2);
+            speeds += ((speed - motion.impact.struck_speed_m_s) / 0.8_f64).powi(2);
         }
         // The variance of a Student distribution of ν degrees of freedom is ν/(ν − 2) of its scale.
         let freedom = discrepancy.degrees_of_freedom;

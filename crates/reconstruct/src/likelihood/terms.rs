@@ -251,7 +251,7 @@ impl<'a> Comparison<'a> {
     fn add_edr(&mut self) {
         let edr = &self.evidence.edr;
         if let Some(Measured { value, sigma }) = edr.speed_before_m_s {
-            let expected = self.motion.impact.target_speed_m_s;
+            let expected = self.motion.impact.struck_speed_m_s;
             let distance = ((value - expected) / sigma).powi(2);
             self.log_likelihood -= distance / 2.0;
             self.tell("EDR speed before the impact", "m/s", [expected, value], (distance, 1));
@@ -277,17 +277,17 @@ impl<'a> Comparison<'a> {
 
     fn add_striking_rest(&mut self) {
         let Some(found) = self.evidence.striking_rest else { return };
-        let track = self.motion.bullet_path.as_ref().and_then(Track::of);
+        let track = self.motion.striking_path.as_ref().and_then(Track::of);
         let Some(track) = track else {
             self.log_likelihood = f64::NEG_INFINITY;
             return;
         };
         let of = (self.evidence, self.discrepancy);
-        let mut of_bullet = Comparison::new(of, (self.motion, &track), self.is_told);
+        let mut of_striking = Comparison::new(of, (self.motion, &track), self.is_told);
         let names = ["striking car rest x", "striking car rest y", "striking car rest heading"];
-        of_bullet.add_pose(names, &found, track.rest());
-        let density = of_bullet.discrepancy.log_density(&of_bullet.path, track.whole_m());
-        let terms = std::mem::take(&mut of_bullet.terms);
+        of_striking.add_pose(names, &found, track.rest());
+        let density = of_striking.discrepancy.log_density(&of_striking.path, track.whole_m());
+        let terms = std::mem::take(&mut of_striking.terms);
         self.log_likelihood += density;
         self.terms.extend(terms);
     }
@@ -303,13 +303,13 @@ impl<'a> Comparison<'a> {
                 "mass of the struck car",
                 "kg",
                 evidence.struck_car.mass_kg,
-                values.get(Latent::TargetMass),
+                values.get(Latent::StruckMass),
             ),
             (
                 "mass of the striking car",
                 "kg",
                 evidence.striking_car.mass_kg,
-                values.get(Latent::BulletMass),
+                values.get(Latent::StrikingMass),
             ),
             ("damage along the side", "m", Some(damage.along_m), values.get(Latent::ContactAlong)),
             ("angle of the damage", "rad", damage.angle_rad, heading),

@@ -27,7 +27,7 @@ pub(crate) fn normal(x: f64, mean: f64, std: f64) -> f64 {
 }
 
 /// Measurements `y = A z + noise` of twenty variables, of which the sharpest has a noise of 0.004:
-/// a tyre mark of ± 0.1 m over 25 m.
+/// a tire mark of ± 0.1 m over 25 m.
 pub(crate) struct LinearGaussian {
     a: DMatrix<f64>,
     y: DVector<f64>,

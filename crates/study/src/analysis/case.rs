@@ -1,6 +1,6 @@
 //! Analysis of the cases of force and trajectory data sets.
 
-use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, bullet::bullet_track};
+use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, striking::striking_track};
 use impactlab_core::collision::{Footprint, SecondContact};
 use impactlab_core::compare::{MotionError, ReplayError, recorded_manoeuvre};
 use impactlab_core::data::{
@@ -23,10 +23,10 @@ pub fn analyse_case(case: &Case, settings: &Settings) -> Result<Analysis, Analys
 /// Replays a recorded trajectory from its initial state with its recorded force and friction; where
 /// friction zones are given, these hold instead.
 fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
-    let recorded = recorded_manoeuvre(case, &settings.target)?;
+    let recorded = recorded_manoeuvre(case, &settings.struck)?;
     let manoeuvre = Manoeuvre { friction_zones: settings.friction_zones.clone(), ..recorded };
     let friction = TrajectoryAttributes::read(&case.attributes)?.mu;
-    let vehicle = settings.target.clone().with_friction(friction);
+    let vehicle = settings.struck.clone().with_friction(friction);
     let name = || case.name.clone();
     let motion = vehicle
         .simulate(&manoeuvre, settings.integrator)
@@ -42,7 +42,7 @@ fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis,
     };
     Ok(Analysis {
         name: case.name.clone(),
-        footprint: Footprint::from(&settings.target.geometry),
+        footprint: Footprint::from(&settings.struck.geometry),
         struck: manoeuvre.contact_load.as_ref().map(struck),
         controls: manoeuvre.controls.clone(),
         friction_zones: settings.friction_zones.clone(),
@@ -51,7 +51,7 @@ fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis,
         simulation: Some(motion),
         reference: Some(case.series.clone()),
         second_contact: None,
-        bullet: None,
+        striking: None,
         error: Some(error),
         notes: Vec::new(),
     })
@@ -66,8 +66,8 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
     check_contact_within(&force, settings.duration_s)?;
     let [mass_kg, _] = attributes.mass_kg;
     let [yaw_inertia, _] = attributes.yaw_inertia_kg_m2;
-    let vehicle = settings.target.clone().with_mass(mass_kg, yaw_inertia);
-    let [vx_m_s, vy_m_s] = attributes.target_velocity_m_s;
+    let vehicle = settings.struck.clone().with_mass(mass_kg, yaw_inertia);
+    let [vx_m_s, vy_m_s] = attributes.struck_velocity_m_s;
     let [x_m, y_m] = attributes.contact_m;
     let height_m = attributes.contact_height_m.unwrap_or(vehicle.geometry.cg_height_m);
     let contact = ContactPoint { x_m, y_m, height_m };
@@ -84,10 +84,14 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
     };
     let motion = vehicle.simulate(&manoeuvre, settings.integrator)?;
     let footprint = Footprint::from(&vehicle.geometry);
-    let bullet = bullet_track(case, &attributes, settings)?;
+    let striking = striking_track(case, &attributes, settings)?;
     let end_s = contact_interval(&force).map_or(0.0, |(_, end_s)| end_s);
-    let second_contact = bullet.as_ref().and_then(|bullet| {
-        SecondContact::find((footprint, &motion.series), (bullet.footprint, &bullet.motion), end_s)
+    let second_contact = striking.as_ref().and_then(|striking| {
+        SecondContact::find(
+            (footprint, &motion.series),
+            (striking.footprint, &striking.motion),
+            end_s,
+        )
     });
     let mut notes = Vec::new();
     if attributes.separated == Some(false) {
@@ -110,7 +114,7 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
         }),
         reference: None,
         second_contact,
-        bullet,
+        striking,
         error: None,
         notes,
     })
@@ -126,10 +130,10 @@ mod tests {
     use impactlab_core::vehicle::frames::world_from_body;
     use impactlab_core::vehicle::{Ending, Integrator, Preset};
 
-    fn settings(target: Preset) -> Settings {
+    fn settings(struck: Preset) -> Settings {
         Settings {
-            target: target.parameters(),
-            bullet: Preset::Bullet2000.parameters(),
+            struck: struck.parameters(),
+            striking: Preset::Bullet2000.parameters(),
             integrator: Integrator::Rk4,
             ending: Ending::default(),
             duration_s: 4.0,
@@ -145,14 +149,14 @@ mod tests {
 
     #[test]
     fn on_ice_a_finite_element_case_ends_with_the_recorded_motion() {
-        // The finite-element runs have no tyres, so that the 4DOF model without friction must
+        // The finite-element runs have no tires, so that the 4DOF model without friction must
         // reproduce them.
         let dataset = load("fea-wide");
         let mut settings = settings(Preset::Target);
-        let target = &mut settings.target;
-        target.tires.friction = 1e-9;
-        target.tires.rolling_resistance = 0.0;
-        target.mass.roll_yaw_product_kg_m2 = 0.0;
+        let struck = &mut settings.struck;
+        struck.tires.friction = 1e-9;
+        struck.tires.rolling_resistance = 0.0;
+        struck.mass.roll_yaw_product_kg_m2 = 0.0;
         for case in dataset.cases.iter().step_by(9) {
             let analysis = analyse_case(case, &settings).unwrap();
             let recorded = |name| case.attributes.number(name).unwrap();
@@ -167,9 +171,9 @@ mod tests {
             ] {
                 assert!((got - expected).abs() < 0.01, "{} {name}: {got} {expected}", case.name);
             }
-            let bullet = analysis.bullet.unwrap().motion;
+            let striking = analysis.striking.unwrap().motion;
             let end = case.series.n_samples() - 1;
-            let yaw = bullet.require(Channel::Yaw).unwrap()[end];
+            let yaw = striking.require(Channel::Yaw).unwrap()[end];
             assert!((yaw - recorded("bullet_yaw_end_rad")).abs() < 1e-3, "{}: {yaw}", case.name);
         }
     }

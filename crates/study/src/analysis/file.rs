@@ -45,7 +45,7 @@ pub fn analyse_drive(
     if let Some((force, _)) = &load {
         check_contact_within(force, settings.duration_s)?;
     }
-    let mut controls = settings.ending.controls(&settings.target);
+    let mut controls = settings.ending.controls(&settings.struck);
     controls.steer = steer.or(controls.steer);
     controls.wheels = wheels.or(controls.wheels);
     let start = (initial, settings.duration_s);
@@ -82,7 +82,7 @@ pub fn analyse_recording(
         }
         (Ok(initial), Some(_)) => {
             file.series.check_starts_at_zero(TIME_TOLERANCE_S)?;
-            let controls = settings.ending.controls(&settings.target);
+            let controls = settings.ending.controls(&settings.struck);
             let motion = simulate((initial, duration_s), load.as_ref(), controls, settings)?;
             (Some(initial), Some(motion))
         }
@@ -90,7 +90,7 @@ pub fn analyse_recording(
     let between = |motion: &Motion| MotionError::between(&motion.series, &file.series);
     let error = simulation.as_ref().map(between).transpose()?;
     let reference = Some(file.series.clone());
-    let controls = settings.ending.controls(&settings.target);
+    let controls = settings.ending.controls(&settings.struck);
     let analysis = of_load(name, (initial, controls), load, settings);
     Ok(Analysis { simulation, reference, error, notes, ..analysis })
 }
@@ -115,7 +115,7 @@ fn simulate(
         ends_at_rest: settings.ends_at_rest,
         friction_zones: settings.friction_zones.clone(),
     };
-    Ok(settings.target.simulate(&manoeuvre, settings.integrator)?)
+    Ok(settings.struck.simulate(&manoeuvre, settings.integrator)?)
 }
 
 /// The analysis before anything is simulated.
@@ -126,7 +126,7 @@ fn of_load(
     settings: &Settings,
 ) -> Analysis {
     let struck = initial.zip(load.as_ref()).map(|(initial, (_, contact))| StruckVehicle {
-        vehicle: settings.target.clone(),
+        vehicle: settings.struck.clone(),
         initial,
         contact: *contact,
         controls: controls.clone(),
@@ -134,15 +134,15 @@ fn of_load(
     });
     Analysis {
         name: name.to_owned(),
-        footprint: Footprint::from(&settings.target.geometry),
-        vehicle: settings.target.clone(),
+        footprint: Footprint::from(&settings.struck.geometry),
+        vehicle: settings.struck.clone(),
         struck,
         controls,
         friction_zones: settings.friction_zones.clone(),
         force: load.map(|(force, _)| force),
         simulation: None,
         reference: None,
-        bullet: None,
+        striking: None,
         second_contact: None,
         error: None,
         notes: Vec::new(),

@@ -3,7 +3,6 @@
 //! of the impact force and of the motion after it as probability distributions. The command line
 //! and the app show the same [`Analysis`].
 
-mod bullet;
 mod case;
 mod file;
 mod forecast;
@@ -15,6 +14,7 @@ mod rest;
 mod rest_outcome;
 mod scenario;
 mod second_contacts;
+mod striking;
 mod vehicle_draws;
 
 use impactlab_core::collision::{Footprint, PulseError, ScenarioError, SecondContact};
@@ -46,10 +46,10 @@ pub use vehicle_draws::{Sensitivity, VehicleDraws};
 pub struct Settings {
     /// Parameters of the struck vehicle (target). A trajectory case replaces the friction
     /// coefficient by its own; a force case and a scenario replace mass and yaw inertia.
-    pub target: VehicleParameters,
+    pub struck: VehicleParameters,
     /// Parameters of the striking vehicle (bullet), used where it is simulated. The case or
     /// scenario replaces its mass and yaw inertia.
-    pub bullet: VehicleParameters,
+    pub striking: VehicleParameters,
     /// What happens to the wheels of the target after the first contact. A trajectory case has its
     /// own, and a steer angle that is recorded takes precedence.
     pub ending: Ending,
@@ -62,7 +62,7 @@ pub struct Settings {
     /// bullet is followed as long.
     pub ends_at_rest: bool,
     /// Parts of the ground with their own friction, in the axes in which the motions are simulated;
-    /// elsewhere each vehicle has the friction of its tyres. Both vehicles move over them.
+    /// elsewhere each vehicle has the friction of its tires. Both vehicles move over them.
     pub friction_zones: Vec<FrictionZone>,
 }
 
@@ -101,7 +101,7 @@ pub struct Analysis {
     /// Recorded motion of the target; `None` if there is no recording.
     pub reference: Option<TimeSeries>,
     /// Outline and motion of the striking vehicle, if known.
-    pub bullet: Option<VehicleTrack>,
+    pub striking: Option<VehicleTrack>,
     /// Where the two vehicles meet again after the contact, if they do: their motions do not know of
     /// it.
     pub second_contact: Option<SecondContact>,

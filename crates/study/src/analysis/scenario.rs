@@ -68,34 +68,34 @@ pub fn analyse_scenario(
             friction_zones: settings.friction_zones.clone(),
         }
     };
-    let mut struck = start(&scenario.target, &settings.target, &geometry.target);
+    let mut struck = start(&scenario.struck, &settings.struck, &geometry.struck);
     struck.controls = settings.ending.controls(&struck.vehicle);
-    let target = drive_on(&struck, force.clone(), settings)?;
-    let mut striking = start(&scenario.bullet, &settings.bullet, &geometry.bullet);
-    let bullet_ending = scenario.bullet_ending.clone().unwrap_or_default();
-    striking.controls = bullet_ending.controls(&striking.vehicle);
-    let end_s = target.series.time_s().last().copied().unwrap_or(settings.duration_s);
+    let motion = drive_on(&struck, force.clone(), settings)?;
+    let mut striking = start(&scenario.striking, &settings.striking, &geometry.striking);
+    let striking_ending = scenario.striking_ending.clone().unwrap_or_default();
+    striking.controls = striking_ending.controls(&striking.vehicle);
+    let end_s = motion.series.time_s().last().copied().unwrap_or(settings.duration_s);
     let settings = &Settings { duration_s: end_s, ends_at_rest: false, ..settings.clone() };
-    let bullet = drive_on(&striking, history([-px, -py])?, settings)?;
+    let striking_motion = drive_on(&striking, history([-px, -py])?, settings)?;
     let second_contact = SecondContact::find(
-        (scenario.target.footprint(), &target.series),
-        (scenario.bullet.footprint(), &bullet.series),
+        (scenario.struck.footprint(), &motion.series),
+        (scenario.striking.footprint(), &striking_motion.series),
         pulse.duration_s,
     );
     Ok(Analysis {
         name: scenario.name.clone(),
         vehicle: struck.vehicle.clone(),
-        footprint: scenario.target.footprint(),
+        footprint: scenario.struck.footprint(),
         force: Some(force),
         controls: struck.controls.clone(),
         friction_zones: settings.friction_zones.clone(),
         struck: Some(struck),
-        simulation: Some(target),
+        simulation: Some(motion),
         reference: None,
-        bullet: Some(VehicleTrack {
-            footprint: scenario.bullet.footprint(),
+        striking: Some(VehicleTrack {
+            footprint: scenario.striking.footprint(),
             start: striking,
-            motion: bullet.series,
+            motion: striking_motion.series,
         }),
         second_contact,
         error: None,
@@ -149,11 +149,11 @@ mod tests {
     use impactlab_core::vehicle::{Ending, HeldSteer, Integrator, Preset};
 
     #[test]
-    fn a_pit_turns_the_target_and_both_go_on() {
+    fn a_pit_turns_the_struck_and_both_go_on() {
         let scenario = Scenario::load(Path::new("assets/scenarios/pit_right_rear.toml")).unwrap();
         let settings = Settings {
-            target: Preset::Target.parameters(),
-            bullet: Preset::Bullet2000.parameters(),
+            struck: Preset::Target.parameters(),
+            striking: Preset::Bullet2000.parameters(),
             ending: Ending::default(),
             integrator: Integrator::Rk4,
             duration_s: 3.0,
@@ -164,11 +164,11 @@ mod tests {
         let solution = scenario.solve().unwrap();
         let motion = analysis.simulation.unwrap().series;
         let rate = motion.require(Channel::YawRate).unwrap();
-        let expected = solution.target.yaw_rate_rad_s;
+        let expected = solution.struck.yaw_rate_rad_s;
         assert!(expected < 0.0, "a push on the right rear turns the target to the right");
         assert!(rate[10] < 0.5 * expected, "{} against {expected}", rate[10]);
-        let bullet = analysis.bullet.unwrap().motion;
-        assert_eq!(bullet.n_samples(), motion.n_samples());
+        let striking = analysis.striking.unwrap().motion;
+        assert_eq!(striking.n_samples(), motion.n_samples());
         assert!(analysis.struck.unwrap().contact.y_m < 0.0);
     }
 
@@ -177,8 +177,8 @@ mod tests {
     fn vehicles_that_meet_again_are_said_to() {
         let mut scenario = Scenario::example();
         let settings = Settings {
-            target: Preset::Target.parameters(),
-            bullet: Preset::Bullet2000.parameters(),
+            struck: Preset::Target.parameters(),
+            striking: Preset::Bullet2000.parameters(),
             integrator: Integrator::Rk4,
             ending: Ending::default(),
             duration_s: 4.0,
@@ -187,7 +187,8 @@ mod tests {
         };
         let meets = |scenario: &Scenario| {
             let analysis = analyse_scenario(scenario, &PulseSetup::default(), &settings).unwrap();
-            let (target, bullet) = (analysis.simulation.unwrap().series, analysis.bullet.unwrap());
+            let (struck, striking) =
+                (analysis.simulation.unwrap().series, analysis.striking.unwrap());
             let at = |series: &TimeSeries, footprint, time_s: f64| {
                 let of = |channel| {
                     let values = series.require(channel).unwrap();
@@ -198,30 +199,30 @@ mod tests {
                 MovingFootprint::at_rest(footprint, pose)
             };
             let overlap = |time_s| {
-                let target = at(&target, scenario.target.footprint(), time_s);
-                let bullet = at(&bullet.motion, bullet.footprint, time_s);
-                overlap_m(&target, &bullet)
+                let struck = at(&struck, scenario.struck.footprint(), time_s);
+                let striking = at(&striking.motion, striking.footprint, time_s);
+                overlap_m(&struck, &striking)
             };
             let deepest = (60..=400).map(|i| overlap(f64::from(i) * 0.01)).fold(-1.0, f64::max);
             (analysis.second_contact, deepest)
         };
-        // The bullet pushes on along its heading, the target's tyres hold against it.
+        // The bullet pushes on along its heading, the target's tires hold against it.
         let (second, deepest_m) = meets(&scenario);
         let second = second.unwrap();
         assert!(second.time_s > 0.1 && second.closing_speed_m_s > 0.0, "{second:?}");
         assert!(deepest_m > 0.2, "{second:?} {deepest_m}");
         // A bullet that steers away is met later and more slowly.
         let steer = HeldSteer { start_s: 0.0, rise_s: 0.2, road_wheel_rad: -0.14 };
-        scenario.bullet_ending = Some(Ending { steer: Some(steer), ..Ending::default() });
+        scenario.striking_ending = Some(Ending { steer: Some(steer), ..Ending::default() });
         let away = meets(&scenario).0.unwrap();
         assert!(away.time_s > second.time_s, "{second:?} {away:?}");
         assert!(away.closing_speed_m_s < 0.8 * second.closing_speed_m_s, "{second:?} {away:?}");
-        scenario.bullet_ending = None;
+        scenario.striking_ending = None;
         // From behind, the bullet is braked by the impact and stays behind.
         scenario.contact.location = ContactLocation::Side { side: Side::Rear, offset_m: 0.2 };
-        scenario.bullet.heading_rad = 0.0;
-        (scenario.target.vx_m_s, scenario.bullet.vx_m_s) = (5.0, 15.0);
-        scenario.bullet.vy_m_s = 0.0;
+        scenario.striking.heading_rad = 0.0;
+        (scenario.struck.vx_m_s, scenario.striking.vx_m_s) = (5.0, 15.0);
+        scenario.striking.vy_m_s = 0.0;
         let (second, deepest_m) = meets(&scenario);
         assert_eq!(second, None);
         assert!(deepest_m < 0.0, "{deepest_m}");

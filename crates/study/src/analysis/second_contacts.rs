@@ -42,17 +42,17 @@ impl SecondContacts {
     /// nothing can be followed.
     ///
     /// - `struck`: outline of the struck vehicle;
-    /// - `bullet`: the striking vehicle;
+    /// - `striking`: the striking vehicle;
     /// - `is_own`: whether the motion of the striking vehicle is that under the force of the
     ///   forecast. If not, it is simulated.
     pub fn of(
         forecast: &MotionForecast,
-        (struck, bullet): (Footprint, &VehicleTrack),
+        (struck, striking): (Footprint, &VehicleTrack),
         is_own: bool,
     ) -> Option<Self> {
         let follow = |(part, path): (usize, &Vec<Pose>)| {
             let force = forecast.forces.get(part % forecast.forces.len().max(1))?;
-            follow((struck, path), (bullet, is_own), force)
+            follow((struck, path), (striking, is_own), force)
         };
         let followed: Vec<Option<SecondContact>> =
             forecast.paths.par_iter().enumerate().filter_map(follow).collect();
@@ -77,21 +77,21 @@ impl SecondContacts {
 /// Follows one draw; the outer `None` if that is not possible.
 fn follow(
     (footprint, path): (Footprint, &[Pose]),
-    (bullet, is_own): (&VehicleTrack, bool),
+    (striking, is_own): (&VehicleTrack, bool),
     force: &ForceHistory,
 ) -> Option<Option<SecondContact>> {
-    let target = (footprint, &series(path)?);
+    let struck = (footprint, &series(path)?);
     let (_, contact_end_s) = contact_interval(force)?;
     let meet = |motion: &TimeSeries| {
-        SecondContact::find(target, (bullet.footprint, motion), contact_end_s)
+        SecondContact::find(struck, (striking.footprint, motion), contact_end_s)
     };
     if is_own {
-        return Some(meet(&bullet.motion));
+        return Some(meet(&striking.motion));
     }
     let reaction = reaction(force)?;
     let whole_s = path.len().saturating_sub(1) as f64 * STEP_S;
     for duration_s in [whole_s.min(contact_end_s + FIRST_LOOK_S), whole_s] {
-        let motion = pushed(&bullet.start, reaction.clone(), duration_s)?;
+        let motion = pushed(&striking.start, reaction.clone(), duration_s)?;
         if let Some(second) = meet(&motion) {
             return Some(Some(second));
         }

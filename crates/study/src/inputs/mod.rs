@@ -16,5 +16,5 @@ pub use config::{ConfigChoice, TrainingOptions, checkpoint_beside};
 pub use file::SeriesFile;
 pub use model::ModelChoice;
 pub use scenario::ScenarioChoice;
-pub use vehicle::{DEFAULT_BULLET, DEFAULT_VEHICLE, VehicleChoice};
+pub use vehicle::{DEFAULT_STRIKING, DEFAULT_VEHICLE, VehicleChoice};
 pub(super) use vehicle::{OpenVehicle, striking_vehicle, struck_vehicle};

@@ -147,7 +147,7 @@ impl Files {
             MotionSource::Scenario { scenario, .. } => self.scenario(scenario),
         }
         self.vehicle(&asked.vehicle);
-        self.vehicle(&asked.bullet);
+        self.vehicle(&asked.striking);
         self.site(asked.site.as_deref());
     }
 

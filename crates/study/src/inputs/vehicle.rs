@@ -12,12 +12,12 @@ use impactlab_core::vehicle::{DataSheet, Preset, VehicleParameters, built_in_veh
 pub const DEFAULT_VEHICLE: Preset = Preset::Reference;
 
 /// The striking vehicle where the question does not say which it is.
-pub const DEFAULT_BULLET: Preset = Preset::Bullet2000;
+pub const DEFAULT_STRIKING: Preset = Preset::Bullet2000;
 
 /// Which vehicle it is.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub enum VehicleChoice {
-    /// The data set's own, else [`DEFAULT_VEHICLE`] or [`DEFAULT_BULLET`], which is then listed as
+    /// The data set's own, else [`DEFAULT_VEHICLE`] or [`DEFAULT_STRIKING`], which is then listed as
     /// an assumption.
     #[default]
     Automatic,
@@ -109,6 +109,6 @@ pub(crate) fn striking_vehicle(
     }
     let reason = "no striking vehicle was named; its mass, inertia and outline are those of the \
                   case; another one: --bullet";
-    assumptions.push(Assumption::new(AssumedQuantity::Bullet, DEFAULT_BULLET.id(), reason));
-    Ok(DEFAULT_BULLET.parameters())
+    assumptions.push(Assumption::new(AssumedQuantity::Striking, DEFAULT_STRIKING.id(), reason));
+    Ok(DEFAULT_STRIKING.parameters())
 }

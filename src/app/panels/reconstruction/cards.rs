@@ -56,7 +56,7 @@ pub fn cards_ui(
     });
     let mut removed = None;
     for (idx, mark) in evidence.marks.iter_mut().enumerate() {
-        let title = format!("Tyre mark {}", idx + 1);
+        let title = format!("Tire mark {}", idx + 1);
         let is_removed = card(ui, (Icon::Route, &title), true, |ui| {
             action = mark_fields(ui, (idx, mark), (adds_to, units)).or(action.take());
         });
@@ -147,7 +147,7 @@ fn add_ui(ui: &mut Ui, evidence: &mut Evidence) {
         if item(evidence.striking_rest.is_some(), Icon::Flag, "Striking car at rest") {
             evidence.striking_rest = Some(stand_ins::rest_pose());
         }
-        if item(false, Icon::Route, "Tyre mark") {
+        if item(false, Icon::Route, "Tire mark") {
             evidence.marks.push(stand_ins::mark());
         }
         if item(evidence.edr != Edr::default(), Icon::Cpu, "Event data recorder") {

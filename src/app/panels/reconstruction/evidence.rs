@@ -25,7 +25,7 @@ pub fn evidence_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let is_own =
         |of: &&VehicleChoice| matches!(of, VehicleChoice::File(_) | VehicleChoice::Sheet(_));
     let own: Vec<VehicleChoice> =
-        [&project.vehicle, &project.bullet].into_iter().filter(is_own).cloned().collect();
+        [&project.vehicle, &project.striking].into_iter().filter(is_own).cloned().collect();
     let (project, session) = (&mut project.reconstruction, &session.reconstruction);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let Some(preview) = &session.preview else {
@@ -63,7 +63,7 @@ fn start_ui(
     }
     ui.strong("How fast were the cars?");
     ui.label(
-        "From what was found after a collision (rest position, tyre marks, damage, recorder, friction, \
+        "From what was found after a collision (rest position, tire marks, damage, recorder, friction, \
          masses) back to the speeds before it, as a distribution.",
     );
     ui.add_space(looks::PART);
@@ -77,7 +77,7 @@ fn start_ui(
         (
             Icon::History,
             "Look at the example",
-            "A car that was hit behind its left rear wheel and slid to rest, with four tyre marks",
+            "A car that was hit behind its left rear wheel and slid to rest, with four tire marks",
             Command::Reconstruct(ReconstructionCommand::Example),
         ),
         (

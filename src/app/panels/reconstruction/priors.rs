@@ -26,12 +26,12 @@ pub fn prior_ranges_ui(ui: &mut Ui, ranges: &mut PriorRanges, units: UnitSystem)
         ui.weak("Each value inside is equally likely; what is not checked has a default.");
         Grid::new("prior ranges").num_columns(N_COLUMNS).min_col_width(10.0).show(ui, |ui| {
             for (label, range, usual, possible) in [
-                ("Speed, struck", &mut ranges.target_speed_m_s, [0.0, 40.0], EVIDENCE_SPEED),
-                ("Speed, striking", &mut ranges.bullet_speed_m_s, [0.0, 40.0], EVIDENCE_SPEED),
+                ("Speed, struck", &mut ranges.struck_speed_m_s, [0.0, 40.0], EVIDENCE_SPEED),
+                ("Speed, striking", &mut ranges.striking_speed_m_s, [0.0, 40.0], EVIDENCE_SPEED),
                 ("Angle of the cars", &mut ranges.heading_difference_rad, [-0.5, 0.5], HEADING),
                 (
                     "Striking sideslip",
-                    &mut ranges.bullet_sideslip_rad,
+                    &mut ranges.striking_sideslip_rad,
                     [-0.2, 0.2],
                     EVIDENCE_HEADING,
                 ),

@@ -15,12 +15,12 @@ pub(super) const SKIN_KNOTS_M: [f64; 8] = [-0.66, -0.36, -0.16, 0.0, 0.16, 0.34,
 /// Positions along the side of the target, measured from its rear axle and positive forwards, m, at
 /// which the depth of its stiff inner structure (wheel, edges of the wheel arch) is given. Values
 /// are linear in between and constant beyond the ends.
-pub(super) const TARGET_STRUCTURE_KNOTS_M: [f64; 12] =
+pub(super) const STRUCK_STRUCTURE_KNOTS_M: [f64; 12] =
     [-0.8, -0.6, -0.45, -0.32, -0.2, -0.1, 0.0, 0.1, 0.2, 0.32, 0.45, 0.6];
 /// Positions along the x axis of the bullet, measured from the start of its front corner and
 /// positive forwards, m, at which the depth of its stiff inner structure (wheel behind the corner,
 /// beam in front of it) is given. Values are linear in between and constant beyond the ends.
-pub(super) const BULLET_STRUCTURE_KNOTS_M: [f64; 10] =
+pub(super) const STRIKING_STRUCTURE_KNOTS_M: [f64; 10] =
     [-0.7, -0.45, -0.25, -0.1, 0.05, 0.2, 0.3, 0.38, 0.46, 0.54];
 
 /// Parameters of one kind of bullet body, which modify those that all bodies share ([`CrushLaw`]).
@@ -39,7 +39,7 @@ pub struct BodyCrush {
     /// Logarithm of the factor on the stiffness k₂ of the inner structures.
     pub structure_log_factor: f64,
     /// Amount that is added to the depth d_b of the inner structure of the bullet, m.
-    pub structure_depth_m: [f64; BULLET_STRUCTURE_KNOTS_M.len()],
+    pub structure_depth_m: [f64; STRIKING_STRUCTURE_KNOTS_M.len()],
     /// Recovery q: ratio of the length over which the skins unload to the crush, at a crush of 0.1
     /// m.
     pub recovery: f64,
@@ -98,10 +98,12 @@ pub struct CrushLaw {
     /// ln k₂, with the stiffness k₂ of the inner structures in N/m².
     pub structure_log_stiffness: f64,
     /// Depth d_t of the inner structure of the target below its skin along the side, m.
-    pub target_structure_depth_m: [f64; TARGET_STRUCTURE_KNOTS_M.len()],
+    #[serde(rename = "target_structure_depth_m")]
+    pub struck_structure_depth_m: [f64; STRUCK_STRUCTURE_KNOTS_M.len()],
     /// Depth d_b of the inner structure of the bullet below its skin along the x axis of the
     /// bullet, m.
-    pub bullet_structure_depth_m: [f64; BULLET_STRUCTURE_KNOTS_M.len()],
+    #[serde(rename = "bullet_structure_depth_m")]
+    pub striking_structure_depth_m: [f64; STRIKING_STRUCTURE_KNOTS_M.len()],
     /// d_θ: increase of the depth of the structures with the heading angle θ_b of the bullet,
     /// m/rad.
     pub structure_depth_angle_m_rad: f64,
@@ -157,7 +159,7 @@ impl BodyCrush {
             depth_log_factor: [0.0; DEPTH_KNOTS_M.len()],
             outline_log_factor: [0.0; N_OUTLINE_FACTORS],
             structure_log_factor: 0.0,
-            structure_depth_m: [0.0; BULLET_STRUCTURE_KNOTS_M.len()],
+            structure_depth_m: [0.0; STRIKING_STRUCTURE_KNOTS_M.len()],
             recovery: 0.5,
             friction: 0.0,
         }
@@ -174,8 +176,8 @@ macro_rules! for_each_parameter {
         for value in $($reference)+ law.skin_log_factor { visit(value, 0.4); }
         for value in $($reference)+ law.skin_bulge_m { visit(value, 0.03); }
         visit($($reference)+ law.structure_log_stiffness, 0.7);
-        for value in $($reference)+ law.target_structure_depth_m { visit(value, 0.04); }
-        for value in $($reference)+ law.bullet_structure_depth_m { visit(value, 0.04); }
+        for value in $($reference)+ law.struck_structure_depth_m { visit(value, 0.04); }
+        for value in $($reference)+ law.striking_structure_depth_m { visit(value, 0.04); }
         visit($($reference)+ law.structure_depth_angle_m_rad, 0.1);
         visit($($reference)+ law.structure_tilt, 0.3);
         visit($($reference)+ law.structure_friction, 0.1);
@@ -217,10 +219,10 @@ impl CrushLaw {
             skin_log_factor: [0.0; SKIN_KNOTS_M.len()],
             skin_bulge_m: [0.0; SKIN_KNOTS_M.len()],
             structure_log_stiffness: 15.5,
-            target_structure_depth_m: [
+            struck_structure_depth_m: [
                 0.2, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.15, 0.2,
             ],
-            bullet_structure_depth_m: [
+            striking_structure_depth_m: [
                 -0.06, -0.06, -0.05, -0.02, 0.0, 0.0, 0.0, -0.03, -0.03, -0.03,
             ],
             structure_depth_angle_m_rad: 0.0,

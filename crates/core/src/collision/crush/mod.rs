@@ -14,7 +14,7 @@
 //! - [`CrushLaw::fit`]: non-linear least squares on known force histories.
 //!
 //! Assumptions: the motion is planar; the side of the target is straight; neighbouring springs do
-//! not influence each other; tyre forces are neglected during contact. Left out: the rotation of
+//! not influence each other; tire forces are neglected during contact. Left out: the rotation of
 //! wheels, parts that tear off, and the height of the contact. Validated by cross-validation on the
 //! shipped finite-element runs (`docs/VALIDATION.md`).
 

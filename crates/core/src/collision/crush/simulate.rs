@@ -1,7 +1,7 @@
 //! Simulates the crush of two vehicles: force over time from first contact on.
 
 use super::law::{
-    BULLET_STRUCTURE_KNOTS_M, CrushLaw, DEPTH_KNOTS_M, SKIN_KNOTS_M, TARGET_STRUCTURE_KNOTS_M,
+    CrushLaw, DEPTH_KNOTS_M, SKIN_KNOTS_M, STRIKING_STRUCTURE_KNOTS_M, STRUCK_STRUCTURE_KNOTS_M,
 };
 use super::outline::{N_ELEMENTS, SkinElement};
 
@@ -89,8 +89,8 @@ impl Body {
 #[derive(Debug, Clone, Copy, Default)]
 struct CrushContact {
     force_n: [f64; 2],
-    target_moment_n_m: f64,
-    bullet_moment_n_m: f64,
+    struck_moment_n_m: f64,
+    striking_moment_n_m: f64,
     /// Largest overlap, m; a negative value is the gap.
     depth_m: f64,
     slip_force_w: f64,
@@ -138,11 +138,11 @@ impl CrushLaw {
         dt_s: f64,
     ) -> Option<CrushHistory> {
         let mut springs = Springs::new(self, scenario)?;
-        let [mut target, mut bullet] = springs.at_first_contact();
+        let [mut struck, mut striking] = springs.at_first_contact();
         let inertial = [0, 1].map(|i| [scenario.mass_kg[i], scenario.yaw_inertia_kg_m2[i]]);
         let mut history = CrushHistory::zero(n_steps);
         for step in 0..n_steps {
-            let contact = springs.contact(&target, &bullet);
+            let contact = springs.contact(&struck, &striking);
             if contact.depth_m < -PARTED_M {
                 break;
             }
@@ -151,8 +151,8 @@ impl CrushLaw {
             history.fy_n[step] = fy;
             history.depth_m[step] = contact.depth_m.max(0.0);
             history.slip_m_s[step] = contact.slip_force_w / (contact.force_sum_n + 1.0);
-            target.step([fx, fy], contact.target_moment_n_m, inertial[0], dt_s);
-            bullet.step([-fx, -fy], contact.bullet_moment_n_m, inertial[1], dt_s);
+            struck.step([fx, fy], contact.struck_moment_n_m, inertial[0], dt_s);
+            striking.step([-fx, -fy], contact.striking_moment_n_m, inertial[1], dt_s);
         }
         Some(history)
     }
@@ -163,14 +163,14 @@ impl<'a> Springs<'a> {
         let body = law.bodies.get(scenario.body_idx)?;
         let elements = body.nose.elements(&body.outline_log_factor);
         let angle = scenario.theta_b_rad - REFERENCE_ANGLE_RAD;
-        let depth: [f64; BULLET_STRUCTURE_KNOTS_M.len()] = std::array::from_fn(|i| {
-            law.bullet_structure_depth_m[i]
+        let depth: [f64; STRIKING_STRUCTURE_KNOTS_M.len()] = std::array::from_fn(|i| {
+            law.striking_structure_depth_m[i]
                 + body.structure_depth_m[i]
                 + law.structure_depth_angle_m_rad * angle
         });
         let structure_m = elements.map(|element| {
             let along = element.position_m[0] - body.nose.corner_x_m;
-            linear(&BULLET_STRUCTURE_KNOTS_M, &depth, along)
+            linear(&STRIKING_STRUCTURE_KNOTS_M, &depth, along)
         });
         let slope: [f64; DEPTH_KNOTS_M.len()] =
             std::array::from_fn(|i| (law.depth_log_stiffness[i] + body.depth_log_factor[i]).exp());
@@ -203,33 +203,33 @@ impl<'a> Springs<'a> {
         let [x, y] = body.nose.touching_point_m(scenario.theta_b_rad);
         let (sin, cos) = scenario.theta_b_rad.sin_cos();
         let [contact_x, contact_y] = scenario.contact_m;
-        let target = Body {
+        let struck = Body {
             position_m: [0.0; 2],
             yaw_rad: 0.0,
             velocity_m_s: [0.0; 2],
             yaw_rate_rad_s: 0.0,
         };
-        let bullet = Body {
+        let striking = Body {
             position_m: [contact_x - (cos * x - sin * y), contact_y - (sin * x + cos * y)],
             yaw_rad: scenario.theta_b_rad,
             velocity_m_s: scenario.relative_velocity_m_s,
             yaw_rate_rad_s: 0.0,
         };
-        [target, bullet]
+        [struck, striking]
     }
 
-    fn contact(&mut self, target: &Body, bullet: &Body) -> CrushContact {
-        let turn_target = target.yaw_rad.sin_cos();
-        let turn_bullet = bullet.yaw_rad.sin_cos();
-        let turn_between = (bullet.yaw_rad - target.yaw_rad).sin_cos();
+    fn contact(&mut self, struck: &Body, striking: &Body) -> CrushContact {
+        let turn_struck = struck.yaw_rad.sin_cos();
+        let turn_striking = striking.yaw_rad.sin_cos();
+        let turn_between = (striking.yaw_rad - struck.yaw_rad).sin_cos();
         let mut sum = CrushContact { depth_m: f64::NEG_INFINITY, ..CrushContact::default() };
         for i in 0..N_ELEMENTS {
             let element = self.elements[i];
-            let arm_bullet = turned(turn_bullet, element.position_m);
-            let arm_target: [f64; 2] = std::array::from_fn(|a| {
-                bullet.position_m[a] + arm_bullet[a] - target.position_m[a]
+            let arm_striking = turned(turn_striking, element.position_m);
+            let arm_struck: [f64; 2] = std::array::from_fn(|a| {
+                striking.position_m[a] + arm_striking[a] - struck.position_m[a]
             });
-            let [x, y] = turned_back(turn_target, arm_target);
+            let [x, y] = turned_back(turn_struck, arm_struck);
             let depth = y - self.scenario.contact_m[1];
             let place = x - self.law.rear_axle_x_m;
             if depth > MAX_DEPTH_M || place < REAR_END_M {
@@ -246,13 +246,13 @@ impl<'a> Springs<'a> {
             }
             let share = load.structure / total;
             let velocity = turned_back(
-                turn_target,
+                turn_struck,
                 [
-                    bullet.velocity_m_s[0]
-                        - bullet.yaw_rate_rad_s * arm_bullet[1]
-                        - (target.velocity_m_s[0] - target.yaw_rate_rad_s * arm_target[1]),
-                    bullet.velocity_m_s[1] + bullet.yaw_rate_rad_s * arm_bullet[0]
-                        - (target.velocity_m_s[1] + target.yaw_rate_rad_s * arm_target[0]),
+                    striking.velocity_m_s[0]
+                        - striking.yaw_rate_rad_s * arm_striking[1]
+                        - (struck.velocity_m_s[0] - struck.yaw_rate_rad_s * arm_struck[1]),
+                    striking.velocity_m_s[1] + striking.yaw_rate_rad_s * arm_striking[0]
+                        - (struck.velocity_m_s[1] + struck.yaw_rate_rad_s * arm_struck[0]),
                 ],
             );
             let damping = (1.0 + self.law.damping_s_m * velocity[1]).max(0.0);
@@ -265,11 +265,11 @@ impl<'a> Springs<'a> {
                 normal_force * (normal[0] + friction * normal[1]),
                 normal_force * (normal[1] - friction * normal[0]),
             ];
-            let [fx, fy] = turned(turn_target, local);
+            let [fx, fy] = turned(turn_struck, local);
             sum.force_n[0] += fx;
             sum.force_n[1] += fy;
-            sum.target_moment_n_m += arm_target[0] * fy - arm_target[1] * fx;
-            sum.bullet_moment_n_m -= arm_bullet[0] * fy - arm_bullet[1] * fx;
+            sum.struck_moment_n_m += arm_struck[0] * fy - arm_struck[1] * fx;
+            sum.striking_moment_n_m -= arm_striking[0] * fy - arm_striking[1] * fx;
             sum.slip_force_w += slip * normal_force;
             sum.force_sum_n += normal_force;
         }
@@ -294,9 +294,9 @@ impl<'a> Springs<'a> {
         } else {
             0.0
         };
-        let target_structure =
-            linear(&TARGET_STRUCTURE_KNOTS_M, &self.law.target_structure_depth_m, place_m);
-        let overlap = depth_m - target_structure - self.structure_m[i];
+        let struck_structure =
+            linear(&STRUCK_STRUCTURE_KNOTS_M, &self.law.struck_structure_depth_m, place_m);
+        let overlap = depth_m - struck_structure - self.structure_m[i];
         let structure = self.structure_stiffness * softplus(overlap, self.structure_softness_m);
         self.greatest_depth_m[i] = depth_m;
         self.load_there[i] = Load { skin, structure };
@@ -328,16 +328,16 @@ impl<'a> Springs<'a> {
     /// - `deepest_m`: largest overlap of the element so far, less the reference of 0.1 m.
     fn normal(
         &self,
-        bullet_normal: [f64; 2],
+        striking_normal: [f64; 2],
         [deepest_m, place_m, structure_share]: [f64; 3],
     ) -> [f64; 2] {
         let law = self.law;
         let share = law.normal_share
             + law.normal_share_depth_1_m * deepest_m
             + law.normal_share_place_1_m * place_m;
-        let rise = slope(&TARGET_STRUCTURE_KNOTS_M, &law.target_structure_depth_m, place_m);
+        let rise = slope(&STRUCK_STRUCTURE_KNOTS_M, &law.struck_structure_depth_m, place_m);
         let tilt = law.structure_tilt * structure_share * rise;
-        let [x, y] = [share * bullet_normal[0] - tilt, 1.0 - share + share * bullet_normal[1]];
+        let [x, y] = [share * striking_normal[0] - tilt, 1.0 - share + share * striking_normal[1]];
         let length = x.hypot(y) + 1e-9;
         [x / length, y / length]
     }
@@ -409,7 +409,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn the_bullet_pushes_and_the_cars_part() {
+    fn the_striking_pushes_and_the_cars_part() {
         let history = law().simulate(&example(), 250, 1e-3).unwrap();
         let impulse: f64 = history.fy_n.iter().sum::<f64>() * 1e-3;
         // The impulse lies between that which stops the approach of the contact points and that

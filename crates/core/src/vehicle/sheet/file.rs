@@ -197,9 +197,9 @@ impl DataSheet {
     }
 }
 
-/// Rolling radius of a tyre by its size, m; `None` if the text is no size.
+/// Rolling radius of a tire by its size, m; `None` if the text is no size.
 ///
-/// A loaded tyre rolls on 0.97 of its free radius.
+/// A loaded tire rolls on 0.97 of its free radius.
 fn tire_radius_m(size: &str) -> Option<f64> {
     let size = size.trim_start_matches(|c: char| c.is_ascii_alphabetic());
     let (width, rest) = size.split_once('/')?;

@@ -15,7 +15,7 @@
 //!   weight of a driver.
 //! - Wheelbase, track and mass from the outer size: the vehicles of the library, of which
 //!   [`Cvs2024`](crate::bibliography::Cvs2024) gives length and width.
-//! - Suspension and tyres: 12 multibody cars and the reference car, whose values were measured on the
+//! - Suspension and tires: 12 multibody cars and the reference car, whose values were measured on the
 //!   models in static and steady tests. They are plausible cars, not measured ones; published
 //!   measurements of single cars lie within the scatter
 //!   ([`KktseCornering2019`](crate::bibliography::KktseCornering2019): cornering compliance 6.7 and 3.1 deg/g, that is
@@ -260,7 +260,7 @@ fn tires(quantity: SheetQuantity, class: VehicleClass, values: &SheetValues<'_>)
         ),
         Q::Friction => absolute(0.80, 0.06, "dry asphalt", ASSUMED),
         Q::SlidingRatio => relative(0.80, 0.065, "0.8 for all classes", MULTIBODY),
-        Q::RollingResistance => relative(0.011, 0.15, "passenger-car tyres on asphalt", ASSUMED),
+        Q::RollingResistance => relative(0.011, 0.15, "passenger-car tires on asphalt", ASSUMED),
         _ => relative(
             class.pick([0.80, 0.65, 1.00, 1.05, 1.00]),
             class.pick([0.25, 0.10, 0.15, 0.15, 0.15]),

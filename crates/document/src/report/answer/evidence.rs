@@ -1,7 +1,7 @@
 //! How well the evidence is explained, and which courses of events it leaves possible.
 
 use crate::report::answer::reconstruct::quantities;
-use crate::report::answer::tyre_marks::compared_marks;
+use crate::report::answer::tire_marks::compared_marks;
 use crate::report::numbers::{Wording, fill};
 use crate::report::{Block, Table};
 use impactlab_core::units::{Quantity, significant};

@@ -211,7 +211,7 @@ impl Rows<'_> {
         let kind = mark.kind.map(|kind| self.wording.term(&word(&kind)));
         let wheel = self.wording.term(&word(&mark.wheel));
         let label = kind.map_or(wheel.clone(), |kind| format!("{wheel}, {kind}"));
-        self.push_measured(words.tyre_mark, &label, text, mark.sigma_m == DEFAULT_MARK_SIGMA_M);
+        self.push_measured(words.tire_mark, &label, text, mark.sigma_m == DEFAULT_MARK_SIGMA_M);
     }
 }
 

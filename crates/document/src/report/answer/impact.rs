@@ -75,7 +75,7 @@ fn facts(report: &ImpactReport, wording: &Wording) -> Vec<Fact> {
 /// Both vehicles after the impact.
 fn vehicles(report: &ImpactReport, wording: &Wording) -> Table {
     let words = wording.words;
-    let bodies = [&report.target, &report.bullet];
+    let bodies = [&report.struck, &report.striking];
     let row = |label: &str, of: &dyn Fn(&BodyReport) -> String| {
         let [struck, striking] = bodies.map(of);
         [label.to_owned(), struck, striking]

@@ -24,7 +24,7 @@ mod evidence;
 
 mod evidence_inputs;
 
-mod tyre_marks;
+mod tire_marks;
 
 pub(super) mod stills;
 

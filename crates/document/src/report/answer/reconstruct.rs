@@ -24,7 +24,7 @@ use impactlab_study::{
 
 /// Quantities whose distribution is drawn.
 const DRAWN: [ReconstructedQuantity; 2] =
-    [ReconstructedQuantity::TargetSpeed, ReconstructedQuantity::ClosingSpeed];
+    [ReconstructedQuantity::StruckSpeed, ReconstructedQuantity::ClosingSpeed];
 
 /// Restrictions with which an interval is no answer.
 const DOUBTS: [BadgeKind; 2] = [BadgeKind::EvidenceUnexplained, BadgeKind::FewParticles];

@@ -6,7 +6,7 @@ use crate::figure::{analysis_force_figure, analysis_motion_figure};
 use crate::report::answer::Context;
 use crate::report::answer::facts::{Fact, Meaning, fact_blocks, provenance_of};
 use crate::report::answer::stills::simulation_stills;
-use crate::report::answer::tyre_marks::computed_marks;
+use crate::report::answer::tire_marks::computed_marks;
 use crate::report::answer::vehicle_inputs::vehicle_rows;
 use crate::report::answer::zone_inputs::zone_rows;
 use crate::report::method::Method;

@@ -247,7 +247,7 @@ pub(super) const WORDS: Words = Words {
     speed_before: "Geschwindigkeit vor dem Aufprall",
     recorder: "Unfalldatenspeicher (EDR)",
     video: "Lage im Video",
-    tyre_mark: "Reifenspur",
+    tire_mark: "Reifenspur",
     mark_value: "{n} Punkte von {first} bis {last}, je ± {sigma}",
     wheel: "Rad",
     mark_cause: "Durch",

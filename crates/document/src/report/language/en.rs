@@ -104,7 +104,7 @@ pub(super) const WORDS: Words = Words {
     duration: "duration",
     force_file: "file of the force",
     peak_force: "peak force",
-    delta_v_contact: "Δv over the contact, tyres included",
+    delta_v_contact: "Δv over the contact, tires included",
     end_position: "position at the end",
     distance: "length of the path",
     final_heading: "heading at the end",
@@ -199,7 +199,7 @@ pub(super) const WORDS: Words = Words {
     zones_reconstructed: "Each wheel stands on the friction of the zone of the ground in which it is, and elsewhere on \
                           that of the road: {zones}.",
     reconstruction_cars: "Reconstruction of “{name}” from above: the struck car as a particle of median speed leaves it \
-                          at rest, and its tyre marks, over what was found",
+                          at rest, and its tire marks, over what was found",
     reconstruction_picture: "Reconstruction of “{name}” from above: paths over what was found",
     marginal_picture: "“{name}”: {quantity} before and after the evidence",
     budget_picture: "“{name}”: what further evidence would bring",
@@ -243,14 +243,14 @@ pub(super) const WORDS: Words = Words {
     speed_before: "speed before the impact",
     recorder: "event data recorder",
     video: "position in the video",
-    tyre_mark: "tyre mark",
+    tire_mark: "tire mark",
     mark_value: "{n} points from {first} to {last}, each ± {sigma}",
     wheel: "Wheel",
     mark_cause: "By",
     mark_length: "Length",
     mark_time: "Time",
     mark_places: "From (X; Y) to (X; Y)",
-    marks_computed_caption: "Tyre marks that the simulation leaves",
+    marks_computed_caption: "Tire marks that the simulation leaves",
     marks_computed_text: "A wheel marks the ground where it is locked, or slides sideways by more than {slip}, at \
         more than {speed}. The simulation of the vehicle itself leaves these marks, not those drawn from its data sheet.",
     mark_found_length: "Found length",
@@ -258,7 +258,7 @@ pub(super) const WORDS: Words = Words {
     mark_mean_distance: "Mean distance",
     mark_largest_distance: "Largest distance",
     no_mark: "no mark",
-    marks_compared_caption: "Tyre marks that were found beside those of a particle of median speed",
+    marks_compared_caption: "Tire marks that were found beside those of a particle of median speed",
     marks_compared_text: "Each found mark stands beside the nearest one that its wheel leaves in one motion, that of a particle \
         of median speed; the distances are those of places on the found mark to the computed one.",
     prior: "taken to be likely before",
@@ -327,16 +327,16 @@ pub(super) const WORDS: Words = Words {
         velocity, the tangential component from the condition that the contact points do not \
         slide, bounded by the friction limit. The energy that is lost is the difference of \
         kinetic energies.",
-    limits_impact: "The impact is instantaneous, at one point, without a moment there; tyre forces during \
+    limits_impact: "The impact is instantaneous, at one point, without a moment there; tire forces during \
         the contact are neglected. Restitution and friction limit are inputs.",
     method_four_dof: "4DOF vehicle model",
     method_four_dof_text: "The struck vehicle moves along, across, in yaw and in roll on a flat road. The lateral \
-        force of each tyre saturates with the slip angle and falls to sliding friction beyond \
+        force of each tire saturates with the slip angle and falls to sliding friction beyond \
         it; vertical loads shift with the accelerations; wheels roll freely, turn against a \
         brake or are locked. The impact enters as a force over time at the contact point. \
         Equations are integrated by the Runge–Kutta method with a fixed step, which is divided \
         for vehicles with faster modes.",
-    limits_four_dof: "Pitch, heave, tyre relaxation, aligning moments and suspension kinematics are left out; \
+    limits_four_dof: "Pitch, heave, tire relaxation, aligning moments and suspension kinematics are left out; \
         the road is flat; a wheel has the friction of the road, or that of the zone it is in. A lifted wheel or a roll beyond 15° \
         is flagged; a rollover is not simulated. A second contact of the vehicles is flagged and \
         not computed.",
@@ -374,7 +374,7 @@ pub(super) const WORDS: Words = Words {
         named with its source in section 3. Where vehicles are drawn, each open quantity is \
         drawn from its scatter.",
     limits_sheet: "Inertia, CG height and axle loads rest on measured vehicles of 1971 to 2005; suspension \
-        and tyres on 13 multibody cars, which are plausible and not measured.",
+        and tires on 13 multibody cars, which are plausible and not measured.",
     validation_text: "These numbers are not of this case: they say how the models did where the truth was \
         known. The data are simulations, not measurements; no real collision was tried. Source: \
         docs/VALIDATION.md of the program, with the command of each table.",

@@ -215,7 +215,7 @@ pub(in crate::report) struct Words {
     pub speed_before: &'static str,
     pub recorder: &'static str,
     pub video: &'static str,
-    pub tyre_mark: &'static str,
+    pub tire_mark: &'static str,
     pub mark_value: &'static str,
     pub wheel: &'static str,
     pub mark_cause: &'static str,

@@ -117,8 +117,8 @@ fn known(scenario: &ForceScenario, columns: ColumnSet) -> ForceScenario {
         ColumnSet::ThetaContactAndBody => scenario.clone(),
         ColumnSet::Theta => ForceScenario {
             contact_m: None,
-            bullet_position_m: None,
-            bullet_body: None,
+            striking_position_m: None,
+            striking_body: None,
             ..scenario.clone()
         },
     }

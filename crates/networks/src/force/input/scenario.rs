@@ -1,7 +1,7 @@
 //! The scenario θ of a collision, which is the input of a force model, and its canonical form.
 //!
 //! Two symmetries hold: a mirrored scenario has the mirrored force, and a common velocity of both
-//! vehicles does not change the force, since tyre forces during the contact are neglected.
+//! vehicles does not change the force, since tire forces during the contact are neglected.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use impactlab_core::collision::{Impact, ImpactCase, Scenario, ScenarioError};
 use impactlab_core::data::{Case, DataError, ForceAttributes, StruckSide, Value};
 use impactlab_core::numerics::wrap_angle_rad;
 use impactlab_core::ranges::{
-    BODY_MASS, BODY_YAW_INERTIA, BULLET_OFFSET, CONTACT_X, CONTACT_Y, HEADING, Range, SPEED,
+    BODY_MASS, BODY_YAW_INERTIA, CONTACT_X, CONTACT_Y, HEADING, Range, SPEED, STRIKING_OFFSET,
 };
 
 /// Two vehicles at first contact, in world axes with X along the target's heading. Neither vehicle
@@ -19,9 +19,11 @@ pub struct ForceScenario {
     /// Masses of target and bullet, kg.
     pub mass_kg: [f64; 2],
     /// Velocity `[x, y]` of the target's CG, m/s.
-    pub target_velocity_m_s: [f64; 2],
+    #[serde(rename = "target_velocity_m_s")]
+    pub struck_velocity_m_s: [f64; 2],
     /// Velocity `[x, y]` of the bullet's CG, m/s.
-    pub bullet_velocity_m_s: [f64; 2],
+    #[serde(rename = "bullet_velocity_m_s")]
+    pub striking_velocity_m_s: [f64; 2],
     /// Heading of the bullet against the target's, rad, −π to π.
     pub theta_b_rad: f64,
     /// The struck side of the target.
@@ -33,9 +35,11 @@ pub struct ForceScenario {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub normal_rad: Option<f64>,
     /// The bullet's CG `[x, y]` from the target's CG, m, where it is known.
-    pub bullet_position_m: Option<[f64; 2]>,
+    #[serde(rename = "bullet_position_m")]
+    pub striking_position_m: Option<[f64; 2]>,
     /// Kind of bullet body, where it is known.
-    pub bullet_body: Option<String>,
+    #[serde(rename = "bullet_body")]
+    pub striking_body: Option<String>,
     /// Yaw inertias of target and bullet, kg m², where they are known.
     pub yaw_inertia_kg_m2: [Option<f64>; 2],
 }
@@ -49,12 +53,12 @@ impl ForceScenario {
         let attributes = ForceAttributes::read(&case.attributes)?;
         let number = |name| case.attributes.number(name);
         let position = number("bullet_x0_m").zip(number("bullet_y0_m"));
-        let bullet_body = case.attributes.get("bullet_body").map(|value| match value {
+        let striking_body = case.attributes.get("bullet_body").map(|value| match value {
             Value::Text(text) => text.clone(),
             Value::Number(number) => number.to_string(),
         });
-        let bullet_position_m = position.map(|(x, y)| [x, y]);
-        Ok(Self { bullet_position_m, bullet_body, ..Self::from_attributes(&attributes) })
+        let striking_position_m = position.map(|(x, y)| [x, y]);
+        Ok(Self { striking_position_m, striking_body, ..Self::from_attributes(&attributes) })
     }
 
     /// The scenario of a case's attributes, without position and body of the bullet, which they do not
@@ -62,18 +66,18 @@ impl ForceScenario {
     pub fn from_attributes(attributes: &ForceAttributes) -> Self {
         let [_, contact_y_m] = attributes.contact_m;
         let theta = attributes.theta_b_rad;
-        let approach = attributes.bullet_velocity_m_s[1] - attributes.target_velocity_m_s[1];
+        let approach = attributes.striking_velocity_m_s[1] - attributes.struck_velocity_m_s[1];
         let side = || struck_side(Some(contact_y_m), theta, approach);
         Self {
             mass_kg: attributes.mass_kg,
-            target_velocity_m_s: attributes.target_velocity_m_s,
-            bullet_velocity_m_s: attributes.bullet_velocity_m_s,
+            struck_velocity_m_s: attributes.struck_velocity_m_s,
+            striking_velocity_m_s: attributes.striking_velocity_m_s,
             theta_b_rad: theta,
             side: attributes.side.unwrap_or_else(side),
             contact_m: Some(attributes.contact_m),
             normal_rad: None,
-            bullet_position_m: None,
-            bullet_body: None,
+            striking_position_m: None,
+            striking_body: None,
             yaw_inertia_kg_m2: attributes.yaw_inertia_kg_m2,
         }
     }
@@ -85,27 +89,27 @@ impl ForceScenario {
     /// [`ScenarioError`] if the vehicles do not meet.
     pub fn from_scenario(scenario: &Scenario) -> Result<Self, ScenarioError> {
         let geometry = scenario.geometry()?;
-        let (target, bullet) = (&scenario.target, &scenario.bullet);
-        let (sin, cos) = target.heading_rad.sin_cos();
+        let (struck, striking) = (&scenario.struck, &scenario.striking);
+        let (sin, cos) = struck.heading_rad.sin_cos();
         let turned = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
-        let target_velocity_m_s = turned([target.vx_m_s, target.vy_m_s]);
-        let bullet_velocity_m_s = turned([bullet.vx_m_s, bullet.vy_m_s]);
-        let contact_m = geometry.target.body_from_world(geometry.contact_point_m);
-        let theta_b_rad = wrap_angle_rad(bullet.heading_rad - target.heading_rad);
-        let approach = bullet_velocity_m_s[1] - target_velocity_m_s[1];
+        let struck_velocity_m_s = turned([struck.vx_m_s, struck.vy_m_s]);
+        let striking_velocity_m_s = turned([striking.vx_m_s, striking.vy_m_s]);
+        let contact_m = geometry.struck.body_from_world(geometry.contact_point_m);
+        let theta_b_rad = wrap_angle_rad(striking.heading_rad - struck.heading_rad);
+        let approach = striking_velocity_m_s[1] - struck_velocity_m_s[1];
         Ok(Self {
-            mass_kg: [target.mass_kg, bullet.mass_kg],
-            target_velocity_m_s,
-            bullet_velocity_m_s,
+            mass_kg: [struck.mass_kg, striking.mass_kg],
+            struck_velocity_m_s,
+            striking_velocity_m_s,
             theta_b_rad,
             side: struck_side(Some(contact_m[1]), theta_b_rad, approach),
             contact_m: Some(contact_m),
-            normal_rad: Some(wrap_angle_rad(geometry.normal_angle_rad - target.heading_rad)),
-            bullet_position_m: Some(
-                geometry.target.body_from_world([geometry.bullet.x_m, geometry.bullet.y_m]),
+            normal_rad: Some(wrap_angle_rad(geometry.normal_angle_rad - struck.heading_rad)),
+            striking_position_m: Some(
+                geometry.struck.body_from_world([geometry.striking.x_m, geometry.striking.y_m]),
             ),
-            bullet_body: None,
-            yaw_inertia_kg_m2: [Some(target.yaw_inertia_kg_m2), Some(bullet.yaw_inertia_kg_m2)],
+            striking_body: None,
+            yaw_inertia_kg_m2: [Some(struck.yaw_inertia_kg_m2), Some(striking.yaw_inertia_kg_m2)],
         })
     }
 
@@ -121,13 +125,13 @@ impl ForceScenario {
             add(&format!("yaw_inertia_kg_m2 of the {body}"), inertia, BODY_YAW_INERTIA);
         }
         for (i, axis) in ["x", "y"].into_iter().enumerate() {
-            let [target, bullet] = [self.target_velocity_m_s[i], self.bullet_velocity_m_s[i]];
-            add(&format!("target_velocity_m_s, {axis}"), Some(target), SPEED);
-            add(&format!("bullet_velocity_m_s, {axis}"), Some(bullet), SPEED);
+            let [struck, striking] = [self.struck_velocity_m_s[i], self.striking_velocity_m_s[i]];
+            add(&format!("target_velocity_m_s, {axis}"), Some(struck), SPEED);
+            add(&format!("bullet_velocity_m_s, {axis}"), Some(striking), SPEED);
             let range = [CONTACT_X, CONTACT_Y][i];
             add(&format!("contact_m, {axis}"), self.contact_m.map(|at| at[i]), range);
-            let position = self.bullet_position_m.map(|at| at[i]);
-            add(&format!("bullet_position_m, {axis}"), position, BULLET_OFFSET);
+            let position = self.striking_position_m.map(|at| at[i]);
+            add(&format!("bullet_position_m, {axis}"), position, STRIKING_OFFSET);
         }
         add("theta_b_rad", Some(self.theta_b_rad), HEADING);
         add("normal_rad", self.normal_rad, HEADING);
@@ -145,20 +149,20 @@ impl ForceScenario {
         let case = ImpactCase {
             m_t_kg,
             m_b_kg,
-            v_t_m_s: self.target_velocity_m_s,
-            v_b_m_s: self.bullet_velocity_m_s,
+            v_t_m_s: self.struck_velocity_m_s,
+            v_b_m_s: self.striking_velocity_m_s,
             theta_b_rad: self.theta_b_rad,
             izz_t_kg_m2: izz_t?,
             izz_b_kg_m2: izz_b?,
             contact_m: self.contact_m?,
-            bullet_m: self.bullet_position_m?,
+            striking_m: self.striking_position_m?,
         };
         case.to_impact(restitution, friction_limit).ok()
     }
 
     /// Velocity of the bullet relative to the target `v_b − v_t`, m/s.
     pub fn relative_velocity_m_s(&self) -> [f64; 2] {
-        [0, 1].map(|i| self.bullet_velocity_m_s[i] - self.target_velocity_m_s[i])
+        [0, 1].map(|i| self.striking_velocity_m_s[i] - self.struck_velocity_m_s[i])
     }
 
     /// The mirror image left to right.
@@ -166,8 +170,8 @@ impl ForceScenario {
     pub fn mirrored(&self) -> Self {
         let mirror = |[x, y]: [f64; 2]| [x, -y];
         Self {
-            target_velocity_m_s: mirror(self.target_velocity_m_s),
-            bullet_velocity_m_s: mirror(self.bullet_velocity_m_s),
+            struck_velocity_m_s: mirror(self.struck_velocity_m_s),
+            striking_velocity_m_s: mirror(self.striking_velocity_m_s),
             theta_b_rad: -self.theta_b_rad,
             side: match self.side {
                 StruckSide::Left => StruckSide::Right,
@@ -175,7 +179,7 @@ impl ForceScenario {
             },
             contact_m: self.contact_m.map(mirror),
             normal_rad: self.normal_rad.map(|normal| wrap_angle_rad(-normal)),
-            bullet_position_m: self.bullet_position_m.map(mirror),
+            striking_position_m: self.striking_position_m.map(mirror),
             ..self.clone()
         }
     }
@@ -187,8 +191,8 @@ impl ForceScenario {
     pub fn canonical(&self) -> (Self, bool) {
         let mirrored = self.side == StruckSide::Left;
         let right = if mirrored { self.mirrored() } else { self.clone() };
-        let bullet_velocity_m_s = right.relative_velocity_m_s();
-        (Self { target_velocity_m_s: [0.0; 2], bullet_velocity_m_s, ..right }, mirrored)
+        let striking_velocity_m_s = right.relative_velocity_m_s();
+        (Self { struck_velocity_m_s: [0.0; 2], striking_velocity_m_s, ..right }, mirrored)
     }
 }
 
@@ -219,14 +223,14 @@ pub(crate) mod tests {
     pub(crate) fn example(side: StruckSide) -> ForceScenario {
         let right = ForceScenario {
             mass_kg: [2000.0, 1500.0],
-            target_velocity_m_s: [15.0, 0.25],
-            bullet_velocity_m_s: [16.0, 3.5],
+            struck_velocity_m_s: [15.0, 0.25],
+            striking_velocity_m_s: [16.0, 3.5],
             theta_b_rad: 0.5,
             side: StruckSide::Right,
             contact_m: Some([-1.5, -0.925]),
             normal_rad: None,
-            bullet_position_m: Some([-2.75, -2.5]),
-            bullet_body: Some("A".to_owned()),
+            striking_position_m: Some([-2.75, -2.5]),
+            striking_body: Some("A".to_owned()),
             yaw_inertia_kg_m2: [Some(3600.0), None],
         };
         if side == StruckSide::Right { right } else { right.mirrored() }
@@ -249,7 +253,7 @@ pub(crate) mod tests {
         assert_eq!(example(StruckSide::Left).canonical(), (canonical.clone(), true));
         assert_eq!(canonical.canonical(), (canonical.clone(), false));
         let mut faster = example(StruckSide::Right);
-        for velocity in [&mut faster.target_velocity_m_s, &mut faster.bullet_velocity_m_s] {
+        for velocity in [&mut faster.struck_velocity_m_s, &mut faster.striking_velocity_m_s] {
             *velocity = [velocity[0] + 8.0, velocity[1] - 0.5];
         }
         assert_eq!(faster.canonical().0, canonical);
@@ -272,7 +276,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_scenario_is_seen_from_the_target() {
+    fn a_scenario_is_seen_from_the_struck() {
         let scenario = Scenario::example();
         let seen = ForceScenario::from_scenario(&scenario).unwrap();
         assert_eq!(seen.side, StruckSide::Right);
@@ -280,19 +284,20 @@ pub(crate) mod tests {
         // Turn the whole scene by a quarter: nothing changes.
         let mut turned = scenario;
         let turn = |[x, y]: [f64; 2]| [-y, x];
-        [turned.target_x_m, turned.target_y_m] = turn([turned.target_x_m, turned.target_y_m]);
-        for vehicle in [&mut turned.target, &mut turned.bullet] {
+        [turned.struck_x_m, turned.struck_y_m] = turn([turned.struck_x_m, turned.struck_y_m]);
+        for vehicle in [&mut turned.struck, &mut turned.striking] {
             vehicle.heading_rad += FRAC_PI_2;
             [vehicle.vx_m_s, vehicle.vy_m_s] = turn([vehicle.vx_m_s, vehicle.vy_m_s]);
         }
-        if let ContactLocation::Footprints { bullet_x_m, bullet_y_m } = &mut turned.contact.location
+        if let ContactLocation::Footprints { striking_x_m, striking_y_m } =
+            &mut turned.contact.location
         {
-            [*bullet_x_m, *bullet_y_m] = turn([*bullet_x_m, *bullet_y_m]);
+            [*striking_x_m, *striking_y_m] = turn([*striking_x_m, *striking_y_m]);
         }
         let again = ForceScenario::from_scenario(&turned).unwrap();
         let numbers = |s: &ForceScenario| {
-            let pairs = [s.target_velocity_m_s, s.bullet_velocity_m_s, s.contact_m.unwrap()];
-            [pairs.concat(), s.bullet_position_m.unwrap().to_vec(), vec![s.theta_b_rad]].concat()
+            let pairs = [s.struck_velocity_m_s, s.striking_velocity_m_s, s.contact_m.unwrap()];
+            [pairs.concat(), s.striking_position_m.unwrap().to_vec(), vec![s.theta_b_rad]].concat()
         };
         for (a, b) in numbers(&seen).into_iter().zip(numbers(&again)) {
             assert!((a - b).abs() < 1e-9, "{seen:?}\n{again:?}");

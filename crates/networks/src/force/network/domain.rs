@@ -212,7 +212,7 @@ mod tests {
             assert_eq!(domain.applicability(&turned, contact), expected, "{normal_rad}");
             assert_eq!(domain.outside(&turned).len(), usize::from(expected == 0.0));
         }
-        let fast = ForceScenario { bullet_velocity_m_s: [70.0, 3.0], ..seen };
+        let fast = ForceScenario { striking_velocity_m_s: [70.0, 3.0], ..seen };
         assert_eq!(domain.applicability(&fast, contact), 0.0);
     }
 

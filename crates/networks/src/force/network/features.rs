@@ -101,8 +101,8 @@ pub(super) fn scenario_numbers(
     [contact_x, _]: [f64; 2],
 ) -> [f64; N_SCENARIO] {
     let [vx, vy] = scenario.relative_velocity_m_s();
-    let [target_mass, bullet_mass] = scenario.mass_kg;
-    [target_mass, bullet_mass, vx, vy, scenario.theta_b_rad, contact_x]
+    let [struck_mass, striking_mass] = scenario.mass_kg;
+    [struck_mass, striking_mass, vx, vy, scenario.theta_b_rad, contact_x]
 }
 
 /// The features of each instant, row by row, `[CURVE_N_INSTANTS, N_INSTANT_FEATURES]`.
@@ -204,7 +204,7 @@ impl OpenFeatures {
             .collect();
         let count = |name: &String| {
             let is_it = |case: &&ForceCase| {
-                case.scenario.bullet_body.as_deref().unwrap_or_default() == name
+                case.scenario.striking_body.as_deref().unwrap_or_default() == name
             };
             cases.iter().filter(is_it).count() as f64
         };

@@ -99,11 +99,11 @@ impl BareForce {
             friction_limit: DEFAULT_FRICTION_LIMIT,
             ..impact.surface
         };
-        if let Some([x, y]) = scenario.bullet_position_m {
-            impact.bullet.contact_arm_m = [contact_m[0] - x, contact_m[1] - y];
+        if let Some([x, y]) = scenario.striking_position_m {
+            impact.striking.contact_arm_m = [contact_m[0] - x, contact_m[1] - y];
         }
         for (body, inertia) in
-            [&mut impact.target, &mut impact.bullet].into_iter().zip(scenario.yaw_inertia_kg_m2)
+            [&mut impact.struck, &mut impact.striking].into_iter().zip(scenario.yaw_inertia_kg_m2)
         {
             body.yaw_inertia_kg_m2 = inertia.unwrap_or(body.yaw_inertia_kg_m2);
         }
@@ -271,8 +271,8 @@ mod tests {
         let seen = example(StruckSide::Right);
         for speed_m_s in [3.0, 70.0] {
             let scenario = ForceScenario {
-                target_velocity_m_s: [0.0; 2],
-                bullet_velocity_m_s: [0.2 * speed_m_s, speed_m_s],
+                struck_velocity_m_s: [0.0; 2],
+                striking_velocity_m_s: [0.2 * speed_m_s, speed_m_s],
                 ..seen.clone()
             };
             let bare = force(&scenario, 0.13);
@@ -287,7 +287,7 @@ mod tests {
                 assert!(contact_work_j(v, k, impulse) >= 0.0, "{speed_m_s}: {impulse:?}");
             }
         }
-        let apart = force(&ForceScenario { bullet_velocity_m_s: [15.0, -3.0], ..seen }, 0.13);
+        let apart = force(&ForceScenario { striking_velocity_m_s: [15.0, -3.0], ..seen }, 0.13);
         assert!(!apart.is_approaching && apart.impulse_n_s == [0.0; 2]);
         assert!(apart.components(8, 1.0).iter().all(|of| of.mean[..500] == [0.0; 500]));
     }

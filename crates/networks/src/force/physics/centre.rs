@@ -263,8 +263,11 @@ impl CentreModel {
         if let Some(committee) = &self.committee {
             let body = self.laws.first().and_then(|law| law.bodies.get(body_idx));
             let name = body.map(|body| body.name.clone()).filter(|name| name != NO_NAME);
-            let known =
-                ForceScenario { contact_m: Some(contact_m), bullet_body: name, ..scenario.clone() };
+            let known = ForceScenario {
+                contact_m: Some(contact_m),
+                striking_body: name,
+                ..scenario.clone()
+            };
             history.curve = committee.curve(&history.curve, &known)?;
         }
         self.centre_curve(history, scenario, contact_m)

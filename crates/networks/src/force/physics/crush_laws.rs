@@ -23,7 +23,7 @@ fn yaw_inertia(scenario: &ForceScenario) -> [f64; 2] {
 }
 
 pub(super) fn body_name(scenario: &ForceScenario) -> Option<&str> {
-    Some(scenario.bullet_body.as_deref().unwrap_or(NO_NAME))
+    Some(scenario.striking_body.as_deref().unwrap_or(NO_NAME))
 }
 
 pub(super) fn crush_scenario(
@@ -78,9 +78,9 @@ fn prior_law(cases: &[ForceCase]) -> CrushLaw {
 
 /// Angle of the target's side against the bullet, and where the bullet touches it in its own axes.
 fn nose_contact(scenario: &ForceScenario) -> Option<(f64, [f64; 2])> {
-    let ([x, y], [bullet_x, bullet_y]) = (scenario.contact_m?, scenario.bullet_position_m?);
+    let ([x, y], [striking_x, striking_y]) = (scenario.contact_m?, scenario.striking_position_m?);
     let (sin, cos) = scenario.theta_b_rad.sin_cos();
-    let [dx, dy] = [x - bullet_x, y - bullet_y];
+    let [dx, dy] = [x - striking_x, y - striking_y];
     Some((scenario.theta_b_rad, [cos * dx + sin * dy, cos * dy - sin * dx]))
 }
 

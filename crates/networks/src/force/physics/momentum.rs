@@ -28,7 +28,8 @@ pub struct MomentumModel {
     /// Contact point from the target's CG, m, for scenarios that leave it open or if it must not be used.
     pub contact_m: [f64; 2],
     /// From the bullet's CG to the contact point, in the bullet's own axes, m.
-    pub bullet_arm_m: [f64; 2],
+    #[serde(rename = "bullet_arm_m")]
+    pub striking_arm_m: [f64; 2],
     /// Yaw inertia over mass of target and bullet, m².
     pub inertia_per_mass_m2: [f64; 2],
     /// Whether the contact point of a scenario is used.
@@ -58,7 +59,7 @@ impl MomentumModel {
             friction_limit: 0.4,
             normal_turn_rad: 0.0,
             contact_m: [-1.5, -0.925],
-            bullet_arm_m: [1.9, 0.93],
+            striking_arm_m: [1.9, 0.93],
             inertia_per_mass_m2: [1.8, 1.9],
             uses_contact,
         }
@@ -76,8 +77,8 @@ impl MomentumModel {
         for axis in [0, 1] {
             let contacts = &mut scenarios().filter_map(|s| Some(s.contact_m?[axis]));
             model.contact_m[axis] = mean(contacts).unwrap_or(model.contact_m[axis]);
-            let arms = &mut scenarios().filter_map(|s| Some(bullet_arm_m(s)?[axis]));
-            model.bullet_arm_m[axis] = mean(arms).unwrap_or(model.bullet_arm_m[axis]);
+            let arms = &mut scenarios().filter_map(|s| Some(striking_arm_m(s)?[axis]));
+            model.striking_arm_m[axis] = mean(arms).unwrap_or(model.striking_arm_m[axis]);
             let ratio = |s: &ForceScenario| Some(s.yaw_inertia_kg_m2[axis]? / s.mass_kg[axis]);
             let ratios = &mut scenarios().filter_map(ratio);
             model.inertia_per_mass_m2[axis] =
@@ -104,7 +105,7 @@ impl MomentumModel {
     pub fn impact(&self, scenario: &ForceScenario) -> Impact {
         let known = scenario.contact_m.filter(|_| self.uses_contact);
         let (sin, cos) = scenario.theta_b_rad.sin_cos();
-        let [x, y] = self.bullet_arm_m;
+        let [x, y] = self.striking_arm_m;
         let body = |i: usize, heading_rad, velocity_m_s, contact_arm_m| ImpactBody {
             mass_kg: scenario.mass_kg[i],
             yaw_inertia_kg_m2: self.inertia_per_mass_m2[i] * scenario.mass_kg[i],
@@ -113,11 +114,11 @@ impl MomentumModel {
             yaw_rate_rad_s: 0.0,
             contact_arm_m,
         };
-        let bullet_arm = [x * cos - y * sin, x * sin + y * cos];
-        let (v_t, v_b) = (scenario.target_velocity_m_s, scenario.bullet_velocity_m_s);
+        let striking_arm = [x * cos - y * sin, x * sin + y * cos];
+        let (v_t, v_b) = (scenario.struck_velocity_m_s, scenario.striking_velocity_m_s);
         Impact {
-            target: body(0, 0.0, v_t, known.unwrap_or(self.contact_m)),
-            bullet: body(1, scenario.theta_b_rad, v_b, bullet_arm),
+            struck: body(0, 0.0, v_t, known.unwrap_or(self.contact_m)),
+            striking: body(1, scenario.theta_b_rad, v_b, striking_arm),
             surface: ContactSurface {
                 normal_angle_rad: FRAC_PI_2 + self.normal_turn_rad,
                 restitution: self.restitution,
@@ -172,8 +173,8 @@ fn grid(centre: [f64; 3], half_width: [f64; 3]) -> impl Iterator<Item = [f64; 3]
 }
 
 /// From the bullet's CG to the contact point in the bullet's axes, m, where both are known.
-fn bullet_arm_m(scenario: &ForceScenario) -> Option<[f64; 2]> {
-    let ([cx, cy], [bx, by]) = (scenario.contact_m?, scenario.bullet_position_m?);
+fn striking_arm_m(scenario: &ForceScenario) -> Option<[f64; 2]> {
+    let ([cx, cy], [bx, by]) = (scenario.contact_m?, scenario.striking_position_m?);
     let (sin, cos) = scenario.theta_b_rad.sin_cos();
     let (x, y) = (cx - bx, cy - by);
     Some([x * cos + y * sin, y * cos - x * sin])
@@ -204,7 +205,7 @@ mod tests {
         let mut cases = shipped("fea");
         for case in &mut cases {
             case.impulse_n_s = truth.solve(&case.scenario).unwrap().impulse_n_s;
-            case.scenario.bullet_position_m = None;
+            case.scenario.striking_position_m = None;
             case.scenario.yaw_inertia_kg_m2 = [None; 2];
         }
         let fitted = MomentumModel::fit(&cases.iter().collect::<Vec<_>>(), true);

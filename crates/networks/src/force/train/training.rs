@@ -458,7 +458,7 @@ impl EpochLoop for ForceTrainingRun<'_> {
 
 /// Features of a training case, whose contact point and body are known.
 fn case_features(case: &ForceCase, centre: &CentreCurve, bodies: &[String]) -> Vec<f64> {
-    let name = case.scenario.bullet_body.as_deref().unwrap_or_default();
+    let name = case.scenario.striking_body.as_deref().unwrap_or_default();
     let body_idx = bodies.iter().position(|body| body == name).unwrap_or(0);
     let contact = case.scenario.contact_m.unwrap_or_default();
     features(&case.scenario, centre, (contact, body_idx, bodies.len()))

@@ -14,7 +14,7 @@ use impactlab_core::vehicle::VehicleState;
 pub enum MotionModelKind {
     /// The 4DOF model by the vehicle's data sheet.
     Untuned,
-    /// The 4DOF model with tyre and roll parameters from the fine-tune trajectories.
+    /// The 4DOF model with tire and roll parameters from the fine-tune trajectories.
     Tuned,
     /// The plain network.
     Plain,

@@ -5,8 +5,8 @@
 //! P, L such that the 4DOF model comes to the recorded v_X, v_Y, r at the end of the contact
 //! ```
 //!
-//! The model has the tyre forces during contact, so that P is the impulse of the contact alone; what
-//! the tyres really did during contact and the model does not know is counted as impulse.
+//! The model has the tire forces during contact, so that P is the impulse of the contact alone; what
+//! the tires really did during contact and the model does not know is counted as impulse.
 
 use crate::response::{N_RESIDUAL, STEP_S, rollout};
 use impactlab_core::collision::{Pulse, PulseError, PulseShape};
@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn a_known_impulse_is_found_again() {
-        let vehicle = Preset::ScaledTarget.parameters();
+        let vehicle = Preset::ScaledStruck.parameters();
         let initial = VehicleState { yaw_rad: 0.4, ..VehicleState::driving_straight(6.0) };
         for (impulse, angular) in [([20.0, 150.0], -60.0), ([-40.0, -90.0], 35.0), ([0.0; 2], 0.0)]
         {

@@ -13,7 +13,7 @@
 //! - *Contact*: the window in which a livelier motion explains the samples best; none where nothing
 //!   is gained by one.
 //! - *Force*, where no file gives it: a haversine pulse over that window, with the impulse and the
-//!   angular impulse that lead the 4DOF model, tyre forces included, to the velocities after it.
+//!   angular impulse that lead the 4DOF model, tire forces included, to the velocities after it.
 //!   No force after the contact. It acts at the height of the CG.
 //! - *Roll*, where the log has none: as the 4DOF model rolls under the recorded motion, so that
 //!   nothing is learned from it.

@@ -19,7 +19,7 @@ const CONTACT_S: f64 = 0.2;
 const NOISE: [f64; 3] = [0.02, 0.008_727, 0.017_453];
 
 fn truth_vehicle() -> VehicleParameters {
-    let mut vehicle = Preset::ScaledTarget.parameters().with_friction(0.6);
+    let mut vehicle = Preset::ScaledStruck.parameters().with_friction(0.6);
     vehicle.mass.yaw_inertia_kg_m2 *= 1.2;
     vehicle
 }
@@ -69,7 +69,7 @@ fn gnss_imu() -> Vec<(Channel, f64)> {
 }
 
 fn settings() -> LogSettings {
-    let vehicle = Preset::ScaledTarget.parameters();
+    let vehicle = Preset::ScaledStruck.parameters();
     LogSettings { vehicle, impact_s: None, duration_s: 4.0 }
 }
 
@@ -126,7 +126,7 @@ fn velocities_are_of_use() {
     assert!(with_m_s < 0.02 && with_m_s < 0.5 * without_m_s, "{with_m_s} {without_m_s}");
     let noise_m_s = with.noise.velocity_m_s.unwrap();
     assert!((noise_m_s / 0.03).ln().abs() < 0.25, "{noise_m_s}");
-    // The impulse is what the other vehicle gave, not what the tyres took.
+    // The impulse is what the other vehicle gave, not what the tires took.
     let [px, py] = with.impulse_n_s;
     assert!((px - 15.0).abs() < 10.0 && (py - 120.0).abs() < 15.0, "{px} {py}");
 }
@@ -170,7 +170,7 @@ fn a_recorded_force_keeps_its_impulse_and_its_clock() {
 
 #[test]
 fn roll_is_the_models_where_it_was_not_recorded() {
-    let motion = simulated(&Preset::ScaledTarget.parameters(), Some(load()), 1.5);
+    let motion = simulated(&Preset::ScaledStruck.parameters(), Some(load()), 1.5);
     let mut channels = gnss_imu();
     let of = |channels: &[(Channel, f64)]| {
         let log = log(&motion, (1, 0), channels);

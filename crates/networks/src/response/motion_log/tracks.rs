@@ -6,7 +6,7 @@ use argmin::solver::neldermead::NelderMead;
 use impactlab_core::numerics::{MeasuredTrack, TrackPoint, TrackSample};
 
 /// Spectral density of p⃛ to start with, away from contact and during it, (m/s³)²·s or (rad/s³)²·s:
-/// tyres change the acceleration by some 5 m/s² within 0.2 s, an impact by 30 m/s² within 0.05 s.
+/// tires change the acceleration by some 5 m/s² within 0.2 s, an impact by 30 m/s² within 0.05 s.
 const START_DENSITY: [f64; 2] = [1e2, 2e4];
 /// Expected deviation of noise and density from the start, as a logarithm.
 const PRIOR_STD: [f64; 2] = [0.5, 1.5];

@@ -6,14 +6,14 @@ use impactlab_core::vehicle::{VehicleEvaluation, VehicleParameters, VehicleState
 
 /// Slip angles at which the axle characteristic is corrected, rad, on a road of friction μ₀.
 const SLIP_KNOTS_RAD: [f64; 10] = [0.01, 0.025, 0.05, 0.09, 0.15, 0.25, 0.4, 0.6, 0.85, 1.2];
-/// μ₀: on another road a tyre has the same share of its friction at μ/μ₀ times the slip angle.
+/// μ₀: on another road a tire has the same share of its friction at μ/μ₀ times the slip angle.
 const KNOT_FRICTION: f64 = 0.8;
 /// Equivalent masses of a wheel that is spun up, as shares of the car's mass: a wheel alone, and one
 /// with its share of the driveline.
 const WHEEL_MASS_SHARES: [f64; 2] = [0.0075, 0.03];
 /// Passes through slip → time constant → slip.
 const SPIN_LAG_PASSES: usize = 4;
-/// Speed below which slip angles fade, m/s, as in the tyre model.
+/// Speed below which slip angles fade, m/s, as in the tire model.
 const SLOW_M_S: f64 = 0.5;
 /// Relaxation length σ, m.
 const RELAXATION_LENGTH_M: f64 = 0.1;

@@ -11,7 +11,7 @@
 //! friction μ:
 //!
 //! - *axle characteristic*: side force `μ F_zi Λ_k(|α_i| μ₀/μ) sgn α_i`, Λ_k hat functions over the
-//!   slip angle, as a tyre's curve differs from its formula;
+//!   slip angle, as a tire's curve differs from its formula;
 //! - *drag*: `−μ F_zi [sin α, sin² α, sin 2α, cos α]` along the car, from toe, camber and compliance;
 //! - *wheel inertia*: `−v̇_x`, as wheels are spun up with the car;
 //! - *wheel spin lag*: a wheel under a large slip angle has little grip along its plane, so that its
@@ -28,7 +28,7 @@
 //! - *roll*: `φ`, `φ̇`, `a_y` and `F_y/m` in φ̈, and φ̇ in v̇_y and ṙ, φ̈ in ṙ (compliance, steer);
 //! - *contact*: shares of the collision force and moment that come late or are taken up elsewhere.
 //!
-//! Sources: tyres with rolling wheels, relaxation and load dependence, H. B. Pacejka, Tire and
+//! Sources: tires with rolling wheels, relaxation and load dependence, H. B. Pacejka, Tire and
 //! Vehicle Dynamics, 3rd ed., 2012, chapters 1, 4 and 7. The set was chosen by cross-validation on
 //! training trajectories.
 

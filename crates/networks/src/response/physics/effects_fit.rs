@@ -50,7 +50,7 @@ impl Default for EffectsConfig {
 }
 
 impl EffectsConfig {
-    /// For about a hundred noisy instants: what they say of a tyre at one slip angle counts at all
+    /// For about a hundred noisy instants: what they say of a tire at one slip angle counts at all
     /// others, rather than each strength by itself. Chosen on simulated scaled vehicles
     /// (`examples/scaled_log.rs`), among ridges from 0.03 to 1 with s of 0, 0.99 and 0.999.
     #[must_use]
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn what_is_seen_at_one_slip_angle_counts_at_all_where_strengths_change_together() {
-        let vehicle = Preset::ScaledTarget.parameters();
+        let vehicle = Preset::ScaledStruck.parameters();
         let u = VehicleInput::released();
         let at = |vy_m_s: f64, yaw_rate_rad_s: f64| {
             let x = VehicleState { vx_m_s: 6.0, vy_m_s, yaw_rate_rad_s, ..VehicleState::default() };

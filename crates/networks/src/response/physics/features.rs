@@ -1,4 +1,4 @@
-//! State, force and time as the response network sees them: what tyres and inertia feel, in numbers
+//! State, force and time as the response network sees them: what tires and inertia feel, in numbers
 //! of the order of one.
 
 use impactlab_core::numerics::Lanes;
@@ -31,7 +31,7 @@ const TIRE_UNIT_M_S2: f64 = 5.0;
 /// Rates of the velocities in body axes, which a fast rotation makes large.
 const RATE_UNIT_M_S2: f64 = 20.0;
 const ANGULAR_RATE_UNIT_RAD_S2: f64 = 4.0;
-/// Speed below which slip angles fade, m/s, as in the tyre model.
+/// Speed below which slip angles fade, m/s, as in the tire model.
 const SLOW_M_S: f64 = 0.5;
 /// Time over which what an impact stirs up (wheels, springs) comes to rest, s.
 const TRANSIENT_S: f64 = 0.2;

@@ -1,4 +1,4 @@
-//! Baseline: the 4DOF model with tyre and roll parameters fitted to the fine-tune trajectories by
+//! Baseline: the 4DOF model with tire and roll parameters fitted to the fine-tune trajectories by
 //! particle swarm, held near the data sheet.
 //!
 //! ```text

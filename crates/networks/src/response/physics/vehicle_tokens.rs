@@ -3,7 +3,7 @@
 use impactlab_core::units::STANDARD_GRAVITY_M_S2;
 use impactlab_core::vehicle::VehicleParameters;
 
-/// Groups of parameters: mass and inertia, geometry, tyres, suspension.
+/// Groups of parameters: mass and inertia, geometry, tires, suspension.
 pub const N_TOKENS: usize = 4;
 
 /// Numbers of a group.
@@ -14,7 +14,7 @@ pub const N_TOKEN_NUMBERS: usize = 5;
 /// ```text
 /// mass and inertia   ln(m/2000 kg), m_s/m, I_zz/(m l_f l_r), I_xx/(m w²/4), I_xz/I_zz
 /// geometry           ln(L/2.7 m), l_r/L, w/L, h/L, 0
-/// tyres              c_f, c_r, μ, μ_s/μ, 100 f_R
+/// tires              c_f, c_r, μ, μ_s/μ, 100 f_R
 /// suspension         K_φ/(m_s g h), B/√(K_φ I_xx), front share, h_ra/h, arm/h
 /// ```
 pub fn vehicle_tokens(vehicle: &VehicleParameters) -> [[f64; N_TOKEN_NUMBERS]; N_TOKENS] {

@@ -24,7 +24,7 @@ pub(super) const EVIDENCE_SHARE: f64 = 0.15;
 const N_ROUNDS: usize = 3;
 /// Steps of a trajectory that are learned from: 4 s.
 pub(super) const LEARNED_STEPS: usize = 400;
-/// Place of the friction of the road among the tokens of the tyres: it is not the car's.
+/// Place of the friction of the road among the tokens of the tires: it is not the car's.
 const FRICTION_TOKEN: [usize; 2] = [2, 2];
 /// Difference of tokens below which two vehicles are the same.
 const SAME_TOKENS: f64 = 1e-6;

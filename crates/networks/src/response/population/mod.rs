@@ -13,7 +13,7 @@
 //! own strengths give way to the mean c̄ over cars.
 //!
 //! w is what the effects do not explain the same way on every motion: a road that grips a little less than
-//! its friction says, a collision that turns the car a little more, a tyre under loads that the others did
+//! its friction says, a collision that turns the car a little more, a tire under loads that the others did
 //! not have. It widens what is predicted. What trajectories say of a car is judged by R, all that its
 //! strengths leave, of which a share counts, since it is not independent from row to row.
 //!

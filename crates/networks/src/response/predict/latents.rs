@@ -5,7 +5,7 @@
 //! c = c_j + Σ_m s_m z_m d_m          z_m ~ N(0, 1), drawn once
 //! ```
 //!
-//! A tyre that grips less than the model says does so at every instant. Independent noise at each of
+//! A tire that grips less than the model says does so at every instant. Independent noise at each of
 //! 400 steps would average out instead, and give bands that are too narrow. The directions d_m are
 //! fixed and have a meaning, their scales s_m are calibrated on trajectories that a training has not
 //! seen.

@@ -139,7 +139,7 @@ mod tests {
             case.curve = ForceCurve { duration_s, ..on_grid(&pulse) };
             case.impulse_n_s = case.curve.impulse_n_s();
             case.peak_n = case.curve.peak().0;
-            case.scenario.bullet_position_m = None;
+            case.scenario.striking_position_m = None;
             case.scenario.yaw_inertia_kg_m2 = [None; 2];
         }
         let cases: Vec<&ForceCase> = cases.iter().collect();

@@ -49,7 +49,7 @@ impl FeatureMap {
     pub fn fit(cases: &[&ForceCase], columns: ColumnSet) -> Self {
         let scenarios = || cases.iter().map(|case| &case.scenario);
         let contacts: Vec<f64> = scenarios().filter_map(|s| Some(s.contact_m?[0])).collect();
-        let mut bodies: Vec<String> = scenarios().filter_map(|s| s.bullet_body.clone()).collect();
+        let mut bodies: Vec<String> = scenarios().filter_map(|s| s.striking_body.clone()).collect();
         bodies.sort();
         bodies.dedup();
         let contact_x_m = contacts.iter().sum::<f64>() / contacts.len().max(1) as f64;
@@ -73,7 +73,7 @@ impl FeatureMap {
         if self.columns == ColumnSet::ThetaContactAndBody {
             row.push(scenario.contact_m.map_or(self.contact_x_m, |[x, _]| x));
             let is_known = |body: &String| self.bodies.contains(body);
-            let body = scenario.bullet_body.as_ref().filter(|body| is_known(body));
+            let body = scenario.striking_body.as_ref().filter(|body| is_known(body));
             let share = 1.0 / self.bodies.len().max(1) as f64;
             row.extend(self.bodies.iter().skip(1).map(|kind| match body {
                 Some(body) if body == kind => 1.0,
@@ -118,7 +118,7 @@ mod tests {
         let cases: Vec<&ForceCase> = cases.iter().collect();
         let [theta, all] = ColumnSet::ALL.map(|columns| FeatureMap::fit(&cases, columns));
         let known = example(StruckSide::Right);
-        let unknown = ForceScenario { contact_m: None, bullet_body: None, ..known.clone() };
+        let unknown = ForceScenario { contact_m: None, striking_body: None, ..known.clone() };
         assert_eq!(theta.row(&known), theta.row(&unknown));
         assert_ne!(all.row(&known), all.row(&unknown));
         assert_eq!(all.row(&known)[5..], [-1.5, 0.0]);

@@ -22,13 +22,13 @@ struct Recorded {
 ///
 /// # Errors
 /// [`AnalysisError::Simulation`] if the simulation of the coasting diverges.
-pub(super) fn bullet_track(
+pub(super) fn striking_track(
     case: &Case,
     attributes: &ForceAttributes,
     settings: &Settings,
 ) -> Result<Option<VehicleTrack>, AnalysisError> {
     let start = [case.attributes.number("bullet_x0_m"), case.attributes.number("bullet_y0_m")];
-    let ([Some(x), Some(y)], Some(yaw_rad)) = (start, case.series.get(Channel::BulletYaw)) else {
+    let ([Some(x), Some(y)], Some(yaw_rad)) = (start, case.series.get(Channel::StrikingYaw)) else {
         return Ok(None);
     };
     let Some(recorded) = integrate(&case.series, [x, y]) else {
@@ -36,14 +36,14 @@ pub(super) fn bullet_track(
     };
     let [_, mass_kg] = attributes.mass_kg;
     let [_, yaw_inertia] = attributes.yaw_inertia_kg_m2;
-    let vehicle = settings.bullet.clone().with_mass(mass_kg, yaw_inertia);
+    let vehicle = settings.striking.clone().with_mass(mass_kg, yaw_inertia);
     let footprint = Footprint::from(&vehicle.geometry);
     let motion = append_coasting(&case.series, yaw_rad, recorded, (&vehicle, settings))?;
     let yaw_rad = yaw_rad.first().copied().unwrap_or(attributes.theta_b_rad);
     let pose = Pose { x_m: x, y_m: y, yaw_rad };
     // The target heads along X from the origin.
     let [x_m, y_m] = pose.body_from_world(attributes.contact_m);
-    let [vx_m_s, vy_m_s] = body_from_world(yaw_rad, attributes.bullet_velocity_m_s);
+    let [vx_m_s, vy_m_s] = body_from_world(yaw_rad, attributes.striking_velocity_m_s);
     let height_m = attributes.contact_height_m.unwrap_or(vehicle.geometry.cg_height_m);
     let start = StruckVehicle {
         vehicle,
@@ -66,9 +66,9 @@ pub(super) fn bullet_track(
 /// if a channel of the bullet is missing.
 fn integrate(series: &TimeSeries, start_m: [f64; 2]) -> Option<Recorded> {
     let time_s = series.time_s();
-    let (vx, vy) = (series.get(Channel::BulletVx)?, series.get(Channel::BulletVy)?);
-    let yaw_rad = *series.get(Channel::BulletYaw)?.last()?;
-    let yaw_rate_rad_s = *series.get(Channel::BulletYawRate)?.last()?;
+    let (vx, vy) = (series.get(Channel::StrikingVx)?, series.get(Channel::StrikingVy)?);
+    let yaw_rad = *series.get(Channel::StrikingYaw)?.last()?;
+    let yaw_rate_rad_s = *series.get(Channel::StrikingYawRate)?.last()?;
     let path = |start: f64, velocity: &[f64]| -> Vec<f64> {
         let steps = time_s.windows(2).zip(velocity.windows(2));
         let moved = steps.scan(start, |position, (time, velocity)| {

@@ -1,4 +1,4 @@
-//! Marks of tyres in a report: those that a simulation leaves, and those that were found beside computed
+//! Marks of tires in a report: those that a simulation leaves, and those that were found beside computed
 //! ones.
 
 use crate::report::numbers::{Wording, fill};
@@ -6,12 +6,12 @@ use crate::report::{Block, Table};
 use impactlab_core::units::Quantity;
 use impactlab_core::vehicle::{MARK_SLIP_RAD, MARK_SPEED_M_S};
 use impactlab_reconstruct::MarkComparison;
-use impactlab_study::{ReconstructReport, SimulateReport, TyreMarkReport, word};
+use impactlab_study::{ReconstructReport, SimulateReport, TireMarkReport, word};
 
-/// The marks that the tyres leave in a simulation, with what they are; nothing without marks.
+/// The marks that the tires leave in a simulation, with what they are; nothing without marks.
 pub(super) fn computed_marks(report: &SimulateReport, wording: &Wording) -> Vec<Block> {
     let words = wording.words;
-    let row = |mark: &TyreMarkReport| {
+    let row = |mark: &TireMarkReport| {
         let place = |[x, y]: [f64; 2]| {
             let [x, y] = [x, y].map(|of| wording.value(Quantity::Length, of));
             format!("({x}; {y})")
@@ -25,7 +25,7 @@ pub(super) fn computed_marks(report: &SimulateReport, wording: &Wording) -> Vec<
             format!("{} {} {}", place(mark.start_m), words.to, place(mark.end_m)),
         ]
     };
-    let rows: Vec<_> = report.tyre_marks.iter().map(row).collect();
+    let rows: Vec<_> = report.tire_marks.iter().map(row).collect();
     if rows.is_empty() {
         return Vec::new();
     }

@@ -1,13 +1,13 @@
-//! The marks that the tyres of simulated vehicles leave, as a report tells them.
+//! The marks that the tires of simulated vehicles leave, as a report tells them.
 
 use serde::Serialize;
 
 use crate::analysis::Analysis;
 use impactlab_core::vehicle::{TireMark, TireMarkKind, Wheel, tire_marks};
 
-/// A computed mark of a tyre.
+/// A computed mark of a tire.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct TyreMarkReport {
+pub struct TireMarkReport {
     /// `struck` or `striking`.
     pub vehicle: &'static str,
     /// The wheel that leaves it.
@@ -26,12 +26,12 @@ pub struct TyreMarkReport {
     pub end_m: [f64; 2],
 }
 
-impl TyreMarkReport {
+impl TireMarkReport {
     /// The marks of the struck vehicle, then those of the striking one.
     pub(super) fn all(analysis: &Analysis) -> Vec<Self> {
         let struck = analysis.simulation.as_ref();
         let struck = struck.map(|motion| tire_marks(&motion.series, analysis.controlled()));
-        let striking = analysis.bullet.as_ref();
+        let striking = analysis.striking.as_ref();
         let striking = striking.map(|track| tire_marks(&track.motion, track.start.controlled()));
         [("struck", struck), ("striking", striking)]
             .into_iter()
