@@ -24,104 +24,74 @@
 pub mod analysis;
 pub mod case_file;
 
-mod assumption;
-mod badges;
-mod checks;
-mod error;
+mod ask;
+mod caveats;
 #[cfg(test)]
 mod examples;
-mod finite;
-mod library;
-mod provenance;
-mod question;
-mod word;
+mod questions;
 
-mod inputs;
-
-mod check;
-mod check_report;
-mod compare;
-mod drive;
-mod evaluate_force;
-mod evaluate_reconstruction;
-mod evaluate_response;
-mod fine_tune;
-mod impact;
-mod implied_contact;
-mod motion_logs;
-mod motion_source;
-mod predict_force;
-mod predict_motion;
-mod reconstruct;
-mod reconstructed_paths;
-mod reconstruction_domain;
-mod reconstruction_estimates;
-mod recorded_force;
-mod simulate;
-mod simulate_dataset;
-mod simulate_report;
-mod tire_marks;
-mod train_force;
-mod train_response;
-mod trust;
-mod unused;
-mod vehicle_uncertainty;
-
-mod cost;
-mod request;
-
-pub use assumption::{AssumedQuantity, Assumption};
-pub use check::{CheckAnswer, CheckRequest, CheckedContent, CheckedItem, check_path};
-pub use check_report::{
-    CaseFlag, CheckReport, ColumnReport, DatasetReport, FileReport, InputFileReport, PathProblem,
-    ProposedColumn, RecordedForceReport,
-};
-pub use checks::check_window;
-pub use compare::{CompareAnswer, CompareReport, CompareRequest, DEFAULT_CHOICES};
-pub use cost::{Cost, CostPart};
-pub use drive::{ASSUMED_SPEED_M_S, Drive};
-pub use error::StudyError;
-pub use evaluate_force::{
-    CrossValidateForceReport, EvaluateForceAnswer, EvaluateForceReport, EvaluateForceRequest,
-    EvaluatedForceCases, ForceEvaluation,
-};
-pub use evaluate_reconstruction::{
-    EvaluateReconstructionAnswer, EvaluateReconstructionReport, EvaluateReconstructionRequest,
-};
-pub use evaluate_response::{EvaluateResponseAnswer, EvaluateResponseRequest};
-pub use fine_tune::{FineTuneRequest, Learning};
-pub use impact::{BodyReport, ImpactAnswer, ImpactReport, ImpactRequest};
-pub use implied_contact::{ImpliedContactReport, MomentumReport};
-pub use inputs::{
+pub use ask::checks::check_window;
+pub use ask::cost::{Cost, CostPart};
+pub use ask::error::StudyError;
+pub use ask::inputs::{
     BadCases, ConfigChoice, DEFAULT_STRIKING, DEFAULT_VEHICLE, EvaluatedCases, ModelChoice,
     ScenarioChoice, SeriesFile, TrainingOptions, VehicleChoice, checkpoint_beside,
 };
-pub use library::Library;
-pub use motion_logs::{DEFAULT_LOG_DURATION_S, LogReport, MotionLogs};
-pub use motion_source::{ASSUMED_CONTACT, MotionSource};
-pub use predict_force::{
+pub use ask::library::Library;
+pub use ask::provenance::Provenance;
+pub use ask::question::{Event, Observer, Question, Sampling};
+pub use ask::request::{Answer, Report, Request};
+pub use ask::word::word;
+pub use caveats::assumption::{AssumedQuantity, Assumption};
+pub use caveats::trust::{Trust, TrustLine};
+pub use questions::check::report::{
+    CaseFlag, CheckReport, ColumnReport, DatasetReport, FileReport, InputFileReport, PathProblem,
+    ProposedColumn, RecordedForceReport,
+};
+pub use questions::check::request::{
+    CheckAnswer, CheckRequest, CheckedContent, CheckedItem, check_path,
+};
+pub use questions::evaluate::compare::{
+    CompareAnswer, CompareReport, CompareRequest, DEFAULT_CHOICES,
+};
+pub use questions::evaluate::force::{
+    CrossValidateForceReport, EvaluateForceAnswer, EvaluateForceReport, EvaluateForceRequest,
+    EvaluatedForceCases, ForceEvaluation,
+};
+pub use questions::evaluate::reconstruction::{
+    EvaluateReconstructionAnswer, EvaluateReconstructionReport, EvaluateReconstructionRequest,
+};
+pub use questions::evaluate::response::{EvaluateResponseAnswer, EvaluateResponseRequest};
+pub use questions::impact::{BodyReport, ImpactAnswer, ImpactReport, ImpactRequest};
+pub use questions::predict::force::{
     ForceQuestion, ImpulseReport, PredictForceAnswer, PredictForceReport, PredictForceRequest,
 };
-pub use predict_motion::{
+pub use questions::predict::implied_contact::{ImpliedContactReport, MomentumReport};
+pub use questions::predict::motion::{
     COARSE_DRAWS, DEFAULT_DRAWS, ForceSource, PredictMotionAnswer, PredictMotionReport,
     PredictMotionRequest,
 };
-pub use provenance::Provenance;
-pub use question::{Event, Observer, Question, Sampling};
-pub use reconstruct::{EvidenceChoice, ReconstructAnswer, ReconstructReport, ReconstructRequest};
-pub use reconstructed_paths::ReconstructedPaths;
-pub use recorded_force::{RecordedForceAnswer, RecordedForceRequest};
-pub use request::{Answer, Report, Request};
-pub use simulate::{DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, SimulateAnswer, SimulateRequest};
-pub use simulate_dataset::{
+pub use questions::reconstruct::paths::ReconstructedPaths;
+pub use questions::reconstruct::request::{
+    EvidenceChoice, ReconstructAnswer, ReconstructReport, ReconstructRequest,
+};
+pub use questions::simulate::dataset::{
     ReplayedCaseReport, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest,
 };
-pub use simulate_report::{
+pub use questions::simulate::drive::{ASSUMED_SPEED_M_S, Drive};
+pub use questions::simulate::motion_source::{ASSUMED_CONTACT, MotionSource};
+pub use questions::simulate::recorded_force::{RecordedForceAnswer, RecordedForceRequest};
+pub use questions::simulate::report::{
     EndState, FlagReport, ForceReport, FrictionZoneReport, RestState, SimulateReport,
 };
-pub use tire_marks::TireMarkReport;
-pub use train_force::{TrainForceAnswer, TrainForceReport, TrainForceRequest};
-pub use train_response::{ResponseTrainingAnswer, ResponseTrainingReport, TrainResponseRequest};
-pub use trust::{Trust, TrustLine};
-pub use vehicle_uncertainty::VehicleUncertainty;
-pub use word::word;
+pub use questions::simulate::request::{
+    DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, SimulateAnswer, SimulateRequest,
+};
+pub use questions::simulate::tire_marks::TireMarkReport;
+pub use questions::simulate::vehicle_uncertainty::VehicleUncertainty;
+pub use questions::train::fine_tune::{FineTuneRequest, Learning};
+pub use questions::train::force::{TrainForceAnswer, TrainForceReport, TrainForceRequest};
+pub use questions::train::motion_logs::{DEFAULT_LOG_DURATION_S, LogReport, MotionLogs};
+pub use questions::train::response::{
+    ResponseTrainingAnswer, ResponseTrainingReport, TrainResponseRequest,
+};

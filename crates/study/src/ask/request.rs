@@ -1,0 +1,114 @@
+//! Any question and any answer, as JSON reads and writes them.
+
+use serde::{Deserialize, Serialize};
+
+use crate::questions::evaluate::compare::CompareReport;
+use crate::{
+    CheckReport, CheckRequest, CompareRequest, EvaluateForceRequest, EvaluateReconstructionReport,
+    EvaluateReconstructionRequest, EvaluateResponseRequest, FineTuneRequest, ForceEvaluation,
+    ImpactReport, ImpactRequest, Library, Observer, PredictForceReport, PredictForceRequest,
+    PredictMotionReport, PredictMotionRequest, Question, ReconstructReport, ReconstructRequest,
+    ResponseTrainingReport, SimulateDatasetReport, SimulateDatasetRequest, SimulateReport,
+    SimulateRequest, StudyError, TrainForceReport, TrainForceRequest, TrainResponseRequest,
+};
+use impactlab_core::data::Outcome;
+
+macro_rules! questions {
+    ($($(#[$doc:meta])* $variant:ident($request:ty) -> $report:ty;)+) => {
+        /// Any question that can be asked.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        #[serde(tag = "question", rename_all = "snake_case")]
+        pub enum Request {
+            $($(#[$doc])* $variant(Box<$request>),)+
+        }
+
+        /// The answer to any question, as it is told.
+        #[derive(Debug, Clone, PartialEq, Serialize)]
+        #[serde(untagged)]
+        pub enum Report {
+            $($(#[$doc])* $variant(Box<$report>),)+
+        }
+
+        /// The answer to any question, with what its report was made from and figures are drawn from.
+        pub enum Answer {
+            $($(#[$doc])* $variant(Box<<$request as Question>::Answer>),)+
+        }
+
+        impl Answer {
+            /// What is told of the answer.
+            pub fn into_report(self) -> Report {
+                match self {
+                    $(Self::$variant(answer) => Report::$variant(Box::new(answer.report)),)+
+                }
+            }
+        }
+
+        impl Request {
+            /// Answers the question, whichever it is.
+            ///
+            /// # Errors
+            /// [`StudyError`] says what is wrong with the question or with a file.
+            pub fn answer(
+                &self,
+                library: &Library,
+                observer: &mut Observer<'_>,
+            ) -> Result<Outcome<Answer>, StudyError> {
+                match self {
+                    $(Self::$variant(request) => {
+                        let answer = request.answer(library, observer)?;
+                        Ok(answer.map(|answer| Answer::$variant(Box::new(answer))))
+                    })+
+                }
+            }
+
+            /// Answers the question and keeps what is told of the answer.
+            ///
+            /// # Errors
+            /// As for [`Request::answer`].
+            pub fn run(
+                &self,
+                library: &Library,
+                observer: &mut Observer<'_>,
+            ) -> Result<Outcome<Report>, StudyError> {
+                Ok(self.answer(library, observer)?.map(Answer::into_report))
+            }
+        }
+
+        $(impl From<$request> for Request {
+            fn from(request: $request) -> Self {
+                Self::$variant(Box::new(request))
+            }
+        })+
+    };
+}
+
+questions! {
+    /// What is in files and data sets, and what is wrong with them.
+    Check(CheckRequest) -> CheckReport;
+    /// The impulse solution of a scenario.
+    Impact(ImpactRequest) -> ImpactReport;
+    /// The motion of one vehicle by the 4DOF model.
+    Simulate(SimulateRequest) -> SimulateReport;
+    /// The 4DOF model against every recorded motion of a data set.
+    SimulateDataset(SimulateDatasetRequest) -> SimulateDatasetReport;
+    /// The distribution of an impact force history.
+    PredictForce(PredictForceRequest) -> PredictForceReport;
+    /// The distribution of the motion after an impact.
+    PredictMotion(PredictMotionRequest) -> PredictMotionReport;
+    /// How fast both cars were, from the evidence.
+    Reconstruct(ReconstructRequest) -> ReconstructReport;
+    /// A training of the force network.
+    TrainForce(TrainForceRequest) -> TrainForceReport;
+    /// A pre-training of the response network.
+    TrainResponse(TrainResponseRequest) -> ResponseTrainingReport;
+    /// A fine-tuning of the response network.
+    FineTune(FineTuneRequest) -> ResponseTrainingReport;
+    /// How well a force network does.
+    EvaluateForce(EvaluateForceRequest) -> ForceEvaluation;
+    /// How well the speeds of staged collisions are reconstructed.
+    EvaluateReconstruction(EvaluateReconstructionRequest) -> EvaluateReconstructionReport;
+    /// How well a response network does.
+    EvaluateResponse(EvaluateResponseRequest) -> CompareReport;
+    /// Which response model does best.
+    Compare(CompareRequest) -> CompareReport;
+}

@@ -1,0 +1,207 @@
+//! Numbers that a question gives and its answer does not depend on: each is listed in the report.
+//!
+//! A force network knows masses, yaw inertias, velocities, headings, contact point and position of
+//! the two vehicles. It has learned from vehicles that do not turn before the impact, so that a yaw
+//! rate is listed as not used; where turning would make up much of the speed at which the contact
+//! points approach, the force has little to do with what the network knows, and the question is
+//! refused.
+
+use crate::analysis::{PulseSetup, StruckVehicle};
+use crate::{
+    AssumedQuantity, Assumption, DEFAULT_DRAWS, DEFAULT_DURATION_S, ForceSource, MotionSource,
+    PredictMotionRequest, ScenarioChoice, SimulateRequest, StudyError, VehicleChoice,
+};
+use impactlab_core::collision::{
+    DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, FrictionModel, Pose, RestitutionForm, Scenario,
+    ScenarioGeometry, ScenarioVehicle,
+};
+use impactlab_core::units::percent;
+use impactlab_core::vehicle::{Preset, VehicleParameters};
+
+/// Share of the approach of the contact points that may come from the turning of the vehicles.
+const MAX_TURNING_SHARE: f64 = 0.5;
+
+/// Relative difference of a length from that of the training cases beyond which it is listed.
+const SIZE_TOLERANCE: f64 = 0.1;
+
+/// An input that is not used.
+pub(crate) fn not_used(what: impl Into<String>, reason: &str) -> Assumption {
+    Assumption::new(AssumedQuantity::NotUsed, what, reason)
+}
+
+/// Friction zones, which a forecast with a network does not know.
+pub(crate) fn zones_by_network(struck: &StruckVehicle) -> Option<Assumption> {
+    let names: Vec<&str> = struck.friction_zones.iter().map(|zone| zone.name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        not_used(
+            format!("friction zones: {}", names.join(", ")),
+            "the response network has learned motions on one ground: the forecast has the friction of \
+             the vehicle's tires everywhere",
+        )
+    })
+}
+
+/// What a force network does not use of a scenario.
+///
+/// # Errors
+/// [`StudyError::TurningVehicles`] if the vehicles turn so fast that the force of the network is not
+/// that of the scenario; [`StudyError::Scenario`] if they do not meet.
+pub(crate) fn by_force_network(
+    choice: &ScenarioChoice,
+    scenario: &Scenario,
+) -> Result<Vec<Assumption>, StudyError> {
+    let geometry = scenario.geometry().map_err(|source| choice.unsolved(source))?;
+    refuse_fast_turning(choice, scenario, &geometry)?;
+    let vehicles = [
+        ("struck", &scenario.struck, Preset::Target),
+        ("striking", &scenario.striking, Preset::Bullet2000),
+    ];
+    let mut unused = Vec::new();
+    for (name, vehicle, of_training) in vehicles {
+        let rate = vehicle.yaw_rate_rad_s;
+        if rate != 0.0 {
+            unused.push(not_used(
+                format!("yaw rate of the {name} vehicle before the impact, {rate} rad/s"),
+                "the force network has learned from vehicles that do not turn before the impact",
+            ));
+        }
+        if has_other_size(vehicle, &of_training.parameters()) {
+            unused.push(not_used(
+                format!(
+                    "size of the {name} vehicle, {} m × {} m",
+                    vehicle.length_m, vehicle.width_m
+                ),
+                "the outlines say where the vehicles touch; how far a body reaches and crushes is that \
+                 of the cases that the force network has learned from",
+            ));
+        }
+    }
+    let contact = &scenario.contact;
+    let by_momentum = "the momentum solution alone depends on it; the force network has learned the \
+                       course of the contact";
+    if contact.restitution != DEFAULT_RESTITUTION {
+        unused.push(not_used(format!("restitution, {}", contact.restitution), by_momentum));
+    }
+    if contact.restitution_form != RestitutionForm::default() {
+        let form = contact.restitution_form.label();
+        unused.push(not_used(format!("form of the restitution, {form}"), by_momentum));
+    }
+    if let Some(share) = contact.friction_of_critical {
+        let share = percent(share);
+        unused.push(not_used(format!("friction, {share} of the critical ratio"), by_momentum));
+    } else if contact.friction_limit != DEFAULT_FRICTION_LIMIT {
+        unused.push(not_used(format!("friction limit, {}", contact.friction_limit), by_momentum));
+    }
+    if contact.friction_model != FrictionModel::Limit {
+        unused.push(not_used("friction model of the contact", by_momentum));
+    }
+    Ok(unused)
+}
+
+fn refuse_fast_turning(
+    choice: &ScenarioChoice,
+    scenario: &Scenario,
+    geometry: &ScenarioGeometry,
+) -> Result<(), StudyError> {
+    let (struck, striking) = (&scenario.struck, &scenario.striking);
+    let [x, y] = geometry.contact_point_m;
+    // Velocity of the point of contact by turning alone: r × arm.
+    let turning = |vehicle: &ScenarioVehicle, pose: &Pose| {
+        let rate = vehicle.yaw_rate_rad_s;
+        [-rate * (y - pose.y_m), rate * (x - pose.x_m)]
+    };
+    let (of_struck, of_striking) =
+        (turning(struck, &geometry.struck), turning(striking, &geometry.striking));
+    let turning_m_s = f64::hypot(of_striking[0] - of_struck[0], of_striking[1] - of_struck[1]);
+    let moving_m_s = f64::hypot(striking.vx_m_s - struck.vx_m_s, striking.vy_m_s - struck.vy_m_s);
+    if turning_m_s > MAX_TURNING_SHARE * moving_m_s {
+        return Err(StudyError::TurningVehicles { name: choice.name(), turning_m_s, moving_m_s });
+    }
+    Ok(())
+}
+
+fn has_other_size(vehicle: &ScenarioVehicle, of_training: &VehicleParameters) -> bool {
+    let is_other =
+        |value: f64, of_training: f64| (value / of_training - 1.0).abs() > SIZE_TOLERANCE;
+    is_other(vehicle.length_m, of_training.geometry.outer_length_m)
+        || is_other(vehicle.width_m, of_training.geometry.outer_width_m)
+}
+
+/// What a simulation does not use of its question.
+///
+/// - `is_recorded`: whether the motion is a recorded one, which has its own duration.
+pub(crate) fn by_simulation(request: &SimulateRequest, is_recorded: bool) -> Vec<Assumption> {
+    let mut unused = Vec::new();
+    if is_recorded && request.duration_s != DEFAULT_DURATION_S {
+        unused.push(not_used(
+            format!("duration, {} s", request.duration_s),
+            "a recorded motion has its own duration",
+        ));
+    }
+    if is_recorded && matches!(request.source, MotionSource::Case { .. }) {
+        let by_case = "the case says itself what happens to the wheels and how long it lasts";
+        if request.ending.is_some() {
+            unused.push(not_used("what happens to the wheels", by_case));
+        }
+        if request.until_rest {
+            unused.push(not_used("simulation until rest", by_case));
+        }
+    }
+    let has_striking =
+        !matches!(request.source, MotionSource::Trajectory { .. } | MotionSource::Drive(_))
+            && !is_recorded;
+    if !has_striking && request.striking != VehicleChoice::Automatic {
+        unused.push(not_used("striking vehicle", "only the struck vehicle is simulated here"));
+    }
+    if let MotionSource::Drive(drive) = &request.source
+        && drive.force.is_none()
+        && (drive.contact.is_some() || drive.sampling.is_some())
+    {
+        unused.push(not_used("contact point and sampling", "no force is given"));
+    }
+    unused
+}
+
+/// What a forecast does not use of its question, beside that of the simulation.
+pub(crate) fn by_forecast(request: &PredictMotionRequest) -> Vec<Assumption> {
+    let mut unused = Vec::new();
+    let is_predicted = matches!(request.force, ForceSource::Predicted(_));
+    if !is_predicted && request.draws != DEFAULT_DRAWS {
+        unused.push(not_used(
+            format!("number of drawn forces, {}", request.draws),
+            "the force is given, so that none is drawn",
+        ));
+    }
+    if let MotionSource::Scenario { pulse, .. } = &request.motion.source {
+        let plain =
+            PulseSetup { contact_height_m: pulse.contact_height_m, ..PulseSetup::default() };
+        if request.force != ForceSource::Given && *pulse != plain {
+            unused.push(not_used("shape and duration of the pulse", "another force is taken"));
+        }
+    }
+    unused
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::vehicle::{ContactPoint, Controls, FrictionZone, VehicleState};
+
+    #[test]
+    fn a_forecast_says_that_it_does_not_know_the_zones() {
+        let mut struck = StruckVehicle {
+            vehicle: Preset::Reference.parameters(),
+            initial: VehicleState::driving_straight(20.0),
+            contact: ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.5 },
+            controls: Controls::default(),
+            friction_zones: Vec::new(),
+        };
+        assert_eq!(zones_by_network(&struck), None);
+        let border_m = vec![[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]];
+        let ice = FrictionZone { name: "ice".to_owned(), border_m, friction: 0.1 };
+        struck.friction_zones.push(ice);
+        let said = zones_by_network(&struck).unwrap();
+        assert_eq!(said.quantity, AssumedQuantity::NotUsed);
+        assert_eq!(said.value, "friction zones: ice");
+    }
+}

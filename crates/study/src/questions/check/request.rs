@@ -1,0 +1,211 @@
+//! What is in files and data sets, and what is wrong with them: `check`.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::ask::question::progress_of;
+use crate::{
+    CheckReport, DatasetReport, FileReport, InputFileReport, Library, Observer, PathProblem,
+    ProposedColumn, Question, StudyError,
+};
+use impactlab_core::collision::Scenario;
+use impactlab_core::data::{
+    ColumnMap, DataError, Dataset, Flag, Loaded, Opened, Outcome, TomlFile, check_case, check_file,
+    open, propose_columns, read_any_series,
+};
+use impactlab_core::error_chain;
+use impactlab_core::site::{Site, read_drawing, read_picture};
+use impactlab_core::vehicle::VehicleParameters;
+
+/// Asks what is in files and data sets, in which units, and what is wrong with them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CheckRequest {
+    /// Data sets, folders of data sets, files of time series, scenarios, vehicles.
+    pub paths: Vec<PathBuf>,
+    /// Whether cases without a flag are listed, too.
+    #[serde(default)]
+    pub all: bool,
+    /// For single files, which column is what.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub map: Option<ColumnMap>,
+}
+
+/// What was found, and the data themselves.
+#[derive(Debug)]
+pub struct CheckAnswer {
+    /// What is told.
+    pub report: CheckReport,
+    /// The data that could be read.
+    pub items: Vec<CheckedItem>,
+}
+
+/// A data set or file that could be read.
+#[derive(Debug)]
+pub struct CheckedItem {
+    /// Its path.
+    pub path: PathBuf,
+    /// Its content.
+    pub content: CheckedContent,
+}
+
+/// Data with the flags that were raised on them.
+#[derive(Debug, Clone)]
+pub enum CheckedContent {
+    /// A data set and the flags of each of its cases.
+    Dataset(Arc<Dataset>, Vec<Vec<Flag>>),
+    /// A file of time series and its flags.
+    File(Arc<Loaded>, Vec<Flag>),
+}
+
+impl Question for CheckRequest {
+    type Answer = CheckAnswer;
+    type Report = CheckReport;
+    const NAME: &'static str = "check";
+
+    fn check(&self) -> Result<(), StudyError> {
+        Ok(())
+    }
+
+    fn report(answer: &Self::Answer) -> &CheckReport {
+        &answer.report
+    }
+
+    fn solve(
+        &self,
+        _library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<CheckAnswer>, StudyError> {
+        let mut answer = CheckAnswer { report: CheckReport::default(), items: Vec::new() };
+        for path in &self.paths {
+            if is_input_file(path) {
+                answer.report.add_input_file(path);
+                continue;
+            }
+            if self.map.is_some() && path.is_dir() {
+                return Err(StudyError::MapOfFolder { path: path.clone() });
+            }
+            match check_path(path, self.map.as_ref(), observer) {
+                Ok(Outcome::Cancelled) => return Ok(Outcome::Cancelled),
+                Ok(Outcome::Complete((items, problems))) => {
+                    answer.report.add(&items, self.all);
+                    let problems = problems.iter().map(|error| problem(path, error));
+                    answer.report.problems.extend(problems);
+                    answer.items.extend(items);
+                }
+                Err(error) => answer.report.problems.push(problem(path, &error)),
+            }
+        }
+        answer.report.ok = !answer.report.has_problems();
+        Ok(Outcome::Complete(answer))
+    }
+}
+
+/// What a path holds, checked, and why parts of a folder of data sets cannot be read.
+type Checked = (Vec<CheckedItem>, Vec<DataError>);
+
+/// Reads and checks a data set, a folder of data sets or a file of time series.
+///
+/// # Errors
+/// [`DataError`], with the place in the file and what to do.
+pub fn check_path(
+    path: &Path,
+    map: Option<&ColumnMap>,
+    observer: &mut Observer<'_>,
+) -> Result<Outcome<Checked>, DataError> {
+    let opened = match map {
+        Some(_) => Outcome::Complete(Opened::File(read_any_series(path, map)?)),
+        None => open(path, &mut progress_of(observer))?,
+    };
+    Ok(opened.map(|opened| match opened {
+        Opened::Dataset(dataset) => (vec![checked_dataset(dataset)], Vec::new()),
+        Opened::Collection { datasets, problems } => {
+            (datasets.into_iter().map(checked_dataset).collect(), problems)
+        }
+        Opened::File(loaded) => (vec![checked_file(path, loaded)], Vec::new()),
+    }))
+}
+
+fn checked_dataset(dataset: Dataset) -> CheckedItem {
+    let flags = dataset.cases.par_iter().map(check_case).collect();
+    let path = dataset.root.clone();
+    CheckedItem { path, content: CheckedContent::Dataset(Arc::new(dataset), flags) }
+}
+
+fn checked_file(path: &Path, loaded: Loaded) -> CheckedItem {
+    let flags = check_file(&loaded);
+    CheckedItem { path: path.to_owned(), content: CheckedContent::File(Arc::new(loaded), flags) }
+}
+
+/// Whether a path is a scenario or vehicle file.
+fn is_input_file(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
+}
+
+impl CheckReport {
+    fn add(&mut self, items: &[CheckedItem], all: bool) {
+        for item in items {
+            match &item.content {
+                CheckedContent::Dataset(dataset, flags) => {
+                    self.datasets.push(DatasetReport::new(dataset, flags, all));
+                }
+                CheckedContent::File(loaded, flags) => {
+                    self.files.push(FileReport::new(&item.path, loaded, flags));
+                }
+            }
+        }
+    }
+
+    fn add_input_file(&mut self, path: &Path) {
+        match input_file(path) {
+            Ok(report) => self.models.push(report),
+            Err(error) => self.problems.push(PathProblem {
+                path: path.to_owned(),
+                message: error_chain(&error),
+                columns: None,
+                map: None,
+            }),
+        }
+    }
+}
+
+/// Reads a site with what it names, a scenario, known by its striking vehicle, or a vehicle.
+fn input_file(path: &Path) -> Result<InputFileReport, StudyError> {
+    let text = TomlFile::read(path)?;
+    if Site::is_meant_by(path) {
+        let site = Site::load(path)?;
+        if let Some(orthophoto) = &site.orthophoto {
+            read_picture(&orthophoto.file)?;
+        }
+        let origin = site.origin.unwrap_or_default();
+        let drawing = site.drawing.as_ref().map(|of| read_drawing(of, &origin)).transpose()?;
+        let contents = site.contents(drawing.map(|of| of.summary()).as_ref());
+        return Ok(InputFileReport {
+            path: path.to_owned(),
+            kind: "site",
+            name: site.name,
+            contents,
+        });
+    }
+    let is_scenario = text.lines().any(|line| line.trim_start().starts_with("[bullet]"));
+    let (kind, name) = if is_scenario {
+        ("scenario", Scenario::load(path)?.name)
+    } else {
+        ("vehicle", VehicleParameters::load(path)?.name)
+    };
+    Ok(InputFileReport { path: path.to_owned(), kind, name, contents: Vec::new() })
+}
+
+/// A path that cannot be read; if its columns are the reason, with what they look like.
+fn problem(path: &Path, error: &DataError) -> PathProblem {
+    let is_about_columns = error.needs_mapping() || matches!(error, DataError::NoSuchColumn { .. });
+    let columns = is_about_columns.then(|| propose_columns(path).ok()).flatten();
+    PathProblem {
+        path: path.to_owned(),
+        message: error_chain(error),
+        map: columns.as_deref().and_then(ProposedColumn::map),
+        columns: columns.map(|columns| columns.iter().map(ProposedColumn::of).collect()),
+    }
+}

@@ -1,0 +1,275 @@
+//! How well reconstructions do on staged collisions, beside the calculation by hand and the optimum of
+//! a swarm: `evaluate reconstruction`.
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use crate::ask::checks::check_count;
+use crate::questions::evaluate::reconstruction_estimates::{Asked, CaseEstimates, FinishedCases};
+use crate::{
+    Assumption, Event, Library, Observer, Provenance, Question, ReconstructRequest, StudyError,
+};
+use impactlab_core::data::Outcome;
+use impactlab_core::error_chain;
+use impactlab_core::jobs::Progress;
+use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
+use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_reconstruct::evaluate::{
+    CaseScore, KnownEvidence, MethodSummary, ReconstructionMethod, StagedCollisions, StagedSplit,
+    TrueSpeeds,
+};
+
+/// Asks how well the speeds of staged collisions are reconstructed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EvaluateReconstructionRequest {
+    /// The folder of staged collisions: `evidence/<case>.toml` and `truth/<case>.toml`.
+    pub data: PathBuf,
+    /// How much of the evidence is used, one answer for each.
+    #[serde(default = "all_known")]
+    pub known: Vec<KnownEvidence>,
+    /// Which of the cases.
+    #[serde(default)]
+    pub split: StagedSplit,
+    /// If not empty: those of them that have these names.
+    #[serde(default)]
+    pub only: Vec<String>,
+    /// Number of particles.
+    #[serde(default = "default_particles")]
+    pub particles: usize,
+    /// Seed of all draws.
+    #[serde(default)]
+    pub seed: u64,
+    /// Whether the optimum of a swarm is computed, too.
+    #[serde(default = "with_swarm")]
+    pub swarm: bool,
+    /// Folder in which each finished case is kept, and from which it is taken if the question is
+    /// asked again by the same program.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub finished: Option<PathBuf>,
+}
+
+fn all_known() -> Vec<KnownEvidence> {
+    KnownEvidence::ALL.into()
+}
+
+fn default_particles() -> usize {
+    ReconstructRequest::DEFAULT_PARTICLES
+}
+
+fn with_swarm() -> bool {
+    true
+}
+
+/// Staged collisions beside their truths, SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EvaluateReconstructionReport {
+    /// The folder.
+    pub data: PathBuf,
+    /// Which of its cases.
+    pub split: StagedSplit,
+    /// Number of cases that were asked for.
+    pub n_cases: usize,
+    /// Number of particles.
+    pub n_particles: usize,
+    /// Whether the evaluation was stopped before all cases were done.
+    pub stopped: bool,
+    /// The summary of each method for each part of the evidence.
+    pub summary: Vec<MethodSummary>,
+    /// Each case by each method.
+    pub cases: Vec<CaseScore>,
+    /// Cases that have no answer, and why.
+    pub left_out: Vec<String>,
+    /// What was assumed: of each case what its reconstruction assumes, and no more.
+    pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
+    /// Version of the program, seed.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+}
+
+/// A finished evaluation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EvaluateReconstructionAnswer {
+    /// What is told.
+    pub report: EvaluateReconstructionReport,
+}
+
+impl EvaluateReconstructionRequest {
+    /// An evaluation in which nothing else is said.
+    pub fn new(data: impl Into<PathBuf>) -> Self {
+        Self {
+            data: data.into(),
+            known: all_known(),
+            split: StagedSplit::default(),
+            only: Vec::new(),
+            particles: default_particles(),
+            seed: 0,
+            swarm: with_swarm(),
+            finished: None,
+        }
+    }
+
+    /// The names of the cases, in their order.
+    ///
+    /// # Errors
+    /// [`StudyError::NoSuchCase`], [`StudyError::NoStagedCase`], [`StudyError::NoTruth`], and if the
+    /// folder cannot be listed.
+    fn cases(&self, staged: &StagedCollisions) -> Result<Vec<String>, StudyError> {
+        let of_split = staged.of_split(self.split);
+        if let Some(unknown) = self.only.iter().find(|name| !staged.names().contains(name)) {
+            return Err(StudyError::NoSuchCase {
+                path: self.data.clone(),
+                case: unknown.clone(),
+                n_cases: staged.names().len(),
+                first: staged.names().first().cloned().unwrap_or_default(),
+            });
+        }
+        let is_chosen = |name: &String| self.only.is_empty() || self.only.contains(name);
+        let chosen: Vec<String> = of_split.into_iter().filter(is_chosen).collect();
+        if chosen.is_empty() || self.known.is_empty() {
+            return Err(StudyError::NoStagedCase { path: self.data.clone() });
+        }
+        let truths = chosen.iter().map(|name| staged.truth_file(name));
+        match truths.into_iter().find(|path| !path.is_file()) {
+            Some(path) => Err(StudyError::NoTruth { path }),
+            None => Ok(chosen),
+        }
+    }
+
+    /// The files of the evidence of the cases; none if they cannot be told.
+    pub(crate) fn evidence_files(&self) -> Vec<PathBuf> {
+        let staged = StagedCollisions::open(&self.data);
+        let cases =
+            staged.as_ref().ok().and_then(|staged| Some((staged, self.cases(staged).ok()?)));
+        cases.map_or_else(Vec::new, |(staged, cases)| {
+            cases.iter().map(|case| staged.evidence_file(case)).collect()
+        })
+    }
+
+    /// The estimates of all cases, as far as the observer lets it go, and why others have none.
+    fn estimates(
+        &self,
+        (staged, cases): (&StagedCollisions, &[String]),
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Estimated, StudyError> {
+        let finished = FinishedCases::of(self.finished.as_deref())?;
+        let mut all = Estimated::default();
+        let known = || self.known.iter().copied();
+        let pairs = cases.iter().flat_map(|case| known().map(move |known| (case, known)));
+        let n = cases.len() * self.known.len();
+        for (done, (case, known)) in pairs.enumerate() {
+            let asked = Asked { case, known, evidence: staged.evidence_file(case) };
+            let mut told = |event: Event<'_>| match event {
+                Event::Progress(of_case) => {
+                    let what = format!("{case}, {}: {}", known.label(), of_case.message);
+                    let share = of_case.fraction().map_or(0.0, f64::from);
+                    let position = 1000.0 * (done as f64 + share);
+                    let total = 1000 * n as u64;
+                    observer(Event::Progress(Progress::new(position as u64, total, what)))
+                }
+                Event::Training(_) | Event::Sampling(_) => ControlFlow::Continue(()),
+            };
+            match finished.estimates(self, &asked, library, &mut told) {
+                Ok(Outcome::Complete(estimates)) => all.done.push(estimates),
+                Ok(Outcome::Cancelled) => {
+                    all.stopped = true;
+                    break;
+                }
+                Err(error) => all.failed.push(asked.failed(&error)),
+            }
+        }
+        Ok(all)
+    }
+}
+
+/// What was estimated of the cases.
+#[derive(Default)]
+struct Estimated {
+    done: Vec<CaseEstimates>,
+    failed: Vec<String>,
+    stopped: bool,
+}
+
+impl Estimated {
+    /// The estimates beside the truths, which are read only now.
+    fn scored(&mut self, staged: &StagedCollisions) -> Vec<CaseScore> {
+        let mut scores = Vec::new();
+        for done in &self.done {
+            match TrueSpeeds::load(&staged.truth_file(&done.case)) {
+                Ok(truth) => scores.extend(
+                    done.methods
+                        .iter()
+                        .map(|estimates| CaseScore::of(&done.case, done.known, estimates, &truth)),
+                ),
+                Err(error) => self.failed.push(format!("{}: {}", done.case, error_chain(&error))),
+            }
+        }
+        scores
+    }
+}
+
+impl Question for EvaluateReconstructionRequest {
+    type Answer = EvaluateReconstructionAnswer;
+    type Report = EvaluateReconstructionReport;
+    const NAME: &'static str = "evaluate";
+
+    fn check(&self) -> Result<(), StudyError> {
+        check_count("particles", &RECONSTRUCTION_PARTICLES, self.particles)
+    }
+
+    fn report(answer: &Self::Answer) -> &EvaluateReconstructionReport {
+        &answer.report
+    }
+
+    fn solve(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<EvaluateReconstructionAnswer>, StudyError> {
+        let staged = StagedCollisions::open(&self.data)?;
+        let cases = self.cases(&staged)?;
+        let mut estimated = self.estimates((&staged, &cases), library, observer)?;
+        let scores = estimated.scored(&staged);
+        let Estimated { failed: left_out, stopped, .. } = estimated;
+        if stopped && scores.is_empty() {
+            return Ok(Outcome::Cancelled);
+        }
+        let is_answer = |of: &&CaseScore| of.method == ReconstructionMethod::Reconstruction;
+        let n_answers = scores.iter().filter(is_answer).count();
+        let report = EvaluateReconstructionReport {
+            data: self.data.clone(),
+            split: self.split,
+            n_cases: cases.len(),
+            n_particles: self.particles,
+            stopped,
+            summary: MethodSummary::of(&scores),
+            cases: scores,
+            badges: of_missing(n_answers, cases.len() * self.known.len()).into_iter().collect(),
+            left_out,
+            assumptions: Vec::new(),
+            provenance: Provenance::of_seed(self.seed),
+        };
+        Ok(Outcome::Complete(EvaluateReconstructionAnswer { report }))
+    }
+}
+
+/// Reconstructions that have no answer: they failed, or the evaluation was stopped.
+fn of_missing(n_answers: usize, n_asked: usize) -> Option<Badge> {
+    let n_missing = n_asked.saturating_sub(n_answers);
+    let badge = || {
+        let text = format!("{n_missing} of {n_asked} reconstructions have no answer");
+        let quantity = "reconstructions without an answer";
+        Badge::new(BadgeKind::LeftOut, text)
+            .with_value(quantity, n_missing as f64)
+            .with_range([0.0, 0.0])
+    };
+    (n_missing > 0).then(badge)
+}
+
+#[cfg(test)]
+#[path = "reconstruction_tests.rs"]
+mod tests;

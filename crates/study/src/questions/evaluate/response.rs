@@ -1,0 +1,116 @@
+//! How well a response network does on recorded motions: `evaluate response`.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use crate::ask::inputs::{UsableCases, data_name, response_cases};
+use crate::{
+    Assumption, BadCases, CompareAnswer, CompareReport, EvaluatedCases, Library, ModelChoice,
+    Observer, Question, StudyError, VehicleChoice,
+};
+use impactlab_core::data::Outcome;
+use impactlab_networks::response::evaluate::{MotionModel, evaluate_motion_model};
+use impactlab_networks::response::{Correction, ResponseCase, ResponseModel};
+
+/// Asks how well a response network predicts the motions of a data set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EvaluateResponseRequest {
+    /// The response network.
+    #[serde(default)]
+    pub model: ModelChoice,
+    /// The trajectory data set.
+    pub data: PathBuf,
+    /// Which of its cases.
+    #[serde(default)]
+    pub split: EvaluatedCases,
+    /// The struck vehicle.
+    #[serde(default)]
+    pub vehicle: VehicleChoice,
+    /// Seed of the clusters.
+    #[serde(default)]
+    pub seed: u64,
+    /// What happens to cases that cannot be used.
+    #[serde(default)]
+    pub bad_cases: BadCases,
+}
+
+impl EvaluateResponseRequest {
+    /// The trajectories that the model is evaluated on, and why others are left out.
+    pub(crate) fn cases(
+        &self,
+        model: &ResponseModel,
+        assumptions: &mut Vec<Assumption>,
+        (library, observer): (&Library, &mut Observer<'_>),
+    ) -> Result<Outcome<UsableCases<ResponseCase>>, StudyError> {
+        let chosen = (self.data.as_path(), &self.vehicle);
+        let cases = response_cases(chosen, self.bad_cases, assumptions, (library, observer))?;
+        let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
+        let cases = match self.split {
+            EvaluatedCases::All => usable.cases,
+            EvaluatedCases::Test => test_cases(model, usable.cases),
+        };
+        if cases.is_empty() {
+            return Err(StudyError::NoTestCase { path: self.data.clone() });
+        }
+        Ok(Outcome::Complete(UsableCases { cases, left_out: usable.left_out }))
+    }
+
+    /// The network as one of the models that are compared.
+    pub(crate) fn motion_model(model: &ResponseModel) -> Result<MotionModel, StudyError> {
+        let own = Box::new(model.copied()?);
+        Ok(match model.config().network.correction {
+            Correction::Whole => MotionModel::Plain(own),
+            _ => MotionModel::Network(own),
+        })
+    }
+}
+
+/// A finished evaluation: a comparison with one model.
+pub type EvaluateResponseAnswer = CompareAnswer;
+
+impl Question for EvaluateResponseRequest {
+    type Answer = EvaluateResponseAnswer;
+    type Report = CompareReport;
+    const NAME: &'static str = "evaluate";
+
+    fn check(&self) -> Result<(), StudyError> {
+        Ok(())
+    }
+
+    fn report(answer: &Self::Answer) -> &CompareReport {
+        &answer.report
+    }
+
+    fn solve(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<EvaluateResponseAnswer>, StudyError> {
+        let model = library.response_model(&self.model)?;
+        let digest = library.response_model_digest(&self.model)?;
+        let mut assumptions = Vec::new();
+        let cases = self.cases(&model, &mut assumptions, (library, observer))?;
+        let Outcome::Complete(UsableCases { cases, left_out }) = cases else {
+            return Ok(Outcome::Cancelled);
+        };
+        let chosen: Vec<&ResponseCase> = cases.iter().collect();
+        let trajectories = model.record().train.len();
+        let compared = Self::motion_model(&model)?;
+        let name = data_name(&self.data);
+        let comparison =
+            evaluate_motion_model((&name, &chosen), &compared, (trajectories, self.seed))?;
+        let answer = CompareAnswer::new(comparison, (left_out, assumptions), [digest]);
+        Ok(Outcome::Complete(answer))
+    }
+}
+
+/// Those kept for the test of the model, or, of other data, all that it was not trained on.
+fn test_cases(model: &ResponseModel, cases: Vec<ResponseCase>) -> Vec<ResponseCase> {
+    let test = &model.record().test;
+    let is_kept = |case: &ResponseCase| test.iter().any(|id| id.digest == case.digest);
+    if cases.iter().any(is_kept) {
+        return cases.into_iter().filter(is_kept).collect();
+    }
+    cases.into_iter().filter(|case| !model.is_trained_on(case)).collect()
+}

@@ -1,0 +1,189 @@
+//! The impulse solution of a scenario: `impact`.
+
+use serde::{Deserialize, Serialize};
+
+use crate::caveats::badges;
+use crate::{Assumption, Library, Observer, Provenance, Question, ScenarioChoice, StudyError};
+use impactlab_core::collision::{
+    BodyAfter, FrictionModel, ImpactSolution, PrincipalDirectionOfForce, Regime, RestitutionForm,
+    Scenario, StruckSurface,
+};
+use impactlab_core::data::Outcome;
+use impactlab_core::uncertainty::Badge;
+
+/// Asks for impulse, velocities after the impact, delta-v, energy and direction of force.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ImpactRequest {
+    /// The two vehicles and where they meet.
+    pub scenario: ScenarioChoice,
+    /// Whether the friction is always sliding, as the paper prints it.
+    #[serde(default)]
+    pub paper: bool,
+}
+
+/// The solution of an impact in SI units. The impulse acts on the target; world axes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ImpactReport {
+    /// Name of the scenario.
+    pub name: String,
+    /// Coefficient of restitution that was used.
+    pub restitution: f64,
+    /// What restitution acts on.
+    pub restitution_form: RestitutionForm,
+    /// Friction limit that was used, also where it is given as a share of the critical impulse
+    /// ratio.
+    pub friction_limit: f64,
+    /// The given share of the critical impulse ratio.
+    pub friction_of_critical: Option<f64>,
+    /// The smallest friction limit with which the vehicles do not slide; none if they do not
+    /// approach, or slide whatever the friction.
+    pub critical_impulse_ratio: Option<f64>,
+    /// How friction in the contact is modelled.
+    pub friction_model: FrictionModel,
+    /// Whether the contact sticks or slides.
+    pub regime: Regime,
+    /// Impulse [x, y], N s.
+    pub impulse_n_s: [f64; 2],
+    /// Its size, N s.
+    pub impulse_magnitude_n_s: f64,
+    /// Its component along the normal of the contact, N s.
+    pub impulse_normal_n_s: f64,
+    /// Its component along the tangent of the contact, N s.
+    pub impulse_tangential_n_s: f64,
+    /// Velocity at which the contact points approach, normal and tangential, m/s.
+    pub closing_velocity_m_s: [f64; 2],
+    /// Contact point [x, y], m.
+    pub contact_point_m: [f64; 2],
+    /// Direction of the normal, rad.
+    pub normal_angle_rad: f64,
+    /// The side of target or bullet to which the normal is perpendicular, where the contact comes
+    /// from outlines.
+    pub struck_surface: Option<StruckSurface>,
+    /// How far the outlines overlap, m, where the contact comes from outlines.
+    pub overlap_m: Option<f64>,
+    /// Kinetic energy lost in the contact, J.
+    pub dissipated_energy_j: f64,
+    /// The struck vehicle after the impact.
+    #[serde(rename = "target")]
+    pub struck: BodyReport,
+    /// The striking vehicle after the impact.
+    #[serde(rename = "bullet")]
+    pub striking: BodyReport,
+    /// What was assumed: where the vehicles first touched, if their outlines overlap; default
+    /// restitution and friction.
+    pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+}
+
+/// One vehicle after the impact, world axes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BodyReport {
+    /// Velocity [x, y], m/s.
+    pub velocity_m_s: [f64; 2],
+    /// Its size, m/s.
+    pub speed_m_s: f64,
+    /// Yaw rate, rad/s.
+    pub yaw_rate_rad_s: f64,
+    /// Change of velocity [x, y], m/s.
+    pub delta_v_m_s: [f64; 2],
+    /// Its size, m/s.
+    pub delta_v_magnitude_m_s: f64,
+    /// Change of the yaw rate, rad/s.
+    pub delta_yaw_rate_rad_s: f64,
+    /// Principal direction of force, degrees clockwise from straight ahead.
+    pub pdof_deg: Option<f64>,
+    /// The same as an hour of the clock.
+    pub pdof_clock: Option<u8>,
+}
+
+/// A solved impact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImpactAnswer {
+    /// What is told.
+    pub report: ImpactReport,
+    /// The scenario that was solved.
+    pub scenario: Scenario,
+    /// Its solution.
+    pub solution: ImpactSolution,
+}
+
+impl Question for ImpactRequest {
+    type Answer = ImpactAnswer;
+    type Report = ImpactReport;
+    const NAME: &'static str = "impact";
+
+    fn check(&self) -> Result<(), StudyError> {
+        self.scenario.check()
+    }
+
+    fn report(answer: &Self::Answer) -> &ImpactReport {
+        &answer.report
+    }
+
+    fn solve(
+        &self,
+        _library: &Library,
+        _observer: &mut Observer<'_>,
+    ) -> Result<Outcome<ImpactAnswer>, StudyError> {
+        let mut scenario = self.scenario.load()?;
+        if self.paper {
+            scenario.contact.friction_model = FrictionModel::Paper;
+        }
+        let unsolved = |source| self.scenario.unsolved(source);
+        let geometry = scenario.geometry().map_err(unsolved)?;
+        let impact = scenario.impact().map_err(unsolved)?;
+        let solution = scenario.solve().map_err(unsolved)?;
+        let [x, y] = solution.impulse_n_s;
+        let assumptions: Vec<Assumption> = Assumption::first_touch(&geometry)
+            .into_iter()
+            .chain(Assumption::contact_default(&scenario, &impact))
+            .collect();
+        let overlap = badges::of_overlap(&geometry).into_iter();
+        let report = ImpactReport {
+            name: scenario.name.clone(),
+            restitution: impact.surface.restitution,
+            restitution_form: impact.surface.restitution_form,
+            friction_limit: impact.surface.friction_limit,
+            friction_of_critical: scenario.contact.friction_of_critical,
+            critical_impulse_ratio: impact.critical_impulse_ratio(),
+            friction_model: scenario.contact.friction_model,
+            regime: solution.regime,
+            impulse_n_s: solution.impulse_n_s,
+            impulse_magnitude_n_s: x.hypot(y),
+            impulse_normal_n_s: solution.impulse_normal_n_s,
+            impulse_tangential_n_s: solution.impulse_tangential_n_s,
+            closing_velocity_m_s: solution.closing_velocity_m_s,
+            contact_point_m: geometry.contact_point_m,
+            normal_angle_rad: geometry.normal_angle_rad,
+            struck_surface: geometry.surface,
+            overlap_m: geometry.overlap_m,
+            dissipated_energy_j: solution.dissipated_energy_j,
+            struck: (&solution.struck).into(),
+            striking: (&solution.striking).into(),
+            badges: overlap.chain(badges::of_assumptions(&assumptions)).collect(),
+            assumptions,
+            provenance: Provenance::default(),
+        };
+        Ok(Outcome::Complete(ImpactAnswer { report, scenario, solution }))
+    }
+}
+
+impl From<&BodyAfter> for BodyReport {
+    fn from(after: &BodyAfter) -> Self {
+        let size = |[x, y]: [f64; 2]| x.hypot(y);
+        Self {
+            velocity_m_s: after.velocity_m_s,
+            speed_m_s: size(after.velocity_m_s),
+            yaw_rate_rad_s: after.yaw_rate_rad_s,
+            delta_v_m_s: after.delta_v_m_s,
+            delta_v_magnitude_m_s: size(after.delta_v_m_s),
+            delta_yaw_rate_rad_s: after.delta_yaw_rate_rad_s,
+            pdof_deg: after.pdof.map(PrincipalDirectionOfForce::angle_deg),
+            pdof_clock: after.pdof.map(PrincipalDirectionOfForce::clock),
+        }
+    }
+}

@@ -1,0 +1,287 @@
+//! The distribution of an impact force history: `predict force`.
+
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::{Estimate, ForceForecast, ForecastSettings, Mode};
+use crate::ask::checks::{check_all, check_count};
+use crate::caveats::badges;
+use crate::caveats::unused::{by_force_network, not_used};
+use crate::questions::simulate::dataset::take_case;
+use crate::{
+    Assumption, ImpliedContactReport, Library, ModelChoice, Observer, Provenance, Question,
+    ScenarioChoice, StudyError,
+};
+use impactlab_core::collision::{
+    DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, Impact, PrincipalDirectionOfForce,
+};
+use impactlab_core::data::{DatasetKind, Outcome};
+use impactlab_core::ranges::SAMPLES;
+use impactlab_core::uncertainty::Badge;
+use impactlab_networks::force::{ForceError, ForcePrediction, ForceScenario, OutsideTraining};
+
+/// Asks which force a collision brings about, and how sure that is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PredictForceRequest {
+    /// The collision.
+    pub collision: ForceQuestion,
+    /// The force network.
+    #[serde(default)]
+    pub model: ModelChoice,
+    /// Kind of bullet body as the training data name it, where the collision leaves it open.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<String>,
+    /// Whether the contact point is left open: it is drawn from that of the training cases.
+    #[serde(default)]
+    pub open_contact: bool,
+    /// Whole curves to give back.
+    #[serde(default)]
+    pub samples: usize,
+    /// Seed of all draws.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+/// The collision whose force is asked about.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ForceQuestion {
+    /// A scenario of two vehicles.
+    Scenario(ScenarioChoice),
+    /// A case of a force data set, by what was known before it.
+    Case {
+        /// The data set.
+        dataset: std::path::PathBuf,
+        /// Name of the case.
+        case: String,
+    },
+    /// The numbers that a force network knows, and what they are called.
+    Numbers {
+        /// For titles.
+        name: String,
+        /// Masses, velocities, angle, contact point, body.
+        numbers: Box<ForceScenario>,
+    },
+}
+
+/// The predicted force of a collision, SI units, axes along the heading of the target.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PredictForceReport {
+    /// What the collision is called.
+    pub scenario: String,
+    /// The force network.
+    pub model: String,
+    /// Impulse on the target, N s.
+    pub impulse_n_s: ImpulseReport,
+    /// Largest size of the force, N.
+    pub peak_n: Estimate,
+    /// When it is reached, s.
+    pub peak_time_s: Estimate,
+    /// From first touch to last separation, s.
+    pub duration_s: Estimate,
+    /// Principal direction of force, degrees clockwise from straight ahead: the median.
+    pub pdof_deg: f64,
+    /// The same as an hour of the clock.
+    pub pdof_clock: u8,
+    /// The same with its intervals, degrees.
+    pub pdof_interval_deg: Estimate,
+    /// Impulse of the momentum solution that the force network starts from, with its own restitution
+    /// and friction fitted to the training cases [x, y], N s.
+    pub momentum_impulse_n_s: [f64; 2],
+    /// Restitution and impulse ratio with which a momentum solution would give the impulse, beside
+    /// the one with the values of the collision; none where the contact is open.
+    pub implied_contact: Option<ImpliedContactReport>,
+    /// Probability that the bullet's corner stays caught; none for a single component.
+    pub hooking_probability: Option<f64>,
+    /// The components of the mixture, the likeliest first.
+    pub modes: Vec<Mode>,
+    /// How far the force network applies to the collision, 0 to 1. The rest of the distribution is
+    /// that of the physics alone.
+    pub applicability: f64,
+    /// Where the collision lies outside what was learned from.
+    pub outside_training: Vec<OutsideTraining>,
+    /// Whether the contact point is open and drawn from that of the training cases.
+    pub is_contact_open: bool,
+    /// Whether the bullet's body is open and drawn from that of the training cases.
+    pub is_body_open: bool,
+    /// What was given and is not used. Nothing is assumed, since what is open is drawn.
+    pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+}
+
+/// An impulse with its intervals, N s.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ImpulseReport {
+    /// Mean [x, y].
+    pub mean: [f64; 2],
+    /// Component along the heading of the target.
+    pub x: Estimate,
+    /// Component to its left.
+    pub y: Estimate,
+    /// Size.
+    pub magnitude: Estimate,
+}
+
+/// A predicted force.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PredictForceAnswer {
+    /// What is told.
+    pub report: PredictForceReport,
+    /// The collision as the network was asked.
+    pub collision: ForceScenario,
+    /// Bands, mean and whole curves.
+    pub forecast: ForceForecast,
+    /// What the network says.
+    pub prediction: ForcePrediction,
+}
+
+/// A collision as a force network is asked about it.
+struct AskedCollision {
+    name: String,
+    numbers: ForceScenario,
+    /// Its planar impact in world axes and the heading of the target, where the contact is known.
+    impact: Option<(Impact, f64)>,
+    /// What the network does not use of what the question says.
+    unused: Vec<Assumption>,
+    /// That its outlines overlap.
+    overlap: Option<Badge>,
+}
+
+impl ForceQuestion {
+    /// What the network is asked, and what the collision is called.
+    fn numbers(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<AskedCollision>, StudyError> {
+        let (mut unused, mut overlap) = (Vec::new(), None);
+        let across = |numbers: &ForceScenario| {
+            Some((numbers.impact(DEFAULT_RESTITUTION, DEFAULT_FRICTION_LIMIT)?, 0.0))
+        };
+        let (name, numbers, impact) = match self {
+            Self::Scenario(choice) => {
+                let scenario = choice.load()?;
+                unused = by_force_network(choice, &scenario)?;
+                let geometry = scenario.geometry().ok();
+                unused.extend(geometry.as_ref().and_then(Assumption::first_touch));
+                overlap = geometry.as_ref().and_then(badges::of_overlap);
+                let numbers = ForceScenario::from_scenario(&scenario);
+                let numbers = numbers.map_err(|source| choice.unsolved(source))?;
+                let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
+                (scenario.name, numbers, Some((impact, scenario.struck.heading_rad)))
+            }
+            Self::Case { dataset: root, case } => {
+                let Outcome::Complete(dataset) = library.dataset(root, observer)? else {
+                    return Ok(Outcome::Cancelled);
+                };
+                if dataset.kind != DatasetKind::Force {
+                    return Err(StudyError::NoCollision { name: case.clone() });
+                }
+                let numbers = ForceScenario::from_case(take_case(&dataset, case)?)?;
+                let impact = across(&numbers);
+                (case.clone(), numbers, impact)
+            }
+            Self::Numbers { name, numbers } => {
+                (name.clone(), numbers.as_ref().clone(), across(numbers))
+            }
+        };
+        Ok(Outcome::Complete(AskedCollision { name, numbers, impact, unused, overlap }))
+    }
+}
+
+impl Question for PredictForceRequest {
+    type Answer = PredictForceAnswer;
+    type Report = PredictForceReport;
+    const NAME: &'static str = "predict force";
+
+    fn check(&self) -> Result<(), StudyError> {
+        check_count("samples", &SAMPLES, self.samples)?;
+        match &self.collision {
+            ForceQuestion::Scenario(scenario) => scenario.check(),
+            ForceQuestion::Case { .. } => Ok(()),
+            ForceQuestion::Numbers { numbers, .. } => check_all(numbers.ranges()),
+        }
+    }
+
+    fn report(answer: &Self::Answer) -> &PredictForceReport {
+        &answer.report
+    }
+
+    fn solve(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<PredictForceAnswer>, StudyError> {
+        let model = library.force_model(&self.model)?;
+        let numbers = self.collision.numbers(library, observer)?;
+        let Outcome::Complete(asked) = numbers else {
+            return Ok(Outcome::Cancelled);
+        };
+        let AskedCollision { name, numbers: mut collision, mut impact, mut unused, overlap } =
+            asked;
+        if let Some(body) = &self.body {
+            collision.striking_body = Some(body.clone());
+            if model.bodies().len() == 1 {
+                let reason = "the cases that the force network has learned from have one kind";
+                unused.push(not_used(format!("kind of bullet body, {body}"), reason));
+            }
+        }
+        if self.open_contact {
+            (collision.contact_m, collision.normal_rad) = (None, None);
+            (collision.striking_position_m, impact) = (None, None);
+        }
+        let prediction = model.predict(&collision)?;
+        let settings = ForecastSettings { n_curves: self.samples, seed: self.seed };
+        let forecast =
+            ForceForecast::of(&prediction.mixture, settings).map_err(ForceError::from)?;
+        let provenance =
+            Provenance::of_seed(self.seed).with_models([library.force_model_digest(&self.model)?]);
+        let mut report = PredictForceReport::of(name, &self.model, (&prediction, &forecast));
+        report.provenance = provenance;
+        report.assumptions = unused;
+        report.implied_contact = impact.and_then(|(impact, heading_rad)| {
+            ImpliedContactReport::of(&prediction, (&impact, heading_rad), self.seed)
+        });
+        report.badges = badges::of_predicted_force(&report, &prediction.badges);
+        report.badges.extend(overlap);
+        Ok(Outcome::Complete(PredictForceAnswer { report, collision, forecast, prediction }))
+    }
+}
+
+impl PredictForceReport {
+    fn of(
+        scenario: String,
+        model: &ModelChoice,
+        (prediction, forecast): (&ForcePrediction, &ForceForecast),
+    ) -> Self {
+        let pdof = PrincipalDirectionOfForce { angle_rad: forecast.pdof_rad.median };
+        let [x, y] = forecast.impulse_n_s.clone();
+        let magnitude = forecast.impulse_magnitude_n_s.clone();
+        let mean = [0, 1].map(|axis| prediction.mixture.impulse(axis).mean());
+        Self {
+            scenario,
+            model: model.to_string(),
+            impulse_n_s: ImpulseReport { mean, x, y, magnitude },
+            peak_n: forecast.peak_n.clone(),
+            peak_time_s: forecast.peak_time_s.clone(),
+            duration_s: forecast.duration_s.clone(),
+            pdof_deg: pdof.angle_deg(),
+            pdof_clock: pdof.clock(),
+            pdof_interval_deg: forecast.pdof_rad.scaled(1.0_f64.to_degrees()),
+            momentum_impulse_n_s: prediction.momentum_impulse_n_s,
+            implied_contact: None,
+            hooking_probability: prediction.hooking_probability,
+            modes: forecast.modes.clone(),
+            applicability: prediction.applicability,
+            outside_training: prediction.outside.clone(),
+            is_contact_open: prediction.is_contact_open,
+            is_body_open: prediction.is_body_open,
+            assumptions: Vec::new(),
+            badges: Vec::new(),
+            provenance: Provenance::default(),
+        }
+    }
+}

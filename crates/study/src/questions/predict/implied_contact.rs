@@ -1,0 +1,177 @@
+//! The momentum solution beside a predicted impulse: both describe the same contact.
+
+use serde::Serialize;
+
+use crate::analysis::Estimate;
+use impactlab_core::collision::{Impact, ImpliedContact, Regime, RestitutionForm, contact_work_j};
+use impactlab_core::numerics::random_stream;
+use impactlab_core::uncertainty::ForceCurve;
+use impactlab_core::units::percent;
+use impactlab_networks::force::ForcePrediction;
+
+/// Whole curves drawn from a predicted force, whose impulses imply restitution and impulse ratio.
+const N_DRAWS: usize = 500;
+
+/// Share of drawn impulses with a restitution between 0 and 1 below which a prediction is warned of.
+pub(crate) const LEAST_P_RIGID: f64 = 0.5;
+
+/// Share of drawn impulses that add energy above which a prediction is warned of.
+pub(crate) const MOST_P_ENERGY_GAIN: f64 = 0.05;
+
+/// The momentum solution of a collision: with which restitution and friction, and what it gives.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MomentumReport {
+    /// Coefficient of restitution that was used.
+    pub restitution: f64,
+    /// What restitution acts on.
+    pub restitution_form: RestitutionForm,
+    /// Friction limit that was used, also where it is given as a share of the critical impulse
+    /// ratio.
+    pub friction_limit: f64,
+    /// The smallest friction limit with which the vehicles do not slide; none if they do not
+    /// approach, or slide whatever the friction.
+    pub critical_impulse_ratio: Option<f64>,
+    /// Whether the contact sticks or slides.
+    pub regime: Regime,
+    /// Impulse on the target [x, y], N s; axes of the report.
+    pub impulse_n_s: [f64; 2],
+}
+
+/// Restitution and impulse ratio with which the momentum solution would give a predicted impulse.
+///
+/// Both forms of restitution need the same restitution. The momentum solution gives the impulse if
+/// the restitution lies between 0 and 1 and the ratio does not exceed the critical one.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ImpliedContactReport {
+    /// Coefficient of restitution e.
+    pub restitution: Estimate,
+    /// Impulse ratio `P_τ / P_n`; the tangent is the normal turned to the left.
+    pub impulse_ratio: Estimate,
+    /// Share of the drawn impulses with a restitution between 0 and 1.
+    pub p_rigid: f64,
+    /// Share of the drawn impulses that would add kinetic energy to the two vehicles.
+    pub p_energy_gain: f64,
+    /// What is wrong with the predicted impulse, for a person: no contact of two bodies brings it
+    /// about. This is so far outside of what the force network has learned from.
+    pub warning: Option<String>,
+    /// The momentum solution with the values of the collision.
+    pub momentum: MomentumReport,
+}
+
+impl MomentumReport {
+    /// The solution of an impact; `None` if it has none.
+    ///
+    /// - `heading_rad`: world angle of the x axis of the impulse.
+    pub(crate) fn of(impact: &Impact, heading_rad: f64) -> Option<Self> {
+        let solution = impact.solve().ok()?;
+        let surface = &impact.surface;
+        Some(Self {
+            restitution: surface.restitution,
+            restitution_form: surface.restitution_form,
+            friction_limit: surface.friction_limit,
+            critical_impulse_ratio: impact.critical_impulse_ratio(),
+            regime: solution.regime,
+            impulse_n_s: turned(solution.impulse_n_s, -heading_rad),
+        })
+    }
+}
+
+impl ImpliedContactReport {
+    /// What a predicted force implies; `None` if the impact has no solution, or if the force pulls
+    /// the vehicles together.
+    ///
+    /// - `impact`: the impact in world axes;
+    /// - `heading_rad`: heading of the target, along which x of the predicted force lies;
+    /// - `seed`: of the draws.
+    pub(crate) fn of(
+        prediction: &ForcePrediction,
+        (impact, heading_rad): (&Impact, f64),
+        seed: u64,
+    ) -> Option<Self> {
+        let mut rng = random_stream(seed, "implied contact", 0);
+        let curves = prediction.mixture.sample(N_DRAWS, &mut rng);
+        let implied: Vec<ImpliedContact> = curves
+            .iter()
+            .filter_map(|curve| impact.implied_contact(turned(curve.impulse_n_s(), heading_rad)))
+            .collect();
+        if implied.is_empty() {
+            return None;
+        }
+        let estimate =
+            |of: fn(&ImpliedContact) -> f64| Estimate::of_draws(implied.iter().map(of).collect());
+        let share = |n: usize| n as f64 / curves.len() as f64;
+        let rigid = implied.iter().filter(|of| (0.0..=1.0).contains(&of.restitution));
+        let p_rigid = share(rigid.count());
+        let (v, k) = (impact.relative_velocity_m_s(), impact.inverse_mass_1_kg());
+        let gains = |curve: &&ForceCurve| {
+            contact_work_j(v, k, turned(curve.impulse_n_s(), heading_rad)) < 0.0
+        };
+        let p_energy_gain = share(curves.iter().filter(gains).count());
+        Some(Self {
+            restitution: estimate(|of| of.restitution),
+            impulse_ratio: estimate(|of| of.impulse_ratio),
+            p_rigid,
+            p_energy_gain,
+            warning: warning(p_rigid, p_energy_gain),
+            momentum: MomentumReport::of(impact, heading_rad)?,
+        })
+    }
+}
+
+/// Names what the drawn impulses have against them, if they have.
+fn warning(p_rigid: f64, p_energy_gain: f64) -> Option<String> {
+    let is_wrong = p_rigid < LEAST_P_RIGID || p_energy_gain > MOST_P_ENERGY_GAIN;
+    is_wrong.then(|| {
+        format!(
+            "the predicted impulse is not that of a contact: {} of it have a restitution between 0 \
+             and 1, {} would add kinetic energy; do not rely on it",
+            percent(p_rigid),
+            percent(p_energy_gain)
+        )
+    })
+}
+
+fn turned([x, y]: [f64; 2], angle_rad: f64) -> [f64; 2] {
+    let (sin, cos) = angle_rad.sin_cos();
+    [x * cos - y * sin, x * sin + y * cos]
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+    use impactlab_core::collision::Scenario;
+    use impactlab_networks::force::ForceScenario;
+    use impactlab_networks::shipped::ModelSource;
+
+    /// The medians, put into the solver, give the predicted impulse back, whichever way the target
+    /// heads.
+    #[test]
+    fn the_solver_with_the_implied_values_gives_the_predicted_impulse() {
+        let model = ModelSource::Shipped.force_model().unwrap();
+        let mut seen = Vec::new();
+        for quarter in [0.0, 1.0] {
+            let mut scenario = Scenario::example();
+            for vehicle in [&mut scenario.struck, &mut scenario.striking] {
+                vehicle.heading_rad += quarter * FRAC_PI_2;
+                [vehicle.vx_m_s, vehicle.vy_m_s] =
+                    turned([vehicle.vx_m_s, vehicle.vy_m_s], quarter * FRAC_PI_2);
+            }
+            let numbers = ForceScenario::from_scenario(&scenario).unwrap();
+            let prediction = model.predict(&numbers).unwrap();
+            let mut impact = scenario.impact().unwrap();
+            let heading_rad = scenario.struck.heading_rad;
+            let report = ImpliedContactReport::of(&prediction, (&impact, heading_rad), 0).unwrap();
+            assert!((report.momentum.restitution - scenario.contact.restitution).abs() < 1e-12);
+            impact.surface.restitution = report.restitution.median;
+            impact.surface.friction_limit = report.impulse_ratio.median.abs();
+            let [x, y] = turned(impact.solve().unwrap().impulse_n_s, -heading_rad);
+            let [mean_x, mean_y] = [0, 1].map(|axis| prediction.mixture.impulse(axis).mean());
+            let off = (x - mean_x).hypot(y - mean_y) / mean_x.hypot(mean_y);
+            assert!(off < 0.05, "{off}: {report:?}");
+            seen.push(report.restitution.median);
+        }
+        assert!((seen[0] - seen[1]).abs() < 1e-6, "{seen:?}");
+    }
+}

@@ -1,0 +1,5 @@
+//! What the networks predict.
+
+pub(crate) mod force;
+pub(crate) mod implied_contact;
+pub(crate) mod motion;

@@ -1,0 +1,418 @@
+//! From a force to the distribution of the motion after the impact: `predict`.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::{
+    Analysis, MotionForecast, MotionForecastSettings, MotionOutcome, RestOutcome, SecondContacts,
+    Sensitivity, StruckVehicle, forecast_collision, forecast_forces,
+};
+use crate::ask::checks::{check, check_count};
+use crate::caveats::badges;
+use crate::caveats::unused::{by_force_network, by_forecast, zones_by_network};
+use crate::questions::simulate::dataset::take_case;
+use crate::{
+    AssumedQuantity, Assumption, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, Library,
+    ModelChoice, MotionSource, Observer, Provenance, Question, SeriesFile, SimulateAnswer,
+    SimulateRequest, StudyError, VehicleChoice,
+};
+use impactlab_core::data::{DatasetKind, ForceHistory, Outcome, check_contact_within};
+use impactlab_core::ranges::{DRAWS, FORECAST_DURATION, REST_LIMIT};
+use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_networks::force::{ForceModel, ForceScenario, OutsideTraining};
+use impactlab_networks::response::OutsideDomain;
+
+/// Force curves drawn from a predicted force where nobody says how many.
+pub const DEFAULT_DRAWS: usize = 30;
+
+/// How many force curves and vehicles the coarse answer draws.
+pub const COARSE_DRAWS: usize = 5;
+
+/// Asks where the struck vehicle goes, by the response network, and how sure that is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PredictMotionRequest {
+    /// The struck vehicle, its start, and the force that it takes.
+    pub motion: SimulateRequest,
+    /// Which force drives the motion.
+    pub force: ForceSource,
+    /// The response network.
+    #[serde(default)]
+    pub response_model: ModelChoice,
+    /// Whole force curves to draw from a predicted force.
+    #[serde(default = "default_draws")]
+    pub draws: usize,
+    /// Seed of all draws.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+fn default_draws() -> usize {
+    DEFAULT_DRAWS
+}
+
+/// Which force drives a motion.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ForceSource {
+    /// What a force network says of the collision.
+    Predicted(ModelChoice),
+    /// That of the motion's own source: a record, or the pulse of a scenario.
+    Given,
+    /// A file.
+    File(PathBuf),
+}
+
+/// Where the struck vehicle goes, SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PredictMotionReport {
+    /// The scenario, case or file.
+    pub scenario: String,
+    /// The struck vehicle.
+    pub vehicle: String,
+    /// The force file, where the force is one.
+    pub force: Option<PathBuf>,
+    /// The force network, where the force is predicted.
+    pub force_model: Option<String>,
+    /// The response network.
+    pub response_model: String,
+    /// Forces that drive the motion, each as likely as the others.
+    pub n_forces: usize,
+    /// Vehicles that were drawn from what the data sheet leaves open; 0 if it leaves nothing open.
+    pub n_vehicles: usize,
+    /// How the motion ends.
+    pub outcome: MotionOutcome,
+    /// Where, when and after what distance the vehicle comes to rest; none unless the question asks for
+    /// it.
+    pub rest: Option<RestOutcome>,
+    /// How long the motions were that the response network has learned from, s: what comes after that
+    /// is the physics with the strengths that it knows.
+    pub learned_duration_s: f64,
+    /// Which estimates of the vehicle the end depends on, the one that moves it most first.
+    pub sensitivity: Vec<Sensitivity>,
+    /// Restitution and impulse ratio with which a momentum solution would give the predicted impulse,
+    /// beside the one with the values of the scenario; none for another force.
+    pub implied_contact: Option<ImpliedContactReport>,
+    /// Probability that the bullet's corner stays caught, of a predicted force.
+    pub hooking_probability: Option<f64>,
+    /// A second contact of the vehicles in the 4DOF simulation of the same collision; the forecast
+    /// does not know of it.
+    pub flags: Vec<FlagReport>,
+    /// How far the force network applies to the collision, 0 to 1; none for another force.
+    pub force_applicability: Option<f64>,
+    /// Where the collision lies outside what the force network has learned from.
+    pub outside_training: Vec<OutsideTraining>,
+    /// How far the response network holds for this motion, 0 to 1: as it falls, the forecast goes
+    /// over to the 4DOF model, and its bands to the error of that.
+    pub applicability: f64,
+    /// Where vehicle, road or impact lie outside what the response network has learned from.
+    pub outside_domain: Vec<OutsideDomain>,
+    /// What was assumed.
+    pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+}
+
+/// A predicted motion.
+#[derive(Debug)]
+pub struct PredictMotionAnswer {
+    /// What is told.
+    pub report: PredictMotionReport,
+    /// The 4DOF simulation, the record and the force of the same source.
+    pub analysis: Analysis,
+    /// The distribution of the motion.
+    pub forecast: MotionForecast,
+}
+
+impl PredictMotionRequest {
+    /// A forecast in which nothing is said but the source and which force drives it.
+    pub fn new(source: MotionSource, force: ForceSource) -> Self {
+        Self {
+            motion: SimulateRequest {
+                vehicle_draws: DEFAULT_DRAWS,
+                ..SimulateRequest::new(source)
+            },
+            force,
+            response_model: ModelChoice::default(),
+            draws: DEFAULT_DRAWS,
+            seed: 0,
+        }
+    }
+
+    /// The force network and the collision that it is asked about.
+    fn predicted(
+        &self,
+        model: &ModelChoice,
+        (library, observer): (&Library, &mut Observer<'_>),
+    ) -> Result<Outcome<(Arc<ForceModel>, ForceScenario)>, StudyError> {
+        let source = &self.motion.source;
+        let collision = match source {
+            MotionSource::Scenario { scenario: choice, .. } => {
+                let scenario = choice.load()?;
+                let numbers = ForceScenario::from_scenario(&scenario);
+                numbers.map_err(|source| choice.unsolved(source))?
+            }
+            MotionSource::Case { dataset, case } => {
+                let Outcome::Complete(dataset) = library.dataset(dataset, observer)? else {
+                    return Ok(Outcome::Cancelled);
+                };
+                if dataset.kind != DatasetKind::Force {
+                    return Err(StudyError::NoCollision { name: source.name() });
+                }
+                ForceScenario::from_case(take_case(&dataset, case)?)?
+            }
+            MotionSource::Trajectory { .. } | MotionSource::Drive(_) => {
+                return Err(StudyError::NoCollision { name: source.name() });
+            }
+        };
+        Ok(Outcome::Complete((library.force_model(model)?, collision)))
+    }
+}
+
+impl Question for PredictMotionRequest {
+    type Answer = PredictMotionAnswer;
+    type Report = PredictMotionReport;
+    const NAME: &'static str = "predict motion";
+
+    fn check(&self) -> Result<(), StudyError> {
+        self.motion.check()?;
+        // A recorded motion has its own duration.
+        let is_open =
+            matches!(self.motion.source, MotionSource::Scenario { .. } | MotionSource::Drive(_));
+        if self.motion.until_rest {
+            check("motion.duration_s", &REST_LIMIT, self.motion.duration_s)?;
+        } else if is_open {
+            check("motion.duration_s", &FORECAST_DURATION, self.motion.duration_s)?;
+        }
+        check_count("draws", &DRAWS, self.draws)
+    }
+
+    /// Fewer draws; `None` for a forecast to rest, which is made of draws alone, and where neither the
+    /// force nor a vehicle that was chosen may be drawn.
+    fn coarse(&self) -> Option<Self> {
+        let motion = SimulateRequest {
+            vehicle_draws: self.motion.vehicle_draws.min(COARSE_DRAWS),
+            ..self.motion.clone()
+        };
+        let coarse = Self { draws: self.draws.min(COARSE_DRAWS), motion, ..self.clone() };
+        let is_drawn = matches!(self.force, ForceSource::Predicted(_))
+            || self.motion.vehicle != VehicleChoice::Automatic;
+        (coarse != *self && is_drawn && !self.motion.until_rest).then_some(coarse)
+    }
+
+    fn report(answer: &Self::Answer) -> &PredictMotionReport {
+        &answer.report
+    }
+
+    fn solve(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<PredictMotionAnswer>, StudyError> {
+        // The vehicles are drawn for the forecast, not for the simulation beside it.
+        let mut simulation = SimulateRequest { vehicle_draws: 0, ..self.motion.clone() };
+        if self.is_recorded() && self.motion.until_rest {
+            // The record has its own duration; what goes on to rest is the forecast.
+            (simulation.until_rest, simulation.duration_s) = (false, DEFAULT_DURATION_S);
+        }
+        let Outcome::Complete(simulated) = simulation.answer(library, observer)? else {
+            return Ok(Outcome::Cancelled);
+        };
+        let SimulateAnswer { report: simulated, analysis } = simulated;
+        let mut unused = by_forecast(self);
+        if let (ForceSource::Predicted(_), MotionSource::Scenario { scenario, .. }) =
+            (&self.force, &self.motion.source)
+        {
+            unused.extend(by_force_network(scenario, &scenario.load()?)?);
+        }
+        let name = || self.motion.source.name();
+        let (Some(struck), Some(own_force)) = (&analysis.struck, &analysis.force) else {
+            return Err(StudyError::NoForce { name: name() });
+        };
+        unused.extend(zones_by_network(struck));
+        let model = library.response_model(&self.response_model)?;
+        // A fleet has braked and dragged wheels, none that are steered or driven.
+        let controls = &struck.controls;
+        let is_like_fleet =
+            model.population().is_some() && !(controls.is_steered() || controls.is_driven());
+        if !controls.is_coasting() && !is_like_fleet {
+            return Err(StudyError::NotCoasting { name: name() });
+        }
+        let settings = MotionForecastSettings {
+            n_curves: self.draws,
+            n_vehicles: self.motion.vehicle_draws,
+            duration_s: match self.motion.until_rest {
+                true => self.motion.duration_s,
+                false => simulated.duration_s,
+            },
+            until_rest: self.motion.until_rest,
+            seed: self.seed,
+        };
+        let failed = |source| StudyError::Forecast { name: name(), source: Box::new(source) };
+        let mut cut = None;
+        let forecast = match &self.force {
+            ForceSource::Given => {
+                let own = Some(own_force).filter(|_| self.motion.source.is_recorded());
+                cut = own.and_then(badges::of_cut_record);
+                forecast_forces(std::slice::from_ref(own_force), &model, struck, &settings)
+            }
+            ForceSource::File(path) => {
+                let force = given_force(path, (struck, settings.duration_s), library)?;
+                cut = badges::of_cut_record(&force);
+                forecast_forces(&[force], &model, struck, &settings)
+            }
+            ForceSource::Predicted(choice) => {
+                let predicted = self.predicted(choice, (library, observer))?;
+                let Outcome::Complete((force_model, collision)) = predicted else {
+                    return Ok(Outcome::Cancelled);
+                };
+                let models = (force_model.as_ref(), model.as_ref());
+                forecast_collision(&collision, models, struck, &settings)
+            }
+        };
+        let forecast = forecast.map_err(failed)?;
+        let overlap = simulated.badges.into_iter().find(|badge| badge.kind == BadgeKind::Overlap);
+        let mut assumptions = simulated.assumptions;
+        assumptions.retain(|assumption| self.rests_on(assumption));
+        assumptions.extend(unused);
+        let provenance = self.provenance(library)?;
+        let known = (assumptions, provenance);
+        let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.badges);
+        let mut report = PredictMotionReport {
+            implied_contact: self.implied_contact(&forecast)?,
+            flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
+            ..self.report(&analysis.name, struck, (&forecast, known))
+        };
+        report.badges = badges::of_predicted_motion(&report, predicted);
+        let has_same_force = self.force == ForceSource::Given;
+        let apart = badges::of_disagreement((&forecast, &analysis), has_same_force);
+        report.badges.extend(apart);
+        report.badges.extend(cut);
+        report.badges.extend(overlap);
+        Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
+    }
+}
+
+/// The force of a file. Where it acts without a yaw moment of its own, the source of the motion says.
+///
+/// - `duration_s`: duration of the motion, s, within which the contact lies.
+fn given_force(
+    path: &Path,
+    (struck, duration_s): (&StruckVehicle, f64),
+    library: &Library,
+) -> Result<ForceHistory, StudyError> {
+    let loaded = library.series(&SeriesFile::new(path))?;
+    let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling())
+        .map_err(|source| StudyError::Series { path: path.to_owned(), source })?;
+    // A recorded yaw moment acts about the CG: it does not say where another force acts.
+    let has_contact = [struck.contact.x_m, struck.contact.y_m] != [0.0; 2];
+    if force.mz_n_m.is_none() && !has_contact {
+        return Err(StudyError::NoYawMoment { path: path.to_owned() });
+    }
+    let outside =
+        |outside| StudyError::ContactOutside { name: path.display().to_string(), outside };
+    check_contact_within(&force, duration_s).map_err(outside)?;
+    Ok(force)
+}
+
+impl PredictMotionRequest {
+    /// What the predicted force of a scenario implies of the contact.
+    fn implied_contact(
+        &self,
+        forecast: &MotionForecast,
+    ) -> Result<Option<ImpliedContactReport>, StudyError> {
+        let (Some(prediction), MotionSource::Scenario { scenario: choice, .. }) =
+            (&forecast.force, &self.motion.source)
+        else {
+            return Ok(None);
+        };
+        let scenario = choice.load()?;
+        let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
+        let at = (&impact, scenario.struck.heading_rad);
+        Ok(ImpliedContactReport::of(prediction, at, self.seed))
+    }
+
+    /// Whether the motion of the source is a recorded one.
+    fn is_recorded(&self) -> bool {
+        match &self.motion.source {
+            MotionSource::Trajectory { .. } => true,
+            MotionSource::Case { dataset, .. } => {
+                DatasetKind::of_folder(dataset) == Some(DatasetKind::Trajectory)
+            }
+            MotionSource::Scenario { .. } | MotionSource::Drive(_) => false,
+        }
+    }
+
+    /// Whether the vehicles meet again, over the draws. The striking vehicle moves as in the
+    /// simulation where the force is that of the simulation.
+    fn second_contact(&self, forecast: &MotionForecast, analysis: &Analysis) -> Option<FlagReport> {
+        let striking = analysis.striking.as_ref()?;
+        let is_own = self.force == ForceSource::Given;
+        let met = SecondContacts::of(forecast, (analysis.footprint, striking), is_own)?;
+        Some(FlagReport::from(&met))
+    }
+
+    /// Whether the motion of the struck vehicle depends on what was assumed for the simulation.
+    fn rests_on(&self, assumption: &Assumption) -> bool {
+        match assumption.quantity {
+            AssumedQuantity::Striking | AssumedQuantity::StrikingParameter => false,
+            AssumedQuantity::Pulse | AssumedQuantity::Restitution => {
+                self.force == ForceSource::Given
+            }
+            _ => true,
+        }
+    }
+
+    /// The seed and the networks that answer.
+    fn provenance(&self, library: &Library) -> Result<Provenance, StudyError> {
+        let force = match &self.force {
+            ForceSource::Predicted(model) => Some(library.force_model_digest(model)?),
+            ForceSource::Given | ForceSource::File(_) => None,
+        };
+        let response = library.response_model_digest(&self.response_model)?;
+        Ok(Provenance::of_seed(self.seed).with_models(force.into_iter().chain([response])))
+    }
+
+    fn report(
+        &self,
+        name: &str,
+        struck: &StruckVehicle,
+        (forecast, (assumptions, provenance)): (&MotionForecast, (Vec<Assumption>, Provenance)),
+    ) -> PredictMotionReport {
+        let predicted = forecast.force.as_ref();
+        PredictMotionReport {
+            scenario: name.to_owned(),
+            vehicle: struck.vehicle.name.clone(),
+            force: match &self.force {
+                ForceSource::File(path) => Some(path.clone()),
+                ForceSource::Given => self.motion.source.force_file().cloned(),
+                ForceSource::Predicted(_) => None,
+            },
+            force_model: match &self.force {
+                ForceSource::Predicted(model) => Some(model.to_string()),
+                ForceSource::Given | ForceSource::File(_) => None,
+            },
+            response_model: self.response_model.to_string(),
+            n_forces: forecast.forces.len(),
+            n_vehicles: forecast.n_vehicles,
+            outcome: forecast.outcome.clone(),
+            rest: forecast.rest.clone(),
+            learned_duration_s: forecast.learned_s,
+            sensitivity: forecast.sensitivity.clone(),
+            hooking_probability: predicted.and_then(|force| force.hooking_probability),
+            flags: Vec::new(),
+            implied_contact: None,
+            force_applicability: predicted.map(|force| force.applicability),
+            outside_training: predicted.map_or_else(Vec::new, |force| force.outside.clone()),
+            applicability: forecast.applicability.value,
+            outside_domain: forecast.applicability.outside.clone(),
+            assumptions,
+            badges: Vec::new(),
+            provenance,
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Vehicles, roads and damage that a reconstruction is not made for.
+
+use impactlab_core::collision::{Footprint, OffOutline, Side};
+use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_core::units::{STANDARD_GRAVITY_M_S2, significant};
+use impactlab_core::vehicle::{FrictionZone, VehicleParameters};
+use impactlab_reconstruct::evidence::{Damage, Measured};
+use impactlab_reconstruct::{Car, Cars};
+
+/// A quantity of a vehicle with the range over which the rules of the data sheet were fitted and the
+/// 4DOF model was tried: the vehicles of
+/// [`Ncap2004`](impactlab_core::bibliography::Ncap2004) and of the library, and the multibody cars of the
+/// fleet; cars, vans and light trucks.
+struct Known {
+    name: &'static str,
+    unit: &'static str,
+    of: fn(&VehicleParameters) -> f64,
+    range: [f64; 2],
+}
+
+/// What is compared: the lightest is a micro car, the heaviest a large SUV, and the longest wheelbase
+/// that of a pickup.
+const KNOWN: [Known; 5] = [
+    Known { name: "mass", unit: "kg", of: |car| car.mass.mass_kg, range: [900.0, 2750.0] },
+    Known {
+        name: "wheelbase",
+        unit: "m",
+        of: |car| car.geometry.wheelbase_m(),
+        range: [2.25, 3.70],
+    },
+    Known { name: "track", unit: "m", of: |car| car.geometry.track_width_m, range: [1.34, 1.74] },
+    Known { name: "load of the front axle", unit: "kg", of: front_load_kg, range: AXLE_LOAD_KG },
+    Known { name: "load of the rear axle", unit: "kg", of: rear_load_kg, range: AXLE_LOAD_KG },
+];
+
+/// Load of an axle at rest as a mass, kg, of the same vehicles.
+const AXLE_LOAD_KG: [f64; 2] = [350.0, 1500.0];
+
+/// Peak friction of the roads on which the 4DOF model was tried: `datasets/trajectories-fleet` and
+/// `datasets/staged`.
+const ROAD_FRICTION: [f64; 2] = [0.3, 0.9];
+
+/// Standard deviations within which a measured friction may lie on such a road.
+const FRICTION_REACH: f64 = 2.0;
+
+/// Standard deviations by which the place of the damage may be off.
+const DAMAGE_REACH: f64 = 3.0;
+
+fn front_load_kg(car: &VehicleParameters) -> f64 {
+    let [left, right, ..] = car.static_loads_n();
+    (left + right) / STANDARD_GRAVITY_M_S2
+}
+
+fn rear_load_kg(car: &VehicleParameters) -> f64 {
+    let [.., left, right] = car.static_loads_n();
+    (left + right) / STANDARD_GRAVITY_M_S2
+}
+
+/// What of both vehicles lies outside of what rules and model are known to hold for.
+pub(crate) fn of_vehicles(cars: &Cars) -> Vec<Badge> {
+    let both = [("struck car", &cars.struck), ("striking car", &cars.striking)];
+    both.into_iter().flat_map(|(which, car)| of_vehicle(which, car)).collect()
+}
+
+fn of_vehicle<'a>(which: &'a str, car: &'a Car) -> impl Iterator<Item = Badge> + 'a {
+    KNOWN.iter().filter_map(move |Known { name, unit, of, range }| {
+        let value = of(&car.parameters);
+        let [low, high] = *range;
+        let text = format!(
+            "{which}: {name} is {} {unit}; what is estimated of a vehicle, how it moves and what is \
+             assumed beforehand is known of cars and vans of {} to {} {unit}",
+            significant(value),
+            significant(low),
+            significant(high)
+        );
+        let badge = Badge::new(BadgeKind::OutsideDomain, text)
+            .with_value(format!("{name} of the {which} [{unit}]"), value)
+            .with_range(*range);
+        (!(low..=high).contains(&value)).then_some(badge)
+    })
+}
+
+/// A road whose measured friction is beyond those on which the model was tried.
+pub(crate) fn of_road(friction: Option<Measured>) -> Option<Badge> {
+    let Measured { value, sigma } = friction?;
+    let [low, high] = ROAD_FRICTION;
+    let reach = FRICTION_REACH * sigma;
+    let text = format!(
+        "friction of the road is {}; how a car moves is known of roads of {low} to {high}",
+        significant(value)
+    );
+    let badge = Badge::new(BadgeKind::OutsideDomain, text)
+        .with_value("friction of the road", value)
+        .with_range(ROAD_FRICTION);
+    (!(low - reach..=high + reach).contains(&value)).then_some(badge)
+}
+
+/// Zones of the ground whose friction is beyond that of the roads on which the model was tried.
+pub(crate) fn of_zones(zones: &[FrictionZone]) -> impl Iterator<Item = Badge> {
+    let [low, high] = ROAD_FRICTION;
+    let outside = zones.iter().filter(move |zone| !(low..=high).contains(&zone.friction));
+    outside.map(move |zone| {
+        let text = format!(
+            "friction of the zone {:?} is {}; how a car moves is known of roads of {low} to {high}",
+            zone.name, zone.friction
+        );
+        Badge::new(BadgeKind::OutsideDomain, text)
+            .with_value(format!("friction of the zone {:?}", zone.name), zone.friction)
+            .with_range(ROAD_FRICTION)
+    })
+}
+
+/// Checks that the struck car is where the damage is said to be, within the errors of the damage.
+///
+/// # Errors
+/// [`OffOutline`] with the distance.
+pub(crate) fn check_damage(damage: &Damage, cars: &Cars) -> Result<(), OffOutline> {
+    let footprint = Footprint::from(&cars.struck.parameters.geometry);
+    let Measured { value, sigma } = damage.along_m;
+    let across_m = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.side));
+    let reach_m = DAMAGE_REACH * sigma;
+    let along_m = value - value.clamp(-reach_m, reach_m);
+    let point = |along_m: f64| match damage.side {
+        Side::Left | Side::Right => [along_m, across_m],
+        Side::Front | Side::Rear => [across_m, along_m],
+    };
+    match footprint.check_contact(point(along_m)) {
+        Ok(()) => Ok(()),
+        Err(_) => footprint.check_contact(point(value)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::examples::spin;
+    use impactlab_core::vehicle::LibraryVehicle;
+    use impactlab_reconstruct::evidence::{CarEvidence, Evidence};
+
+    fn said(evidence: &Evidence) -> Vec<(String, f64)> {
+        let badges = of_vehicles(&Cars::of(evidence, None, None));
+        badges.into_iter().map(|of| (of.quantity.unwrap(), of.value.unwrap())).collect()
+    }
+
+    #[test]
+    fn a_lorry_is_named_with_what_is_too_heavy_and_a_toy_with_what_is_too_short() {
+        let mut evidence = spin();
+        assert_eq!(said(&evidence), []);
+        evidence.struck_car.mass_kg = Some(Measured { value: 20_170.0, sigma: 100.0 });
+        let lorry = said(&evidence);
+        let names: Vec<&str> = lorry.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(
+            names,
+            [
+                "mass of the struck car [kg]",
+                "load of the front axle of the struck car [kg]",
+                "load of the rear axle of the struck car [kg]",
+            ]
+        );
+        assert_eq!(lorry[0].1, 20_170.0);
+        assert!((lorry[1].1 + lorry[2].1 - 20_170.0).abs() < 1e-6, "{lorry:?}");
+        evidence.struck_car.mass_kg = None;
+        evidence.striking_car.cg_to_front_axle_m = Some(0.4);
+        evidence.striking_car.cg_to_rear_axle_m = Some(0.5);
+        evidence.striking_car.track_m = Some(2.4);
+        let toy = said(&evidence);
+        let expected = ["wheelbase of the striking car [m]", "track of the striking car [m]"];
+        assert_eq!(toy.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), expected);
+    }
+
+    #[test]
+    fn ice_and_glue_are_roads_that_nobody_tried() {
+        let outside = |value| of_road(Some(Measured { value, sigma: 0.04 })).is_some();
+        assert_eq!([0.15, 0.3, 0.95, 1.59].map(outside), [true, false, false, true]);
+        assert_eq!(of_road(None), None);
+    }
+
+    #[test]
+    fn no_vehicle_of_the_library_lies_outside() {
+        let evidence = Evidence { striking_car: CarEvidence::default(), ..spin() };
+        for vehicle in LibraryVehicle::ALL {
+            let cars = Cars::of(&evidence, None, Some(&vehicle.parameters()));
+            assert_eq!(of_vehicles(&cars), [], "{}", vehicle.id());
+        }
+    }
+
+    #[test]
+    fn damage_lies_at_the_car_within_its_errors() {
+        let mut evidence = spin();
+        let check = |evidence: &Evidence| {
+            check_damage(&evidence.damage, &Cars::of(evidence, None, None)).map_err(|off| off.x_m)
+        };
+        assert_eq!(check(&evidence), Ok(()));
+        evidence.damage.along_m.value = -8.0;
+        assert_eq!(check(&evidence), Err(-8.0));
+        evidence.damage.along_m.sigma = 2.0;
+        assert_eq!(check(&evidence), Ok(()));
+    }
+}

@@ -1,0 +1,5 @@
+//! From the evidence to the speeds before the collision.
+
+pub(crate) mod domain;
+pub(crate) mod paths;
+pub(crate) mod request;

@@ -1,0 +1,448 @@
+//! From the evidence of a collision to the speeds before it: `reconstruct`.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::ask::checks::check_count;
+use crate::caveats::badges;
+use crate::questions::reconstruct::domain::{check_damage, of_road, of_vehicles, of_zones};
+use crate::{
+    AssumedQuantity, Assumption, Event, FrictionZoneReport, Library, Observer, Provenance,
+    Question, Sampling, StudyError, VehicleChoice,
+};
+use impactlab_core::data::Outcome;
+use impactlab_core::jobs::Progress;
+use impactlab_core::numerics::sha256_hex;
+use impactlab_core::program;
+use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
+use impactlab_core::site::Site;
+use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_core::vehicle::FrictionZone;
+use impactlab_reconstruct::evidence::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Evidence};
+use impactlab_reconstruct::sampler::{
+    Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, sample,
+};
+use impactlab_reconstruct::{
+    BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCalculation, MarkComparison,
+    Mode, Posterior, PriorComponent, QuantityEstimate, ReconstructionTarget,
+};
+
+/// Effective sample size below which intervals are not to be relied on.
+const LEAST_ESS: f64 = 400.0;
+
+/// Evaluations of the forward model that each particle is worth at the most.
+const EVALUATIONS_PER_PARTICLE: usize = 150;
+
+/// Asks how fast both cars were.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReconstructRequest {
+    /// What was found.
+    pub evidence: EvidenceChoice,
+    /// The struck car, where the evidence leaves it open.
+    #[serde(default)]
+    pub vehicle: VehicleChoice,
+    /// The striking car, likewise.
+    #[serde(default)]
+    pub striking: VehicleChoice,
+    /// Site file whose friction zones the wheels stand on, in the axes of the evidence.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub site: Option<PathBuf>,
+    /// Number of particles.
+    #[serde(default = "default_particles")]
+    pub particles: usize,
+    /// Seed of all draws.
+    #[serde(default)]
+    pub seed: u64,
+    /// File that the run is saved in after each step towards the evidence.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub checkpoint: Option<PathBuf>,
+    /// Whether to go on from that file if it exists.
+    #[serde(default)]
+    pub resume: bool,
+}
+
+fn default_particles() -> usize {
+    ReconstructRequest::DEFAULT_PARTICLES
+}
+
+/// The evidence: a file, or in memory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EvidenceChoice {
+    /// An evidence file.
+    File(PathBuf),
+    /// The evidence itself.
+    Inline(Box<Evidence>),
+}
+
+/// What the evidence says of the speeds, SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReconstructReport {
+    /// Name of the case.
+    pub case: String,
+    /// The quantities with their intervals.
+    pub quantities: Vec<QuantityEstimate>,
+    /// Courses of events that the evidence leaves possible, the most probable one first.
+    pub modes: Vec<Mode>,
+    /// How well each item of the evidence is explained.
+    pub fit: Vec<EvidenceFit>,
+    /// Each mark that was found beside the one that its wheel leaves in the motion of the particle of
+    /// median speed.
+    pub marks: Vec<MarkComparison>,
+    /// What further evidence would bring.
+    pub budget: Vec<BudgetItem>,
+    /// Effective sample size.
+    pub ess: f64,
+    /// Motions that were simulated.
+    pub n_simulations: usize,
+    /// Number of particles.
+    pub n_particles: usize,
+    /// Logarithm of the evidence, up to a constant of the case: tells assumptions about one case apart.
+    pub log_evidence: f64,
+    /// Speed of the struck car by hand, m/s, and its standard deviation, for comparison.
+    pub by_hand_m_s: Option<[f64; 2]>,
+    /// The parts of the ground with their own friction.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub friction_zones: Vec<FrictionZoneReport>,
+    /// What was taken to be likely before.
+    pub priors: Vec<PriorComponent>,
+    /// What nobody said.
+    pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
+    /// Version of the program, seed.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+}
+
+/// A reconstruction.
+#[derive(Debug, Clone)]
+pub struct ReconstructAnswer {
+    /// What is told.
+    pub report: ReconstructReport,
+    /// The posterior that was sampled.
+    pub target: ReconstructionTarget,
+    /// Its particles.
+    pub particles: Particles,
+    /// What follows from them.
+    pub posterior: Posterior,
+}
+
+impl ReconstructRequest {
+    /// Number of particles where nobody says it.
+    pub const DEFAULT_PARTICLES: usize = 1000;
+
+    /// A reconstruction with everything else left open.
+    pub fn new(evidence: EvidenceChoice) -> Self {
+        Self {
+            evidence,
+            vehicle: VehicleChoice::Automatic,
+            striking: VehicleChoice::Automatic,
+            site: None,
+            particles: Self::DEFAULT_PARTICLES,
+            seed: 0,
+            checkpoint: None,
+            resume: false,
+        }
+    }
+
+    /// Where the run is saved, with a digest of all that its likelihood is made from.
+    fn checkpoint(
+        &self,
+        evidence: &Evidence,
+        model: &ForwardModel,
+    ) -> Result<Option<SamplerCheckpoint>, StudyError> {
+        let Some(path) = self.checkpoint.clone() else { return Ok(None) };
+        if path.exists() && !self.resume {
+            return Err(StudyError::ReconstructionExists { path });
+        }
+        let digest = sha256_hex([likelihood_of(evidence, model).as_bytes()]);
+        Ok(Some(SamplerCheckpoint { path, digest, resume: self.resume }))
+    }
+
+    fn cars(&self, evidence: &Evidence) -> Result<Cars, StudyError> {
+        let (struck, striking) = (self.vehicle.chosen()?, self.striking.chosen()?);
+        Ok(Cars::of(evidence, struck.as_ref(), striking.as_ref()))
+    }
+
+    /// The forward model of the case.
+    ///
+    /// # Errors
+    /// [`StudyError`], if vehicles or site cannot be read.
+    pub fn model(&self, evidence: &Evidence) -> Result<ForwardModel, StudyError> {
+        let site = self.site.as_deref().map(Site::load).transpose()?;
+        let zones = site.map_or_else(Vec::new, |site| site.friction_zones);
+        Ok(ForwardModel::new(evidence, self.cars(evidence)?).on_zones(zones))
+    }
+
+    /// Digest of all that the particles follow from, this build of the program included.
+    ///
+    /// # Errors
+    /// [`StudyError`], if evidence, vehicles or site cannot be read.
+    pub fn run_digest(&self) -> Result<String, StudyError> {
+        let evidence = self.evidence.load()?;
+        let likelihood = likelihood_of(&evidence, &self.model(&evidence)?);
+        let settings = format!("{:?}", self.settings());
+        Ok(sha256_hex([program::version(), &likelihood, &settings].map(str::as_bytes)))
+    }
+
+    fn settings(&self) -> SamplerSettings {
+        SamplerSettings {
+            n_particles: self.particles,
+            seed: self.seed,
+            least_ess: self.particles as f64,
+            max_evaluations: self.particles * EVALUATIONS_PER_PARTICLE,
+        }
+    }
+}
+
+/// All that the likelihood of a case is made from.
+fn likelihood_of(evidence: &Evidence, model: &ForwardModel) -> String {
+    let (cars, zones) = (model.cars(), model.zones());
+    format!("{evidence:?} {cars:?} {zones:?} {:?}", Discrepancy::default())
+}
+
+impl EvidenceChoice {
+    /// The evidence.
+    ///
+    /// # Errors
+    /// [`StudyError::TomlFile`], with line and column.
+    pub fn load(&self) -> Result<Evidence, StudyError> {
+        match self {
+            Self::File(path) => Ok(Evidence::load(path)?),
+            Self::Inline(evidence) => Ok(evidence.as_ref().clone()),
+        }
+    }
+
+    /// The file, if it is one.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::File(path) => Some(path),
+            Self::Inline(_) => None,
+        }
+    }
+
+    fn name(&self) -> String {
+        match self {
+            Self::File(path) => path.display().to_string(),
+            Self::Inline(evidence) => evidence.case.clone(),
+        }
+    }
+}
+
+impl Question for ReconstructRequest {
+    type Answer = ReconstructAnswer;
+    type Report = ReconstructReport;
+    const NAME: &'static str = "reconstruct";
+
+    fn check(&self) -> Result<(), StudyError> {
+        check_count("particles", &RECONSTRUCTION_PARTICLES, self.particles)
+    }
+
+    fn report(answer: &Self::Answer) -> &ReconstructReport {
+        &answer.report
+    }
+
+    fn solve(
+        &self,
+        _library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<ReconstructAnswer>, StudyError> {
+        let evidence = self.evidence.load()?;
+        let model = self.model(&evidence)?;
+        let cars = model.cars();
+        let assumptions = assumptions(&evidence, &model);
+        check_damage(&evidence.damage, cars).map_err(|source| StudyError::ContactOffVehicle {
+            name: self.evidence.name(),
+            vehicle: "the struck car".to_owned(),
+            source,
+        })?;
+        let mut outside = of_vehicles(cars);
+        outside.extend(of_road(evidence.friction));
+        outside.extend(of_zones(model.zones()));
+        let checkpoint = self.checkpoint(&evidence, &model)?;
+        let friction_zones = model.zones().iter().map(FrictionZoneReport::of).collect();
+        let target = ReconstructionTarget::new(evidence, model, Discrepancy::default());
+        let settings = self.settings();
+        let mut before = None;
+        let mut told = |report: SamplerReport<'_>| {
+            let (temperature, z) = (report.temperature, report.z);
+            observer(Event::Sampling(Sampling { target: &target, temperature, z }))?;
+            let progress = progress(&report, &settings);
+            let done_before = *before.get_or_insert(progress.done);
+            observer(Event::Progress(progress.going_on_from(done_before)))
+        };
+        let particles =
+            sample(&target, &settings, checkpoint.as_ref(), &mut told).map_err(|source| {
+                StudyError::Reconstruction { name: self.evidence.name(), source: Box::new(source) }
+            })?;
+        let posterior = Posterior::of(&target, &particles);
+        let (fit, turned_rad) = target.fit(&particles);
+        let ground = target.model().zones();
+        let by_hand = HandCalculation::of(target.evidence(), target.model().cars(), ground);
+        let by_hand_m_s = by_hand.map(|hand| {
+            let speed = hand.struck_speed_m_s;
+            [speed.value, speed.sigma]
+        });
+        let mut badges = of_particles(&particles);
+        badges.extend(outside);
+        badges.extend(of_fit(&fit));
+        badges.push(of_validation(target.model().zones()));
+        badges.extend(badges::of_assumptions(&assumptions));
+        let quantities = posterior.quantities();
+        let report = ReconstructReport {
+            case: target.evidence().case.clone(),
+            marks: compared_marks(&target, (&particles, &posterior), &quantities),
+            quantities,
+            modes: posterior.modes(&particles, &turned_rad),
+            fit,
+            budget: posterior.budget((particles.ess, self.seed)),
+            ess: particles.ess,
+            n_simulations: particles.n_evaluations + particles.z.len(),
+            n_particles: particles.z.len(),
+            log_evidence: particles.log_evidence,
+            by_hand_m_s,
+            friction_zones,
+            priors: target.model().prior().components().to_vec(),
+            assumptions,
+            badges,
+            provenance: Provenance::of_seed(self.seed),
+        };
+        Ok(Outcome::Complete(ReconstructAnswer { report, target, particles, posterior }))
+    }
+}
+
+/// The marks that were found beside those of the particle of median speed.
+fn compared_marks(
+    target: &ReconstructionTarget,
+    (particles, posterior): (&Particles, &Posterior),
+    quantities: &[QuantityEstimate],
+) -> Vec<MarkComparison> {
+    let found = &target.evidence().marks;
+    let all: Vec<usize> = (0..particles.z.len()).collect();
+    let median = posterior.nearest_to_median(&all, quantities);
+    let Some(z) = median.and_then(|idx| particles.z.get(idx)).filter(|_| !found.is_empty()) else {
+        return Vec::new();
+    };
+    let computed = target.model().motions(std::slice::from_ref(z), |motion| motion.tire_marks());
+    MarkComparison::all(found, &computed.concat())
+}
+
+/// How far the sampling is: half of it is reaching the posterior.
+///
+/// - `settings`: those of the sampler, which end it.
+fn progress(report: &SamplerReport<'_>, settings: &SamplerSettings) -> Progress {
+    let of_posterior = (report.ess.unwrap_or(0.0) / settings.least_ess).min(1.0);
+    let share = 0.5 * report.temperature.powf(0.2) + 0.5 * of_posterior;
+    // Where the sample stays small, the evaluations end it.
+    let spent = report.n_evaluations as f64 / settings.max_evaluations as f64;
+    let message = format!("{} motions", report.n_evaluations);
+    Progress::new((1000.0 * share.max(spent.min(1.0))) as u64, 1000, message)
+}
+
+/// Whether there are enough particles, and whether they are of the posterior.
+fn of_particles(particles: &Particles) -> Vec<Badge> {
+    let stopped = (!particles.of_posterior()).then(|| {
+        let text = "sampling was stopped before all of the evidence was used: these particles are \
+                    not of the posterior";
+        Badge::new(BadgeKind::FewParticles, text)
+            .with_value("temperature", particles.temperature)
+            .with_range([1.0, f64::INFINITY])
+    });
+    let few = (particles.ess < LEAST_ESS).then(|| {
+        let text = format!(
+            "the particles are worth {:.0} independent ones, expected {LEAST_ESS}: intervals may be \
+             too narrow; more particles: --particles",
+            particles.ess
+        );
+        Badge::new(BadgeKind::FewParticles, text)
+            .with_value("effective sample size", particles.ess)
+            .with_range([LEAST_ESS, f64::INFINITY])
+    });
+    stopped.into_iter().chain(few).collect()
+}
+
+/// What the intervals have been tried on, as long as that is not enough.
+fn of_validation(zones: &[FrictionZone]) -> Badge {
+    let on_zones = match zones.is_empty() {
+        true => "",
+        false => ", all of which stood on one friction",
+    };
+    let text = format!(
+        "intervals were tried on 40 simulated collisions of one make of car{on_zones} and on no real \
+         one; how often they held is in docs/guide/limits.md"
+    );
+    Badge::new(BadgeKind::HardlyValidated, text)
+}
+
+/// Evidence that no particle explains.
+fn of_fit(fit: &[EvidenceFit]) -> Vec<Badge> {
+    let unexplained = fit.iter().filter(|item| item.is_unexplained());
+    unexplained
+        .map(|item| {
+            let shown = |value: f64| format!("{value:.3} {}", item.unit).trim_end().to_owned();
+            let text = format!(
+                "{}: found {}, expected {}: items of the evidence contradict each other, or the course \
+                 of events is another one; do not rely on the intervals",
+                item.evidence,
+                shown(item.found),
+                shown(item.expected),
+            );
+            Badge::new(BadgeKind::EvidenceUnexplained, text)
+                .with_value(format!("p of {}", item.evidence), item.p)
+                .with_range([EvidenceFit::UNEXPLAINED_BELOW, 1.0])
+        })
+        .collect()
+}
+
+/// What the evidence leaves open and the defaults of the prior fill.
+fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Assumption> {
+    let cars = model.cars();
+    let mut all = Vec::new();
+    let mut add = |quantity, value: &str, reason: &str| {
+        all.push(Assumption::new(quantity, value, reason));
+    };
+    if evidence.prior.striking_speed_m_s.is_none() && cars.is_hit_behind_cg(evidence) {
+        let value = "the striking car was faster by 1 ± 3 m/s";
+        let reason = "it hit a flank behind the CG, as in a PIT manoeuvre; otherwise: [prior] \
+                      bullet_speed_m_s";
+        add(AssumedQuantity::Speed, value, reason);
+    }
+    if evidence.damage.angle_rad.is_none() && evidence.prior.heading_difference_rad.is_none() {
+        let reason = "by the struck side; otherwise: [damage] angle_deg or [prior] \
+                      heading_difference_deg";
+        add(AssumedQuantity::ContactPoint, "direction of the striking car", reason);
+    }
+    if evidence.prior.restitution.is_none() {
+        let reason = "finite-element runs; otherwise: [prior] restitution, contact_friction";
+        add(AssumedQuantity::Restitution, "0.24 to 0.66 up to 5 m/s, less beyond", reason);
+    }
+    if evidence.friction.is_none() {
+        let value = format!("road friction {DEFAULT_FRICTION} ± {DEFAULT_FRICTION_SIGMA}");
+        let reason = "dry and wet asphalt together; otherwise: [road] friction";
+        add(AssumedQuantity::VehicleParameter, &value, reason);
+    }
+    if !model.zones().is_empty() {
+        let value = "friction of the zones of the site, each ± 15 %";
+        let reason = "nothing says how well it is known; all zones are better or worse together";
+        add(AssumedQuantity::VehicleParameter, value, reason);
+    }
+    let estimated = cars.struck.estimated().count();
+    if estimated > 0 {
+        let value = format!("{estimated} estimated from the rest");
+        let reason = "the evidence does not say them; a data sheet: --vehicle";
+        add(AssumedQuantity::VehicleParameter, &value, reason);
+    }
+    let estimated = cars.striking.estimated().count();
+    if estimated > 0 {
+        let value = format!("{estimated} estimated from the rest, at their medians");
+        let reason = "the evidence does not say them; a data sheet: --striking";
+        add(AssumedQuantity::StrikingParameter, &value, reason);
+    }
+    all
+}
+
+#[cfg(test)]
+#[path = "tests.rs"]
+mod tests;

@@ -1,0 +1,213 @@
+//! Every case of a trajectory data set against its recorded motion: `simulate --dataset`.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use crate::ask::inputs::{OpenVehicle, struck_vehicle};
+use crate::ask::question::progress_of;
+use crate::caveats::badges;
+use crate::{
+    AssumedQuantity, Assumption, FlagReport, Library, Observer, Provenance, Question, StudyError,
+    Trust, VehicleChoice, word,
+};
+use impactlab_core::compare::{DatasetReplay, ErrorSummary, MotionError, Replay, replay_dataset};
+use impactlab_core::data::{DataError, Dataset, DatasetKind, Outcome};
+use impactlab_core::error_chain;
+use impactlab_core::uncertainty::Badge;
+use impactlab_core::vehicle::{Equations, Integrator};
+
+/// Asks how far the 4DOF model lies from every recorded motion of a data set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SimulateDatasetRequest {
+    /// The data set.
+    pub dataset: PathBuf,
+    /// One case of it, instead of all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case: Option<String>,
+    /// The struck vehicle.
+    #[serde(default)]
+    pub vehicle: VehicleChoice,
+    /// Which equations of motion; those of the vehicle file if not given.
+    #[serde(default)]
+    pub equations: Option<Equations>,
+    /// How they are integrated.
+    #[serde(default)]
+    pub integrator: Integrator,
+}
+
+/// How far the simulation lies from the recorded motions, SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SimulateDatasetReport {
+    /// The data set.
+    pub dataset: PathBuf,
+    /// The struck vehicle.
+    pub vehicle: String,
+    /// Which equations of motion.
+    pub equations: String,
+    /// How they are integrated.
+    pub integrator: String,
+    /// Each case.
+    pub cases: Vec<ReplayedCaseReport>,
+    /// Over all cases.
+    pub overall: Option<ErrorSummary>,
+    /// Over cases that turn by more than 90°.
+    pub spinning: Option<ErrorSummary>,
+    /// Over the other cases.
+    pub not_spinning: Option<ErrorSummary>,
+    /// Cases that could not be read or simulated, and why.
+    pub failures: Vec<String>,
+    /// What was assumed.
+    pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+}
+
+/// One case, simulated and compared.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReplayedCaseReport {
+    /// Its name.
+    pub case: String,
+    /// Whether the recorded motion is a spin.
+    pub spin: bool,
+    /// How far the simulation lies from the record.
+    #[serde(flatten)]
+    pub error: MotionError,
+    /// How often the simulated kinetic energy grows without a force.
+    pub violations: usize,
+    /// Wheel lift and roll beyond the limit.
+    pub flags: Vec<FlagReport>,
+}
+
+/// A simulated data set.
+#[derive(Debug)]
+pub struct SimulateDatasetAnswer {
+    /// What is told.
+    pub report: SimulateDatasetReport,
+    /// The motions.
+    pub replay: DatasetReplay,
+}
+
+impl Question for SimulateDatasetRequest {
+    type Answer = SimulateDatasetAnswer;
+    type Report = SimulateDatasetReport;
+    const NAME: &'static str = "simulate";
+
+    fn check(&self) -> Result<(), StudyError> {
+        Ok(())
+    }
+
+    fn report(answer: &Self::Answer) -> &SimulateDatasetReport {
+        &answer.report
+    }
+
+    fn solve(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<SimulateDatasetAnswer>, StudyError> {
+        let Outcome::Complete(dataset) = library.dataset(&self.dataset, observer)? else {
+            return Ok(Outcome::Cancelled);
+        };
+        if dataset.kind != DatasetKind::Trajectory {
+            return Err(StudyError::WrongKind {
+                path: self.dataset.clone(),
+                got: "a data set of forces".to_owned(),
+                expected: "one of trajectories",
+            });
+        }
+        let mut assumptions = Vec::new();
+        let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
+        let vehicle = struck_vehicle(&self.vehicle, &own, &mut assumptions)?;
+        assumptions.extend(Assumption::medians(AssumedQuantity::VehicleParameter, &vehicle));
+        let vehicle = match self.equations {
+            Some(equations) => vehicle.with_equations(equations),
+            None => vehicle,
+        };
+        let cases = match &self.case {
+            Some(name) => std::slice::from_ref(take_case(&dataset, name)?),
+            None => &dataset.cases,
+        };
+        let mut report = progress_of(observer);
+        let replay = replay_dataset(cases, &vehicle, self.integrator, &mut report);
+        let Outcome::Complete(replay) = replay else { return Ok(Outcome::Cancelled) };
+        let unread = self.case.is_none().then_some(&dataset.problems);
+        let problems = unread.into_iter().flatten().map(|problem| error_chain(problem));
+        let failed = replay.failures.iter().map(|failure| error_chain(failure));
+        let summary = |choose: fn(&Replay) -> bool| ErrorSummary::of(&replay.cases, choose);
+        let cases: Vec<ReplayedCaseReport> =
+            replay.cases.iter().map(ReplayedCaseReport::of).collect();
+        let failures: Vec<String> = problems.chain(failed).collect();
+        let flagged = badges::of_flagged_cases(&cases).into_iter();
+        let left_out = badges::of_left_out(failures.len(), "cases");
+        let assumed = badges::of_assumptions(&assumptions);
+        let report = SimulateDatasetReport {
+            dataset: self.dataset.clone(),
+            vehicle: vehicle.name.clone(),
+            equations: word(&vehicle.equations),
+            integrator: word(&self.integrator),
+            badges: flagged.chain(left_out).chain(assumed).collect(),
+            cases,
+            overall: summary(|_| true),
+            spinning: summary(|replay| replay.spin),
+            not_spinning: summary(|replay| !replay.spin),
+            failures,
+            assumptions,
+            provenance: Provenance::default(),
+        };
+        Ok(Outcome::Complete(SimulateDatasetAnswer { report, replay }))
+    }
+}
+
+impl SimulateDatasetReport {
+    /// What restricts the motion of one case.
+    pub fn trust_of(&self, case: &str) -> Trust {
+        let flags = self.cases.iter().filter(|of| of.case == case).flat_map(|of| &of.flags);
+        let badges: Vec<Badge> = flags.map(badges::of_flag).collect();
+        Trust::new(&badges, &self.assumptions)
+    }
+}
+
+impl ReplayedCaseReport {
+    fn of(replay: &Replay) -> Self {
+        Self {
+            case: replay.case.clone(),
+            spin: replay.spin,
+            error: replay.error.clone(),
+            violations: replay.violations,
+            flags: replay.motion.flags.iter().map(FlagReport::from).collect(),
+        }
+    }
+}
+
+/// The case of this name, or the error that says what there is.
+///
+/// A case that could not be read gives the reason for it.
+pub(crate) fn take_case<'a>(
+    dataset: &'a Dataset,
+    name: &str,
+) -> Result<&'a impactlab_core::data::Case, StudyError> {
+    if let Some(case) = dataset.case(name) {
+        return Ok(case);
+    }
+    let file = format!("{name}.csv");
+    let is_about = |problem: &&DataError| {
+        let text = problem.to_string();
+        text.contains(&file) || text.contains(&format!("{name:?}"))
+    };
+    Err(match dataset.problems.iter().find(is_about) {
+        Some(problem) => {
+            let (path, problem) = (dataset.root.clone(), error_chain(problem));
+            StudyError::CaseUnreadable { path, problem }
+        }
+        None => StudyError::NoSuchCase {
+            path: dataset.root.clone(),
+            case: name.to_owned(),
+            n_cases: dataset.cases.len(),
+            first: dataset.cases.first().map_or(String::new(), |case| case.name.clone()),
+        },
+    })
+}

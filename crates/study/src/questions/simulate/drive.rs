@@ -1,0 +1,239 @@
+//! A start with the files of what pushes, steers, brakes and drives the vehicle.
+
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::{AnalysisError, DriveSetup, Settings};
+use crate::ask::checks::{check, check_contact, check_given};
+use crate::questions::simulate::motion_source::acting_force;
+use crate::{AssumedQuantity, Assumption, Library, SeriesFile, StudyError};
+use impactlab_core::data::{
+    Channel, ForceHistory, Loaded, Sampling, TIME_TOLERANCE_S, TimeSeries, read_force_file,
+    read_steer_file, read_wheels_file,
+};
+use impactlab_core::ranges::{SPEED, STEER_ANGLE, STEERING_RATIO, YAW_RATE};
+use impactlab_core::vehicle::{
+    ContactPoint, Ending, SteerHistory, USUAL_STEERING_RATIO, VehicleParameters, VehicleState,
+    Wheel, WheelEffort, WheelHistory, angle_at_third_g_rad, fishhook, fishhook_amplitude_rad,
+};
+
+/// Speed of the struck vehicle before the impact where nothing says it, m/s: 72 km/h.
+pub const ASSUMED_SPEED_M_S: f64 = 20.0;
+
+/// How a vehicle starts and what pushes and steers it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Drive {
+    /// Forward speed at the start, m/s.
+    pub speed_m_s: Option<f64>,
+    /// Leftward speed at the start, m/s.
+    pub vy_m_s: f64,
+    /// Yaw rate at the start, rad/s.
+    pub yaw_rate_rad_s: f64,
+    /// The force on the vehicle.
+    pub force: Option<SeriesFile>,
+    /// What a force sample stands for; without it, as the columns suggest.
+    pub sampling: Option<Sampling>,
+    /// Where the force acts; without it, the file's own yaw moment.
+    pub contact: Option<ContactPoint>,
+    /// The angle of the road wheels or of the steering wheel.
+    pub steer: Option<SeriesFile>,
+    /// Angle of the steering wheel over that of the road wheels, where one is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steering_ratio: Option<f64>,
+    /// Whether the driver steers a fishhook, instead of a file.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub fishhook: bool,
+    /// The torques of brakes and drive at the wheels.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wheels: Option<SeriesFile>,
+}
+
+impl Drive {
+    pub(crate) fn name(&self) -> String {
+        let file = self.force.as_ref().or(self.steer.as_ref()).or(self.wheels.as_ref());
+        let manoeuvre = if self.fishhook { "fishhook" } else { "manoeuvre" };
+        file.map_or_else(|| manoeuvre.to_owned(), SeriesFile::title)
+    }
+
+    /// Checks every number.
+    pub(crate) fn check(&self) -> Result<(), StudyError> {
+        check_given("speed_m_s", &SPEED, self.speed_m_s)?;
+        check("vy_m_s", &SPEED, self.vy_m_s)?;
+        check("yaw_rate_rad_s", &YAW_RATE, self.yaw_rate_rad_s)?;
+        check_given("steering_ratio", &STEERING_RATIO, self.steering_ratio)?;
+        check_contact(self.contact.as_ref())
+    }
+
+    pub(crate) fn setup(
+        &self,
+        settings: &Settings,
+        library: &Library,
+        assumptions: &mut Vec<Assumption>,
+    ) -> Result<DriveSetup, StudyError> {
+        let speed_m_s = self.speed_m_s.unwrap_or_else(|| {
+            let reason = "the speed before the impact is not known; another one: --speed";
+            let value = format!("{ASSUMED_SPEED_M_S} m/s");
+            assumptions.push(Assumption::new(AssumedQuantity::Speed, value, reason));
+            ASSUMED_SPEED_M_S
+        });
+        self.check_one_control(&settings.ending)?;
+        let mut notes = Vec::new();
+        let load = match &self.force {
+            Some(file) => {
+                let loaded = library.series(file)?;
+                notes.extend(loaded.notes.iter().map(ToString::to_string));
+                let force = force_of(&loaded, self.sampling, file)?;
+                Some(acting_force(force, (self.contact, &settings.struck), assumptions))
+            }
+            None => None,
+        };
+        let initial = VehicleState {
+            vy_m_s: self.vy_m_s,
+            yaw_rate_rad_s: self.yaw_rate_rad_s,
+            ..VehicleState::driving_straight(speed_m_s)
+        };
+        let steer = self.steer((&settings.struck, &initial), assumptions)?;
+        let held = steer.as_ref().and_then(|steer| held_steer(steer, settings.duration_s));
+        assumptions.extend(held);
+        let wheels = self.wheels.as_ref().map(|file| wheel_history(file, &settings.struck));
+        Ok(DriveSetup { initial, load, steer, wheels: wheels.transpose()?, notes })
+    }
+
+    /// Checks that not two things steer the vehicle, nor brake or drive it.
+    fn check_one_control(&self, ending: &Ending) -> Result<(), StudyError> {
+        let steers = [self.steer.is_some(), self.fishhook, ending.steer.is_some()];
+        let has_wheels = !(Ending { steer: None, ..ending.clone() }).is_coasting();
+        let wheels = [self.wheels.is_some(), has_wheels];
+        let is_many = |given: &[bool]| given.iter().filter(|is_given| **is_given).count() > 1;
+        for (is_many, what) in [(is_many(&steers), "steer"), (is_many(&wheels), "brake or drive")] {
+            if is_many {
+                return Err(StudyError::TwoControls { name: self.name(), what });
+            }
+        }
+        Ok(())
+    }
+
+    /// The road-wheel angle over time.
+    fn steer(
+        &self,
+        (vehicle, initial): (&VehicleParameters, &VehicleState<f64>),
+        assumptions: &mut Vec<Assumption>,
+    ) -> Result<Option<SteerHistory>, StudyError> {
+        if !self.fishhook {
+            let of_file = |file| steer_history(file, self.steering_ratio);
+            return self.steer.as_ref().map(of_file).transpose();
+        }
+        let angle_rad = angle_at_third_g_rad(vehicle);
+        let ratio = self.steering_ratio.unwrap_or_else(|| {
+            let reason = "the fishhook turns the steering wheel at 720 deg/s; another ratio: \
+                          --steering-ratio";
+            let value = format!("ratio {USUAL_STEERING_RATIO}");
+            assumptions.push(Assumption::new(AssumedQuantity::Steer, value, reason));
+            USUAL_STEERING_RATIO
+        });
+        let amplitude_rad = fishhook_amplitude_rad(angle_rad);
+        if angle_rad <= 0.0 || !STEER_ANGLE.contains(amplitude_rad) {
+            let vehicle = vehicle.name.clone();
+            return Err(StudyError::NoFishhook { vehicle, angle_rad });
+        }
+        let failed = |source| StudyError::Analysis {
+            name: self.name(),
+            source: Box::new(AnalysisError::Simulation(source)),
+        };
+        fishhook((vehicle, initial), amplitude_rad, ratio).map(Some).map_err(failed)
+    }
+}
+
+/// The force of a file, under its own meaning of a sample or a given one.
+fn force_of(
+    loaded: &Loaded,
+    sampling: Option<Sampling>,
+    file: &SeriesFile,
+) -> Result<ForceHistory, StudyError> {
+    let sampling = sampling.unwrap_or_else(|| loaded.force_sampling());
+    match ForceHistory::from_series(&loaded.series, sampling) {
+        Ok(force) => Ok(force),
+        Err(source) => {
+            // Read as a force file it gives the error that says where and what to do.
+            read_force_file(&file.path, file.map.as_ref())?;
+            Err(StudyError::Series { path: file.path.clone(), source })
+        }
+    }
+}
+
+/// What stands for the steer angle where its recording does not reach.
+fn held_steer(steer: &SteerHistory, duration_s: f64) -> Option<Assumption> {
+    let (&start_s, &end_s) = (steer.time_s.first()?, steer.time_s.last()?);
+    let (&first_rad, &last_rad) = (steer.steer_rad.first()?, steer.steer_rad.last()?);
+    let mut held = Vec::new();
+    if start_s > TIME_TOLERANCE_S && first_rad != 0.0 {
+        held.push(format!("{first_rad} rad before {start_s} s"));
+    }
+    if end_s < duration_s - TIME_TOLERANCE_S && last_rad != 0.0 {
+        held.push(format!("{last_rad} rad after {end_s} s"));
+    }
+    let reason = "the recording of the steer angle does not reach further; its ends are held";
+    let is_held = !held.is_empty();
+    is_held.then(|| Assumption::new(AssumedQuantity::Steer, held.join(", "), reason))
+}
+
+/// The road-wheel angle of a file: that of the front axle, the mean of its wheels, or that of the
+/// steering wheel over the steering ratio.
+fn steer_history(
+    file: &SeriesFile,
+    steering_ratio: Option<f64>,
+) -> Result<SteerHistory, StudyError> {
+    let path = || file.path.clone();
+    let series = read_steer_file(&file.path, file.map.as_ref())?.series;
+    let of = |steer_rad| SteerHistory { time_s: series.time_s().to_vec(), steer_rad };
+    let road_wheel = match (series.get(Channel::Steer), front_wheels(&series)) {
+        (Some(steer), _) => Some(steer.to_vec()),
+        (None, wheels) => wheels,
+    };
+    match (road_wheel, series.get(Channel::SteeringWheel), steering_ratio) {
+        (Some(steer_rad), _, None) => Ok(of(steer_rad)),
+        (Some(_), None, Some(_)) => Err(StudyError::NoSteeringWheel { path: path() }),
+        (_, Some(angles_rad), Some(ratio)) => {
+            let steer_rad: Vec<f64> = angles_rad.iter().map(|angle| angle / ratio).collect();
+            let refused = steer_rad.iter().find_map(|angle| STEER_ANGLE.check(*angle).err());
+            match refused {
+                None => Ok(of(steer_rad)),
+                Some(source) => Err(StudyError::RoadWheel { path: path(), ratio, source }),
+            }
+        }
+        (None, _, None) => Err(StudyError::NoSteeringRatio { path: path() }),
+        (None, None, Some(_)) => Err(StudyError::NoSteeringWheel { path: path() }),
+    }
+}
+
+/// Mean angle of the front wheels; `None` if one of them is not recorded.
+fn front_wheels(series: &TimeSeries) -> Option<Vec<f64>> {
+    let (left, right) = (series.get(Channel::SteerFl)?, series.get(Channel::SteerFr)?);
+    Some(left.iter().zip(right).map(|(left, right)| (left + right) / 2.0).collect())
+}
+
+/// The torques of a file over the rolling radius. What it does not record is zero.
+fn wheel_history(
+    file: &SeriesFile,
+    vehicle: &VehicleParameters,
+) -> Result<WheelHistory, StudyError> {
+    const BRAKE: [Channel; 4] =
+        [Channel::BrakeFl, Channel::BrakeFr, Channel::BrakeRl, Channel::BrakeRr];
+    const DRIVE: [Channel; 4] =
+        [Channel::DriveFl, Channel::DriveFr, Channel::DriveRl, Channel::DriveRr];
+    let series = read_wheels_file(&file.path, file.map.as_ref())?.series;
+    let radius_m = vehicle.tires.rolling_radius_m;
+    let at = |sample: usize| {
+        let force_n = |channel| {
+            let torque_n_m = series.get(channel).and_then(|values| values.get(sample));
+            torque_n_m.map_or(0.0, |torque_n_m| torque_n_m / radius_m)
+        };
+        Wheel::ALL.map(|wheel| WheelEffort {
+            braking_n: force_n(BRAKE[wheel.index()]),
+            drive_n: force_n(DRIVE[wheel.index()]),
+            ..WheelEffort::none()
+        })
+    };
+    let wheels = (0..series.n_samples()).map(at).collect();
+    Ok(WheelHistory { time_s: series.time_s().to_vec(), wheels })
+}

@@ -1,0 +1,197 @@
+//! What drives the motion of a struck vehicle: a case, a recorded motion, a start with files of force
+//! and controls, or a scenario.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::PulseSetup;
+use crate::ask::checks::{check, check_contact};
+use crate::{
+    AssumedQuantity, Assumption, Drive, Library, ScenarioChoice, SeriesFile, StudyError, word,
+};
+use impactlab_core::data::{Case, Channel, FileKind, ForceAttributes, ForceHistory, Loaded};
+use impactlab_core::ranges::{CONTACT_HEIGHT, PULSE_DURATION};
+use impactlab_core::vehicle::{ContactPoint, VehicleParameters};
+
+/// Where a force acts where nothing says it: the right rear quarter of a car, where a PIT begins.
+pub const ASSUMED_CONTACT: ContactPoint = ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.52 };
+
+/// What drives a motion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MotionSource {
+    /// A case of a data set, with its recorded start and force.
+    Case {
+        /// The data set.
+        dataset: PathBuf,
+        /// Name of the case.
+        case: String,
+    },
+    /// A recorded motion, simulated from its first sample if it records its force.
+    Trajectory {
+        /// The file.
+        file: SeriesFile,
+        /// Where the force acts; without it, the file's own yaw moment.
+        #[serde(default)]
+        contact: Option<ContactPoint>,
+    },
+    /// A start, a force and a steer angle.
+    Drive(Drive),
+    /// Two vehicles that meet; the impulse is spread over a classic pulse.
+    Scenario {
+        /// The scenario.
+        scenario: ScenarioChoice,
+        /// How the impulse is spread over time.
+        #[serde(default)]
+        pulse: PulseSetup,
+    },
+}
+
+impl MotionSource {
+    /// The source of a file that was opened, by what the file is about.
+    ///
+    /// - `start`: speed and contact point that the user gave; the file is filled in here.
+    pub fn of_file(file: SeriesFile, kind: FileKind, start: Drive) -> Self {
+        match kind {
+            FileKind::Trajectory => Self::Trajectory { file, contact: start.contact },
+            FileKind::Force => Self::Drive(Drive { force: Some(file), ..start }),
+            FileKind::Steer => Self::Drive(Drive { steer: Some(file), ..start }),
+            FileKind::Wheels => Self::Drive(Drive { wheels: Some(file), ..start }),
+        }
+    }
+
+    /// Checks every number of the source.
+    pub(crate) fn check(&self) -> Result<(), StudyError> {
+        match self {
+            Self::Case { .. } => Ok(()),
+            Self::Trajectory { contact, .. } => check_contact(contact.as_ref()),
+            Self::Drive(drive) => drive.check(),
+            Self::Scenario { scenario, pulse } => {
+                check("pulse.duration_s", &PULSE_DURATION, pulse.duration_s)?;
+                check("pulse.contact_height_m", &CONTACT_HEIGHT, pulse.contact_height_m)?;
+                scenario.check()
+            }
+        }
+    }
+
+    /// Whether its force was recorded; that of a scenario is a pulse.
+    pub(crate) fn is_recorded(&self) -> bool {
+        !matches!(self, Self::Scenario { .. })
+    }
+
+    /// What a title calls it.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Case { case, .. } => case.clone(),
+            Self::Trajectory { file, .. } => file.path.display().to_string(),
+            Self::Drive(drive) => drive.name(),
+            Self::Scenario { scenario, .. } => scenario.name(),
+        }
+    }
+
+    /// The file of the force, where the force is one.
+    pub(crate) fn force_file(&self) -> Option<&PathBuf> {
+        match self {
+            Self::Drive(drive) => drive.force.as_ref().map(|file| &file.path),
+            Self::Trajectory { file, .. } => Some(&file.path),
+            Self::Case { .. } | Self::Scenario { .. } => None,
+        }
+    }
+}
+
+/// A recorded motion; another kind of file is refused, since its speed is not known.
+pub(crate) fn trajectory(library: &Library, file: &SeriesFile) -> Result<Arc<Loaded>, StudyError> {
+    let loaded = library.series(file)?;
+    if loaded.kind == FileKind::Trajectory {
+        return Ok(loaded);
+    }
+    Err(StudyError::WrongKind {
+        path: file.path.clone(),
+        got: format!("a {} file", word(&loaded.kind)),
+        expected: "a trajectory; `impactlab simulate --out FILE.csv` makes one",
+    })
+}
+
+/// The force of a recorded motion; `None` if it records none. One component alone is no force.
+pub(crate) fn recorded_force(
+    loaded: &Loaded,
+    file: &SeriesFile,
+) -> Result<Option<ForceHistory>, StudyError> {
+    let components = [Channel::Fx, Channel::Fy, Channel::FxBody, Channel::FyBody];
+    if components.iter().all(|component| loaded.series.get(*component).is_none()) {
+        return Ok(None);
+    }
+    match ForceHistory::from_series(&loaded.series, loaded.force_sampling()) {
+        Ok(force) => Ok(Some(force)),
+        Err(source) => Err(StudyError::Series { path: file.path.clone(), source }),
+    }
+}
+
+/// A force with the point where it acts.
+///
+/// A given contact point overrules a recorded yaw moment; a recorded yaw moment acts about the CG;
+/// without either, the contact point is assumed.
+pub(crate) fn acting_force(
+    mut force: ForceHistory,
+    (contact, vehicle): (Option<ContactPoint>, &VehicleParameters),
+    assumptions: &mut Vec<Assumption>,
+) -> (ForceHistory, ContactPoint) {
+    if let Some(contact) = contact {
+        force.mz_n_m = None;
+        return (force, contact);
+    }
+    if force.mz_n_m.is_some() {
+        let height_m = vehicle.geometry.cg_height_m;
+        return (force, ContactPoint { x_m: 0.0, y_m: 0.0, height_m });
+    }
+    let reason = "the force has no yaw moment (mz) and nothing says where it acts; another point: \
+                  --contact";
+    assumptions.push(Assumption::contact_point(ASSUMED_CONTACT, reason));
+    (force, ASSUMED_CONTACT)
+}
+
+/// What stands for the rates and the roll with which a recorded motion starts, if it does not say
+/// them.
+pub(crate) fn start_of_record(loaded: &Loaded) -> Option<Assumption> {
+    let is_missing = |channel: &Channel| loaded.series.get(*channel).is_none();
+    let missing = [Channel::YawRate, Channel::Roll, Channel::RollRate].into_iter();
+    let zeros: Vec<String> =
+        missing.filter(is_missing).map(|channel| format!("{} = 0", channel.header())).collect();
+    let is_assumed = !zeros.is_empty();
+    is_assumed.then(|| {
+        let reason = "the file does not record them";
+        Assumption::new(AssumedQuantity::StartOfRecord, zeros.join(", "), reason)
+    })
+}
+
+/// What stands for the contact height of a force case that does not state it.
+pub(crate) fn contact_height_assumption(case: &Case) -> Result<Option<Assumption>, StudyError> {
+    let is_known = ForceAttributes::read(&case.attributes)?.contact_height_m.is_some();
+    Ok((!is_known).then(|| {
+        let reason = "the case does not say how high the vehicles touch";
+        Assumption::new(AssumedQuantity::ContactHeight, "that of the CG", reason)
+    }))
+}
+
+/// What the pulse of a scenario adds to what the momentum solution says.
+pub(crate) fn pulse_assumptions(pulse: &PulseSetup) -> Vec<Assumption> {
+    if *pulse != PulseSetup::default() {
+        return Vec::new();
+    }
+    let shape = format!("{} of {:.0} ms", pulse.shape.label(), pulse.duration_s * 1e3);
+    let height = format!("{} m above the ground", pulse.contact_height_m);
+    vec![
+        Assumption::new(
+            AssumedQuantity::Pulse,
+            shape,
+            "the momentum solution gives the impulse, not the force over time",
+        ),
+        Assumption::new(
+            AssumedQuantity::ContactHeight,
+            height,
+            "a scenario does not say how high the vehicles touch",
+        ),
+    ]
+}

@@ -1,0 +1,461 @@
+//! What is told about the simulation of one vehicle.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use crate::analysis::{Analysis, MotionEnd, SecondContacts};
+use crate::{
+    Assumption, MomentumReport, Provenance, SimulateRequest, TireMarkReport, VehicleUncertainty,
+    word,
+};
+use impactlab_core::collision::{PrincipalDirectionOfForce, SecondContact};
+use impactlab_core::compare::{MotionError, largest_yaw_change_rad};
+use impactlab_core::data::{Channel, ForceAxes, SeriesError, TimeSeries, contact_interval};
+use impactlab_core::numerics::interpolate;
+use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_core::units::percent;
+use impactlab_core::vehicle::frames::world_from_body;
+use impactlab_core::vehicle::{FrictionZone, Motion, MotionFlag};
+
+/// A part of the ground with its own friction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FrictionZoneReport {
+    /// What it is called.
+    pub name: String,
+    /// Peak friction in it.
+    pub friction: f64,
+}
+
+impl FrictionZoneReport {
+    pub(crate) fn of(zone: &FrictionZone) -> Self {
+        Self { name: zone.name.clone(), friction: zone.friction }
+    }
+
+    /// The zones with their friction in a few words; `None` if there are none.
+    pub fn listed(zones: &[Self]) -> Option<String> {
+        let one = |zone: &Self| format!("{} {}", zone.name, zone.friction);
+        let all: Vec<String> = zones.iter().map(one).collect();
+        (!all.is_empty()).then(|| all.join("; "))
+    }
+}
+
+/// The simulation of one vehicle, SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SimulateReport {
+    /// The case, file or scenario.
+    pub name: String,
+    /// The struck vehicle.
+    pub vehicle: String,
+    /// Which equations of motion.
+    pub equations: String,
+    /// How they are integrated.
+    pub integrator: String,
+    /// Peak friction of the road.
+    pub friction: f64,
+    /// Parts of the ground with their own friction, in which the wheels may stand.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub friction_zones: Vec<FrictionZoneReport>,
+    /// Duration of the simulation, s.
+    pub duration_s: f64,
+    /// The force on the vehicle.
+    pub force: Option<ForceReport>,
+    /// The momentum solution whose impulse the force carries, world axes; none without a scenario.
+    pub momentum: Option<MomentumReport>,
+    /// Change of the velocity of the CG over the contact [x, y], world axes, tires included, m/s.
+    pub delta_v_m_s: Option<[f64; 2]>,
+    /// Its size, m/s.
+    pub delta_v_magnitude_m_s: Option<f64>,
+    /// The state at the last sample; none where a recorded motion cannot be simulated.
+    pub end: Option<EndState>,
+    /// Length of the path of the CG, m.
+    pub distance_m: Option<f64>,
+    /// Where the vehicle has come to rest; none if it still moves at the end.
+    pub rest: Option<RestState>,
+    /// Largest change of yaw from the start, rad.
+    pub largest_yaw_change_rad: Option<f64>,
+    /// The marks that tires leave in the simulation, of the struck vehicle and of the striking one.
+    #[serde(rename = "tyre_marks")]
+    pub tire_marks: Vec<TireMarkReport>,
+    /// How far the simulation lies from the recorded motion, where there is one.
+    pub error: Option<MotionError>,
+    /// How the end varies with what the data sheet of the struck vehicle leaves open.
+    pub uncertainty: Option<VehicleUncertainty>,
+    /// Wheel lift, roll beyond the limit, a second contact.
+    pub flags: Vec<FlagReport>,
+    /// What a person should know about how this was made.
+    pub notes: Vec<String>,
+    /// What was assumed.
+    pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+}
+
+/// The force that drives a simulation.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ForceReport {
+    /// Its file; `None` where it comes from a case or a scenario.
+    pub path: Option<PathBuf>,
+    /// What a sample stands for.
+    pub sampling: String,
+    /// Axes of the components.
+    pub axes: String,
+    /// Impulse [x, y] in these axes, N s.
+    pub impulse_n_s: [f64; 2],
+    /// Largest size of the force, N.
+    pub peak_n: f64,
+    /// When it is reached, s.
+    pub peak_time_s: f64,
+    /// Principal direction of force, degrees clockwise from the struck vehicle's heading before the
+    /// impact.
+    pub pdof_deg: Option<f64>,
+    /// The same as an hour of the clock.
+    pub pdof_clock: Option<u8>,
+    /// First touch, s.
+    pub contact_start_s: Option<f64>,
+    /// Last separation, s.
+    pub contact_end_s: Option<f64>,
+    /// Where the yaw moment comes from: `recorded` or `contact_point`.
+    pub yaw_moment: &'static str,
+}
+
+/// The pose in which a vehicle has come to rest.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RestState {
+    /// The instant since which it is at rest, s.
+    pub time_s: f64,
+    /// X of the CG, m.
+    pub x_m: f64,
+    /// Y of the CG, m.
+    pub y_m: f64,
+    /// Heading, rad.
+    pub yaw_rad: f64,
+    /// Length of the path of the CG up to there, m.
+    pub distance_m: f64,
+}
+
+/// State at the last sample.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct EndState {
+    /// X of the CG, m.
+    pub x_m: f64,
+    /// Y of the CG, m.
+    pub y_m: f64,
+    /// Heading, rad.
+    pub yaw_rad: f64,
+    /// Roll angle, rad.
+    pub roll_rad: f64,
+    /// Forward velocity, m/s.
+    pub vx_m_s: f64,
+    /// Leftward velocity, m/s.
+    pub vy_m_s: f64,
+    /// Yaw rate, rad/s.
+    pub yaw_rate_rad_s: f64,
+    /// Speed of the CG, m/s.
+    pub speed_m_s: f64,
+}
+
+/// A [`MotionFlag`] or a [`SecondContact`] for machines and, as `message`, for a person.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FlagReport {
+    /// `wheel_lift`, `roll_limit`, `energy_gain` or `second_contact`.
+    pub kind: BadgeKind,
+    /// When it is first raised, s.
+    pub time_s: f64,
+    /// The wheel that lifts.
+    pub wheel: Option<String>,
+    /// The roll angle, rad.
+    pub roll_rad: Option<f64>,
+    /// Where the vehicles meet again [x, y], m.
+    pub position_m: Option<[f64; 2]>,
+    /// How fast their overlap grows there, m/s.
+    pub closing_speed_m_s: Option<f64>,
+    /// Share of the draws in which they do; time, place and speed are then medians. None where
+    /// nothing is drawn.
+    pub probability: Option<f64>,
+    /// For a person.
+    pub message: String,
+}
+
+/// What a person should know of a second contact.
+const NOT_COMPUTED: &str = "a second contact, which is not computed; the motions after it are not \
+                            those of the vehicles";
+
+impl From<&SecondContact> for FlagReport {
+    fn from(second: &SecondContact) -> Self {
+        let ([x, y], speed) = (second.point_m, second.closing_speed_m_s);
+        let how = if second.was_apart { "meet again" } else { "go deeper into each other" };
+        Self {
+            kind: BadgeKind::SecondContact,
+            time_s: second.time_s,
+            wheel: None,
+            roll_rad: None,
+            position_m: Some(second.point_m),
+            closing_speed_m_s: Some(speed),
+            probability: None,
+            message: second_contact_text(how, second.time_s, [x, y], speed),
+        }
+    }
+}
+
+/// A second contact of a single motion, for a person.
+fn second_contact_text(how: &str, time_s: f64, [x, y]: [f64; 2], speed_m_s: f64) -> String {
+    format!(
+        "the vehicles {how} at {time_s:.2} s, near x {x:.1} m, y {y:.1} m, closing at \
+         {speed_m_s:.1} m/s: {NOT_COMPUTED}"
+    )
+}
+
+impl From<&SecondContacts> for FlagReport {
+    fn from(met: &SecondContacts) -> Self {
+        let (x, y, speed) = (met.x_m.median, met.y_m.median, met.closing_speed_m_s.median);
+        let how = match 2.0 * met.apart_share > 1.0 {
+            true => "meet again",
+            false => "go deeper into each other",
+        };
+        let time_s = met.time_s.median;
+        let ([from_s, to_s], [slow, fast]) = (met.time_s.ninety, met.closing_speed_m_s.ninety);
+        let message = match met.n_draws {
+            // One known force on one known vehicle: nothing is drawn.
+            1 => second_contact_text(how, time_s, [x, y], speed),
+            n_draws => format!(
+                "the vehicles {how} in {} of {n_draws} draws, at {time_s:.2} s (90 %: {from_s:.2} to \
+                 {to_s:.2}), near x {x:.1} m, y {y:.1} m, closing at {speed:.1} m/s (90 %: \
+                 {slow:.1} to {fast:.1}): {NOT_COMPUTED}",
+                percent(met.probability),
+            ),
+        };
+        Self {
+            kind: BadgeKind::SecondContact,
+            time_s,
+            wheel: None,
+            roll_rad: None,
+            position_m: Some([x, y]),
+            closing_speed_m_s: Some(speed),
+            probability: Some(met.probability),
+            message,
+        }
+    }
+}
+
+impl From<&MotionFlag> for FlagReport {
+    fn from(flag: &MotionFlag) -> Self {
+        let of = |kind, time_s: f64| Self {
+            kind,
+            time_s,
+            wheel: None,
+            roll_rad: None,
+            position_m: None,
+            closing_speed_m_s: None,
+            probability: None,
+            message: flag.to_string(),
+        };
+        match flag {
+            MotionFlag::WheelLift { wheel, time_s } => {
+                Self { wheel: Some(word(wheel)), ..of(BadgeKind::WheelLift, *time_s) }
+            }
+            MotionFlag::RollLimit { time_s, roll_rad } => {
+                Self { roll_rad: Some(*roll_rad), ..of(BadgeKind::RollLimit, *time_s) }
+            }
+            MotionFlag::EnergyGain { time_s } => of(BadgeKind::EnergyGain, *time_s),
+        }
+    }
+}
+
+impl SimulateReport {
+    /// What follows from an analysis.
+    pub(crate) fn of(
+        request: &SimulateRequest,
+        analysis: &Analysis,
+        assumptions: Vec<Assumption>,
+    ) -> Result<Self, SeriesError> {
+        let motion = analysis.simulation.as_ref();
+        let series = motion.map(|motion| &motion.series);
+        let interval = analysis.force.as_ref().and_then(contact_interval);
+        let delta_v = series.zip(interval);
+        let delta_v =
+            delta_v.map(|(series, interval)| delta_v_m_s(series, interval)).transpose()?;
+        let recorded = analysis.reference.as_ref();
+        let end_s = series.and_then(|series| series.time_s().last().copied());
+        let recorded_s = recorded.and_then(|series| series.time_s().last().copied());
+        Ok(Self {
+            name: analysis.name.clone(),
+            vehicle: analysis.vehicle.name.clone(),
+            equations: word(&analysis.vehicle.equations),
+            integrator: word(&request.integrator),
+            friction: analysis.vehicle.tires.friction,
+            friction_zones: analysis.friction_zones.iter().map(FrictionZoneReport::of).collect(),
+            duration_s: recorded_s.or(end_s).unwrap_or(request.duration_s),
+            force: ForceReport::of(request, analysis),
+            momentum: None,
+            delta_v_m_s: delta_v,
+            delta_v_magnitude_m_s: delta_v.map(|[x, y]| x.hypot(y)),
+            end: series.map(EndState::of).transpose()?,
+            distance_m: series.map(distance_m).transpose()?,
+            rest: motion.map(RestState::of).transpose()?.flatten(),
+            largest_yaw_change_rad: series.map(largest_yaw_change_rad).transpose()?,
+            tire_marks: TireMarkReport::all(analysis),
+            error: analysis.error.clone(),
+            uncertainty: None,
+            flags: motion
+                .iter()
+                .flat_map(|motion| motion.flags.iter().map(FlagReport::from))
+                .chain(analysis.second_contact.iter().map(FlagReport::from))
+                .collect(),
+            notes: analysis.notes.clone(),
+            assumptions,
+            badges: Vec::new(),
+            provenance: Provenance::default(),
+        })
+    }
+}
+
+impl ForceReport {
+    fn of(request: &SimulateRequest, analysis: &Analysis) -> Option<Self> {
+        let force = analysis.force.as_ref()?;
+        let interval = contact_interval(force);
+        let (peak_n, peak_time_s) = force.peak()?;
+        // Heading axes turn with the vehicle already, so that its heading is zero in them.
+        let heading_rad = match (force.axes, &analysis.struck) {
+            (ForceAxes::World, Some(struck)) => struck.initial.yaw_rad,
+            (ForceAxes::World, None) | (ForceAxes::Body, _) => 0.0,
+        };
+        let pdof = PrincipalDirectionOfForce::from_impulse(force.impulse_n_s(), heading_rad);
+        Some(Self {
+            path: request.source.force_file().cloned(),
+            sampling: word(&force.sampling),
+            axes: word(&force.axes),
+            impulse_n_s: force.impulse_n_s(),
+            peak_n,
+            peak_time_s,
+            pdof_deg: pdof.map(PrincipalDirectionOfForce::angle_deg),
+            pdof_clock: pdof.map(PrincipalDirectionOfForce::clock),
+            contact_start_s: interval.map(|(start, _)| start),
+            contact_end_s: interval.map(|(_, end)| end),
+            yaw_moment: if force.mz_n_m.is_some() { "recorded" } else { "contact_point" },
+        })
+    }
+}
+
+/// Change of the CG's velocity over the contact, world axes, m/s: tires included.
+fn delta_v_m_s(series: &TimeSeries, (start_s, end_s): (f64, f64)) -> Result<[f64; 2], SeriesError> {
+    let [vx, vy, yaw] = [Channel::Vx, Channel::Vy, Channel::Yaw].map(|c| series.require(c));
+    let (vx, vy, yaw) = (vx?, vy?, yaw?);
+    let velocity = |time_s| {
+        let at = |values| interpolate(series.time_s(), values, time_s).unwrap_or(f64::NAN);
+        world_from_body(at(yaw), [at(vx), at(vy)])
+    };
+    let ([x0, y0], [x1, y1]) = (velocity(start_s), velocity(end_s));
+    Ok([x1 - x0, y1 - y0])
+}
+
+/// Length of the path of the CG, m.
+fn distance_m(series: &TimeSeries) -> Result<f64, SeriesError> {
+    let (x, y) = (series.require(Channel::X)?, series.require(Channel::Y)?);
+    Ok(path_length_m(x, y))
+}
+
+fn path_length_m(x: &[f64], y: &[f64]) -> f64 {
+    let steps = x.windows(2).zip(y.windows(2));
+    steps.map(|(x, y)| (x[1] - x[0]).hypot(y[1] - y[0])).sum()
+}
+
+impl RestState {
+    fn of(motion: &Motion) -> Result<Option<Self>, SeriesError> {
+        let Some(time_s) = motion.rest_s else { return Ok(None) };
+        let series = &motion.series;
+        let n_before = series.time_s().partition_point(|&t| t <= time_s + 1e-9);
+        let until = |channel| -> Result<&[f64], SeriesError> {
+            let values = series.require(channel)?;
+            Ok(values.get(..n_before).unwrap_or(values))
+        };
+        let (x, y, yaw) = (until(Channel::X)?, until(Channel::Y)?, until(Channel::Yaw)?);
+        let last = |values: &[f64]| values.last().copied().unwrap_or(f64::NAN);
+        Ok(Some(Self {
+            time_s,
+            x_m: last(x),
+            y_m: last(y),
+            yaw_rad: last(yaw),
+            distance_m: path_length_m(x, y),
+        }))
+    }
+}
+
+/// Where a simulated motion ends: at rest, or at its last sample.
+pub(crate) fn motion_end(motion: &Motion) -> Result<MotionEnd, SeriesError> {
+    let end = EndState::of(&motion.series)?;
+    let rest = RestState::of(motion)?;
+    let last_s = motion.series.time_s().last().copied().unwrap_or(0.0);
+    let pose = rest.map_or([end.x_m, end.y_m, end.yaw_rad], |at| [at.x_m, at.y_m, at.yaw_rad]);
+    let [x_m, y_m, yaw_rad] = pose;
+    Ok(MotionEnd {
+        is_at_rest: rest.is_some(),
+        time_s: rest.map_or(last_s, |rest| rest.time_s),
+        distance_m: match rest {
+            Some(rest) => rest.distance_m,
+            None => distance_m(&motion.series)?,
+        },
+        x_m,
+        y_m,
+        yaw_rad,
+        speed_m_s: end.speed_m_s,
+        yaw_rate_rad_s: end.yaw_rate_rad_s,
+    })
+}
+
+impl EndState {
+    pub(crate) fn of(series: &TimeSeries) -> Result<Self, SeriesError> {
+        let last = |channel| -> Result<f64, SeriesError> {
+            let values = series.require(channel)?;
+            Ok(values.last().copied().unwrap_or(f64::NAN))
+        };
+        let (vx_m_s, vy_m_s) = (last(Channel::Vx)?, last(Channel::Vy)?);
+        Ok(Self {
+            x_m: last(Channel::X)?,
+            y_m: last(Channel::Y)?,
+            yaw_rad: last(Channel::Yaw)?,
+            roll_rad: last(Channel::Roll)?,
+            vx_m_s,
+            vy_m_s,
+            yaw_rate_rad_s: last(Channel::YawRate)?,
+            speed_m_s: vx_m_s.hypot(vy_m_s),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+    use std::path::Path;
+
+    use super::*;
+    use crate::analysis::PulseSetup;
+    use crate::{ImpactRequest, Library, MotionSource, Question, ScenarioChoice};
+    use impactlab_core::collision::Scenario;
+
+    const PIT: &str = include_str!("../../../../../assets/scenarios/pit_right_rear.toml");
+
+    #[test]
+    fn the_direction_of_force_is_that_of_the_impact_whichever_way_the_vehicle_heads() {
+        for heading_deg in [0, 90, 200] {
+            let text = PIT
+                .replace("heading_deg = 0", &format!("heading_deg = {heading_deg}"))
+                .replace("heading_deg = 18", &format!("heading_deg = {}", heading_deg + 18));
+            let scenario = Scenario::from_toml(&text, Path::new("pit.toml")).unwrap();
+            let scenario = ScenarioChoice::Inline(Box::new(scenario));
+            let mut go_on = |_: crate::Event<'_>| ControlFlow::Continue(());
+            let library = Library::default();
+            let impact = ImpactRequest { scenario: scenario.clone(), paper: false };
+            let impact = impact.answer(&library, &mut go_on).unwrap().complete().unwrap();
+            let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
+            let motion = SimulateRequest::new(source).answer(&library, &mut go_on).unwrap();
+            let force = motion.complete().unwrap().report.force.unwrap();
+            let (expected, got) = (impact.report.struck.pdof_deg.unwrap(), force.pdof_deg.unwrap());
+            assert!((expected - got).abs() < 1e-6, "{heading_deg}: {expected} {got}");
+            assert_eq!(force.pdof_clock, impact.report.struck.pdof_clock, "{heading_deg}");
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! The motion of one struck vehicle by the 4DOF model: `simulate`.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::{
+    Analysis, AnalysisError, Settings, analyse_case, analyse_drive, analyse_recording,
+    analyse_scenario,
+};
+use crate::ask::checks::{check, check_all, check_count, check_given};
+use crate::ask::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
+use crate::caveats::badges;
+use crate::caveats::unused::by_simulation;
+use crate::questions::simulate::dataset::take_case;
+use crate::questions::simulate::motion_source::{
+    acting_force, contact_height_assumption, pulse_assumptions, recorded_force, start_of_record,
+    trajectory,
+};
+use crate::questions::simulate::vehicle_uncertainty::vehicle_uncertainty;
+use crate::{
+    AssumedQuantity, Assumption, Library, MomentumReport, MotionSource, Observer, Provenance,
+    Question, SimulateReport, StudyError, VehicleChoice,
+};
+use impactlab_core::collision::Scenario;
+use impactlab_core::data::{ContactOutside, DatasetKind, Outcome};
+use impactlab_core::ranges::{ROAD_FRICTION, SIMULATED_DURATION, VEHICLE_DRAWS};
+use impactlab_core::site::Site;
+use impactlab_core::uncertainty::Badge;
+use impactlab_core::vehicle::{ContactPoint, Ending, Equations, FrictionZone, Integrator};
+
+/// Asks where the struck vehicle goes, by the 4DOF model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SimulateRequest {
+    /// What drives the motion.
+    pub source: MotionSource,
+    /// The struck vehicle.
+    #[serde(default)]
+    pub vehicle: VehicleChoice,
+    /// The striking vehicle, where it is simulated.
+    #[serde(default)]
+    #[serde(rename = "bullet")]
+    pub striking: VehicleChoice,
+    /// Which equations of motion; those of the vehicle file if not given.
+    #[serde(default)]
+    pub equations: Option<Equations>,
+    /// How they are integrated.
+    #[serde(default)]
+    pub integrator: Integrator,
+    /// Peak friction of the road instead of the vehicle's.
+    #[serde(default)]
+    pub friction: Option<f64>,
+    /// The ground: a site file, whose zones have their own friction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub site: Option<PathBuf>,
+    /// Duration, s; a recorded motion has its own.
+    #[serde(default = "default_duration_s")]
+    pub duration_s: f64,
+    /// What happens to the wheels of the struck vehicle after the first contact. If not given, it is
+    /// as the scenario says, and else the vehicle coasts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ending: Option<Ending>,
+    /// Whether the simulation ends where the vehicle has come to rest, at the latest after the
+    /// duration.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub until_rest: bool,
+    /// How many vehicles are drawn from what the data sheet of the struck vehicle leaves open.
+    #[serde(default = "default_vehicle_draws")]
+    pub vehicle_draws: usize,
+    /// Seed of these draws.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+/// Vehicles that are drawn where nobody says how many.
+pub const DEFAULT_VEHICLE_DRAWS: usize = 100;
+
+fn default_vehicle_draws() -> usize {
+    DEFAULT_VEHICLE_DRAWS
+}
+
+/// Duration of a simulation where nobody says it, s: that of the trajectory data sets.
+pub const DEFAULT_DURATION_S: f64 = 4.0;
+
+fn default_duration_s() -> f64 {
+    DEFAULT_DURATION_S
+}
+
+/// A simulated motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulateAnswer {
+    /// What is told.
+    pub report: SimulateReport,
+    /// Motion, force and record.
+    pub analysis: Analysis,
+}
+
+impl SimulateRequest {
+    /// A simulation of `source` in which nothing else is said.
+    pub fn new(source: MotionSource) -> Self {
+        Self {
+            source,
+            vehicle: VehicleChoice::default(),
+            striking: VehicleChoice::default(),
+            equations: None,
+            integrator: Integrator::default(),
+            friction: None,
+            site: None,
+            duration_s: DEFAULT_DURATION_S,
+            vehicle_draws: DEFAULT_VEHICLE_DRAWS,
+            seed: 0,
+            ending: None,
+            until_rest: false,
+        }
+    }
+
+    fn settings(
+        &self,
+        (open, named_striking): (&OpenVehicle<'_>, Option<&str>),
+        assumptions: &mut Vec<Assumption>,
+    ) -> Result<Settings, StudyError> {
+        let mut struck = struck_vehicle(&self.vehicle, open, assumptions)?;
+        if let Some(equations) = self.equations {
+            struck = struck.with_equations(equations);
+        }
+        if let Some(friction) = self.friction {
+            struck = struck.with_friction(friction);
+        }
+        let has_striking = match &self.source {
+            MotionSource::Scenario { .. } => true,
+            MotionSource::Case { dataset, .. } => {
+                DatasetKind::of_folder(dataset) == Some(DatasetKind::Force)
+            }
+            MotionSource::Trajectory { .. } | MotionSource::Drive(_) => false,
+        };
+        let mut unused = Vec::new();
+        let assumed = if has_striking { assumptions } else { &mut unused };
+        let striking = striking_vehicle(&self.striking, named_striking, assumed)?;
+        assumed.extend(Assumption::medians(AssumedQuantity::StrikingParameter, &striking));
+        Ok(Settings {
+            struck,
+            striking,
+            ending: self.ending.clone().unwrap_or_default(),
+            integrator: self.integrator,
+            duration_s: self.duration_s,
+            ends_at_rest: self.until_rest,
+            friction_zones: self.friction_zones()?,
+        })
+    }
+
+    /// The zones of the site.
+    fn friction_zones(&self) -> Result<Vec<FrictionZone>, StudyError> {
+        let site = self.site.as_deref().map(Site::load).transpose()?;
+        Ok(site.map_or_else(Vec::new, |site| site.friction_zones))
+    }
+
+    fn contact_outside(&self, outside: ContactOutside) -> StudyError {
+        let name = match self.source.force_file() {
+            Some(path) => path.display().to_string(),
+            None => self.source.name(),
+        };
+        StudyError::ContactOutside { name, outside }
+    }
+}
+
+/// Makes the analysis with given vehicles and settings.
+type Analyse<'a> = dyn Fn(&Settings) -> Result<Analysis, AnalysisError> + Sync + 'a;
+
+impl Question for SimulateRequest {
+    type Answer = SimulateAnswer;
+    type Report = SimulateReport;
+    const NAME: &'static str = "simulate";
+
+    fn check(&self) -> Result<(), StudyError> {
+        check_given("friction", &ROAD_FRICTION, self.friction)?;
+        check("duration_s", &SIMULATED_DURATION, self.duration_s)?;
+        check_count("vehicle_draws", &VEHICLE_DRAWS, self.vehicle_draws)?;
+        let of_ending = self.ending.iter().flat_map(Ending::ranges);
+        check_all(of_ending.map(|(key, value, range)| (format!("ending.{key}"), value, range)))?;
+        self.source.check()
+    }
+
+    fn report(answer: &Self::Answer) -> &SimulateReport {
+        &answer.report
+    }
+
+    fn solve(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<SimulateAnswer>, StudyError> {
+        let (mut assumptions, mut momentum, mut overlap) = (Vec::new(), None, None);
+        let (settings, analyse): (Settings, Box<Analyse<'_>>) = match &self.source {
+            MotionSource::Case { dataset, case } => {
+                let Outcome::Complete(dataset) = library.dataset(dataset, observer)? else {
+                    return Ok(Outcome::Cancelled);
+                };
+                let case = take_case(&dataset, case)?;
+                if let (DatasetKind::Trajectory, Some(_)) = (case.kind, self.friction) {
+                    return Err(StudyError::FrictionOfCase { case: case.name.clone() });
+                }
+                assumptions.extend(by_simulation(self, case.kind == DatasetKind::Trajectory));
+                if case.kind == DatasetKind::Force {
+                    assumptions.extend(contact_height_assumption(case)?);
+                }
+                let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
+                let (settings, case) =
+                    (self.settings((&own, None), &mut assumptions)?, case.clone());
+                (settings, Box::new(move |settings| analyse_case(&case, settings)))
+            }
+            MotionSource::Trajectory { file, contact } => {
+                let settings = self.settings((&OpenVehicle::Unknown, None), &mut assumptions)?;
+                let loaded = trajectory(library, file)?;
+                assumptions.extend(by_simulation(self, true));
+                let force = recorded_force(&loaded, file)?;
+                if force.is_some() {
+                    assumptions.extend(start_of_record(&loaded));
+                }
+                let load = force.map(|force| {
+                    let vehicle = &settings.struck;
+                    acting_force(force, (*contact, vehicle), &mut assumptions)
+                });
+                let title = file.title();
+                let analyse = move |settings: &Settings| {
+                    analyse_recording(&title, &loaded, load.clone(), settings)
+                };
+                (settings, Box::new(analyse))
+            }
+            MotionSource::Drive(drive) => {
+                let settings = self.settings((&OpenVehicle::Unknown, None), &mut assumptions)?;
+                assumptions.extend(by_simulation(self, false));
+                let setup = drive.setup(&settings, library, &mut assumptions)?;
+                let name = drive.name();
+                let analyse =
+                    move |settings: &Settings| analyse_drive(&name, setup.clone(), settings);
+                (settings, Box::new(analyse))
+            }
+            MotionSource::Scenario { scenario, pulse } => {
+                assumptions.extend(pulse_assumptions(pulse));
+                let scenario = scenario.load()?;
+                let open = OpenVehicle::OfScenario(scenario.struck_vehicle.as_deref());
+                let vehicles = (&open, scenario.striking_vehicle.as_deref());
+                let mut settings = self.settings(vehicles, &mut assumptions)?;
+                if let (None, Some(ending)) = (&self.ending, &scenario.ending) {
+                    settings.ending.clone_from(ending);
+                }
+                (momentum, overlap) = contact_of(&scenario, &mut assumptions);
+                (settings, Box::new(move |settings| analyse_scenario(&scenario, pulse, settings)))
+            }
+        };
+        let failed = |source| match source {
+            AnalysisError::ContactOutside(outside) => self.contact_outside(outside),
+            source => StudyError::Analysis { name: self.source.name(), source: Box::new(source) },
+        };
+        let analysis = analyse(&settings).map_err(failed)?;
+        refuse_contact_off_vehicle(&analysis)?;
+        assumptions.extend(Assumption::estimates(&analysis.vehicle));
+        let mut report = SimulateReport::of(self, &analysis, assumptions)
+            .map_err(|source| failed(AnalysisError::Series(source)))?;
+        report.momentum = momentum;
+        let asked = (self.vehicle_draws, self.seed);
+        report.uncertainty = vehicle_uncertainty(asked, (&settings, &analysis), &analyse);
+        if report.uncertainty.is_some() {
+            report.provenance = Provenance::of_seed(self.seed);
+        }
+        report.badges = badges::of_simulation(&report, self.until_rest);
+        report.badges.extend(overlap);
+        let recorded = analysis.force.as_ref().filter(|_| self.source.is_recorded());
+        report.badges.extend(recorded.and_then(badges::of_cut_record));
+        Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
+    }
+}
+
+/// The momentum solution of a scenario, and whether its outlines overlap. Where there is no geometry
+/// or solution, the analysis says why.
+fn contact_of(
+    scenario: &Scenario,
+    assumptions: &mut Vec<Assumption>,
+) -> (Option<MomentumReport>, Option<Badge>) {
+    let geometry = scenario.geometry().ok();
+    assumptions.extend(geometry.as_ref().and_then(Assumption::first_touch));
+    let overlap = geometry.as_ref().and_then(badges::of_overlap);
+    let Ok(impact) = scenario.impact() else { return (None, overlap) };
+    assumptions.extend(Assumption::contact_default(scenario, &impact));
+    (MomentumReport::of(&impact, 0.0), overlap)
+}
+
+/// Refuses a force that acts at a point far off the struck vehicle.
+fn refuse_contact_off_vehicle(analysis: &Analysis) -> Result<(), StudyError> {
+    let Some(struck) = &analysis.struck else { return Ok(()) };
+    let ContactPoint { x_m, y_m, .. } = struck.contact;
+    analysis.footprint.check_contact([x_m, y_m]).map_err(|source| StudyError::ContactOffVehicle {
+        name: analysis.name.clone(),
+        vehicle: struck.vehicle.name.clone(),
+        source,
+    })
+}

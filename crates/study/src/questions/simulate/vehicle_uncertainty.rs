@@ -1,0 +1,174 @@
+//! How the end of a simulated motion varies with what the data sheet of the vehicle leaves open.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::EndState;
+use crate::analysis::{
+    Analysis, AnalysisError, MotionEnd, RestOutcome, Sensitivity, Settings, Spread, VehicleDraws,
+};
+use crate::questions::simulate::report::motion_end;
+
+/// Where and how the motion ends over vehicles that are drawn from the estimates of a data sheet, SI
+/// units. The rest of what is asked is the same for all of them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VehicleUncertainty {
+    /// Vehicles that were drawn.
+    pub n_draws: usize,
+    /// Of these, how many have a motion that cannot be simulated; they are left out.
+    pub n_failed: usize,
+    /// X of the CG at the end, m.
+    pub x_m: Spread,
+    /// Y of the CG at the end, m.
+    pub y_m: Spread,
+    /// Heading at the end, rad.
+    pub yaw_rad: Spread,
+    /// Speed of the CG at the end, m/s.
+    pub speed_m_s: Spread,
+    /// Where, when and after what distance the vehicle comes to rest; none unless the question asks for
+    /// it.
+    pub rest: Option<RestOutcome>,
+    /// Share of the draws in which the two vehicles meet again; none where one vehicle moves.
+    pub second_contact_probability: Option<f64>,
+    /// Which estimates the end depends on, the one that moves the end position most first.
+    pub sensitivity: Vec<Sensitivity>,
+}
+
+/// How the motion of one drawn vehicle ends.
+struct DrawnEnd {
+    state: EndState,
+    end: MotionEnd,
+    has_met: bool,
+}
+
+/// Simulates the motion with vehicles drawn from what the data sheet leaves open; `None` if it leaves
+/// nothing open, if no draws are asked for, or if nothing is simulated.
+///
+/// - `asked`: number and seed of the draws.
+/// - `central`: settings with the vehicle at the medians of its estimates, and what came of them.
+pub(crate) fn vehicle_uncertainty(
+    (n_draws, seed): (usize, u64),
+    (settings, central): (&Settings, &Analysis),
+    analyse: &(impl Fn(&Settings) -> Result<Analysis, AnalysisError> + Sync + ?Sized),
+) -> Option<VehicleUncertainty> {
+    let sheet = settings.struck.sheet.as_ref()?;
+    central.simulation.as_ref()?;
+    let draws = VehicleDraws::of(sheet, n_draws, seed);
+    if draws.is_empty() {
+        return None;
+    }
+    let vehicles = draws.vehicles(&settings.struck);
+    let end = |struck| {
+        let analysis = analyse(&Settings { struck, ..settings.clone() }).ok()?;
+        let motion = analysis.simulation?;
+        Some(DrawnEnd {
+            state: EndState::of(&motion.series).ok()?,
+            end: motion_end(&motion).ok()?,
+            has_met: analysis.second_contact.is_some(),
+        })
+    };
+    let drawn: Vec<Option<DrawnEnd>> = vehicles.into_par_iter().map(end).collect();
+    let ends: Vec<Option<EndState>> =
+        drawn.iter().map(|drawn| drawn.as_ref().map(|of| of.state)).collect();
+    let rest = || {
+        let ends: Vec<MotionEnd> = drawn.iter().flatten().map(|drawn| drawn.end).collect();
+        RestOutcome::of(&ends, settings.duration_s)
+    };
+    let of = |value: fn(&EndState) -> f64| {
+        Spread::of_draws(ends.iter().flatten().map(value).collect::<Vec<f64>>())
+    };
+    let places: Vec<_> =
+        ends.iter().map(|end| end.map(|end| [end.x_m, end.y_m, end.yaw_rad])).collect();
+    let n_failed = ends.iter().filter(|end| end.is_none()).count();
+    if n_failed == ends.len() {
+        return None;
+    }
+    // What the case or the scenario says itself is no estimate any more.
+    let is_estimated = |share: &Sensitivity| {
+        let sheet = central.vehicle.sheet.as_ref();
+        sheet.is_some_and(|sheet| sheet.known(share.quantity).is_none())
+    };
+    let mut sensitivity = draws.sensitivities(&places);
+    sensitivity.retain(is_estimated);
+    let n_met = drawn.iter().flatten().filter(|drawn| drawn.has_met).count();
+    let share_met = n_met as f64 / (ends.len() - n_failed) as f64;
+    Some(VehicleUncertainty {
+        n_draws: ends.len(),
+        n_failed,
+        x_m: of(|end| end.x_m),
+        y_m: of(|end| end.y_m),
+        yaw_rad: of(|end| end.yaw_rad),
+        speed_m_s: of(|end| end.speed_m_s),
+        rest: settings.ends_at_rest.then(rest).flatten(),
+        second_contact_probability: central.striking.is_some().then_some(share_met),
+        sensitivity,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use crate::analysis::PulseSetup;
+    use crate::{
+        AssumedQuantity, Drive, Library, MotionSource, Question, ScenarioChoice, SimulateReport,
+        SimulateRequest, VehicleChoice,
+    };
+    use impactlab_core::collision::Scenario;
+    use impactlab_core::vehicle::sheet::SheetQuantity;
+
+    fn report(source: MotionSource, vehicle: &str, n_draws: usize) -> SimulateReport {
+        let request = SimulateRequest {
+            vehicle: VehicleChoice::named(vehicle),
+            vehicle_draws: n_draws,
+            ..SimulateRequest::new(source)
+        };
+        let mut go_on = |_: crate::Event<'_>| ControlFlow::Continue(());
+        let answer = request.answer(&Library::default(), &mut go_on).unwrap();
+        answer.complete().unwrap().report
+    }
+
+    fn pit() -> MotionSource {
+        let scenario = ScenarioChoice::Inline(Box::new(Scenario::example()));
+        MotionSource::Scenario { scenario, pulse: PulseSetup::default() }
+    }
+
+    #[test]
+    fn what_the_data_sheet_leaves_open_spreads_the_end() {
+        let report = report(pit(), "toyota-camry-2018", 60);
+        let uncertainty = report.uncertainty.unwrap();
+        assert_eq!((uncertainty.n_draws, uncertainty.n_failed), (60, 0));
+        let end = report.end.unwrap();
+        assert!(uncertainty.second_contact_probability.unwrap() > 0.9, "{uncertainty:?}");
+        let [low, high] = uncertainty.x_m.ninety;
+        assert!(high - low > 0.1, "{uncertainty:?}");
+        assert!((low..=high).contains(&end.x_m), "{low} {high} {end:?}");
+        // Mass and inertia are those of the scenario, so that they are no estimates.
+        let shares = &uncertainty.sensitivity;
+        let has = |quantity| shares.iter().any(|share| share.quantity == quantity);
+        assert!(has(SheetQuantity::RearCornering) && has(SheetQuantity::Friction), "{shares:?}");
+        assert!(!has(SheetQuantity::Mass) && !has(SheetQuantity::YawInertia), "{shares:?}");
+        let n_assumed = report
+            .assumptions
+            .iter()
+            .filter(|assumption| assumption.quantity == AssumedQuantity::VehicleParameter)
+            .count();
+        assert_eq!(n_assumed, shares.len());
+    }
+
+    #[test]
+    fn a_vehicle_that_is_known_and_one_that_coasts_straight_have_little_spread() {
+        assert_eq!(report(pit(), "reference-2000", 20).uncertainty, None);
+        assert_eq!(report(pit(), "toyota-camry-2018", 0).uncertainty, None);
+        let drive = Drive { speed_m_s: Some(20.0), ..Drive::default() };
+        let straight = report(MotionSource::Drive(drive), "generic-suv", 60).uncertainty.unwrap();
+        assert_eq!(straight.second_contact_probability, None);
+        let [low, high] = straight.y_m.ninety;
+        assert!(low.abs() < 1e-6 && high.abs() < 1e-6, "{straight:?}");
+        assert!(straight.x_m.ninety[1] - straight.x_m.ninety[0] < 2.0, "{straight:?}");
+        let most = &straight.sensitivity[0];
+        let rolling =
+            [SheetQuantity::RollingResistance, SheetQuantity::DragArea, SheetQuantity::Mass];
+        assert!(rolling.contains(&most.quantity) && most.position_share > 0.3, "{most:?}");
+    }
+}

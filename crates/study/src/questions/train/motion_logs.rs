@@ -1,0 +1,141 @@
+//! Logs of single impacts as data to fine-tune on.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::StudyError;
+use crate::ask::checks::{check, check_contact, check_given};
+use crate::questions::simulate::motion_source::acting_force;
+use impactlab_core::data::{ColumnMap, ForceHistory, list_folder, read_any_series};
+use impactlab_core::ranges::{INSTANT, LOG_DURATION};
+use impactlab_core::vehicle::{ContactLoad, ContactPoint, VehicleParameters};
+use impactlab_networks::response::{
+    ForceOrigin, LogNoise, LogSettings, LoggedImpact, MotionLog, ResponseCase,
+};
+
+/// How much of a log from the first contact on is learned from where nobody says it, s.
+pub const DEFAULT_LOG_DURATION_S: f64 = 4.0;
+
+/// Logs of single impacts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MotionLogs {
+    /// Log files, and folders of such files.
+    pub logs: Vec<PathBuf>,
+    /// The contact force of each log, in their order and on their clock; without it, the force is
+    /// estimated from the change of momentum.
+    #[serde(default)]
+    pub forces: Vec<PathBuf>,
+    /// Which column of the logs is what.
+    #[serde(default)]
+    pub map: Option<ColumnMap>,
+    /// Where the forces act; without it, the yaw moment of the force file.
+    #[serde(default)]
+    pub contact: Option<ContactPoint>,
+    /// First contact on the clock of the logs, s; from the force, or from the motion, if not given.
+    #[serde(default)]
+    pub impact_s: Option<f64>,
+    /// How much of a log from the first contact on is learned from, s.
+    #[serde(default = "default_duration_s")]
+    pub duration_s: f64,
+}
+
+fn default_duration_s() -> f64 {
+    DEFAULT_LOG_DURATION_S
+}
+
+/// What was made of a log.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LogReport {
+    /// The file.
+    pub log: PathBuf,
+    /// Where the motion that is learned from begins on the clock of the log, s.
+    pub start_s: f64,
+    /// First touch and last separation, s.
+    pub contact_s: Option<[f64; 2]>,
+    /// Where the force comes from.
+    pub force: ForceOrigin,
+    /// Impulse [x, y], N s.
+    pub impulse_n_s: [f64; 2],
+    /// States that are learned from.
+    pub n_samples: usize,
+    /// Noise that was found in the log.
+    pub noise: LogNoise,
+}
+
+impl MotionLogs {
+    /// Checks every number.
+    pub(crate) fn check(&self) -> Result<(), StudyError> {
+        check_contact(self.contact.as_ref())?;
+        check_given("impact_s", &INSTANT, self.impact_s)?;
+        check("duration_s", &LOG_DURATION, self.duration_s)
+    }
+
+    /// The logs as trajectories.
+    pub(crate) fn read(
+        &self,
+        vehicle: VehicleParameters,
+    ) -> Result<(Vec<ResponseCase>, Vec<LogReport>), StudyError> {
+        let paths = self.paths()?;
+        if !self.forces.is_empty() && self.forces.len() != paths.len() {
+            let (n_forces, n_logs) = (self.forces.len(), paths.len());
+            return Err(StudyError::ForcesOfLogs { n_forces, n_logs });
+        }
+        let settings =
+            LogSettings { vehicle, impact_s: self.impact_s, duration_s: self.duration_s };
+        let (mut cases, mut reports) = (Vec::new(), Vec::new());
+        for (i, path) in paths.iter().enumerate() {
+            let log = MotionLog::read(path, self.map.as_ref())?;
+            let load = match self.forces.get(i) {
+                Some(force) => Some(self.load(force, &settings.vehicle)?),
+                None => None,
+            };
+            let found = LoggedImpact::of(&log, load, &settings)?;
+            reports.push(LogReport {
+                log: path.clone(),
+                start_s: found.start_s,
+                contact_s: found.contact_s,
+                force: found.force,
+                impulse_n_s: found.impulse_n_s,
+                n_samples: found.case.states.len(),
+                noise: found.noise,
+            });
+            cases.push(found.case);
+        }
+        Ok((cases, reports))
+    }
+
+    /// The files, those of a folder by name.
+    fn paths(&self) -> Result<Vec<PathBuf>, StudyError> {
+        let mut paths = Vec::new();
+        for path in &self.logs {
+            if !path.is_dir() {
+                paths.push(path.clone());
+                continue;
+            }
+            let mut files = list_folder(path)?;
+            files
+                .retain(|file| file.extension().is_some_and(|end| end.eq_ignore_ascii_case("csv")));
+            if files.is_empty() {
+                return Err(StudyError::NoLogs { path: path.clone() });
+            }
+            files.sort();
+            paths.extend(files);
+        }
+        Ok(paths)
+    }
+
+    /// A force with the point where it acts. A force that does not say where it acts is refused: an
+    /// answer can say what it assumes, but a network that has learned from it cannot.
+    fn load(&self, path: &Path, vehicle: &VehicleParameters) -> Result<ContactLoad, StudyError> {
+        let loaded = read_any_series(path, None)?;
+        let in_file = |source| StudyError::Series { path: path.to_owned(), source };
+        let force =
+            ForceHistory::from_series(&loaded.series, loaded.force_sampling()).map_err(in_file)?;
+        if self.contact.is_none() && force.mz_n_m.is_none() {
+            return Err(StudyError::NoYawMoment { path: path.to_owned() });
+        }
+        let (force, contact) = acting_force(force, (self.contact, vehicle), &mut Vec::new());
+        Ok(ContactLoad { recorded_moment: force.mz_n_m.is_some(), force, contact })
+    }
+}
