@@ -7,7 +7,7 @@
 //!
 //! For each feature of a collision, the quarter of the cases with the smallest values and the quarter
 //! with the largest are left out in turn. What is printed are the constants of
-//! `src/force/physics/bare.rs`.
+//! `crates/networks/src/force/physics/bare.rs`.
 
 #![allow(clippy::print_stdout)]
 
