@@ -34,7 +34,7 @@ fn main() {
 /// Returns the state and the input of a car at 20 m/s while a force acts on its right rear quarter.
 fn hit() -> (VehicleState<f64>, VehicleInput<f64>) {
     let state = VehicleState {
-        vy_m_s: 0.5,
+        vy_body_m_s: 0.5,
         yaw_rate_rad_s: -0.3,
         roll_rad: 0.02,
         ..VehicleState::driving_straight(20.0)
@@ -44,7 +44,7 @@ fn hit() -> (VehicleState<f64>, VehicleInput<f64>) {
             force_n: [8e3, 4e4],
             in_world_axes: true,
             yaw_moment_n_m: None,
-            contact: ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.52 },
+            contact: ContactPoint { x_body_m: -1.5, y_body_m: -0.9, height_m: 0.52 },
         }),
         ..VehicleInput::released()
     };

@@ -44,7 +44,7 @@ fn errors(train: &[&ForceCase], test: &[&ForceCase]) -> Option<Vec<Errors>> {
     let shape = median(clean().map(|case| shape(&case)).collect());
     let of = |case: &&ForceCase| {
         let impact = case.scenario.impact(DEFAULT_RESTITUTION, DEFAULT_FRICTION_LIMIT)?;
-        let (p, q) = (case.impulse_n_s, impact.solve().ok()?.impulse_n_s);
+        let (p, q) = (case.impulse_n_s, impact.solve().ok()?.impulse_world_n_s);
         let turn = p[1].atan2(p[0]) - q[1].atan2(q[0]);
         Some([
             (size(p) / size(q)).ln(),

@@ -113,8 +113,8 @@ fn shape((vehicle, start): &(VehicleParameters, VehicleState<f64>)) -> String {
         mass.sprung_mass_kg * 9.81 * suspension.roll_arm_m / suspension.roll_stiffness_n_m_rad,
         suspension.roll_arm_m,
         mass.roll_yaw_product_kg_m2 / (mass.yaw_inertia_kg_m2 * mass.roll_inertia_kg_m2).sqrt(),
-        start.vx_m_s,
-        start.vy_m_s,
+        start.vx_body_m_s,
+        start.vy_body_m_s,
         start.yaw_rate_rad_s,
     )
 }
@@ -150,8 +150,8 @@ fn gain(vehicle: &VehicleParameters, motion: &TimeSeries, released_s: f64) -> f6
     let energies = motion.time_s().iter().enumerate().filter(|(_, time)| **time >= released_s);
     let mut energies = energies.map(|(i, _)| {
         vehicle.energy_j(&VehicleState {
-            vx_m_s: vx[i],
-            vy_m_s: vy[i],
+            vx_body_m_s: vx[i],
+            vy_body_m_s: vy[i],
             yaw_rate_rad_s: yaw_rate[i],
             roll_rad: roll[i],
             roll_rate_rad_s: roll_rate[i],
@@ -176,8 +176,8 @@ fn draw_manoeuvre(
     let speed_m_s = log_uniform(rng, [0.1, 60.0]);
     let (sin, cos) = rng.random_range(-3.2..3.2_f64).sin_cos();
     let initial = VehicleState {
-        vx_m_s: speed_m_s * cos,
-        vy_m_s: speed_m_s * sin,
+        vx_body_m_s: speed_m_s * cos,
+        vy_body_m_s: speed_m_s * sin,
         yaw_rate_rad_s: rng.random_range(-6.0..6.0),
         ..VehicleState::default()
     };
@@ -203,8 +203,8 @@ fn draw_load(rng: &mut ChaCha8Rng, vehicle: &VehicleParameters) -> ContactLoad {
             mz_n_m: None,
         },
         contact: ContactPoint {
-            x_m: rng.random_range(-half_length..half_length),
-            y_m: rng.random_range(-half_width..half_width),
+            x_body_m: rng.random_range(-half_length..half_length),
+            y_body_m: rng.random_range(-half_width..half_width),
             height_m: rng.random_range(0.1..1.0) * geometry.cg_height_m * 2.0,
         },
         recorded_moment: false,

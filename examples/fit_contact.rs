@@ -91,7 +91,7 @@ fn errors(cases: &[&ForceCase], surface: [f64; 2], form: RestitutionForm) -> Vec
     let error = |case: &&ForceCase| {
         let mut impact = impact(case, surface)?;
         impact.surface.restitution_form = form;
-        let ([px, py], [qx, qy]) = (impact.solve().ok()?.impulse_n_s, case.impulse_n_s);
+        let ([px, py], [qx, qy]) = (impact.solve().ok()?.impulse_world_n_s, case.impulse_n_s);
         Some((px - qx).hypot(py - qy) / qx.hypot(qy))
     };
     cases.iter().filter_map(error).collect()

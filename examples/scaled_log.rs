@@ -100,13 +100,13 @@ fn impact(rng: &mut ChaCha8Rng) -> Answer<(f64, ContactLoad)> {
     let impulse = [rng.random_range(-10.0..30.0), side * rng.random_range(50.0..130.0)];
     let duration_s = rng.random_range(0.07..0.13);
     let pulse = Pulse::new(PulseShape::HalfSine, impulse, CONTACT_S, duration_s)?;
-    let x_m = -rng.random_range(0.55..0.75);
-    let contact = ContactPoint { x_m, y_m: -0.4 * side, height_m: 0.126 };
+    let x_body_m = -rng.random_range(0.55..0.75);
+    let contact = ContactPoint { x_body_m, y_body_m: -0.4 * side, height_m: 0.126 };
     let mut force = pulse.to_history(1e-3)?;
     // The vehicle hardly turns during the contact, so that the body axes are taken to be those of
     // the pulse.
     force.axes = ForceAxes::Body;
-    let moment = |(fx, fy): (&f64, &f64)| contact.x_m * fy - contact.y_m * fx;
+    let moment = |(fx, fy): (&f64, &f64)| contact.x_body_m * fy - contact.y_body_m * fx;
     force.mz_n_m = Some(force.fx_n.iter().zip(&force.fy_n).map(moment).collect());
     let load = ContactLoad { force, contact, recorded_moment: true };
     Ok((rng.random_range(4.0..8.0), load))

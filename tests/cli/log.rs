@@ -55,7 +55,7 @@ fn truth() -> VehicleParameters {
 /// Returns a manoeuvre in which a lateral impulse acts on the right rear quarter from `start_s` on.
 fn manoeuvre(speed_m_s: f64, impulse_y_n_s: f64, start_s: f64) -> Manoeuvre {
     let pulse = Pulse::new(PulseShape::HalfSine, [10.0, impulse_y_n_s], start_s, 0.09).unwrap();
-    let contact = ContactPoint { x_m: -0.7, y_m: -0.3, height_m: 0.126 };
+    let contact = ContactPoint { x_body_m: -0.7, y_body_m: -0.3, height_m: 0.126 };
     let force = pulse.to_history(1e-3).unwrap();
     Manoeuvre {
         initial: VehicleState::driving_straight(speed_m_s),

@@ -102,7 +102,7 @@ fn variants_are_drawn_over_each_other_and_the_choice_is_kept() {
     let mut harness = open(&[SCENARIO]);
     step_until(&mut harness, "the forecast", is_forecast);
     apply(&mut harness, Command::Variant(VariantCommand::Duplicate));
-    harness.state_mut().state_mut().project.scenario.striking.vy_m_s *= 1.3;
+    harness.state_mut().state_mut().project.scenario.striking.vy_world_m_s *= 1.3;
     harness.run_steps(2);
     step_until(&mut harness, "both variants", |state| {
         let variants = state.answered_variants();

@@ -67,7 +67,7 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("pit.impactlab");
     let mut harness = pit();
-    let speed = |state: &State| state.project.scenario.struck.vx_m_s;
+    let speed = |state: &State| state.project.scenario.struck.vx_world_m_s;
     let before = speed(state(&harness));
     let mut shown = Vec::new();
     for (name, factor) in [("base", 1.0), ("slower", 0.9), ("slow", 0.8)] {
@@ -75,7 +75,7 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
             variant(&mut harness, VariantCommand::Duplicate);
             variant(&mut harness, VariantCommand::Rename(name.to_owned()));
         }
-        harness.state_mut().state_mut().project.scenario.struck.vx_m_s = before * factor;
+        harness.state_mut().state_mut().project.scenario.struck.vx_world_m_s = before * factor;
         harness.run_steps(2);
         step_until(&mut harness, "the forecast", is_answered);
         let answer = state(&harness).session.response.forecast.ok().expect("a forecast");

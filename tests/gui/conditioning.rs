@@ -17,7 +17,7 @@ use crate::pictures::save;
 
 /// A car of the library, of which the network knows no motion.
 const CAR: &str = "toyota-camry-2018";
-const CONTACT: ContactPoint = ContactPoint { x_m: -1.6, y_m: -0.92, height_m: 0.52 };
+const CONTACT: ContactPoint = ContactPoint { x_body_m: -1.6, y_body_m: -0.92, height_m: 0.52 };
 
 /// Writes the motion of the car after a push to the left, with the force or in a file apart.
 ///

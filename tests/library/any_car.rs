@@ -46,8 +46,8 @@ fn struck(
     n_steps: usize,
 ) -> Vec<VehicleInput<f64>> {
     let contact = ContactPoint {
-        x_m: -vehicle.geometry.cg_to_rear_axle_m,
-        y_m: -vehicle.geometry.outer_width_m / 2.0,
+        x_body_m: -vehicle.geometry.cg_to_rear_axle_m,
+        y_body_m: -vehicle.geometry.outer_width_m / 2.0,
         height_m: 0.5,
     };
     struck_at(contact, delta_v_m_s, vehicle, n_steps)
@@ -66,7 +66,7 @@ fn point_of(vehicle: &VehicleParameters, face: usize, place: f64) -> (ContactPoi
         2 => ([-half[0], place * half[1]], [1.0, 0.0]),
         _ => ([place * half[0], -half[1]], [0.0, 1.0]),
     };
-    (ContactPoint { x_m: x, y_m: y, height_m: 0.5 }, inwards)
+    (ContactPoint { x_body_m: x, y_body_m: y, height_m: 0.5 }, inwards)
 }
 
 /// A push of a tenth of a second at a point.
@@ -132,7 +132,7 @@ proptest! {
         // After the force nothing gains energy.
         let energy = |x: &VehicleState<f64>| {
             let mass = &vehicle.mass;
-            mass.mass_kg * (x.vx_m_s.powi(2) + x.vy_m_s.powi(2))
+            mass.mass_kg * (x.vx_body_m_s.powi(2) + x.vy_body_m_s.powi(2))
                 + mass.yaw_inertia_kg_m2 * x.yaw_rate_rad_s.powi(2)
         };
         for pair in path[12..].windows(2) {
@@ -358,8 +358,8 @@ fn scenario(
     ] {
         (vehicle.mass_kg, vehicle.yaw_inertia_kg_m2) = (mass_kg, 1.8 * mass_kg);
         vehicle.heading_rad = heading_rad;
-        vehicle.vx_m_s = speed_m_s * heading_rad.cos();
-        vehicle.vy_m_s = speed_m_s * heading_rad.sin();
+        vehicle.vx_world_m_s = speed_m_s * heading_rad.cos();
+        vehicle.vy_world_m_s = speed_m_s * heading_rad.sin();
     }
     scenario.contact.location = ContactLocation::Side { side, offset_m: 0.9 * place * half_m };
     scenario
@@ -390,7 +390,7 @@ fn a_car_that_spins_fast_goes_where_the_physics_takes_it() {
     let mut fast = Scenario::example();
     for (vehicle, speed_m_s) in [(&mut fast.struck, 80.0), (&mut fast.striking, 296.0 / 3.6)] {
         let (sin, cos) = vehicle.heading_rad.sin_cos();
-        (vehicle.vx_m_s, vehicle.vy_m_s) = (speed_m_s * cos, speed_m_s * sin);
+        (vehicle.vx_world_m_s, vehicle.vy_world_m_s) = (speed_m_s * cos, speed_m_s * sin);
     }
     let scenario = ScenarioChoice::Inline(Box::new(fast));
     let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };

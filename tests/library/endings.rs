@@ -117,13 +117,14 @@ fn a_locked_spin_loses_energy_at_the_friction_of_its_sliding_wheels() {
     vehicle.suspension.roll_arm_m = 0.01;
     vehicle.geometry.cg_to_rear_axle_m = vehicle.geometry.cg_to_front_axle_m;
     let all = Wheel::ALL.map(|wheel| (wheel, None));
-    let initial = VehicleState { vx_m_s: 12.0, yaw_rate_rad_s: 4.0, ..VehicleState::default() };
+    let initial =
+        VehicleState { vx_body_m_s: 12.0, yaw_rate_rad_s: 4.0, ..VehicleState::default() };
     let spin = motion(&vehicle, initial, &damaged(&all)).series;
     let state = |i: usize| {
         let at = |channel| spin.require(channel).unwrap()[i];
         VehicleState {
-            vx_m_s: at(Channel::Vx),
-            vy_m_s: at(Channel::Vy),
+            vx_body_m_s: at(Channel::Vx),
+            vy_body_m_s: at(Channel::Vy),
             yaw_rate_rad_s: at(Channel::YawRate),
             ..VehicleState::default()
         }
@@ -131,7 +132,7 @@ fn a_locked_spin_loses_energy_at_the_friction_of_its_sliding_wheels() {
     let patch_speed = |x: &VehicleState<f64>| {
         let speeds = Wheel::ALL.map(|wheel| {
             let [px, py] = wheel.position_m(&vehicle);
-            (x.vx_m_s - x.yaw_rate_rad_s * py).hypot(x.vy_m_s + x.yaw_rate_rad_s * px)
+            (x.vx_body_m_s - x.yaw_rate_rad_s * py).hypot(x.vy_body_m_s + x.yaw_rate_rad_s * px)
         });
         speeds.iter().sum::<f64>() / 4.0
     };
@@ -189,7 +190,11 @@ fn what_stands_stays_and_what_has_stopped_does_not_chatter() {
     }
     for ending in [brake(1.5, 0.0), locked] {
         let manoeuvre = Manoeuvre {
-            initial: VehicleState { vx_m_s: 6.0, yaw_rate_rad_s: 2.0, ..VehicleState::default() },
+            initial: VehicleState {
+                vx_body_m_s: 6.0,
+                yaw_rate_rad_s: 2.0,
+                ..VehicleState::default()
+            },
             controls: ending.controls(&vehicle),
             duration_s: 10.0,
             ..Manoeuvre::default()
@@ -212,7 +217,7 @@ fn what_stands_stays_and_what_has_stopped_does_not_chatter() {
 fn a_spun_car_that_rolled_backwards_for_hundreds_of_metres_stops_when_it_brakes() {
     let mut vehicle = Preset::Reference.parameters();
     vehicle.tires.friction = 0.5;
-    let spun = VehicleState { vx_m_s: -15.0, yaw_rate_rad_s: 0.2, ..VehicleState::default() };
+    let spun = VehicleState { vx_body_m_s: -15.0, yaw_rate_rad_s: 0.2, ..VehicleState::default() };
     let coasting = motion(&vehicle, spun, &Ending::default());
     assert!(last(&coasting.series, Channel::X) < -100.0);
     let braked = motion(&vehicle, spun, &brake(0.8, 1.0));
@@ -239,7 +244,7 @@ proptest! {
         };
         let (sin, cos) = course.sin_cos();
         let initial = VehicleState {
-            vx_m_s: speed * cos, vy_m_s: speed * sin, yaw_rate_rad_s: yaw_rate,
+            vx_body_m_s: speed * cos, vy_body_m_s: speed * sin, yaw_rate_rad_s: yaw_rate,
             ..VehicleState::default()
         };
         // A gain of energy or a state that is not finite would be an error.

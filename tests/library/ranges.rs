@@ -267,10 +267,10 @@ fn simulations_are_checked() {
     probe("yaw rate", &YAW_RATE, |value| {
         checked(&drive(Drive { yaw_rate_rad_s: value, ..start.clone() }))
     });
-    let at = ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.5 };
+    let at = ContactPoint { x_body_m: -1.5, y_body_m: -0.9, height_m: 0.5 };
     let contact = |contact| checked(&drive(Drive { contact: Some(contact), ..start.clone() }));
-    probe("contact x", &CONTACT_X, |x_m| contact(ContactPoint { x_m, ..at }));
-    probe("contact y", &CONTACT_Y, |y_m| contact(ContactPoint { y_m, ..at }));
+    probe("contact x", &CONTACT_X, |x_body_m| contact(ContactPoint { x_body_m, ..at }));
+    probe("contact y", &CONTACT_Y, |y_body_m| contact(ContactPoint { y_body_m, ..at }));
     probe("contact height", &CONTACT_HEIGHT, |height_m| contact(ContactPoint { height_m, ..at }));
     probe("pulse", &PULSE_DURATION, |duration_s| {
         let pulse = PulseSetup { duration_s, ..PulseSetup::default() };
@@ -303,8 +303,8 @@ fn scenarios_in_questions_are_checked() {
 
 /// Sets one of the numbers of a scenario, in the order of [`Scenario::ranges`].
 fn set(scenario: &mut Scenario, number: usize, value: f64) {
-    let Scenario { struck_x_m, struck_y_m, struck, striking, contact, .. } = scenario;
-    let mut numbers = vec![struck_x_m, struck_y_m];
+    let Scenario { struck_x_world_m, struck_y_world_m, struck, striking, contact, .. } = scenario;
+    let mut numbers = vec![struck_x_world_m, struck_y_world_m];
     for vehicle in [struck, striking] {
         numbers.extend([
             &mut vehicle.mass_kg,
@@ -313,8 +313,8 @@ fn set(scenario: &mut Scenario, number: usize, value: f64) {
             &mut vehicle.width_m,
             &mut vehicle.cg_from_front_m,
             &mut vehicle.heading_rad,
-            &mut vehicle.vx_m_s,
-            &mut vehicle.vy_m_s,
+            &mut vehicle.vx_world_m_s,
+            &mut vehicle.vy_world_m_s,
             &mut vehicle.yaw_rate_rad_s,
         ]);
     }

@@ -31,22 +31,22 @@ fn carpenter_welcher_barrier() {
             mass_kg: mass.to_si(3574.2 / 32.2),
             yaw_inertia_kg_m2: inertia.to_si(2336.3),
             heading_rad: 0.0,
-            velocity_m_s: [speed.to_si(39.9545), 0.0],
+            velocity_world_m_s: [speed.to_si(39.9545), 0.0],
             yaw_rate_rad_s: 0.0,
-            contact_arm_m: arm(3.620925, -2.007083),
+            contact_arm_world_m: arm(3.620925, -2.007083),
         },
         striking: ImpactBody {
             mass_kg: mass.to_si(1e7 / 32.2),
             yaw_inertia_kg_m2: inertia.to_si(173_611_111.111),
             heading_rad: std::f64::consts::PI,
-            velocity_m_s: [0.0, 0.0],
+            velocity_world_m_s: [0.0, 0.0],
             yaw_rate_rad_s: 0.0,
             // The heading is 180°, so that the arm in the vehicle's own axes has the opposite
             // signs.
-            contact_arm_m: arm(-4.166667, 4.166667),
+            contact_arm_world_m: arm(-4.166667, 4.166667),
         },
         surface: ContactSurface {
-            normal_angle_rad: (-74.6_f64 - 90.0).to_radians(),
+            normal_angle_world_rad: (-74.6_f64 - 90.0).to_radians(),
             restitution: 0.0,
             restitution_form: RestitutionForm::Normal,
             friction_limit: 0.82,
@@ -57,8 +57,8 @@ fn carpenter_welcher_barrier() {
     let got = [
         impulse.from_si(solution.impulse_tangential_n_s),
         impulse.from_si(solution.impulse_normal_n_s),
-        speed.from_si(solution.struck.delta_v_m_s[0]),
-        -speed.from_si(solution.struck.delta_v_m_s[1]),
+        speed.from_si(solution.struck.delta_v_world_m_s[0]),
+        -speed.from_si(solution.struck.delta_v_world_m_s[1]),
         -solution.struck.delta_yaw_rate_rad_s.to_degrees(),
         energy.from_si(solution.dissipated_energy_j),
     ];
@@ -90,7 +90,7 @@ fn carpenter_welcher_scenario_file() {
 #[test]
 fn a_pit_turns_the_struck_towards_the_striking() {
     let solution = solve_scenario("pit_right_rear.toml");
-    assert!(solution.impulse_n_s[1] > 1000.0, "{solution:?}");
+    assert!(solution.impulse_world_n_s[1] > 1000.0, "{solution:?}");
     assert!(solution.struck.yaw_rate_rad_s < -0.2, "{solution:?}");
     assert!(solution.dissipated_energy_j > 0.0, "{solution:?}");
     let clock = solution.struck.pdof.map(PrincipalDirectionOfForce::clock);
@@ -148,7 +148,7 @@ fn finite_element_impulses() {
         let scenario = case.to_scenario([OUTLINE; 2], (0.3, 0.4)).expect("a side");
         let impact = case.to_impact(0.3, 0.4).expect("a side");
         assert_eq!(scenario.impact().expect("a contact"), impact);
-        let [px, py] = impact.solve().expect("a solution").impulse_n_s;
+        let [px, py] = impact.solve().expect("a solution").impulse_world_n_s;
         let [fx, fy] = ["impulse_x_n_s", "impulse_y_n_s"].map(|name| cell(&headers, &row, name));
         let total = fx.hypot(fy);
         errors[0].push((px - fx).hypot(py - fy) / total);

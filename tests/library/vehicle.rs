@@ -12,7 +12,7 @@ use impactlab_core::vehicle::{
 use nalgebra::SVector;
 use proptest::prelude::*;
 
-const CONTACT: ContactPoint = ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.52 };
+const CONTACT: ContactPoint = ContactPoint { x_body_m: -1.5, y_body_m: -0.9, height_m: 0.52 };
 
 fn pit_force(fx_n: f64, fy_n: f64) -> ForceHistory {
     let time_s: Vec<f64> = (0..=120).map(|ms| f64::from(ms) * 1e-3).collect();
@@ -41,7 +41,7 @@ fn pit(fy_n: f64, contact: ContactPoint, speed_m_s: f64, duration_s: f64) -> Man
 /// mass, J.
 fn energy_j(vehicle: &VehicleParameters, x: &VehicleState<f64>) -> f64 {
     let (mass, suspension) = (&vehicle.mass, &vehicle.suspension);
-    let planar = mass.mass_kg * (x.vx_m_s.powi(2) + x.vy_m_s.powi(2)) / 2.0;
+    let planar = mass.mass_kg * (x.vx_body_m_s.powi(2) + x.vy_body_m_s.powi(2)) / 2.0;
     let (r, p) = (x.yaw_rate_rad_s, x.roll_rate_rad_s);
     let spin = mass.yaw_inertia_kg_m2 * r * r / 2.0
         + mass.roll_inertia_kg_m2 * p * p / 2.0
@@ -65,8 +65,8 @@ fn the_kinetic_energy_never_rises_without_a_force() {
     ] {
         let (sin, cos) = slip_deg.to_radians().sin_cos();
         let mut state = VehicleState {
-            vx_m_s: speed * cos,
-            vy_m_s: speed * sin,
+            vx_body_m_s: speed * cos,
+            vy_body_m_s: speed * sin,
             yaw_rate_rad_s: rate,
             ..VehicleState::default()
         };
@@ -97,7 +97,7 @@ fn the_kinetic_energy_never_rises_without_a_force() {
 fn a_mirrored_impact_gives_the_mirrored_motion() {
     let vehicle = Preset::Reference.parameters();
     let left = vehicle.simulate(&pit(40e3, CONTACT, 20.0, 4.0), Integrator::Rk4).unwrap();
-    let mirrored_contact = ContactPoint { y_m: -CONTACT.y_m, ..CONTACT };
+    let mirrored_contact = ContactPoint { y_body_m: -CONTACT.y_body_m, ..CONTACT };
     let right =
         vehicle.simulate(&pit(-40e3, mirrored_contact, 20.0, 4.0), Integrator::Rk4).unwrap();
     for (channel, sign) in [
@@ -214,8 +214,11 @@ fn a_spin_ends_at_rest_and_stays_there() {
 #[test]
 fn rk4_converges_with_the_fourth_order_in_a_smooth_manoeuvre() {
     let vehicle = Preset::Reference.parameters();
-    let start =
-        VehicleState { vy_m_s: 1.0, yaw_rate_rad_s: 0.4, ..VehicleState::driving_straight(20.0) };
+    let start = VehicleState {
+        vy_body_m_s: 1.0,
+        yaw_rate_rad_s: 0.4,
+        ..VehicleState::driving_straight(20.0)
+    };
     let input = VehicleInput { steer_rad: 0.02, ..VehicleInput::released() };
     let end = |n: u32| {
         let h = 0.5 / f64::from(n);

@@ -171,7 +171,7 @@ impl ForwardModel {
         let vehicle = self.vehicle(&values);
         let ending = self.ending(&values, &vehicle);
         let [x_m, y_m] = impact.contact_m;
-        let load = contact_load(impact.solution.impulse_n_s, &values, [x_m, y_m]);
+        let load = contact_load(impact.solution.impulse_world_n_s, &values, [x_m, y_m]);
         let manoeuvre = Manoeuvre {
             initial: VehicleState::driving_straight(impact.struck_speed_m_s),
             contact_load: Some(load),
@@ -273,13 +273,13 @@ impl ForwardModel {
         ));
         let (sin, cos) = impact.heading_difference_rad.sin_cos();
         let in_body = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
-        let [vx_m_s, vy_m_s] = in_body(impact.striking_velocity_m_s);
+        let [vx_body_m_s, vy_body_m_s] = in_body(impact.striking_velocity_m_s);
         let arm_m = [0, 1].map(|i| impact.contact_m[i] - impact.striking_m[i]);
-        let impulse = impact.solution.impulse_n_s.map(|p| -p);
+        let impulse = impact.solution.impulse_world_n_s.map(|p| -p);
         let manoeuvre = Manoeuvre {
             initial: VehicleState {
-                vx_m_s,
-                vy_m_s,
+                vx_body_m_s,
+                vy_body_m_s,
                 yaw_rad: impact.heading_difference_rad,
                 x_m: impact.striking_m[0],
                 y_m: impact.striking_m[1],
@@ -330,8 +330,8 @@ fn contact_load(impulse_n_s: [f64; 2], values: &LatentValues, at_m: [f64; 2]) ->
         fy_n: Vec::new(),
         mz_n_m: None,
     });
-    let [x_m, y_m] = at_m;
-    let contact = ContactPoint { x_m, y_m, height_m: CONTACT_HEIGHT_M };
+    let [x_body_m, y_body_m] = at_m;
+    let contact = ContactPoint { x_body_m, y_body_m, height_m: CONTACT_HEIGHT_M };
     ContactLoad { force, contact, recorded_moment: false }
 }
 

@@ -80,9 +80,9 @@ fn a_particle_moves_as_the_simulation_of_its_car() {
         let idx = idx.min(reference.series.n_samples() - 1);
         let off_m = (last.x_m - column(Channel::X)[idx]).hypot(last.y_m - column(Channel::Y)[idx]);
         // The last step may end within an interval of 10 ms of the reference.
-        let moved_m = 0.01 * last.vx_m_s.hypot(last.vy_m_s);
+        let moved_m = 0.01 * last.vx_body_m_s.hypot(last.vy_body_m_s);
         assert!(off_m < 0.05 + moved_m, "particle {i}: {off_m} m off at {} s", last.time_s);
-        let momentum = motion.impact.solution.impulse_n_s[1];
+        let momentum = motion.impact.solution.impulse_world_n_s[1];
         assert!(momentum >= 0.0, "particle {i}: pushed out of the struck side");
     }
 }

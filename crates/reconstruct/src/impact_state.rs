@@ -44,7 +44,7 @@ pub struct ImpactState {
 impl ImpactState {
     /// Size of the change of velocity of the struck car by the contact, m/s.
     pub fn delta_v_struck_m_s(&self) -> f64 {
-        let [x, y] = self.solution.struck.delta_v_m_s;
+        let [x, y] = self.solution.struck.delta_v_world_m_s;
         x.hypot(y)
     }
 
@@ -83,20 +83,20 @@ impl ForwardModel {
             yaw_inertia_kg_m2: inertia(struck_kg, &self.cars.struck.parameters)
                 * values.get(Latent::YawInertiaFactor),
             heading_rad: 0.0,
-            velocity_m_s: [struck_speed_m_s, 0.0],
+            velocity_world_m_s: [struck_speed_m_s, 0.0],
             yaw_rate_rad_s: 0.0,
-            contact_arm_m: contact_m,
+            contact_arm_world_m: contact_m,
         };
         let striking = ImpactBody {
             mass_kg: striking_kg,
             yaw_inertia_kg_m2: inertia(striking_kg, &self.cars.striking.parameters),
             heading_rad,
-            velocity_m_s: striking_velocity_m_s,
+            velocity_world_m_s: striking_velocity_m_s,
             yaw_rate_rad_s: 0.0,
-            contact_arm_m: arm_m,
+            contact_arm_world_m: arm_m,
         };
         let surface = ContactSurface {
-            normal_angle_rad: normal_rad,
+            normal_angle_world_rad: normal_rad,
             restitution: 0.0,
             restitution_form: RestitutionForm::Normal,
             friction_limit: values.get(Latent::ContactFriction),

@@ -80,8 +80,8 @@ fn error_rows(error: &MotionError, units: UnitSystem) -> Vec<(String, String)> {
         ("RMSE X, Y".to_owned(), format!("{}, {}", length(error.rmse_x_m), length(error.rmse_y_m))),
     ];
     let optional = [
-        ("RMSE v_x", error.rmse_vx_m_s, Quantity::Speed),
-        ("RMSE v_y", error.rmse_vy_m_s, Quantity::Speed),
+        ("RMSE v_x", error.rmse_vx_body_m_s, Quantity::Speed),
+        ("RMSE v_y", error.rmse_vy_body_m_s, Quantity::Speed),
         ("RMSE yaw rate", error.rmse_yaw_rate_rad_s, Quantity::AngularVelocity),
     ];
     for (label, value, quantity) in optional {

@@ -128,9 +128,9 @@ fn speed_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
 /// Draws the contact point, at which the force acts, if the user has set it, otherwise the point
 /// that is assumed.
 fn contact_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
-    let Some(ContactPoint { x_m, y_m, height_m }) = &mut start.contact else {
-        let ContactPoint { x_m, y_m, height_m } = ASSUMED_CONTACT;
-        let [x, y, z] = [x_m, y_m, height_m].map(|m| Quantity::Length.shown(m, units));
+    let Some(ContactPoint { x_body_m, y_body_m, height_m }) = &mut start.contact else {
+        let ContactPoint { x_body_m, y_body_m, height_m } = ASSUMED_CONTACT;
+        let [x, y, z] = [x_body_m, y_body_m, height_m].map(|m| Quantity::Length.shown(m, units));
         let assumed =
             format!("{x} ahead, {y} left, {z} high; a yaw moment in the file counts first");
         if assumed_ui(ui, "Contact point", &assumed) {
@@ -139,8 +139,8 @@ fn contact_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
         return;
     };
     for (label, value, range) in [
-        ("Contact ahead of CG", x_m, CONTACT_X),
-        ("Contact left of CG", y_m, CONTACT_Y),
+        ("Contact ahead of CG", x_body_m, CONTACT_X),
+        ("Contact left of CG", y_body_m, CONTACT_Y),
         ("Contact above ground", height_m, CONTACT_HEIGHT),
     ] {
         quantity_field(ui, label, value, (&range, units));

@@ -78,15 +78,15 @@ fn vehicles_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
 /// Draws the fields of one vehicle in a two-column grid. The velocity is edited as speed and course
 /// in world axes.
 fn vehicle_form(ui: &mut Ui, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
-    let mut speed_m_s = vehicle.vx_m_s.hypot(vehicle.vy_m_s);
-    let mut course_rad = vehicle.vy_m_s.atan2(vehicle.vx_m_s);
+    let mut speed_m_s = vehicle.vx_world_m_s.hypot(vehicle.vy_world_m_s);
+    let mut course_rad = vehicle.vy_world_m_s.atan2(vehicle.vx_world_m_s);
     // The course says which way.
     let forwards = SPEED.within([0.0, f64::INFINITY]);
     let mut moved = quantity_field(ui, "Speed", &mut speed_m_s, (&forwards, units));
     moved |= quantity_field(ui, "Course (of velocity)", &mut course_rad, (&HEADING, units));
     if moved {
-        vehicle.vx_m_s = speed_m_s * course_rad.cos();
-        vehicle.vy_m_s = speed_m_s * course_rad.sin();
+        vehicle.vx_world_m_s = speed_m_s * course_rad.cos();
+        vehicle.vy_world_m_s = speed_m_s * course_rad.sin();
     }
     let fields = [
         ("Heading", &mut vehicle.heading_rad, HEADING),
@@ -187,16 +187,22 @@ fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem)
             ui.end_row();
             length(ui, "Offset from its middle", offset_m, &CONTACT_OFFSET);
         }
-        ContactLocation::Footprints { striking_x_m, striking_y_m } => {
-            length(ui, "Bullet's CG, X", striking_x_m, &POSITION);
-            length(ui, "Bullet's CG, Y", striking_y_m, &POSITION);
+        ContactLocation::Footprints { striking_x_world_m, striking_y_world_m } => {
+            length(ui, "Bullet's CG, X", striking_x_world_m, &POSITION);
+            length(ui, "Bullet's CG, Y", striking_y_world_m, &POSITION);
         }
-        ContactLocation::Point { x_m, y_m, normal_rad, striking_x_m, striking_y_m } => {
-            length(ui, "Contact ahead of CG", x_m, &CONTACT_COORDINATE);
-            length(ui, "Contact left of CG", y_m, &CONTACT_COORDINATE);
-            quantity_field(ui, "Normal", normal_rad, (&HEADING, units));
-            length(ui, "Bullet's CG, X", striking_x_m, &POSITION);
-            length(ui, "Bullet's CG, Y", striking_y_m, &POSITION);
+        ContactLocation::Point {
+            x_body_m,
+            y_body_m,
+            normal_body_rad,
+            striking_x_world_m,
+            striking_y_world_m,
+        } => {
+            length(ui, "Contact ahead of CG", x_body_m, &CONTACT_COORDINATE);
+            length(ui, "Contact left of CG", y_body_m, &CONTACT_COORDINATE);
+            quantity_field(ui, "Normal", normal_body_rad, (&HEADING, units));
+            length(ui, "Bullet's CG, X", striking_x_world_m, &POSITION);
+            length(ui, "Bullet's CG, Y", striking_y_world_m, &POSITION);
         }
     }
 }

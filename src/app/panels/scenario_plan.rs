@@ -103,9 +103,10 @@ impl Drag {
         let (dx, dy) = (to[0] - pose.x_m, to[1] - pose.y_m);
         match self.handle {
             Handle::Position if self.is_target => {
-                let place = [before.struck_x_m + moved[0], before.struck_y_m + moved[1]];
+                let place =
+                    [before.struck_x_world_m + moved[0], before.struck_y_world_m + moved[1]];
                 if place.iter().all(|value| POSITION.contains(*value)) {
-                    [scenario.struck_x_m, scenario.struck_y_m] = place;
+                    [scenario.struck_x_world_m, scenario.struck_y_world_m] = place;
                 }
             }
             Handle::Position => move_striking(before, moved, &mut scenario.contact.location),
@@ -118,7 +119,7 @@ impl Drag {
             Handle::Velocity => {
                 let velocity = [dx, dy].map(|value| rounded(value / ARROW_S, 0.01));
                 if SPEED.contains(velocity[0].hypot(velocity[1])) {
-                    [vehicle.vx_m_s, vehicle.vy_m_s] = velocity;
+                    [vehicle.vx_world_m_s, vehicle.vy_world_m_s] = velocity;
                 }
             }
         }
@@ -144,14 +145,15 @@ fn move_striking(before: &Scenario, [dx, dy]: [f64; 2], location: &mut ContactLo
             *offset_m = rounded((start + along).clamp(-half, half), 1e-3);
         }
         (
-            ContactLocation::Footprints { striking_x_m: x, striking_y_m: y }
-            | ContactLocation::Point { striking_x_m: x, striking_y_m: y, .. },
-            ContactLocation::Footprints { striking_x_m, striking_y_m }
-            | ContactLocation::Point { striking_x_m, striking_y_m, .. },
+            ContactLocation::Footprints { striking_x_world_m: x, striking_y_world_m: y }
+            | ContactLocation::Point { striking_x_world_m: x, striking_y_world_m: y, .. },
+            ContactLocation::Footprints { striking_x_world_m, striking_y_world_m }
+            | ContactLocation::Point { striking_x_world_m, striking_y_world_m, .. },
         ) => {
             let place = [x + dx, y + dy];
             if place.iter().all(|value| POSITION.contains(*value)) {
-                [*striking_x_m, *striking_y_m] = place.map(|value| rounded(value, 1e-3));
+                [*striking_x_world_m, *striking_y_world_m] =
+                    place.map(|value| rounded(value, 1e-3));
             }
         }
         _ => {}
@@ -174,21 +176,22 @@ fn poses(scenario: &Scenario) -> [Option<Pose>; 2] {
         yaw_rad: vehicle.heading_rad,
     };
     let striking = match scenario.contact.location {
-        ContactLocation::Footprints { striking_x_m, striking_y_m }
-        | ContactLocation::Point { striking_x_m, striking_y_m, .. } => {
-            Some([striking_x_m, striking_y_m])
+        ContactLocation::Footprints { striking_x_world_m, striking_y_world_m }
+        | ContactLocation::Point { striking_x_world_m, striking_y_world_m, .. } => {
+            Some([striking_x_world_m, striking_y_world_m])
         }
         ContactLocation::Side { .. } => None,
     };
     [
-        Some(pose([scenario.struck_x_m, scenario.struck_y_m], &scenario.struck)),
+        Some(pose([scenario.struck_x_world_m, scenario.struck_y_world_m], &scenario.struck)),
         striking.map(|place| pose(place, &scenario.striking)),
     ]
 }
 
 /// The handles of a vehicle with their places, m. The velocity stands first: it is on top.
 fn handles(vehicle: &ScenarioVehicle, pose: &Pose) -> [(Handle, [f64; 2]); 3] {
-    let tip = [pose.x_m + vehicle.vx_m_s * ARROW_S, pose.y_m + vehicle.vy_m_s * ARROW_S];
+    let tip =
+        [pose.x_m + vehicle.vx_world_m_s * ARROW_S, pose.y_m + vehicle.vy_world_m_s * ARROW_S];
     [
         (Handle::Velocity, tip),
         (Handle::Heading, pose.world_from_body([vehicle.cg_from_front_m, 0.0])),
@@ -274,9 +277,9 @@ mod tests {
     fn each_handle_changes_what_it_stands_for() {
         let before = Scenario::example();
         let moved = dragged(Handle::Position, true, [2.0, -1.0]);
-        assert_eq!([moved.struck_x_m, moved.struck_y_m], [2.0, -1.0]);
+        assert_eq!([moved.struck_x_world_m, moved.struck_y_world_m], [2.0, -1.0]);
         let faster = dragged(Handle::Velocity, true, [1.25, 0.0]);
-        assert!((faster.struck.vx_m_s - before.struck.vx_m_s - 5.0).abs() < 0.011);
+        assert!((faster.struck.vx_world_m_s - before.struck.vx_world_m_s - 5.0).abs() < 0.011);
         let turned = dragged(Handle::Heading, false, [0.0, 0.3]);
         assert!(turned.striking.heading_rad > before.striking.heading_rad);
         let ContactLocation::Side { offset_m, .. } =
@@ -294,7 +297,7 @@ mod tests {
     fn a_vehicle_that_touches_nothing_is_still_drawn() {
         let mut scenario = Scenario::example();
         scenario.contact.location =
-            ContactLocation::Footprints { striking_x_m: -40.0, striking_y_m: 0.0 };
+            ContactLocation::Footprints { striking_x_world_m: -40.0, striking_y_world_m: 0.0 };
         assert!(scenario.geometry().is_err());
         let figure = with_handles(outlines_figure(&scenario, UnitSystem::Si), &scenario);
         let n_outlines =

@@ -105,7 +105,7 @@ fn print_text(out: &mut dyn Write, answer: &ImpactAnswer, units: UnitSystem) -> 
         ("normal", normal(report, units)),
         ("regime", solution.regime.label().to_owned()),
         ("closing velocity", vector(Quantity::Speed, closing, ["normal", "tangential"])),
-        ("impulse", vector(Quantity::Impulse, solution.impulse_n_s, XY)),
+        ("impulse", vector(Quantity::Impulse, solution.impulse_world_n_s, XY)),
         ("P_n", number(Quantity::Impulse, solution.impulse_normal_n_s)),
         ("P_τ", number(Quantity::Impulse, solution.impulse_tangential_n_s)),
         ("energy loss", number(Quantity::Energy, solution.dissipated_energy_j)),
@@ -117,8 +117,8 @@ fn print_text(out: &mut dyn Write, answer: &ImpactAnswer, units: UnitSystem) -> 
         });
         writeln!(out, "\n{name}")?;
         let facts = [
-            ("  Δv", vector(Quantity::Speed, body.delta_v_m_s, XY)),
-            ("  velocity after", vector(Quantity::Speed, body.velocity_m_s, XY)),
+            ("  Δv", vector(Quantity::Speed, body.delta_v_world_m_s, XY)),
+            ("  velocity after", vector(Quantity::Speed, body.velocity_world_m_s, XY)),
             ("  yaw rate after", number(Quantity::AngularVelocity, body.yaw_rate_rad_s)),
             ("  yaw rate change", number(Quantity::AngularVelocity, body.delta_yaw_rate_rad_s)),
             ("  PDOF", pdof),

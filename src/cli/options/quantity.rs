@@ -73,13 +73,14 @@ pub(in crate::cli) fn window_s(text: &str) -> Result<[f64; 2], QuantityError> {
 pub(in crate::cli) fn contact_point(text: &str) -> Result<ContactPoint, QuantityError> {
     let numbers: Vec<f64> =
         text.split(',').map(|part| quantity(part, Quantity::Length)).collect::<Result<_, _>>()?;
-    let [x_m, y_m, height_m] = numbers[..] else {
+    let [x_body_m, y_body_m, height_m] = numbers[..] else {
         return Err(QuantityError::NoPoint);
     };
-    for (value, range) in [(x_m, CONTACT_X), (y_m, CONTACT_Y), (height_m, CONTACT_HEIGHT)] {
+    for (value, range) in [(x_body_m, CONTACT_X), (y_body_m, CONTACT_Y), (height_m, CONTACT_HEIGHT)]
+    {
         range.check(value)?;
     }
-    Ok(ContactPoint { x_m, y_m, height_m })
+    Ok(ContactPoint { x_body_m, y_body_m, height_m })
 }
 
 /// Width and height in pixels: `1600x1000`.
@@ -248,7 +249,7 @@ mod tests {
                 prop_assert!(from_s <= to_s && WINDOW.contains(from_s) && WINDOW.contains(to_s));
             }
             if let Ok(point) = contact_point(&text) {
-                let inside = CONTACT_X.contains(point.x_m) && CONTACT_HEIGHT.contains(point.height_m);
+                let inside = CONTACT_X.contains(point.x_body_m) && CONTACT_HEIGHT.contains(point.height_m);
                 prop_assert!(inside, "{text:?}: {point:?}");
             }
             if let Ok(n) = count::<usize>(DRAWS)(&text) {

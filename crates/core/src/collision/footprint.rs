@@ -79,14 +79,14 @@ pub enum FootprintError {
 /// A contact point that lies off the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
-    "the contact point ({x_m:.3} m, {y_m:.3} m from the CG) lies {distance_m:.3} m off the outline, \
+    "the contact point ({x_body_m:.3} m, {y_body_m:.3} m from the CG) lies {distance_m:.3} m off the outline, \
      expected {allowed_m:.3} m at most"
 )]
 pub struct OffOutline {
     /// Coordinate x of the point in body axes, m.
-    pub x_m: f64,
+    pub x_body_m: f64,
     /// Coordinate y of the point in body axes, m.
-    pub y_m: f64,
+    pub y_body_m: f64,
     /// Distance from the outline, m.
     pub distance_m: f64,
     /// Largest permitted distance, m.
@@ -200,13 +200,13 @@ impl Footprint {
     ///
     /// # Errors
     /// [`OffOutline`] with the distance.
-    pub fn check_contact(&self, [x_m, y_m]: [f64; 2]) -> Result<(), OffOutline> {
-        let distance_m = self.distance_m([x_m, y_m]);
+    pub fn check_contact(&self, [x_body_m, y_body_m]: [f64; 2]) -> Result<(), OffOutline> {
+        let distance_m = self.distance_m([x_body_m, y_body_m]);
         let allowed_m = OFF_OUTLINE.high * self.length_m;
         if distance_m <= allowed_m {
             return Ok(());
         }
-        Err(OffOutline { x_m, y_m, distance_m, allowed_m })
+        Err(OffOutline { x_body_m, y_body_m, distance_m, allowed_m })
     }
 
     /// Midpoint of a side in body axes, m.

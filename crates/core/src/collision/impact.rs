@@ -42,11 +42,11 @@ pub struct ImpactBody<T = f64> {
     /// force.
     pub heading_rad: f64,
     /// Velocity of the CG before the impact in world axes, m/s.
-    pub velocity_m_s: [T; 2],
+    pub velocity_world_m_s: [T; 2],
     /// Yaw rate before the impact, rad/s.
     pub yaw_rate_rad_s: T,
     /// Vector from the CG to the contact point in world axes, m.
-    pub contact_arm_m: [T; 2],
+    pub contact_arm_world_m: [T; 2],
 }
 
 /// Model of friction at the contact.
@@ -118,7 +118,7 @@ impl RestitutionForm {
 pub struct ContactSurface<T = f64> {
     /// Angle Γ of the contact normal in world axes, rad. The normal points INTO the target, which
     /// is the direction in which the bullet pushes.
-    pub normal_angle_rad: T,
+    pub normal_angle_world_rad: T,
     /// Coefficient of restitution e, 0 to 1.
     pub restitution: T,
     /// Meaning of the coefficient of restitution.
@@ -175,11 +175,11 @@ impl Regime {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyAfter<T = f64> {
     /// Velocity of the CG after the impact in world axes, m/s.
-    pub velocity_m_s: [T; 2],
+    pub velocity_world_m_s: [T; 2],
     /// Yaw rate after the impact, rad/s.
     pub yaw_rate_rad_s: T,
     /// Change Δv of the velocity of the CG in world axes, m/s.
-    pub delta_v_m_s: [T; 2],
+    pub delta_v_world_m_s: [T; 2],
     /// Change of the yaw rate, rad/s.
     pub delta_yaw_rate_rad_s: T,
     /// Principal direction of force on this vehicle; `None` if there is no impulse.
@@ -190,7 +190,7 @@ pub struct BodyAfter<T = f64> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImpactSolution<T = f64> {
     /// Impulse on the target in world axes, N s.
-    pub impulse_n_s: [T; 2],
+    pub impulse_world_n_s: [T; 2],
     /// Component `P_n` of the impulse along the contact normal, N s, never negative.
     pub impulse_normal_n_s: T,
     /// Component `P_τ` of the impulse along the tangent, N s. The tangent is the normal turned by
@@ -246,7 +246,7 @@ impl<T: Scalar> Impact<T> {
         let central = self.struck.mass_kg.recip() + self.striking.mass_kg.recip();
         let mut k = [[central, T::from(0.0)], [T::from(0.0), central]];
         for body in [&self.struck, &self.striking] {
-            let lever = perpendicular(body.contact_arm_m);
+            let lever = perpendicular(body.contact_arm_world_m);
             for (row, a) in k.iter_mut().zip(lever) {
                 for (entry, b) in row.iter_mut().zip(lever) {
                     *entry += a * b / body.yaw_inertia_kg_m2;
@@ -345,7 +345,7 @@ impl<T: Scalar> Impact<T> {
         let tangent = perpendicular(normal);
         let p = [normal[0] * p_n + tangent[0] * p_t, normal[1] * p_n + tangent[1] * p_t];
         ImpactSolution {
-            impulse_n_s: p,
+            impulse_world_n_s: p,
             impulse_normal_n_s: p_n,
             impulse_tangential_n_s: p_t,
             regime,
@@ -370,8 +370,8 @@ impl Impact<f64> {
     /// if [`FrictionModel::Paper`] has no solution.
     pub fn solve(&self) -> Result<ImpactSolution, ImpactError> {
         for (body, of) in [(&self.struck, "target"), (&self.striking, "bullet")] {
-            let [vx, vy] = body.velocity_m_s;
-            let [rx, ry] = body.contact_arm_m;
+            let [vx, vy] = body.velocity_world_m_s;
+            let [rx, ry] = body.contact_arm_world_m;
             let inertia = body.yaw_inertia_kg_m2;
             check(of, "mass_kg", body.mass_kg, Expected::Positive)?;
             check(of, "yaw_inertia_kg_m2", inertia, Expected::Positive)?;
@@ -383,7 +383,7 @@ impl Impact<f64> {
             check(of, "contact_arm_m[1]", ry, Expected::Finite)?;
         }
         let (s, of) = (&self.surface, "contact");
-        check(of, "normal_angle_rad", s.normal_angle_rad, Expected::Finite)?;
+        check(of, "normal_angle_rad", s.normal_angle_world_rad, Expected::Finite)?;
         check(of, "restitution", s.restitution, Expected::Share)?;
         check(of, "friction_limit", s.friction_limit, Expected::NotNegative)?;
         self.solve_unchecked()
@@ -420,24 +420,24 @@ impl<T: Scalar> ImpactBody<T> {
     /// Velocity of the contact point as a point of this body, in world axes, m/s: `v + r × arm`,
     /// with the yaw rate r.
     pub fn contact_velocity_m_s(&self) -> [T; 2] {
-        let lever = perpendicular(self.contact_arm_m);
-        [0, 1].map(|i| self.velocity_m_s[i] + lever[i] * self.yaw_rate_rad_s)
+        let lever = perpendicular(self.contact_arm_world_m);
+        [0, 1].map(|i| self.velocity_world_m_s[i] + lever[i] * self.yaw_rate_rad_s)
     }
 
     /// Kinetic energy of the body before the impact, `½ m v² + ½ I r²`, J.
     pub fn kinetic_energy_j(&self) -> T {
-        let translation = self.mass_kg * dot(self.velocity_m_s, self.velocity_m_s);
+        let translation = self.mass_kg * dot(self.velocity_world_m_s, self.velocity_world_m_s);
         (translation + self.yaw_inertia_kg_m2 * self.yaw_rate_rad_s.squared()) * 0.5
     }
 
     fn after(&self, impulse: [T; 2]) -> BodyAfter<T> {
-        let delta_v_m_s = impulse.map(|p| p / self.mass_kg);
-        let moment = dot(perpendicular(self.contact_arm_m), impulse);
+        let delta_v_world_m_s = impulse.map(|p| p / self.mass_kg);
+        let moment = dot(perpendicular(self.contact_arm_world_m), impulse);
         let delta_yaw_rate_rad_s = moment / self.yaw_inertia_kg_m2;
         BodyAfter {
-            velocity_m_s: [0, 1].map(|i| self.velocity_m_s[i] + delta_v_m_s[i]),
+            velocity_world_m_s: [0, 1].map(|i| self.velocity_world_m_s[i] + delta_v_world_m_s[i]),
             yaw_rate_rad_s: self.yaw_rate_rad_s + delta_yaw_rate_rad_s,
-            delta_v_m_s,
+            delta_v_world_m_s,
             delta_yaw_rate_rad_s,
             pdof: PrincipalDirectionOfForce::from_impulse(
                 impulse.map(|p| p.re()),
@@ -449,7 +449,7 @@ impl<T: Scalar> ImpactBody<T> {
 
 impl<T: Scalar> ContactSurface<T> {
     pub(super) fn normal(&self) -> [T; 2] {
-        let (sin, cos) = self.normal_angle_rad.sin_cos();
+        let (sin, cos) = self.normal_angle_world_rad.sin_cos();
         [cos, sin]
     }
 }

@@ -52,20 +52,20 @@ impl ImpactCase {
                 mass_kg: self.m_t_kg,
                 yaw_inertia_kg_m2: self.izz_t_kg_m2,
                 heading_rad: 0.0,
-                velocity_m_s: self.v_t_m_s,
+                velocity_world_m_s: self.v_t_m_s,
                 yaw_rate_rad_s: 0.0,
-                contact_arm_m: [x, y],
+                contact_arm_world_m: [x, y],
             },
             striking: ImpactBody {
                 mass_kg: self.m_b_kg,
                 yaw_inertia_kg_m2: self.izz_b_kg_m2,
                 heading_rad: self.theta_b_rad,
-                velocity_m_s: self.v_b_m_s,
+                velocity_world_m_s: self.v_b_m_s,
                 yaw_rate_rad_s: 0.0,
-                contact_arm_m: [x - self.striking_m[0], y - self.striking_m[1]],
+                contact_arm_world_m: [x - self.striking_m[0], y - self.striking_m[1]],
             },
             surface: ContactSurface {
-                normal_angle_rad: self.normal_rad()?,
+                normal_angle_world_rad: self.normal_rad()?,
                 restitution,
                 restitution_form: RestitutionForm::Normal,
                 friction_limit,
@@ -94,26 +94,27 @@ impl ImpactCase {
         [struck, striking]: [Footprint; 2],
         (restitution, friction_limit): (f64, f64),
     ) -> Result<Scenario, ScenarioError> {
-        let [x_m, y_m] = self.contact_m;
-        let normal_rad = self.normal_rad()?;
-        let vehicle = |mass_kg, yaw_inertia_kg_m2, [vx_m_s, vy_m_s]: [f64; 2], f: Footprint| {
-            ScenarioVehicle {
-                mass_kg,
-                yaw_inertia_kg_m2,
-                length_m: f.length_m,
-                width_m: f.width_m,
-                cg_from_front_m: f.cg_from_front_m,
-                heading_rad: 0.0,
-                vx_m_s,
-                vy_m_s,
-                yaw_rate_rad_s: 0.0,
-            }
-        };
+        let [x_body_m, y_body_m] = self.contact_m;
+        let normal_body_rad = self.normal_rad()?;
+        let vehicle =
+            |mass_kg, yaw_inertia_kg_m2, [vx_world_m_s, vy_world_m_s]: [f64; 2], f: Footprint| {
+                ScenarioVehicle {
+                    mass_kg,
+                    yaw_inertia_kg_m2,
+                    length_m: f.length_m,
+                    width_m: f.width_m,
+                    cg_from_front_m: f.cg_from_front_m,
+                    heading_rad: 0.0,
+                    vx_world_m_s,
+                    vy_world_m_s,
+                    yaw_rate_rad_s: 0.0,
+                }
+            };
         Ok(Scenario {
             name: String::new(),
             notes: String::new(),
-            struck_x_m: 0.0,
-            struck_y_m: 0.0,
+            struck_x_world_m: 0.0,
+            struck_y_world_m: 0.0,
             struck: vehicle(self.m_t_kg, self.izz_t_kg_m2, self.v_t_m_s, struck),
             striking: ScenarioVehicle {
                 heading_rad: self.theta_b_rad,
@@ -121,11 +122,11 @@ impl ImpactCase {
             },
             contact: ScenarioContact {
                 location: ContactLocation::Point {
-                    x_m,
-                    y_m,
-                    normal_rad,
-                    striking_x_m: self.striking_m[0],
-                    striking_y_m: self.striking_m[1],
+                    x_body_m,
+                    y_body_m,
+                    normal_body_rad,
+                    striking_x_world_m: self.striking_m[0],
+                    striking_y_world_m: self.striking_m[1],
                 },
                 restitution,
                 restitution_form: RestitutionForm::Normal,

@@ -12,13 +12,13 @@ use crate::collision::{
 fn bodies() -> impl Strategy<Value = ImpactBody> {
     let pair = |most: f64| [-most..most, -most..most];
     let numbers = (500.0..5000.0, 0.5..3.0, -4.0..4.0, pair(40.0), -3.0..3.0, pair(3.0));
-    numbers.prop_map(|(mass_kg, gyration, heading_rad, velocity_m_s, rate, arm)| ImpactBody {
+    numbers.prop_map(|(mass_kg, gyration, heading_rad, velocity_world_m_s, rate, arm)| ImpactBody {
         mass_kg,
         yaw_inertia_kg_m2: mass_kg * gyration,
         heading_rad,
-        velocity_m_s,
+        velocity_world_m_s,
         yaw_rate_rad_s: rate,
-        contact_arm_m: arm,
+        contact_arm_world_m: arm,
     })
 }
 
@@ -28,7 +28,7 @@ fn impacts(friction_model: FrictionModel) -> impl Strategy<Value = Impact> {
         struck,
         striking,
         surface: ContactSurface {
-            normal_angle_rad: gamma,
+            normal_angle_world_rad: gamma,
             restitution: e,
             restitution_form: RestitutionForm::Normal,
             friction_limit: mu,
@@ -44,9 +44,9 @@ fn totals(impact: &Impact, solution: &ImpactSolution) -> [[f64; 4]; 2] {
     [[impact.struck, impact.striking], [struck, striking]].map(|bodies| {
         let mut sum = [0.0; 4];
         for body in bodies {
-            let [px, py] = body.velocity_m_s.map(|v| body.mass_kg * v);
+            let [px, py] = body.velocity_world_m_s.map(|v| body.mass_kg * v);
             // The position of the CG relative to the contact point is the negative of the arm.
-            let [x, y] = body.contact_arm_m.map(|r| -r);
+            let [x, y] = body.contact_arm_world_m.map(|r| -r);
             let spin = body.yaw_inertia_kg_m2 * body.yaw_rate_rad_s;
             let terms = [px, py, spin + x * py - y * px, body.kinetic_energy_j()];
             sum = [0, 1, 2, 3].map(|i| sum[i] + terms[i]);
@@ -57,7 +57,7 @@ fn totals(impact: &Impact, solution: &ImpactSolution) -> [[f64; 4]; 2] {
 
 fn after(impact: &Impact, solution: &ImpactSolution) -> [ImpactBody; 2] {
     let moved = |body: ImpactBody, to: &crate::collision::BodyAfter| ImpactBody {
-        velocity_m_s: to.velocity_m_s,
+        velocity_world_m_s: to.velocity_world_m_s,
         yaw_rate_rad_s: to.yaw_rate_rad_s,
         ..body
     };
@@ -68,7 +68,7 @@ fn after(impact: &Impact, solution: &ImpactSolution) -> [ImpactBody; 2] {
 fn closing_after(impact: &Impact, solution: &ImpactSolution) -> [f64; 2] {
     let [struck, striking] = after(impact, solution);
     let ([tx, ty], [bx, by]) = (struck.contact_velocity_m_s(), striking.contact_velocity_m_s());
-    let (sin, cos) = impact.surface.normal_angle_rad.sin_cos();
+    let (sin, cos) = impact.surface.normal_angle_world_rad.sin_cos();
     let (x, y) = (bx - tx, by - ty);
     [x * cos + y * sin, y * cos - x * sin]
 }
@@ -97,7 +97,7 @@ proptest! {
             Ok(solution) => {
                 let [before, after] = totals(&impact, &solution);
                 let (momentum, energy) = scales(&impact);
-                let [px, py] = solution.impulse_n_s;
+                let [px, py] = solution.impulse_world_n_s;
                 // In the paper's model the impulse may be far larger than the momentum before the
                 // impact.
                 let momentum = momentum + px.hypot(py);
@@ -178,7 +178,7 @@ proptest! {
         let surface = ContactSurface { restitution: 0.0, ..impact.surface };
         let [one, other] = RestitutionForm::ALL
             .map(|form| with_form(Impact { surface, ..impact }, form).solve().unwrap());
-        prop_assert_eq!(one.impulse_n_s, other.impulse_n_s);
+        prop_assert_eq!(one.impulse_world_n_s, other.impulse_world_n_s);
     }
 
     #[test]
@@ -208,20 +208,20 @@ proptest! {
     ) {
         let mirror = |body: ImpactBody| ImpactBody {
             heading_rad: -body.heading_rad,
-            velocity_m_s: [body.velocity_m_s[0], -body.velocity_m_s[1]],
+            velocity_world_m_s: [body.velocity_world_m_s[0], -body.velocity_world_m_s[1]],
             yaw_rate_rad_s: -body.yaw_rate_rad_s,
-            contact_arm_m: [body.contact_arm_m[0], -body.contact_arm_m[1]],
+            contact_arm_world_m: [body.contact_arm_world_m[0], -body.contact_arm_world_m[1]],
             ..body
         };
-        let gamma = -impact.surface.normal_angle_rad;
+        let gamma = -impact.surface.normal_angle_world_rad;
         let image = Impact {
             struck: mirror(impact.struck),
             striking: mirror(impact.striking),
-            surface: ContactSurface { normal_angle_rad: gamma, ..impact.surface },
+            surface: ContactSurface { normal_angle_world_rad: gamma, ..impact.surface },
         };
         let (one, other) = (impact.solve().unwrap(), image.solve().unwrap());
-        let [px, py] = one.impulse_n_s;
-        let [qx, qy] = other.impulse_n_s;
+        let [px, py] = one.impulse_world_n_s;
+        let [qx, qy] = other.impulse_world_n_s;
         let size = 1e-12 * px.hypot(py);
         prop_assert!((px - qx).abs() <= size && (py + qy).abs() <= size, "{one:?} {other:?}");
         prop_assert_eq!(one.regime, other.regime);
@@ -233,7 +233,7 @@ proptest! {
         common in [-40.0..40.0, -40.0..40.0],
     ) {
         let pushed = |body: ImpactBody| ImpactBody {
-            velocity_m_s: [0, 1].map(|i| body.velocity_m_s[i] + common[i]),
+            velocity_world_m_s: [0, 1].map(|i| body.velocity_world_m_s[i] + common[i]),
             ..body
         };
         let moving = Impact {
@@ -244,7 +244,7 @@ proptest! {
         let (one, other) = (impact.solve().unwrap(), moving.solve().unwrap());
         let (momentum, _) = scales(&moving);
         for i in 0..2 {
-            let off = (one.impulse_n_s[i] - other.impulse_n_s[i]).abs();
+            let off = (one.impulse_world_n_s[i] - other.impulse_world_n_s[i]).abs();
             prop_assert!(off < 1e-9 * momentum, "{one:?} {other:?}");
         }
     }
@@ -263,7 +263,7 @@ proptest! {
     fn the_derivative_is_exact(impact in impacts(FrictionModel::Limit)) {
         let at = |push: f64| {
             let mut impact = impact;
-            impact.striking.velocity_m_s[0] += push;
+            impact.striking.velocity_world_m_s[0] += push;
             impact.solve().unwrap()
         };
         let step = 1e-5;
@@ -274,10 +274,10 @@ proptest! {
         prop_assume!(low.impulse_tangential_n_s * high.impulse_tangential_n_s >= 0.0);
         let exact = dual(&impact).solve_unchecked().unwrap();
         for i in 0..2 {
-            let rate = (high.impulse_n_s[i] - low.impulse_n_s[i]) / (2.0 * step);
-            let off = (exact.impulse_n_s[i].eps - rate).abs();
-            prop_assert!(off < 1e-3 + 1e-6 * rate.abs(), "{} {rate}", exact.impulse_n_s[i].eps);
-            prop_assert!((exact.impulse_n_s[i].re - middle.impulse_n_s[i]).abs() < 1e-6);
+            let rate = (high.impulse_world_n_s[i] - low.impulse_world_n_s[i]) / (2.0 * step);
+            let off = (exact.impulse_world_n_s[i].eps - rate).abs();
+            prop_assert!(off < 1e-3 + 1e-6 * rate.abs(), "{} {rate}", exact.impulse_world_n_s[i].eps);
+            prop_assert!((exact.impulse_world_n_s[i].re - middle.impulse_world_n_s[i]).abs() < 1e-6);
         }
     }
 
@@ -287,7 +287,7 @@ proptest! {
         if solution.closing_velocity_m_s[0] < 0.1 {
             return Ok(());
         }
-        let implied = impact.implied_contact(solution.impulse_n_s).unwrap();
+        let implied = impact.implied_contact(solution.impulse_world_n_s).unwrap();
         prop_assert!((implied.restitution - impact.surface.restitution).abs() < 1e-8);
         let ratio = solution.impulse_tangential_n_s / solution.impulse_normal_n_s;
         prop_assert!((implied.impulse_ratio - ratio).abs() < 1e-8 * (1.0 + ratio.abs()));
@@ -312,17 +312,17 @@ fn dual(impact: &Impact) -> Impact<Dual64> {
         mass_kg: body.mass_kg.into(),
         yaw_inertia_kg_m2: body.yaw_inertia_kg_m2.into(),
         heading_rad: body.heading_rad,
-        velocity_m_s: body.velocity_m_s.map(Dual64::from),
+        velocity_world_m_s: body.velocity_world_m_s.map(Dual64::from),
         yaw_rate_rad_s: body.yaw_rate_rad_s.into(),
-        contact_arm_m: body.contact_arm_m.map(Dual64::from),
+        contact_arm_world_m: body.contact_arm_world_m.map(Dual64::from),
     };
     let mut striking = body(&impact.striking);
-    striking.velocity_m_s[0] = striking.velocity_m_s[0].derivative();
+    striking.velocity_world_m_s[0] = striking.velocity_world_m_s[0].derivative();
     Impact {
         struck: body(&impact.struck),
         striking,
         surface: ContactSurface {
-            normal_angle_rad: impact.surface.normal_angle_rad.into(),
+            normal_angle_world_rad: impact.surface.normal_angle_world_rad.into(),
             restitution: impact.surface.restitution.into(),
             restitution_form: impact.surface.restitution_form,
             friction_limit: impact.surface.friction_limit.into(),
@@ -338,15 +338,15 @@ fn central(restitution: f64) -> Impact {
         mass_kg,
         yaw_inertia_kg_m2: 1.8 * mass_kg,
         heading_rad: 0.0,
-        velocity_m_s: [speed, 0.0],
+        velocity_world_m_s: [speed, 0.0],
         yaw_rate_rad_s: 0.0,
-        contact_arm_m: [arm, 0.0],
+        contact_arm_world_m: [arm, 0.0],
     };
     Impact {
         struck: car(1000.0, 3.0, -2.5),
         striking: car(3000.0, 15.0, 2.2),
         surface: ContactSurface {
-            normal_angle_rad: 0.0,
+            normal_angle_world_rad: 0.0,
             restitution,
             restitution_form: RestitutionForm::Normal,
             friction_limit: 0.5,
@@ -362,7 +362,7 @@ fn a_central_impact_loses_the_textbook_energy() {
         let m_eff = 1000.0 * 3000.0 / 4000.0;
         let lost = 0.5 * m_eff * 12.0_f64.powi(2) * (1.0 - e * e);
         assert!((solution.dissipated_energy_j - lost).abs() < 1e-8, "e = {e}: {solution:?}");
-        let [dvx, dvy] = solution.struck.delta_v_m_s;
+        let [dvx, dvy] = solution.struck.delta_v_world_m_s;
         assert!((dvx - (1.0 + e) * m_eff * 12.0 / 1000.0).abs() < 1e-12, "e = {e}: {solution:?}");
         assert!(dvy.abs() < 1e-12 && solution.struck.yaw_rate_rad_s == 0.0, "{solution:?}");
         let clocks = [solution.struck.pdof, solution.striking.pdof].map(|p| p.map(|p| p.clock()));
@@ -374,8 +374,8 @@ fn a_central_impact_loses_the_textbook_energy() {
 #[test]
 fn with_restitution_and_without_sliding_the_forms_differ() {
     let mut impact = central(0.3);
-    impact.striking.contact_arm_m = [2.2, 0.8];
-    impact.striking.velocity_m_s[1] = 1.5;
+    impact.striking.contact_arm_world_m = [2.2, 0.8];
+    impact.striking.velocity_world_m_s[1] = 1.5;
     impact.surface.friction_limit = 2.0;
     let [normal, common] =
         RestitutionForm::ALL.map(|form| with_form(impact, form).solve().unwrap());
@@ -392,7 +392,7 @@ fn with_restitution_and_without_sliding_the_forms_differ() {
     ] {
         assert!((got - expected).abs() < 1e-9, "{got} {expected}");
     }
-    let apart = [0, 1].map(|i| normal.impulse_n_s[i] - common.impulse_n_s[i]);
+    let apart = [0, 1].map(|i| normal.impulse_world_n_s[i] - common.impulse_world_n_s[i]);
     assert!(apart[0].hypot(apart[1]) > 10.0, "{normal:?} {common:?}");
 }
 
@@ -423,10 +423,10 @@ fn the_work_of_a_force_depends_on_its_impulse_alone() {
 fn friction_is_held_where_it_would_create_energy() {
     let mut impact = central(1.0);
     impact.surface.friction_limit = 2.0;
-    impact.striking.contact_arm_m = [2.2, 1.6];
+    impact.striking.contact_arm_world_m = [2.2, 1.6];
     impact.striking.yaw_inertia_kg_m2 = 1000.0;
     let regimes = [-6.0, -3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0, 6.0].map(|slide| {
-        impact.striking.velocity_m_s[1] = slide;
+        impact.striking.velocity_world_m_s[1] = slide;
         let solution = impact.solve().unwrap();
         assert!(solution.dissipated_energy_j > -1e-9, "{slide}: {solution:?}");
         solution.regime
@@ -440,7 +440,7 @@ fn friction_is_held_where_it_would_create_energy() {
 #[test]
 fn the_papers_model_always_slides() {
     let mut impact = central(0.1);
-    impact.striking.velocity_m_s[1] = 0.5;
+    impact.striking.velocity_world_m_s[1] = 0.5;
     impact.surface.friction_limit = 0.9;
     assert_eq!(impact.solve().unwrap().regime, Regime::NoSlide);
     impact.surface.friction_model = FrictionModel::Paper;
@@ -464,7 +464,7 @@ fn senseless_numbers_are_refused_by_name() {
         "contact: restitution is 1.5, expected 0 to 1"
     );
     assert_eq!(
-        refused(|i| i.striking.velocity_m_s[1] = f64::NAN),
+        refused(|i| i.striking.velocity_world_m_s[1] = f64::NAN),
         "bullet: velocity_m_s[1] is NaN, expected a finite number"
     );
 }

@@ -53,9 +53,9 @@ impl fmt::Display for StruckSurface {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     /// Contact point in world axes, m.
-    pub point_m: [f64; 2],
+    pub point_world_m: [f64; 2],
     /// Angle Γ of the contact normal in world axes, rad. The normal points INTO the target.
-    pub normal_angle_rad: f64,
+    pub normal_angle_world_rad: f64,
     /// Overlap of the outlines along the normal, m. A negative value is the gap between them.
     pub depth_m: f64,
     /// The side to which the normal is perpendicular.
@@ -70,7 +70,7 @@ pub struct MovingFootprint {
     /// Its position and heading.
     pub pose: Pose,
     /// Velocity of the CG in world axes, m/s.
-    pub velocity_m_s: [f64; 2],
+    pub velocity_world_m_s: [f64; 2],
     /// Yaw rate, rad/s.
     pub yaw_rate_rad_s: f64,
 }
@@ -78,14 +78,14 @@ pub struct MovingFootprint {
 impl MovingFootprint {
     /// An outline that does not move.
     pub fn at_rest(footprint: Footprint, pose: Pose) -> Self {
-        Self { footprint, pose, velocity_m_s: [0.0; 2], yaw_rate_rad_s: 0.0 }
+        Self { footprint, pose, velocity_world_m_s: [0.0; 2], yaw_rate_rad_s: 0.0 }
     }
 
     /// Velocity of a point of the vehicle, m/s.
     ///
     /// - `[x, y]`: the point in world axes, m.
     fn velocity_at_m_s(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let [vx, vy] = self.velocity_m_s;
+        let [vx, vy] = self.velocity_world_m_s;
         let rate = self.yaw_rate_rad_s;
         [vx - rate * (y - self.pose.y_m), vy + rate * (x - self.pose.x_m)]
     }
@@ -93,7 +93,7 @@ impl MovingFootprint {
     fn check(&self) -> Result<(), FootprintError> {
         self.footprint.check()?;
         let Pose { x_m, y_m, yaw_rad } = self.pose;
-        let [vx, vy] = self.velocity_m_s;
+        let [vx, vy] = self.velocity_world_m_s;
         for (value, name) in [
             (x_m, "x_m"),
             (y_m, "y_m"),
@@ -120,7 +120,7 @@ impl MovingFootprint {
 struct Candidate {
     depth_m: f64,
     /// Into the target.
-    normal: [f64; 2],
+    normal_world: [f64; 2],
     surface: StruckSurface,
 }
 
@@ -175,18 +175,18 @@ pub fn find_contact(
         return Err(FootprintError::Apart { gap_m: -depth_m });
     }
     let push = (PROBE_DEPTH_M - depth_m).max(0.0);
-    let normal = shallowest.normal;
+    let normal = shallowest.normal_world;
     let pushed = striking.corners_m().map(|[x, y]| [x + push * normal[0], y + push * normal[1]]);
     let [x, y] = centroid(&clip(&struck.corners_m(), &pushed))
         .ok_or(FootprintError::Apart { gap_m: -depth_m })?;
     // The bullet alone was pushed, but the contact point lies midway between the vehicles.
-    let point_m = [x - push / 2.0 * normal[0], y - push / 2.0 * normal[1]];
+    let point_world_m = [x - push / 2.0 * normal[0], y - push / 2.0 * normal[1]];
     let touched = if depth_m > TOUCH_TOLERANCE_M {
         let ([tx, ty], [bx, by]) =
-            (struck.velocity_at_m_s(point_m), striking.velocity_at_m_s(point_m));
+            (struck.velocity_at_m_s(point_world_m), striking.velocity_at_m_s(point_world_m));
         let first = first_touch(&candidates, shallowest, [bx - tx, by - ty])?;
         let apart = [struck.pose.x_m - striking.pose.x_m, struck.pose.y_m - striking.pose.y_m];
-        if dot(apart, first.normal) <= 0.0 {
+        if dot(apart, first.normal_world) <= 0.0 {
             return Err(FootprintError::TooDeep { depth_m: first.depth_m, time_s: 0.0 });
         }
         first
@@ -194,8 +194,8 @@ pub fn find_contact(
         shallowest
     };
     Ok(Contact {
-        point_m,
-        normal_angle_rad: touched.normal[1].atan2(touched.normal[0]),
+        point_world_m,
+        normal_angle_world_rad: touched.normal_world[1].atan2(touched.normal_world[0]),
         depth_m: touched.depth_m,
         surface: touched.surface,
     })
@@ -209,12 +209,12 @@ fn candidates(struck: &MovingFootprint, striking: &MovingFootprint) -> [Candidat
         let outward = direction(struck.pose.yaw_rad + side.outward_angle_rad());
         let inward = outward.map(|c| -c);
         let depth_m = reach(&struck_m, outward) + reach(&striking_m, inward);
-        Candidate { depth_m, normal: inward, surface: StruckSurface::Target(side) }
+        Candidate { depth_m, normal_world: inward, surface: StruckSurface::Target(side) }
     };
     let of_striking = |side: Side| {
         let outward = direction(striking.pose.yaw_rad + side.outward_angle_rad());
         let depth_m = reach(&striking_m, outward) + reach(&struck_m, outward.map(|c| -c));
-        Candidate { depth_m, normal: outward, surface: StruckSurface::Striking(side) }
+        Candidate { depth_m, normal_world: outward, surface: StruckSurface::Striking(side) }
     };
     [
         of_struck(front),
@@ -248,8 +248,9 @@ fn first_touch<'a>(
     shallowest: Candidate,
     approach_m_s: [f64; 2],
 ) -> Result<Candidate, FootprintError> {
-    let time_s = |of: &Candidate| of.depth_m / dot(approach_m_s, of.normal);
-    let closing = candidates.iter().filter(|of| dot(approach_m_s, of.normal) > MIN_CLOSING_M_S);
+    let time_s = |of: &Candidate| of.depth_m / dot(approach_m_s, of.normal_world);
+    let closing =
+        candidates.iter().filter(|of| dot(approach_m_s, of.normal_world) > MIN_CLOSING_M_S);
     // As for the smallest overlap, a side of the target stays where two are equal.
     let earlier = |best: &'a Candidate, other: &'a Candidate| {
         if time_s(other) < time_s(best) - 1e-9 { other } else { best }
@@ -257,7 +258,7 @@ fn first_touch<'a>(
     let Some(first) = closing.reduce(earlier) else {
         return Ok(shallowest);
     };
-    if dot(first.normal, shallowest.normal) > 1.0 - 1e-9 {
+    if dot(first.normal_world, shallowest.normal_world) > 1.0 - 1e-9 {
         return Ok(shallowest);
     }
     if time_s(first) > MAX_APPROACH_TIME_S {

@@ -17,9 +17,9 @@ fn a_rear_end_hit_touches_in_the_middle_of_the_shared_width() {
     let (struck, striking) = (pose(0.0, 0.0, 0.0), pose(-4.8, 0.6, 0.0));
     let contact = still(struck, striking).unwrap();
     assert_eq!(contact.surface, StruckSurface::Target(Side::Rear));
-    assert!(contact.normal_angle_rad.abs() < 1e-12, "{contact:?}");
-    assert!((contact.point_m[0] + 2.6).abs() < 1e-9, "{contact:?}");
-    assert!((contact.point_m[1] - 0.3).abs() < 1e-9, "{contact:?}");
+    assert!(contact.normal_angle_world_rad.abs() < 1e-12, "{contact:?}");
+    assert!((contact.point_world_m[0] + 2.6).abs() < 1e-9, "{contact:?}");
+    assert!((contact.point_world_m[1] - 0.3).abs() < 1e-9, "{contact:?}");
 }
 
 #[test]
@@ -31,10 +31,10 @@ fn a_pit_touches_at_the_striking_vehicles_corner_with_the_normal_across_the_stru
         let striking = place_touching((&CAR, &struck), place, (&CAR, heading_rad)).unwrap();
         let contact = still(struck, striking).unwrap();
         assert_eq!(contact.surface, StruckSurface::Target(side));
-        let normal = contact.normal_angle_rad.to_degrees();
+        let normal = contact.normal_angle_world_rad.to_degrees();
         assert!((normal - 30.0 - normal_deg).abs() < 1e-9, "{contact:?}");
         assert!(contact.depth_m.abs() < 1e-9, "{contact:?}");
-        let [x, y] = struck.body_from_world(contact.point_m);
+        let [x, y] = struck.body_from_world(contact.point_world_m);
         let expected_y = CAR.side_middle_m(side)[1];
         assert!((x + 1.4).abs() < 3e-3 && (y - expected_y).abs() < 1e-3, "{x} {y}");
     }
@@ -44,7 +44,7 @@ fn a_pit_touches_at_the_striking_vehicles_corner_with_the_normal_across_the_stru
 fn the_targets_corner_in_the_striking_vehicles_side_takes_the_striking_vehicles_normal() {
     let contact = still(pose(0.0, 0.0, 0.0), pose(3.45, 1.0, 60.0)).unwrap();
     assert_eq!(contact.surface, StruckSurface::Striking(Side::Left));
-    assert!((contact.normal_angle_rad.to_degrees() - 150.0).abs() < 1e-9);
+    assert!((contact.normal_angle_world_rad.to_degrees() - 150.0).abs() < 1e-9);
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn placing_touches_for_every_side_and_heading() {
             let striking = place_touching((&CAR, &struck), (side, 0.3), (&CAR, heading_rad));
             let contact = still(struck, striking.unwrap()).unwrap();
             assert!(contact.depth_m.abs() < 1e-9, "{side:?} {heading_deg}: {contact:?}");
-            let normal = direction(contact.normal_angle_rad);
+            let normal = direction(contact.normal_angle_world_rad);
             let outward = direction(struck.yaw_rad + side.outward_angle_rad());
             assert!(dot(normal, outward) < -1.0 + 1e-9, "{side:?} {heading_deg}: {contact:?}");
         }
@@ -73,9 +73,10 @@ fn vehicles_apart_are_refused() {
 }
 
 /// Two cars, of which the bullet approaches with `velocity_m_s` relative to the target.
-fn approaching(striking: Pose, velocity_m_s: [f64; 2]) -> Result<Contact, FootprintError> {
+fn approaching(striking: Pose, velocity_world_m_s: [f64; 2]) -> Result<Contact, FootprintError> {
     let struck = MovingFootprint::at_rest(CAR, pose(0.0, 0.0, 0.0));
-    let striking = MovingFootprint { velocity_m_s, ..MovingFootprint::at_rest(CAR, striking) };
+    let striking =
+        MovingFootprint { velocity_world_m_s, ..MovingFootprint::at_rest(CAR, striking) };
     find_contact(&struck, &striking)
 }
 
@@ -138,7 +139,7 @@ proptest! {
         let striking = Pose { x_m: at.0, y_m: at.1, yaw_rad: at.2 };
         let Ok(contact) = approaching(striking, velocity) else { return Ok(()) };
         if contact.depth_m > TOUCH_TOLERANCE_M {
-            let closing = dot(velocity, direction(contact.normal_angle_rad));
+            let closing = dot(velocity, direction(contact.normal_angle_world_rad));
             prop_assert!(closing > 0.0, "{closing} {contact:?}");
             // Moved back to first contact, the outlines touch.
             let back = contact.depth_m / closing;
@@ -166,7 +167,7 @@ proptest! {
             return Ok(());
         };
         for pose in [here, there] {
-            let [x, y] = pose.body_from_world(contact.point_m);
+            let [x, y] = pose.body_from_world(contact.point_world_m);
             prop_assert!((-2.6 - 0.02..2.2 + 0.02).contains(&x) && y.abs() < 0.92, "{x} {y}");
         }
         let moved = car(scene.0, scene.1, scene.2);
@@ -176,8 +177,8 @@ proptest! {
         prop_assert!((other.depth_m - contact.depth_m).abs() < 1e-9);
         // If two sides have the same overlap, rounding decides which of them is found.
         if other.surface == contact.surface {
-            let point = moved.body_from_world(other.point_m);
-            for (got, expected) in point.into_iter().zip(contact.point_m) {
+            let point = moved.body_from_world(other.point_world_m);
+            for (got, expected) in point.into_iter().zip(contact.point_world_m) {
                 prop_assert!((got - expected).abs() < 1e-6, "{other:?}");
             }
         }

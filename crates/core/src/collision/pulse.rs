@@ -31,7 +31,7 @@ pub enum PulseShape {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pulse {
     shape: PulseShape,
-    impulse_n_s: [f64; 2],
+    impulse_world_n_s: [f64; 2],
     start_s: f64,
     duration_s: f64,
 }
@@ -106,14 +106,14 @@ impl Pulse {
     /// [`PulseError`] names the first parameter that is out of range or not finite.
     pub fn new(
         shape: PulseShape,
-        impulse_n_s: [f64; 2],
+        impulse_world_n_s: [f64; 2],
         start_s: f64,
         duration_s: f64,
     ) -> Result<Self, PulseError> {
         let finite = "a finite number";
         for (ok, name, value, expected) in [
-            (true, "impulse_n_s[0]", impulse_n_s[0], finite),
-            (true, "impulse_n_s[1]", impulse_n_s[1], finite),
+            (true, "impulse_n_s[0]", impulse_world_n_s[0], finite),
+            (true, "impulse_n_s[1]", impulse_world_n_s[1], finite),
             (start_s >= 0.0, "start_s", start_s, "0 or more"),
             (duration_s > 0.0, "duration_s", duration_s, "more than 0"),
         ] {
@@ -121,7 +121,7 @@ impl Pulse {
                 return Err(PulseError { name, value, expected });
             }
         }
-        Ok(Self { shape, impulse_n_s, start_s, duration_s })
+        Ok(Self { shape, impulse_world_n_s, start_s, duration_s })
     }
 
     /// Force on the target at a time, in world axes, N.
@@ -131,20 +131,20 @@ impl Pulse {
     /// ```
     pub fn force_n(&self, time_s: f64) -> [f64; 2] {
         let height = self.shape.density((time_s - self.start_s) / self.duration_s);
-        self.impulse_n_s.map(|p| p / self.duration_s * height)
+        self.impulse_world_n_s.map(|p| p / self.duration_s * height)
     }
 
     /// Impulse on the target from the start of the pulse up to a time, in closed form, in world
     /// axes, N s.
     pub fn impulse_until_n_s(&self, time_s: f64) -> [f64; 2] {
         let area = self.shape.cumulative((time_s - self.start_s) / self.duration_s);
-        self.impulse_n_s.map(|p| p * area)
+        self.impulse_world_n_s.map(|p| p * area)
     }
 
     /// Largest magnitude of the force, N: π/2, 2, 2 and 1 times the mean force for the half-sine,
     /// the haversine, the triangle and the square.
     pub fn peak_n(&self) -> f64 {
-        let [px, py] = self.impulse_n_s;
+        let [px, py] = self.impulse_world_n_s;
         px.hypot(py) / self.duration_s * self.shape.density(0.5)
     }
 
@@ -176,7 +176,7 @@ impl Pulse {
         // impulse is used there.
         let until = |i: usize, axis: usize| match edges.get(i) {
             Some(&edge) if i + 1 < edges.len() => self.impulse_until_n_s(edge)[axis],
-            _ => self.impulse_n_s[axis],
+            _ => self.impulse_world_n_s[axis],
         };
         let means = |axis: usize| {
             (0..n_samples as usize)

@@ -52,9 +52,11 @@ pub struct ScenarioVehicle {
     /// Heading (yaw angle ψ) in world axes, rad, −4π to 4π.
     pub heading_rad: f64,
     /// Velocity of the CG along the X axis of the world, m/s, −150 to 150.
-    pub vx_m_s: f64,
+    #[serde(rename = "vx_m_s")]
+    pub vx_world_m_s: f64,
     /// Velocity of the CG along the Y axis of the world, m/s, −150 to 150.
-    pub vy_m_s: f64,
+    #[serde(rename = "vy_m_s")]
+    pub vy_world_m_s: f64,
     /// Yaw rate before the impact, rad/s, −50 to 50, counter-clockwise positive.
     pub yaw_rate_rad_s: f64,
 }
@@ -68,10 +70,10 @@ pub enum ContactLocation {
     Footprints {
         /// X coordinate of the CG of the bullet in world axes, m.
         #[serde(rename = "bullet_x_m")]
-        striking_x_m: f64,
+        striking_x_world_m: f64,
         /// Y coordinate of the CG of the bullet in world axes, m.
         #[serde(rename = "bullet_y_m")]
-        striking_y_m: f64,
+        striking_y_world_m: f64,
     },
     /// The touching point on a side of the target is given. The bullet is placed so that it just
     /// touches there ([`place_touching`]); contact point and normal follow from the outlines.
@@ -86,18 +88,21 @@ pub enum ContactLocation {
     /// not used.
     Point {
         /// Coordinate x of the contact point in body axes of the target, from its CG, m.
-        x_m: f64,
+        #[serde(rename = "x_m")]
+        x_body_m: f64,
         /// Coordinate y of the contact point in body axes of the target, from its CG, m.
-        y_m: f64,
+        #[serde(rename = "y_m")]
+        y_body_m: f64,
         /// Angle of the contact normal in body axes of the target, rad. The normal points into the
         /// target.
-        normal_rad: f64,
+        #[serde(rename = "normal_rad")]
+        normal_body_rad: f64,
         /// X coordinate of the CG of the bullet in world axes, m.
         #[serde(rename = "bullet_x_m")]
-        striking_x_m: f64,
+        striking_x_world_m: f64,
         /// Y coordinate of the CG of the bullet in world axes, m.
         #[serde(rename = "bullet_y_m")]
-        striking_y_m: f64,
+        striking_y_world_m: f64,
     },
 }
 
@@ -133,10 +138,10 @@ pub struct Scenario {
     pub notes: String,
     /// X coordinate of the CG of the target in world axes, m.
     #[serde(rename = "target_x_m")]
-    pub struck_x_m: f64,
+    pub struck_x_world_m: f64,
     /// Y coordinate of the CG of the target in world axes, m.
     #[serde(rename = "target_y_m")]
-    pub struck_y_m: f64,
+    pub struck_y_world_m: f64,
     /// The vehicle that is struck.
     #[serde(rename = "target")]
     pub struck: ScenarioVehicle,
@@ -171,9 +176,9 @@ pub struct ScenarioGeometry {
     /// Pose of the bullet.
     pub striking: Pose,
     /// Contact point, m.
-    pub contact_point_m: [f64; 2],
+    pub contact_point_world_m: [f64; 2],
     /// Angle Γ of the contact normal, rad. The normal points into the target.
-    pub normal_angle_rad: f64,
+    pub normal_angle_world_rad: f64,
     /// Overlap of the outlines along the normal, m; negative for a gap within the tolerance. `None`
     /// if the user gave the contact ([`ContactLocation::Point`]), since the outlines are not used
     /// then.
@@ -243,8 +248,8 @@ impl ScenarioVehicle {
             ("width_m", self.width_m, BODY_WIDTH),
             ("cg_from_front_m", self.cg_from_front_m, BODY_CG.at_most(self.length_m)),
             ("heading_rad", self.heading_rad, HEADING),
-            ("vx_m_s", self.vx_m_s, SPEED),
-            ("vy_m_s", self.vy_m_s, SPEED),
+            ("vx_m_s", self.vx_world_m_s, SPEED),
+            ("vy_m_s", self.vy_world_m_s, SPEED),
             ("yaw_rate_rad_s", self.yaw_rate_rad_s, YAW_RATE),
         ]
     }
@@ -254,9 +259,9 @@ impl ScenarioVehicle {
             mass_kg: self.mass_kg,
             yaw_inertia_kg_m2: self.yaw_inertia_kg_m2,
             heading_rad: self.heading_rad,
-            velocity_m_s: [self.vx_m_s, self.vy_m_s],
+            velocity_world_m_s: [self.vx_world_m_s, self.vy_world_m_s],
             yaw_rate_rad_s: self.yaw_rate_rad_s,
-            contact_arm_m: [contact_point_m[0] - pose.x_m, contact_point_m[1] - pose.y_m],
+            contact_arm_world_m: [contact_point_m[0] - pose.x_m, contact_point_m[1] - pose.y_m],
         }
     }
 }
@@ -274,18 +279,24 @@ impl ScenarioContact {
             numbers.extend([("bullet_x_m", x_m, POSITION), ("bullet_y_m", y_m, POSITION)]);
         };
         match self.location {
-            ContactLocation::Footprints { striking_x_m, striking_y_m } => {
-                striking(striking_x_m, striking_y_m);
+            ContactLocation::Footprints { striking_x_world_m, striking_y_world_m } => {
+                striking(striking_x_world_m, striking_y_world_m);
             }
             ContactLocation::Side { offset_m, .. } => {
                 numbers.push(("offset_m", offset_m, CONTACT_OFFSET));
             }
-            ContactLocation::Point { x_m, y_m, normal_rad, striking_x_m, striking_y_m } => {
-                striking(striking_x_m, striking_y_m);
+            ContactLocation::Point {
+                x_body_m,
+                y_body_m,
+                normal_body_rad,
+                striking_x_world_m,
+                striking_y_world_m,
+            } => {
+                striking(striking_x_world_m, striking_y_world_m);
                 numbers.extend([
-                    ("x_m", x_m, CONTACT_COORDINATE),
-                    ("y_m", y_m, CONTACT_COORDINATE),
-                    ("normal_rad", normal_rad, HEADING),
+                    ("x_m", x_body_m, CONTACT_COORDINATE),
+                    ("y_m", y_body_m, CONTACT_COORDINATE),
+                    ("normal_rad", normal_body_rad, HEADING),
                 ]);
             }
         }
@@ -297,8 +308,8 @@ impl Scenario {
     /// Every number of the scenario with its name and its range.
     pub fn ranges(&self) -> Vec<(String, f64, Range)> {
         let mut numbers = vec![
-            ("target_x_m".to_owned(), self.struck_x_m, POSITION),
-            ("target_y_m".to_owned(), self.struck_y_m, POSITION),
+            ("target_x_m".to_owned(), self.struck_x_world_m, POSITION),
+            ("target_y_m".to_owned(), self.struck_y_world_m, POSITION),
         ];
         for (name, vehicle) in [("target", &self.struck), ("bullet", &self.striking)] {
             let own = vehicle.ranges().into_iter();
@@ -320,39 +331,48 @@ impl Scenario {
     /// [`ScenarioError::NormalPointsOut`] if a normal that the user gave points away from the CG of
     /// the target.
     pub fn geometry(&self) -> Result<ScenarioGeometry, ScenarioError> {
-        let struck =
-            Pose { x_m: self.struck_x_m, y_m: self.struck_y_m, yaw_rad: self.struck.heading_rad };
+        let struck = Pose {
+            x_m: self.struck_x_world_m,
+            y_m: self.struck_y_world_m,
+            yaw_rad: self.struck.heading_rad,
+        };
         let heading_rad = self.striking.heading_rad;
         let striking_at = |x_m, y_m| Pose { x_m, y_m, yaw_rad: heading_rad };
         let outlines = [self.struck.footprint(), self.striking.footprint()];
         let striking = match self.contact.location {
-            ContactLocation::Footprints { striking_x_m, striking_y_m } => {
-                striking_at(striking_x_m, striking_y_m)
+            ContactLocation::Footprints { striking_x_world_m, striking_y_world_m } => {
+                striking_at(striking_x_world_m, striking_y_world_m)
             }
             ContactLocation::Side { side, offset_m } => {
                 let place = (side, offset_m);
                 place_touching((&outlines[0], &struck), place, (&outlines[1], heading_rad))?
             }
-            ContactLocation::Point { x_m, y_m, normal_rad, striking_x_m, striking_y_m } => {
-                let (sin, cos) = normal_rad.sin_cos();
-                if x_m * cos + y_m * sin > 0.0 {
-                    let normal_deg = normal_rad.to_degrees();
+            ContactLocation::Point {
+                x_body_m,
+                y_body_m,
+                normal_body_rad,
+                striking_x_world_m,
+                striking_y_world_m,
+            } => {
+                let (sin, cos) = normal_body_rad.sin_cos();
+                if x_body_m * cos + y_body_m * sin > 0.0 {
+                    let normal_deg = normal_body_rad.to_degrees();
                     return Err(ScenarioError::NormalPointsOut { normal_deg });
                 }
-                let contact_point_m = struck.world_from_body([x_m, y_m]);
-                let striking = striking_at(striking_x_m, striking_y_m);
+                let contact_point_world_m = struck.world_from_body([x_body_m, y_body_m]);
+                let striking = striking_at(striking_x_world_m, striking_y_world_m);
                 for (of, outline, pose) in
                     [("target", outlines[0], &struck), ("bullet", outlines[1], &striking)]
                 {
                     outline
-                        .check_contact(pose.body_from_world(contact_point_m))
+                        .check_contact(pose.body_from_world(contact_point_world_m))
                         .map_err(|source| ScenarioError::ContactOffOutline { of, source })?;
                 }
                 return Ok(ScenarioGeometry {
                     struck,
                     striking,
-                    contact_point_m,
-                    normal_angle_rad: struck.yaw_rad + normal_rad,
+                    contact_point_world_m,
+                    normal_angle_world_rad: struck.yaw_rad + normal_body_rad,
                     overlap_m: None,
                     surface: None,
                 });
@@ -361,7 +381,7 @@ impl Scenario {
         let moving = |vehicle: &ScenarioVehicle, pose| MovingFootprint {
             footprint: vehicle.footprint(),
             pose,
-            velocity_m_s: [vehicle.vx_m_s, vehicle.vy_m_s],
+            velocity_world_m_s: [vehicle.vx_world_m_s, vehicle.vy_world_m_s],
             yaw_rate_rad_s: vehicle.yaw_rate_rad_s,
         };
         let contact =
@@ -369,8 +389,8 @@ impl Scenario {
         Ok(ScenarioGeometry {
             struck,
             striking,
-            contact_point_m: contact.point_m,
-            normal_angle_rad: contact.normal_angle_rad,
+            contact_point_world_m: contact.point_world_m,
+            normal_angle_world_rad: contact.normal_angle_world_rad,
             overlap_m: Some(contact.depth_m),
             surface: Some(contact.surface),
         })
@@ -383,12 +403,12 @@ impl Scenario {
     /// The errors of [`Scenario::geometry`]; [`ScenarioError::NoCriticalRatio`].
     pub fn impact(&self) -> Result<Impact, ScenarioError> {
         let geometry = self.geometry()?;
-        let point = geometry.contact_point_m;
+        let point = geometry.contact_point_world_m;
         let mut impact = Impact {
             struck: self.struck.body(&geometry.struck, point),
             striking: self.striking.body(&geometry.striking, point),
             surface: ContactSurface {
-                normal_angle_rad: geometry.normal_angle_rad,
+                normal_angle_world_rad: geometry.normal_angle_world_rad,
                 restitution: self.contact.restitution,
                 restitution_form: self.contact.restitution_form,
                 friction_limit: self.contact.friction_limit,

@@ -77,16 +77,16 @@ impl Scenario {
         let ending = top.optional_table("ending")?.map(Ending::read).transpose()?;
         let striking_ending = top.optional_table("bullet_ending")?.map(Ending::read).transpose()?;
         top.finish()?;
-        let struck_x_m = position(&mut struck, "x")?.unwrap_or(0.0);
-        let struck_y_m = position(&mut struck, "y")?.unwrap_or(0.0);
+        let struck_x_world_m = position(&mut struck, "x")?.unwrap_or(0.0);
+        let struck_y_world_m = position(&mut struck, "y")?.unwrap_or(0.0);
         let location = read_location(&mut contact, &mut striking)?;
         let (struck_vehicle, of_struck) = named_vehicle(&mut struck)?;
         let (striking_vehicle, of_striking) = named_vehicle(&mut striking)?;
         Ok(Self {
             name,
             notes,
-            struck_x_m,
-            struck_y_m,
+            struck_x_world_m,
+            struck_y_world_m,
             struck: read_vehicle(struck, of_struck)?,
             striking: read_vehicle(striking, of_striking)?,
             contact: read_contact(contact, location)?,
@@ -148,7 +148,7 @@ fn read_vehicle(
     let first = s.last_key();
     let vx = s.number("vx", &SPEED)?;
     let vy = s.number("vy", &SPEED)?;
-    let [vx_m_s, vy_m_s] = match (speed, vx, vy) {
+    let [vx_world_m_s, vy_world_m_s] = match (speed, vx, vy) {
         (Some(speed), None, None) => [speed * heading_rad.cos(), speed * heading_rad.sin()],
         (None, Some(vx), Some(vy)) => [vx, vy],
         (Some(_), _, _) => return Err(s.conflict(&first)),
@@ -164,8 +164,8 @@ fn read_vehicle(
         width_m,
         cg_from_front_m,
         heading_rad,
-        vx_m_s,
-        vy_m_s,
+        vx_world_m_s,
+        vy_world_m_s,
         yaw_rate_rad_s,
     })
 }
@@ -180,8 +180,8 @@ fn read_location(
     };
     match contact.choice("from", &LOCATIONS)?.ok_or_else(|| contact.missing("from"))? {
         0 => {
-            let (striking_x_m, striking_y_m) = striking_at()?;
-            Ok(ContactLocation::Footprints { striking_x_m, striking_y_m })
+            let (striking_x_world_m, striking_y_world_m) = striking_at()?;
+            Ok(ContactLocation::Footprints { striking_x_world_m, striking_y_world_m })
         }
         1 => {
             let names = Side::ALL.map(Side::name);
@@ -193,13 +193,13 @@ fn read_location(
             })
         }
         _ => {
-            let (striking_x_m, striking_y_m) = striking_at()?;
+            let (striking_x_world_m, striking_y_world_m) = striking_at()?;
             Ok(ContactLocation::Point {
-                x_m: contact.require("x", &CONTACT_COORDINATE)?,
-                y_m: contact.require("y", &CONTACT_COORDINATE)?,
-                normal_rad: contact.require("normal", &HEADING)?,
-                striking_x_m,
-                striking_y_m,
+                x_body_m: contact.require("x", &CONTACT_COORDINATE)?,
+                y_body_m: contact.require("y", &CONTACT_COORDINATE)?,
+                normal_body_rad: contact.require("normal", &HEADING)?,
+                striking_x_world_m,
+                striking_y_world_m,
             })
         }
     }
@@ -255,9 +255,9 @@ mod tests {
     #[test]
     fn units_are_in_the_keys() {
         let pit = read(PIT).unwrap();
-        assert!((pit.struck.vx_m_s - 15.0).abs() < 1e-12, "{pit:?}");
+        assert!((pit.struck.vx_world_m_s - 15.0).abs() < 1e-12, "{pit:?}");
         assert!((pit.striking.heading_rad - 18_f64.to_radians()).abs() < 1e-15, "{pit:?}");
-        let speed = pit.striking.vx_m_s.hypot(pit.striking.vy_m_s);
+        let speed = pit.striking.vx_world_m_s.hypot(pit.striking.vy_world_m_s);
         assert!((speed * 3.6 - 62.0).abs() < 1e-9, "{pit:?}");
         for (key, value) in [
             ("speed_m_s", "15"),
@@ -267,7 +267,7 @@ mod tests {
         ] {
             let text = PIT.replacen("speed_km_h = 54", &format!("{key} = {value}"), 1);
             let other = read(&text).unwrap();
-            assert!((other.struck.vx_m_s - 15.0).abs() < 1e-9, "{key}: {other:?}");
+            assert!((other.struck.vx_world_m_s - 15.0).abs() < 1e-9, "{key}: {other:?}");
         }
     }
 

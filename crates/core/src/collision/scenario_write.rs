@@ -13,15 +13,15 @@ impl Scenario {
         top.line("notes", quoted(&self.notes));
         let mut struck = vehicle_lines("target", &self.struck);
         struck.vehicle(self.struck_vehicle.as_deref());
-        struck.number("x_m", self.struck_x_m);
-        struck.number("y_m", self.struck_y_m);
+        struck.number("x_m", self.struck_x_world_m);
+        struck.number("y_m", self.struck_y_world_m);
         let mut striking = vehicle_lines("bullet", &self.striking);
         striking.vehicle(self.striking_vehicle.as_deref());
         let mut contact = Lines("\n[contact]\n".to_owned());
         match self.contact.location {
-            ContactLocation::Footprints { striking_x_m, striking_y_m } => {
-                striking.number("x_m", striking_x_m);
-                striking.number("y_m", striking_y_m);
+            ContactLocation::Footprints { striking_x_world_m, striking_y_world_m } => {
+                striking.number("x_m", striking_x_world_m);
+                striking.number("y_m", striking_y_world_m);
                 contact.line("from", quoted(LOCATIONS[0]));
             }
             ContactLocation::Side { side, offset_m } => {
@@ -29,13 +29,19 @@ impl Scenario {
                 contact.line("side", quoted(side.name()));
                 contact.number("offset_m", offset_m);
             }
-            ContactLocation::Point { x_m, y_m, normal_rad, striking_x_m, striking_y_m } => {
-                striking.number("x_m", striking_x_m);
-                striking.number("y_m", striking_y_m);
+            ContactLocation::Point {
+                x_body_m,
+                y_body_m,
+                normal_body_rad,
+                striking_x_world_m,
+                striking_y_world_m,
+            } => {
+                striking.number("x_m", striking_x_world_m);
+                striking.number("y_m", striking_y_world_m);
                 contact.line("from", quoted(LOCATIONS[2]));
-                contact.number("x_m", x_m);
-                contact.number("y_m", y_m);
-                contact.number("normal_rad", normal_rad);
+                contact.number("x_m", x_body_m);
+                contact.number("y_m", y_body_m);
+                contact.number("normal_rad", normal_body_rad);
             }
         }
         contact.number("restitution", self.contact.restitution);
@@ -93,8 +99,8 @@ fn vehicle_lines(name: &str, vehicle: &ScenarioVehicle) -> Lines {
         ("width_m", vehicle.width_m),
         ("cg_from_front_m", vehicle.cg_from_front_m),
         ("heading_rad", vehicle.heading_rad),
-        ("vx_m_s", vehicle.vx_m_s),
-        ("vy_m_s", vehicle.vy_m_s),
+        ("vx_m_s", vehicle.vx_world_m_s),
+        ("vy_m_s", vehicle.vy_world_m_s),
         ("yaw_rate_rad_s", vehicle.yaw_rate_rad_s),
     ] {
         lines.number(key, value);
@@ -121,7 +127,7 @@ mod tests {
     fn what_is_written_reads_back_the_same() {
         let mut scenario = read(PIT).unwrap();
         scenario.name = "a \"quoted\"\nname \\ µ".to_owned();
-        scenario.struck_y_m = -1e-9;
+        scenario.struck_y_world_m = -1e-9;
         scenario.contact.friction_model = FrictionModel::Paper;
         scenario.ending =
             Some(Ending { brake: Some(Braking::new(0.1 + 0.2, 1.2, 0.5)), ..Ending::default() });
@@ -129,13 +135,13 @@ mod tests {
         scenario.contact.restitution_form = RestitutionForm::CommonVelocity;
         for location in [
             scenario.contact.location,
-            ContactLocation::Footprints { striking_x_m: 0.1 + 0.2, striking_y_m: -3.0 },
+            ContactLocation::Footprints { striking_x_world_m: 0.1 + 0.2, striking_y_world_m: -3.0 },
             ContactLocation::Point {
-                x_m: -1.4,
-                y_m: -0.9,
-                normal_rad: std::f64::consts::FRAC_PI_2,
-                striking_x_m: -3.0,
-                striking_y_m: 1e5,
+                x_body_m: -1.4,
+                y_body_m: -0.9,
+                normal_body_rad: std::f64::consts::FRAC_PI_2,
+                striking_x_world_m: -3.0,
+                striking_y_world_m: 1e5,
             },
         ] {
             scenario.contact.location = location;

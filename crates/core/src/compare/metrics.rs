@@ -38,9 +38,11 @@ pub struct MotionError {
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub rmse_y_m: f64,
     /// Root mean square error of v_x, m/s; `None` unless both motions have it.
-    pub rmse_vx_m_s: Option<f64>,
+    #[serde(rename = "rmse_vx_m_s")]
+    pub rmse_vx_body_m_s: Option<f64>,
     /// Root mean square error of v_y, m/s; `None` unless both motions have it.
-    pub rmse_vy_m_s: Option<f64>,
+    #[serde(rename = "rmse_vy_m_s")]
+    pub rmse_vy_body_m_s: Option<f64>,
     /// Root mean square error of the yaw rate, rad/s; `None` unless both motions have it.
     pub rmse_yaw_rate_rad_s: Option<f64>,
 }
@@ -84,8 +86,8 @@ impl MotionError {
             horizon_error_m: HORIZONS_S.map(at),
             rmse_x_m: root_mean_square(&dx),
             rmse_y_m: root_mean_square(&dy),
-            rmse_vx_m_s: optional(Channel::Vx),
-            rmse_vy_m_s: optional(Channel::Vy),
+            rmse_vx_body_m_s: optional(Channel::Vx),
+            rmse_vy_body_m_s: optional(Channel::Vy),
             rmse_yaw_rate_rad_s: optional(Channel::YawRate),
         })
     }
@@ -178,7 +180,7 @@ mod tests {
         for (got, expected) in error.horizon_error_m.iter().zip([0.25, 0.5, 1.0, 2.0]) {
             assert!((got - expected).abs() < 1e-12);
         }
-        assert_eq!((error.rmse_x_m, error.rmse_vx_m_s), (0.0, None));
+        assert_eq!((error.rmse_x_m, error.rmse_vx_body_m_s), (0.0, None));
     }
 
     /// The first samples of a motion.

@@ -99,9 +99,11 @@ pub struct ErrorSummary {
     /// Root mean square error of Y, m.
     pub rmse_y_m: Summary,
     /// Root mean square error of v_x, m/s, over the cases that have it.
-    pub rmse_vx_m_s: Option<Summary>,
+    #[serde(rename = "rmse_vx_m_s")]
+    pub rmse_vx_body_m_s: Option<Summary>,
     /// Root mean square error of v_y, m/s, over the cases that have it.
-    pub rmse_vy_m_s: Option<Summary>,
+    #[serde(rename = "rmse_vy_m_s")]
+    pub rmse_vy_body_m_s: Option<Summary>,
     /// Root mean square error of the yaw rate, rad/s, over the cases that have it.
     pub rmse_yaw_rate_rad_s: Option<Summary>,
     /// Total number of physical violations in all cases.
@@ -120,10 +122,10 @@ pub fn recorded_manoeuvre(
 ) -> Result<Manoeuvre, ReplayError> {
     let attributes = TrajectoryAttributes::read(&case.attributes)?;
     let in_case = |source| ReplayError::Series { case: case.name.clone(), source };
-    let [x_m, y_m] = attributes.contact_m;
-    let contact = ContactPoint { x_m, y_m, height_m: attributes.contact_height_m };
+    let [x_body_m, y_body_m] = attributes.contact_m;
+    let contact = ContactPoint { x_body_m, y_body_m, height_m: attributes.contact_height_m };
     Footprint::from(&vehicle.geometry)
-        .check_contact([x_m, y_m])
+        .check_contact([x_body_m, y_body_m])
         .map_err(|source| ReplayError::Contact { case: case.name.clone(), source })?;
     let force = case.force_history().map_err(in_case)?;
     case.series.check_starts_at_zero(TIME_TOLERANCE_S).map_err(in_case)?;
@@ -162,8 +164,8 @@ pub fn initial_state(series: &TimeSeries) -> Result<VehicleState<f64>, SeriesErr
     let needed = |channel| series.require(channel).map(first);
     let known = |channel| series.get(channel).map_or(0.0, first);
     Ok(VehicleState {
-        vx_m_s: needed(Channel::Vx)?,
-        vy_m_s: needed(Channel::Vy)?,
+        vx_body_m_s: needed(Channel::Vx)?,
+        vy_body_m_s: needed(Channel::Vy)?,
         yaw_rad: needed(Channel::Yaw)?,
         yaw_rate_rad_s: known(Channel::YawRate),
         roll_rad: known(Channel::Roll),
@@ -288,8 +290,8 @@ impl ErrorSummary {
             horizon_error_m: std::array::from_fn(horizon),
             rmse_x_m: of(&|error| error.rmse_x_m)?,
             rmse_y_m: of(&|error| error.rmse_y_m)?,
-            rmse_vx_m_s: known(|error| error.rmse_vx_m_s),
-            rmse_vy_m_s: known(|error| error.rmse_vy_m_s),
+            rmse_vx_body_m_s: known(|error| error.rmse_vx_body_m_s),
+            rmse_vy_body_m_s: known(|error| error.rmse_vy_body_m_s),
             rmse_yaw_rate_rad_s: known(|error| error.rmse_yaw_rate_rad_s),
             violations: replays.iter().map(|replay| replay.violations).sum(),
         })

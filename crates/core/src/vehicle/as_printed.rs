@@ -49,7 +49,7 @@ impl<P: Copy> VehicleConstants<P> {
         u: &VehicleInput<T>,
     ) -> VehicleEvaluation<T> {
         let (body, printed) = (&self.body, &self.printed);
-        let zero = x.vx_m_s.constant(0.0);
+        let zero = x.vx_body_m_s.constant(0.0);
         let heading = Heading::of(x.yaw_rad);
         let collision = collision_wrench(heading, zero, u.collision.as_ref());
         let leaning_n_m = x.roll_rad.sin() * body.weight_moment_n_m;
@@ -60,8 +60,8 @@ impl<P: Copy> VehicleConstants<P> {
             loads = self.loads_as_printed(acceleration, leaning_n_m);
             let ([fx, fy], tire_moment) = self.tires_as_printed(x, u, &loads);
             acceleration = [
-                (fx + collision.force_n[0]) * body.per_mass_1_kg,
-                (fy + collision.force_n[1]) * body.per_mass_1_kg,
+                (fx + collision.force_body_n[0]) * body.per_mass_1_kg,
+                (fy + collision.force_body_n[1]) * body.per_mass_1_kg,
             ];
             yaw_moment = tire_moment + collision.yaw_moment_n_m;
         }
@@ -73,14 +73,14 @@ impl<P: Copy> VehicleConstants<P> {
         let roll_moment = leaning_n_m
             - x.roll_rad * body.roll_stiffness_n_m_rad
             - x.roll_rate_rad_s * body.roll_damping_n_m_s_rad
-            - collision.force_n[1] * roll_arm_m
+            - collision.force_body_n[1] * roll_arm_m
             - yaw_acceleration * printed.roll_yaw_product_kg_m2;
         let roll_acceleration = roll_moment / printed.roll_inertia_kg_m2;
         VehicleEvaluation {
             derivative: x.derivative(heading, acceleration, [yaw_acceleration, roll_acceleration]),
-            acceleration_m_s2: acceleration,
+            acceleration_body_m_s2: acceleration,
             vertical_loads_n: loads,
-            collision_force_n: collision.force_n,
+            collision_force_body_n: collision.force_body_n,
             collision_yaw_moment_n_m: collision.yaw_moment_n_m,
         }
     }
@@ -95,8 +95,8 @@ impl<P: Copy> VehicleConstants<P> {
         loads_n: &[T; 4],
     ) -> ([T; 2], T) {
         let (body, tires) = (&self.body, &self.tires);
-        let zero = x.vx_m_s.constant(0.0);
-        let speed = x.vx_m_s;
+        let zero = x.vx_body_m_s.constant(0.0);
+        let speed = x.vx_body_m_s;
         let resistance = speed * speed * tires.rolling_resistance_s2_m2
             + speed * tires.rolling_resistance_s_m
             + tires.rolling_resistance;
@@ -115,8 +115,9 @@ impl<P: Copy> VehicleConstants<P> {
             wheels.into_iter().zip(loads_n).enumerate()
         {
             let share = u.friction_share.map(|shares| shares[i]);
-            let course =
-                ((x.vy_m_s + x.yaw_rate_rad_s * px) / (x.vx_m_s - x.yaw_rate_rad_s * py)).atan();
+            let course = ((x.vy_body_m_s + x.yaw_rate_rad_s * px)
+                / (x.vx_body_m_s - x.yaw_rate_rad_s * py))
+                .atan();
             let stiffness = (steer - course) * stiffness;
             let stiffness = share.map_or(stiffness, |share| stiffness / share);
             let fx = resistance * load;

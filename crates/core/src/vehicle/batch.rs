@@ -315,8 +315,8 @@ impl<'a, S: Simd, F: Fn(usize) -> &'a VehicleInput<f64>> Pack<S, F> {
                 None => None,
             },
             contact: ContactPoint {
-                x_m: self.number(number(|it| it.contact.x_m)),
-                y_m: self.number(number(|it| it.contact.y_m)),
+                x_body_m: self.number(number(|it| it.contact.x_body_m)),
+                y_body_m: self.number(number(|it| it.contact.y_body_m)),
                 height_m: self.number(number(|it| it.contact.height_m)),
             },
         }
@@ -345,7 +345,7 @@ mod tests {
             mz_n_m: mz_n_m.map(shape),
             time_s: time_s.clone(),
         };
-        let contact = ContactPoint { x_m: -1.6, y_m: -0.8, height_m: 0.5 };
+        let contact = ContactPoint { x_body_m: -1.6, y_body_m: -0.8, height_m: 0.5 };
         ContactLoad { force, contact, recorded_moment: mz_n_m.is_some() }
     }
 
@@ -402,8 +402,8 @@ mod tests {
                 let is_printed = vehicle.equations == Equations::Paper;
                 let manoeuvre = Manoeuvre {
                     initial: VehicleState {
-                        vx_m_s: if i % 7 == 6 { 0.0 } else { (i % 6) as f64 * 5.0 },
-                        vy_m_s: if i % 3 == 0 { 0.0 } else { 1.0 },
+                        vx_body_m_s: if i % 7 == 6 { 0.0 } else { (i % 6) as f64 * 5.0 },
+                        vy_body_m_s: if i % 3 == 0 { 0.0 } else { 1.0 },
                         yaw_rate_rad_s: if i % 5 == 4 { 2.5 } else { 0.0 },
                         ..VehicleState::default()
                     },
@@ -471,7 +471,7 @@ mod tests {
         let initial = VehicleState::driving_straight(20.0);
         let manoeuvre = Manoeuvre { initial, duration_s: 1.0, ..Manoeuvre::default() };
         let endless = Manoeuvre { duration_s: f64::NAN, ..manoeuvre.clone() };
-        let lost = VehicleState { vx_m_s: f64::INFINITY, ..initial };
+        let lost = VehicleState { vx_body_m_s: f64::INFINITY, ..initial };
         let lost = Manoeuvre { initial: lost, ..manoeuvre.clone() };
         let runs = [
             SimulationRun { vehicle: &good, manoeuvre: &manoeuvre },

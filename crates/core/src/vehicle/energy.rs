@@ -13,7 +13,7 @@ impl VehicleParameters {
     pub fn energy_j(&self, x: &VehicleState<f64>) -> f64 {
         let (mass, suspension) = (&self.mass, &self.suspension);
         let (yaw_rate, roll_rate) = (x.yaw_rate_rad_s, x.roll_rate_rad_s);
-        let speed_squared = x.vx_m_s * x.vx_m_s + x.vy_m_s * x.vy_m_s;
+        let speed_squared = x.vx_body_m_s * x.vx_body_m_s + x.vy_body_m_s * x.vy_body_m_s;
         let kinetic = mass.mass_kg * speed_squared
             + mass.yaw_inertia_kg_m2 * yaw_rate * yaw_rate
             + 2.0 * mass.roll_yaw_product_kg_m2 * yaw_rate * roll_rate

@@ -49,9 +49,11 @@ pub(super) const LOAD_PASSES: usize = 2;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ContactPoint<T = f64> {
     /// Coordinate x of the point in body axes, m: its distance in front of the CG.
-    pub x_m: T,
+    #[serde(rename = "x_m")]
+    pub x_body_m: T,
     /// Coordinate y of the point in body axes, m: its distance to the left of the CG.
-    pub y_m: T,
+    #[serde(rename = "y_m")]
+    pub y_body_m: T,
     /// Height of the point above the ground, m.
     pub height_m: T,
 }
@@ -120,8 +122,8 @@ impl<T: Lanes> VehicleInput<T> {
                 in_world_axes: collision.in_world_axes,
                 yaw_moment_n_m: collision.yaw_moment_n_m.map(convert),
                 contact: ContactPoint {
-                    x_m: convert(collision.contact.x_m),
-                    y_m: convert(collision.contact.y_m),
+                    x_body_m: convert(collision.contact.x_body_m),
+                    y_body_m: convert(collision.contact.y_body_m),
                     height_m: convert(collision.contact.height_m),
                 },
             }),
@@ -135,11 +137,11 @@ pub struct VehicleEvaluation<T> {
     /// Time derivative of the state.
     pub derivative: VehicleState<T>,
     /// Acceleration `[a_x, a_y]` of the CG in body axes, m/s².
-    pub acceleration_m_s2: [T; 2],
+    pub acceleration_body_m_s2: [T; 2],
     /// Vertical loads of the wheels, N, in the order of [`Wheel::ALL`](crate::vehicle::Wheel::ALL).
     pub vertical_loads_n: [T; 4],
     /// Collision force in body axes, N.
-    pub collision_force_n: [T; 2],
+    pub collision_force_body_n: [T; 2],
     /// Yaw moment of the collision force about the CG, N m.
     pub collision_yaw_moment_n_m: T,
 }
@@ -147,7 +149,7 @@ pub struct VehicleEvaluation<T> {
 /// Resultant of forces in body axes: `[F_x, F_y]`, N, and the yaw moment M_z about the CG, N m.
 #[derive(Clone, Copy)]
 pub(super) struct Wrench<T> {
-    pub(super) force_n: [T; 2],
+    pub(super) force_body_n: [T; 2],
     pub(super) yaw_moment_n_m: T,
 }
 
@@ -194,7 +196,7 @@ impl<P: Copy> VehicleConstants<P> {
         x: &VehicleState<T>,
         u: &VehicleInput<T>,
     ) -> VehicleEvaluation<T> {
-        x.vx_m_s.apart(Evaluation { constants: self, x, u })
+        x.vx_body_m_s.apart(Evaluation { constants: self, x, u })
     }
 
     /// The time derivative of the state alone, `[8]`, in the order of `eq:state_vector`.
@@ -224,24 +226,24 @@ impl<P: Copy> VehicleConstants<P> {
             None => [x.yaw_rad.constant(0.0); 2],
         };
         let of_body = LoadTransfer {
-            to_front_n_m: collision.force_n[0] * arm_m,
-            to_right_n_m: leaning_n_m - collision.force_n[1] * arm_m,
+            to_front_n_m: collision.force_body_n[0] * arm_m,
+            to_right_n_m: leaning_n_m - collision.force_body_n[1] * arm_m,
         };
         let (tires, vertical_loads_n) = self.tire_wrench(x, u, of_body);
 
-        let ax = (tires.force_n[0] + collision.force_n[0]) * body.per_mass_1_kg;
-        let ay = (tires.force_n[1] + collision.force_n[1]) * body.per_mass_1_kg;
+        let ax = (tires.force_body_n[0] + collision.force_body_n[0]) * body.per_mass_1_kg;
+        let ay = (tires.force_body_n[1] + collision.force_body_n[1]) * body.per_mass_1_kg;
         let yaw_moment = tires.yaw_moment_n_m + collision.yaw_moment_n_m;
         let roll_moment = leaning_n_m + ay * body.sprung_moment_kg_m
             - x.roll_rad * body.roll_stiffness_n_m_rad
             - x.roll_rate_rad_s * body.roll_damping_n_m_s_rad
-            - collision.force_n[1] * roll_arm_m;
+            - collision.force_body_n[1] * roll_arm_m;
         let [yaw_acceleration, roll_acceleration] = body.solve_yaw_roll(yaw_moment, roll_moment);
         VehicleEvaluation {
             derivative: x.derivative(heading, [ax, ay], [yaw_acceleration, roll_acceleration]),
-            acceleration_m_s2: [ax, ay],
+            acceleration_body_m_s2: [ax, ay],
             vertical_loads_n,
-            collision_force_n: collision.force_n,
+            collision_force_body_n: collision.force_body_n,
             collision_yaw_moment_n_m: collision.yaw_moment_n_m,
         }
     }
@@ -267,7 +269,7 @@ impl<P: Copy> VehicleConstants<P> {
     /// Energy of the planar motion, `m (v_x² + v_y²)/2 + I_zz r²/2`, J.
     #[inline(always)]
     pub fn planar_energy_j<T: Lanes + LanesOver<P>>(&self, x: &VehicleState<T>) -> T {
-        let speed_squared = x.vx_m_s * x.vx_m_s + x.vy_m_s * x.vy_m_s;
+        let speed_squared = x.vx_body_m_s * x.vx_body_m_s + x.vy_body_m_s * x.vy_body_m_s;
         let spin_squared = x.yaw_rate_rad_s * x.yaw_rate_rad_s;
         speed_squared * self.body.half_mass_kg + spin_squared * self.body.half_yaw_inertia_kg_m2
     }
@@ -283,7 +285,7 @@ impl<P: Copy> VehicleConstants<P> {
         of_body: LoadTransfer<T>,
     ) -> (Wrench<T>, [T; 4]) {
         let body = &self.body;
-        let zero = x.vx_m_s.constant(0.0);
+        let zero = x.vx_body_m_s.constant(0.0);
         let steer = Steer::of(u.steer_rad);
         let slips = self.wheel_slips(x, &steer, u.friction_share.as_ref());
         let free = slips.free();
@@ -311,7 +313,7 @@ impl<P: Copy> VehicleConstants<P> {
         let yaw_moment_n_m = (y_fl + y_fr) * body.front_x_m
             + (y_rl + y_rr) * body.rear_x_m
             + (x_fr + x_rr - (x_fl + x_rl)) * body.half_track_m;
-        (Wrench { force_n: [sum(tires_n[0]), sum(tires_n[1])], yaw_moment_n_m }, loads_n)
+        (Wrench { force_body_n: [sum(tires_n[0]), sum(tires_n[1])], yaw_moment_n_m }, loads_n)
     }
 
     /// The slip of the four wheels, side by side in the order of [`Wheel::ALL`](crate::vehicle::Wheel::ALL).
@@ -323,12 +325,12 @@ impl<P: Copy> VehicleConstants<P> {
         friction_share: Option<&[T; 4]>,
     ) -> WheelSlip<Four<T>> {
         let body = &self.body;
-        let tires = self.tires.along(x.vx_m_s, Four::splat);
+        let tires = self.tires.along(x.vx_body_m_s, Four::splat);
         let yaw_rate = x.yaw_rate_rad_s;
         let by_track = yaw_rate * body.half_track_m;
-        let [left, right] = [x.vx_m_s - by_track, x.vx_m_s + by_track];
-        let front = x.vy_m_s + yaw_rate * body.front_x_m;
-        let rear = x.vy_m_s + yaw_rate * body.rear_x_m;
+        let [left, right] = [x.vx_body_m_s - by_track, x.vx_body_m_s + by_track];
+        let front = x.vy_body_m_s + yaw_rate * body.front_x_m;
+        let rear = x.vy_body_m_s + yaw_rate * body.rear_x_m;
         let [u_fl, w_fl] = steer.wheel_from_body([left, front]);
         let [u_fr, w_fr] = steer.wheel_from_body([right, front]);
         let velocity_m_s = [Four([u_fl, u_fr, left, right]), Four([w_fl, w_fr, rear, rear])];
@@ -432,15 +434,15 @@ pub(super) fn collision_wrench<T: Lanes>(
     collision: Option<&CollisionForce<T>>,
 ) -> Wrench<T> {
     let Some(collision) = collision else {
-        return Wrench { force_n: [zero; 2], yaw_moment_n_m: zero };
+        return Wrench { force_body_n: [zero; 2], yaw_moment_n_m: zero };
     };
-    let force_n = match collision.in_world_axes {
+    let force_body_n = match collision.in_world_axes {
         true => heading.body_from_world(collision.force_n),
         false => collision.force_n,
     };
-    let ContactPoint { x_m, y_m, .. } = collision.contact;
-    let at_contact = force_n[1] * x_m - force_n[0] * y_m;
-    Wrench { force_n, yaw_moment_n_m: collision.yaw_moment_n_m.unwrap_or(at_contact) }
+    let ContactPoint { x_body_m, y_body_m, .. } = collision.contact;
+    let at_contact = force_body_n[1] * x_body_m - force_body_n[0] * y_body_m;
+    Wrench { force_body_n, yaw_moment_n_m: collision.yaw_moment_n_m.unwrap_or(at_contact) }
 }
 
 #[cfg(test)]
@@ -451,10 +453,15 @@ mod tests {
     #[test]
     fn an_effort_of_zero_is_none() {
         let vehicle = Preset::Reference.parameters();
-        for (vx_m_s, vy_m_s, yaw_rate_rad_s) in
+        for (vx_body_m_s, vy_body_m_s, yaw_rate_rad_s) in
             [(20.0, 1.0, 0.3), (-8.0, 3.0, -2.0), (0.0, 5.0, 1.0), (0.0, 0.0, 0.0)]
         {
-            let x = VehicleState { vx_m_s, vy_m_s, yaw_rate_rad_s, ..VehicleState::default() };
+            let x = VehicleState {
+                vx_body_m_s,
+                vy_body_m_s,
+                yaw_rate_rad_s,
+                ..VehicleState::default()
+            };
             let free = VehicleInput { steer_rad: 0.05, ..VehicleInput::released() };
             let driven = VehicleInput { wheels: Some([WheelEffort::none(); 4]), ..free };
             let [(free, by_free), (driven, by_driven)] =

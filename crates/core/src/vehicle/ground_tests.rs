@@ -103,7 +103,7 @@ fn struck() -> ContactLoad {
         mz_n_m: None,
         time_s,
     };
-    let contact = ContactPoint { x_m: -1.6, y_m: -0.8, height_m: 0.5 };
+    let contact = ContactPoint { x_body_m: -1.6, y_body_m: -0.8, height_m: 0.5 };
     ContactLoad { force, contact, recorded_moment: false }
 }
 

@@ -62,9 +62,9 @@ pub struct PathPoint {
     /// Heading, rad, counted over whole turns.
     pub yaw_rad: f64,
     /// Velocity along the x axis of the vehicle, m/s.
-    pub vx_m_s: f64,
+    pub vx_body_m_s: f64,
     /// Velocity along the y axis of the vehicle, m/s.
-    pub vy_m_s: f64,
+    pub vy_body_m_s: f64,
     /// Yaw rate, rad/s.
     pub yaw_rate_rad_s: f64,
 }
@@ -197,8 +197,8 @@ impl<'a> Lane<'a> {
             x_m: x.x_m,
             y_m: x.y_m,
             yaw_rad: x.yaw_rad,
-            vx_m_s: x.vx_m_s,
-            vy_m_s: x.vy_m_s,
+            vx_body_m_s: x.vx_body_m_s,
+            vy_body_m_s: x.vy_body_m_s,
             yaw_rate_rad_s: x.yaw_rate_rad_s,
         });
         let is_slow = self.time_s >= self.last_change_s && RestWatch::is_slow(&x);
@@ -247,11 +247,11 @@ impl<'a> Lane<'a> {
         let half_s = stop_s / 2.0;
         self.points.push(PathPoint {
             time_s: self.time_s + stop_s,
-            x_m: x.x_m + (x.vx_m_s * cos - x.vy_m_s * sin) * half_s,
-            y_m: x.y_m + (x.vx_m_s * sin + x.vy_m_s * cos) * half_s,
+            x_m: x.x_m + (x.vx_body_m_s * cos - x.vy_body_m_s * sin) * half_s,
+            y_m: x.y_m + (x.vx_body_m_s * sin + x.vy_body_m_s * cos) * half_s,
             yaw_rad: x.yaw_rad + x.yaw_rate_rad_s * half_s,
-            vx_m_s: 0.0,
-            vy_m_s: 0.0,
+            vx_body_m_s: 0.0,
+            vy_body_m_s: 0.0,
             yaw_rate_rad_s: 0.0,
         });
     }
@@ -381,7 +381,7 @@ fn step<S: Simd>(
 
 /// Speed of the CG and of a point that turns with the vehicle, m/s.
 fn speed_m_s(x: &VehicleState<f64>) -> f64 {
-    x.vx_m_s.hypot(x.vy_m_s) + YAW_ARM_M * x.yaw_rate_rad_s.abs()
+    x.vx_body_m_s.hypot(x.vy_body_m_s) + YAW_ARM_M * x.yaw_rate_rad_s.abs()
 }
 
 #[inline(always)]

@@ -28,7 +28,7 @@ fn manoeuvres(vehicle: &VehicleParameters) -> Vec<Manoeuvre> {
                 fy_n: vec![0.0, 4e4 + 2e3 * f64::from(i), 0.0],
                 mz_n_m: None,
             };
-            let contact = ContactPoint { x_m: -1.6, y_m: -0.9, height_m: 0.55 };
+            let contact = ContactPoint { x_body_m: -1.6, y_body_m: -0.9, height_m: 0.55 };
             Manoeuvre {
                 initial: VehicleState::driving_straight(speed),
                 contact_load: Some(ContactLoad { force, contact, recorded_moment: false }),

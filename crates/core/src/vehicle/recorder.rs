@@ -11,11 +11,11 @@ use crate::vehicle::{
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Forces<T> {
     /// Acceleration `[a_x, a_y]` of the CG in body axes, m/s².
-    pub acceleration_m_s2: [T; 2],
+    pub acceleration_body_m_s2: [T; 2],
     /// Vertical loads of the wheels, N, in the order of [`Wheel::ALL`].
     pub vertical_loads_n: [T; 4],
     /// Collision force in body axes, N.
-    pub collision_force_n: [T; 2],
+    pub collision_force_body_n: [T; 2],
     /// Yaw moment of the collision force about the CG, N m.
     pub collision_yaw_moment_n_m: T,
 }
@@ -24,13 +24,13 @@ impl<T> Forces<T> {
     /// Converts every component to another type.
     #[inline(always)]
     pub fn map<U>(self, convert: impl Fn(T) -> U) -> Forces<U> {
-        let [ax, ay] = self.acceleration_m_s2;
+        let [ax, ay] = self.acceleration_body_m_s2;
         let [fl, fr, rl, rr] = self.vertical_loads_n;
-        let [fx, fy] = self.collision_force_n;
+        let [fx, fy] = self.collision_force_body_n;
         Forces {
-            acceleration_m_s2: [convert(ax), convert(ay)],
+            acceleration_body_m_s2: [convert(ax), convert(ay)],
             vertical_loads_n: [convert(fl), convert(fr), convert(rl), convert(rr)],
-            collision_force_n: [convert(fx), convert(fy)],
+            collision_force_body_n: [convert(fx), convert(fy)],
             collision_yaw_moment_n_m: convert(self.collision_yaw_moment_n_m),
         }
     }
@@ -40,9 +40,9 @@ impl<T> From<VehicleEvaluation<T>> for Forces<T> {
     #[inline(always)]
     fn from(of: VehicleEvaluation<T>) -> Self {
         Self {
-            acceleration_m_s2: of.acceleration_m_s2,
+            acceleration_body_m_s2: of.acceleration_body_m_s2,
             vertical_loads_n: of.vertical_loads_n,
-            collision_force_n: of.collision_force_n,
+            collision_force_body_n: of.collision_force_body_n,
             collision_yaw_moment_n_m: of.collision_yaw_moment_n_m,
         }
     }
@@ -110,8 +110,8 @@ impl<'a> Recorder<'a> {
     ) {
         let contact_arm_m =
             u.collision.map_or(0.0, |c| c.contact.height_m - self.vehicle.geometry.cg_height_m);
-        let [ax, ay] = forces.acceleration_m_s2;
-        let [fx, fy] = forces.collision_force_n;
+        let [ax, ay] = forces.acceleration_body_m_s2;
+        let [fx, fy] = forces.collision_force_body_n;
         let [fl, fr, rl, rr] = forces.vertical_loads_n;
         let mx = -contact_arm_m * fy;
         let sample = [
@@ -119,8 +119,8 @@ impl<'a> Recorder<'a> {
             x.y_m,
             x.yaw_rad,
             x.roll_rad,
-            x.vx_m_s,
-            x.vy_m_s,
+            x.vx_body_m_s,
+            x.vy_body_m_s,
             x.yaw_rate_rad_s,
             x.roll_rate_rad_s,
             ax,

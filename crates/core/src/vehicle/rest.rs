@@ -28,7 +28,7 @@ impl RestWatch {
 
     /// Whether both limits hold at an instant.
     pub(crate) fn is_slow(x: &VehicleState<f64>) -> bool {
-        let speed_m_s = x.vx_m_s.hypot(x.vy_m_s);
+        let speed_m_s = x.vx_body_m_s.hypot(x.vy_body_m_s);
         speed_m_s < REST_SPEED_M_S && x.yaw_rate_rad_s.abs() < REST_YAW_RATE_RAD_S
     }
 
@@ -65,7 +65,7 @@ mod tests {
         let mut rest = RestWatch::after(0.0);
         for i in 0..500 {
             let t = f64::from(i) * 0.01;
-            let swings = VehicleState { vx_m_s: (t - 2.0), ..VehicleState::default() };
+            let swings = VehicleState { vx_body_m_s: (t - 2.0), ..VehicleState::default() };
             assert!(!rest.has_settled(t, &swings), "at {t} s");
         }
         let turns = VehicleState { yaw_rate_rad_s: 0.5, ..VehicleState::default() };

@@ -261,7 +261,8 @@ mod tests {
         vehicle.mass.yaw_inertia_kg_m2 = 200.0;
         vehicle.tires.cornering_coefficient_rear_per_rad = 60.0;
         assert!(vehicle.substeps(1e-3) > 1);
-        let initial = VehicleState { vx_m_s: 1.0, yaw_rate_rad_s: 3.0, ..VehicleState::default() };
+        let initial =
+            VehicleState { vx_body_m_s: 1.0, yaw_rate_rad_s: 3.0, ..VehicleState::default() };
         let motion = coasting(&vehicle, initial).unwrap().series;
         let rates = motion.require(Channel::YawRate).unwrap();
         assert!(rates.last().unwrap().abs() < 0.1, "{rates:?}");
@@ -305,8 +306,8 @@ mod tests {
             }
             let (sin, cos) = course.sin_cos();
             let initial = VehicleState {
-                vx_m_s: speed * cos,
-                vy_m_s: speed * sin,
+                vx_body_m_s: speed * cos,
+                vy_body_m_s: speed * sin,
                 yaw_rate_rad_s: yaw_rate,
                 ..VehicleState::default()
             };
@@ -316,8 +317,8 @@ mod tests {
                     let series = &motion.series;
                     let last = |channel| *series.require(channel).unwrap().last().unwrap();
                     let end = VehicleState {
-                        vx_m_s: last(Channel::Vx),
-                        vy_m_s: last(Channel::Vy),
+                        vx_body_m_s: last(Channel::Vx),
+                        vy_body_m_s: last(Channel::Vy),
                         yaw_rate_rad_s: last(Channel::YawRate),
                         roll_rad: last(Channel::Roll),
                         roll_rate_rad_s: last(Channel::RollRate),

@@ -8,9 +8,9 @@ use crate::vehicle::frames::Heading;
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct VehicleState<T> {
     /// Velocity v_x of the CG along the x axis of the body (forward), m/s.
-    pub vx_m_s: T,
+    pub vx_body_m_s: T,
     /// Velocity v_y of the CG along the y axis of the body (to the left), m/s.
-    pub vy_m_s: T,
+    pub vy_body_m_s: T,
     /// Yaw angle ψ, rad, counter-clockwise positive.
     pub yaw_rad: T,
     /// Yaw rate r, rad/s, counter-clockwise positive.
@@ -32,16 +32,42 @@ impl<T: Lanes> VehicleState<T> {
     /// Converts the state to an array in the order of `eq:state_vector`, `[8]`.
     #[inline(always)]
     pub fn to_array(self) -> [T; N_STATE] {
-        let Self { vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m } =
-            self;
-        [vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m]
+        let Self {
+            vx_body_m_s,
+            vy_body_m_s,
+            yaw_rad,
+            yaw_rate_rad_s,
+            roll_rad,
+            roll_rate_rad_s,
+            x_m,
+            y_m,
+        } = self;
+        [vx_body_m_s, vy_body_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m]
     }
 
     /// Creates the state from an array in the order of `eq:state_vector`, `[8]`.
     #[inline(always)]
     pub fn from_array(array: [T; N_STATE]) -> Self {
-        let [vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m] = array;
-        Self { vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m }
+        let [
+            vx_body_m_s,
+            vy_body_m_s,
+            yaw_rad,
+            yaw_rate_rad_s,
+            roll_rad,
+            roll_rate_rad_s,
+            x_m,
+            y_m,
+        ] = array;
+        Self {
+            vx_body_m_s,
+            vy_body_m_s,
+            yaw_rad,
+            yaw_rate_rad_s,
+            roll_rad,
+            roll_rate_rad_s,
+            x_m,
+            y_m,
+        }
     }
 
     /// Converts every component to another scalar type.
@@ -53,7 +79,7 @@ impl<T: Lanes> VehicleState<T> {
     /// The components [X, Y, ψ, v_x, v_y, r] of the planar motion, by which trajectories are
     /// compared.
     pub fn planar(&self) -> [T; 6] {
-        [self.x_m, self.y_m, self.yaw_rad, self.vx_m_s, self.vy_m_s, self.yaw_rate_rad_s]
+        [self.x_m, self.y_m, self.yaw_rad, self.vx_body_m_s, self.vy_body_m_s, self.yaw_rate_rad_s]
     }
 }
 
@@ -72,10 +98,10 @@ impl<T: Lanes> VehicleState<T> {
         [ax, ay]: [T; 2],
         [yaw_acceleration, roll_acceleration]: [T; 2],
     ) -> Self {
-        let [x_dot, y_dot] = heading.world_from_body([self.vx_m_s, self.vy_m_s]);
+        let [x_dot, y_dot] = heading.world_from_body([self.vx_body_m_s, self.vy_body_m_s]);
         Self {
-            vx_m_s: ax + self.vy_m_s * self.yaw_rate_rad_s,
-            vy_m_s: ay - self.vx_m_s * self.yaw_rate_rad_s,
+            vx_body_m_s: ax + self.vy_body_m_s * self.yaw_rate_rad_s,
+            vy_body_m_s: ay - self.vx_body_m_s * self.yaw_rate_rad_s,
             yaw_rad: self.yaw_rate_rad_s,
             yaw_rate_rad_s: yaw_acceleration,
             roll_rad: self.roll_rate_rad_s,
@@ -90,6 +116,6 @@ impl VehicleState<f64> {
     /// State of a vehicle at the origin of the world axes that drives straight ahead along X at a
     /// given speed, m/s.
     pub fn driving_straight(speed_m_s: f64) -> Self {
-        Self { vx_m_s: speed_m_s, ..Self::default() }
+        Self { vx_body_m_s: speed_m_s, ..Self::default() }
     }
 }

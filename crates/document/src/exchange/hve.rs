@@ -137,8 +137,9 @@ fn moment_lines(analysis: &Analysis, has_moment: bool) -> Vec<String> {
     let place = match &analysis.struck {
         None => "the point of contact is missing".to_owned(),
         Some(struck) => {
-            let ContactPoint { x_m, y_m, height_m } = struck.contact;
-            let [x, y, z] = [x_m, -y_m, height_m].map(|m| to("ft", Quantity::Length, m) + 0.0);
+            let ContactPoint { x_body_m, y_body_m, height_m } = struck.contact;
+            let [x, y, z] =
+                [x_body_m, -y_body_m, height_m].map(|m| to("ft", Quantity::Length, m) + 0.0);
             format!(
                 "point of contact: x {x:.3} ft, y {y:.3} ft from the centre of gravity, {z:.3} ft above the \
                  ground; Mz follows from it"

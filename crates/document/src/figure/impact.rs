@@ -26,9 +26,9 @@ pub fn impact_figure(
     let arrow = |name: &str, role, [px, py]: [f64; 2], [dx, dy]: [f64; 2]| {
         FigureElement::arrow(name, role, shown([px, py]), shown([px + dx, py + dy]))
     };
-    let contact = geometry.contact_point_m;
+    let contact = geometry.contact_point_world_m;
     let [cx, cy] = contact;
-    let (sin, cos) = geometry.normal_angle_rad.sin_cos();
+    let (sin, cos) = geometry.normal_angle_world_rad.sin_cos();
     let surface = [[cx - sin, cy + cos], [cx + sin, cy - cos]].map(shown).to_vec();
     let vehicles = [
         ("target", Role::Simulation, scenario.struck.footprint(), geometry.struck, solution.struck),
@@ -40,7 +40,7 @@ pub fn impact_figure(
             solution.striking,
         ),
     ];
-    let [struck_dv, striking_dv] = vehicles.map(|(.., after)| after.delta_v_m_s);
+    let [struck_dv, striking_dv] = vehicles.map(|(.., after)| after.delta_v_world_m_s);
     let longest = [struck_dv, striking_dv].map(|[x, y]| x.hypot(y)).into_iter().fold(0.0, f64::max);
     let scaled = |[dx, dy]: [f64; 2], full: f64| {
         let scale = if full > 0.0 { ARROW_LENGTH_M / full } else { 0.0 };
@@ -50,10 +50,10 @@ pub fn impact_figure(
     for (name, role, footprint, pose, after) in vehicles {
         let appearance = (name, role, LineStyle::Solid);
         elements.extend(vehicle_outline(appearance, (&footprint, &pose), x.unit));
-        let delta_v = scaled(after.delta_v_m_s, longest);
+        let delta_v = scaled(after.delta_v_world_m_s, longest);
         elements.push(arrow(&format!("Δv {name}"), role, [pose.x_m, pose.y_m], delta_v));
     }
-    let [px, py] = solution.impulse_n_s;
+    let [px, py] = solution.impulse_world_n_s;
     let impulse = scaled([px, py], px.hypot(py));
     elements.push(arrow("impulse on the target", Role::Resultant, contact, impulse));
     let title = format!("{}: impulse and Δv at first contact", scenario.name);

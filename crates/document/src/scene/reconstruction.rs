@@ -188,8 +188,8 @@ mod tests {
             x_m: 10.0 * time_s,
             y_m: 0.0,
             yaw_rad: 0.0,
-            vx_m_s: 10.0,
-            vy_m_s: 0.0,
+            vx_body_m_s: 10.0,
+            vy_body_m_s: 0.0,
             yaw_rate_rad_s: 0.0,
         };
         let body = shape_of(&Preset::Reference.parameters()).body;

@@ -89,11 +89,11 @@ impl Track {
         if self.end == PathEnd::Rest {
             return [last.x_m, last.y_m, last.yaw_rad];
         }
-        let speed_m_s = last.vx_m_s.hypot(last.vy_m_s);
+        let speed_m_s = last.vx_body_m_s.hypot(last.vy_body_m_s);
         let more_s = speed_m_s / (2.0 * CONTINUED_DECELERATION_M_S2);
         [
-            last.x_m + (last.vx_m_s * cos - last.vy_m_s * sin) * more_s,
-            last.y_m + (last.vx_m_s * sin + last.vy_m_s * cos) * more_s,
+            last.x_m + (last.vx_body_m_s * cos - last.vy_body_m_s * sin) * more_s,
+            last.y_m + (last.vx_body_m_s * sin + last.vy_body_m_s * cos) * more_s,
             last.yaw_rad,
         ]
     }
@@ -113,8 +113,8 @@ impl Track {
                 x_m: mix(from.x_m, to.x_m),
                 y_m: mix(from.y_m, to.y_m),
                 yaw_rad: mix(from.yaw_rad, to.yaw_rad),
-                vx_m_s: mix(from.vx_m_s, to.vx_m_s),
-                vy_m_s: mix(from.vy_m_s, to.vy_m_s),
+                vx_body_m_s: mix(from.vx_body_m_s, to.vx_body_m_s),
+                vy_body_m_s: mix(from.vy_body_m_s, to.vy_body_m_s),
                 yaw_rate_rad_s: mix(from.yaw_rate_rad_s, to.yaw_rate_rad_s),
             },
         ))
@@ -131,7 +131,7 @@ impl Track {
     pub fn recorded_delta_v_m_s(&self, sensor_m: [f64; 2], end_s: f64) -> Option<[f64; 2]> {
         let velocity = |at: &PathPoint| {
             let [x_m, y_m] = sensor_m;
-            [at.vx_m_s - at.yaw_rate_rad_s * y_m, at.vy_m_s + at.yaw_rate_rad_s * x_m]
+            [at.vx_body_m_s - at.yaw_rate_rad_s * y_m, at.vy_body_m_s + at.yaw_rate_rad_s * x_m]
         };
         let (last, end) = self.at_time(end_s)?;
         let first = velocity(self.points.first()?);
@@ -175,7 +175,7 @@ impl Track {
             .iter()
             .map(|at| {
                 let r = at.yaw_rate_rad_s;
-                [at.vx_m_s - r * place_m[1], at.vy_m_s + r * place_m[0]]
+                [at.vx_body_m_s - r * place_m[1], at.vy_body_m_s + r * place_m[0]]
             })
             .collect();
         WheelTrack { at_m, velocity_m_s, travelled_m }

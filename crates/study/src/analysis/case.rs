@@ -67,12 +67,12 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
     let [mass_kg, _] = attributes.mass_kg;
     let [yaw_inertia, _] = attributes.yaw_inertia_kg_m2;
     let vehicle = settings.struck.clone().with_mass(mass_kg, yaw_inertia);
-    let [vx_m_s, vy_m_s] = attributes.struck_velocity_m_s;
-    let [x_m, y_m] = attributes.contact_m;
+    let [vx_body_m_s, vy_body_m_s] = attributes.struck_velocity_m_s;
+    let [x_body_m, y_body_m] = attributes.contact_m;
     let height_m = attributes.contact_height_m.unwrap_or(vehicle.geometry.cg_height_m);
-    let contact = ContactPoint { x_m, y_m, height_m };
+    let contact = ContactPoint { x_body_m, y_body_m, height_m };
     let load = ContactLoad { force: force.clone(), contact, recorded_moment: true };
-    let initial = VehicleState { vx_m_s, vy_m_s, ..VehicleState::default() };
+    let initial = VehicleState { vx_body_m_s, vy_body_m_s, ..VehicleState::default() };
     let controls = settings.ending.controls(&vehicle);
     let manoeuvre = Manoeuvre {
         initial,

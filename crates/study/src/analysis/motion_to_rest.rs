@@ -138,7 +138,7 @@ fn end_of(motion: &SettledMotion) -> Option<MotionEnd> {
         x_m: state.x_m,
         y_m: state.y_m,
         yaw_rad: state.yaw_rad,
-        speed_m_s: state.vx_m_s.hypot(state.vy_m_s),
+        speed_m_s: state.vx_body_m_s.hypot(state.vy_body_m_s),
         yaw_rate_rad_s: state.yaw_rate_rad_s,
     };
     let is_finite = state.to_array().iter().all(|value| value.is_finite());

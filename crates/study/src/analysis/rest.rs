@@ -21,7 +21,7 @@ impl Pace {
                 states().map(of).sum::<f64>() / paths.len() as f64
             };
             Self {
-                speed_m_s: mean(|state| state.vx_m_s.hypot(state.vy_m_s)),
+                speed_m_s: mean(|state| state.vx_body_m_s.hypot(state.vy_body_m_s)),
                 yaw_rate_rad_s: mean(|state| state.yaw_rate_rad_s.abs()),
             }
         };
@@ -84,7 +84,7 @@ mod tests {
     fn opposite_turns_do_not_cancel() {
         let path = |sign: f64| {
             let state = VehicleState {
-                vy_m_s: 3.0 * sign,
+                vy_body_m_s: 3.0 * sign,
                 yaw_rate_rad_s: sign,
                 ..VehicleState::default()
             };

@@ -54,12 +54,12 @@ pub fn analyse_scenario(
         let pulse = Pulse::new(pulse.shape, impulse_n_s, 0.0, pulse.duration_s)?;
         Ok(pulse.to_history(PULSE_INTERVAL_S.min(pulse.end_s() / 20.0))?)
     };
-    let [px, py] = solution.impulse_n_s;
+    let [px, py] = solution.impulse_world_n_s;
     let force = history([px, py])?;
     check_contact_within(&force, settings.duration_s)?;
     let start = |vehicle: &ScenarioVehicle, preset: &VehicleParameters, pose: &Pose| {
-        let [x_m, y_m] = pose.body_from_world(geometry.contact_point_m);
-        let contact = ContactPoint { x_m, y_m, height_m: pulse.contact_height_m };
+        let [x_body_m, y_body_m] = pose.body_from_world(geometry.contact_point_world_m);
+        let contact = ContactPoint { x_body_m, y_body_m, height_m: pulse.contact_height_m };
         StruckVehicle {
             vehicle: preset.clone().with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2)),
             initial: initial_state(vehicle, pose),
@@ -109,10 +109,11 @@ pub fn analyse_scenario(
 
 /// State of a vehicle of a scenario at first contact.
 fn initial_state(vehicle: &ScenarioVehicle, pose: &Pose) -> VehicleState<f64> {
-    let [vx_m_s, vy_m_s] = body_from_world(pose.yaw_rad, [vehicle.vx_m_s, vehicle.vy_m_s]);
+    let [vx_body_m_s, vy_body_m_s] =
+        body_from_world(pose.yaw_rad, [vehicle.vx_world_m_s, vehicle.vy_world_m_s]);
     VehicleState {
-        vx_m_s,
-        vy_m_s,
+        vx_body_m_s,
+        vy_body_m_s,
         yaw_rad: pose.yaw_rad,
         yaw_rate_rad_s: vehicle.yaw_rate_rad_s,
         x_m: pose.x_m,
@@ -169,7 +170,7 @@ mod tests {
         assert!(rate[10] < 0.5 * expected, "{} against {expected}", rate[10]);
         let striking = analysis.striking.unwrap().motion;
         assert_eq!(striking.n_samples(), motion.n_samples());
-        assert!(analysis.struck.unwrap().contact.y_m < 0.0);
+        assert!(analysis.struck.unwrap().contact.y_body_m < 0.0);
     }
 
     /// A bullet that goes on pushing was drawn through the target without a word.
@@ -221,8 +222,8 @@ mod tests {
         // From behind, the bullet is braked by the impact and stays behind.
         scenario.contact.location = ContactLocation::Side { side: Side::Rear, offset_m: 0.2 };
         scenario.striking.heading_rad = 0.0;
-        (scenario.struck.vx_m_s, scenario.striking.vx_m_s) = (5.0, 15.0);
-        scenario.striking.vy_m_s = 0.0;
+        (scenario.struck.vx_world_m_s, scenario.striking.vx_world_m_s) = (5.0, 15.0);
+        scenario.striking.vy_world_m_s = 0.0;
         let (second, deepest_m) = meets(&scenario);
         assert_eq!(second, None);
         assert!(deepest_m < 0.0, "{deepest_m}");

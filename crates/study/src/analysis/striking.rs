@@ -42,20 +42,20 @@ pub(super) fn striking_track(
     let yaw_rad = yaw_rad.first().copied().unwrap_or(attributes.theta_b_rad);
     let pose = Pose { x_m: x, y_m: y, yaw_rad };
     // The target heads along X from the origin.
-    let [x_m, y_m] = pose.body_from_world(attributes.contact_m);
-    let [vx_m_s, vy_m_s] = body_from_world(yaw_rad, attributes.striking_velocity_m_s);
+    let [x_body_m, y_body_m] = pose.body_from_world(attributes.contact_m);
+    let [vx_body_m_s, vy_body_m_s] = body_from_world(yaw_rad, attributes.striking_velocity_m_s);
     let height_m = attributes.contact_height_m.unwrap_or(vehicle.geometry.cg_height_m);
     let start = StruckVehicle {
         vehicle,
         initial: VehicleState {
-            vx_m_s,
-            vy_m_s,
+            vx_body_m_s,
+            vy_body_m_s,
             yaw_rad,
             x_m: x,
             y_m: y,
             ..VehicleState::default()
         },
-        contact: ContactPoint { x_m, y_m, height_m },
+        contact: ContactPoint { x_body_m, y_body_m, height_m },
         controls: Controls::default(),
         friction_zones: settings.friction_zones.clone(),
     };
@@ -78,10 +78,10 @@ fn integrate(series: &TimeSeries, start_m: [f64; 2]) -> Option<Recorded> {
         std::iter::once(start).chain(moved).collect()
     };
     let (x_m, y_m) = (path(start_m[0], vx), path(start_m[1], vy));
-    let [vx_m_s, vy_m_s] = body_from_world(yaw_rad, [*vx.last()?, *vy.last()?]);
+    let [vx_body_m_s, vy_body_m_s] = body_from_world(yaw_rad, [*vx.last()?, *vy.last()?]);
     let end = VehicleState {
-        vx_m_s,
-        vy_m_s,
+        vx_body_m_s,
+        vy_body_m_s,
         yaw_rad,
         yaw_rate_rad_s,
         x_m: *x_m.last()?,

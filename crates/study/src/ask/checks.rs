@@ -35,9 +35,11 @@ pub(crate) fn check_all(
 
 /// Checks a contact point that a question gives.
 pub(crate) fn check_contact(contact: Option<&ContactPoint>) -> Result<(), StudyError> {
-    let Some(ContactPoint { x_m, y_m, height_m }) = contact else { return Ok(()) };
-    check("contact.x_m", &CONTACT_X, *x_m)?;
-    check("contact.y_m", &CONTACT_Y, *y_m)?;
+    let Some(ContactPoint { x_body_m, y_body_m, height_m }) = contact else {
+        return Ok(());
+    };
+    check("contact.x_m", &CONTACT_X, *x_body_m)?;
+    check("contact.y_m", &CONTACT_Y, *y_body_m)?;
     check("contact.height_m", &CONTACT_HEIGHT, *height_m)
 }
 

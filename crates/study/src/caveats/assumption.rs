@@ -152,9 +152,10 @@ impl Assumption {
 
     /// The contact point that stands for an unknown one.
     pub(crate) fn contact_point(contact: ContactPoint, reason: &str) -> Self {
-        let ContactPoint { x_m, y_m, height_m } = contact;
-        let value =
-            format!("x {x_m} m, y {y_m} m from the CG (x forward, y left), {height_m} m high");
+        let ContactPoint { x_body_m, y_body_m, height_m } = contact;
+        let value = format!(
+            "x {x_body_m} m, y {y_body_m} m from the CG (x forward, y left), {height_m} m high"
+        );
         Self::new(AssumedQuantity::ContactPoint, value, reason)
     }
 }

@@ -104,7 +104,7 @@ fn refuse_fast_turning(
     geometry: &ScenarioGeometry,
 ) -> Result<(), StudyError> {
     let (struck, striking) = (&scenario.struck, &scenario.striking);
-    let [x, y] = geometry.contact_point_m;
+    let [x, y] = geometry.contact_point_world_m;
     // Velocity of the point of contact by turning alone: r × arm.
     let turning = |vehicle: &ScenarioVehicle, pose: &Pose| {
         let rate = vehicle.yaw_rate_rad_s;
@@ -113,7 +113,10 @@ fn refuse_fast_turning(
     let (of_struck, of_striking) =
         (turning(struck, &geometry.struck), turning(striking, &geometry.striking));
     let turning_m_s = f64::hypot(of_striking[0] - of_struck[0], of_striking[1] - of_struck[1]);
-    let moving_m_s = f64::hypot(striking.vx_m_s - struck.vx_m_s, striking.vy_m_s - struck.vy_m_s);
+    let moving_m_s = f64::hypot(
+        striking.vx_world_m_s - struck.vx_world_m_s,
+        striking.vy_world_m_s - struck.vy_world_m_s,
+    );
     if turning_m_s > MAX_TURNING_SHARE * moving_m_s {
         return Err(StudyError::TurningVehicles { name: choice.name(), turning_m_s, moving_m_s });
     }
@@ -192,7 +195,7 @@ mod tests {
         let mut struck = StruckVehicle {
             vehicle: Preset::Reference.parameters(),
             initial: VehicleState::driving_straight(20.0),
-            contact: ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.5 },
+            contact: ContactPoint { x_body_m: -1.5, y_body_m: -0.9, height_m: 0.5 },
             controls: Controls::default(),
             friction_zones: Vec::new(),
         };

@@ -137,7 +137,7 @@ impl Question for ImpactRequest {
         let geometry = scenario.geometry().map_err(unsolved)?;
         let impact = scenario.impact().map_err(unsolved)?;
         let solution = scenario.solve().map_err(unsolved)?;
-        let [x, y] = solution.impulse_n_s;
+        let [x, y] = solution.impulse_world_n_s;
         let assumptions: Vec<Assumption> = Assumption::first_touch(&geometry)
             .into_iter()
             .chain(Assumption::contact_default(&scenario, &impact))
@@ -152,13 +152,13 @@ impl Question for ImpactRequest {
             critical_impulse_ratio: impact.critical_impulse_ratio(),
             friction_model: scenario.contact.friction_model,
             regime: solution.regime,
-            impulse_n_s: solution.impulse_n_s,
+            impulse_n_s: solution.impulse_world_n_s,
             impulse_magnitude_n_s: x.hypot(y),
             impulse_normal_n_s: solution.impulse_normal_n_s,
             impulse_tangential_n_s: solution.impulse_tangential_n_s,
             closing_velocity_m_s: solution.closing_velocity_m_s,
-            contact_point_m: geometry.contact_point_m,
-            normal_angle_rad: geometry.normal_angle_rad,
+            contact_point_m: geometry.contact_point_world_m,
+            normal_angle_rad: geometry.normal_angle_world_rad,
             struck_surface: geometry.surface,
             overlap_m: geometry.overlap_m,
             dissipated_energy_j: solution.dissipated_energy_j,
@@ -176,11 +176,11 @@ impl From<&BodyAfter> for BodyReport {
     fn from(after: &BodyAfter) -> Self {
         let size = |[x, y]: [f64; 2]| x.hypot(y);
         Self {
-            velocity_m_s: after.velocity_m_s,
-            speed_m_s: size(after.velocity_m_s),
+            velocity_m_s: after.velocity_world_m_s,
+            speed_m_s: size(after.velocity_world_m_s),
             yaw_rate_rad_s: after.yaw_rate_rad_s,
-            delta_v_m_s: after.delta_v_m_s,
-            delta_v_magnitude_m_s: size(after.delta_v_m_s),
+            delta_v_m_s: after.delta_v_world_m_s,
+            delta_v_magnitude_m_s: size(after.delta_v_world_m_s),
             delta_yaw_rate_rad_s: after.delta_yaw_rate_rad_s,
             pdof_deg: after.pdof.map(PrincipalDirectionOfForce::angle_deg),
             pdof_clock: after.pdof.map(PrincipalDirectionOfForce::clock),

@@ -50,9 +50,9 @@ impl Default for Nose {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SkinElement {
     /// Position of its middle in body axes of the bullet, m.
-    pub position_m: [f64; 2],
+    pub position_body_m: [f64; 2],
     /// Outward unit normal in body axes of the bullet.
-    pub normal: [f64; 2],
+    pub normal_body: [f64; 2],
     /// Length of the element along the outline, m.
     pub length_m: f64,
     /// Factor on the stiffness of the skins.
@@ -120,8 +120,11 @@ impl Nose {
             if i < N_SIDE {
                 let behind = N_SIDE as f64 - middle(i);
                 SkinElement {
-                    position_m: [self.corner_x_m - STRAIGHT_ELEMENT_M * behind, self.half_width_m],
-                    normal: [0.0, 1.0],
+                    position_body_m: [
+                        self.corner_x_m - STRAIGHT_ELEMENT_M * behind,
+                        self.half_width_m,
+                    ],
+                    normal_body: [0.0, 1.0],
                     length_m: STRAIGHT_ELEMENT_M,
                     factor: between(0, middle(i) / N_SIDE as f64),
                 }
@@ -130,8 +133,8 @@ impl Nose {
                 let slope = FRONT_SLOPE * share;
                 let length = slope.hypot(1.0);
                 SkinElement {
-                    position_m: self.corner_point_m(slope),
-                    normal: [slope / length, 1.0 / length],
+                    position_body_m: self.corner_point_m(slope),
+                    normal_body: [slope / length, 1.0 / length],
                     length_m: self.radius_m * FRONT_SLOPE / N_CORNER as f64 * length,
                     factor: if share < 0.5 {
                         between(1, 2.0 * share)
@@ -143,8 +146,8 @@ impl Nose {
                 let inwards = middle(i - N_SIDE - N_CORNER);
                 let [x, y] = self.corner_point_m(FRONT_SLOPE);
                 SkinElement {
-                    position_m: [x, y - STRAIGHT_ELEMENT_M * inwards],
-                    normal: [1.0, 0.0],
+                    position_body_m: [x, y - STRAIGHT_ELEMENT_M * inwards],
+                    normal_body: [1.0, 0.0],
                     length_m: STRAIGHT_ELEMENT_M,
                     factor: between(3, inwards / N_FRONT as f64),
                 }
@@ -175,11 +178,11 @@ mod tests {
         let nose = Nose::default();
         let elements = nose.elements(&[0.0; N_OUTLINE_FACTORS]);
         for pair in elements.windows(2) {
-            let [[x0, y0], [x1, y1]] = [pair[0].position_m, pair[1].position_m];
+            let [[x0, y0], [x1, y1]] = [pair[0].position_body_m, pair[1].position_body_m];
             assert!(x1 >= x0 - 1e-12 && y1 <= y0 + 1e-12, "{pair:?}");
         }
         for element in elements {
-            assert!((element.normal[0].hypot(element.normal[1]) - 1.0).abs() < 1e-12);
+            assert!((element.normal_body[0].hypot(element.normal_body[1]) - 1.0).abs() < 1e-12);
             assert_eq!(element.factor, 1.0);
         }
     }

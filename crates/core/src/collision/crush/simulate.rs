@@ -169,7 +169,7 @@ impl<'a> Springs<'a> {
                 + law.structure_depth_angle_m_rad * angle
         });
         let structure_m = elements.map(|element| {
-            let along = element.position_m[0] - body.nose.corner_x_m;
+            let along = element.position_body_m[0] - body.nose.corner_x_m;
             linear(&STRIKING_STRUCTURE_KNOTS_M, &depth, along)
         });
         let slope: [f64; DEPTH_KNOTS_M.len()] =
@@ -225,7 +225,7 @@ impl<'a> Springs<'a> {
         let mut sum = CrushContact { depth_m: f64::NEG_INFINITY, ..CrushContact::default() };
         for i in 0..N_ELEMENTS {
             let element = self.elements[i];
-            let arm_striking = turned(turn_striking, element.position_m);
+            let arm_striking = turned(turn_striking, element.position_body_m);
             let arm_struck: [f64; 2] = std::array::from_fn(|a| {
                 striking.position_m[a] + arm_striking[a] - struck.position_m[a]
             });
@@ -258,7 +258,8 @@ impl<'a> Springs<'a> {
             let damping = (1.0 + self.law.damping_s_m * velocity[1]).max(0.0);
             let normal_force = total * element.length_m * damping;
             let deepest = self.greatest_depth_m[i] - REFERENCE_DEPTH_M;
-            let normal = self.normal(turned(turn_between, element.normal), [deepest, place, share]);
+            let normal =
+                self.normal(turned(turn_between, element.normal_body), [deepest, place, share]);
             let slip = velocity[0] * normal[1] - velocity[1] * normal[0];
             let friction = self.friction([deepest, share], slip);
             let local = [

@@ -92,9 +92,9 @@ impl ForceScenario {
         let (struck, striking) = (&scenario.struck, &scenario.striking);
         let (sin, cos) = struck.heading_rad.sin_cos();
         let turned = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
-        let struck_velocity_m_s = turned([struck.vx_m_s, struck.vy_m_s]);
-        let striking_velocity_m_s = turned([striking.vx_m_s, striking.vy_m_s]);
-        let contact_m = geometry.struck.body_from_world(geometry.contact_point_m);
+        let struck_velocity_m_s = turned([struck.vx_world_m_s, struck.vy_world_m_s]);
+        let striking_velocity_m_s = turned([striking.vx_world_m_s, striking.vy_world_m_s]);
+        let contact_m = geometry.struck.body_from_world(geometry.contact_point_world_m);
         let theta_b_rad = wrap_angle_rad(striking.heading_rad - struck.heading_rad);
         let approach = striking_velocity_m_s[1] - struck_velocity_m_s[1];
         Ok(Self {
@@ -104,7 +104,7 @@ impl ForceScenario {
             theta_b_rad,
             side: struck_side(Some(contact_m[1]), theta_b_rad, approach),
             contact_m: Some(contact_m),
-            normal_rad: Some(wrap_angle_rad(geometry.normal_angle_rad - struck.heading_rad)),
+            normal_rad: Some(wrap_angle_rad(geometry.normal_angle_world_rad - struck.heading_rad)),
             striking_position_m: Some(
                 geometry.struck.body_from_world([geometry.striking.x_m, geometry.striking.y_m]),
             ),
@@ -284,15 +284,18 @@ pub(crate) mod tests {
         // Turn the whole scene by a quarter: nothing changes.
         let mut turned = scenario;
         let turn = |[x, y]: [f64; 2]| [-y, x];
-        [turned.struck_x_m, turned.struck_y_m] = turn([turned.struck_x_m, turned.struck_y_m]);
+        [turned.struck_x_world_m, turned.struck_y_world_m] =
+            turn([turned.struck_x_world_m, turned.struck_y_world_m]);
         for vehicle in [&mut turned.struck, &mut turned.striking] {
             vehicle.heading_rad += FRAC_PI_2;
-            [vehicle.vx_m_s, vehicle.vy_m_s] = turn([vehicle.vx_m_s, vehicle.vy_m_s]);
+            [vehicle.vx_world_m_s, vehicle.vy_world_m_s] =
+                turn([vehicle.vx_world_m_s, vehicle.vy_world_m_s]);
         }
-        if let ContactLocation::Footprints { striking_x_m, striking_y_m } =
+        if let ContactLocation::Footprints { striking_x_world_m, striking_y_world_m } =
             &mut turned.contact.location
         {
-            [*striking_x_m, *striking_y_m] = turn([*striking_x_m, *striking_y_m]);
+            [*striking_x_world_m, *striking_y_world_m] =
+                turn([*striking_x_world_m, *striking_y_world_m]);
         }
         let again = ForceScenario::from_scenario(&turned).unwrap();
         let numbers = |s: &ForceScenario| {
@@ -314,7 +317,8 @@ pub(crate) mod tests {
         let mean_error = |restitution, friction_limit| {
             let error = |case: &&ForceCase| {
                 let impact = case.scenario.impact(restitution, friction_limit).unwrap();
-                let ([px, py], [qx, qy]) = (impact.solve().unwrap().impulse_n_s, case.impulse_n_s);
+                let ([px, py], [qx, qy]) =
+                    (impact.solve().unwrap().impulse_world_n_s, case.impulse_n_s);
                 (px - qx).hypot(py - qy) / qx.hypot(qy)
             };
             train.iter().map(error).sum::<f64>() / train.len() as f64

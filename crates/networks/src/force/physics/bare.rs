@@ -94,13 +94,13 @@ impl BareForce {
         let known = ForceScenario { contact_m: Some(contact_m), ..scenario.clone() };
         let mut impact = MomentumModel { uses_contact: true, ..*momentum }.impact(&known);
         impact.surface = ContactSurface {
-            normal_angle_rad: scenario.normal_rad.unwrap_or(FRAC_PI_2),
+            normal_angle_world_rad: scenario.normal_rad.unwrap_or(FRAC_PI_2),
             restitution: DEFAULT_RESTITUTION,
             friction_limit: DEFAULT_FRICTION_LIMIT,
             ..impact.surface
         };
         if let Some([x, y]) = scenario.striking_position_m {
-            impact.striking.contact_arm_m = [contact_m[0] - x, contact_m[1] - y];
+            impact.striking.contact_arm_world_m = [contact_m[0] - x, contact_m[1] - y];
         }
         for (body, inertia) in
             [&mut impact.struck, &mut impact.striking].into_iter().zip(scenario.yaw_inertia_kg_m2)
@@ -110,7 +110,7 @@ impl BareForce {
         let solution = impact.solve()?;
         Ok(Self {
             impact,
-            impulse_n_s: solution.impulse_n_s,
+            impulse_n_s: solution.impulse_world_n_s,
             is_approaching: solution.regime != Regime::NotApproaching,
             length_s: LENGTH_OVER_DURATION * duration_s.max(CURVE_INTERVAL_S),
         })

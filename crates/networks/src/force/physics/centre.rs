@@ -322,7 +322,7 @@ impl CentreModel {
                 mean_history(laws, &crush_scenario(scenario, contact_m, body_idx))
             }
             Centre::Momentum => {
-                let momentum = self.impact(scenario, contact_m).solve()?.impulse_n_s;
+                let momentum = self.impact(scenario, contact_m).solve()?.impulse_world_n_s;
                 CentreHistory::without_contact(self.pulse(momentum))
             }
             Centre::None => CentreHistory::without_contact(self.nothing()),
@@ -350,7 +350,7 @@ impl CentreModel {
                 true => curve.impulse_n_s(),
                 false => [0.0, self.peak_n * self.duration_s / 2.0],
             },
-            momentum_impulse_n_s: impact.solve()?.impulse_n_s,
+            momentum_impulse_n_s: impact.solve()?.impulse_world_n_s,
             scale_n: if has_force { curve.peak().0.max(1.0) } else { self.peak_n },
             inverse_mass_1_kg: impact.inverse_mass_1_kg(),
             closing_velocity_m_s: impact.relative_velocity_m_s(),

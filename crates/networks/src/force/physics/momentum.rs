@@ -106,13 +106,13 @@ impl MomentumModel {
         let known = scenario.contact_m.filter(|_| self.uses_contact);
         let (sin, cos) = scenario.theta_b_rad.sin_cos();
         let [x, y] = self.striking_arm_m;
-        let body = |i: usize, heading_rad, velocity_m_s, contact_arm_m| ImpactBody {
+        let body = |i: usize, heading_rad, velocity_world_m_s, contact_arm_world_m| ImpactBody {
             mass_kg: scenario.mass_kg[i],
             yaw_inertia_kg_m2: self.inertia_per_mass_m2[i] * scenario.mass_kg[i],
             heading_rad,
-            velocity_m_s,
+            velocity_world_m_s,
             yaw_rate_rad_s: 0.0,
-            contact_arm_m,
+            contact_arm_world_m,
         };
         let striking_arm = [x * cos - y * sin, x * sin + y * cos];
         let (v_t, v_b) = (scenario.struck_velocity_m_s, scenario.striking_velocity_m_s);
@@ -120,7 +120,7 @@ impl MomentumModel {
             struck: body(0, 0.0, v_t, known.unwrap_or(self.contact_m)),
             striking: body(1, scenario.theta_b_rad, v_b, striking_arm),
             surface: ContactSurface {
-                normal_angle_rad: FRAC_PI_2 + self.normal_turn_rad,
+                normal_angle_world_rad: FRAC_PI_2 + self.normal_turn_rad,
                 restitution: self.restitution,
                 restitution_form: RestitutionForm::Normal,
                 friction_limit: self.friction_limit,
@@ -142,7 +142,7 @@ impl MomentumModel {
         let error = |case: &&ForceCase| {
             let [px, py] = case.impulse_n_s;
             self.solve(&case.scenario).map_or(f64::INFINITY, |solution| {
-                let [qx, qy] = solution.impulse_n_s;
+                let [qx, qy] = solution.impulse_world_n_s;
                 (qx - px).hypot(qy - py) / px.hypot(py)
             })
         };
@@ -204,7 +204,7 @@ mod tests {
         let truth = MomentumModel { restitution: 0.2, ..MomentumModel::prior(true) };
         let mut cases = shipped("fea");
         for case in &mut cases {
-            case.impulse_n_s = truth.solve(&case.scenario).unwrap().impulse_n_s;
+            case.impulse_n_s = truth.solve(&case.scenario).unwrap().impulse_world_n_s;
             case.scenario.striking_position_m = None;
             case.scenario.yaw_inertia_kg_m2 = [None; 2];
         }

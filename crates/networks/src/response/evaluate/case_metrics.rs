@@ -113,7 +113,7 @@ fn unmeasured() -> f64 {
 /// recording as it ends, until the vehicle rests.
 fn rest_error_m(model: &MotionModel, case: &ResponseCase) -> Result<Option<f64>, LearningError> {
     let is_at_rest = |state: &&VehicleState<f64>| {
-        state.vx_m_s.hypot(state.vy_m_s) < REST_SPEED_M_S
+        state.vx_body_m_s.hypot(state.vy_body_m_s) < REST_SPEED_M_S
             && state.yaw_rate_rad_s.abs() < REST_YAW_RATE_RAD_S
     };
     let (Some(end), Some(last)) = (case.states.last().filter(is_at_rest), case.inputs.last())
@@ -145,8 +145,8 @@ fn infinite() -> MotionError {
         horizon_error_m: [f64::INFINITY; 4],
         rmse_x_m: f64::INFINITY,
         rmse_y_m: f64::INFINITY,
-        rmse_vx_m_s: Some(f64::INFINITY),
-        rmse_vy_m_s: Some(f64::INFINITY),
+        rmse_vx_body_m_s: Some(f64::INFINITY),
+        rmse_vy_body_m_s: Some(f64::INFINITY),
         rmse_yaw_rate_rad_s: Some(f64::INFINITY),
     }
 }

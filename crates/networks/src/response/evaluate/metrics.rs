@@ -153,8 +153,8 @@ impl MotionMetrics {
             rmse: RootMeanSquares {
                 x_m: over(&|case| case.error.rmse_x_m),
                 y_m: over(&|case| case.error.rmse_y_m),
-                vx_km_h: over(&|case| known(case.error.rmse_vx_m_s) * KM_H_PER_M_S),
-                vy_km_h: over(&|case| known(case.error.rmse_vy_m_s) * KM_H_PER_M_S),
+                vx_km_h: over(&|case| known(case.error.rmse_vx_body_m_s) * KM_H_PER_M_S),
+                vy_km_h: over(&|case| known(case.error.rmse_vy_body_m_s) * KM_H_PER_M_S),
                 yaw_rate_deg_s: over(&|case| known(case.error.rmse_yaw_rate_rad_s).to_degrees()),
             },
             final_heading_error_deg: over(&|case| {

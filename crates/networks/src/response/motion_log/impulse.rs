@@ -56,7 +56,7 @@ pub(super) fn estimated_load(
 }
 
 fn world_rates(state: &VehicleState<f64>) -> [f64; 3] {
-    let [vx, vy] = world_from_body(state.yaw_rad, [state.vx_m_s, state.vy_m_s]);
+    let [vx, vy] = world_from_body(state.yaw_rad, [state.vx_body_m_s, state.vy_body_m_s]);
     [vx, vy, state.yaw_rate_rad_s]
 }
 
@@ -69,7 +69,8 @@ fn load(
         |impulse| Pulse::new(PulseShape::Haversine, impulse, 0.0, duration_s)?.to_history(SAMPLE_S);
     let mut force = history(impulse_n_s)?;
     force.mz_n_m = Some(history([angular_n_m_s, 0.0])?.fx_n);
-    let contact = ContactPoint { x_m: 0.0, y_m: 0.0, height_m: vehicle.geometry.cg_height_m };
+    let contact =
+        ContactPoint { x_body_m: 0.0, y_body_m: 0.0, height_m: vehicle.geometry.cg_height_m };
     Ok(ContactLoad { force, contact, recorded_moment: true })
 }
 

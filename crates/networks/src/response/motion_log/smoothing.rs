@@ -145,11 +145,11 @@ fn states(headings: &[Vec<TrackPoint>], places: &[Vec<TrackPoint>]) -> Vec<Vehic
     let [x, y] = places else { return Vec::new() };
     let state = |((yaw, x), y): ((&TrackPoint, &TrackPoint), &TrackPoint)| {
         let [yaw_rad, yaw_rate_rad_s, _] = yaw.mean;
-        let [vx_m_s, vy_m_s] = body_from_world(yaw_rad, [x.mean[1], y.mean[1]]);
+        let [vx_body_m_s, vy_body_m_s] = body_from_world(yaw_rad, [x.mean[1], y.mean[1]]);
         let (x_m, y_m) = (x.mean[0], y.mean[0]);
         VehicleState {
-            vx_m_s,
-            vy_m_s,
+            vx_body_m_s,
+            vy_body_m_s,
             yaw_rad,
             yaw_rate_rad_s,
             x_m,

@@ -27,7 +27,7 @@ fn truth_vehicle() -> VehicleParameters {
 /// A right rear quarter struck to the left.
 fn load() -> ContactLoad {
     let pulse = Pulse::new(PulseShape::HalfSine, [15.0, 120.0], CONTACT_S, 0.09).unwrap();
-    let contact = ContactPoint { x_m: -0.7, y_m: -0.3, height_m: 0.126 };
+    let contact = ContactPoint { x_body_m: -0.7, y_body_m: -0.3, height_m: 0.126 };
     ContactLoad { force: pulse.to_history(1e-3).unwrap(), contact, recorded_moment: false }
 }
 
@@ -84,7 +84,8 @@ fn errors(found: &LoggedImpact, motion: &TimeSeries) -> [f64; 4] {
         let time_s = found.start_s + 0.01 * i as f64;
         let off = |channel, value: f64| (value - at(channel, time_s)).powi(2);
         squares[0] += (off(Channel::X, state.x_m) + off(Channel::Y, state.y_m)) / 2.0;
-        squares[1] += (off(Channel::Vx, state.vx_m_s) + off(Channel::Vy, state.vy_m_s)) / 2.0;
+        squares[1] +=
+            (off(Channel::Vx, state.vx_body_m_s) + off(Channel::Vy, state.vy_body_m_s)) / 2.0;
         squares[2] += off(Channel::Yaw, state.yaw_rad);
         squares[3] += off(Channel::YawRate, state.yaw_rate_rad_s);
     }

@@ -66,8 +66,8 @@ impl OneStepData {
                 let next: &VehicleState<f64> = next;
                 let plain = correction.step(motion.centre, x, u, [0.0; N_RESIDUAL]);
                 let difference = [
-                    next.vx_m_s - plain.vx_m_s,
-                    next.vy_m_s - plain.vy_m_s,
+                    next.vx_body_m_s - plain.vx_body_m_s,
+                    next.vy_body_m_s - plain.vy_body_m_s,
                     next.yaw_rate_rad_s - plain.yaw_rate_rad_s,
                     next.roll_rate_rad_s - plain.roll_rate_rad_s,
                 ];

@@ -85,8 +85,8 @@ impl Axle {
         loads_n: [T; 2],
     ) -> AxleForces<T> {
         let load_n = loads_n[0] + loads_n[1];
-        let u = x.vx_m_s;
-        let w = x.vy_m_s + x.yaw_rate_rad_s * self.arm_m;
+        let u = x.vx_body_m_s;
+        let w = x.vy_body_m_s + x.yaw_rate_rad_s * self.arm_m;
         let slope = w / (u.abs() + SLOW_M_S);
         let slip_rad = -slope.atan();
         let grip_n = load_n * self.friction;
@@ -171,9 +171,9 @@ impl Axle {
         load_n: T,
     ) -> T {
         let rate = &now.derivative;
-        let across = rate.vy_m_s + rate.yaw_rate_rad_s * self.arm_m;
+        let across = rate.vy_body_m_s + rate.yaw_rate_rad_s * self.arm_m;
         let speed_squared = u * u + w * w + SLOW_M_S * SLOW_M_S;
-        let turning = -(across * u.abs() - w * rate.vx_m_s * sign(u)) / speed_squared;
+        let turning = -(across * u.abs() - w * rate.vx_body_m_s * sign(u)) / speed_squared;
         let stiffness = slip_rad * (self.cornering_coefficient / self.friction);
         let flattening = stiffness * stiffness + 1.0;
         let slope = load_n * self.cornering_coefficient / (flattening * flattening.sqrt());

@@ -155,15 +155,15 @@ impl EffectModel {
     ) -> EffectAmounts<T> {
         let [fl, fr, rl, rr] = now.vertical_loads_n;
         let [front, rear] = &self.axles;
-        let [fx, fy] = now.collision_force_n;
+        let [fx, fy] = now.collision_force_body_n;
         let (fx, fy) = (fx / self.mass_kg, fy / self.mass_kg);
         let struck_yaw = now.collision_yaw_moment_n_m / self.yaw_inertia_kg_m2;
         let rate = &now.derivative;
         let mut body = [fx; BodyEffect::COUNT];
-        body[BodyEffect::WheelInertia as usize] = -rate.vx_m_s * 0.05;
+        body[BodyEffect::WheelInertia as usize] = -rate.vx_body_m_s * 0.05;
         body[BodyEffect::RollAngle as usize] = x.roll_rad * 100.0;
         body[BodyEffect::RollRate as usize] = x.roll_rate_rad_s * 10.0;
-        body[BodyEffect::LateralAccelerationRoll as usize] = now.acceleration_m_s2[1];
+        body[BodyEffect::LateralAccelerationRoll as usize] = now.acceleration_body_m_s2[1];
         body[BodyEffect::CollisionRoll as usize] = fy;
         body[BodyEffect::CollisionLongitudinal as usize] = fx * COLLISION_SCALE;
         body[BodyEffect::CollisionLateral as usize] = fy * COLLISION_SCALE;
@@ -294,8 +294,8 @@ mod tests {
 
     fn state(signs: f64) -> VehicleState<f64> {
         VehicleState {
-            vx_m_s: 12.0,
-            vy_m_s: 3.0 * signs,
+            vx_body_m_s: 12.0,
+            vy_body_m_s: 3.0 * signs,
             yaw_rate_rad_s: -1.7 * signs,
             roll_rad: 0.02 * signs,
             roll_rate_rad_s: -0.1 * signs,

@@ -119,8 +119,13 @@ mod tests {
     fn what_is_seen_at_one_slip_angle_counts_at_all_where_strengths_change_together() {
         let vehicle = Preset::ScaledStruck.parameters();
         let u = VehicleInput::released();
-        let at = |vy_m_s: f64, yaw_rate_rad_s: f64| {
-            let x = VehicleState { vx_m_s: 6.0, vy_m_s, yaw_rate_rad_s, ..VehicleState::default() };
+        let at = |vy_body_m_s: f64, yaw_rate_rad_s: f64| {
+            let x = VehicleState {
+                vx_body_m_s: 6.0,
+                vy_body_m_s,
+                yaw_rate_rad_s,
+                ..VehicleState::default()
+            };
             effects(&vehicle, &x, &vehicle.evaluate(&x, &u))
         };
         // Side force lower by a fifth of the friction; seen at small slip angles alone.
@@ -147,8 +152,8 @@ mod tests {
         let at = |i: usize| {
             let i = i as f64;
             let x = VehicleState {
-                vx_m_s: 15.0 * (0.7 * i).cos() + 5.0,
-                vy_m_s: 9.0 * (1.3 * i).sin(),
+                vx_body_m_s: 15.0 * (0.7 * i).cos() + 5.0,
+                vy_body_m_s: 9.0 * (1.3 * i).sin(),
                 yaw_rate_rad_s: 1.5 * (2.1 * i).sin(),
                 roll_rad: 0.05 * (0.9 * i).sin(),
                 roll_rate_rad_s: 0.3 * (1.7 * i).cos(),

@@ -65,16 +65,17 @@ pub(crate) fn features_of<T: Lanes>(
     now: &VehicleEvaluation<T>,
     time_s: f64,
 ) -> [T; N_FEATURES] {
-    let (rate, [ax, ay]) = (&now.derivative, now.acceleration_m_s2);
-    let [fx, fy] = now.collision_force_n;
+    let (rate, [ax, ay]) = (&now.derivative, now.acceleration_body_m_s2);
+    let [fx, fy] = now.collision_force_body_n;
     let (mass, geometry) = (&vehicle.mass, &vehicle.geometry);
-    let speed = (x.vx_m_s * x.vx_m_s + x.vy_m_s * x.vy_m_s + 1e-12).sqrt() + SLOW_M_S;
-    let along = x.vx_m_s.abs() + SLOW_M_S;
-    let front = x.vy_m_s + x.yaw_rate_rad_s * geometry.cg_to_front_axle_m;
-    let rear = x.vy_m_s - x.yaw_rate_rad_s * geometry.cg_to_rear_axle_m;
+    let speed =
+        (x.vx_body_m_s * x.vx_body_m_s + x.vy_body_m_s * x.vy_body_m_s + 1e-12).sqrt() + SLOW_M_S;
+    let along = x.vx_body_m_s.abs() + SLOW_M_S;
+    let front = x.vy_body_m_s + x.yaw_rate_rad_s * geometry.cg_to_front_axle_m;
+    let rear = x.vy_body_m_s - x.yaw_rate_rad_s * geometry.cg_to_rear_axle_m;
     [
-        x.vx_m_s / VX_UNIT_M_S,
-        x.vy_m_s / VY_UNIT_M_S,
+        x.vx_body_m_s / VX_UNIT_M_S,
+        x.vy_body_m_s / VY_UNIT_M_S,
         x.yaw_rate_rad_s / YAW_RATE_UNIT_RAD_S,
         x.roll_rate_rad_s / ROLL_RATE_UNIT_RAD_S,
         x.roll_rad / ROLL_UNIT_RAD,
@@ -83,14 +84,14 @@ pub(crate) fn features_of<T: Lanes>(
         now.collision_yaw_moment_n_m / (mass.yaw_inertia_kg_m2 * ANGULAR_UNIT_RAD_S2),
         front.atan_ratio(along),
         rear.atan_ratio(along),
-        rate.vx_m_s / RATE_UNIT_M_S2,
-        rate.vy_m_s / RATE_UNIT_M_S2,
+        rate.vx_body_m_s / RATE_UNIT_M_S2,
+        rate.vy_body_m_s / RATE_UNIT_M_S2,
         rate.yaw_rate_rad_s / ANGULAR_RATE_UNIT_RAD_S2,
         rate.roll_rate_rad_s / ANGULAR_RATE_UNIT_RAD_S2,
         ax / TIRE_UNIT_M_S2,
         ay / TIRE_UNIT_M_S2,
-        x.vx_m_s / speed,
-        x.vy_m_s / speed,
+        x.vx_body_m_s / speed,
+        x.vy_body_m_s / speed,
         along.constant((-time_s / TRANSIENT_S).exp()),
         along.constant(time_s / HORIZON_S),
     ]
@@ -105,15 +106,15 @@ mod tests {
     fn mirrored_motion_has_mirrored_features() {
         let vehicle = Preset::Reference.parameters();
         let x = VehicleState {
-            vx_m_s: 12.0,
-            vy_m_s: 3.0,
+            vx_body_m_s: 12.0,
+            vy_body_m_s: 3.0,
             yaw_rate_rad_s: 0.7,
             roll_rad: 0.02,
             roll_rate_rad_s: -0.1,
             ..VehicleState::default()
         };
         let mirrored = VehicleState {
-            vy_m_s: -3.0,
+            vy_body_m_s: -3.0,
             yaw_rate_rad_s: -0.7,
             roll_rad: -0.02,
             roll_rate_rad_s: 0.1,

@@ -20,8 +20,8 @@ pub fn motion_series(
         (Channel::Y, of(|x| x.y_m)),
         (Channel::Yaw, of(|x| x.yaw_rad)),
         (Channel::Roll, of(|x| x.roll_rad)),
-        (Channel::Vx, of(|x| x.vx_m_s)),
-        (Channel::Vy, of(|x| x.vy_m_s)),
+        (Channel::Vx, of(|x| x.vx_body_m_s)),
+        (Channel::Vy, of(|x| x.vy_body_m_s)),
         (Channel::YawRate, of(|x| x.yaw_rate_rad_s)),
         (Channel::RollRate, of(|x| x.roll_rate_rad_s)),
     ];

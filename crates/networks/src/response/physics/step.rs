@@ -84,11 +84,11 @@ impl Correction {
         match self {
             Self::Acceleration => step_from(model, (x, u, now), value),
             Self::StateOffset => {
-                let none = [x.vx_m_s.constant(0.0); N_RESIDUAL];
+                let none = [x.vx_body_m_s.constant(0.0); N_RESIDUAL];
                 let mut next = step_from(model, (x, u, now), none);
                 let [vx, vy, yaw, roll] = value;
-                next.vx_m_s += vx;
-                next.vy_m_s += vy;
+                next.vx_body_m_s += vx;
+                next.vy_body_m_s += vy;
                 next.yaw_rate_rad_s += yaw;
                 next.roll_rate_rad_s += roll;
                 next
@@ -155,8 +155,8 @@ fn with_residual<T: Lanes>(
     [ax, ay, yaw, roll]: [T; N_RESIDUAL],
 ) -> [T; N_STATE] {
     let mut rate = VehicleState::from_array(derivative);
-    rate.vx_m_s += ax;
-    rate.vy_m_s += ay;
+    rate.vx_body_m_s += ax;
+    rate.vy_body_m_s += ay;
     rate.yaw_rate_rad_s += yaw;
     rate.roll_rate_rad_s += roll;
     rate.to_array()
@@ -171,8 +171,8 @@ fn without_energy_gain<P: Copy, T: Lanes + LanesOver<P>>(
     let (old, new) = (constants.planar_energy_j(before), constants.planar_energy_j(&after));
     if old.any_less(new) {
         let share = old.if_less(new, (old / new).sqrt(), old.constant(1.0));
-        after.vx_m_s *= share;
-        after.vy_m_s *= share;
+        after.vx_body_m_s *= share;
+        after.vy_body_m_s *= share;
         after.yaw_rate_rad_s *= share;
     }
     after
@@ -212,8 +212,8 @@ mod tests {
         }
     }
 
-    fn state(vx_m_s: f64, vy_m_s: f64, yaw_rate_rad_s: f64) -> VehicleState<f64> {
-        VehicleState { vx_m_s, vy_m_s, yaw_rate_rad_s, ..VehicleState::default() }
+    fn state(vx_body_m_s: f64, vy_body_m_s: f64, yaw_rate_rad_s: f64) -> VehicleState<f64> {
+        VehicleState { vx_body_m_s, vy_body_m_s, yaw_rate_rad_s, ..VehicleState::default() }
     }
 
     #[test]
@@ -222,7 +222,10 @@ mod tests {
         let (x, u) = (state(20.0, 0.0, 0.0), VehicleInput::released());
         let plain = step(&vehicle, &x, &u, [0.0; 4]);
         let pushed = step(&vehicle, &x, &u, [-2.0, 0.0, 0.0, 0.0]);
-        assert!((pushed.vx_m_s - plain.vx_m_s + 0.02).abs() < 1e-5, "{pushed:?} {plain:?}");
+        assert!(
+            (pushed.vx_body_m_s - plain.vx_body_m_s + 0.02).abs() < 1e-5,
+            "{pushed:?} {plain:?}"
+        );
     }
 
     /// A car whose planar motion stands still has no energy there, so that the step takes away what
@@ -280,7 +283,7 @@ mod tests {
             a in prop::array::uniform4(-10.0..10.0),
         ) {
             let vehicle = Preset::Reference.parameters();
-            let contact = ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.5 };
+            let contact = ContactPoint { x_body_m: -1.5, y_body_m: -0.9, height_m: 0.5 };
             let collision = push_n.map(|force_n| CollisionForce {
                 force_n, in_world_axes: true, yaw_moment_n_m: None, contact,
             });
@@ -308,8 +311,8 @@ mod tests {
             let next = step(&vehicle, &state(vx, vy, r), &u, a);
             let mirrored: [f64; 4] = std::array::from_fn(|i| a[i] * RESIDUAL_MIRROR[i]);
             let other = step(&vehicle, &state(vx, -vy, -r), &u, mirrored);
-            prop_assert!((next.vx_m_s - other.vx_m_s).abs() < 1e-9);
-            prop_assert!((next.vy_m_s + other.vy_m_s).abs() < 1e-9);
+            prop_assert!((next.vx_body_m_s - other.vx_body_m_s).abs() < 1e-9);
+            prop_assert!((next.vy_body_m_s + other.vy_body_m_s).abs() < 1e-9);
             prop_assert!((next.yaw_rate_rad_s + other.yaw_rate_rad_s).abs() < 1e-9);
         }
     }

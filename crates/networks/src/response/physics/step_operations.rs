@@ -221,7 +221,7 @@ pub(in crate::response) mod tests {
 
     pub(in crate::response) fn rows() -> Arc<Vec<StepRow>> {
         let vehicle = Arc::new(Preset::Reference.parameters());
-        let contact = ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.5 };
+        let contact = ContactPoint { x_body_m: -1.5, y_body_m: -0.9, height_m: 0.5 };
         let collision = CollisionForce {
             force_n: [1e3, 2e4],
             in_world_axes: true,

@@ -233,12 +233,12 @@ fn of_motion(
         let CollisionForce { force_n: [fx, fy], yaw_moment_n_m, contact, .. } = collision;
         impulse = [impulse[0] + fx * STEP_S, impulse[1] + fy * STEP_S];
         // In world axes the arm turns with the vehicle; over an impact that is little.
-        let moment = yaw_moment_n_m.unwrap_or(contact.x_m * fy - contact.y_m * fx);
+        let moment = yaw_moment_n_m.unwrap_or(contact.x_body_m * fy - contact.y_body_m * fx);
         spin += moment * STEP_S;
     }
     [
-        initial.vx_m_s.hypot(initial.vy_m_s),
-        initial.vy_m_s.abs(),
+        initial.vx_body_m_s.hypot(initial.vy_body_m_s),
+        initial.vy_body_m_s.abs(),
         initial.yaw_rate_rad_s.abs(),
         impulse[0].hypot(impulse[1]) / vehicle.mass.mass_kg,
         spin.abs() / vehicle.mass.yaw_inertia_kg_m2,

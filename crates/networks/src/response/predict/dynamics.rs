@@ -125,7 +125,7 @@ impl<'a> Dynamics<'a> {
         now: &VehicleEvaluation<T>,
     ) -> CorrectionTerms<T> {
         let amounts = self.effects.amounts(x, now);
-        let none = [x.vx_m_s.constant(0.0); N_RESIDUAL];
+        let none = [x.vx_body_m_s.constant(0.0); N_RESIDUAL];
         let mut terms = CorrectionTerms { value: none, by_latents: [none; N_LATENTS] };
         if let Some(known) = self.network.strengths(component) {
             terms.value = self.effects.combined(&amounts, known);

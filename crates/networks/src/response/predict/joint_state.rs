@@ -55,7 +55,7 @@ pub(super) fn turned(
 #[inline]
 pub(super) fn mean_of(x: &VehicleState<f64>, latents: &[f64; N_LATENTS]) -> Mean {
     let mut mean = Mean::zeros();
-    let state = [x.vx_m_s, x.vy_m_s, x.yaw_rate_rad_s, x.roll_rad, x.roll_rate_rad_s];
+    let state = [x.vx_body_m_s, x.vy_body_m_s, x.yaw_rate_rad_s, x.roll_rad, x.roll_rate_rad_s];
     for (slot, value) in mean.iter_mut().zip(state.iter().chain(latents)) {
         *slot = *value;
     }
@@ -69,8 +69,8 @@ pub(super) fn mean_of(x: &VehicleState<f64>, latents: &[f64; N_LATENTS]) -> Mean
 #[inline]
 pub(super) fn state_of(point: &Mean) -> VehicleState<f64> {
     VehicleState {
-        vx_m_s: point[0],
-        vy_m_s: point[1],
+        vx_body_m_s: point[0],
+        vy_body_m_s: point[1],
         yaw_rate_rad_s: point[2],
         roll_rad: point[3],
         roll_rate_rad_s: point[4],

@@ -307,8 +307,8 @@ fn path(
         let mut off = dynamics.noise(component, batch);
         noise(&mut off);
         let [vx, vy, yaw, roll] = off;
-        state.vx_m_s += vx;
-        state.vy_m_s += vy;
+        state.vx_body_m_s += vx;
+        state.vy_body_m_s += vy;
         state.yaw_rate_rad_s += yaw;
         state.roll_rate_rad_s += roll;
         states.push(state);

@@ -42,7 +42,7 @@ fn released(n: usize) -> Vec<VehicleInput<f64>> {
 }
 
 fn driving(yaw_rate_rad_s: f64) -> VehicleState<f64> {
-    VehicleState { yaw_rate_rad_s, vy_m_s: -1.0, ..VehicleState::driving_straight(22.0) }
+    VehicleState { yaw_rate_rad_s, vy_body_m_s: -1.0, ..VehicleState::driving_straight(22.0) }
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn with_a_certain_pose_it_is_the_papers_formula() {
     for component in &motion.components {
         let velocity: StateDistribution = component.states[1];
         let (sin, cos) = velocity.mean.yaw_rad.sin_cos();
-        let mean = SVector::<f64, 2>::new(velocity.mean.vx_m_s, velocity.mean.vy_m_s);
+        let mean = SVector::<f64, 2>::new(velocity.mean.vx_body_m_s, velocity.mean.vy_body_m_s);
         let p: SMatrix<f64, 2, 2> = velocity.covariance.fixed_view::<2, 2>(3, 3).into_owned();
         let turn = Matrix2::new(cos, -sin, sin, cos);
         let origin = Vector2::new(velocity.mean.x_m, velocity.mean.y_m);

@@ -135,8 +135,8 @@ fn follow(
         let at = (&state, u, time_s);
         state = dynamics.step((draw.component, &draw.latents), at, &mut batch);
         let [vx, vy, yaw, roll] = dynamics.noise(draw.component, &batch).map(|std| std * normal());
-        state.vx_m_s += vx;
-        state.vy_m_s += vy;
+        state.vx_body_m_s += vx;
+        state.vy_body_m_s += vy;
         state.yaw_rate_rad_s += yaw;
         state.roll_rate_rad_s += roll;
         states.push(state);

@@ -221,8 +221,8 @@ fn states(series: &TimeSeries) -> Result<Vec<VehicleState<f64>>, SeriesError> {
     let roll_rate = known(Channel::RollRate);
     Ok((0..n)
         .map(|i| VehicleState {
-            vx_m_s: vx[i],
-            vy_m_s: vy[i],
+            vx_body_m_s: vx[i],
+            vy_body_m_s: vy[i],
             yaw_rad: yaw[i],
             yaw_rate_rad_s: yaw_rate[i],
             roll_rad: roll[i],

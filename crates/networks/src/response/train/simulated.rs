@@ -38,10 +38,10 @@ impl ImpactRecord {
         contact_m: [f64; 2],
         force: ForceHistory,
     ) -> Self {
-        let [vx_m_s, vy_m_s] = velocity_m_s;
-        let [x_m, y_m] = contact_m;
-        let initial = VehicleState { vx_m_s, vy_m_s, ..VehicleState::default() };
-        let contact = ContactPoint { x_m, y_m, height_m: vehicle.geometry.cg_height_m };
+        let [vx_body_m_s, vy_body_m_s] = velocity_m_s;
+        let [x_body_m, y_body_m] = contact_m;
+        let initial = VehicleState { vx_body_m_s, vy_body_m_s, ..VehicleState::default() };
+        let contact = ContactPoint { x_body_m, y_body_m, height_m: vehicle.geometry.cg_height_m };
         let load = ContactLoad { force, contact, recorded_moment: false };
         let duration_s = N_STEPS as f64 * STEP_S;
         let manoeuvre =
@@ -100,7 +100,8 @@ pub(crate) fn simulate(
         let force = rng.random_range(FORCE_FACTOR[0]..FORCE_FACTOR[1]);
         let vehicle =
             if varies { varied(&record.vehicle, &mut rng) } else { record.vehicle.clone() };
-        let initial = VehicleState { vx_m_s: record.initial.vx_m_s * speed, ..record.initial };
+        let initial =
+            VehicleState { vx_body_m_s: record.initial.vx_body_m_s * speed, ..record.initial };
         let inputs: Vec<VehicleInput<f64>> =
             record.inputs.iter().map(|input| scaled(input, force)).collect();
         let states = rollout(&vehicle, initial, &inputs, |_, _| [0.0; N_RESIDUAL]);

@@ -71,7 +71,7 @@ impl MomentumReport {
             friction_limit: surface.friction_limit,
             critical_impulse_ratio: impact.critical_impulse_ratio(),
             regime: solution.regime,
-            impulse_n_s: turned(solution.impulse_n_s, -heading_rad),
+            impulse_n_s: turned(solution.impulse_world_n_s, -heading_rad),
         })
     }
 }
@@ -155,8 +155,8 @@ mod tests {
             let mut scenario = Scenario::example();
             for vehicle in [&mut scenario.struck, &mut scenario.striking] {
                 vehicle.heading_rad += quarter * FRAC_PI_2;
-                [vehicle.vx_m_s, vehicle.vy_m_s] =
-                    turned([vehicle.vx_m_s, vehicle.vy_m_s], quarter * FRAC_PI_2);
+                [vehicle.vx_world_m_s, vehicle.vy_world_m_s] =
+                    turned([vehicle.vx_world_m_s, vehicle.vy_world_m_s], quarter * FRAC_PI_2);
             }
             let numbers = ForceScenario::from_scenario(&scenario).unwrap();
             let prediction = model.predict(&numbers).unwrap();
@@ -166,7 +166,7 @@ mod tests {
             assert!((report.momentum.restitution - scenario.contact.restitution).abs() < 1e-12);
             impact.surface.restitution = report.restitution.median;
             impact.surface.friction_limit = report.impulse_ratio.median.abs();
-            let [x, y] = turned(impact.solve().unwrap().impulse_n_s, -heading_rad);
+            let [x, y] = turned(impact.solve().unwrap().impulse_world_n_s, -heading_rad);
             let [mean_x, mean_y] = [0, 1].map(|axis| prediction.mixture.impulse(axis).mean());
             let off = (x - mean_x).hypot(y - mean_y) / mean_x.hypot(mean_y);
             assert!(off < 0.05, "{off}: {report:?}");

@@ -309,7 +309,7 @@ fn given_force(
     let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling())
         .map_err(|source| StudyError::Series { path: path.to_owned(), source })?;
     // A recorded yaw moment acts about the CG: it does not say where another force acts.
-    let has_contact = [struck.contact.x_m, struck.contact.y_m] != [0.0; 2];
+    let has_contact = [struck.contact.x_body_m, struck.contact.y_body_m] != [0.0; 2];
     if force.mz_n_m.is_none() && !has_contact {
         return Err(StudyError::NoYawMoment { path: path.to_owned() });
     }

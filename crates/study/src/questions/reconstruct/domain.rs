@@ -188,7 +188,8 @@ mod tests {
     fn damage_lies_at_the_car_within_its_errors() {
         let mut evidence = spin();
         let check = |evidence: &Evidence| {
-            check_damage(&evidence.damage, &Cars::of(evidence, None, None)).map_err(|off| off.x_m)
+            check_damage(&evidence.damage, &Cars::of(evidence, None, None))
+                .map_err(|off| off.x_body_m)
         };
         assert_eq!(check(&evidence), Ok(()));
         evidence.damage.along_m.value = -8.0;

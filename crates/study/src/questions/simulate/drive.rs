@@ -88,7 +88,7 @@ impl Drive {
             None => None,
         };
         let initial = VehicleState {
-            vy_m_s: self.vy_m_s,
+            vy_body_m_s: self.vy_m_s,
             yaw_rate_rad_s: self.yaw_rate_rad_s,
             ..VehicleState::driving_straight(speed_m_s)
         };

@@ -16,7 +16,8 @@ use impactlab_core::ranges::{CONTACT_HEIGHT, PULSE_DURATION};
 use impactlab_core::vehicle::{ContactPoint, VehicleParameters};
 
 /// Where a force acts where nothing says it: the right rear quarter of a car, where a PIT begins.
-pub const ASSUMED_CONTACT: ContactPoint = ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.52 };
+pub const ASSUMED_CONTACT: ContactPoint =
+    ContactPoint { x_body_m: -1.5, y_body_m: -0.9, height_m: 0.52 };
 
 /// What drives a motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -144,7 +145,7 @@ pub(crate) fn acting_force(
     }
     if force.mz_n_m.is_some() {
         let height_m = vehicle.geometry.cg_height_m;
-        return (force, ContactPoint { x_m: 0.0, y_m: 0.0, height_m });
+        return (force, ContactPoint { x_body_m: 0.0, y_body_m: 0.0, height_m });
     }
     let reason = "the force has no yaw moment (mz) and nothing says where it acts; another point: \
                   --contact";

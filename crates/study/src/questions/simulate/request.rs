@@ -288,10 +288,12 @@ fn contact_of(
 /// Refuses a force that acts at a point far off the struck vehicle.
 fn refuse_contact_off_vehicle(analysis: &Analysis) -> Result<(), StudyError> {
     let Some(struck) = &analysis.struck else { return Ok(()) };
-    let ContactPoint { x_m, y_m, .. } = struck.contact;
-    analysis.footprint.check_contact([x_m, y_m]).map_err(|source| StudyError::ContactOffVehicle {
-        name: analysis.name.clone(),
-        vehicle: struck.vehicle.name.clone(),
-        source,
+    let ContactPoint { x_body_m, y_body_m, .. } = struck.contact;
+    analysis.footprint.check_contact([x_body_m, y_body_m]).map_err(|source| {
+        StudyError::ContactOffVehicle {
+            name: analysis.name.clone(),
+            vehicle: struck.vehicle.name.clone(),
+            source,
+        }
     })
 }

@@ -103,7 +103,7 @@ impl NearestBaseline {
 
 /// Size of the momentum solution's impulse, N s.
 fn impulse_n_s(momentum: &MomentumModel, scenario: &ForceScenario) -> Result<f64, CurveFitError> {
-    let [px, py] = momentum.solve(scenario)?.impulse_n_s;
+    let [px, py] = momentum.solve(scenario)?.impulse_world_n_s;
     Some(px.hypot(py)).filter(|impulse| *impulse > 0.0).ok_or(CurveFitError::NotApproaching)
 }
 

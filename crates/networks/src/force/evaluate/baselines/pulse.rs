@@ -87,7 +87,7 @@ impl PulseBaseline {
         let [from, to] = SHARES.map(|share| position_of_share(self.shape, share));
         let length_s = ln_between.exp() / (to - from);
         let start_s = (ln_first.exp() - TIME_FLOOR_S - from * length_s).max(0.0);
-        let impulse_n_s = self.momentum.solve(scenario)?.impulse_n_s;
+        let impulse_n_s = self.momentum.solve(scenario)?.impulse_world_n_s;
         let pulse = Pulse::new(self.shape, impulse_n_s, start_s, length_s)?;
         let curve = ForceCurve { duration_s: ln_duration.exp(), ..on_grid(&pulse) };
         Ok(CurvePrediction { impulse_n_s, ..CurvePrediction::of_curve(curve) })
@@ -134,7 +134,7 @@ mod tests {
         for case in &mut cases {
             let [vx, vy] = case.scenario.relative_velocity_m_s();
             let duration_s = 0.2 / (1.0 + vy) + 0.002 * vx;
-            let impulse = momentum.solve(&case.scenario).unwrap().impulse_n_s;
+            let impulse = momentum.solve(&case.scenario).unwrap().impulse_world_n_s;
             let pulse = Pulse::new(PulseShape::Triangle, impulse, 0.003, duration_s).unwrap();
             case.curve = ForceCurve { duration_s, ..on_grid(&pulse) };
             case.impulse_n_s = case.curve.impulse_n_s();

@@ -91,7 +91,7 @@ impl FeatureMap {
         scenario: &ForceScenario,
         solution: &ImpactSolution,
     ) -> Vec<f64> {
-        let [px, py] = solution.impulse_n_s;
+        let [px, py] = solution.impulse_world_n_s;
         let mut row = self.row(scenario);
         row.extend([px.hypot(py).max(f64::MIN_POSITIVE).ln(), px.atan2(py)]);
         row

@@ -76,7 +76,7 @@ fn row(
     scenario: &ForceScenario,
 ) -> Result<(Vec<f64>, [f64; 2]), CurveFitError> {
     let solution = momentum.solve(scenario)?;
-    if solution.impulse_n_s == [0.0; 2] {
+    if solution.impulse_world_n_s == [0.0; 2] {
         return Err(CurveFitError::NotApproaching);
     }
     let row = if with_impulse {
@@ -84,7 +84,7 @@ fn row(
     } else {
         features.row(scenario)
     };
-    Ok((row, solution.impulse_n_s))
+    Ok((row, solution.impulse_world_n_s))
 }
 
 /// Whether each case hooks or stays together.
