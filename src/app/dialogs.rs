@@ -16,10 +16,8 @@ use impactlab_document::report::ReportDocument;
 use impactlab_draw::film::Film;
 use impactlab_draw::scene::ScenePicture;
 use impactlab_reconstruct::evidence::Evidence;
+use impactlab_study::MODEL_ENDING;
 use impactlab_study::case_file::{CASE_ENDING, file_stem};
-
-/// File extension of model files.
-pub const MODEL_ENDING: &str = "safetensors";
 
 /// File extensions of site files and orthophotos.
 const GROUNDS: [&str; 6] = ["toml", "png", "jpg", "jpeg", "tif", "tiff"];

@@ -15,7 +15,7 @@ use impactlab_core::data::{Existing, Severity, write_atomically};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::{Job, Update};
 use impactlab_core::ranges::SITE_DISTANCE;
-use impactlab_core::site::{PixelMap, Site, is_picture_file};
+use impactlab_core::site::PixelMap;
 use impactlab_document::scene::LoadedGround;
 
 /// The site of a project.
@@ -124,12 +124,6 @@ impl GroundSession {
 }
 
 impl State {
-    /// Whether a path is opened as the ground of the scene.
-    pub(in crate::app) fn is_ground(path: &Path) -> bool {
-        let is_toml = path.extension().is_some_and(|ending| ending == "toml");
-        is_picture_file(path) || is_toml && Site::is_meant_by(path)
-    }
-
     /// Puts a site, or an orthophoto alone, below the scene.
     pub(in crate::app) fn open_ground(&mut self, path: PathBuf) {
         // A file that is opened again is read again, and an answer is of what it said before.

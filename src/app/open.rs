@@ -6,58 +6,72 @@ use egui::Context;
 
 use crate::app::case::Leaving;
 use crate::app::command::{ComparisonCommand, wake};
-use crate::app::dialogs::MODEL_ENDING;
 use crate::app::import::ImportDialog;
 use crate::app::network::Network;
 use crate::app::panes::Pane;
 use crate::app::source::{Content, Source};
 use crate::app::state::{State, Subject};
 use crate::app::workspaces::Workspace;
-use impactlab_core::collision::Scenario;
 use impactlab_core::data::{ColumnMap, Existing, Severity};
-use impactlab_core::error_chain;
-use impactlab_core::vehicle::VehicleParameters;
 use impactlab_networks::learning::ModelFile;
-use impactlab_networks::nn::kind_of_file;
 use impactlab_networks::response::ResponseModel;
-use impactlab_reconstruct::evidence::Evidence;
-use impactlab_study::VehicleChoice;
-use impactlab_study::case_file::is_case_file;
+use impactlab_study::{InputFile, InputKind, VehicleChoice};
 
 impl State {
-    /// Opens paths by their extension: `.impactlab` is a case, `.toml` a site, evidence, a vehicle or a
-    /// scenario, a picture an orthophoto, `.safetensors` a model and `.json` a comparison. Any other path is loaded as data; a folder
-    /// is shown in the Data workspace, where its cases are chosen.
+    /// Opens paths as what they hold: a case, a ground, evidence, a vehicle, a scenario, a model, a
+    /// comparison or data. A folder is shown in the Data workspace, where its cases are chosen.
     pub(super) fn open(&mut self, paths: Vec<PathBuf>, context: &Context) {
         for path in paths {
             // So that it leads there from every folder that the program is started in.
             let path = std::path::absolute(&path).unwrap_or(path);
-            if is_case_file(&path) {
-                self.leave(Leaving::Open(path), context);
-                continue;
+            match InputKind::from_path(&path) {
+                InputKind::Case => self.leave(Leaving::Open(path), context),
+                InputKind::Site | InputKind::Orthophoto => self.open_ground(path),
+                InputKind::Comparison => {
+                    self.compare(ComparisonCommand::Open(path), context);
+                    self.view.workspaces.show_pane(Pane::ModelComparison);
+                }
+                kind @ (InputKind::Evidence
+                | InputKind::Vehicle
+                | InputKind::Scenario
+                | InputKind::Network
+                | InputKind::Settings
+                | InputKind::UnknownToml) => self.open_file(path, kind),
+                InputKind::Dataset | InputKind::Folder | InputKind::Series => {
+                    if path.is_dir() && self.view.workspaces.shown == Workspace::Case {
+                        // Where a case of it is chosen.
+                        self.view.workspaces.shown = Workspace::Data;
+                    }
+                    self.session.shows_doors = false;
+                    self.load(path, None, context);
+                }
             }
-            if Self::is_ground(&path) {
-                self.open_ground(path);
-                continue;
+        }
+    }
+
+    /// Reads a small file and puts it into use. It is read on the window's thread.
+    fn open_file(&mut self, path: PathBuf, kind: InputKind) {
+        match InputFile::load_as(&path, kind) {
+            Ok(InputFile::Evidence(evidence)) => self.open_evidence(path, *evidence),
+            Ok(InputFile::Vehicle(vehicle)) => {
+                self.project.vehicle = VehicleChoice::File(path);
+                self.ask_again();
+                self.say(Severity::Info, format!("struck vehicle: {}", vehicle.name));
             }
-            if path.extension().is_some_and(|ending| ending == "toml") {
-                self.open_model(path);
-                continue;
+            Ok(InputFile::Scenario(scenario)) => {
+                self.project.scenario = *scenario;
+                self.select(Subject::Scenario);
             }
-            if path.extension().is_some_and(|ending| ending == MODEL_ENDING) {
-                self.open_trained(path);
-                continue;
+            Ok(InputFile::Network(kind)) if kind == ResponseModel::KIND.name => {
+                self.use_model(Network::Response, Some(path));
             }
-            if path.extension().is_some_and(|ending| ending == "json") {
-                self.compare(ComparisonCommand::Open(path), context);
-                self.view.workspaces.show_pane(Pane::ModelComparison);
-                continue;
+            // A file of an unknown kind goes to the loader as well, which reports what is wrong with it.
+            Ok(InputFile::Network(_)) => self.use_model(Network::Force, Some(path)),
+            Ok(_) => {
+                let text = format!("{}: {kind} is chosen where it is used", path.display());
+                self.say(Severity::Warning, text);
             }
-            if path.is_dir() && self.view.workspaces.shown == Workspace::Case {
-                self.view.workspaces.shown = Workspace::Data; // Where a case of it is chosen.
-            }
-            self.session.shows_doors = false;
-            self.load(path, None, context);
+            Err(error) => self.say(Severity::Error, error.to_string()),
         }
     }
 
@@ -142,19 +156,6 @@ impl State {
         session.response.forecast.drop_answer();
     }
 
-    /// Uses the model of a file for the network that the file's header names.
-    fn open_trained(&mut self, path: PathBuf) {
-        match kind_of_file(&path).as_deref() {
-            Ok(kind) if kind == ResponseModel::KIND.name => {
-                self.use_model(Network::Response, Some(path))
-            }
-            // A file of an unknown kind goes to the loader as well, which reports what is wrong
-            // with it.
-            Ok(_) => self.use_model(Network::Force, Some(path)),
-            Err(error) => self.say(Severity::Error, error_chain(error)),
-        }
-    }
-
     /// Uses the model of a file; `None` is the shipped one. A file is read again even if its model
     /// is in use already, and the forecasts that depend on it are asked again.
     pub(super) fn use_model(&mut self, network: Network, path: Option<PathBuf>) {
@@ -222,28 +223,6 @@ impl State {
             None => {}
             Some(Ok(path)) => self.say(Severity::Info, format!("{} written", path.display())),
             Some(Err(problem)) => self.say(Severity::Error, problem),
-        }
-    }
-
-    /// Reads a TOML file as evidence, as a vehicle or, if it is neither, as a scenario. The file is read on the
-    /// window's thread, because such files are small.
-    fn open_model(&mut self, path: PathBuf) {
-        if Evidence::is_meant_by(&path) {
-            self.open_evidence(path);
-            return;
-        }
-        if let Ok(vehicle) = VehicleParameters::load(&path) {
-            self.project.vehicle = VehicleChoice::File(path);
-            self.ask_again();
-            self.say(Severity::Info, format!("struck vehicle: {}", vehicle.name));
-            return;
-        }
-        match Scenario::load(&path) {
-            Ok(scenario) => {
-                self.project.scenario = scenario;
-                self.select(Subject::Scenario);
-            }
-            Err(error) => self.say(Severity::Error, error_chain(&error)),
         }
     }
 

@@ -5,17 +5,12 @@ use std::path::Path;
 use egui::{Context, Ui};
 
 use crate::app::command::{Command, ComparisonCommand, wake};
-use crate::app::dialogs::MODEL_ENDING;
 use crate::app::export;
 use crate::app::state::State;
-use impactlab_core::collision::Scenario;
 use impactlab_core::data::write::{MANIFEST_FILE, check_inputs};
 use impactlab_core::data::{DataError, Existing, Severity, write_atomically};
 use impactlab_core::error_chain;
-use impactlab_core::site::Site;
-use impactlab_core::vehicle::VehicleParameters;
-use impactlab_reconstruct::evidence::Evidence;
-use impactlab_study::case_file::is_case_file;
+use impactlab_study::InputKind;
 
 impl Command {
     /// The file or folder that the command writes; `None` for all other commands.
@@ -110,17 +105,16 @@ impl State {
     /// Refuses to write over a file that the case rests on. A document that is edited in the window, or a
     /// network, may go back to its own file.
     fn check_inputs(&self, command: &Command, path: &Path) -> Result<(), DataError> {
-        let is_own = match command {
-            Command::SaveScenario(_) => Scenario::load(path).is_ok(),
-            Command::SaveVehicle(..) => VehicleParameters::load(path).is_ok(),
-            Command::SaveEvidence(..) => Evidence::load(path).is_ok(),
-            Command::SaveSite(_) => Site::is_meant_by(path),
-            Command::SaveModel(..) | Command::SaveKept(..) => {
-                path.extension().is_some_and(|ending| ending == MODEL_ENDING)
-            }
-            Command::SaveCaseAs(_) => is_case_file(path),
-            _ => false,
+        let own = match command {
+            Command::SaveScenario(_) => Some(InputKind::Scenario),
+            Command::SaveVehicle(..) => Some(InputKind::Vehicle),
+            Command::SaveEvidence(..) => Some(InputKind::Evidence),
+            Command::SaveSite(_) => Some(InputKind::Site),
+            Command::SaveModel(..) | Command::SaveKept(..) => Some(InputKind::Network),
+            Command::SaveCaseAs(_) => Some(InputKind::Case),
+            _ => None,
         };
+        let is_own = own == Some(InputKind::from_path(path));
         if is_own { Ok(()) } else { check_inputs(path, &self.files_in_use()) }
     }
 

@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use crate::app::state::*;
-use crate::app::{Pane, Source, Workspace, Workspaces};
+use crate::app::{Command, Pane, Source, Workspace, Workspaces};
 use impactlab_core::collision::ChannelClass;
+use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 
 #[test]
@@ -47,4 +48,25 @@ fn a_damaged_or_foreign_save_is_not_read() {
     assert!(later.is_of_later_version(), "{later}");
     let earlier = error(&text.replace("\"version\":1", "\"version\":0"));
     assert!(!earlier.is_of_later_version(), "{earlier}");
+}
+
+/// A vehicle with a slip was reported as a bad scenario.
+#[test]
+fn a_file_that_cannot_be_opened_is_told_as_what_it_was_taken_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let vehicle = include_str!("../../assets/vehicles/target-2000.toml");
+    let evidence = include_str!("../../assets/examples/reconstruction.toml");
+    for (text, place, kind) in [
+        (vehicle.replace("friction = 0.8", "friction = -0.8"), "friction", "a vehicle"),
+        (evidence.replace("mass_kg = 1530", "mass_kg = -1"), "mass", "evidence"),
+        ("colour = 1\n".to_owned(), "is neither evidence", "a vehicle"),
+    ] {
+        let path = folder.path().join("file.toml");
+        std::fs::write(&path, text).unwrap();
+        let (mut state, context) = (State::default(), egui::Context::default());
+        state.apply(Command::Open(vec![path]), &context);
+        let message = state.session.messages.last().unwrap();
+        assert_eq!(message.severity, Severity::Error);
+        assert!(message.text.contains(place) && message.text.contains(kind), "{}", message.text);
+    }
 }

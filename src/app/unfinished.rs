@@ -12,7 +12,6 @@ use egui::Context;
 use serde::{Deserialize, Serialize};
 
 use crate::app::command::wake;
-use crate::app::dialogs::MODEL_ENDING;
 use crate::app::kept::{KeptError, NOTE_ENDING};
 use crate::app::network::Network;
 use crate::app::state::{Session, State};
@@ -25,6 +24,7 @@ use impactlab_core::jobs::Job;
 use impactlab_networks::force::FORCE_CHECKPOINT;
 use impactlab_networks::learning::{TrainingReport, stored_epochs};
 use impactlab_networks::response::RESPONSE_CHECKPOINT;
+use impactlab_study::MODEL_ENDING;
 use impactlab_study::{Request, TrainingOptions};
 
 /// Version of the format of notes.

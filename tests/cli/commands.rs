@@ -239,6 +239,50 @@ fn what_a_force_sample_stands_for_follows_from_the_columns() {
     assert_eq!(answer["force"]["sampling"], "instant");
 }
 
+/// The evidence that comes with the program was refused as a bad vehicle.
+#[test]
+fn check_recognises_every_kind_of_file_by_its_content() {
+    for (path, kind, name) in [
+        ("assets/examples/reconstruction.toml", "evidence", "example"),
+        ("assets/examples/pit.impactlab", "case", "pit"),
+        (SCENARIO, "scenario", "PIT, right rear quarter"),
+        ("assets/vehicles/target-2000.toml", "vehicle", "FEA target (2000 kg)"),
+        ("assets/models/force.safetensors", "network", "force"),
+        ("assets/models/response.toml", "settings", "response"),
+    ] {
+        let ran = impactlab(&["check", "--json", path]);
+        assert_eq!(ran.code, 0, "{path}: {}{}", ran.out, ran.err);
+        let model = &ran.json()["models"][0];
+        assert_eq!((&model["kind"], &model["name"]), (&kind.into(), &name.into()), "{path}");
+    }
+}
+
+#[test]
+fn check_says_what_a_bad_file_was_taken_for() {
+    let folder = TempDir::new().unwrap();
+    let shipped = |path: &str| fs::read_to_string(path).unwrap();
+    let evidence = shipped("assets/examples/reconstruction.toml");
+    let vehicle = shipped("assets/vehicles/target-2000.toml");
+    let scenario = shipped(SCENARIO);
+    for (text_of_file, kind, told) in [
+        (evidence.replace("mass_kg = 1530", "mass_kg = -1"), "evidence", "a reconstruction"),
+        (vehicle.replace("friction = 0.8", "friction = = 0.8"), "vehicle", "a vehicle"),
+        (scenario.replace("[contact]", "[contract]"), "scenario", "a scenario"),
+        (
+            "colour = \"red\"\n".to_owned(),
+            "unknown_toml",
+            "is neither evidence (struck_car, damage)",
+        ),
+    ] {
+        let file = write(&folder, "f.toml", &text_of_file);
+        let ran = impactlab(&["check", "--json", text(&file)]);
+        assert_eq!(ran.code, 1, "{kind}: {}", ran.out);
+        let problem = &ran.json()["problems"][0];
+        assert_eq!(problem["kind"], kind, "{problem}");
+        assert!(problem["message"].as_str().unwrap().contains(told), "{problem}");
+    }
+}
+
 #[test]
 fn check_says_impulse_peak_and_contact_of_a_force_file() {
     let folder = TempDir::new().unwrap();

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::app::dialogs::MODEL_ENDING;
 use crate::app::kept::entry::VERSION;
 use crate::app::kept::{KeptEntry, KeptError, KeptKind};
 use impactlab_core::data::write::FileDigest;
 use impactlab_core::data::{
     Existing, MAX_RESULTS_BYTES, list_folder, read_bytes, write_atomically,
 };
+use impactlab_study::MODEL_ENDING;
 
 /// The ending of notes.
 pub const NOTE_ENDING: &str = "note";

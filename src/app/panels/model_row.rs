@@ -4,11 +4,12 @@
 use egui::{RichText, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::{MODEL_ENDING, Purpose};
+use crate::app::dialogs::Purpose;
 use crate::app::model::ModelStatus;
 use crate::app::network::TrainedModel;
 use impactlab_core::data::Severity;
 use impactlab_draw::theme;
+use impactlab_study::MODEL_ENDING;
 use impactlab_study::ModelChoice;
 
 /// Draws the state of a network that has no model: a note while one is loaded, otherwise buttons to

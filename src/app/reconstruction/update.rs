@@ -140,15 +140,10 @@ impl State {
     }
 
     /// Opens an evidence file, or says what is wrong with it.
-    pub(in crate::app) fn open_evidence(&mut self, path: PathBuf) {
-        match Evidence::load(&path) {
-            Ok(evidence) => {
-                self.session.reconstruction.file =
-                    Some(ReadEvidence { path: path.clone(), evidence: Ok(evidence) });
-                self.take_evidence(EvidenceChoice::File(path));
-            }
-            Err(error) => self.say(Severity::Error, error_chain(&error)),
-        }
+    pub(in crate::app) fn open_evidence(&mut self, path: PathBuf, evidence: Evidence) {
+        self.session.reconstruction.file =
+            Some(ReadEvidence { path: path.clone(), evidence: Ok(evidence) });
+        self.take_evidence(EvidenceChoice::File(path));
     }
 
     /// Puts other evidence into the form, and shows it. An answer about the last one is not about it.

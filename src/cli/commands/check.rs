@@ -35,7 +35,7 @@ JSON: ok; datasets [{path, kind, n_cases, vehicle_file, columns [{name, channel,
   problems}]; files [{path, kind, n_samples, start_s, end_s, encoding, separator, decimal_comma,
   force_sampling, columns [{column, name, channel, unit, unit_is_stated}], force {axes, impulse_n_s
   [x, y], peak_n, peak_time_s, contact_s [s, s]}, notes, flags}];
-  models [{path, kind, name, contents}]; problems [{path, message, columns, map}]
+  models [{path, kind, name, contents}]; problems [{path, kind, message, columns, map}]
 
 Exit code 1 if anything cannot be read or has an error flag.";
 

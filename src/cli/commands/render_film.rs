@@ -14,8 +14,7 @@ use crate::cli::options::{
 };
 use impactlab_core::ranges::{FILM_RATE, FILM_SPEED, INSTANT, PICTURE_SCALE};
 use impactlab_document::scene::{FilmSection, FilmTiming, Scene};
-use impactlab_reconstruct::evidence::Evidence;
-use impactlab_study::{EvidenceChoice, ReconstructRequest};
+use impactlab_study::{EvidenceChoice, InputKind, ReconstructRequest};
 
 /// What is filmed, and how.
 #[derive(Debug, Args)]
@@ -141,7 +140,7 @@ fn reconstruction(
     let given = |options: &[(&'static str, bool)]| -> Option<&'static str> {
         options.iter().find(|(_, is_there)| *is_there).map(|(option, _)| *option)
     };
-    if !Evidence::is_meant_by(&path) {
+    if InputKind::from_path(&path) != InputKind::Evidence {
         let of_evidence = [
             ("--striking", striking.is_some()),
             ("--particles", particles.is_some()),

@@ -13,8 +13,8 @@ use impactlab_core::data::write_atomically;
 use impactlab_document::report::{
     Drawing, Language, Paper, ReportDate, ReportFormat, ReportSettings, report_case,
 };
-use impactlab_study::case_file::{CaseFile, Change, Variant, is_case_file};
-use impactlab_study::{EvidenceChoice, ReconstructRequest};
+use impactlab_study::case_file::{CaseFile, Change, Variant};
+use impactlab_study::{EvidenceChoice, InputKind, ReconstructRequest};
 
 /// Write the report of a case: answers, inputs, evidence, method, validity, sources
 #[derive(Debug, Args)]
@@ -146,7 +146,7 @@ impl ReportArgs {
     /// The case; of evidence alone, one that asks for its reconstruction.
     fn case(&self) -> Result<CaseFile, CliError> {
         let path = &self.case;
-        if is_case_file(path) {
+        if InputKind::from_path(path) == InputKind::Case {
             return match (self.particles, self.seed, &self.site) {
                 (None, None, None) => Ok(CaseFile::load(path)?),
                 _ => Err(CliError::ReportOfCase { path: path.clone() }),

@@ -8,7 +8,9 @@ use crate::cli::CliError;
 use impactlab_core::collision::SCENARIO_PRESETS;
 use impactlab_core::data::{ColumnMap, DataError, DatasetKind, FileKind};
 use impactlab_study::analysis::PulseSetup;
-use impactlab_study::{Drive, Library, MotionSource, ScenarioChoice, SeriesFile, StudyError};
+use impactlab_study::{
+    Drive, InputKind, Library, MotionSource, ScenarioChoice, SeriesFile, StudyError,
+};
 
 /// What is shown: a case, a file or a scenario.
 #[derive(Debug, Args)]
@@ -67,8 +69,8 @@ impl SourceArgs {
     }
 }
 
-/// Whether a path is a scenario by its ending or its name.
+/// Whether a path is a scenario by its content, its ending or its name.
 fn is_scenario(path: &Path) -> bool {
-    let is_toml = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
-    is_toml || SCENARIO_PRESETS.iter().any(|(name, _)| Path::new(name) == path)
+    let is_preset = SCENARIO_PRESETS.iter().any(|(name, _)| Path::new(name) == path);
+    is_preset || InputKind::from_path(path).is_toml()
 }

@@ -7,6 +7,7 @@ use impactlab_core::data::Channel;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_study::{
     CaseFlag, CheckReport, ColumnReport, DatasetReport, FileReport, PathProblem, ProposedColumn,
+    word,
 };
 
 /// Prints the report for a person.
@@ -25,7 +26,7 @@ pub(in crate::cli) fn print_check(out: &mut dyn Write, report: &CheckReport) -> 
         writeln!(out)?;
     }
     for model in &report.models {
-        writeln!(out, "{}: {}, {:?}", shown_path(&model.path), model.kind, model.name)?;
+        writeln!(out, "{}: {}, {:?}", shown_path(&model.path), word(&model.kind), model.name)?;
         for part in &model.contents {
             writeln!(out, "  {part}")?;
         }

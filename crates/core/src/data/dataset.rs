@@ -14,7 +14,7 @@ use crate::data::{
 use crate::jobs::{Progress, ProgressCallback};
 
 /// Name of the table of cases in the folder of a data set.
-pub(crate) const CASES_FILE: &str = "cases.csv";
+pub const CASES_FILE: &str = "cases.csv";
 
 /// Name of the file that describes the vehicle of a trajectory data set.
 const VEHICLE_FILE: &str = "vehicle.toml";

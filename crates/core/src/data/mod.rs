@@ -61,7 +61,7 @@ pub use contact::{
     CONTACT_SHARE_OF_PEAK, ContactOutside, MIN_GAP_S, TIME_TOLERANCE_S, check_contact_within,
     contact_interval, contact_pulses, cut_at_s,
 };
-pub use dataset::{Case, Dataset, DatasetKind, Outcome};
+pub use dataset::{CASES_FILE, Case, Dataset, DatasetKind, Outcome};
 pub use dialect::{Dialect, Separator};
 pub use error::DataError;
 pub use file::{list_folder, open_file, read_bytes, read_utf8};

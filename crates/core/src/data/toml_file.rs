@@ -125,6 +125,13 @@ impl<'a> TomlFile<'a> {
         DeTable::parse(self.text).map_err(|error| self.syntax(&error))
     }
 
+    /// The names of the keys and tables at the top of the file, also of a text with slips, in which
+    /// some of them may be missing.
+    pub fn top_level_keys(self) -> Vec<String> {
+        let (root, _) = DeTable::parse_recoverable(self.text);
+        root.get_ref().keys().map(|key| key.get_ref().to_string()).collect()
+    }
+
     /// Builds the error for a value that is not permitted, at its place in the file.
     ///
     /// - `key`: the key, preceded by the names of its tables, such as `mass.mass_kg`. If the file

@@ -57,18 +57,7 @@ use crate::site::{
 use crate::units::{Quantity, US_SURVEY_FOOT};
 use crate::vehicle::FrictionZone;
 
-/// Keys of which one is the sign of a site file.
-const OWN_KEYS: [&str; 6] = ["origin", "orthophoto", "lane", "kerb", "friction_zone", "dxf"];
-
 impl Site {
-    /// Whether a TOML file is meant as a site: it has a table that no vehicle, scenario or evidence has.
-    pub fn is_meant_by(path: &Path) -> bool {
-        let Ok(text) = TomlFile::read(path) else { return false };
-        let Ok(root) = (TomlFile { path, text: &text }).parse() else { return false };
-        let has = |key: &str| root.get_ref().contains_key(key);
-        !has("struck_car") && OWN_KEYS.into_iter().any(has)
-    }
-
     /// The files that a site file, or an orthophoto as a site of its own, consists of beside itself:
     /// orthophoto, world file, drawing. They need not exist, and nothing is said of a file that is wrong;
     /// [`Site::load`] does that.

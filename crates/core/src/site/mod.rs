@@ -35,7 +35,7 @@ pub use error::SiteError;
 pub use origin::SiteOrigin;
 pub use parts::extent_of;
 pub use parts::{DrawingFile, EdgeLine, Kerb, Lane, LengthUnit, Orthophoto, Site};
-pub use picture::{is_picture_file, picture_size_px, read_picture};
+pub use picture::{is_picture, is_picture_file, picture_size_px, read_picture};
 pub use pixel_map::PixelMap;
 pub use world_file::{WorldFile, world_file_beside};
 pub use write::NotBelow;

@@ -1,5 +1,6 @@
 //! Decodes orthophotos.
 
+use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
@@ -20,9 +21,21 @@ const ENDINGS: [(&str, ImageFormat); 5] = [
 /// Memory of a decoder that does not depend on the size of the picture, bytes.
 const DECODER_BYTES: u64 = 16 << 20;
 
-/// Whether a path has the ending of a picture that is read as an orthophoto.
+/// First bytes of the pictures that are read: PNG, JPEG and both byte orders of TIFF.
+const SIGNATURES: [&[u8]; 4] = [b"\x89PNG", b"\xff\xd8\xff", b"II*\0", b"MM\0*"];
+
+/// Whether a path is a picture that is read as an orthophoto, by its first bytes or by its ending.
 pub fn is_picture_file(path: &Path) -> bool {
-    format_of(path).is_some()
+    format_of(path).is_some() || {
+        let mut head = Vec::new();
+        let read = |(file, _): (File, u64)| file.take(4).read_to_end(&mut head).ok();
+        open_file(path, MAX_PICTURE_BYTES).ok().and_then(read).is_some() && is_picture(&head)
+    }
+}
+
+/// Whether a file that begins with these bytes is a picture.
+pub fn is_picture(head: &[u8]) -> bool {
+    SIGNATURES.iter().any(|signature| head.starts_with(signature))
 }
 
 fn format_of(path: &Path) -> Option<ImageFormat> {

@@ -32,7 +32,8 @@ use crate::Request;
 pub use error::CaseError;
 pub use package::{file_stem, pack, unpack};
 pub use run::{AnswerListener, AnsweredQuestion, CaseReport, VariantReport};
-pub use store::{CASE_ENDING, is_case_file};
+pub use store::CASE_ENDING;
+pub(crate) use store::FORMAT;
 pub use used::{Change, UsedFile};
 
 /// A case.

@@ -14,7 +14,7 @@ use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
 use crate::case_file::used::{files_in, files_of_site};
-use crate::case_file::{CASE_ENDING, CaseError, CaseFile, is_case_file};
+use crate::case_file::{CASE_ENDING, CaseError, CaseFile};
 use impactlab_core::data::write::check_inputs;
 use impactlab_core::data::{Existing, write_atomically};
 
@@ -157,7 +157,8 @@ pub fn unpack(package: &Path, folder: &Path) -> Result<PathBuf, CaseError> {
         return Err(none("it has too many files"));
     }
     let mut names = archive.file_names().flatten();
-    let case = names.find(|name| is_case_file(Path::new(name.as_ref())));
+    let is_case = |name: &str| Path::new(name).extension().is_some_and(|of| of == CASE_ENDING);
+    let case = names.find(|name| is_case(name.as_ref()));
     let case = case.ok_or_else(|| none("it has no case"))?.into_owned();
     drop(names);
     let absolute = std::path::absolute(folder).map_err(io(folder))?;

@@ -13,7 +13,7 @@ use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, read_utf8, write_atomica
 pub const CASE_ENDING: &str = "impactlab";
 
 /// What every case file says that it is, and the version of its schema.
-pub(super) const FORMAT: &str = "impactlab case";
+pub(crate) const FORMAT: &str = "impactlab case";
 pub(super) const VERSION: u32 = 1;
 
 /// What is read of a file before anything else.
@@ -21,11 +21,6 @@ pub(super) const VERSION: u32 = 1;
 struct Header {
     format: String,
     version: u32,
-}
-
-/// Whether a path has the ending of a case file.
-pub fn is_case_file(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending == CASE_ENDING)
 }
 
 impl CaseFile {

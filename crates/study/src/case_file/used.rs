@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::Request;
 use crate::case_file::paths::absolute_paths;
 use crate::case_file::{CaseError, CaseFile};
+use crate::{InputKind, Request};
 use impactlab_core::data::write::{FileDigest, sha256_hex};
-use impactlab_core::site::{Site, is_picture_file};
+use impactlab_core::site::Site;
 
 /// Why a file is missing that the case has no content of.
 const NOT_THERE: &str = "it was not there when the case was saved either";
@@ -115,8 +115,7 @@ pub(super) fn files_in(folder: &Path) -> io::Result<Vec<String>> {
 
 /// Orthophoto, world file and drawing of a site; none for any other file.
 pub(super) fn files_of_site(path: &Path) -> Vec<PathBuf> {
-    let is_toml = path.extension().is_some_and(|end| end == "toml");
-    match is_picture_file(path) || is_toml && Site::is_meant_by(path) {
+    match InputKind::from_path(path).is_ground() {
         true => Site::files_named_by(path),
         false => Vec::new(),
     }

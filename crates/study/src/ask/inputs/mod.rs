@@ -3,6 +3,8 @@
 mod cases;
 mod config;
 mod file;
+mod input_file;
+mod input_kind;
 mod model;
 mod read_files;
 mod scenario;
@@ -14,6 +16,8 @@ pub(crate) use cases::{
 };
 pub use config::{ConfigChoice, TrainingOptions, checkpoint_beside};
 pub use file::SeriesFile;
+pub use input_file::{InputError, InputFile};
+pub use input_kind::{InputKind, MODEL_ENDING};
 pub use model::ModelChoice;
 pub use scenario::ScenarioChoice;
 pub use vehicle::{DEFAULT_STRIKING, DEFAULT_VEHICLE, VehicleChoice};

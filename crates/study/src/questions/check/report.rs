@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Serialize, Serializer};
 
-use crate::{Provenance, word};
+use crate::{InputKind, Provenance, word};
 use impactlab_core::data::{
     Case, Channel, ColumnProposal, ColumnUse, Dataset, Flag, ForceHistory, Loaded, Severity,
     contact_interval, map_from_proposals,
@@ -20,7 +20,7 @@ pub struct CheckReport {
     pub datasets: Vec<DatasetReport>,
     /// The files of time series.
     pub files: Vec<FileReport>,
-    /// The scenario, vehicle and site files.
+    /// All other files: cases, evidence, scenarios, vehicles, sites, networks, comparisons.
     pub models: Vec<InputFileReport>,
     /// What cannot be read.
     pub problems: Vec<PathProblem>,
@@ -29,16 +29,16 @@ pub struct CheckReport {
     pub provenance: Provenance,
 }
 
-/// A scenario, vehicle or site file.
+/// A file that holds no data of its own: a case, evidence, a scenario, a vehicle, a site and others.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InputFileReport {
     /// Its path.
     pub path: PathBuf,
     /// What it is.
-    pub kind: &'static str,
+    pub kind: InputKind,
     /// Its name.
     pub name: String,
-    /// What it consists of; nothing for a scenario or vehicle.
+    /// What it consists of, where that is told.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contents: Vec<String>,
 }
@@ -156,6 +156,8 @@ pub struct CaseFlag {
 pub struct PathProblem {
     /// Its path.
     pub path: PathBuf,
+    /// What it was taken for.
+    pub kind: InputKind,
     /// For a person.
     pub message: String,
     /// Its columns.

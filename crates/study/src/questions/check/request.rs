@@ -8,17 +8,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::ask::question::progress_of;
 use crate::{
-    CheckReport, DatasetReport, FileReport, InputFileReport, Library, Observer, PathProblem,
-    ProposedColumn, Question, StudyError,
+    CheckReport, DatasetReport, FileReport, InputError, InputFile, InputFileReport, InputKind,
+    Library, Observer, PathProblem, ProposedColumn, Question, StudyError,
 };
-use impactlab_core::collision::Scenario;
 use impactlab_core::data::{
-    ColumnMap, DataError, Dataset, Flag, Loaded, Opened, Outcome, TomlFile, check_case, check_file,
-    open, propose_columns, read_any_series,
+    ColumnMap, DataError, Dataset, Flag, Loaded, Opened, Outcome, check_case, check_file, open,
+    propose_columns, read_any_series,
 };
-use impactlab_core::error_chain;
-use impactlab_core::site::{Site, read_drawing, read_picture};
-use impactlab_core::vehicle::VehicleParameters;
 
 /// Asks what is in files and data sets, in which units, and what is wrong with them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -80,8 +76,9 @@ impl Question for CheckRequest {
     ) -> Result<Outcome<CheckAnswer>, StudyError> {
         let mut answer = CheckAnswer { report: CheckReport::default(), items: Vec::new() };
         for path in &self.paths {
-            if is_input_file(path) {
-                answer.report.add_input_file(path);
+            let kind = InputKind::from_path(path);
+            if !kind.is_data() {
+                answer.report.add_input_file(path, kind);
                 continue;
             }
             if self.map.is_some() && path.is_dir() {
@@ -91,11 +88,11 @@ impl Question for CheckRequest {
                 Ok(Outcome::Cancelled) => return Ok(Outcome::Cancelled),
                 Ok(Outcome::Complete((items, problems))) => {
                     answer.report.add(&items, self.all);
-                    let problems = problems.iter().map(|error| problem(path, error));
+                    let problems = problems.iter().map(|error| problem(path, kind, error));
                     answer.report.problems.extend(problems);
                     answer.items.extend(items);
                 }
-                Err(error) => answer.report.problems.push(problem(path, &error)),
+                Err(error) => answer.report.problems.push(problem(path, kind, &error)),
             }
         }
         answer.report.ok = !answer.report.has_problems();
@@ -139,11 +136,6 @@ fn checked_file(path: &Path, loaded: Loaded) -> CheckedItem {
     CheckedItem { path: path.to_owned(), content: CheckedContent::File(Arc::new(loaded), flags) }
 }
 
-/// Whether a path is a scenario or vehicle file.
-fn is_input_file(path: &Path) -> bool {
-    path.extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
-}
-
 impl CheckReport {
     fn add(&mut self, items: &[CheckedItem], all: bool) {
         for item in items {
@@ -158,12 +150,16 @@ impl CheckReport {
         }
     }
 
-    fn add_input_file(&mut self, path: &Path) {
-        match input_file(path) {
-            Ok(report) => self.models.push(report),
+    fn add_input_file(&mut self, path: &Path, kind: InputKind) {
+        let told = |file: InputFile| Ok((file.name(path), file.contents(kind)?));
+        match InputFile::load_as(path, kind).and_then(told) {
+            Ok((name, contents)) => {
+                self.models.push(InputFileReport { path: path.to_owned(), kind, name, contents });
+            }
             Err(error) => self.problems.push(PathProblem {
                 path: path.to_owned(),
-                message: error_chain(&error),
+                kind,
+                message: error.to_string(),
                 columns: None,
                 map: None,
             }),
@@ -171,40 +167,14 @@ impl CheckReport {
     }
 }
 
-/// Reads a site with what it names, a scenario, known by its striking vehicle, or a vehicle.
-fn input_file(path: &Path) -> Result<InputFileReport, StudyError> {
-    let text = TomlFile::read(path)?;
-    if Site::is_meant_by(path) {
-        let site = Site::load(path)?;
-        if let Some(orthophoto) = &site.orthophoto {
-            read_picture(&orthophoto.file)?;
-        }
-        let origin = site.origin.unwrap_or_default();
-        let drawing = site.drawing.as_ref().map(|of| read_drawing(of, &origin)).transpose()?;
-        let contents = site.contents(drawing.map(|of| of.summary()).as_ref());
-        return Ok(InputFileReport {
-            path: path.to_owned(),
-            kind: "site",
-            name: site.name,
-            contents,
-        });
-    }
-    let is_scenario = text.lines().any(|line| line.trim_start().starts_with("[bullet]"));
-    let (kind, name) = if is_scenario {
-        ("scenario", Scenario::load(path)?.name)
-    } else {
-        ("vehicle", VehicleParameters::load(path)?.name)
-    };
-    Ok(InputFileReport { path: path.to_owned(), kind, name, contents: Vec::new() })
-}
-
 /// A path that cannot be read; if its columns are the reason, with what they look like.
-fn problem(path: &Path, error: &DataError) -> PathProblem {
+fn problem(path: &Path, kind: InputKind, error: &DataError) -> PathProblem {
     let is_about_columns = error.needs_mapping() || matches!(error, DataError::NoSuchColumn { .. });
     let columns = is_about_columns.then(|| propose_columns(path).ok()).flatten();
     PathProblem {
         path: path.to_owned(),
-        message: error_chain(error),
+        kind,
+        message: InputError::new(kind, error).to_string(),
         map: columns.as_deref().and_then(ProposedColumn::map),
         columns: columns.map(|columns| columns.iter().map(ProposedColumn::of).collect()),
     }

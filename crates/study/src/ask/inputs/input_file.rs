@@ -1,0 +1,154 @@
+//! Files without time series, read as what their content says they are.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use crate::InputKind;
+use crate::case_file::CaseFile;
+use impactlab_core::collision::Scenario;
+use impactlab_core::data::TomlFile;
+use impactlab_core::error_chain;
+use impactlab_core::site::{Site, read_drawing, read_picture};
+use impactlab_core::vehicle::VehicleParameters;
+use impactlab_networks::nn::kind_of_file;
+use impactlab_networks::response::evaluate::Comparison;
+use impactlab_reconstruct::evidence::Evidence;
+
+/// A file that was read. It is small, or only its header was read.
+#[derive(Debug)]
+pub enum InputFile {
+    /// A case with its variants.
+    Case(Box<CaseFile>),
+    /// The evidence of a reconstruction.
+    Evidence(Box<Evidence>),
+    /// A collision of two vehicles.
+    Scenario(Box<Scenario>),
+    /// A vehicle.
+    Vehicle(Box<VehicleParameters>),
+    /// A ground, or a picture as a ground of its own.
+    Site(Box<Site>),
+    /// A trained network: which one its header names.
+    Network(String),
+    /// A comparison of response networks.
+    Comparison(Box<Comparison>),
+    /// The settings of a training, which the training itself checks.
+    Settings,
+}
+
+/// Why a file cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum InputError {
+    /// Its content is not what its kind needs.
+    #[error("{message} (read as {kind})")]
+    Wrong {
+        /// What it was taken for.
+        kind: InputKind,
+        /// What is wrong, with its causes.
+        message: String,
+    },
+    /// It is a TOML file, but it has no key of any kind.
+    #[error(
+        "{}: is neither evidence (struck_car, damage), a scenario (target, bullet, contact), \
+         a vehicle (mass, geometry, tires or data_sheet), a site (orthophoto, lane, kerb, \
+         friction_zone, dxf) nor the settings of a training",
+        path.display()
+    )]
+    NotRecognised {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+impl InputError {
+    /// The error of a reader.
+    ///
+    /// - `kind`: what the file was taken for.
+    pub fn new(kind: InputKind, error: &dyn Error) -> Self {
+        Self::Wrong { kind, message: error_chain(error) }
+    }
+}
+
+impl InputFile {
+    /// Finds out what a file holds and reads it.
+    ///
+    /// # Errors
+    /// [`InputError`], which says what the file was taken for.
+    pub fn load(path: &Path) -> Result<Self, InputError> {
+        Self::load_as(path, InputKind::from_path(path))
+    }
+
+    /// Reads a file whose kind is known already.
+    ///
+    /// # Errors
+    /// As for [`InputFile::load`]; also if the path holds time series.
+    pub fn load_as(path: &Path, kind: InputKind) -> Result<Self, InputError> {
+        fn read<T, E: Error>(
+            kind: InputKind,
+            result: Result<T, E>,
+            file: impl FnOnce(Box<T>) -> InputFile,
+        ) -> Result<InputFile, InputError> {
+            match result {
+                Ok(content) => Ok(file(Box::new(content))),
+                Err(error) => Err(InputError::new(kind, &error)),
+            }
+        }
+        match kind {
+            InputKind::Case => read(kind, CaseFile::load(path), Self::Case),
+            InputKind::Evidence => read(kind, Evidence::load(path), Self::Evidence),
+            InputKind::Scenario => read(kind, Scenario::load(path), Self::Scenario),
+            InputKind::Vehicle => read(kind, VehicleParameters::load(path), Self::Vehicle),
+            InputKind::Site | InputKind::Orthophoto => read(kind, Site::load(path), Self::Site),
+            InputKind::Network => read(kind, kind_of_file(path), |of| Self::Network(*of)),
+            InputKind::Comparison => read(kind, Comparison::load(path), Self::Comparison),
+            InputKind::Settings => read(kind, TomlFile::read(path), |_| Self::Settings),
+            InputKind::UnknownToml => match TomlFile::read(path) {
+                Ok(_) => Err(InputError::NotRecognised { path: path.to_owned() }),
+                Err(error) => Err(InputError::new(kind, &error)),
+            },
+            InputKind::Dataset | InputKind::Folder | InputKind::Series => {
+                Err(InputError::NotRecognised { path: path.to_owned() })
+            }
+        }
+    }
+
+    /// What it calls itself, else the name of the file.
+    pub(crate) fn name(&self, path: &Path) -> String {
+        match self {
+            Self::Case(case) => case.name.clone(),
+            Self::Evidence(evidence) => evidence.case.clone(),
+            Self::Scenario(scenario) => scenario.name.clone(),
+            Self::Vehicle(vehicle) => vehicle.name.clone(),
+            Self::Site(site) => site.name.clone(),
+            Self::Network(_) | Self::Comparison(_) | Self::Settings => {
+                path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+            }
+        }
+    }
+
+    /// What it consists of, in words, with what it names read as well.
+    ///
+    /// - `kind`: what it was read as.
+    ///
+    /// # Errors
+    /// [`InputError`] if picture or drawing of a site cannot be read.
+    pub(crate) fn contents(&self, kind: InputKind) -> Result<Vec<String>, InputError> {
+        match self {
+            Self::Case(case) => {
+                let variants = case.variants.iter();
+                Ok(variants.map(|variant| format!("variant {:?}", variant.name)).collect())
+            }
+            Self::Site(site) => {
+                let wrong = |error: &dyn Error| InputError::new(kind, error);
+                if let Some(orthophoto) = &site.orthophoto {
+                    read_picture(&orthophoto.file).map_err(|error| wrong(&error))?;
+                }
+                let origin = site.origin.unwrap_or_default();
+                let drawing = site.drawing.as_ref().map(|drawing| read_drawing(drawing, &origin));
+                let drawing = drawing.transpose().map_err(|error| wrong(&error))?;
+                Ok(site.contents(drawing.map(|drawing| drawing.summary()).as_ref()))
+            }
+            Self::Network(kind) => Ok(vec![kind.clone()]),
+            _ => Ok(Vec::new()),
+        }
+    }
+}

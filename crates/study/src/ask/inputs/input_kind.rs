@@ -1,0 +1,280 @@
+//! What a path holds that a person opens, checks or names, found out from its content.
+//!
+//! Command line, window and case ask here and nowhere else. The ending of a name counts only where the
+//! content does not decide: for a file that is not there, is empty or is damaged.
+
+use std::fmt;
+use std::io::Read;
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::case_file::{CASE_ENDING, FORMAT};
+use impactlab_core::data::{CASES_FILE, DatasetKind, TomlFile, open_file};
+use impactlab_core::site::{is_picture, is_picture_file};
+
+/// Bytes at the start of a file by which its kind is found out; a settings file is read whole.
+const HEAD_BYTES: u64 = 4096;
+
+/// Ending of the names of trained networks.
+pub const MODEL_ENDING: &str = "safetensors";
+
+/// Keys and tables at the top of a TOML file that belong to one kind of file.
+const TOML_KEYS: [(InputKind, &[&str]); 5] = [
+    (
+        InputKind::Evidence,
+        &[
+            "struck_car",
+            "striking_car",
+            "damage",
+            "rest",
+            "striking_rest",
+            "mark",
+            "after",
+            "edr",
+            "prior",
+            "weighing",
+            "position",
+        ],
+    ),
+    (InputKind::Scenario, &["target", "bullet", "contact", "ending", "bullet_ending"]),
+    (
+        InputKind::Vehicle,
+        &["mass", "geometry", "suspension", "tires", "estimates", "data_sheet", "equations"],
+    ),
+    (InputKind::Site, &["origin", "orthophoto", "lane", "kerb", "friction_zone", "dxf"]),
+    (
+        InputKind::Settings,
+        &[
+            "network",
+            "loss",
+            "training",
+            "crush",
+            "pretraining",
+            "single_steps",
+            "rollouts",
+            "physics",
+            "effects",
+            "calibration",
+            "tuning",
+        ],
+    ),
+];
+
+/// What a path holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InputKind {
+    /// The folder of a data set, or the table of its cases.
+    Dataset,
+    /// Another folder, which may hold data sets.
+    Folder,
+    /// A case with its variants.
+    Case,
+    /// What was found after a collision.
+    Evidence,
+    /// A collision of two vehicles.
+    Scenario,
+    /// A vehicle, by its parameters or by its data sheet.
+    Vehicle,
+    /// The ground of a scene.
+    Site,
+    /// A picture from above, which is a ground of its own.
+    Orthophoto,
+    /// A trained network.
+    Network,
+    /// The comparison of response networks.
+    Comparison,
+    /// Settings of a training.
+    Settings,
+    /// A TOML file without a key of any kind.
+    UnknownToml,
+    /// A table of time series: force, trajectory, steering or torques at the wheels.
+    Series,
+}
+
+impl InputKind {
+    /// Finds out what a path holds. Nothing is said of what is wrong with it; reading it does that.
+    pub fn from_path(path: &Path) -> Self {
+        if path.is_dir() {
+            return match DatasetKind::of_folder(path) {
+                Some(_) => Self::Dataset,
+                None => Self::Folder,
+            };
+        }
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let is_table = path.file_name().is_some_and(|name| name == CASES_FILE);
+        if is_table && DatasetKind::of_folder(folder).is_some() {
+            return Self::Dataset;
+        }
+        from_content(path).unwrap_or_else(|| from_name(path))
+    }
+
+    /// Whether it holds time series, which are read for seconds and checked.
+    pub fn is_data(self) -> bool {
+        matches!(self, Self::Dataset | Self::Folder | Self::Series)
+    }
+
+    /// Whether it is a TOML file.
+    pub fn is_toml(self) -> bool {
+        matches!(
+            self,
+            Self::Evidence
+                | Self::Scenario
+                | Self::Vehicle
+                | Self::Site
+                | Self::Settings
+                | Self::UnknownToml
+        )
+    }
+
+    /// Whether it is the ground of a scene.
+    pub fn is_ground(self) -> bool {
+        matches!(self, Self::Site | Self::Orthophoto)
+    }
+}
+
+impl fmt::Display for InputKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Dataset => "a data set",
+            Self::Folder => "a folder of data sets",
+            Self::Case => "a case",
+            Self::Evidence => "the evidence of a reconstruction",
+            Self::Scenario => "a scenario",
+            Self::Vehicle => "a vehicle",
+            Self::Site => "a site",
+            Self::Orthophoto => "an orthophoto",
+            Self::Network => "a trained network",
+            Self::Comparison => "a comparison of response networks",
+            Self::Settings => "the settings of a training",
+            Self::UnknownToml => "a TOML file of no known kind",
+            Self::Series => "a table of time series",
+        })
+    }
+}
+
+/// The kind by the content; `None` if that does not decide.
+fn from_content(path: &Path) -> Option<InputKind> {
+    let (file, _) = open_file(path, u64::MAX).ok()?;
+    let mut head = Vec::new();
+    file.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
+    if is_picture(&head) {
+        return Some(InputKind::Orthophoto);
+    }
+    // The header of a trained network is JSON after its length.
+    if head.get(8) == Some(&b'{') && head.first() != Some(&b'{') && head.get(7) == Some(&0) {
+        return Some(InputKind::Network);
+    }
+    let text = String::from_utf8_lossy(&head);
+    let text = text.trim_start_matches('\u{feff}').trim_start();
+    if text.starts_with('{') {
+        let is_case = has_ending(path, CASE_ENDING) || text.contains(&format!("\"{FORMAT}\""));
+        return Some(if is_case { InputKind::Case } else { InputKind::Comparison });
+    }
+    from_toml(path, text)
+}
+
+/// The kind of TOML file with most of its keys in a text, also if the text has slips.
+///
+/// - `head`: start of the text, without blanks.
+fn from_toml(path: &Path, head: &str) -> Option<InputKind> {
+    let is_named_so = has_ending(path, "toml");
+    let looks_so = head.starts_with(['[', '#']) || head.lines().next()?.contains('=');
+    if !is_named_so && !looks_so {
+        return None;
+    }
+    let text = TomlFile::read(path).ok()?;
+    let keys = TomlFile { path, text: &text }.top_level_keys();
+    let n_keys = |known: &[&str]| keys.iter().filter(|key| known.contains(&key.as_str())).count();
+    let counted = TOML_KEYS.iter().map(|(kind, known)| (n_keys(known), *kind));
+    // The first of several with as many keys.
+    let (n, kind) = counted.rev().max_by_key(|(n, _)| *n)?;
+    // One such word at the top of a table of a data logger does not make it a TOML file.
+    match n {
+        0 => is_named_so.then_some(InputKind::UnknownToml),
+        1 if !is_named_so => None,
+        _ => Some(kind),
+    }
+}
+
+/// The kind by the name.
+fn from_name(path: &Path) -> InputKind {
+    match () {
+        () if has_ending(path, CASE_ENDING) => InputKind::Case,
+        () if has_ending(path, "toml") => InputKind::UnknownToml,
+        () if has_ending(path, MODEL_ENDING) => InputKind::Network,
+        () if has_ending(path, "json") => InputKind::Comparison,
+        () if is_picture_file(path) => InputKind::Orthophoto,
+        () => InputKind::Series,
+    }
+}
+
+fn has_ending(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|of_path| of_path.eq_ignore_ascii_case(ending))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kind_of_text(name: &str, text: &[u8]) -> InputKind {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        InputKind::from_path(&path)
+    }
+
+    #[test]
+    fn what_comes_with_the_program_is_recognised() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        for (path, expected) in [
+            ("assets/examples/reconstruction.toml", InputKind::Evidence),
+            ("datasets/staged/evidence/s00.toml", InputKind::Evidence),
+            ("assets/examples/pit.impactlab", InputKind::Case),
+            ("assets/scenarios/pit_right_rear.toml", InputKind::Scenario),
+            ("assets/vehicles/target-2000.toml", InputKind::Vehicle),
+            ("assets/sites/country-road/site.toml", InputKind::Site),
+            ("assets/models/response.toml", InputKind::Settings),
+            ("assets/models/force.safetensors", InputKind::Network),
+            ("docs/guide/examples/steering.csv", InputKind::Series),
+            ("datasets/fea", InputKind::Dataset),
+            ("datasets/fea/cases.csv", InputKind::Dataset),
+            ("datasets", InputKind::Folder),
+        ] {
+            assert_eq!(InputKind::from_path(&root.join(path)), expected, "{path}");
+        }
+    }
+
+    #[test]
+    fn the_content_counts_and_not_the_name() {
+        let vehicle = include_bytes!("../../../../../assets/vehicles/target-2000.toml");
+        for name in ["car.toml", "car.TOML", "car", "car.txt"] {
+            assert_eq!(kind_of_text(name, vehicle), InputKind::Vehicle, "{name}");
+        }
+        let case = include_bytes!("../../../../../assets/examples/pit.impactlab");
+        assert_eq!(kind_of_text("case.json", case), InputKind::Case);
+        assert_eq!(kind_of_text("photo.dat", b"\x89PNG\r\n\x1a\n"), InputKind::Orthophoto);
+        let force = b"time_s,fx_n,fy_n\n0,0,0\n0.1,1,2\n";
+        assert_eq!(kind_of_text("force.toml.csv", force), InputKind::Series);
+        // The preamble of a data logger.
+        assert_eq!(kind_of_text("log.txt", b"[mass]\nrate=100\n0;1;2\n"), InputKind::Series);
+    }
+
+    #[test]
+    fn a_slip_does_not_hide_the_kind() {
+        let vehicle = include_str!("../../../../../assets/vehicles/target-2000.toml");
+        for slip in [
+            vehicle.replace("mass_kg = 2000.0", "mass_kg = = 2000.0"),
+            vehicle.replace("[suspension]", "[suspension"),
+            vehicle.replace("[mass]", "[masss]"),
+            vehicle.replace("friction = 0.8", "friction = \"much"),
+        ] {
+            assert_ne!(slip, vehicle);
+            assert_eq!(kind_of_text("car.toml", slip.as_bytes()), InputKind::Vehicle, "{slip}");
+        }
+        assert_eq!(kind_of_text("empty.toml", b""), InputKind::UnknownToml);
+        assert_eq!(InputKind::from_path(Path::new("no/such.toml")), InputKind::UnknownToml);
+        assert_eq!(InputKind::from_path(Path::new("no/such.csv")), InputKind::Series);
+    }
+}
