@@ -9,14 +9,13 @@ use std::sync::Arc;
 use egui::Context;
 
 use crate::app::case::{Leaving, VariantCommand};
-use crate::app::dialogs::{FileDialog, Purpose};
+use crate::app::dialog::{Dialog, FileDialog, PathDialog, Purpose};
 use crate::app::export::{self, SceneExport};
 use crate::app::film::FilmForm;
 use crate::app::ground::GroundCommand;
 use crate::app::kept::{KeptEntry, ModelsDialog, Removal};
 use crate::app::network::Network;
 use crate::app::panes::Pane;
-use crate::app::path_dialog::PathDialog;
 use crate::app::reconstruction::ReconstructionCommand;
 use crate::app::report::ReportCommand;
 use crate::app::state::{Session, State, Subject};
@@ -53,10 +52,10 @@ pub enum Command {
     AskMapping(PathBuf),
     /// Read a file with the columns that the user assigned.
     OpenMapped(PathBuf, ColumnMap),
-    /// Close the dialog of the columns without reading the file.
-    CancelMapping,
-    /// Show the licences of third parties (`true`) or close them (`false`).
-    ShowLicences(bool),
+    /// Close the uppermost dialog and leave everything as it is.
+    CloseDialog,
+    /// Show the licences of third parties.
+    ShowLicences,
     /// Simulate every case of the data set in this folder.
     ReplayDataset(PathBuf),
     /// Cancel the simulation of the data set in this folder.
@@ -82,8 +81,6 @@ pub enum Command {
     ExportExchange(Box<SceneExport>, PathBuf),
     /// Ask how a film of a scene is to be made.
     AskFilm(Box<ScenePicture>),
-    /// Close that form.
-    CloseFilmForm,
     /// Make a film and write it to an MP4 file, in the background.
     SaveFilm(Box<Film>, PathBuf),
     /// Cancel the film that is being made.
@@ -109,12 +106,8 @@ pub enum Command {
     },
     /// Save the case and go where the user was asked about.
     SaveAndLeave,
-    /// Close the question before leaving, and stay.
-    Stay,
     /// Ask the user for a path within the window.
     AskPath(Purpose),
-    /// Close the question for a path.
-    CancelPath,
     /// Write the scenario of the scenario pane to a TOML file.
     SaveScenario(PathBuf),
     /// Write a vehicle to a TOML file.
@@ -123,8 +116,6 @@ pub enum Command {
     SaveEvidence(Box<Evidence>, PathBuf),
     /// Carry out a command that writes a file or a folder, and replace what is there.
     Replace(Box<Command>),
-    /// Close the question whether something is to be replaced, and leave it as it is.
-    KeepExisting,
     /// Predict the force of the selected case.
     PredictCase,
     /// Predict the force of the collision in the scenario pane.
@@ -171,8 +162,8 @@ pub enum Command {
     Say(Severity, String),
     /// Take the latest message out of the status line. It stays in the list of all messages.
     DismissMessage,
-    /// Show the list of all messages (`true`) or close it (`false`).
-    ShowMessages(bool),
+    /// Show the list of all messages.
+    ShowMessages,
     /// Undo the last change of the project.
     Undo,
     /// Redo the change of the project that was undone last.
@@ -196,8 +187,6 @@ pub enum TrainingCommand {
 pub enum ModelsCommand {
     /// Ask the user for a name or whether to remove something.
     Ask(ModelsDialog),
-    /// Close that question.
-    CloseDialog,
     /// Give something another name.
     Rename(Box<KeptEntry>, String),
     /// Remove files.
@@ -262,14 +251,14 @@ impl State {
                 self.end_mapping();
                 self.load(path, Some(map), context);
             }
-            Command::CancelMapping => self.cancel_mapping(),
+            Command::CloseDialog => self.close_dialog(),
             Command::ReplayDataset(path) => self.replay(path, context),
             Command::CancelReplay(path) => self.cancel_replay(&path),
             Command::NewCase => self.leave(Leaving::New, context),
             Command::SaveCase => match self.case.path.clone() {
                 None => self.ask(Purpose::SaveCase, context),
                 Some(path) if self.is_case_file_foreign() => {
-                    self.session.replacing = Some(Box::new(Command::SaveCaseAs(path)));
+                    self.session.dialogs.open(Dialog::Replace(Box::new(Command::SaveCaseAs(path))));
                 }
                 Some(path) => self.save_case((path, Existing::Replace), context),
             },
@@ -277,9 +266,7 @@ impl State {
             Command::Leave { to, ask: true } => self.leave(to, context),
             Command::Leave { to, ask: false } => self.go(to, context),
             Command::SaveAndLeave => self.save_and_leave(context),
-            Command::Stay => self.session.leaving = None,
             Command::AskPath(purpose) => self.ask_path(purpose),
-            Command::CancelPath => self.session.path_dialog = None,
             Command::Export(..)
             | Command::ExportScene(..)
             | Command::ExportExchange(..)
@@ -296,15 +283,14 @@ impl State {
                 self.write(command, Existing::Refuse, context);
             }
             Command::Replace(command) => self.write(*command, Existing::Replace, context),
-            Command::KeepExisting => self.session.replacing = None,
             Command::CopyNumbers(figure) => match export::numbers(&figure) {
                 Ok(text) => context.copy_text(text),
                 Err(error) => self.say(Severity::Error, error),
             },
             Command::AskFilm(picture) => {
-                self.session.film.form = Some(FilmForm::new(*picture, self.view.dark));
+                let form = FilmForm::new(*picture, self.view.dark);
+                self.session.dialogs.open(Dialog::Film(Box::new(form)));
             }
-            Command::CloseFilmForm => self.session.film.form = None,
             Command::CancelFilm => self.session.film.cancel(),
             Command::PredictCase => self.predict_case(),
             Command::PredictScenario => self.predict_scenario(),
@@ -326,7 +312,7 @@ impl State {
     /// Carries out a command that changes what is shown and nothing else. Undo and redo are the app's.
     fn apply_to_view(&mut self, command: Command) {
         match command {
-            Command::ShowLicences(shown) => self.session.shows_licences = shown,
+            Command::ShowLicences => self.session.dialogs.open(Dialog::Licences),
             Command::SetTime(time_s) => self.session.time_s = time_s,
             Command::SetSpeed(speed) => self.view.playback_speed = speed,
             Command::StepTime(steps) => self.step_time(steps),
@@ -343,7 +329,7 @@ impl State {
             Command::ShowWorkspace(workspace) => self.show_workspace(workspace),
             Command::Say(severity, text) => self.say(severity, text),
             Command::DismissMessage => drop(self.session.messages.pop()),
-            Command::ShowMessages(shown) => self.session.shows_log = shown,
+            Command::ShowMessages => self.session.dialogs.open(Dialog::Messages),
             _ => {}
         }
     }
@@ -354,7 +340,7 @@ impl State {
     }
 
     fn ask_path(&mut self, purpose: Purpose) {
-        self.session.path_dialog = Some(PathDialog::new(purpose));
+        self.session.dialogs.open(Dialog::Path(PathDialog::new(purpose)));
     }
 
     fn ask(&mut self, purpose: Purpose, context: &Context) {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::Context;
 
 use crate::app::command::wake;
+use crate::app::dialog::Dialog;
 use crate::app::state::State;
 use impactlab_core::data::{Existing, Outcome, Severity};
 use impactlab_core::error_chain;
@@ -20,11 +21,9 @@ const USUAL_SECTION: (f64, f64) = (0.3, 0.1);
 /// The thread that makes a film.
 type FilmJob = Job<Result<Outcome<()>, String>>;
 
-/// The film that is asked about, and the one that is being made.
+/// The film that is being made.
 #[derive(Default)]
 pub struct FilmSession {
-    /// The form, while it is open.
-    pub form: Option<FilmForm>,
     running: Option<(PathBuf, FilmJob)>,
 }
 
@@ -106,7 +105,10 @@ impl State {
             write_film(&film, (&target, existing), report).map_err(|error| error_chain(&error))
         });
         match job {
-            Ok(job) => self.session.film = FilmSession { form: None, running: Some((path, job)) },
+            Ok(job) => {
+                self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Film(_)));
+                self.session.film.running = Some((path, job));
+            }
             Err(error) => self.say(Severity::Error, error.to_string()),
         }
     }

@@ -3,7 +3,7 @@
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use crate::app::command::{Command, TIME_STEP_S};
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::workspaces::Workspace;
 
 /// Shortcut that undoes the last change of the project.

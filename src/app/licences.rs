@@ -22,6 +22,6 @@ pub fn licences_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     });
     ui.separator();
     if ui.button("Close").clicked() {
-        commands.push(Command::ShowLicences(false));
+        commands.push(Command::CloseDialog);
     }
 }

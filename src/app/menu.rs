@@ -5,7 +5,7 @@ use std::time::Duration;
 use egui::{Align, Button, Layout, MenuBar, Panel, ProgressBar, RichText, Ui};
 
 use crate::app::command::{Command, ComparisonCommand};
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::keyboard;
 use crate::app::looks::{self, Icon, icon, icon_button};
 use crate::app::network::Network;
@@ -158,7 +158,7 @@ fn view_menu_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
         commands.push(Command::FitPlots);
     }
     if ui.button("Messages…").clicked() {
-        commands.push(Command::ShowMessages(true));
+        commands.push(Command::ShowMessages);
     }
     if ui.button("Put panes back").clicked() {
         commands.push(Command::ResetLayout);
@@ -206,7 +206,7 @@ fn help_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.label(format!("impactlab {}", crate::VERSION));
     ui.label("The shipped data are simulations, not measurements.");
     if ui.button("Licences…").clicked() {
-        commands.push(Command::ShowLicences(true));
+        commands.push(Command::ShowLicences);
     }
 }
 
@@ -275,7 +275,7 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
                 let text: Vec<&str> = others.map(|message| message.text.as_str()).collect();
                 let all = ui.small_button(format!("+{older}")).on_hover_text(text.join("\n"));
                 if all.clicked() {
-                    commands.push(Command::ShowMessages(true));
+                    commands.push(Command::ShowMessages);
                 }
             }
             let color = theme::severity_color(latest.severity, state.view.dark);
@@ -316,7 +316,7 @@ pub fn messages_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     });
     ui.separator();
     if ui.button("Close").clicked() {
-        commands.push(Command::ShowMessages(false));
+        commands.push(Command::CloseDialog);
     }
 }
 

@@ -10,7 +10,7 @@ mod chain;
 mod command;
 mod contents;
 mod cost;
-mod dialogs;
+mod dialog;
 mod export;
 mod film;
 mod force;
@@ -29,7 +29,6 @@ mod network;
 mod open;
 mod panels;
 mod panes;
-mod path_dialog;
 mod question_job;
 mod reconstruction;
 mod recording;
@@ -74,6 +73,7 @@ pub use chain::Link;
 pub use command::{Command, ComparisonCommand, ModelsCommand, TrainingCommand};
 pub use contents::{ContentsEntry, Group};
 pub use cost::{CostPlace, Costs};
+pub use dialog::{Dialog, Dialogs, Purpose};
 pub use force::ForceSession;
 pub use ground::{GroundCommand, GroundSession, SiteChoice};
 pub use kept::{KeptEntry, KeptKind, KeptStatus, ModelsDialog, Removal};
@@ -230,7 +230,7 @@ impl eframe::App for App {
         for refusal in views.map(SceneView::take_refusal).into_iter().flatten() {
             self.state.say(Severity::Warning, scenes_on_cpu(&refusal));
         }
-        keyboard::commands(context, self.state.session.has_dialog(), &mut commands);
+        keyboard::commands(context, self.state.session.dialogs.is_any_open(), &mut commands);
         let dropped = context.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = dropped.into_iter().map(|file| file.path().to_owned()).collect();
         if !paths.is_empty() {
@@ -268,14 +268,7 @@ impl eframe::App for App {
         chain::chain_ui(ui, &self.state, &mut commands);
         menu::status_ui(ui, &self.state, &mut commands);
         self.panes_ui(ui, &mut commands);
-        self.mapping_ui(ui, &mut commands);
-        self.licences_ui(ui, &mut commands);
-        self.messages_ui(ui, &mut commands);
-        self.replace_ui(ui, &mut commands);
-        self.leaving_ui(ui, &mut commands);
-        self.path_ui(ui, &mut commands);
-        self.models_dialog_ui(ui, &mut commands);
-        self.film_ui(ui, &mut commands);
+        dialog::dialogs_ui(ui, &mut self.state, &mut commands);
         menu::drop_hint_ui(ui);
         for command in commands {
             self.apply(command, ui.ctx());
@@ -312,38 +305,6 @@ impl App {
         self.state.session.fit_plots = false;
     }
 
-    fn mapping_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let State { project, session, .. } = &mut self.state;
-        if let Some(dialog) = &mut session.mapping {
-            let modal = egui::Modal::new(egui::Id::unique("mapping dialog"));
-            let asked = (&mut project.file_start, &mut project.vehicle);
-            let response = modal.show(ui.ctx(), |ui| dialog.ui(ui, asked, commands));
-            if response.should_close() && commands.is_empty() {
-                commands.push(Command::CancelMapping);
-            }
-        }
-    }
-
-    fn messages_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        if self.state.session.shows_log {
-            let modal = egui::Modal::new(egui::Id::unique("messages"));
-            let response = modal.show(ui.ctx(), |ui| menu::messages_ui(ui, &self.state, commands));
-            if response.should_close() {
-                commands.push(Command::ShowMessages(false));
-            }
-        }
-    }
-
-    fn licences_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        if self.state.session.shows_licences {
-            let modal = egui::Modal::new(egui::Id::unique("licences"));
-            let response = modal.show(ui.ctx(), |ui| licences::licences_ui(ui, commands));
-            if response.should_close() {
-                commands.push(Command::ShowLicences(false));
-            }
-        }
-    }
-
     /// Keeps the window open as long as something would be lost that the user has not given up.
     fn ask_before_closing(&mut self, context: &Context) {
         let is_closing = context.input(|input| input.viewport().close_requested());
@@ -352,61 +313,7 @@ impl App {
         }
         if !self.state.reasons_to_stay(&Leaving::Quit).is_empty() {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.state.session.leaving = Some(Leaving::Quit);
-        }
-    }
-
-    fn leaving_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        if self.state.session.leaving.is_some() {
-            let modal = egui::Modal::new(egui::Id::unique("leaving dialog"));
-            let response = modal.show(ui.ctx(), |ui| case::leaving_ui(ui, &self.state, commands));
-            if response.should_close() && commands.is_empty() {
-                commands.push(Command::Stay);
-            }
-        }
-    }
-
-    fn models_dialog_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        if let Some(dialog) = &mut self.state.session.models_dialog {
-            let modal = egui::Modal::new(egui::Id::unique("models dialog"));
-            let show = |ui: &mut Ui| panels::models_dialog_ui(ui, dialog, commands);
-            let response = modal.show(ui.ctx(), show);
-            if response.should_close() && commands.is_empty() {
-                commands.push(Command::Models(ModelsCommand::CloseDialog));
-            }
-        }
-    }
-
-    fn film_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let film = &mut self.state.session.film;
-        let is_busy = film.running().is_some();
-        if let Some(form) = &mut film.form {
-            let modal = egui::Modal::new(egui::Id::unique("film dialog"));
-            let show = |ui: &mut Ui| panels::film_ui(ui, form, is_busy, commands);
-            let response = modal.show(ui.ctx(), show);
-            if response.should_close() && commands.is_empty() {
-                commands.push(Command::CloseFilmForm);
-            }
-        }
-    }
-
-    fn path_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        if let Some(dialog) = &mut self.state.session.path_dialog {
-            let modal = egui::Modal::new(egui::Id::unique("path dialog"));
-            let response = modal.show(ui.ctx(), |ui| dialog.ui(ui, commands));
-            if response.should_close() && commands.is_empty() {
-                commands.push(Command::CancelPath);
-            }
-        }
-    }
-
-    fn replace_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        if let Some(command) = &self.state.session.replacing {
-            let modal = egui::Modal::new(egui::Id::unique("replace dialog"));
-            let response = modal.show(ui.ctx(), |ui| replace::replace_ui(ui, command, commands));
-            if response.should_close() && commands.is_empty() {
-                commands.push(Command::KeepExisting);
-            }
+            self.state.ask_before_leaving(Leaving::Quit);
         }
     }
 }

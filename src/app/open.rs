@@ -6,6 +6,7 @@ use egui::Context;
 
 use crate::app::case::Leaving;
 use crate::app::command::{ComparisonCommand, wake};
+use crate::app::dialog::Dialog;
 use crate::app::import::ImportDialog;
 use crate::app::network::Network;
 use crate::app::panes::Pane;
@@ -91,37 +92,35 @@ impl State {
         self.session.sources.push(source);
     }
 
-    /// Asks how a file is to be read; if a dialog is open, after that.
+    /// Asks how a file is to be read; if a dialog is open that asks that, after it.
     pub(super) fn ask_mapping(&mut self, path: PathBuf) {
-        if self.session.mapping.is_some() {
-            if !self.session.to_map.contains(&path) {
-                self.session.to_map.push_back(path);
+        let dialogs = &mut self.session.dialogs;
+        if dialogs.import().is_some() {
+            if !dialogs.to_import.contains(&path) {
+                dialogs.to_import.push_back(path);
             }
             return;
         }
         let source = self.session.sources.iter().find(|source| source.path == path);
         let map = source.and_then(|source| source.map.clone());
-        self.session.mapping = Some(ImportDialog::open(path, map));
+        dialogs.open(Dialog::Import(Box::new(ImportDialog::open(path, map))));
     }
 
     /// Closes the dialog and asks about the next file that waits.
     pub(super) fn end_mapping(&mut self) {
-        self.session.mapping = None;
-        if let Some(next) = self.session.to_map.pop_front() {
+        self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Import(_)));
+        if let Some(next) = self.session.dialogs.to_import.pop_front() {
             self.ask_mapping(next);
         }
     }
 
-    /// Closes the dialog without opening the file. If it could not be opened otherwise, it is not
-    /// tried again when the program is started next.
-    pub(super) fn cancel_mapping(&mut self) {
-        if let Some(dialog) = &self.session.mapping {
-            let path = dialog.path().to_owned();
-            let is_failed = |source: &Source| {
-                source.path == path && matches!(source.content, Content::Failed(_))
-            };
-            self.forget_sources(is_failed);
-        }
+    /// Closes the uppermost dialog. A file that it asked about and that could not be opened otherwise is
+    /// not tried again when the program is started next.
+    pub(super) fn close_dialog(&mut self) {
+        let Some(Dialog::Import(dialog)) = self.session.dialogs.close() else { return };
+        self.forget_sources(|source| {
+            source.path == dialog.path() && matches!(source.content, Content::Failed(_))
+        });
         self.end_mapping();
     }
 

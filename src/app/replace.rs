@@ -5,6 +5,7 @@ use std::path::Path;
 use egui::{Context, Ui};
 
 use crate::app::command::{Command, ComparisonCommand, wake};
+use crate::app::dialog::Dialog;
 use crate::app::export;
 use crate::app::state::State;
 use impactlab_core::data::write::{MANIFEST_FILE, check_inputs};
@@ -47,12 +48,12 @@ impl State {
     /// Carries out a command that writes a file. If it would replace something and that was not
     /// said to be wanted, the user is asked first.
     pub(super) fn write(&mut self, command: Command, existing: Existing, context: &Context) {
-        self.session.replacing = None;
+        self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Replace(_)));
         if let Some(Err(error)) = command.target().map(|path| self.check_inputs(&command, path)) {
             return self.say(Severity::Error, error_chain(&error));
         }
         if existing == Existing::Refuse && command.replaces_something() {
-            self.session.replacing = Some(Box::new(command));
+            self.session.dialogs.open(Dialog::Replace(Box::new(command)));
             return;
         }
         match command {
@@ -147,7 +148,7 @@ pub fn replace_ui(ui: &mut Ui, command: &Command, commands: &mut Vec<Command>) {
             commands.push(Command::Replace(Box::new(command.clone())));
         }
         if ui.button("Keep it").clicked() {
-            commands.push(Command::KeepExisting);
+            commands.push(Command::CloseDialog);
         }
     });
 }

@@ -1,26 +1,23 @@
 //! The state of the application. The project and the view are saved between runs, the session is
 //! not.
 
-use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::case::{Leaving, OpenCase, SavedCase};
+use crate::app::case::{OpenCase, SavedCase};
 use crate::app::case_table::CaseList;
-use crate::app::command::Command;
 use crate::app::cost::Costs;
-use crate::app::dialogs::FileDialog;
+use crate::app::dialog::{Dialogs, FileDialog};
 use crate::app::film::FilmSession;
 use crate::app::force::{ForceProject, ForceSession, ForceView};
 use crate::app::frame_times::FrameTimes;
 use crate::app::ground::{GroundSession, SiteChoice};
-use crate::app::import::{ColumnMaps, ImportDialog};
-use crate::app::kept::{KeptStatus, ModelsDialog};
+use crate::app::import::ColumnMaps;
+use crate::app::kept::KeptStatus;
 use crate::app::latest::Latest;
 use crate::app::network::Network;
-use crate::app::path_dialog::PathDialog;
 use crate::app::reconstruction::{
     ReconstructionProject, ReconstructionSession, ReconstructionView,
 };
@@ -268,8 +265,6 @@ pub struct Session {
     pub unfinished: UnfinishedTrainings,
     /// What the work of the forms will cost.
     pub costs: Costs,
-    /// The question of the Models pane that waits for an answer.
-    pub models_dialog: Option<ModelsDialog>,
     /// The cases that the case table lists, in their order.
     pub cases: CaseList,
     /// The ground of the scene.
@@ -286,32 +281,18 @@ pub struct Session {
     pub messages: Vec<Message>,
     /// All messages since the program was started, each with the time of day in UTC, the newest last.
     pub log: Vec<(String, Message)>,
-    /// Whether that list is shown.
-    pub shows_log: bool,
     /// The native file dialog that is open.
     pub file_dialog: Option<FileDialog>,
-    /// The question for a path, where the desktop has no file dialog.
-    pub path_dialog: Option<PathDialog>,
-    /// Where the user goes once a question is answered: something would be lost.
-    pub leaving: Option<Leaving>,
-    /// Whether the user goes there as soon as the case is saved.
-    pub leaves_when_saved: bool,
+    /// The dialogs that are open in the window.
+    pub dialogs: Dialogs,
     /// Whether the window may close without a question.
     pub may_close: bool,
     /// Whether what was done before cannot be undone any more: the project is of another variant.
     pub history_ends: bool,
     /// The case that is being written.
     pub saving_case: Option<Job<Result<SavedCase, String>>>,
-    /// The dialog for the columns of a file that is open.
-    pub mapping: Option<ImportDialog>,
-    /// The files whose dialog follows, in the order of opening.
-    pub to_map: VecDeque<PathBuf>,
     /// Whether the three ways to begin are shown in the place of the panes.
     pub shows_doors: bool,
-    /// Whether the licences of third parties are shown.
-    pub shows_licences: bool,
-    /// The command that waits for the user's answer whether it may replace what exists.
-    pub replacing: Option<Box<Command>>,
     /// The film of the scene that is asked about or being made.
     pub film: FilmSession,
     /// Jobs that write figures to files.
@@ -329,17 +310,6 @@ pub struct Session {
 }
 
 impl Session {
-    /// Whether a dialog is open in the window, to which all keys belong.
-    pub fn has_dialog(&self) -> bool {
-        self.mapping.is_some()
-            || self.replacing.is_some()
-            || self.leaving.is_some()
-            || self.path_dialog.is_some()
-            || self.models_dialog.is_some()
-            || self.shows_licences
-            || self.shows_log
-    }
-
     /// Whether an answer is awaited.
     pub fn is_waiting(&self) -> bool {
         self.analysis.is_waiting()

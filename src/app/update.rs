@@ -32,7 +32,7 @@ impl State {
             self.session.file_dialog = None;
             commands.extend(answer);
         }
-        if let Some(dialog) = &mut self.session.mapping {
+        if let Some(dialog) = self.session.dialogs.import_mut() {
             dialog.update(self.view.units, wake(context));
         }
         self.select_something();

@@ -251,7 +251,7 @@ fn without_a_file_dialog_a_path_is_asked_for_in_the_window() {
     let mut harness = pit();
     harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::S);
     step_until(&mut harness, "the question for a path", |state| {
-        state.session.path_dialog.is_some()
+        state.session.dialogs.is_any_open()
     });
     let field = harness.get_by_label("Path");
     field.focus();
@@ -427,10 +427,10 @@ fn a_message_that_is_dismissed_stays_in_the_list() {
     harness.get_by_label("Dismiss").click();
     harness.run_steps(3);
     harness.get_by_label("Warning: the first");
-    apply(&mut harness, Command::ShowMessages(true));
+    apply(&mut harness, Command::ShowMessages);
     harness.run_steps(3);
     harness.get_by_label("the second");
     harness.key_press(Key::Escape);
     harness.run_steps(3);
-    assert!(!state(&harness).session.shows_log);
+    assert!(!state(&harness).session.dialogs.is_any_open());
 }

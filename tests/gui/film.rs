@@ -203,7 +203,7 @@ fn said(harness: &Harness<'_, App>) -> Option<String> {
 
 /// The film that the form asks about.
 fn asked_film(harness: &Harness<'_, App>) -> Film {
-    harness.state().state().session.film.form.clone().expect("the form is open").film
+    harness.state().state().session.dialogs.film().expect("the form is open").film.clone()
 }
 
 #[test]
@@ -218,8 +218,8 @@ fn the_window_films_the_cars_of_a_reconstruction() {
     // Nothing moves before the evidence has been reconstructed.
     ask_film(&mut harness);
     assert!(harness.query_by_label_contains("nothing to film").is_some());
-    apply(&mut harness, Command::CloseFilmForm);
-    assert!(harness.state().state().session.film.form.is_none());
+    apply(&mut harness, Command::CloseDialog);
+    assert!(harness.state().state().session.dialogs.film().is_none());
 
     harness.get_by_label("Run").click();
     harness.run_steps(4);
@@ -283,15 +283,15 @@ fn the_window_makes_a_film_of_the_scene_as_it_is_seen() {
     film.timing.sections.clear();
     let n_frames = film.instants().expect("a possible film").len();
     apply(&mut harness, Command::SaveFilm(Box::new(film.clone()), path.clone()));
-    let session = &harness.state().state().session.film;
-    assert!(session.running().is_some() && session.form.is_none());
+    let session = &harness.state().state().session;
+    assert!(session.film.running().is_some() && session.dialogs.film().is_none());
     step_until(&mut harness, "the film", |state| state.session.film.running().is_none());
     assert_eq!(decoded(&path, 30).len(), n_frames);
     assert!(said(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
 
     // A film that exists already is asked about, and a cancelled one is not written.
     apply(&mut harness, Command::SaveFilm(Box::new(film.clone()), path));
-    assert!(harness.state().state().session.replacing.is_some());
-    apply(&mut harness, Command::KeepExisting);
+    assert!(harness.state().state().session.dialogs.replacing().is_some());
+    apply(&mut harness, Command::CloseDialog);
     cancel_a_long_one(&mut harness, film, &folder.path().join("other.mp4"));
 }

@@ -30,12 +30,12 @@ fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
 /// Waits until the dialog shows what its choices give.
 fn settle(harness: &mut Harness<'_, App>) {
     step_until(harness, "the dialog", |state| {
-        state.session.mapping.as_ref().is_some_and(|dialog| dialog.is_settled())
+        state.session.dialogs.import().is_some_and(|dialog| dialog.is_settled())
     });
 }
 
 fn map(harness: &Harness<'_, App>) -> String {
-    state(harness).session.mapping.as_ref().map_or(String::new(), |dialog| dialog.map().to_string())
+    state(harness).session.dialogs.import().map_or(String::new(), |dialog| dialog.map().to_string())
 }
 
 /// Chooses an entry of the list at a label; of several lists with this label, the one with `index`.
@@ -108,7 +108,7 @@ fn a_unit_that_nobody_states_is_asked_for_before_the_file_opens() {
     harness.get_by_label("• choose the unit of column 2, \"Fx\"");
     harness.get_by_label("Open with these columns").click();
     harness.run_steps(4);
-    assert!(state(&harness).session.mapping.is_some(), "the button does nothing yet");
+    assert!(state(&harness).session.dialogs.import().is_some(), "the button does nothing yet");
     // 60 N are said in words, 60 kN are not.
     choose(&mut harness, ("2: Fx", 1), "N");
     choose(&mut harness, ("3: Fy", 1), "N");
@@ -134,14 +134,16 @@ fn a_map_is_kept_for_the_header_and_over_a_restart() {
     // Both files ask, one after the other; the second one is cancelled.
     let map = "time=1:ms,fx=2:kN,fy=none".parse().expect("a map");
     let path =
-        |state: &State| state.session.mapping.as_ref().map(|dialog| dialog.path().to_owned());
-    assert!(path(state(&harness)).is_some() && state(&harness).session.to_map.len() == 1);
+        |state: &State| state.session.dialogs.import().map(|dialog| dialog.path().to_owned());
+    assert!(
+        path(state(&harness)).is_some() && state(&harness).session.dialogs.to_import.len() == 1
+    );
     if path(state(&harness)) != Some(first.clone()) {
-        apply(&mut harness, Command::CancelMapping);
+        apply(&mut harness, Command::CloseDialog);
         apply(&mut harness, Command::OpenMapped(first.clone(), map));
     } else {
         apply(&mut harness, Command::OpenMapped(first.clone(), map));
-        apply(&mut harness, Command::CancelMapping);
+        apply(&mut harness, Command::CloseDialog);
     }
     step_until(&mut harness, "the force", |state| state.analysis().is_some() && is_idle(state));
     let opened: Vec<&PathBuf> = state(&harness).session.sources.iter().map(|of| &of.path).collect();
@@ -155,7 +157,7 @@ fn a_map_is_kept_for_the_header_and_over_a_restart() {
         state.analysis().is_some() && is_idle(state)
     });
     let state_now = state(&harness);
-    assert!(state_now.session.mapping.is_none() && state_now.session.sources.len() == 1);
+    assert!(state_now.session.dialogs.import().is_none() && state_now.session.sources.len() == 1);
     let peak = |harness: &Harness<'_, App>| {
         let force = state(harness).analysis().and_then(|answer| answer.report.force.clone());
         force.expect("a force").peak_n
@@ -167,7 +169,7 @@ fn a_map_is_kept_for_the_header_and_over_a_restart() {
     step_until(&mut harness, "the second force", |state| {
         state.session.sources.len() == 2 && is_idle(state)
     });
-    assert!(state(&harness).session.mapping.is_none());
+    assert!(state(&harness).session.dialogs.import().is_none());
     let last = &state(&harness).session.messages.last().expect("a message").text;
     assert!(
         last.contains("second.csv: read as files with this header before, time=1:ms"),

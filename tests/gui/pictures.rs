@@ -73,10 +73,10 @@ fn the_mapping_dialog_and_the_vehicle_pane() {
     let text = "Zeit;Kraft A;Kraft B\n0;0;0\n1;2,5;40\n2;3,5;55\n3;0;0\n";
     std::fs::write(&path, text).expect("a file");
     let mut harness = open(&[path.to_str().expect("a plain name")]);
-    step_until(&mut harness, "the dialog", |state| state.session.mapping.is_some());
+    step_until(&mut harness, "the dialog", |state| state.session.dialogs.import().is_some());
     harness.run_steps(4);
     save(&mut harness, "mapping.png");
-    apply(&mut harness, Command::CancelMapping);
+    apply(&mut harness, Command::CloseDialog);
     harness.state_mut().state_mut().project.vehicle =
         impactlab_study::VehicleChoice::Preset("scaled-target-100".to_owned());
     apply(&mut harness, Command::Show(Pane::Vehicle));

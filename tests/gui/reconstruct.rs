@@ -249,9 +249,12 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
     apply(&mut harness, Command::SaveEvidence(Box::new(edited.clone()), path.clone()));
     assert_eq!(Evidence::load(&path).expect("the file"), edited);
     apply(&mut harness, Command::SaveEvidence(Box::new(edited.mirrored()), path.clone()));
-    assert!(state(&harness).session.replacing.is_some(), "it was written without a question");
+    assert!(
+        state(&harness).session.dialogs.replacing().is_some(),
+        "it was written without a question"
+    );
     assert_eq!(Evidence::load(&path).expect("the file"), edited);
-    apply(&mut harness, Command::KeepExisting);
+    apply(&mut harness, Command::CloseDialog);
     let case = folder.path().join("spin.impactlab");
     apply(&mut harness, Command::SaveCaseAs(case.clone()));
     step_until(&mut harness, "the case file", |state| state.case.path.is_some());

@@ -46,7 +46,7 @@ fn the_window_never_writes_over_a_file_that_the_case_rests_on() {
             apply(&mut harness, command);
             harness.run_steps(3);
             assert!(messages(&harness).contains("is an input ("), "{}", messages(&harness));
-            assert!(state(&harness).session.replacing.is_none(), "nothing to be asked");
+            assert!(state(&harness).session.dialogs.replacing().is_none(), "nothing to be asked");
         }
     }
     assert!(fs::read(&path).expect("a recording") == before);
@@ -71,7 +71,7 @@ fn the_window_asks_before_it_replaces_a_file() {
     harness.step();
     harness.key_press(Key::Escape);
     harness.run_steps(3);
-    assert!(state(&harness).session.replacing.is_none(), "Escape keeps it too");
+    assert!(state(&harness).session.dialogs.replacing().is_none(), "Escape keeps it too");
     assert_eq!(fs::read_to_string(&path).expect("a file"), "mine");
 
     apply(&mut harness, save);
@@ -79,7 +79,7 @@ fn the_window_asks_before_it_replaces_a_file() {
     harness.get_by_label("Replace").click();
     harness.run_steps(3);
     assert!(fs::read_to_string(&path).expect("a file").contains("[target"));
-    assert!(state(&harness).session.replacing.is_none());
+    assert!(state(&harness).session.dialogs.replacing().is_none());
 
     // A figure, a model and a folder of results are asked about alike; a new name is not.
     step_until(&mut harness, "the models", |state| state.session.force.model.current.is_some());
@@ -95,12 +95,15 @@ fn the_window_asks_before_it_replaces_a_file() {
             _ => fs::write(folder.path().join(name), "mine").expect("a file"),
         }
         apply(&mut harness, command);
-        assert!(state(&harness).session.replacing.is_some(), "{name}");
-        apply(&mut harness, Command::KeepExisting);
+        assert!(state(&harness).session.dialogs.replacing().is_some(), "{name}");
+        apply(&mut harness, Command::CloseDialog);
     }
     assert_eq!(fs::read_to_string(folder.path().join("model")).expect("a file"), "mine");
     apply(&mut harness, Command::SaveScenario(folder.path().join("new.toml")));
-    assert!(folder.path().join("new.toml").exists() && state(&harness).session.replacing.is_none());
+    assert!(
+        folder.path().join("new.toml").exists()
+            && state(&harness).session.dialogs.replacing().is_none()
+    );
 }
 
 /// Opens the app on the example scenario and waits until its state is stored.

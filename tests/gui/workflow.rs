@@ -41,11 +41,11 @@ fn the_help_menu_shows_the_licences_of_crates_and_fonts() {
     harness.run_steps(10);
     harness.get_by_label("Licences…").click();
     harness.run_steps(10);
-    assert!(state(&harness).session.shows_licences);
+    assert!(state(&harness).session.dialogs.is_any_open());
     harness.get_by_label("Notices of third parties");
     harness.get_by_label("Close").click();
     harness.run_steps(10);
-    assert!(!state(&harness).session.shows_licences);
+    assert!(!state(&harness).session.dialogs.is_any_open());
 }
 
 #[test]
@@ -118,7 +118,9 @@ fn a_bad_file_says_where_and_offers_the_mapping() {
     let path = folder.path().join("export.csv");
     std::fs::write(&path, "Zeit;Kraft A;Kraft B\n0;0;0\n1;2,5;40\n2;0;0\n").unwrap();
     let mut harness = open(&[path.to_str().unwrap()]);
-    step_until(&mut harness, "the mapping dialog", |state| state.session.mapping.is_some());
+    step_until(&mut harness, "the mapping dialog", |state| {
+        state.session.dialogs.import().is_some()
+    });
     harness.get_by_label("Which column is which?");
     let message = state(&harness).session.messages.last().unwrap();
     assert_eq!(message.severity, Severity::Error);

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use egui::{Context, Ui, ViewportCommand};
 
 use crate::app::command::Command;
+use crate::app::dialog::Dialog;
 use crate::app::state::{Session, State};
 use impactlab_core::data::Existing;
 
@@ -40,13 +41,23 @@ impl State {
         if reasons.is_empty() {
             self.go(to, context);
         } else {
-            self.session.leaving = Some(to);
+            self.ask_before_leaving(to);
         }
+    }
+
+    /// Asks before something is lost.
+    pub(in crate::app) fn ask_before_leaving(&mut self, to: Leaving) {
+        self.session.dialogs.open(Dialog::Leave { to, once_saved: false });
+    }
+
+    /// Closes that question.
+    pub(in crate::app) fn stay(&mut self) {
+        self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Leave { .. }));
     }
 
     /// Goes where the user wants.
     pub(in crate::app) fn go(&mut self, to: Leaving, context: &Context) {
-        self.session.leaving = None;
+        self.stay();
         match to {
             Leaving::Quit => {
                 self.session.may_close = true;
@@ -119,33 +130,41 @@ impl State {
     /// Saves the case to its own file and goes on once that is done; asks for a file if it has none.
     pub(in crate::app) fn save_and_leave(&mut self, context: &Context) {
         let Some(path) = self.case.path.clone() else {
-            self.session.leaving = None;
+            self.stay();
             return self.apply(Command::SaveCase, context);
         };
         if self.is_case_file_foreign() {
-            self.session.leaving = None;
+            self.stay();
             return self.apply(Command::SaveCase, context);
         }
-        self.session.leaves_when_saved = true;
+        let open = self.session.dialogs.iter().find_map(|dialog| match dialog {
+            Dialog::Leave { to, .. } => Some(to.clone()),
+            _ => None,
+        });
+        if let Some(to) = open {
+            self.session.dialogs.open(Dialog::Leave { to, once_saved: true });
+        }
         self.save_case((path, Existing::Replace), context);
     }
 
     /// Goes on where a case was to be saved first and now is.
     pub(in crate::app) fn leave_if_saved(&mut self, context: &Context) {
-        let is_waiting = self.session.leaving.is_some() && self.session.leaves_when_saved;
-        if !is_waiting || self.session.saving_case.is_some() {
+        if self.session.saving_case.is_some() {
             return;
         }
-        self.session.leaves_when_saved = false;
-        if let Some(to) = self.session.leaving.take() {
+        let waiting = self.session.dialogs.iter().find_map(|dialog| match dialog {
+            Dialog::Leave { to, once_saved: true } => Some(to.clone()),
+            _ => None,
+        });
+        if let Some(to) = waiting {
+            self.stay();
             self.leave(to, context);
         }
     }
 }
 
 /// Draws the question before the user leaves, and adds a command with the answer.
-pub fn leaving_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let Some(to) = &state.session.leaving else { return };
+pub fn leaving_ui(ui: &mut Ui, to: &Leaving, state: &State, commands: &mut Vec<Command>) {
     ui.heading(match to {
         Leaving::Quit => "Quit impactlab?",
         Leaving::New | Leaving::Pit | Leaving::Example | Leaving::Open(_) => "Leave this case?",
@@ -162,7 +181,7 @@ pub fn leaving_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             commands.push(Command::Leave { to: to.clone(), ask: false });
         }
         if ui.button("Stay").clicked() {
-            commands.push(Command::Stay);
+            commands.push(Command::CloseDialog);
         }
     });
 }

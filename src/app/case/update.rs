@@ -388,7 +388,7 @@ impl State {
                 self.say_unsaved_networks();
             }
             Err(why) => {
-                self.session.leaving = None;
+                self.stay();
                 self.say(Severity::Error, format!("the case was not saved: {why}"));
             }
         }

@@ -480,7 +480,7 @@ impl ImportDialog {
                 commands.push(Command::OpenMapped(self.path.clone(), self.map()));
             }
             if ui.button("Cancel").clicked() {
-                commands.push(Command::CancelMapping);
+                commands.push(Command::CloseDialog);
             }
         });
     }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use egui::Context;
 
 use crate::app::command::{Command, ModelsCommand, wake};
+use crate::app::dialog::Dialog;
 use crate::app::kept::{
     Fact, KeptEntry, KeptFolder, KeptKind, KeptStatus, ModelsDialog, OpenedResult,
 };
@@ -164,25 +165,19 @@ impl State {
 
     /// Carries out a command of the Models pane.
     pub(in crate::app) fn change_models(&mut self, command: ModelsCommand, context: &Context) {
-        let kept = &mut self.session.kept;
         let done = match command {
             ModelsCommand::Ask(dialog) => {
-                self.session.models_dialog = Some(dialog);
-                return;
-            }
-            ModelsCommand::CloseDialog => {
-                self.session.models_dialog = None;
-                return;
+                return self.session.dialogs.open(Dialog::Models(dialog));
             }
             ModelsCommand::Rename(entry, name) => {
-                self.session.models_dialog = None;
-                kept.rename((*entry, name), wake(context))
+                self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Models(_)));
+                self.session.kept.rename((*entry, name), wake(context))
             }
             ModelsCommand::Remove(removal) => {
-                self.session.models_dialog = None;
-                kept.remove(removal, wake(context))
+                self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Models(_)));
+                self.session.kept.remove(removal, wake(context))
             }
-            ModelsCommand::Open(entry) => kept.open_result(*entry, wake(context)),
+            ModelsCommand::Open(entry) => self.session.kept.open_result(*entry, wake(context)),
             ModelsCommand::Resume(checkpoint) => return self.resume_training(&checkpoint, context),
             ModelsCommand::HideInterrupted => {
                 self.session.unfinished.is_hidden = true;

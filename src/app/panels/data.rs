@@ -4,7 +4,7 @@
 use egui::{CollapsingHeader, Response, RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::looks::{Icon, icon_button};
 use crate::app::panes::PaneContext;
 use crate::app::shipped_datasets;

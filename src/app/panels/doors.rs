@@ -6,7 +6,7 @@ use egui::{Align, Button, Frame, Layout, RichText, Ui, vec2};
 
 use crate::app::case::Leaving;
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon};
 use crate::app::workspaces::Workspace;
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use egui::{ComboBox, Grid, RichText, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::model::file_name;
 use crate::app::panels::ending::ending_form;
 use crate::app::panes::PaneContext;

@@ -3,7 +3,7 @@
 use egui::{Grid, RichText, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::film::FilmForm;
 use crate::app::widgets::{count_field, quantity_field, quantity_value};
 use impactlab_core::data::Severity;
@@ -41,7 +41,7 @@ pub fn film_ui(ui: &mut Ui, form: &mut FilmForm, is_busy: bool, commands: &mut V
             commands.push(Command::Ask(Purpose::Film(Box::new(form.film.clone()))));
         }
         if ui.button("Cancel").clicked() {
-            commands.push(Command::CloseFilmForm);
+            commands.push(Command::CloseDialog);
         }
     });
 }

@@ -5,7 +5,7 @@ use egui::{DragValue, Grid, ProgressBar, ScrollArea, Ui};
 
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::cost::CostPlace;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::panels::model_comparison_plots::{browser_ui, overview_ui};
 use crate::app::panes::PaneContext;
 use crate::app::response::{ComparisonForm, ComparisonStatus};

@@ -4,7 +4,7 @@
 use egui::{RichText, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::model::ModelStatus;
 use crate::app::network::TrainedModel;
 use impactlab_core::data::Severity;

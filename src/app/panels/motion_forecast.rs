@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::{DragValue, Id, Panel, ScrollArea, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::looks;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};

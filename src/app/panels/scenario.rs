@@ -3,7 +3,7 @@
 use egui::{ComboBox, Grid, ScrollArea, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::panels::ending::ending_form;
 use crate::app::panels::scenario_plan::scenario_plan_ui;
 use crate::app::panes::PaneContext;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::{Align, Layout, RichText, Slider, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::export::{SceneExport, SceneFormat};
 use crate::app::ground::GroundSession;
 use crate::app::looks::{Icon, icon, icon_button};

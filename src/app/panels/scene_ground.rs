@@ -3,7 +3,7 @@
 use egui::{DragValue, Key, Modifiers, Painter, Pos2, Response, Ui, vec2};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::ground::{GroundCommand, GroundSession};
 use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::measure::{Measure, Measurement, Measuring};

@@ -3,7 +3,7 @@
 use egui::{CollapsingHeader, ComboBox, Grid, RichText, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::widgets::quantity_value;
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::Range;

@@ -3,7 +3,7 @@
 use egui::{Align, Layout, RichText, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::looks::{Icon, icon, icon_button};
 use impactlab_document::figure::Figure;
 use impactlab_draw::{FigureOptions, FigureResponse, figure_ui};

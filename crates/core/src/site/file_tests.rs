@@ -1,6 +1,5 @@
 use std::path::Path;
 
-use crate::data::TomlFile;
 use crate::site::{EdgeLine, Site, SiteOrigin};
 
 const SITE: &str = r#"name = "Crossing"

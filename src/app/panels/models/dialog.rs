@@ -22,7 +22,7 @@ pub fn models_dialog_ui(ui: &mut Ui, dialog: &mut ModelsDialog, commands: &mut V
                     commands.push(Command::Models(command));
                 }
                 if ui.button("Leave it").clicked() {
-                    commands.push(Command::Models(ModelsCommand::CloseDialog));
+                    commands.push(Command::CloseDialog);
                 }
             });
         }
@@ -35,7 +35,7 @@ pub fn models_dialog_ui(ui: &mut Ui, dialog: &mut ModelsDialog, commands: &mut V
                     commands.push(Command::Models(ModelsCommand::Remove(removal.clone())));
                 }
                 if ui.button("Keep it").clicked() {
-                    commands.push(Command::Models(ModelsCommand::CloseDialog));
+                    commands.push(Command::CloseDialog);
                 }
             });
         }

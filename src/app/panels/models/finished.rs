@@ -3,7 +3,7 @@
 use egui::{Frame, Ui};
 
 use crate::app::command::{Command, ModelsCommand};
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::kept::{
     Fact, KeptEntry, KeptFolder, KeptProblem, KeptStatus, LIMIT_BYTES, ModelsDialog, Removal,
     bytes_text, how_it_was_made,

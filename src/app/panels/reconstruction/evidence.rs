@@ -3,7 +3,7 @@
 use egui::{DragValue, ProgressBar, ScrollArea, TextEdit, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::panels::reconstruction::cards::{SheetChoices, cards_ui};
 use crate::app::panels::reconstruction::notice_ui;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::{ComboBox, Grid, Label, ProgressBar, RichText, ScrollArea, TextEdit, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::panes::PaneContext;
 use crate::app::report::{MadeReport, ReportCommand, ReportSession, ReportView};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::{Key, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
+use crate::app::dialog::purpose::Purpose;
 
 /// A question for a path.
 pub struct PathDialog {
@@ -40,11 +40,11 @@ impl PathDialog {
             let is_typed = !self.typed.trim().is_empty();
             let is_clicked = ui.add_enabled(is_typed, egui::Button::new(label)).clicked();
             if is_clicked || is_entered && is_typed {
-                commands.push(Command::CancelPath);
+                commands.push(Command::CloseDialog);
                 commands.extend(self.purpose.commands(vec![path], false));
             }
             if ui.button("Cancel").clicked() {
-                commands.push(Command::CancelPath);
+                commands.push(Command::CloseDialog);
             }
         });
     }

@@ -1,0 +1,14 @@
+//! What the user is asked: dialogs within the window, one over the other, and the desktop's dialogs
+//! for files.
+
+mod native;
+mod path;
+mod purpose;
+mod stack;
+mod ui;
+
+pub use native::FileDialog;
+pub use path::PathDialog;
+pub use purpose::Purpose;
+pub use stack::{Dialog, Dialogs};
+pub use ui::dialogs_ui;

@@ -1,0 +1,61 @@
+//! Draws the dialogs within the window.
+
+use egui::{Id, Modal, Ui};
+
+use crate::app::case::leaving_ui;
+use crate::app::command::Command;
+use crate::app::dialog::Dialog;
+use crate::app::licences::licences_ui;
+use crate::app::menu::messages_ui;
+use crate::app::panels::{film_ui, models_dialog_ui};
+use crate::app::replace::replace_ui;
+use crate::app::state::State;
+
+/// Draws the dialogs that are open and adds a command when the user has answered one. A click beside
+/// the uppermost one or Escape closes it.
+pub fn dialogs_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
+    let mut open = state.session.dialogs.take();
+    for dialog in &mut open {
+        let modal = Modal::new(Id::unique(dialog.id()));
+        let response = modal.show(ui.ctx(), |ui| dialog_ui(ui, dialog, state, commands));
+        if response.should_close() && commands.is_empty() {
+            commands.push(Command::CloseDialog);
+        }
+    }
+    state.session.dialogs.put_back(open);
+}
+
+impl Dialog {
+    /// What the toolkit knows it by.
+    fn id(&self) -> &'static str {
+        match self {
+            Self::Import(_) => "mapping dialog",
+            Self::Licences => "licences",
+            Self::Messages => "messages",
+            Self::Replace(_) => "replace dialog",
+            Self::Leave { .. } => "leaving dialog",
+            Self::Path(_) => "path dialog",
+            Self::Models(_) => "models dialog",
+            Self::Film(_) => "film dialog",
+        }
+    }
+}
+
+fn dialog_ui(ui: &mut Ui, dialog: &mut Dialog, state: &mut State, commands: &mut Vec<Command>) {
+    match dialog {
+        Dialog::Import(dialog) => {
+            let project = &mut state.project;
+            dialog.ui(ui, (&mut project.file_start, &mut project.vehicle), commands);
+        }
+        Dialog::Licences => licences_ui(ui, commands),
+        Dialog::Messages => messages_ui(ui, state, commands),
+        Dialog::Replace(command) => replace_ui(ui, command, commands),
+        Dialog::Leave { to, .. } => leaving_ui(ui, to, state, commands),
+        Dialog::Path(dialog) => dialog.ui(ui, commands),
+        Dialog::Models(dialog) => models_dialog_ui(ui, dialog, commands),
+        Dialog::Film(form) => {
+            let is_busy = state.session.film.running().is_some();
+            film_ui(ui, form, is_busy, commands);
+        }
+    }
+}
