@@ -14,6 +14,7 @@ use std::time::Instant;
 use cpu_time::{ProcessTime, ThreadTime};
 use eframe::wgpu;
 use impactlab_core::error_chain;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::{
     ForecastScene, LoadedGround, Scene, SimulationScene, add_forecast, simulation_scene,
@@ -21,7 +22,7 @@ use impactlab_document::scene::{
 use impactlab_draw::scene::gpu::{GpuCanvas, SceneDevice};
 use impactlab_draw::scene::{Camera, SceneCanvas, SceneLook, ViewKind};
 use impactlab_study::analysis::DensityTask;
-use impactlab_study::{ForceSource, Library, MotionSource, PredictMotionRequest, Question, Trust};
+use impactlab_study::{ForceSource, Library, MotionSource, PredictMotionRequest, Question};
 
 /// Size of a picture, pixels.
 const SIZE: [usize; 2] = [1440, 900];
@@ -40,9 +41,9 @@ fn scene() -> Scene {
         .expect("a shipped case has a forecast")
         .complete()
         .expect("nothing cancels");
-    let (trust, units) = (Trust::default(), UnitSystem::Si);
+    let (caveats, units) = (Caveats::default(), UnitSystem::Si);
     let analysis = &answer.analysis;
-    let input = SimulationScene { analysis, others: &[], units, trust: &trust };
+    let input = SimulationScene { analysis, others: &[], units, caveats: &caveats };
     let mut scene = simulation_scene(&input);
     let density = Arc::new(DensityTask::new(&answer.forecast.distribution, [3.0; 2]).on_cpu());
     let forecast = &answer.forecast;

@@ -11,7 +11,7 @@ use crate::app::response::MotionAnswer;
 use crate::app::state::{State, Subject};
 use impactlab_core::data::Severity;
 use impactlab_core::numerics::quantile_of_sorted;
-use impactlab_core::uncertainty::Badge;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem, percent};
 use impactlab_draw::theme;
 use impactlab_study::SimulateReport;
@@ -78,7 +78,7 @@ impl State {
             title: "Impact",
             figure: delta_v.map(|m_s| format!("Δv {}", Quantity::Speed.shown(m_s, units))),
             source: source.to_owned(),
-            warnings: warnings(report.map(|report| report.badges.as_slice())),
+            warnings: warnings(report.map(|report| &report.caveats)),
             is_late: false,
             pane,
         }
@@ -174,15 +174,14 @@ fn outcome_link(
         }
         (None, None) => (None, "no motion".to_owned(), Pane::Scene),
     };
-    let badges = motion.map(|motion| motion.answer.report.badges.as_slice());
-    let warnings = warnings(badges);
+    let warnings = warnings(motion.map(|motion| &motion.answer.report.caveats));
     Link { title: "Outcome", figure, source, warnings, is_late: false, pane }
 }
 
-/// The sentences of the badges that warn.
-fn warnings(badges: Option<&[Badge]>) -> Vec<String> {
-    let badges = badges.unwrap_or_default().iter().filter(|badge| badge.kind.is_warning());
-    badges.map(|badge| format!("{}: {}", badge.kind.label(), badge.text)).collect()
+/// The sentences of the caveats that warn.
+fn warnings(caveats: Option<&Caveats>) -> Vec<String> {
+    let warnings = caveats.into_iter().flatten().filter(|caveat| caveat.is_warning());
+    warnings.map(|caveat| format!("{}: {}", caveat.kind.label(), caveat.text)).collect()
 }
 
 /// Draws the chain; a click on a link shows its panel.

@@ -220,12 +220,12 @@ impl Command {
         match self {
             Self::Ask(Purpose::Picture(figure) | Purpose::Numbers(figure))
             | Self::Export(figure, _)
-            | Self::CopyNumbers(figure) => figure.trust.is_outdated,
+            | Self::CopyNumbers(figure) => figure.caveats.is_outdated(),
             Self::Ask(Purpose::ScenePicture(picture))
             | Self::ExportScene(picture, _)
-            | Self::AskFilm(picture) => picture.scene.trust.is_outdated,
+            | Self::AskFilm(picture) => picture.scene.caveats.is_outdated(),
             Self::Ask(Purpose::Exchange(export)) | Self::ExportExchange(export, _) => {
-                export.scene.trust.is_outdated
+                export.scene.caveats.is_outdated()
             }
             _ => false,
         }

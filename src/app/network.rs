@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use impactlab_core::uncertainty::Caveats;
 use serde::{Deserialize, Serialize};
 
 use crate::app::kept::{Fact, differences};
@@ -13,7 +14,7 @@ use impactlab_networks::force::{ForceConfig, ForceModel};
 use impactlab_networks::learning::{EpochRecord, EpochSummary, ModelFile};
 use impactlab_networks::response::{ResponseConfig, ResponseModel};
 use impactlab_study::{
-    Assumption, Library, ModelChoice, ResponseTrainingAnswer, ResponseTrainingReport, StudyError,
+    Library, ModelChoice, ResponseTrainingAnswer, ResponseTrainingReport, StudyError,
     TrainForceAnswer, TrainForceReport,
 };
 
@@ -91,7 +92,7 @@ pub trait TrainedModel: Sized + Send + Sync + 'static {
 
     /// Returns the cases that the training left out, each with its reason, and the assumptions of
     /// the training.
-    fn notes(report: &Self::Report) -> (&[String], &[Assumption]);
+    fn notes(report: &Self::Report) -> (&[String], &Caveats);
 
     /// Returns the duration of a training, s.
     fn seconds(report: &Self::Report) -> f64;
@@ -141,8 +142,8 @@ impl TrainedModel for ForceModel {
         (answer.model, answer.report)
     }
 
-    fn notes(report: &TrainForceReport) -> (&[String], &[Assumption]) {
-        (&report.left_out, &report.assumptions)
+    fn notes(report: &TrainForceReport) -> (&[String], &Caveats) {
+        (&report.left_out, &report.caveats)
     }
 
     fn seconds(report: &TrainForceReport) -> f64 {
@@ -214,8 +215,8 @@ impl TrainedModel for ResponseModel {
         (answer.model, answer.report)
     }
 
-    fn notes(report: &ResponseTrainingReport) -> (&[String], &[Assumption]) {
-        (&report.left_out, &report.assumptions)
+    fn notes(report: &ResponseTrainingReport) -> (&[String], &Caveats) {
+        (&report.left_out, &report.caveats)
     }
 
     fn seconds(report: &ResponseTrainingReport) -> f64 {

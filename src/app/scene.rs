@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use egui::Context;
+use impactlab_core::uncertainty::Caveats;
 use serde::{Deserialize, Serialize};
 
 use crate::app::command::wake;
@@ -19,7 +20,7 @@ use impactlab_document::scene::{
     simulation_scene,
 };
 use impactlab_draw::scene::{Camera, Follow, SceneView};
-use impactlab_study::{PredictMotionAnswer, SimulateAnswer, Trust};
+use impactlab_study::{PredictMotionAnswer, SimulateAnswer};
 
 /// From where the scene is seen, which is saved.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -61,7 +62,7 @@ pub struct SceneSource {
     /// The ground below it.
     pub ground: Option<Arc<SceneGround>>,
     /// What restricts the simulation.
-    pub trust: Trust,
+    pub caveats: Caveats,
     /// System of units of the labels.
     pub units: UnitSystem,
 }
@@ -96,8 +97,7 @@ impl ShownForecast {
                 seed: self.seed,
             },
         );
-        let said = Trust::new(&report.badges, &report.assumptions);
-        scene.trust.add_variant("forecast", &said);
+        scene.caveats.add_variant("forecast", &report.caveats);
     }
 }
 
@@ -124,16 +124,15 @@ impl SceneSource {
             }
             && self.recording == other.recording
             && self.ground.as_ref().map(Arc::as_ptr) == other.ground.as_ref().map(Arc::as_ptr)
-            && self.trust == other.trust
+            && self.caveats == other.caveats
             && self.units == other.units
     }
 
     fn build(&self, sources: &[Source]) -> Scene {
         let mut others: Vec<OtherMotion<'_>> = Vec::new();
-        let mut trust = self.trust.clone();
+        let mut caveats = self.caveats.clone();
         for (idx, (name, other)) in self.others.iter().enumerate() {
-            let said = Trust::new(&other.report.badges, &other.report.assumptions);
-            trust.add_variant(name, &said);
+            caveats.add_variant(name, &other.report.caveats);
             let motion = other.analysis.simulation.as_ref();
             others.extend(motion.map(|motion| OtherMotion {
                 name,
@@ -152,7 +151,7 @@ impl SceneSource {
             analysis: &self.answer.analysis,
             others: &others,
             units: self.units,
-            trust: &trust,
+            caveats: &caveats,
         });
         if let Some(forecast) = &self.forecast {
             forecast.add_to(&mut scene);

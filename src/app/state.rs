@@ -4,6 +4,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use impactlab_core::uncertainty::Caveats;
 use serde::{Deserialize, Serialize};
 
 use crate::app::case::{OpenCase, SavedCase};
@@ -40,7 +41,7 @@ use impactlab_document::figure::MOTION_CHANNELS;
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::{
     DEFAULT_DURATION_S, ImpactRequest, Library, SimulateAnswer, SimulateReport, SimulateRequest,
-    Trust, VehicleChoice,
+    VehicleChoice,
 };
 
 /// Version of the format in which the state is saved. A state of another version is not read.
@@ -324,9 +325,9 @@ impl Session {
     }
 
     /// What restricts the simulation that is shown.
-    pub fn simulation_trust(&self, report: &SimulateReport) -> Trust {
-        let trust = Trust::new(&report.badges, &report.assumptions);
-        trust.outdated_if(self.analysis.is_waiting())
+    pub fn simulation_caveats(&self, report: &SimulateReport) -> Caveats {
+        let caveats = report.caveats.clone();
+        caveats.outdated_if(self.analysis.is_waiting())
     }
 
     /// Whether the forecast of the motion, or its density over a window of time, is awaited.

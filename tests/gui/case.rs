@@ -10,7 +10,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, ForceChoice, Leaving, State, Subject, VariantCommand};
 use impactlab_core::data::Severity;
-use impactlab_core::uncertainty::BadgeKind;
+use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_core::vehicle::{Braking, Ending};
 use impactlab_study::case_file::{CaseFile, unpack};
@@ -403,8 +403,8 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
     let force = &state(&harness).chain()[2];
     assert!(force.source.starts_with("force network"), "{force:?}");
     assert!(force.figure.as_ref().unwrap().contains(" to "), "{force:?}");
-    let badges = &state(&harness).session.response.forecast.ok().unwrap().answer.report.badges;
-    assert!(badges.iter().any(|badge| badge.kind == BadgeKind::Disagreement), "{badges:?}");
+    let caveats = &state(&harness).session.response.forecast.ok().unwrap().answer.report.caveats;
+    assert!(caveats.has(CaveatKind::Disagreement), "{caveats:?}");
 
     // No figure of another subject stands while the new one is computed.
     apply(&mut harness, Command::Select(Subject::File("nowhere.csv".into())));

@@ -9,12 +9,13 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Pane};
 use impactlab_core::data::{Existing, Outcome};
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::{FilmSection, FilmTiming, SimulationScene, simulation_scene};
 use impactlab_draw::Canvas;
 use impactlab_draw::film::{Film, FilmError, FrameRenderer, write_film};
 use impactlab_draw::scene::{Camera, Follow, ScenePicture, ViewKind};
-use impactlab_study::{Library, MotionSource, Question, SimulateRequest, Trust};
+use impactlab_study::{Library, MotionSource, Question, SimulateRequest};
 use openh264::decoder::Decoder;
 use openh264::formats::YUVSource;
 use shiguredo_mp4::boxes::SampleEntry;
@@ -35,7 +36,7 @@ fn film() -> Film {
         analysis: &answer.analysis,
         others: &[],
         units: UnitSystem::Si,
-        trust: &Trust::default(),
+        caveats: &Caveats::default(),
     });
     let timing = FilmTiming {
         frames_per_s: 10,
@@ -235,7 +236,7 @@ fn the_window_films_the_cars_of_a_reconstruction() {
     assert_eq!(scene.title, "spin");
     assert!(scene.struck().is_some(), "the car drives");
     assert_eq!([film.timing.from_s, film.timing.to_s], [0.0, scene.end_s]);
-    assert!(!scene.trust.badges.is_empty(), "few particles are a badge");
+    assert!(!scene.caveats.restrictions().is_empty(), "few particles are a restriction");
 
     (film.canvas.size_px, film.timing.to_s) = ([320, 180], 0.3);
     let n_frames = film.instants().expect("a possible film").len();

@@ -3,6 +3,7 @@
 mod arrangement;
 mod both_faces;
 mod case;
+mod caveats;
 mod conditioning;
 mod density_gpu;
 mod film;
@@ -22,5 +23,4 @@ mod scene_gpu;
 mod settings;
 mod snapshots;
 mod stored;
-mod trust;
 mod workflow;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use egui_kittest::image_snapshot;
 use impactlab_core::data::Dataset;
-use impactlab_core::uncertainty::{CurveComponent, CurveMixture, ForceCurve};
+use impactlab_core::uncertainty::{Caveats, CurveComponent, CurveMixture, ForceCurve};
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_document::figure::{
     CoveragePoint, Figure, FigureElement, ForceComponent, ForecastFigure, LossCurve, ParityPoint,
@@ -14,7 +14,6 @@ use impactlab_document::figure::{
 };
 use impactlab_draw::{Canvas, figure_image};
 use impactlab_networks::force::ForceCase;
-use impactlab_study::Trust;
 use impactlab_study::analysis::{ForceForecast, ForecastSettings, pulse_curves};
 use nalgebra::DMatrix;
 
@@ -81,7 +80,7 @@ fn a_forecast_with_everything_over_it() {
                 pulses: &pulses,
                 physics: Some(&case.curve),
                 units: UnitSystem::Si,
-                trust: &Trust::default(),
+                caveats: &Caveats::default(),
             },
         );
         save(&figure, &format!("forecast-{component:?}"));
@@ -97,7 +96,7 @@ fn a_forecast_with_everything_over_it() {
             pulses: &[],
             physics: None,
             units: UnitSystem::Si,
-            trust: &Trust::default(),
+            caveats: &Caveats::default(),
         },
     );
     let drawn = figure.elements.iter().find_map(|element| match element {
@@ -116,7 +115,7 @@ fn a_forecast_with_everything_over_it() {
             pulses: &[],
             physics: None,
             units: UnitSystem::Si,
-            trust: &Trust::default(),
+            caveats: &Caveats::default(),
         },
     );
     let canvas = Canvas { size_px: [360, 220], scale: 1.0, dark: false };

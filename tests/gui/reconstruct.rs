@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{App, Command, FollowedParticle, ReconstructionCommand, State, Workspace};
-use impactlab_core::uncertainty::BadgeKind;
+use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::vehicle::built_in_vehicle;
 use impactlab_reconstruct::evidence::Evidence;
 use impactlab_study::{EvidenceChoice, VehicleChoice};
@@ -157,7 +157,7 @@ fn a_run_that_is_cancelled_keeps_what_was_sampled() {
     let answer = state(&harness).session.reconstruction.answer().expect("an answer");
     let report = &answer.answer.report;
     assert_eq!(report.n_particles, 800);
-    assert!(report.badges.iter().any(|badge| badge.kind == BadgeKind::FewParticles));
+    assert!(report.caveats.has(CaveatKind::FewParticles));
     assert!(!answer.answer.particles.of_posterior());
     assert!(harness.query_all_by_label_contains("temperature").count() > 0);
 }

@@ -13,6 +13,7 @@ use egui::Color32;
 use image::{Rgba, RgbaImage};
 use impactlab_core::error_chain;
 use impactlab_core::site::PixelMap;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::{
     ForecastScene, GroundPicture, LoadedGround, Scene, SceneGround, SimulationScene, add_forecast,
@@ -22,7 +23,7 @@ use impactlab_draw::GpuError;
 use impactlab_draw::scene::gpu::{GpuCanvas, SceneDevice};
 use impactlab_draw::scene::{Camera, SceneCanvas, SceneLook, ViewKind};
 use impactlab_study::analysis::DensityTask;
-use impactlab_study::{ForceSource, Library, MotionSource, PredictMotionRequest, Question, Trust};
+use impactlab_study::{ForceSource, Library, MotionSource, PredictMotionRequest, Question};
 
 use crate::snapshots::braked_pit;
 
@@ -56,8 +57,8 @@ fn forecast_scene() -> Scene {
     let request = PredictMotionRequest::new(source, ForceSource::Given);
     let answer = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
     let answer = answer.expect("a shipped case has a forecast").complete().expect("not cancelled");
-    let (trust, analysis) = (Trust::default(), &answer.analysis);
-    let input = SimulationScene { analysis, others: &[], units: UnitSystem::Si, trust: &trust };
+    let (caveats, analysis) = (Caveats::default(), &answer.analysis);
+    let input = SimulationScene { analysis, others: &[], units: UnitSystem::Si, caveats: &caveats };
     let mut scene = simulation_scene(&input);
     let density = Arc::new(DensityTask::new(&answer.forecast.distribution, [1.0; 2]).on_cpu());
     let (forecast, density) = (&answer.forecast, Some(&density));
@@ -67,9 +68,14 @@ fn forecast_scene() -> Scene {
 
 /// A struck car that is braked: marks of tires, dented outlines, locked wheels.
 fn braked_scene() -> Scene {
-    let (analysis, trust) = (braked_pit(), Trust::default());
+    let (analysis, caveats) = (braked_pit(), Caveats::default());
     let units = UnitSystem::Us;
-    simulation_scene(&SimulationScene { analysis: &analysis, others: &[], units, trust: &trust })
+    simulation_scene(&SimulationScene {
+        analysis: &analysis,
+        others: &[],
+        units,
+        caveats: &caveats,
+    })
 }
 
 fn road() -> SceneGround {

@@ -9,6 +9,7 @@ use egui_kittest::image_snapshot;
 use impactlab::app::{Measure, Measuring};
 use impactlab_core::collision::{ChannelClass, Scenario};
 use impactlab_core::data::{Channel, Dataset};
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::{Braking, Ending, Integrator, Preset};
 use impactlab_document::figure::{
@@ -19,7 +20,6 @@ use impactlab_draw::scene::{
     Camera, Follow, SceneCanvas, SceneLook, ScenePicture, ViewKind, scene_image,
 };
 use impactlab_draw::{Canvas, figure_image};
-use impactlab_study::Trust;
 use impactlab_study::analysis::{Analysis, PulseSetup, Settings, analyse_case, analyse_scenario};
 
 fn analysis(dataset: &str, case: &str) -> Analysis {
@@ -59,7 +59,7 @@ fn check(figure: &Figure, dark: bool, name: &str) {
 fn force() {
     let analysis = analysis("fea", "c002");
     let class = Some(ChannelClass::Cfc60);
-    let shown = (&analysis, &Trust::default());
+    let shown = (&analysis, &Caveats::default());
     let figure = analysis_force_figure(shown, class, &[], UnitSystem::Si).expect("it filters");
     check(&figure.expect("a force"), false, "force");
 }
@@ -67,17 +67,17 @@ fn force() {
 #[test]
 fn motion() {
     let analysis = analysis("trajectories-pulse", "P001");
-    let shown = (&analysis, &Trust::default());
+    let shown = (&analysis, &Caveats::default());
     check(&analysis_motion_figure(shown, Channel::YawRate, UnitSystem::Us), true, "motion");
 }
 
 #[test]
 fn scene_with_striking_and_scene_with_reference() {
     let force_case = analysis("fea", "c002");
-    let shown = (&force_case, &Trust::default());
+    let shown = (&force_case, &Caveats::default());
     check(&analysis_scene_figure(shown, 0.4, UnitSystem::Si), false, "scene_bullet");
     let trajectory = analysis("trajectories-fea", "FE_c002");
-    let shown = (&trajectory, &Trust::default());
+    let shown = (&trajectory, &Caveats::default());
     check(&analysis_scene_figure(shown, 2.0, UnitSystem::Us), true, "scene_reference");
 }
 
@@ -88,8 +88,8 @@ fn check_scene(
     (size_px, dark): ([u32; 2], bool),
     name: &str,
 ) {
-    let (trust, units) = (Trust::default(), UnitSystem::Si);
-    let input = SimulationScene { analysis, others: &[], units, trust: &trust };
+    let (caveats, units) = (Caveats::default(), UnitSystem::Si);
+    let input = SimulationScene { analysis, others: &[], units, caveats: &caveats };
     let picture = ScenePicture {
         scene: Arc::new(simulation_scene(&input)),
         time_s,
@@ -130,8 +130,8 @@ fn n_drawn(scene: &Scene, time_s: f64, leave_out: fn(&mut Scene)) -> usize {
 #[test]
 fn marks_grow_and_outlines_are_dented_as_time_passes() {
     let analysis = braked_pit();
-    let (trust, units) = (Trust::default(), UnitSystem::Si);
-    let input = SimulationScene { analysis: &analysis, others: &[], units, trust: &trust };
+    let (caveats, units) = (Caveats::default(), UnitSystem::Si);
+    let input = SimulationScene { analysis: &analysis, others: &[], units, caveats: &caveats };
     let scene = simulation_scene(&input);
     let marked = [0.0, 0.5, 1.5, 3.5].map(|time_s| n_drawn(&scene, time_s, |of| of.marks.clear()));
     assert_eq!(marked[0], 0, "nothing has slid yet");
@@ -151,9 +151,13 @@ fn marks_grow_and_outlines_are_dented_as_time_passes() {
 #[test]
 fn what_was_measured_is_in_the_picture() {
     let analysis = analysis("fea", "c002");
-    let trust = Trust::default();
-    let input =
-        SimulationScene { analysis: &analysis, others: &[], units: UnitSystem::Si, trust: &trust };
+    let caveats = Caveats::default();
+    let input = SimulationScene {
+        analysis: &analysis,
+        others: &[],
+        units: UnitSystem::Si,
+        caveats: &caveats,
+    };
     let scene = simulation_scene(&input);
     let mut measuring = Measuring { measure: Some(Measure::Length), ..Measuring::default() };
     for at_m in [[0.0, -3.0], [8.0, -3.0]] {
@@ -181,6 +185,6 @@ fn what_was_measured_is_in_the_picture() {
 fn impact() {
     let scenario = Scenario::example();
     let solution = scenario.solve().expect("the example is solved");
-    let figure = impact_figure((&scenario, &solution), &Trust::default(), UnitSystem::Si);
+    let figure = impact_figure((&scenario, &solution), &Caveats::default(), UnitSystem::Si);
     check(&figure.expect("they touch"), false, "impact");
 }

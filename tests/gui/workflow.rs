@@ -8,8 +8,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, ReplayStatus, State};
 use impactlab_core::data::{DatasetKind, Severity};
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
-use impactlab_study::Trust;
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 
@@ -133,7 +133,8 @@ fn a_bad_file_says_where_and_offers_the_mapping() {
     let force = report.force.as_ref().unwrap();
     assert!((force.peak_n - 2500.0_f64.hypot(40_000.0)).abs() < 1e-6);
     // A file states neither the speed of the vehicle nor the point at which the force acts.
-    let assumed: Vec<&str> = report.assumptions.iter().map(|of| of.quantity.label()).collect();
+    let assumed: Vec<&str> =
+        report.caveats.assumptions().map(|of| of.subject.unwrap().label()).collect();
     assert_eq!(assumed, ["struck vehicle", "speed before the impact", "contact point"]);
     harness.run_steps(2);
     assert!(harness.query_all_by_label_contains("assumed: contact point: x -1.5 m").count() > 0);
@@ -144,7 +145,7 @@ fn a_bad_file_says_where_and_offers_the_mapping() {
     harness.state_mut().state_mut().project.file_start.speed_m_s = Some(15.0);
     step_until(&mut harness, "the file at another speed", |state| {
         let answer = state.analysis().filter(|_| is_idle(state));
-        answer.is_some_and(|answer| answer.report.assumptions.len() == 2)
+        answer.is_some_and(|answer| answer.report.caveats.assumptions().count() == 2)
     });
     harness.get_by_label("Speed not known");
 }
@@ -165,7 +166,7 @@ fn a_dropped_file_opens_and_a_figure_is_exported() {
     harness.get_by_label_contains("c002.csv · force");
     let analysis = state(&harness).analysis().unwrap().analysis.clone();
     let figure = impactlab_document::figure::analysis_scene_figure(
-        (&analysis, &Trust::default()),
+        (&analysis, &Caveats::default()),
         1.0,
         UnitSystem::Si,
     );

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use impactlab_core::collision::{ContactLocation, Scenario, Side};
 use impactlab_core::data::{Channel, Existing, Outcome};
-use impactlab_core::uncertainty::BadgeKind;
+use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::vehicle::sheet::{SheetQuantity, VehicleClass};
 use impactlab_core::vehicle::{
     CollisionForce, ContactPoint, DataSheet, Preset, VehicleInput, VehicleParameters, VehicleState,
@@ -416,9 +416,9 @@ fn a_hard_frontal_crash_is_answered_with_wide_bands_and_a_warning() {
     let [low, high] = report.outcome.x_m.ninety;
     assert!(high - low > 2.0, "{:?}", report.outcome);
     let named = |quantity: &str| {
-        report.badges.iter().any(|badge| badge.quantity.as_deref() == Some(quantity))
+        report.caveats.iter().any(|caveat| caveat.quantity.as_deref() == Some(quantity))
     };
-    assert!(named("velocity change by the impact [m/s]"), "{:?}", report.badges);
+    assert!(named("velocity change by the impact [m/s]"), "{:?}", report.caveats);
     assert!(report.applicability < 0.1 && report.force_applicability.is_some_and(|of| of < 0.1));
 }
 
@@ -442,8 +442,8 @@ proptest! {
         prop_assert!(width(report.outcome.x_m.ninety) > 0.0, "{:?}", report.outcome);
         let is_outside = report.applicability < 1.0
             || report.force_applicability.is_some_and(|of| of < 1.0);
-        let is_said = report.badges.iter().any(|badge| badge.kind == BadgeKind::OutsideDomain);
-        prop_assert!(!is_outside || is_said, "{:?}", report.badges);
+        let is_said = report.caveats.has(CaveatKind::OutsideDomain);
+        prop_assert!(!is_outside || is_said, "{:?}", report.caveats);
         prop_assert_eq!(report.rest.is_some(), until_rest);
     }
 }

@@ -15,7 +15,6 @@ use impactlab_document::scene::{
 };
 use impactlab_study::{
     Library, MotionSource, Question, ScenarioChoice, SeriesFile, SimulateAnswer, SimulateRequest,
-    Trust,
 };
 
 /// The shipped scenario, simulated, and its scene.
@@ -29,12 +28,12 @@ fn simulated(source: MotionSource) -> (SimulateAnswer, Scene) {
     let request = SimulateRequest { vehicle_draws: 0, ..SimulateRequest::new(source) };
     let answer = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
     let answer = answer.expect("a motion").complete().expect("not cancelled");
-    let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
+    let caveats = answer.report.caveats.clone();
     let scene = simulation_scene(&SimulationScene {
         analysis: &answer.analysis,
         others: &[],
         units: UnitSystem::Si,
-        trust: &trust,
+        caveats: &caveats,
     });
     (answer, scene)
 }

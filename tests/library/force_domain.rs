@@ -8,7 +8,7 @@ use std::path::Path;
 
 use impactlab_core::collision::contact_work_j;
 use impactlab_core::data::StruckSide;
-use impactlab_core::uncertainty::{BadgeKind, CurveQuantities};
+use impactlab_core::uncertainty::{CaveatKind, CurveQuantities};
 use impactlab_networks::force::{ForceCase, ForceModel, ForcePrediction, ForceScenario};
 use impactlab_networks::shipped::ModelSource;
 use rand::{RngExt, SeedableRng};
@@ -52,9 +52,9 @@ fn inside_of_the_training_the_network_alone_answers() {
         if said.applicability == 1.0 {
             n_inside += 1;
             assert_eq!(said.mixture.components().len(), n_components, "{}", case.name);
-            assert!(said.hooking_probability.is_some() && said.badges.len() == said.outside.len());
+            assert!(said.hooking_probability.is_some() && said.caveats.len() == said.outside.len());
         } else {
-            assert!(!said.badges.is_empty(), "{}", case.name);
+            assert!(!said.caveats.is_empty(), "{}", case.name);
         }
     }
     assert!(n_inside >= 195, "{n_inside}");
@@ -126,7 +126,7 @@ fn any_collision_is_finite_and_outside_of_the_training_as_uncertain_as_the_physi
             continue;
         }
         let named: Vec<_> =
-            said.badges.iter().filter(|badge| badge.kind == BadgeKind::OutsideDomain).collect();
+            said.caveats.iter().filter(|caveat| caveat.kind == CaveatKind::OutsideDomain).collect();
         assert!(!named.is_empty(), "{i}: {scenario:?}");
         assert!(
             named
@@ -137,7 +137,7 @@ fn any_collision_is_finite_and_outside_of_the_training_as_uncertain_as_the_physi
             continue;
         }
         assert!(named.len() > 1, "{i}: no feature is named, {named:?}");
-        if said.badges.iter().any(|badge| badge.kind == BadgeKind::ImplausibleContact) {
+        if said.caveats.iter().any(|caveat| caveat.kind == CaveatKind::ImplausibleContact) {
             n_apart += 1;
             continue;
         }

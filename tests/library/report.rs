@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use impactlab_core::data::Existing;
-use impactlab_core::uncertainty::Badge;
+use impactlab_core::uncertainty::{Caveat, Caveats};
 use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::vehicle::Integrator;
 use impactlab_document::report::{
     Block, Language, Paper, PictureContent, Pixels, ReportDate, ReportDocument, ReportSettings,
     SectionKind, VALIDATION_TABLES, pdf, report_case,
@@ -16,6 +17,7 @@ use impactlab_document::report::{
 use impactlab_study::case_file::{CaseFile, CaseReport, Variant, pack, unpack};
 use impactlab_study::{
     EvidenceChoice, ImpactRequest, Library, ReconstructRequest, Report, ScenarioChoice,
+    SimulateDatasetRequest, VehicleChoice,
 };
 
 /// Particles of a reconstruction that is asked only for the look of its report.
@@ -161,15 +163,15 @@ fn the_example_has_every_section_and_the_numbers_of_its_answers() {
         for badge in told["badges"].as_array().expect("badges") {
             assert_says(document, badge["text"].as_str().expect("a text"));
         }
-        let is_told = |badge: &Badge| {
+        let is_told = |caveat: &Caveat| {
             let of_answers = &document.section(SectionKind::Answers).expect("answers").blocks;
             of_answers
                 .iter()
-                .any(|block| matches!(block, Block::Notice { text } if text.contains(&badge.text)))
+                .any(|block| matches!(block, Block::Notice { text } if text.contains(&caveat.text)))
         };
-        let badges: Vec<Badge> = serde_json::from_value(told["badges"].clone()).expect("badges");
-        for badge in badges.iter().filter(|badge| badge.kind.is_warning()) {
-            assert!(is_told(badge), "{badge} does not stand at the answer");
+        let caveats: Caveats = serde_json::from_value(told.clone()).expect("caveats");
+        for caveat in caveats.iter().filter(|caveat| caveat.is_warning()) {
+            assert!(is_told(caveat), "{caveat} does not stand at the answer");
         }
         for assumption in told["assumptions"].as_array().expect("assumptions") {
             assert_says(document, assumption["reason"].as_str().expect("a reason"));
@@ -180,6 +182,29 @@ fn the_example_has_every_section_and_the_numbers_of_its_answers() {
     }
     assert_eq!(kinds, [3, 3, 3, 3]);
     assert!(document.pictures().count() >= 9, "{}", document.pictures().count());
+}
+
+/// What restricts such an answer was once read back from its JSON, and was left out where that failed.
+#[test]
+fn an_answer_without_a_text_of_its_own_keeps_every_caveat() {
+    let dataset = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/trajectories-fea");
+    let question = SimulateDatasetRequest {
+        dataset,
+        case: Some("FE_c001".to_owned()),
+        vehicle: VehicleChoice::named("toyota-camry-2018"),
+        equations: None,
+        integrator: Integrator::default(),
+    };
+    let variant = Variant { questions: vec![question.into()], ..Variant::default() };
+    let (document, answers) = report(&CaseFile::new("Data", variant), &english());
+    let Some(Report::SimulateDataset(answer)) = answers.variants[0].reports().next() else {
+        panic!("an answer");
+    };
+    assert!(answer.caveats.assumptions().count() > 0, "{:?}", answer.caveats);
+    for caveat in &answer.caveats {
+        assert_says(&document, &caveat.text);
+        caveat.reason.iter().for_each(|reason| assert_says(&document, reason));
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Drawing of figures and scenes. One function draws a figure, and one a scene, both in the panel on
 //! screen and in a picture off screen.
 
+mod caveats;
 mod density;
 mod density_buffers;
 pub mod film;
@@ -14,12 +15,11 @@ mod software;
 pub mod theme;
 mod thin;
 mod ticks;
-mod trust;
 
+pub use caveats::picture_ui;
 pub use density::{DensityError, DensityGpu};
 pub use gpu::GpuError;
 pub use offscreen::{Canvas, RenderError, draw_offscreen, figure_image, save_png};
 pub use plot::{FigureOptions, FigureResponse, figure_ui};
 pub use report::report_picture;
 pub use software::SoftwareRenderer;
-pub use trust::picture_ui;

@@ -5,7 +5,7 @@
 //! value that can be written to JSON ([`Report`]) and, for pictures, what the report was made from.
 //! What a question leaves open is decided here and nowhere else: the vehicle, the contact point, the
 //! speed, how many curves are drawn from which seed, and what happens to cases that cannot be read.
-//! Each such decision that concerns the answer is listed in the report as an [`Assumption`].
+//! Each such decision that concerns the answer is listed in the answer as a [`Caveat`](impactlab_core::uncertainty::Caveat).
 //!
 //! ```
 //! use std::ops::ControlFlow;
@@ -43,8 +43,6 @@ pub use ask::provenance::Provenance;
 pub use ask::question::{Event, Observer, Question, Sampling};
 pub use ask::request::{Answer, Report, Request};
 pub use ask::word::word;
-pub use caveats::assumption::{AssumedQuantity, Assumption};
-pub use caveats::trust::{Trust, TrustLine};
 pub use questions::check::report::{
     CaseFlag, CheckReport, ColumnReport, DatasetReport, FileReport, InputFileReport, PathProblem,
     ProposedColumn, RecordedForceReport,

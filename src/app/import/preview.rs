@@ -5,9 +5,9 @@ use impactlab_core::data::{
     TimeSeries, VelocityFit, check_file, contact_interval, series_of_table, velocity_fit,
 };
 use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem, significant};
 use impactlab_document::figure::{Axis, Figure, FigureElement, ForceFigure, Role, force_figure};
-use impactlab_study::Trust;
 
 /// Time from the first row over which the first speed of a path is taken, s.
 const FIRST_SPEED_OVER_S: f64 = 0.1;
@@ -65,7 +65,7 @@ fn figure(loaded: &Loaded, units: UnitSystem) -> Figure {
                 contact_s,
                 pulses: &[],
                 units,
-                trust: &Trust::default(),
+                caveats: &Caveats::default(),
             })
         }
         _ => channel_figure(series, units),

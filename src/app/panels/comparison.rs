@@ -7,7 +7,7 @@ use crate::app::case_table::listed_in;
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::{assumptions_ui, badges_ui, value_row};
+use crate::app::widgets::{caveats_ui, value_row};
 use impactlab_core::compare::{ErrorSummary, HORIZONS_S, MotionError};
 use impactlab_core::data::DatasetKind;
 use impactlab_core::numerics::Summary;
@@ -51,9 +51,8 @@ pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 fn case_ui(ui: &mut Ui, report: &SimulateReport, units: UnitSystem, commands: &mut Vec<Command>) {
     ui.strong(format!("{} with {}", report.name, report.vehicle));
-    badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions, commands);
-    for note in &report.notes {
+    caveats_ui(ui, &report.caveats, commands);
+    for note in report.caveats.notes() {
         ui.weak(note);
     }
     match &report.error {
@@ -104,8 +103,7 @@ fn dataset_ui(
 ) {
     let violations: usize = report.cases.iter().map(|case| case.violations).sum();
     ui.strong(format!("All {} cases, average position error", report.cases.len()));
-    badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions, commands);
+    caveats_ui(ui, &report.caveats, commands);
     let unit = Quantity::Length.display_unit(units);
     Grid::new("dataset error").striped(true).show(ui, |ui| {
         for title in ["", "n", "mean", "std", "median", "p90"] {

@@ -11,7 +11,7 @@ use crate::app::panels::evaluation_plots::plots_ui;
 use crate::app::panels::evaluation_tables::tables_ui;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
-use crate::app::widgets::{bad_cases_ui, badges_ui, cost_ui, dataset_choice, no_dataset_ui};
+use crate::app::widgets::{bad_cases_ui, cost_ui, dataset_choice, no_dataset_ui, restrictions_ui};
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_draw::theme;
 use impactlab_study::{EvaluateForceReport, EvaluatedCases, ForceEvaluation};
@@ -112,14 +112,14 @@ fn heading_ui(ui: &mut Ui, report: &EvaluateForceReport, model: &str) {
         ui.strong(format!("{model} on {} cases of {data}", report.n_test));
         ui.weak(format!("baselines fitted to its {} training cases", evaluation.n_train));
         if ui.button("Copy as text").clicked() {
-            ui.ctx().copy_text(report.trust().appended_to(evaluation.to_text()));
+            ui.ctx().copy_text(report.caveats.appended_to(evaluation.to_text()));
         }
         if ui.button("Copy as Markdown").clicked() {
-            ui.ctx().copy_text(report.trust().appended_to(evaluation.to_markdown()));
+            ui.ctx().copy_text(report.caveats.appended_to(evaluation.to_markdown()));
         }
     });
     let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-    badges_ui(ui, &report.badges);
+    restrictions_ui(ui, &report.caveats);
     for problem in &evaluation.problems {
         ui.colored_label(color, problem);
     }

@@ -31,14 +31,14 @@ pub fn plots_ui(
     (view, reset): (&mut View, bool),
     commands: &mut Vec<Command>,
 ) {
-    let trust = report.trust();
+    let caveats = &report.caveats;
     let mut figures = vec![
         parity(cases, ("Impulse", "|P|", Quantity::Impulse), view),
         parity(cases, ("Peak force", "Peak |F|", Quantity::Force), view),
     ];
     figures.extend(calibration(report));
     let figures: Vec<Figure> =
-        figures.into_iter().map(|figure| figure.with_trust(&trust)).collect();
+        figures.into_iter().map(|figure| figure.with_caveats(caveats)).collect();
     rows_ui(ui, &figures, (None, reset), commands);
     ui.horizontal(|ui| {
         ui.strong("Sample cases, from the smallest to the largest impulse");
@@ -62,7 +62,7 @@ pub fn plots_ui(
                 physics: None,
                 pulses: &[],
                 units: view.units,
-                trust: &trust,
+                caveats,
             };
             let figure = forecast_figure(view.force.sample_component, &input);
             let kind = if case.is_clean() { "" } else { ", hooked or cut" };

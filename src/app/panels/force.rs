@@ -14,7 +14,7 @@ use impactlab_core::data::{ForceHistory, contact_interval};
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_document::figure::analysis_force_figure;
 use impactlab_draw::FigureOptions;
-use impactlab_study::{ForceReport, SimulateAnswer, Trust};
+use impactlab_study::{ForceReport, SimulateAnswer};
 
 /// Sample interval at which the classic pulses are drawn, s.
 const PULSE_INTERVAL_S: f64 = 5e-4;
@@ -33,9 +33,9 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     settings_ui(ui, project);
     readouts_ui(ui, numbers, view.units);
     let pulses = if project.show_pulses { pulses(force) } else { Vec::new() };
-    let trust = session.simulation_trust(report).outdated_if(are_others_awaited(variants));
+    let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
     let figure =
-        analysis_force_figure((analysis, &trust), project.channel_class, &pulses, view.units);
+        analysis_force_figure((analysis, &caveats), project.channel_class, &pulses, view.units);
     let height = (ui.available_height() - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
     let mut figure = match figure {
         Ok(Some(figure)) => figure,
@@ -47,8 +47,7 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     };
     for (i, (name, other)) in other_simulations(variants).enumerate() {
         let class = project.channel_class;
-        let of_other = Trust::new(&other.report.badges, &other.report.assumptions);
-        let shown = (&other.analysis, &of_other);
+        let shown = (&other.analysis, &other.report.caveats);
         if let Ok(Some(other)) = analysis_force_figure(shown, class, &[], view.units) {
             figure.overlay((name, i), &other);
         }

@@ -11,8 +11,7 @@ use crate::app::panes::PaneContext;
 use crate::app::response::{ComparisonForm, ComparisonStatus};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{
-    assumptions_ui, bad_cases_ui, badges_ui, cost_ui, count_field, dataset_choice, duration_text,
-    no_dataset_ui,
+    bad_cases_ui, caveats_ui, cost_ui, count_field, dataset_choice, duration_text, no_dataset_ui,
 };
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::ranges::CHOICES;
@@ -172,11 +171,10 @@ fn heading_ui(ui: &mut Ui, report: &CompareReport, commands: &mut Vec<Command>) 
             ),
         });
         if ui.button("Copy as Markdown").clicked() {
-            ui.ctx().copy_text(report.trust().appended_to(to_markdown(comparison)));
+            ui.ctx().copy_text(report.caveats.appended_to(to_markdown(comparison)));
         }
     });
-    badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions, commands);
+    caveats_ui(ui, &report.caveats, commands);
     let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
     for why in &report.left_out {
         ui.colored_label(color, format!("Left out: {why}"));
@@ -196,7 +194,7 @@ fn heading_ui(ui: &mut Ui, report: &CompareReport, commands: &mut Vec<Command>) 
 }
 
 fn tables_ui(ui: &mut Ui, report: &CompareReport) {
-    let restrictions = report.trust().text();
+    let restrictions = report.caveats.text();
     for (title, _, table) in all_tables(&report.comparison) {
         if table.rows.is_empty() {
             continue;

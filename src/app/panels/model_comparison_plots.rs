@@ -35,10 +35,10 @@ pub fn overview_ui(
     (units, reset): (UnitSystem, bool),
     commands: &mut Vec<Command>,
 ) {
-    let (comparison, trust) = (&report.comparison, &report.trust());
+    let (comparison, caveats) = (&report.comparison, &report.caveats);
     let mut row_ui = |ui: &mut Ui, id: &str, figures: Vec<Figure>| {
         let figures: Vec<Figure> =
-            figures.into_iter().map(|figure| figure.with_trust(trust)).collect();
+            figures.into_iter().map(|figure| figure.with_caveats(caveats)).collect();
         row_ui(ui, (id, &figures), reset, commands);
     };
     ui.weak("Point: mean over trajectories; bar: ± standard deviation; tick: median.");
@@ -183,7 +183,7 @@ pub fn browser_ui(
     ui.columns(2, |columns| {
         clicked = cases_ui(&mut columns[0], comparison, (case, choice, units));
         if let Some(figure) = compared_case_figure(comparison, (&case.name, choice), units) {
-            let figure = figure.with_trust(&report.trust());
+            let figure = figure.with_caveats(&report.caveats);
             let options = FigureOptions {
                 id: "compared case".to_owned(),
                 height: Some(BROWSER_HEIGHT),

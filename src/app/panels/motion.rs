@@ -8,12 +8,12 @@ use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::recording::{overlaid, recording_menu_ui};
 use crate::app::variants::{are_others_awaited, other_simulations};
-use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, assumptions_ui, badges_ui, time_figure};
+use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, time_figure};
 use impactlab_core::data::{Channel, TimeSeries};
 use impactlab_document::figure::{analysis_motion_figure, analysis_readout, recording_line};
 use impactlab_draw::FigureOptions;
+use impactlab_study::SimulateAnswer;
 use impactlab_study::analysis::Analysis;
-use impactlab_study::{SimulateAnswer, Trust};
 
 /// Draws v_x, v_y, yaw rate and roll over time, with a cursor at the time of the scene. A click or
 /// a drag in a plot sets this time.
@@ -22,8 +22,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let Some(SimulateAnswer { report, analysis }) = analysis_or_hint(ui, session) else {
         return;
     };
-    badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions, commands);
+    caveats_ui(ui, &report.caveats, commands);
     ui.horizontal_wrapped(|ui| {
         curves_menu_ui(ui, analysis, &mut view.motion_channels);
         recording_menu_ui(ui, &mut project.recording, &session.sources);
@@ -33,12 +32,12 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let two_columns = ui.available_width() > 560.0;
     let rows = if two_columns { 2.0 } else { 4.0 };
     let height = (ui.available_height() / rows - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
-    let trust = session.simulation_trust(report).outdated_if(are_others_awaited(variants));
+    let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
     let mut plot = |ui: &mut Ui, channel| {
-        let mut figure = analysis_motion_figure((analysis, &trust), channel, view.units);
+        let mut figure = analysis_motion_figure((analysis, &caveats), channel, view.units);
         for (i, (name, other)) in other_simulations(variants).enumerate() {
-            let of_other = Trust::new(&other.report.badges, &other.report.assumptions);
-            let other = analysis_motion_figure((&other.analysis, &of_other), channel, view.units);
+            let shown = (&other.analysis, &other.report.caveats);
+            let other = analysis_motion_figure(shown, channel, view.units);
             figure.overlay((name, i), &other);
         }
         if let Some((name, series, offset_s)) = &recording {

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use egui::{DragValue, Id, Panel, ScrollArea, Ui};
+use impactlab_core::uncertainty::Caveats;
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
@@ -29,8 +30,8 @@ use impactlab_document::figure::{
     forecast_scene_figure, forecast_surroundings,
 };
 use impactlab_draw::{FigureOptions, theme};
+use impactlab_study::PredictMotionAnswer;
 use impactlab_study::analysis::Analysis;
-use impactlab_study::{PredictMotionAnswer, Trust};
 
 /// What stands above a coarse forecast.
 const COARSE: &str =
@@ -250,7 +251,9 @@ fn figures_ui(
 ) {
     let choice = &view.response;
     let PredictMotionAnswer { report, analysis, .. } = &answer.answer;
-    let trust = Trust::new(&report.badges, &report.assumptions)
+    let caveats = report
+        .caveats
+        .clone()
         .outdated_if(session.is_motion_awaited(choice.density) || are_others_awaited(variants));
     let time_s = session.time_s.min(answer.end_s());
     let is_shown = |density: &&Arc<DensityAnswer>| {
@@ -269,17 +272,13 @@ fn figures_ui(
         components: choice.components,
         reference: analysis.reference.as_ref().filter(|_| choice.reference),
         simulation: motion_of(analysis).filter(|_| choice.simulation),
-        ..bare_figure((answer, &trust), (time_s, view.units))
+        ..bare_figure((answer, &caveats), (time_s, view.units))
     };
     let others: Vec<_> = other_forecasts(variants)
         .map(|(name, answer)| {
-            let report = &answer.answer.report;
-            (name, answer, Trust::new(&report.badges, &report.assumptions))
+            let shown = (answer, &answer.answer.report.caveats);
+            (name, bare_figure(shown, (time_s, view.units)))
         })
-        .collect();
-    let others: Vec<_> = others
-        .iter()
-        .map(|(name, answer, trust)| (*name, bare_figure((*answer, trust), (time_s, view.units))))
         .collect();
     let playback = (session.playing, view.playback_speed);
     clock_ui(ui, (time_s, answer.end_s()), playback, commands);
@@ -331,10 +330,10 @@ fn figures_ui(
 
 /// The figure of a forecast by itself.
 fn bare_figure<'a>(
-    (answer, trust): (&'a MotionAnswer, &'a Trust),
+    (answer, caveats): (&'a MotionAnswer, &'a Caveats),
     shown: (f64, UnitSystem),
 ) -> MotionForecastFigure<'a> {
-    MotionForecastFigure::of(&answer.answer, (&answer.bands, trust), shown)
+    MotionForecastFigure::of(&answer.answer, (&answer.bands, caveats), shown)
 }
 
 /// The motion by the 4DOF model, if there is one.

@@ -5,9 +5,7 @@ use egui::{Grid, Ui};
 
 use crate::app::command::Command;
 use crate::app::response::MotionAnswer;
-use crate::app::widgets::{
-    SpreadRow, assumptions_ui, badges_ui, sensitivity_ui, spread_table_ui, value_row,
-};
+use crate::app::widgets::{SpreadRow, caveats_ui, sensitivity_ui, spread_table_ui, value_row};
 use impactlab_core::units::{Quantity, UnitSystem, percent};
 
 /// Draws the time at which the vehicle comes to rest (or at which the forecast ends), the
@@ -66,8 +64,7 @@ pub fn outcome_ui(
             row("Distance to rest", Quantity::Length, rest.distance_m, "Along the path of the CG"),
         ]);
     }
-    badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions, commands);
+    caveats_ui(ui, &report.caveats, commands);
     spread_table_ui(ui, &report.scenario, &rows);
     Grid::new("motion outcome").num_columns(2).show(ui, |ui| {
         value_row(ui, "Speed", &Quantity::Speed.shown(outcome.speed_m_s, units));

@@ -17,8 +17,8 @@ use impactlab_core::ranges::SAMPLES;
 use impactlab_document::figure::{ForceComponent, ForecastFigure, RecordedCurve, forecast_figure};
 use impactlab_draw::{FigureOptions, theme};
 use impactlab_networks::force::metrics::BAND_LEVELS;
+use impactlab_study::PredictForceAnswer;
 use impactlab_study::analysis::pulse_curves;
-use impactlab_study::{PredictForceAnswer, Trust};
 
 /// Width of the form before the user resizes it, points.
 const FORM_WIDTH: f32 = 340.0;
@@ -151,8 +151,7 @@ fn plots_ui(ui: &mut Ui, shown: Shown<'_>, view: &View, commands: &mut Vec<Comma
     } else {
         Vec::new()
     };
-    let trust = Trust::new(&report.badges, &report.assumptions)
-        .outdated_if(shown.session.forecast.is_waiting());
+    let caveats = report.caveats.clone().outdated_if(shown.session.forecast.is_waiting());
     let input = ForecastFigure {
         name: &report.scenario,
         forecast,
@@ -165,7 +164,7 @@ fn plots_ui(ui: &mut Ui, shown: Shown<'_>, view: &View, commands: &mut Vec<Comma
         pulses: &pulses,
         physics: view.force.physics.then_some(&prediction.centre),
         units: view.units,
-        trust: &trust,
+        caveats: &caveats,
     };
     let components: Vec<ForceComponent> = ForceComponent::ALL
         .into_iter()

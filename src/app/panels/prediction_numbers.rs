@@ -4,7 +4,7 @@
 use egui::{Grid, Ui};
 
 use crate::app::command::Command;
-use crate::app::widgets::{SpreadRow, assumptions_ui, badges_ui, spread_table_ui, value_row};
+use crate::app::widgets::{SpreadRow, caveats_ui, spread_table_ui, value_row};
 use impactlab_core::units::{Quantity, UnitSystem, percent, significant};
 use impactlab_study::PredictForceReport;
 use impactlab_study::analysis::Estimate;
@@ -22,8 +22,7 @@ pub fn numbers_ui(
     units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
-    badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions, commands);
+    caveats_ui(ui, &report.caveats, commands);
     spread_table_ui(ui, &report.scenario, &rows(report, units));
     Grid::new("force momentum").num_columns(2).show(ui, |ui| {
         let momentum = Quantity::Impulse.shown_vector(report.momentum_impulse_n_s, units);

@@ -8,7 +8,7 @@ use crate::app::panels::ending::ending_form;
 use crate::app::panels::scenario_plan::scenario_plan_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Project, Subject};
-use crate::app::widgets::{assumptions_ui, badges_ui, quantity_field, value_row};
+use crate::app::widgets::{caveats_ui, quantity_field, value_row};
 use impactlab_core::collision::{
     ContactLocation, PulseShape, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle, Side,
 };
@@ -239,8 +239,7 @@ fn solution_ui(ui: &mut Ui, report: &ImpactReport, units: UnitSystem, commands: 
             }
         }
     });
-    badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions, commands);
+    caveats_ui(ui, &report.caveats, commands);
 }
 
 /// Labels and values of the change of velocity and of the motion of one vehicle after the impact.

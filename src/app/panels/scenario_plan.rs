@@ -11,7 +11,7 @@ use impactlab_document::figure::{
     Axis, Figure, FigureElement, LineStyle, Role, impact_figure, vehicle_outline,
 };
 use impactlab_draw::FigureOptions;
-use impactlab_study::{ImpactAnswer, Trust};
+use impactlab_study::ImpactAnswer;
 
 /// Height of the plan, points.
 const HEIGHT: f32 = 240.0;
@@ -56,8 +56,7 @@ pub fn scenario_plan_ui(
     let solved = solved.filter(|answer| answer.scenario == *scenario);
     let figure = solved
         .and_then(|ImpactAnswer { scenario, solution, report }| {
-            let trust = Trust::new(&report.badges, &report.assumptions);
-            impact_figure((scenario, solution), &trust, units).ok()
+            impact_figure((scenario, solution), &report.caveats, units).ok()
         })
         .unwrap_or_else(|| outlines_figure(scenario, units));
     let figure = with_handles(figure, scenario);

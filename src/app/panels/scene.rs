@@ -20,12 +20,11 @@ use crate::app::recording::overlaid;
 use crate::app::scene::{SceneSession, SceneSettings, SceneSource};
 use crate::app::state::{Session, State};
 use crate::app::variants::{are_others_awaited, other_simulations};
-use crate::app::widgets::{OUTDATED, badges_ui};
+use crate::app::widgets::{OUTDATED, restrictions_ui};
 use impactlab_core::units::Quantity;
 use impactlab_document::figure::{Figure, analysis_scene_figure, recording_path};
 use impactlab_document::scene::{FilmTiming, Scene};
 use impactlab_draw::scene::{Follow, ScenePicture, ViewKind, scene_view_ui};
-use impactlab_study::Trust;
 
 /// Seconds of the motion that can be played in a second.
 const SPEEDS: [f64; 5] = [0.05, 0.1, 0.25, 0.5, 1.0];
@@ -52,13 +51,13 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     };
     let end_s = series.time_s().last().copied().unwrap_or(0.0);
     clock_ui(ui, (session.time_s, end_s), (session.playing, view.playback_speed), commands);
-    badges_ui(ui, &report.badges);
+    restrictions_ui(ui, &report.caveats);
     if let Some(rest) = &report.rest {
         let distance = Quantity::Length.shown(rest.distance_m, view.units);
         let position = Quantity::Length.shown_vector([rest.x_m, rest.y_m], view.units);
         ui.label(format!("At rest after {:.2} s and {distance}, at {position}", rest.time_s));
     }
-    let trust = session.simulation_trust(report).outdated_if(are_others_awaited(variants));
+    let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
     let recorded = overlaid(project.recording.as_ref(), &session.sources);
     let n_recorded = recorded.as_ref().map_or(0, |(_, series, _)| series.n_samples());
     let source = SceneSource {
@@ -71,17 +70,16 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             .filter(|_| recorded.is_some())
             .map(|of| (of, n_recorded)),
         ground: session.ground.shown().map(|loaded| Arc::clone(&loaded.ground)),
-        trust: trust.clone(),
+        caveats: caveats.clone(),
         units: view.units,
     };
     forecast_choice_ui(ui, &mut view.scene.shows_forecast, session);
     let scene = session.scene.scene(source, &session.sources);
     let time_s = session.time_s;
     let numbers = || {
-        let mut figure = analysis_scene_figure((analysis, &trust), time_s, view.units);
+        let mut figure = analysis_scene_figure((analysis, &caveats), time_s, view.units);
         for (i, (name, other)) in other_simulations(variants).enumerate() {
-            let of_other = Trust::new(&other.report.badges, &other.report.assumptions);
-            let shown = (&other.analysis, &of_other);
+            let shown = (&other.analysis, &other.report.caveats);
             figure.overlay((name, i), &analysis_scene_figure(shown, time_s, view.units));
         }
         if let Some((name, series, _)) = overlaid(project.recording.as_ref(), &session.sources) {
@@ -148,7 +146,7 @@ pub fn scene_heading_ui(
 ) {
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.add_enabled_ui(!scene.trust.is_outdated, |ui| {
+            ui.add_enabled_ui(!scene.caveats.is_outdated(), |ui| {
                 ui.menu_button((icon(Icon::Download), "Export"), |ui| {
                     export_menu_ui(ui, || exported(settings), commands);
                 })

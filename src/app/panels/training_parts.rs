@@ -4,6 +4,7 @@
 use std::time::Duration;
 
 use egui::{DragValue, ProgressBar, Response, Ui};
+use impactlab_core::uncertainty::Caveats;
 
 use crate::app::command::{Command, TrainingCommand};
 use crate::app::model::ModelStatus;
@@ -15,7 +16,7 @@ use crate::app::widgets::{assumptions_ui, bad_cases_ui, duration_text};
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::Range;
 use impactlab_draw::theme;
-use impactlab_study::{Assumption, BadCases};
+use impactlab_study::BadCases;
 
 /// Draws the buttons and the progress of a training, the current model, and the losses. The losses
 /// are those of the latest training of this session, or, if there is none, those of the training
@@ -32,7 +33,7 @@ pub fn network_training_ui<M: TrainedModel>(
     if status.run.is_running() {
         run_progress_ui(ui, &status.doing(), status.progress());
     }
-    let notes = status.report.as_ref().map(M::notes).unwrap_or_default();
+    let notes = status.report.as_ref().map(M::notes);
     run_record_ui(ui, status.problem.as_deref(), notes, commands);
     save_model_ui(ui, model, commands);
     ui.separator();
@@ -142,11 +143,11 @@ pub fn run_progress_ui(ui: &mut Ui, what: &str, (fraction, left): (Option<f32>, 
 /// left out, and the assumptions.
 ///
 /// - `problem`: the reason for the failure; `None` if the training did not fail.
-/// - `left_out`: one reason for each case that was left out.
+/// - `notes`: one reason for each case that was left out, and the caveats of the training.
 fn run_record_ui(
     ui: &mut Ui,
     problem: Option<&str>,
-    (left_out, assumptions): (&[String], &[Assumption]),
+    notes: Option<(&[String], &Caveats)>,
     commands: &mut Vec<Command>,
 ) {
     let dark = ui.visuals().dark_mode;
@@ -154,9 +155,10 @@ fn run_record_ui(
         let color = theme::severity_color(Severity::Error, dark);
         ui.colored_label(color, format!("Not trained: {problem}"));
     }
+    let Some((left_out, caveats)) = notes else { return };
     for why in left_out {
         let color = theme::severity_color(Severity::Warning, dark);
         ui.colored_label(color, format!("Left out: {why}"));
     }
-    assumptions_ui(ui, assumptions, commands);
+    assumptions_ui(ui, caveats, commands);
 }

@@ -114,11 +114,11 @@ fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 8] {
 
 /// What restricts the answers of a variant, a sentence each.
 fn warning_texts(variant: &AnsweredVariant) -> Vec<String> {
-    let simulated = variant.simulation.iter().flat_map(|answer| &answer.report.badges);
-    let forecast = variant.forecast.iter().flat_map(|answer| &answer.answer.report.badges);
+    let simulated = variant.simulation.iter().flat_map(|answer| &answer.report.caveats);
+    let forecast = variant.forecast.iter().flat_map(|answer| &answer.answer.report.caveats);
     let mut said: Vec<String> = Vec::new();
-    for badge in simulated.chain(forecast).filter(|badge| badge.kind.is_warning()) {
-        let text = format!("{}: {}", badge.kind.label(), badge.text);
+    for caveat in simulated.chain(forecast).filter(|caveat| caveat.is_warning()) {
+        let text = format!("{}: {}", caveat.kind.label(), caveat.text);
         if !said.contains(&text) {
             said.push(text);
         }

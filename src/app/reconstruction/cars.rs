@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use crate::app::reconstruction::FollowedParticle;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::{ReconstructionParts, Scene, SceneGround, reconstruction_scene};
 use impactlab_draw::scene::SceneView;
 use impactlab_reconstruct::evidence::Evidence;
-use impactlab_study::Trust;
 
 /// What a scene is built from. It is built anew when this changes.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +21,7 @@ pub struct CarsSource {
     /// System of units of the labels.
     pub units: UnitSystem,
     /// What restricts the answer.
-    pub trust: Trust,
+    pub caveats: Caveats,
 }
 
 /// Paths that are drawn, told apart from others.

@@ -10,6 +10,7 @@ use impactlab_core::data::write::{OutputFolder, RunRecord};
 use impactlab_core::data::{DataError, Existing};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::{Job, Progress};
+use impactlab_core::uncertainty::Caveats;
 use impactlab_networks::response::evaluate::{Comparison, write_comparison};
 use impactlab_study::{
     CompareAnswer, CompareReport, CompareRequest, EvaluateResponseRequest, Library, Provenance,
@@ -136,8 +137,7 @@ impl ComparisonStatus {
                 let report = CompareReport {
                     comparison,
                     left_out: Vec::new(),
-                    assumptions: Vec::new(),
-                    badges: Vec::new(),
+                    caveats: Caveats::default(),
                     provenance: Provenance::default(),
                 };
                 Arc::new(CompareAnswer { report })
@@ -172,7 +172,7 @@ where
 /// Writes a comparison into a folder with a manifest.
 fn write(folder: &Path, existing: Existing, report: &CompareReport) -> Result<(), DataError> {
     let output = OutputFolder::begin(folder, existing, &["comparison.json", "comparison.md"])?;
-    let said = report.trust().text();
+    let said = report.caveats.text();
     write_comparison(output.staging(), &report.comparison, said.as_deref())?;
     let Provenance { seed, model_digests: models, .. } = report.provenance_with_seed();
     output.finish(RunRecord { seed, models, ..RunRecord::default() })

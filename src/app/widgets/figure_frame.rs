@@ -28,7 +28,7 @@ pub fn figure_frame(
 ) -> FigureResponse {
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.add_enabled_ui(!figure.trust.is_outdated, |ui| {
+            ui.add_enabled_ui(!figure.caveats.is_outdated(), |ui| {
                 ui.menu_button((icon(Icon::Download), "Export"), |ui| {
                     export_menu_ui(ui, figure, commands)
                 })

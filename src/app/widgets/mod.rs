@@ -2,7 +2,7 @@
 
 mod assumptions;
 mod bad_cases;
-mod badges;
+mod caveats;
 mod cost;
 mod dataset_choice;
 mod figure_frame;
@@ -13,7 +13,7 @@ mod time_figure;
 
 pub use assumptions::{assumptions_ui, evidence_assumptions_ui};
 pub use bad_cases::bad_cases_ui;
-pub use badges::badges_ui;
+pub use caveats::{caveats_ui, restrictions_ui};
 pub use cost::cost_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
 pub use figure_frame::{MIN_PLOT_HEIGHT, OUTDATED, TITLE_HEIGHT, figure_frame};

@@ -40,7 +40,7 @@ pub fn time_figure(
         let units = [figure.y.unit.symbol, unit.symbol];
         let curves = curve_statistics(figure, span);
         between.figures.push((figure.y.label.clone(), units, curves));
-        between.restrictions.extend(figure.trust.text());
+        between.restrictions.extend(figure.caveats.text());
     }
     let is_selecting = ui.input(|input| input.modifiers.matches_exact(Modifiers::SHIFT));
     if let Some([from, to]) = response.drag.filter(|_| is_selecting) {

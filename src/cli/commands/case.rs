@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{
-    Console, Verdict, print_badges, shown, shown_path, shown_vector, under_bar,
+    Console, Verdict, print_caveats, shown, shown_path, shown_vector, under_bar,
 };
 use crate::cli::options::{OverwriteArg, UnitsArg};
 use crate::cli::text::{print_force_prediction, print_motion_prediction, print_simulation};
@@ -198,5 +198,5 @@ fn print_impact(out: &mut dyn Write, report: &ImpactReport, units: UnitSystem) -
         let delta_v = shown(Quantity::Speed, vehicle.delta_v_magnitude_m_s, units);
         writeln!(out, "{who}: change of velocity {delta_v}")?;
     }
-    print_badges(out, &report.badges, &report.assumptions)
+    print_caveats(out, &report.caveats)
 }

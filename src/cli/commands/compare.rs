@@ -95,7 +95,7 @@ pub(in crate::cli) fn run(
     let out = args.out.as_deref().map(|folder| (folder, args.overwrite.into(), known));
     let answer = console.ask_into(&request, out, |output, answer| {
         let report = &answer.report;
-        let said = report.trust().text();
+        let said = report.caveats.text();
         write_comparison(output.staging(), &report.comparison, said.as_deref())?;
         Ok(answer.report.provenance_with_seed())
     })?;

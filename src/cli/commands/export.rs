@@ -121,7 +121,7 @@ fn format_of(path: &Path) -> Result<FormatArg, CliError> {
 fn write(args: &ExportArgs, (format, built): (FormatArg, &BuiltScene)) -> Result<(), CliError> {
     let BuiltScene { scene, analysis, .. } = built;
     let (path, existing) = (&args.out, args.overwrite.into());
-    let said = scene.trust.text();
+    let said = scene.caveats.text();
     let case = (analysis, said.as_deref());
     let mut bytes = Vec::new();
     match format {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::CliError;
-use crate::cli::console::{Console, Verdict, print_badges, print_facts, shown, shown_vector};
+use crate::cli::console::{Console, Verdict, print_caveats, print_facts, shown, shown_vector};
 use crate::cli::options::UnitsArg;
 use impactlab_core::collision::FrictionModel;
 use impactlab_core::units::{Quantity, UnitSystem, percent, significant};
@@ -125,5 +125,5 @@ fn print_text(out: &mut dyn Write, answer: &ImpactAnswer, units: UnitSystem) -> 
         ];
         print_facts(out, &facts)?;
     }
-    print_badges(out, &report.badges, &report.assumptions)
+    print_caveats(out, &report.caveats)
 }

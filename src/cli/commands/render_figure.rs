@@ -5,28 +5,25 @@ use crate::cli::console::Console;
 use crate::cli::options::SourceArgs;
 use impactlab_core::collision::{ChannelClass, filter_history};
 use impactlab_core::data::{Channel, contact_interval};
-use impactlab_core::uncertainty::Badge;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::{
     Figure, ForceFigure, analysis_motion_figure, force_figure, impact_figure,
 };
 use impactlab_study::{
-    Assumption, Drive, ImpactRequest, RecordedForceRequest, Request, SimulateAnswer,
-    SimulateRequest, StudyError, Trust,
+    Drive, ImpactRequest, RecordedForceRequest, Request, SimulateAnswer, SimulateRequest,
+    StudyError,
 };
 
 /// A figure and what should be said with it.
 pub(super) type Noted = (Figure, Vec<String>);
 
-/// Notes, badges and assumptions as lines.
-pub(super) fn noted(
-    notes: &[String],
-    (badges, assumptions): (&[Badge], &[Assumption]),
-) -> Vec<String> {
-    let badges = badges.iter().filter(|badge| !badge.kind.is_assumption());
-    let badges = badges.map(|badge| format!("{}: {}", badge.kind.label(), badge.text));
-    let assumed = assumptions.iter().map(ToString::to_string);
-    notes.iter().cloned().chain(badges).chain(assumed).collect()
+/// Notes, restrictions and assumptions as lines.
+pub(super) fn noted(caveats: &Caveats) -> Vec<String> {
+    let restrictions = caveats.restrictions().into_iter();
+    let restrictions = restrictions.map(|of| format!("{}: {}", of.kind.label(), of.text));
+    let assumed = caveats.assumptions().map(ToString::to_string);
+    caveats.notes().map(str::to_owned).chain(restrictions).chain(assumed).collect()
 }
 
 /// The force of a case or a file, filtered if a class is given.
@@ -53,9 +50,9 @@ pub(super) fn force(
         contact_s: contact_interval(&raw),
         pulses: &[],
         units,
-        trust: &recorded.trust,
+        caveats: &recorded.caveats,
     });
-    Ok((figure, noted(&recorded.notes, (&recorded.trust.badges, &[]))))
+    Ok((figure, noted(&recorded.caveats)))
 }
 
 /// One channel of the motion of a case or a file.
@@ -66,13 +63,12 @@ pub(super) fn motion(
     console: &mut Console<'_>,
 ) -> Result<Noted, CliError> {
     let SimulateAnswer { report, analysis } = console.answer(request)?;
-    let trust = Trust::new(&report.badges, &report.assumptions);
-    let figure = analysis_motion_figure((&analysis, &trust), channel, units);
+    let figure = analysis_motion_figure((&analysis, &report.caveats), channel, units);
     if figure.elements.is_empty() {
         let (name, channel) = (request.source.name(), channel.header());
         return Err(CliError::NothingToShow { name, channel });
     }
-    Ok((figure, noted(&report.notes, (&report.badges, &report.assumptions))))
+    Ok((figure, noted(&report.caveats)))
 }
 
 /// The impact of a scenario.
@@ -83,8 +79,7 @@ pub(super) fn impact(
 ) -> Result<Noted, CliError> {
     let answer = console.answer(request)?;
     let name = answer.report.name.clone();
-    let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
-    let figure = impact_figure((&answer.scenario, &answer.solution), &trust, units)
+    let figure = impact_figure((&answer.scenario, &answer.solution), &answer.report.caveats, units)
         .map_err(|source| StudyError::Scenario { name, source })?;
-    Ok((figure, noted(&[], (&answer.report.badges, &answer.report.assumptions))))
+    Ok((figure, noted(&answer.report.caveats)))
 }

@@ -16,7 +16,7 @@ use impactlab_document::figure::{
 };
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::analysis::{DensityTask, MotionBands};
-use impactlab_study::{ForceSource, PredictMotionRequest, Trust};
+use impactlab_study::{ForceSource, PredictMotionRequest};
 
 /// Every how many steps the bands over time have an edge.
 const BAND_STRIDE: usize = 5;
@@ -95,11 +95,11 @@ pub(super) fn figure(
     }
     let density = DensityTask::new(&forecast.distribution, args.window.unwrap_or([at_s; 2]));
     let (density, bands) = (density.on_cpu(), MotionBands::of(&forecast.distribution, BAND_STRIDE));
-    let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
+    let caveats = &answer.report.caveats;
     let input = MotionForecastFigure {
         density: Some(&density),
         components: true,
-        ..MotionForecastFigure::of(&answer, (&bands, &trust), (at_s, units)).with_motions(analysis)
+        ..MotionForecastFigure::of(&answer, (&bands, caveats), (at_s, units)).with_motions(analysis)
     };
     let wanted = args.channel.map(Channel::from);
     let channel = FORECAST_CHANNELS.into_iter().find(|of| Some(of.channel) == wanted);
@@ -107,6 +107,5 @@ pub(super) fn figure(
         Some(channel) => forecast_channel_figure(&input, channel),
         None => forecast_scene_figure(&input),
     };
-    let said = (&*answer.report.badges, &*answer.report.assumptions);
-    Ok((figure, noted(&analysis.notes, said)))
+    Ok((figure, noted(caveats)))
 }

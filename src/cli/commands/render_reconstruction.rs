@@ -16,7 +16,7 @@ use impactlab_document::figure::{
 };
 use impactlab_document::scene::{LoadedGround, ReconstructionParts, Scene, reconstruction_scene};
 use impactlab_reconstruct::ReconstructedQuantity;
-use impactlab_study::{ReconstructAnswer, ReconstructRequest, ReconstructedPaths, Trust};
+use impactlab_study::{ReconstructAnswer, ReconstructRequest, ReconstructedPaths};
 
 /// The evidence, and what is drawn.
 #[derive(Debug, Args)]
@@ -75,14 +75,15 @@ pub(super) fn figure(
     console: &mut Console<'_>,
 ) -> Result<(Noted, Option<ShownScene>), CliError> {
     let of = Reconstructed::of(&args.evidence.request(), console)?;
-    let Reconstructed { answer, trust, .. } = &of;
+    let answer = &of.answer;
+    let caveats = &answer.report.caveats;
     let (mut cars, mut notes) = (None, of.notes());
     let figure = match (args.plot.quantity(), args.plot) {
         (Some(quantity), _) => {
             let prior = prior_values(&answer.target, quantity);
-            marginal_figure(answer, (quantity, &prior), trust, units)
+            marginal_figure(answer, (quantity, &prior), caveats, units)
         }
-        (None, PlotArg::Budget) => budget_figure(answer, trust, units),
+        (None, PlotArg::Budget) => budget_figure(answer, caveats, units),
         (None, _) => {
             let paths = ReconstructedPaths::of(answer);
             let view = match args.plot {
@@ -96,7 +97,7 @@ pub(super) fn figure(
                 let end_s = built.end_s;
                 ShownScene::fitted(built, end_s, view)
             });
-            reconstruction_scene_figure(&ReconstructionScene::of(answer, &paths), trust, units)
+            reconstruction_scene_figure(&ReconstructionScene::of(answer, &paths), caveats, units)
         }
     };
     Ok(((figure, notes), cars))
@@ -118,7 +119,6 @@ pub(super) fn cars_scene(
 /// A reconstruction with what restricts it, and the ground below its cars.
 struct Reconstructed {
     answer: ReconstructAnswer,
-    trust: Trust,
     ground: Option<LoadedGround>,
 }
 
@@ -128,12 +128,11 @@ impl Reconstructed {
         let site = request.site.as_deref();
         let ground = site.map(|site| console.ground(site)).transpose()?;
         let answer = console.answer(request)?;
-        let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
-        Ok(Self { answer, trust, ground })
+        Ok(Self { answer, ground })
     }
 
     fn notes(&self) -> Vec<String> {
-        let mut notes = noted(&[], (&self.answer.report.badges, &self.trust.assumptions));
+        let mut notes = noted(&self.answer.report.caveats);
         notes.extend(self.ground.iter().flat_map(|ground| ground.notes.iter().cloned()));
         notes
     }
@@ -144,7 +143,8 @@ impl Reconstructed {
     }
 
     fn cars(&self, paths: &ReconstructedPaths, units: UnitSystem) -> Scene {
-        let parts = ReconstructionParts::of((&self.answer, paths), units, &self.trust);
+        let parts =
+            ReconstructionParts::of((&self.answer, paths), units, &self.answer.report.caveats);
         let built = reconstruction_scene(&parts);
         Scene { ground: self.ground.as_ref().map(|of| Arc::clone(&of.ground)), ..built }
     }

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
+use impactlab_core::uncertainty::Caveats;
 
 use crate::cli::CliError;
 use crate::cli::commands::render::{OutputArgs, VehicleArgs};
@@ -19,7 +20,7 @@ use impactlab_document::scene::{
     FilmTiming, ForecastScene, LoadedGround, Scene, SimulationScene, add_forecast, simulation_scene,
 };
 use impactlab_study::analysis::{Analysis, DensityTask};
-use impactlab_study::{ForceSource, PredictMotionRequest, SimulateAnswer, SimulateRequest, Trust};
+use impactlab_study::{ForceSource, PredictMotionRequest, SimulateAnswer, SimulateRequest};
 
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
@@ -158,7 +159,7 @@ pub(super) fn scene(
     let time_s = args.time;
     let BuiltScene { analysis, scene, notes } =
         build(&args.seen.case, Some(time_s), units, console)?;
-    let mut figure = analysis_scene_figure((&analysis, &scene.trust), time_s, units);
+    let mut figure = analysis_scene_figure((&analysis, &scene.caveats), time_s, units);
     figure.elements.extend(drawn_paths(&scene, &figure));
     Ok((figure, notes, args.seen.shown(scene, time_s)))
 }
@@ -203,19 +204,19 @@ pub(super) fn build(
     if let Some(time_s) = density_s {
         check_time(&analysis, ("--time", time_s))?;
     }
-    let mut trust = Trust::new(&report.badges, &report.assumptions);
-    let mut notes = noted(&report.notes, (&report.badges, &report.assumptions));
+    let mut caveats = report.caveats.clone();
+    let mut notes = noted(&report.caveats);
     let mut scene = simulation_scene(&SimulationScene {
         analysis: &analysis,
         others: &[],
         units,
-        trust: &trust,
+        caveats: &caveats,
     });
     if args.ghosts > 0 {
         let asked = (request, args.ghosts, density_s);
-        let said = add_ghosts(asked, (&mut scene, &mut trust), console)?;
+        let said = add_ghosts(asked, (&mut scene, &mut caveats), console)?;
         notes.extend(said.into_iter().filter(|note| !notes.contains(note)).collect::<Vec<_>>());
-        scene.trust = trust;
+        scene.caveats = caveats;
     }
     if let Some(path) = &args.vehicle.site {
         notes.extend(add_ground(&mut scene, path, console)?);
@@ -258,7 +259,7 @@ fn check_time(analysis: &Analysis, (option, time_s): (&'static str, f64)) -> Res
 /// Asks for a forecast and adds it to a scene; returns its notes.
 fn add_ghosts(
     (motion, n_ghosts, density_s): (SimulateRequest, usize, Option<f64>),
-    (scene, trust): (&mut Scene, &mut Trust),
+    (scene, caveats): (&mut Scene, &mut Caveats),
     console: &mut Console<'_>,
 ) -> Result<Vec<String>, CliError> {
     let request = PredictMotionRequest {
@@ -281,8 +282,8 @@ fn add_ghosts(
         },
     );
     let report = &answer.report;
-    trust.add_variant("forecast", &Trust::new(&report.badges, &report.assumptions));
-    Ok(noted(&answer.analysis.notes, (&report.badges, &report.assumptions)))
+    caveats.add_variant("forecast", &report.caveats);
+    Ok(noted(&report.caveats))
 }
 
 /// The paths that were drawn from a forecast, in the units of a figure.

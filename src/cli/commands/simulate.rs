@@ -21,7 +21,7 @@ use impactlab_core::vehicle::{ContactPoint, Equations};
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::{
     DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, Drive, MotionSource, ScenarioChoice, SeriesFile,
-    SimulateDatasetRequest, SimulateRequest, Trust,
+    SimulateDatasetRequest, SimulateRequest,
 };
 
 /// Simulate the motion after an impact, or compare a whole data set with the simulation
@@ -237,7 +237,7 @@ fn simulate_one(
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     let (report, out) = (&answer.report, args.out.as_deref());
     if let (Some(path), Some(motion)) = (out, &answer.analysis.simulation) {
-        let said = Trust::new(&report.badges, &report.assumptions).text();
+        let said = report.caveats.text();
         write_restricted_series_csv(path, existing, (&motion.series, said.as_deref()))?;
     }
     let printed = PrintedSimulation { report, out };
@@ -262,7 +262,7 @@ fn simulate_dataset(
     let answer = console.ask_into(&request, into, |output, answer| {
         for case in &answer.replay.cases {
             let path = output.staging().join(format!("{}.csv", case.case));
-            let said = answer.report.trust_of(&case.case).text();
+            let said = answer.report.caveats_of(&case.case).text();
             let restricted = (&case.motion.series, said.as_deref());
             write_restricted_series_csv(&path, Existing::Refuse, restricted)?;
         }

@@ -10,9 +10,9 @@ use crate::cli::console::{Targets, print_json, under_bar, within_line};
 use impactlab_core::data::Existing;
 use impactlab_core::data::write::OutputFolder;
 use impactlab_core::site::Site;
-use impactlab_core::uncertainty::Badge;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_document::scene::LoadedGround;
-use impactlab_study::{Assumption, Library, Provenance, Question, Request};
+use impactlab_study::{Library, Provenance, Question, Request};
 
 /// How a command that did not fail ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -184,28 +184,15 @@ impl Console<'_> {
     }
 }
 
-/// Prints what an answer rests on that nobody said.
-pub(in crate::cli) fn print_assumptions(
-    out: &mut dyn Write,
-    assumptions: &[Assumption],
-) -> io::Result<()> {
-    for assumption in assumptions {
+/// Prints what restricts an answer and what it rests on, one line each.
+pub(in crate::cli) fn print_caveats(out: &mut dyn Write, caveats: &Caveats) -> io::Result<()> {
+    for caveat in caveats.restrictions() {
+        writeln!(out, "{}", within_line(&caveat.to_string()))?;
+    }
+    for assumption in caveats.assumptions() {
         writeln!(out, "{assumption}")?;
     }
     Ok(())
-}
-
-/// Prints the badges of an answer, and its assumptions in place of those badges that stand for them,
-/// one line each.
-pub(in crate::cli) fn print_badges(
-    out: &mut dyn Write,
-    badges: &[Badge],
-    assumptions: &[Assumption],
-) -> io::Result<()> {
-    for badge in badges.iter().filter(|badge| !badge.kind.is_assumption()) {
-        writeln!(out, "{}", within_line(&badge.to_string()))?;
-    }
-    print_assumptions(out, assumptions)
 }
 
 /// Prints the settings of a training as TOML.

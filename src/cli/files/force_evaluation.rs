@@ -17,7 +17,7 @@ pub(in crate::cli) fn write_force_evaluation(
     match report {
         ForceEvaluation::Cases(report) => {
             write_json(&path.join("evaluation.json"), report)?;
-            let text = report.trust().appended_to(report.evaluation.to_markdown());
+            let text = report.caveats.appended_to(report.evaluation.to_markdown());
             write_atomically(&path.join("evaluation.md"), Existing::Refuse, |out| {
                 out.write_all(text.as_bytes())
             })?;

@@ -9,7 +9,7 @@ use impactlab_core::data::{
     Existing, write_atomically, write_restricted_series_csv, write_restricted_table,
 };
 use impactlab_core::uncertainty::{CurveBands, ForceCurve};
-use impactlab_study::{PredictForceAnswer, StudyError, Trust};
+use impactlab_study::{PredictForceAnswer, StudyError};
 
 /// Writes bands, mean and samples as CSV, and the report as JSON, into a folder that exists.
 pub(in crate::cli) fn write_force_prediction(
@@ -18,7 +18,7 @@ pub(in crate::cli) fn write_force_prediction(
     report: &impl Serialize,
 ) -> Result<(), CliError> {
     let forecast = &answer.forecast;
-    let restrictions = Trust::new(&answer.report.badges, &answer.report.assumptions).text();
+    let restrictions = answer.report.caveats.text();
     let said = restrictions.as_deref();
     write_bands(&path.join("bands.csv"), (&forecast.mean, &forecast.bands), said)?;
     let write_curve = |name: String, curve: &ForceCurve| -> Result<(), CliError> {

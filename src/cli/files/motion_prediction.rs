@@ -10,10 +10,10 @@ use impactlab_document::figure::{
     forecast_scene_figure, write_figure_csv,
 };
 use impactlab_networks::response::STEP_S;
+use impactlab_study::PredictMotionAnswer;
 use impactlab_study::analysis::{
     DensityMap, DensityTask, MOTION_BAND_LEVELS, MotionBands, MotionForecast,
 };
-use impactlab_study::{PredictMotionAnswer, Trust};
 
 /// Where the files go, and what they show.
 pub(in crate::cli) struct MotionFiles<'a> {
@@ -34,8 +34,8 @@ pub(in crate::cli) fn write_motion_prediction(
     let path = |name: &str| wanted.folder.join(name);
     let (trajectory, map) = ("trajectory.csv".to_owned(), "density.csv".to_owned());
     let bands = MotionBands::of(&forecast.distribution, 1);
-    let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
-    let restrictions = trust.text();
+    let caveats = answer.report.caveats.clone();
+    let restrictions = caveats.text();
     let said = restrictions.as_deref();
     write_trajectory(&path(&trajectory), (forecast, &bands), said)?;
     let window_s = wanted.window_s.unwrap_or([forecast.outcome.time_s; 2]);
@@ -48,7 +48,7 @@ pub(in crate::cli) fn write_motion_prediction(
         density: Some(&density),
         components: true,
         reference: answer.analysis.reference.as_ref(),
-        ..MotionForecastFigure::of(answer, (&bands, &trust), shown)
+        ..MotionForecastFigure::of(answer, (&bands, &caveats), shown)
     };
     let mut figures = vec![("scene".to_owned(), forecast_scene_figure(&input))];
     for channel in FORECAST_CHANNELS {

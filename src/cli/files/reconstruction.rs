@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use impactlab_core::data::{Existing, write_atomically, write_restricted_table};
 use impactlab_reconstruct::ReconstructedQuantity;
-use impactlab_study::{ReconstructAnswer, Trust};
+use impactlab_study::ReconstructAnswer;
 
 /// Writes the particles as CSV and the report as JSON into a folder that exists.
 pub(in crate::cli) fn write_reconstruction(
@@ -15,7 +15,7 @@ pub(in crate::cli) fn write_reconstruction(
     answer: &ReconstructAnswer,
     report: &impl Serialize,
 ) -> Result<(), CliError> {
-    let restrictions = Trust::new(&answer.report.badges, &answer.report.assumptions).text();
+    let restrictions = answer.report.caveats.text();
     let (posterior, particles) = (&answer.posterior, &answer.particles);
     let components = answer.target.model().prior().components();
     let quantities = ReconstructedQuantity::ALL;

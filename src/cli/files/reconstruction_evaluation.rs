@@ -6,7 +6,7 @@ use crate::cli::CliError;
 use crate::cli::files::write_json;
 use impactlab_core::data::{Existing, write_restricted_table};
 use impactlab_reconstruct::evaluate::{CaseScore, SPEEDS, ScoredQuantity};
-use impactlab_study::{EvaluateReconstructionReport, Trust, word};
+use impactlab_study::{EvaluateReconstructionReport, word};
 
 /// Files that are written.
 pub(in crate::cli) const RECONSTRUCTION_EVALUATION_FILES: [&str; 2] =
@@ -24,7 +24,7 @@ pub(in crate::cli) fn write_reconstruction_evaluation(
     path: &Path,
     report: &EvaluateReconstructionReport,
 ) -> Result<(), CliError> {
-    let restrictions = Trust::new(&report.badges, &report.assumptions).text();
+    let restrictions = report.caveats.text();
     let of_speed = SPEEDS.iter().flat_map(|speed| {
         let (name, unit) = speed.key().split_at(speed.key().len() - "_m_s".len());
         COLUMNS.map(|column| format!("{name}_{column}{unit}"))

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::cli::console::{print_badges, print_table};
+use crate::cli::console::{print_caveats, print_table};
 use impactlab_networks::response::evaluate::all_tables;
 use impactlab_study::CompareReport;
 
@@ -30,5 +30,5 @@ pub(in crate::cli) fn print_comparison(
     for case in &report.left_out {
         writeln!(out, "left out: {case}")?;
     }
-    print_badges(out, &report.badges, &report.assumptions)
+    print_caveats(out, &report.caveats)
 }

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::cli::console::{print_badges, print_table};
+use crate::cli::console::{print_caveats, print_table};
 use impactlab_networks::force::CrossValidation;
 use impactlab_networks::force::metrics::CurveMetrics;
 use impactlab_study::{EvaluateForceReport, ForceEvaluation};
@@ -23,7 +23,7 @@ fn print_cases(out: &mut dyn Write, report: &EvaluateForceReport) -> io::Result<
     for case in &report.left_out {
         writeln!(out, "left out: {case}")?;
     }
-    print_badges(out, &report.badges, &report.assumptions)
+    print_caveats(out, &report.caveats)
 }
 
 fn print_folds(out: &mut dyn Write, validation: &CrossValidation) -> io::Result<()> {

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::cli::console::{print_badges, print_facts, shown};
+use crate::cli::console::{print_caveats, print_facts, shown};
 use crate::cli::text::contact::implied_facts;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_study::PredictForceReport;
@@ -41,5 +41,5 @@ pub(in crate::cli) fn print_force_prediction(
     for (what, _) in open.into_iter().filter(|(_, is_open)| *is_open) {
         writeln!(out, "\nThe {what} is open: drawn from the training cases.")?;
     }
-    print_badges(out, &report.badges, &report.assumptions)
+    print_caveats(out, &report.caveats)
 }

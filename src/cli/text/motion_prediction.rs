@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::cli::console::{print_badges, print_facts, shown};
+use crate::cli::console::{print_caveats, print_facts, shown};
 use crate::cli::text::contact::implied_facts;
 use crate::cli::text::sensitivity::print_sensitivity;
 use impactlab_core::units::{Quantity, UnitSystem, percent};
@@ -50,7 +50,7 @@ pub(in crate::cli) fn print_motion_prediction(
     }
     print_facts(out, &facts)?;
     print_sensitivity(out, &report.sensitivity)?;
-    print_badges(out, &report.badges, &report.assumptions)
+    print_caveats(out, &report.caveats)
 }
 
 /// Median and central 90 %.

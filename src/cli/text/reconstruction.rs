@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::cli::console::{print_badges, print_table};
+use crate::cli::console::{print_caveats, print_table};
 use impactlab_core::units::{Quantity, UnitSystem, percent};
 use impactlab_reconstruct::{MarkComparison, QuantityEstimate};
 use impactlab_study::{FrictionZoneReport, ReconstructReport};
@@ -58,7 +58,7 @@ pub(in crate::cli) fn print_reconstruction(
     print_budget(out, report, units)?;
     let (ess, n) = (report.ess, report.n_simulations);
     writeln!(out, "\n{n} motions, effective sample size {ess:.0}")?;
-    print_badges(out, &report.badges, &report.assumptions)
+    print_caveats(out, &report.caveats)
 }
 
 /// The marks that were found beside those that are computed.

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::cli::console::{print_badges, print_table};
+use crate::cli::console::{print_caveats, print_table};
 use impactlab_core::units::{Quantity, UnitSystem, percent};
 use impactlab_reconstruct::ReconstructedQuantity;
 use impactlab_reconstruct::evaluate::{MethodSummary, QuantitySummary, SPEEDS, SUFFICIENT_ESS};
@@ -31,7 +31,7 @@ pub(in crate::cli) fn print_reconstruction_evaluation(
     for case in &report.left_out {
         writeln!(out, "left out: {case}")?;
     }
-    print_badges(out, &report.badges, &report.assumptions)
+    print_caveats(out, &report.caveats)
 }
 
 fn print_speed(

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use crate::cli::console::{
-    print_badges, print_facts, print_table, shown, shown_path, shown_vector,
+    print_caveats, print_facts, print_table, shown, shown_path, shown_vector,
 };
 use crate::cli::text::contact::surface;
 use crate::cli::text::motion_prediction::{rest_facts, shown_share};
@@ -54,14 +54,14 @@ pub(in crate::cli) fn print_simulation(
         facts.push(("average error", number(Quantity::Length, error.average_error_m)));
         facts.push(("final error", number(Quantity::Length, error.final_error_m)));
     }
-    facts.extend(report.notes.iter().map(|note| ("note", note.clone())));
+    facts.extend(report.caveats.notes().map(|note| ("note", note.to_owned())));
     facts.extend(out.map(|path| ("written", shown_path(path))));
     print_facts(text, &facts)?;
     print_tire_marks(text, &report.tire_marks, units)?;
     if let Some(uncertainty) = &report.uncertainty {
         print_uncertainty(text, uncertainty, units)?;
     }
-    print_badges(text, &report.badges, &report.assumptions)
+    print_caveats(text, &report.caveats)
 }
 
 /// Prints the marks that tires leave.

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use crate::cli::console::{print_badges, print_table, shown_path};
+use crate::cli::console::{print_caveats, print_table, shown_path};
 use impactlab_core::numerics::Summary;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_study::{ReplayedCaseReport, SimulateDatasetReport};
@@ -62,7 +62,7 @@ pub(in crate::cli) fn print_dataset_simulation(
     if let Some(folder) = folder {
         writeln!(out, "written: {}", shown_path(folder))?;
     }
-    print_badges(out, &report.badges, &report.assumptions)
+    print_caveats(out, &report.caveats)
 }
 
 fn summary_row(name: &str, what: &str, summary: &Summary, si_per_unit: f64) -> Vec<String> {

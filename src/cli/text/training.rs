@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::cli::console::{print_assumptions, print_facts, shown_path};
+use crate::cli::console::{print_caveats, print_facts, shown_path};
 use impactlab_networks::force::LossTerms;
 use impactlab_networks::response::{ForceOrigin, LATENT_NAMES};
 use impactlab_study::{LogReport, ResponseTrainingReport, TrainForceReport};
@@ -55,7 +55,7 @@ pub(in crate::cli) fn print_force_training(
     ];
     print_facts(out, &facts)?;
     print_left_out(out, &report.left_out)?;
-    print_assumptions(out, &report.assumptions)
+    print_caveats(out, &report.caveats)
 }
 
 /// Prints what came of a training of the response network.
@@ -90,7 +90,7 @@ pub(in crate::cli) fn print_response_training(
         writeln!(out, "{}", log_line(log))?;
     }
     print_left_out(out, &report.left_out)?;
-    print_assumptions(out, &report.assumptions)
+    print_caveats(out, &report.caveats)
 }
 
 fn print_left_out(out: &mut dyn Write, left_out: &[String]) -> io::Result<()> {

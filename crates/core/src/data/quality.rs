@@ -8,6 +8,8 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use crate::data::{
     Case, Channel, DatasetKind, ForceAxes, ForceHistory, Loaded, Sampling, TimeSeries,
     contact_interval, cut_at_s,
@@ -109,7 +111,8 @@ impl FlagKind {
 }
 
 /// How much a flag matters for the use of the case.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Severity {
     /// The user should know about it; the case can be used.
     Info,

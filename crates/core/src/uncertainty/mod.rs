@@ -1,6 +1,7 @@
 //! Probability distributions of predictions: mixtures of normal distributions over whole force
 //! curves, over scalars and over positions in the plane, with their densities, draws, quantiles and
-//! scores; and the unscented transform. And the badges of what an answer cannot promise.
+//! scores; and the unscented transform. And the caveats of an answer: what it cannot promise and what
+//! it rests on.
 //!
 //! ```
 //! use crate::uncertainty::{CurveComponent, CurveMixture};
@@ -24,7 +25,8 @@
 
 mod error;
 
-mod badge;
+mod caveat;
+mod caveats;
 
 mod curve;
 mod normal_mixture;
@@ -43,8 +45,9 @@ mod planar;
 mod planar_grid;
 mod unscented;
 
-pub use badge::{Badge, BadgeKind};
 pub use bands::{CurveBand, CurveBands};
+pub use caveat::{Caveat, CaveatKind, CaveatSubject};
+pub use caveats::Caveats;
 pub use curve::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 pub use error::MixtureError;
 pub use mixture::{CurveComponent, CurveMixture};

@@ -73,7 +73,7 @@ pub fn glb(scene: &Scene, out: &mut dyn Write) -> Result<(), ExchangeError> {
     // What restricts the answer travels with it: 3D programs show the copyright line of a file.
     builder.root.asset = Asset {
         generator: Some(concat!("impactlab ", env!("CARGO_PKG_VERSION")).to_owned()),
-        copyright: scene.trust.text(),
+        copyright: scene.caveats.text(),
         ..Asset::default()
     };
     builder.describe_buffer();

@@ -6,8 +6,8 @@ use crate::figure::{
 };
 use impactlab_core::collision::{ChannelClass, FilterError, filter_history};
 use impactlab_core::data::{Channel, ForceHistory, TimeSeries, contact_interval};
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Unit, UnitSystem};
-use impactlab_study::Trust;
 use impactlab_study::analysis::Analysis;
 
 /// Half the width of the cross at a second contact, m.
@@ -19,12 +19,12 @@ const CROSS_M: f64 = 0.6;
 /// - `class`: channel frequency class with which the force is filtered; the raw force is then drawn
 ///   behind it.
 /// - `pulses`: pulses to draw, by name.
-/// - `trust`: what restricts the answer.
+/// - `caveats`: what restricts the answer.
 ///
 /// # Errors
 /// [`FilterError`] if the channel class does not fit the sampling of the force.
 pub fn analysis_force_figure(
-    (analysis, trust): (&Analysis, &Trust),
+    (analysis, caveats): (&Analysis, &Caveats),
     class: Option<ChannelClass>,
     pulses: &[(String, ForceHistory)],
     units: UnitSystem,
@@ -40,17 +40,17 @@ pub fn analysis_force_figure(
         contact_s: contact_interval(raw),
         pulses,
         units,
-        trust,
+        caveats,
     })))
 }
 
 /// One channel of the simulated and of the recorded motion over time.
 pub fn analysis_motion_figure(
-    (analysis, trust): (&Analysis, &Trust),
+    (analysis, caveats): (&Analysis, &Caveats),
     channel: Channel,
     units: UnitSystem,
 ) -> Figure {
-    motion_figure((&analysis.name, channel), motions(analysis), units).with_trust(trust)
+    motion_figure((&analysis.name, channel), motions(analysis), units).with_caveats(caveats)
 }
 
 /// One line of text with the values of a channel in the simulated and in the recorded motion.
@@ -68,7 +68,7 @@ fn motions(analysis: &Analysis) -> [Option<&TimeSeries>; 2] {
 
 /// The scene from above: the paths of all vehicles, and their outlines at the time `time_s`, s.
 pub fn analysis_scene_figure(
-    (analysis, trust): (&Analysis, &Trust),
+    (analysis, caveats): (&Analysis, &Caveats),
     time_s: f64,
     units: UnitSystem,
 ) -> Figure {
@@ -101,7 +101,7 @@ pub fn analysis_scene_figure(
     let title = format!("{}: scene from above at {time_s:.2} s{after}", analysis.name);
     let mut figure =
         scene_figure(&SceneFigure { title: &title, vehicles: &vehicles, time_s, units })
-            .with_trust(trust);
+            .with_caveats(caveats);
     if let Some(second) = second {
         figure.elements.extend(second_contact_mark(second.point_m, figure.x.unit));
     }

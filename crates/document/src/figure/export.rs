@@ -79,7 +79,7 @@ impl<W: Write> FigureTable<W> {
         });
         let mut header = vec!["series".to_owned(), figure.x.text(), figure.y.text()];
         header.extend(path_axes.iter().flatten().map(Axis::text));
-        let text = figure.trust.text();
+        let text = figure.caveats.text();
         header.extend(text.is_some().then(|| RESTRICTIONS_COLUMN.to_owned()));
         csv.write_record(&header)?;
         Ok(Self {
@@ -126,8 +126,7 @@ impl<W: Write> FigureTable<W> {
 mod tests {
     use super::*;
     use crate::figure::{LineStyle, Role, Series};
-    use impactlab_core::uncertainty::{Badge, BadgeKind};
-    use impactlab_study::Trust;
+    use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 
     fn csv(figure: &Figure) -> String {
         let mut text = Vec::new();
@@ -156,8 +155,8 @@ mod tests {
 
     #[test]
     fn what_restricts_a_figure_is_in_the_first_row_of_a_last_column() {
-        let badge = Badge::new(BadgeKind::OutsideDomain, "mass is 9000, it learned 800 to 3000");
-        let text = csv(&force().with_trust(&Trust::new(&[badge], &[])));
+        let caveat = Caveat::new(CaveatKind::OutsideDomain, "mass is 9000, it learned 800 to 3000");
+        let text = csv(&force().with_caveats(&Caveats::from(vec![caveat])));
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         let expected = ["series", "Time [s]", "Force [kN]", "restrictions"];
         assert_eq!(reader.headers().unwrap().iter().collect::<Vec<_>>(), expected);

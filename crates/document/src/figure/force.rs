@@ -2,8 +2,8 @@
 
 use crate::figure::{Axis, Figure, FigureElement, Role};
 use impactlab_core::data::{ForceAxes, ForceHistory};
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem};
-use impactlab_study::Trust;
 
 /// Data that the force figure shows.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +21,7 @@ pub struct ForceFigure<'a> {
     /// System of units of the axes.
     pub units: UnitSystem,
     /// What restricts the force.
-    pub trust: &'a Trust,
+    pub caveats: &'a Caveats,
 }
 
 /// Time shown after the end of contact, as a share of the contact duration.
@@ -68,7 +68,7 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
         }
     }
     let title = format!("{}: contact force on the target, {axes}", input.name);
-    Figure::new(title, [x, y], elements).with_trust(input.trust)
+    Figure::new(title, [x, y], elements).with_caveats(input.caveats)
 }
 
 /// The unit millisecond.

@@ -5,9 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::figure::{Axis, Band, Figure, FigureElement, LineStyle, Role, Series, milliseconds};
 use impactlab_core::collision::PulseShape;
-use impactlab_core::uncertainty::{CurveBand, ForceCurve};
+use impactlab_core::uncertainty::{Caveats, CurveBand, ForceCurve};
 use impactlab_core::units::{Quantity, UnitSystem};
-use impactlab_study::Trust;
 use impactlab_study::analysis::ForceForecast;
 
 /// Opacity of the widest and of the narrowest band; the opacities of the others lie between at even
@@ -48,7 +47,7 @@ pub struct ForecastFigure<'a> {
     /// System of units of the axes.
     pub units: UnitSystem,
     /// What restricts the prediction.
-    pub trust: &'a Trust,
+    pub caveats: &'a Caveats,
 }
 
 /// A recorded force beside a predicted one.
@@ -171,7 +170,7 @@ pub fn forecast_figure(component: ForceComponent, input: &ForecastFigure<'_>) ->
         elements.push(FigureElement::line(name, Role::Reference, points));
     }
     let title = format!("{}: predicted {} on the target", input.name, component.label());
-    Figure::new(title, [x, y], elements).with_trust(input.trust)
+    Figure::new(title, [x, y], elements).with_caveats(input.caveats)
 }
 
 /// Line style of a pulse shape.

@@ -2,8 +2,8 @@
 
 use crate::figure::{Axis, Figure, FigureElement, LineStyle, Role, vehicle_outline};
 use impactlab_core::collision::{ImpactSolution, Scenario, ScenarioError};
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem};
-use impactlab_study::Trust;
 
 /// Length of the longest velocity arrow and of the impulse arrow, m.
 const ARROW_LENGTH_M: f64 = 3.0;
@@ -16,7 +16,7 @@ const ARROW_LENGTH_M: f64 = 3.0;
 /// [`ScenarioError`] if the vehicles make no contact.
 pub fn impact_figure(
     (scenario, solution): (&Scenario, &ImpactSolution),
-    trust: &Trust,
+    caveats: &Caveats,
     units: UnitSystem,
 ) -> Result<Figure, ScenarioError> {
     let geometry = scenario.geometry()?;
@@ -57,5 +57,5 @@ pub fn impact_figure(
     let impulse = scaled([px, py], px.hypot(py));
     elements.push(arrow("impulse on the target", Role::Resultant, contact, impulse));
     let title = format!("{}: impulse and Δv at first contact", scenario.name);
-    Ok(Figure::new(title, [x, y], elements).plan().with_trust(trust))
+    Ok(Figure::new(title, [x, y], elements).plan().with_caveats(caveats))
 }

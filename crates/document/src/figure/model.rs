@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, Unit, UnitSystem};
-use impactlab_study::Trust;
 
 /// A plot: axes and elements, all numbers in the units of the axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,14 +22,14 @@ pub struct Figure {
     pub elements: Vec<FigureElement>,
     /// What restricts the answer that is shown and what it rests on: in every picture and every table
     /// of the figure.
-    pub trust: Trust,
+    pub caveats: Caveats,
 }
 
 impl Figure {
     /// A figure with linear axes, of nothing that is restricted.
     pub fn new(title: impl Into<String>, [x, y]: [Axis; 2], elements: Vec<FigureElement>) -> Self {
-        let (equal_aspect, log_y, trust) = (false, false, Trust::default());
-        Self { title: title.into(), x, y, equal_aspect, log_y, elements, trust }
+        let (equal_aspect, log_y, caveats) = (false, false, Caveats::default());
+        Self { title: title.into(), x, y, equal_aspect, log_y, elements, caveats }
     }
 
     /// The same as a plan from above, whose axes have the same scale.
@@ -40,8 +40,8 @@ impl Figure {
 
     /// The same with what restricts it.
     #[must_use]
-    pub fn with_trust(self, trust: &Trust) -> Self {
-        Self { trust: trust.clone(), ..self }
+    pub fn with_caveats(self, caveats: &Caveats) -> Self {
+        Self { caveats: caveats.clone(), ..self }
     }
 }
 
@@ -80,7 +80,7 @@ impl Figure {
             _ => None,
         });
         self.elements.extend(overlaid);
-        self.trust.add_variant(name, &other.trust);
+        self.caveats.add_variant(name, &other.caveats);
     }
 }
 

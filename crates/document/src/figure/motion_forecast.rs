@@ -8,11 +8,12 @@ use crate::figure::{
 };
 use impactlab_core::collision::{Footprint, Pose};
 use impactlab_core::data::{Channel, TimeSeries};
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_core::vehicle::VehicleState;
 use impactlab_networks::response::{MotionDistribution, STEP_S};
+use impactlab_study::PredictMotionAnswer;
 use impactlab_study::analysis::{Analysis, DensityMap, MOTION_BAND_LEVELS, MotionBands};
-use impactlab_study::{PredictMotionAnswer, Trust};
 
 /// Opacity of the band at each of [`MOTION_BAND_LEVELS`].
 const BAND_OPACITIES: [f32; MOTION_BAND_LEVELS.len()] = [0.18, 0.25];
@@ -48,14 +49,14 @@ pub struct MotionForecastFigure<'a> {
     /// System of units of the axes.
     pub units: UnitSystem,
     /// What restricts the forecast.
-    pub trust: &'a Trust,
+    pub caveats: &'a Caveats,
 }
 
 impl<'a> MotionForecastFigure<'a> {
     /// A forecast without density, components, recorded and simulated motion.
     pub fn of(
         answer: &'a PredictMotionAnswer,
-        (bands, trust): (&'a MotionBands, &'a Trust),
+        (bands, caveats): (&'a MotionBands, &'a Caveats),
         (time_s, units): (f64, UnitSystem),
     ) -> Self {
         let PredictMotionAnswer { analysis, forecast, .. } = answer;
@@ -71,7 +72,7 @@ impl<'a> MotionForecastFigure<'a> {
             footprint: analysis.footprint,
             time_s,
             units,
-            trust,
+            caveats,
         }
     }
 
@@ -165,7 +166,7 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         elements.extend(vehicle_outline(appearance, (&input.footprint, &pose), x.unit));
     }
     let title = format!("{}: position after {:.2} s", input.title, at as f64 * STEP_S);
-    Figure::new(title, [x, y], elements).plan().with_trust(input.trust)
+    Figure::new(title, [x, y], elements).plan().with_caveats(input.caveats)
 }
 
 /// View around the vehicle at the time of the figure, which holds its outline and nearly all of the
@@ -271,5 +272,5 @@ pub fn forecast_channel_figure(
     });
     elements.push(FigureElement::line("central path", Role::Target, central.collect()));
     let title = format!("{}: {} over time", input.title, channel.label());
-    Figure::new(title, [x, y], elements).with_trust(input.trust)
+    Figure::new(title, [x, y], elements).with_caveats(input.caveats)
 }

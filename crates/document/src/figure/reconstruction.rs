@@ -7,11 +7,12 @@ use rayon::prelude::*;
 
 use crate::figure::{Axis, Band, Figure, FigureElement, LineStyle, Role, Series};
 use impactlab_core::numerics::random_stream;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_reconstruct::{
     BudgetItem, QuantityEstimate, ReconstructedQuantity, ReconstructionTarget,
 };
-use impactlab_study::{ReconstructAnswer, Trust};
+use impactlab_study::ReconstructAnswer;
 
 /// Draws of the prior that stand behind the posterior.
 const N_PRIOR: usize = 4000;
@@ -41,7 +42,7 @@ pub fn prior_values(target: &ReconstructionTarget, quantity: ReconstructedQuanti
 pub fn marginal_figure(
     answer: &ReconstructAnswer,
     (quantity, prior): (ReconstructedQuantity, &[f64]),
-    trust: &Trust,
+    caveats: &Caveats,
     units: UnitSystem,
 ) -> Figure {
     let label = quantity.label();
@@ -71,7 +72,7 @@ pub fn marginal_figure(
         }
     }
     let title = format!("{}: {label}", answer.report.case);
-    Figure::new(title, [x, y], elements).with_trust(trust)
+    Figure::new(title, [x, y], elements).with_caveats(caveats)
 }
 
 /// Ends of the axis: all of the posterior, and of the prior what lies within three of its widths.
@@ -138,7 +139,7 @@ fn band(name: &str, line: &[[f64; 2]]) -> Band {
 pub fn pair_figure(
     answer: &ReconstructAnswer,
     (quantities, priors): ([ReconstructedQuantity; 2], [&[f64]; 2]),
-    trust: &Trust,
+    caveats: &Caveats,
     units: UnitSystem,
 ) -> Figure {
     let axes = quantities.map(|of| Axis::shown(of.label(), of.quantity(), units));
@@ -162,12 +163,12 @@ pub fn pair_figure(
     ];
     let [first, second] = quantities.map(ReconstructedQuantity::label);
     let title = format!("{}: {second} over {first}", answer.report.case);
-    Figure::new(title, axes, elements).with_trust(trust)
+    Figure::new(title, axes, elements).with_caveats(caveats)
 }
 
 /// How much narrower the speed of the struck car would be with each further measurement: a bar for half
 /// the width of its 90 % interval then, and a line for the same now.
-pub fn budget_figure(answer: &ReconstructAnswer, trust: &Trust, units: UnitSystem) -> Figure {
+pub fn budget_figure(answer: &ReconstructAnswer, caveats: &Caveats, units: UnitSystem) -> Figure {
     let x = Axis::shown("± speed of the struck car, 90 %", Quantity::Speed, units);
     let believable = answer.report.budget.iter().filter(|item| item.believable);
     let mut items: Vec<_> = believable.collect();
@@ -186,5 +187,5 @@ pub fn budget_figure(answer: &ReconstructAnswer, trust: &Trust, units: UnitSyste
         elements.push(FigureElement::VerticalLine { name, role, x: x.unit.from_si(item.now_m_s) });
     }
     let title = format!("{}: what further evidence would bring", answer.report.case);
-    Figure::new(title, [x, y], elements).with_trust(trust)
+    Figure::new(title, [x, y], elements).with_caveats(caveats)
 }

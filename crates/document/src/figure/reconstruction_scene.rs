@@ -6,11 +6,12 @@ use crate::figure::scene::vehicle_outline;
 use crate::figure::{Axis, Figure, FigureElement, LineStyle, Path, Role, Series};
 use impactlab_core::collision::{Footprint, Pose, Side};
 use impactlab_core::numerics::interpolate;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_core::vehicle::{Path as VehiclePath, PathPoint, TireMark};
 use impactlab_reconstruct::Cars;
 use impactlab_reconstruct::evidence::{Evidence, RestPose};
-use impactlab_study::{ReconstructAnswer, ReconstructedPaths, Trust};
+use impactlab_study::{ReconstructAnswer, ReconstructedPaths};
 
 /// Points of an ellipse.
 const N_ELLIPSE: usize = 48;
@@ -66,7 +67,7 @@ impl<'a> ReconstructionScene<'a> {
 /// The paths of the struck car from above, over what was found.
 pub fn reconstruction_scene_figure(
     scene: &ReconstructionScene<'_>,
-    trust: &Trust,
+    caveats: &Caveats,
     units: UnitSystem,
 ) -> Figure {
     let x = Axis::shown("X, along the heading before the impact", Quantity::Length, units);
@@ -102,7 +103,7 @@ pub fn reconstruction_scene_figure(
         }
     }
     let title = format!("{}: where the struck car went", scene.evidence.case);
-    Figure::new(title, [x, y], elements).plan().with_trust(trust)
+    Figure::new(title, [x, y], elements).plan().with_caveats(caveats)
 }
 
 /// Where a car is on a path at a time; beyond its ends, at the end. `None` for a path without points.

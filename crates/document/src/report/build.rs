@@ -168,17 +168,17 @@ impl Builder<'_> {
         let words = self.wording.words;
         let mut blocks = vec![Block::heading(level, part.title.clone())];
         let is_same = |of: &Part| {
-            (&of.title, &of.answer, &of.badges) == (&part.title, &part.answer, &part.badges)
+            (&of.title, &of.answer, &of.caveats) == (&part.title, &part.answer, &part.caveats)
         };
         if let Some((name, _)) = told.iter().find(|(_, of)| is_same(of)) {
             blocks.push(Block::paragraph(fill(words.same_as, &[("name", name)])));
             return blocks;
         }
         told.push((variant, part));
-        let warnings = part.badges.iter().filter(|badge| badge.kind.is_warning());
-        let notices = warnings.map(|badge| {
-            let label = self.wording.term(badge.kind.label());
-            let text = self.wording.quoted(&badge.text);
+        let warnings = part.caveats.iter().filter(|caveat| caveat.is_warning());
+        let notices = warnings.map(|caveat| {
+            let label = self.wording.term(caveat.kind.label());
+            let text = self.wording.quoted(&caveat.text);
             Block::notice(format!("{}: {label}: {text}", words.warning))
         });
         let (question, rest) = part.answer.split_at(part.answer.len().min(1));

@@ -6,8 +6,7 @@ use crate::figure::Figure;
 use crate::report::method::Method;
 use crate::report::{Block, InputClass, PictureContent};
 use crate::scene::SceneStill;
-use impactlab_core::uncertainty::Badge;
-use impactlab_study::Assumption;
+use impactlab_core::uncertainty::Caveats;
 
 /// A picture before it has a number.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,10 +72,8 @@ pub(super) struct Part {
     pub sensitivity: Vec<Block>,
     /// How far models apply, a sentence each.
     pub domain: Vec<String>,
-    /// What restricts it.
-    pub badges: Vec<Badge>,
-    /// What was assumed.
-    pub assumptions: Vec<Assumption>,
+    /// What restricts it and what it rests on.
+    pub caveats: Caveats,
     /// Where it comes from.
     pub provenance: PartProvenance,
     /// By what it was computed.

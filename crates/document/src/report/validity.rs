@@ -7,7 +7,7 @@ use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::Part;
 use crate::report::{Block, Table};
-use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::significant;
 
 /// The limits of each method, how far networks apply, and every restriction once.
@@ -23,13 +23,13 @@ pub(super) fn validity_blocks(
     if !limits.is_empty() {
         blocks.push(Block::List { items: limits });
     }
-    let domain = each_once(variants, |part| part.domain.iter().collect());
+    let domain = each_once(variants, |part| part.domain.clone());
     if !domain.is_empty() {
-        let rows = domain.into_iter().map(|(text, of)| [text.clone(), of.join("; ")]).collect();
+        let rows = domain.into_iter().map(|(text, of)| [text, of.join("; ")]).collect();
         let columns = [words.sentence, words.holds_for];
         blocks.push(Block::Table(Table::new(words.domain_caption, columns, rows)));
     }
-    let rows = badge_rows(variants, wording);
+    let rows = caveat_rows(variants, wording);
     if rows.is_empty() {
         blocks.push(Block::paragraph(words.no_badges));
     } else {
@@ -40,11 +40,11 @@ pub(super) fn validity_blocks(
 }
 
 /// What the answers have, each once, with the answers that have it.
-fn each_once<'a, T: PartialEq>(
-    variants: &'a [VariantParts],
-    of: impl Fn(&'a Part) -> Vec<&'a T>,
-) -> Vec<(&'a T, Vec<String>)> {
-    let mut found: Vec<(&T, Vec<String>)> = Vec::new();
+fn each_once<T: PartialEq>(
+    variants: &[VariantParts],
+    of: impl Fn(&Part) -> Vec<T>,
+) -> Vec<(T, Vec<String>)> {
+    let mut found: Vec<(T, Vec<String>)> = Vec::new();
     for variant in variants {
         for part in parts_of(variant) {
             let name = match variants.len() {
@@ -63,33 +63,37 @@ fn each_once<'a, T: PartialEq>(
     found
 }
 
-/// Every badge once, warnings first, with the answers that have it.
-fn badge_rows(variants: &[VariantParts], wording: &Wording) -> Vec<[String; 4]> {
+/// Every restriction once, warnings first, with the answers that have it; of what was assumed and what is
+/// not used a summary, since the inputs list them.
+fn caveat_rows(variants: &[VariantParts], wording: &Wording) -> Vec<[String; 4]> {
     let words = wording.words;
-    let mut found = each_once(variants, |part| part.badges.iter().collect());
-    found.sort_by_key(|(badge, _)| !badge.kind.is_warning());
-    let row = |(badge, of): (&Badge, Vec<String>)| {
-        let severity = if badge.kind.is_warning() { words.warning } else { words.note };
-        let label = format!("{severity}: {}", wording.term(badge.kind.label()));
-        [label, sentence(badge, wording), remedy(badge.kind, wording).to_owned(), of.join("; ")]
+    let mut found = each_once(variants, |part| {
+        let restrictions = part.caveats.restrictions().into_iter().cloned();
+        restrictions.chain(part.caveats.summaries()).collect()
+    });
+    found.sort_by_key(|(caveat, _)| !caveat.is_warning());
+    let row = |(caveat, of): (Caveat, Vec<String>)| {
+        let severity = if caveat.is_warning() { words.warning } else { words.note };
+        let label = format!("{severity}: {}", wording.term(caveat.kind.label()));
+        [label, sentence(&caveat, wording), remedy(caveat.kind, wording).to_owned(), of.join("; ")]
     };
     found.into_iter().map(row).collect()
 }
 
-/// What a badge says, with the value that is concerned and those that would raise none.
-fn sentence(badge: &Badge, wording: &Wording) -> String {
+/// What a caveat says, with the value that is concerned and those that would raise none.
+fn sentence(caveat: &Caveat, wording: &Wording) -> String {
     let words = wording.words;
-    let mut text = wording.quoted(&badge.text);
+    let mut text = wording.quoted(&caveat.text);
     // A whole number of the text, so that 0 is not said by 10.
     let is_number = |c: char| c.is_ascii_digit() || c == '.' || c == '-';
     let is_said = |value: f64| {
-        let (said, mut numbers) = (significant(value), badge.text.split(|c| !is_number(c)));
+        let (said, mut numbers) = (significant(value), caveat.text.split(|c| !is_number(c)));
         numbers.any(|number| number.trim_end_matches('.') == said)
     };
-    if let (Some(quantity), Some(value)) = (&badge.quantity, badge.value)
+    if let (Some(quantity), Some(value)) = (&caveat.quantity, caveat.value)
         && !is_said(value)
     {
-        let range = match badge.range {
+        let range = match caveat.range {
             Some([Some(low), Some(high)]) => {
                 format!("{} {} {}", wording.number(low), words.to, wording.number(high))
             }
@@ -106,25 +110,27 @@ fn sentence(badge: &Badge, wording: &Wording) -> String {
 }
 
 /// What can be done about a restriction.
-fn remedy(kind: BadgeKind, wording: &Wording) -> &'static str {
+fn remedy(kind: CaveatKind, wording: &Wording) -> &'static str {
     let words = wording.words;
     match kind {
-        BadgeKind::OutsideDomain => words.remedy_outside_domain,
-        BadgeKind::ImplausibleContact => words.remedy_implausible_contact,
-        BadgeKind::Disagreement => words.remedy_disagreement,
-        BadgeKind::Overlap => words.remedy_overlap,
-        BadgeKind::SecondContact => words.remedy_second_contact,
-        BadgeKind::ContactNotEnded => words.remedy_contact_not_ended,
-        BadgeKind::EnergyGain => words.remedy_energy_gain,
-        BadgeKind::WheelLift => words.remedy_wheel_lift,
-        BadgeKind::RollLimit => words.remedy_roll_limit,
-        BadgeKind::NotAtRest => words.remedy_not_at_rest,
-        BadgeKind::EvidenceUnexplained => words.remedy_evidence_unexplained,
-        BadgeKind::FewParticles => words.remedy_few_particles,
-        BadgeKind::HardlyValidated => words.remedy_hardly_validated,
-        BadgeKind::LeftOut => words.remedy_left_out,
-        BadgeKind::TrainedOn => words.remedy_trained_on,
-        BadgeKind::Assumed => words.remedy_assumed,
-        BadgeKind::NotUsed => words.remedy_not_used,
+        CaveatKind::Outdated => words.remedy_outdated,
+        CaveatKind::Note => words.none,
+        CaveatKind::OutsideDomain => words.remedy_outside_domain,
+        CaveatKind::ImplausibleContact => words.remedy_implausible_contact,
+        CaveatKind::Disagreement => words.remedy_disagreement,
+        CaveatKind::Overlap => words.remedy_overlap,
+        CaveatKind::SecondContact => words.remedy_second_contact,
+        CaveatKind::ContactNotEnded => words.remedy_contact_not_ended,
+        CaveatKind::EnergyGain => words.remedy_energy_gain,
+        CaveatKind::WheelLift => words.remedy_wheel_lift,
+        CaveatKind::RollLimit => words.remedy_roll_limit,
+        CaveatKind::NotAtRest => words.remedy_not_at_rest,
+        CaveatKind::EvidenceUnexplained => words.remedy_evidence_unexplained,
+        CaveatKind::FewParticles => words.remedy_few_particles,
+        CaveatKind::HardlyValidated => words.remedy_hardly_validated,
+        CaveatKind::LeftOut => words.remedy_left_out,
+        CaveatKind::TrainedOn => words.remedy_trained_on,
+        CaveatKind::Assumed => words.remedy_assumed,
+        CaveatKind::NotUsed => words.remedy_not_used,
     }
 }

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use crate::scene::{CarMotion, CarShape, CarState, SceneGround};
 use impactlab_core::collision::Pose;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::TireMarkPoint;
-use impactlab_study::Trust;
 use impactlab_study::analysis::DensityMap;
 
 /// Least length of the longer side of what a scene shows, m.
@@ -232,7 +232,7 @@ pub struct Scene {
     /// System of units of grid, scale bar and labels.
     pub units: UnitSystem,
     /// What restricts the scene.
-    pub trust: Trust,
+    pub caveats: Caveats,
 }
 
 impl Scene {

@@ -10,11 +10,12 @@ use crate::scene::{
 };
 use impactlab_core::collision::{Footprint, Pose};
 use impactlab_core::numerics::interpolate;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::{Path, TireMark, VehicleParameters};
 use impactlab_reconstruct::Cars;
 use impactlab_reconstruct::evidence::{Evidence, RestPose};
-use impactlab_study::{ReconstructAnswer, ReconstructedPaths, Trust};
+use impactlab_study::{ReconstructAnswer, ReconstructedPaths};
 
 /// Points of an ellipse.
 const N_ELLIPSE: usize = 48;
@@ -39,7 +40,7 @@ pub struct ReconstructionParts<'a> {
     /// System of units of the labels.
     pub units: UnitSystem,
     /// What restricts the answer.
-    pub trust: &'a Trust,
+    pub caveats: &'a Caveats,
 }
 
 impl<'a> ReconstructionParts<'a> {
@@ -47,7 +48,7 @@ impl<'a> ReconstructionParts<'a> {
     pub fn of(
         (answer, paths): (&'a ReconstructAnswer, &'a ReconstructedPaths),
         units: UnitSystem,
-        trust: &'a Trust,
+        caveats: &'a Caveats,
     ) -> Self {
         Self {
             evidence: answer.target.evidence(),
@@ -56,7 +57,7 @@ impl<'a> ReconstructionParts<'a> {
             followed: paths.median.as_ref().map(|path| (ReconstructedPaths::MEDIAN, path)),
             marks: &paths.marks,
             units,
-            trust,
+            caveats,
         }
     }
 }
@@ -67,7 +68,7 @@ pub fn reconstruction_scene(input: &ReconstructionParts<'_>) -> Scene {
     let mut scene = Scene {
         title: evidence.case.clone(),
         units: input.units,
-        trust: input.trust.clone(),
+        caveats: input.caveats.clone(),
         ..Scene::default()
     };
     let shape = shape_of(&cars.struck.parameters);

@@ -9,10 +9,10 @@ use crate::scene::{
 };
 use impactlab_core::collision::Pose;
 use impactlab_core::data::{ForceAxes, TimeSeries};
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_core::vehicle::frames::world_from_body;
 use impactlab_core::vehicle::{TireMark, tire_marks};
-use impactlab_study::Trust;
 use impactlab_study::analysis::{Analysis, StruckVehicle};
 
 /// Length of the arrow of an impulse that is as large as 4 m/s of a car's mass, m.
@@ -45,14 +45,14 @@ pub struct SimulationScene<'a> {
     /// System of units of the labels.
     pub units: UnitSystem,
     /// What restricts the answer.
-    pub trust: &'a Trust,
+    pub caveats: &'a Caveats,
 }
 
 /// The scene of a simulation over its whole duration.
 pub fn simulation_scene(input: &SimulationScene<'_>) -> Scene {
-    let SimulationScene { analysis, others, units, trust } = *input;
+    let SimulationScene { analysis, others, units, caveats } = *input;
     let mut scene =
-        Scene { title: analysis.name.clone(), units, trust: trust.clone(), ..Scene::default() };
+        Scene { title: analysis.name.clone(), units, caveats: caveats.clone(), ..Scene::default() };
     add_striking(&mut scene, analysis);
     let shape = struck_shape(analysis);
     if let Some(series) = &analysis.reference {

@@ -2,8 +2,8 @@
 
 use egui::{Color32, ColorImage, Context, Pos2, RawInput, Rect, TexturesDelta, Vec2};
 
+use crate::caveats::framed_ui;
 use crate::scene::{ScenePicture, SceneView, scene_view_ui};
-use crate::trust::framed_ui;
 use crate::{Canvas, SoftwareRenderer, theme};
 use impactlab_core::ranges::{OutOfRange, PICTURE_SIDE};
 
@@ -77,7 +77,7 @@ impl FrameRenderer {
         }
         let mut output = context.run_ui(input, |ui| {
             egui::Frame::new().inner_margin(MARGIN).show(ui, |ui| {
-                framed_ui(ui, (&picture.title(), &picture.scene.trust), |ui, height| {
+                framed_ui(ui, (&picture.title(), &picture.scene.caveats), |ui, height| {
                     let height = height.unwrap_or_else(|| ui.available_height());
                     if places_camera {
                         view.place(picture);

@@ -389,12 +389,13 @@ impl Labels<'_> {
         let color = self.text_color();
         let mut place = self.text(painter, at, Align2::LEFT_TOP, (&text, USUAL + 1.0, color));
         taken.push(place);
-        let warnings = scene.trust.restrictions().into_iter().filter(|line| line.is_warning);
+        let warnings = scene.caveats.iter().filter(|caveat| caveat.is_warning());
         let severity =
             crate::theme::severity_color(impactlab_core::data::Severity::Warning, self.dark);
-        for line in warnings {
+        for caveat in warnings {
             let at = place.left_bottom() + vec2(0.0, 4.0);
-            place = self.text(painter, at, Align2::LEFT_TOP, (&line.label, SMALL, severity));
+            place =
+                self.text(painter, at, Align2::LEFT_TOP, (caveat.kind.label(), SMALL, severity));
             taken.push(place);
         }
     }
@@ -414,7 +415,7 @@ pub fn covered(picture: Rect, scene: &Scene) -> [Rect; 3] {
     let has_north = scene.ground.as_ref().is_some_and(|ground| ground.north_rad.is_some());
     let mut axes = axes_plate(picture);
     axes.max.y += if has_north { NORTH_PLATE } else { 0.0 };
-    let warnings = scene.trust.restrictions().into_iter().filter(|line| line.is_warning);
+    let warnings = scene.caveats.iter().filter(|caveat| caveat.is_warning());
     let lines = 1 + warnings.count();
     let stamp = Vec2::new(STAMP_WIDTH, EDGE + STAMP_LINE * lines as f32);
     [

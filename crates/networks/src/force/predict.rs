@@ -8,7 +8,7 @@ use crate::force::physics::{BareForce, CentreCurve};
 use crate::force::train::{ForceModel, network_input};
 use crate::force::{ForceError, ForceScenario};
 use impactlab_core::uncertainty::{
-    Badge, BadgeKind, CURVE_N_INSTANTS, CurveComponent, CurveMixture, ForceCurve,
+    CURVE_N_INSTANTS, Caveat, CaveatKind, CurveComponent, CurveMixture, ForceCurve,
 };
 use impactlab_core::units::percent;
 
@@ -44,7 +44,7 @@ pub struct ForcePrediction {
     /// Features of the scenario that lie outside the range of the training cases.
     pub outside: Vec<OutsideTraining>,
     /// What restricts the prediction.
-    pub badges: Vec<Badge>,
+    pub caveats: Vec<Caveat>,
     /// Whether the contact point was left open and drawn from its distribution.
     pub is_contact_open: bool,
     /// Whether the bullet's body was left open and drawn from its distribution.
@@ -100,7 +100,7 @@ impl ForceModel {
             }
         };
         let outside = self.domain.outside(&canonical);
-        let badges = badges(applicability, &outside, bare);
+        let caveats = caveats(applicability, &outside, bare);
         let turned = |mixture: CurveMixture| if mirrored { mixture.mirrored() } else { mixture };
         let [px, py] = said.momentum_impulse_n_s;
         Ok(ForcePrediction {
@@ -111,7 +111,7 @@ impl ForceModel {
             hooking_probability: said.hooking_probability,
             applicability,
             outside,
-            badges,
+            caveats,
             is_contact_open: canonical.contact_m.is_none(),
             is_body_open: canonical.striking_body.is_none() && self.bodies().len() > 1,
         })
@@ -254,11 +254,11 @@ impl Said {
     }
 }
 
-/// The badges of a prediction.
+/// The caveats of a prediction.
 ///
 /// - `bare`: whether the vehicles approach each other, where the physics alone has a share.
-fn badges(applicability: f64, outside: &[OutsideTraining], bare: Option<bool>) -> Vec<Badge> {
-    let mut badges: Vec<Badge> = outside.iter().map(OutsideTraining::badge).collect();
+fn caveats(applicability: f64, outside: &[OutsideTraining], bare: Option<bool>) -> Vec<Caveat> {
+    let mut caveats: Vec<Caveat> = outside.iter().map(OutsideTraining::caveat).collect();
     if applicability < 1.0 {
         let said = match applicability > 0.0 {
             true => format!(
@@ -269,16 +269,16 @@ fn badges(applicability: f64, outside: &[OutsideTraining], bare: Option<bool>) -
                       with its measured errors; the network says nothing here"
                 .to_owned(),
         };
-        let badge = Badge::new(BadgeKind::OutsideDomain, said)
+        let caveat = Caveat::new(CaveatKind::OutsideDomain, said)
             .with_value("applicability of the force network", applicability)
             .with_range([1.0, 1.0]);
-        badges.push(badge);
+        caveats.push(caveat);
     }
     if bare == Some(false) {
         let text = "the vehicles do not approach each other at the contact: no force";
-        badges.push(Badge::new(BadgeKind::ImplausibleContact, text));
+        caveats.push(Caveat::new(CaveatKind::ImplausibleContact, text));
     }
-    badges
+    caveats
 }
 
 /// The mean of curves with weights that sum to one.

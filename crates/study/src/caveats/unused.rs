@@ -8,13 +8,14 @@
 
 use crate::analysis::{PulseSetup, StruckVehicle};
 use crate::{
-    AssumedQuantity, Assumption, DEFAULT_DRAWS, DEFAULT_DURATION_S, ForceSource, MotionSource,
-    PredictMotionRequest, ScenarioChoice, SimulateRequest, StudyError, VehicleChoice,
+    DEFAULT_DRAWS, DEFAULT_DURATION_S, ForceSource, MotionSource, PredictMotionRequest,
+    ScenarioChoice, SimulateRequest, StudyError, VehicleChoice,
 };
 use impactlab_core::collision::{
     DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, FrictionModel, Pose, RestitutionForm, Scenario,
     ScenarioGeometry, ScenarioVehicle,
 };
+use impactlab_core::uncertainty::Caveat;
 use impactlab_core::units::percent;
 use impactlab_core::vehicle::{Preset, VehicleParameters};
 
@@ -24,16 +25,11 @@ const MAX_TURNING_SHARE: f64 = 0.5;
 /// Relative difference of a length from that of the training cases beyond which it is listed.
 const SIZE_TOLERANCE: f64 = 0.1;
 
-/// An input that is not used.
-pub(crate) fn not_used(what: impl Into<String>, reason: &str) -> Assumption {
-    Assumption::new(AssumedQuantity::NotUsed, what, reason)
-}
-
 /// Friction zones, which a forecast with a network does not know.
-pub(crate) fn zones_by_network(struck: &StruckVehicle) -> Option<Assumption> {
+pub(crate) fn zones_by_network(struck: &StruckVehicle) -> Option<Caveat> {
     let names: Vec<&str> = struck.friction_zones.iter().map(|zone| zone.name.as_str()).collect();
     (!names.is_empty()).then(|| {
-        not_used(
+        Caveat::not_used(
             format!("friction zones: {}", names.join(", ")),
             "the response network has learned motions on one ground: the forecast has the friction of \
              the vehicle's tires everywhere",
@@ -49,7 +45,7 @@ pub(crate) fn zones_by_network(struck: &StruckVehicle) -> Option<Assumption> {
 pub(crate) fn by_force_network(
     choice: &ScenarioChoice,
     scenario: &Scenario,
-) -> Result<Vec<Assumption>, StudyError> {
+) -> Result<Vec<Caveat>, StudyError> {
     let geometry = scenario.geometry().map_err(|source| choice.unsolved(source))?;
     refuse_fast_turning(choice, scenario, &geometry)?;
     let vehicles = [
@@ -60,13 +56,13 @@ pub(crate) fn by_force_network(
     for (name, vehicle, of_training) in vehicles {
         let rate = vehicle.yaw_rate_rad_s;
         if rate != 0.0 {
-            unused.push(not_used(
+            unused.push(Caveat::not_used(
                 format!("yaw rate of the {name} vehicle before the impact, {rate} rad/s"),
                 "the force network has learned from vehicles that do not turn before the impact",
             ));
         }
         if has_other_size(vehicle, &of_training.parameters()) {
-            unused.push(not_used(
+            unused.push(Caveat::not_used(
                 format!(
                     "size of the {name} vehicle, {} m × {} m",
                     vehicle.length_m, vehicle.width_m
@@ -80,20 +76,26 @@ pub(crate) fn by_force_network(
     let by_momentum = "the momentum solution alone depends on it; the force network has learned the \
                        course of the contact";
     if contact.restitution != DEFAULT_RESTITUTION {
-        unused.push(not_used(format!("restitution, {}", contact.restitution), by_momentum));
+        unused.push(Caveat::not_used(format!("restitution, {}", contact.restitution), by_momentum));
     }
     if contact.restitution_form != RestitutionForm::default() {
         let form = contact.restitution_form.label();
-        unused.push(not_used(format!("form of the restitution, {form}"), by_momentum));
+        unused.push(Caveat::not_used(format!("form of the restitution, {form}"), by_momentum));
     }
     if let Some(share) = contact.friction_of_critical {
         let share = percent(share);
-        unused.push(not_used(format!("friction, {share} of the critical ratio"), by_momentum));
+        unused.push(Caveat::not_used(
+            format!("friction, {share} of the critical ratio"),
+            by_momentum,
+        ));
     } else if contact.friction_limit != DEFAULT_FRICTION_LIMIT {
-        unused.push(not_used(format!("friction limit, {}", contact.friction_limit), by_momentum));
+        unused.push(Caveat::not_used(
+            format!("friction limit, {}", contact.friction_limit),
+            by_momentum,
+        ));
     }
     if contact.friction_model != FrictionModel::Limit {
-        unused.push(not_used("friction model of the contact", by_momentum));
+        unused.push(Caveat::not_used("friction model of the contact", by_momentum));
     }
     Ok(unused)
 }
@@ -133,10 +135,10 @@ fn has_other_size(vehicle: &ScenarioVehicle, of_training: &VehicleParameters) ->
 /// What a simulation does not use of its question.
 ///
 /// - `is_recorded`: whether the motion is a recorded one, which has its own duration.
-pub(crate) fn by_simulation(request: &SimulateRequest, is_recorded: bool) -> Vec<Assumption> {
+pub(crate) fn by_simulation(request: &SimulateRequest, is_recorded: bool) -> Vec<Caveat> {
     let mut unused = Vec::new();
     if is_recorded && request.duration_s != DEFAULT_DURATION_S {
-        unused.push(not_used(
+        unused.push(Caveat::not_used(
             format!("duration, {} s", request.duration_s),
             "a recorded motion has its own duration",
         ));
@@ -144,33 +146,36 @@ pub(crate) fn by_simulation(request: &SimulateRequest, is_recorded: bool) -> Vec
     if is_recorded && matches!(request.source, MotionSource::Case { .. }) {
         let by_case = "the case says itself what happens to the wheels and how long it lasts";
         if request.ending.is_some() {
-            unused.push(not_used("what happens to the wheels", by_case));
+            unused.push(Caveat::not_used("what happens to the wheels", by_case));
         }
         if request.until_rest {
-            unused.push(not_used("simulation until rest", by_case));
+            unused.push(Caveat::not_used("simulation until rest", by_case));
         }
     }
     let has_striking =
         !matches!(request.source, MotionSource::Trajectory { .. } | MotionSource::Drive(_))
             && !is_recorded;
     if !has_striking && request.striking != VehicleChoice::Automatic {
-        unused.push(not_used("striking vehicle", "only the struck vehicle is simulated here"));
+        unused.push(Caveat::not_used(
+            "striking vehicle",
+            "only the struck vehicle is simulated here",
+        ));
     }
     if let MotionSource::Drive(drive) = &request.source
         && drive.force.is_none()
         && (drive.contact.is_some() || drive.sampling.is_some())
     {
-        unused.push(not_used("contact point and sampling", "no force is given"));
+        unused.push(Caveat::not_used("contact point and sampling", "no force is given"));
     }
     unused
 }
 
 /// What a forecast does not use of its question, beside that of the simulation.
-pub(crate) fn by_forecast(request: &PredictMotionRequest) -> Vec<Assumption> {
+pub(crate) fn by_forecast(request: &PredictMotionRequest) -> Vec<Caveat> {
     let mut unused = Vec::new();
     let is_predicted = matches!(request.force, ForceSource::Predicted(_));
     if !is_predicted && request.draws != DEFAULT_DRAWS {
-        unused.push(not_used(
+        unused.push(Caveat::not_used(
             format!("number of drawn forces, {}", request.draws),
             "the force is given, so that none is drawn",
         ));
@@ -179,7 +184,10 @@ pub(crate) fn by_forecast(request: &PredictMotionRequest) -> Vec<Assumption> {
         let plain =
             PulseSetup { contact_height_m: pulse.contact_height_m, ..PulseSetup::default() };
         if request.force != ForceSource::Given && *pulse != plain {
-            unused.push(not_used("shape and duration of the pulse", "another force is taken"));
+            unused.push(Caveat::not_used(
+                "shape and duration of the pulse",
+                "another force is taken",
+            ));
         }
     }
     unused
@@ -188,6 +196,7 @@ pub(crate) fn by_forecast(request: &PredictMotionRequest) -> Vec<Assumption> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impactlab_core::uncertainty::CaveatKind;
     use impactlab_core::vehicle::{ContactPoint, Controls, FrictionZone, VehicleState};
 
     #[test]
@@ -204,7 +213,7 @@ mod tests {
         let ice = FrictionZone { name: "ice".to_owned(), border_m, friction: 0.1 };
         struck.friction_zones.push(ice);
         let said = zones_by_network(&struck).unwrap();
-        assert_eq!(said.quantity, AssumedQuantity::NotUsed);
-        assert_eq!(said.value, "friction zones: ice");
+        assert_eq!(said.kind, CaveatKind::NotUsed);
+        assert_eq!(said.text, "friction zones: ice");
     }
 }

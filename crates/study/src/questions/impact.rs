@@ -1,15 +1,16 @@
 //! The impulse solution of a scenario: `impact`.
 
+use crate::caveats::assumed;
 use serde::{Deserialize, Serialize};
 
-use crate::caveats::badges;
-use crate::{Assumption, Library, Observer, Provenance, Question, ScenarioChoice, StudyError};
+use crate::caveats::restrictions;
+use crate::{Library, Observer, Provenance, Question, ScenarioChoice, StudyError};
 use impactlab_core::collision::{
     BodyAfter, FrictionModel, ImpactSolution, PrincipalDirectionOfForce, Regime, RestitutionForm,
     Scenario, StruckSurface,
 };
 use impactlab_core::data::Outcome;
-use impactlab_core::uncertainty::Badge;
+use impactlab_core::uncertainty::Caveats;
 
 /// Asks for impulse, velocities after the impact, delta-v, energy and direction of force.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -69,11 +70,9 @@ pub struct ImpactReport {
     /// The striking vehicle after the impact.
     #[serde(rename = "bullet")]
     pub striking: BodyReport,
-    /// What was assumed: where the vehicles first touched, if their outlines overlap; default
-    /// restitution and friction.
-    pub assumptions: Vec<Assumption>,
-    /// What restricts the answer.
-    pub badges: Vec<Badge>,
+    /// What restricts the answer and what it rests on.
+    #[serde(flatten)]
+    pub caveats: Caveats,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -138,11 +137,11 @@ impl Question for ImpactRequest {
         let impact = scenario.impact().map_err(unsolved)?;
         let solution = scenario.solve().map_err(unsolved)?;
         let [x, y] = solution.impulse_world_n_s;
-        let assumptions: Vec<Assumption> = Assumption::first_touch(&geometry)
+        let caveats: Caveats = assumed::first_touch(&geometry)
             .into_iter()
-            .chain(Assumption::contact_default(&scenario, &impact))
+            .chain(assumed::contact_default(&scenario, &impact))
+            .chain(restrictions::of_overlap(&geometry))
             .collect();
-        let overlap = badges::of_overlap(&geometry).into_iter();
         let report = ImpactReport {
             name: scenario.name.clone(),
             restitution: impact.surface.restitution,
@@ -164,8 +163,7 @@ impl Question for ImpactRequest {
             dissipated_energy_j: solution.dissipated_energy_j,
             struck: (&solution.struck).into(),
             striking: (&solution.striking).into(),
-            badges: overlap.chain(badges::of_assumptions(&assumptions)).collect(),
-            assumptions,
+            caveats,
             provenance: Provenance::default(),
         };
         Ok(Outcome::Complete(ImpactAnswer { report, scenario, solution }))

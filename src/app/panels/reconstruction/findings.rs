@@ -2,6 +2,7 @@
 //! of events it leaves possible, and what further evidence would bring.
 
 use egui::{Grid, Ui};
+use impactlab_core::uncertainty::Caveats;
 
 use crate::app::command::Command;
 use crate::app::looks::{self, Icon};
@@ -12,7 +13,7 @@ use impactlab_core::units::{Quantity, UnitSystem, significant};
 use impactlab_document::figure::budget_figure;
 use impactlab_draw::{FigureOptions, theme};
 use impactlab_reconstruct::{BudgetItem, EvidenceFit};
-use impactlab_study::{ReconstructAnswer, ReconstructReport, Trust};
+use impactlab_study::{ReconstructAnswer, ReconstructReport};
 
 /// Height of a bar of the budget, and of its axis and heading, points.
 const BAR_HEIGHT: f32 = 24.0;
@@ -90,7 +91,7 @@ pub fn modes_ui(
 pub fn budget_ui(
     ui: &mut Ui,
     answer: &ReconstructAnswer,
-    (trust, units): (&Trust, UnitSystem),
+    (caveats, units): (&Caveats, UnitSystem),
     commands: &mut Vec<Command>,
 ) {
     heading(ui, "What further evidence would bring");
@@ -101,7 +102,7 @@ pub fn budget_ui(
         return;
     }
     items.sort_by(|a, b| a.then_m_s.total_cmp(&b.then_m_s));
-    let figure = budget_figure(answer, trust, units);
+    let figure = budget_figure(answer, caveats, units);
     let options = FigureOptions {
         id: "budget".to_owned(),
         height: Some(AXIS_HEIGHT + BAR_HEIGHT * items.len() as f32),

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use egui::{ComboBox, Ui};
+use impactlab_core::uncertainty::Caveats;
 
 use crate::app::command::Command;
 use crate::app::looks::{Icon, icon_button};
@@ -16,7 +17,7 @@ use crate::app::reconstruction::{
     ReconstructedCars, ReconstructionCommand, ShownPaths,
 };
 use crate::app::scene::SceneSettings;
-use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, badges_ui, figure_frame};
+use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, figure_frame, restrictions_ui};
 use impactlab_core::data::Severity;
 use impactlab_core::units::{Quantity, UnitSystem, percent};
 use impactlab_document::figure::{
@@ -26,7 +27,7 @@ use impactlab_document::scene::{ReconstructionParts, Scene};
 use impactlab_draw::FigureOptions;
 use impactlab_draw::scene::{ScenePicture, SceneView, scene_view_ui};
 use impactlab_reconstruct::evidence::Evidence;
-use impactlab_study::{EvidenceChoice, ReconstructReport, Trust};
+use impactlab_study::EvidenceChoice;
 
 /// Draws the choice of what is followed, the time slider, and the plan or the cars.
 pub fn reconstructed_scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -52,13 +53,13 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         play_ui(ui, (answer, of.mode, of.followed), commands);
         let clock = (session.time_s, of.end_time_s());
         clock_ui(ui, clock, (session.playing, view.playback_speed), commands);
-        badges_ui(ui, &answer.answer.report.badges);
+        restrictions_ui(ui, &answer.answer.report.caveats);
     } else if is_outdated {
         notice_ui(ui, Severity::Warning, OUTDATED);
     }
-    let trust = match answer.filter(|_| live.is_none()) {
-        Some(answer) => trust_of(&answer.answer.report),
-        None => Trust::default().outdated_if(live.is_some()),
+    let caveats = match answer.filter(|_| live.is_none()) {
+        Some(answer) => answer.answer.report.caveats.clone(),
+        None => Caveats::default().outdated_if(live.is_some()),
     };
     let followed = of.followed_path().filter(|_| live.is_none() && !is_outdated);
     let drawn = match (live, answer) {
@@ -73,7 +74,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
             followed.map(|(name, path)| FollowedPath { name, path, time_s: session.time_s });
         let (evidence, cars) = (&preview.evidence, &preview.cars);
         let scene = ReconstructionScene { evidence, cars, drawn, followed, marks };
-        reconstruction_scene_figure(&scene, &trust, view.units)
+        reconstruction_scene_figure(&scene, &caveats, view.units)
     };
     if !view.reconstruction.shows_cars {
         let seen = (preview, of.adds_to, session.fit_plots);
@@ -91,7 +92,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         },
         followed: followed.is_some().then_some(of.followed),
         units: view.units,
-        trust: trust.clone(),
+        caveats: caveats.clone(),
     };
     let parts = ReconstructionParts {
         evidence: &preview.evidence,
@@ -100,7 +101,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         followed: followed.as_ref().map(|(name, path)| (name.as_str(), *path)),
         marks,
         units: view.units,
-        trust: &trust,
+        caveats: &caveats,
     };
     let ground = session.ground.shown().map(|loaded| &loaded.ground);
     let scene = cars.scene(source, &parts, ground);
@@ -174,11 +175,6 @@ fn cars_ui(
     let SceneSettings { camera, follow, .. } = settings;
     let seen = (camera, *follow, ui.available_height());
     scene_view_ui(ui, (scene, time_s), shown, seen);
-}
-
-/// What restricts a reconstruction.
-pub(super) fn trust_of(report: &ReconstructReport) -> Trust {
-    Trust::new(&report.badges, &report.assumptions)
 }
 
 /// Says that the particles are not the answer yet, and how far they are.

@@ -1,25 +1,25 @@
 //! The “Speeds” pane: what the evidence says of the speeds before the impact.
 
 use egui::{ComboBox, ScrollArea, Ui};
+use impactlab_core::uncertainty::Caveats;
 
 use crate::app::command::Command;
 use crate::app::looks;
 use crate::app::panels::faded_if;
 use crate::app::panels::reconstruction::findings::{budget_ui, fit_ui, modes_ui};
-use crate::app::panels::reconstruction::scene::trust_of;
 use crate::app::panels::reconstruction::{OUTDATED, notice_ui};
 use crate::app::panes::PaneContext;
 use crate::app::reconstruction::{PreparedReconstruction, ReconstructionView};
 use crate::app::widgets::{
-    SpreadRow, badges_ui, evidence_assumptions_ui, figure_frame, spread_table_ui,
+    SpreadRow, evidence_assumptions_ui, figure_frame, restrictions_ui, spread_table_ui,
 };
 use impactlab_core::data::Severity;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_document::figure::{marginal_figure, pair_figure};
 use impactlab_draw::FigureOptions;
 use impactlab_reconstruct::{QuantityEstimate, ReconstructedQuantity};
+use impactlab_study::ReconstructReport;
 use impactlab_study::analysis::Spread;
-use impactlab_study::{ReconstructReport, Trust};
 
 /// Heights of the plots, points.
 const MARGINAL_HEIGHT: f32 = 190.0;
@@ -47,7 +47,7 @@ pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             notice_ui(ui, Severity::Warning, OUTDATED);
         }
         let report = &answer.answer.report;
-        let trust = trust_of(report).outdated_if(is_outdated || of.run.is_running());
+        let caveats = report.caveats.clone().outdated_if(is_outdated || of.run.is_running());
         faded_if(ui, is_outdated, |ui| {
             numbers_ui(ui, report, view.units, commands);
             let units = view.units;
@@ -59,11 +59,11 @@ pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             };
             let marginal = options("marginal", MARGINAL_HEIGHT);
             let pair = options("pair", PAIR_HEIGHT);
-            let drawn = (answer, &trust, units);
+            let drawn = (answer, &caveats, units);
             plots_ui(ui, drawn, (&mut view.reconstruction, [marginal, pair]), commands);
             fit_ui(ui, &report.fit);
             modes_ui(ui, (report, of.mode), units, commands);
-            budget_ui(ui, &answer.answer, (&trust, units), commands);
+            budget_ui(ui, &answer.answer, (&caveats, units), commands);
         });
     });
 }
@@ -75,7 +75,7 @@ fn numbers_ui(
     units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
-    badges_ui(ui, &report.badges);
+    restrictions_ui(ui, &report.caveats);
     ScrollArea::horizontal().id_salt("quantities").show(ui, |ui| {
         spread_table_ui(ui, &report.case, &rows(report, units));
     });
@@ -89,7 +89,7 @@ fn numbers_ui(
     let (n, ess) = (report.n_simulations, report.ess);
     let n_particles = report.n_particles;
     ui.weak(format!("{n} motions, {n_particles} particles worth {ess:.0} independent ones"));
-    evidence_assumptions_ui(ui, &report.assumptions, commands);
+    evidence_assumptions_ui(ui, &report.caveats, commands);
 }
 
 fn rows(report: &ReconstructReport, units: UnitSystem) -> Vec<SpreadRow> {
@@ -110,20 +110,20 @@ fn rows(report: &ReconstructReport, units: UnitSystem) -> Vec<SpreadRow> {
 /// Draws the distribution of one quantity, and of two against each other.
 fn plots_ui(
     ui: &mut Ui,
-    (answer, trust, units): (&PreparedReconstruction, &Trust, UnitSystem),
+    (answer, caveats, units): (&PreparedReconstruction, &Caveats, UnitSystem),
     (view, [marginal, pair]): (&mut ReconstructionView, [FigureOptions; 2]),
     commands: &mut Vec<Command>,
 ) {
     ui.add_space(looks::PART);
     quantity_ui(ui, "Distribution of", &mut view.quantity);
     let shown = (view.quantity, answer.prior_of(view.quantity));
-    let figure = marginal_figure(&answer.answer, shown, trust, units);
+    let figure = marginal_figure(&answer.answer, shown, caveats, units);
     figure_frame(ui, ("Before and after the evidence", &figure), &marginal, commands);
     ui.add_space(looks::PART);
     quantity_ui(ui, "The same over", &mut view.against);
     let quantities = [view.against, view.quantity];
     let priors = quantities.map(|of| answer.prior_of(of));
-    let figure = pair_figure(&answer.answer, (quantities, priors), trust, units);
+    let figure = pair_figure(&answer.answer, (quantities, priors), caveats, units);
     figure_frame(ui, ("Two quantities of each particle", &figure), &pair, commands);
 }
 

@@ -3,15 +3,17 @@
 use serde_json::Value;
 
 use crate::report::answer::Context;
+use crate::report::answer::facts::provenance_of;
 use crate::report::flatten::{FlatRow, flatten};
 use crate::report::numbers::fill;
-use crate::report::parts::{Part, PartProvenance};
+use crate::report::parts::Part;
 use crate::report::{Block, Table};
-use impactlab_core::uncertainty::Badge;
-use impactlab_study::{Answer, Assumption, Request};
+use impactlab_core::uncertainty::Caveats;
+use impactlab_study::{Answer, Provenance, Request};
 
 /// What is told in sections of its own.
-const ELSEWHERE: [&str; 4] = ["badges", "assumptions", "version", "model_digests"];
+const ELSEWHERE: [&str; 7] =
+    ["caveats", "notes", "badges", "assumptions", "version", "seed", "model_digests"];
 
 /// What an answer contributes that has no text of its own.
 pub(super) fn part(request: &Request, answer: &Answer, context: Context<'_>) -> Part {
@@ -20,10 +22,7 @@ pub(super) fn part(request: &Request, answer: &Answer, context: Context<'_>) -> 
     let question = serde_json::to_value(request).unwrap_or_default();
     let kind = question.get("question").and_then(Value::as_str).unwrap_or_default();
     let kind = wording.key(kind);
-    let mut told = report_value(answer);
-    let badges: Vec<Badge> = typed(told.get("badges"));
-    let assumptions: Vec<Assumption> = typed(told.get("assumptions"));
-    let version = told.get("version").and_then(Value::as_str).unwrap_or_default().to_owned();
+    let (mut told, caveats, provenance) = taken_apart(answer);
     if let Value::Object(fields) = &mut told {
         fields.retain(|name, _| !ELSEWHERE.contains(&name.as_str()));
     }
@@ -37,23 +36,29 @@ pub(super) fn part(request: &Request, answer: &Answer, context: Context<'_>) -> 
         ],
         kind: kind.clone(),
         title: kind,
-        badges,
-        assumptions,
-        provenance: PartProvenance { version, seeds: Vec::new() },
+        caveats: caveats.clone(),
+        provenance: provenance_of(provenance, &[], wording),
         ..Part::default()
     }
 }
 
-/// What is told of an answer.
-fn report_value(answer: &Answer) -> Value {
-    macro_rules! told {
+/// All that is in an answer, what restricts it and where it comes from.
+fn taken_apart(answer: &Answer) -> (Value, &Caveats, &Provenance) {
+    macro_rules! parts {
         ($($kind:ident),+) => {
             match answer {
-                $(Answer::$kind(answer) => serde_json::to_value(&answer.report),)+
+                $(Answer::$kind(answer) => {
+                    let report = &answer.report;
+                    (serde_json::to_value(report), &report.caveats, &report.provenance)
+                })+
+                Answer::EvaluateForce(answer) => {
+                    let report = &answer.report;
+                    (serde_json::to_value(report), report.caveats(), report.provenance())
+                }
             }
         };
     }
-    let told = told!(
+    let (value, caveats, provenance) = parts!(
         Check,
         Impact,
         Simulate,
@@ -64,15 +69,9 @@ fn report_value(answer: &Answer) -> Value {
         TrainForce,
         TrainResponse,
         FineTune,
-        EvaluateForce,
         EvaluateReconstruction,
         EvaluateResponse,
         Compare
     );
-    told.unwrap_or_default()
-}
-
-fn typed<T: serde::de::DeserializeOwned>(value: Option<&Value>) -> Vec<T> {
-    let value = value.cloned().unwrap_or_default();
-    serde_json::from_value(value).unwrap_or_default()
+    (value.unwrap_or_default(), caveats, provenance)
 }

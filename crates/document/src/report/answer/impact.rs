@@ -9,7 +9,7 @@ use crate::report::parts::{Part, PartPicture};
 use crate::report::{Block, Table};
 use impactlab_core::collision::FrictionModel;
 use impactlab_core::units::Quantity;
-use impactlab_study::{BodyReport, ImpactAnswer, ImpactReport, Trust};
+use impactlab_study::{BodyReport, ImpactAnswer, ImpactReport};
 
 /// What an impulse solution contributes.
 pub(super) fn part(answer: &ImpactAnswer, context: Context<'_>) -> Part {
@@ -18,8 +18,8 @@ pub(super) fn part(answer: &ImpactAnswer, context: Context<'_>) -> Part {
     let mut blocks = vec![Block::paragraph(fill(words.ask_impact, &[("name", &report.name)]))];
     blocks.extend(fact_blocks(words.impact_caption, facts(report, wording), wording));
     blocks.push(Block::Table(vehicles(report, wording)));
-    let trust = Trust::new(&report.badges, &report.assumptions);
-    let figure = impact_figure((&answer.scenario, &answer.solution), &trust, wording.units).ok();
+    let caveats = &report.caveats;
+    let figure = impact_figure((&answer.scenario, &answer.solution), caveats, wording.units).ok();
     let caption = || fill(words.impact_picture, &[("name", &report.name)]);
     let picture = figure.map(|figure| PartPicture::figure(caption(), figure));
     Part {
@@ -27,8 +27,7 @@ pub(super) fn part(answer: &ImpactAnswer, context: Context<'_>) -> Part {
         title: format!("{}: {}", words.title_impact, report.name),
         answer: blocks,
         pictures: picture.into_iter().collect(),
-        badges: report.badges.clone(),
-        assumptions: report.assumptions.clone(),
+        caveats: report.caveats.clone(),
         provenance: provenance_of(&report.provenance, &[], wording),
         methods: [Method::Impact].into(),
         ..Part::default()

@@ -6,6 +6,7 @@ use crate::report::InputClass;
 use crate::report::answer::Context;
 use crate::report::flatten::flatten;
 use crate::report::parts::{InputRow, Part};
+use impactlab_core::uncertainty::CaveatSubject;
 use impactlab_study::Request;
 
 /// What a value is in; what stands in the question itself belongs to that.
@@ -36,12 +37,12 @@ pub(super) fn with_request(mut part: Part, request: &Request, context: Context<'
             source: source.to_owned(),
         }
     });
-    let assumed = part.assumptions.iter().map(|of| InputRow {
+    let assumed = part.caveats.assumptions().map(|of| InputRow {
         group: part.kind.clone(),
-        label: wording.term(of.quantity.label()),
-        value: wording.quoted(&of.value),
+        label: wording.term(of.subject.map_or(of.kind.label(), CaveatSubject::label)),
+        value: wording.quoted(&of.text),
         class: InputClass::Assumed,
-        source: wording.quoted(&of.reason),
+        source: wording.quoted(of.reason.as_deref().unwrap_or_default()),
     });
     let mut rows: Vec<InputRow> = given.collect();
     rows.append(&mut part.inputs);

@@ -10,7 +10,7 @@ use crate::report::{Block, Table};
 use impactlab_core::units::Quantity;
 use impactlab_networks::force::metrics::BAND_LEVELS;
 use impactlab_study::analysis::Estimate;
-use impactlab_study::{ImpliedContactReport, PredictForceAnswer, PredictForceReport, Trust};
+use impactlab_study::{ImpliedContactReport, PredictForceAnswer, PredictForceReport};
 
 /// What a predicted force contributes.
 pub(super) fn part(answer: &PredictForceAnswer, context: Context<'_>) -> Part {
@@ -33,8 +33,7 @@ pub(super) fn part(answer: &PredictForceAnswer, context: Context<'_>) -> Part {
         answer: blocks,
         pictures: vec![picture(answer, wording)],
         domain: vec![applicability(words.force_network, report.applicability, wording)],
-        badges: report.badges.clone(),
-        assumptions: report.assumptions.clone(),
+        caveats: report.caveats.clone(),
         provenance: provenance_of(&report.provenance, &[], wording),
         methods: [Method::ForceNetwork].into(),
         ..Part::default()
@@ -118,7 +117,7 @@ fn modes(report: &PredictForceReport, wording: &Wording) -> Table {
 
 fn picture(answer: &PredictForceAnswer, wording: &Wording) -> PartPicture {
     let report = &answer.report;
-    let trust = Trust::new(&report.badges, &report.assumptions);
+    let caveats = &report.caveats;
     let input = ForecastFigure {
         name: &report.scenario,
         forecast: &answer.forecast,
@@ -127,7 +126,7 @@ fn picture(answer: &PredictForceAnswer, wording: &Wording) -> PartPicture {
         physics: None,
         pulses: &[],
         units: wording.units,
-        trust: &trust,
+        caveats,
     };
     let caption = fill(wording.words.force_forecast_picture, &[("name", &report.scenario)]);
     PartPicture::figure(caption, forecast_figure(ForceComponent::Magnitude, &input))

@@ -16,7 +16,7 @@ use crate::report::parts::{Part, PartPicture};
 use impactlab_core::data::Channel;
 use impactlab_core::units::Quantity;
 use impactlab_study::analysis::{DensityTask, MotionBands, Spread};
-use impactlab_study::{PredictMotionAnswer, PredictMotionReport, PredictMotionRequest, Trust};
+use impactlab_study::{PredictMotionAnswer, PredictMotionReport, PredictMotionRequest};
 
 /// Every how many steps the bands over time have an edge.
 const BAND_STRIDE: usize = 5;
@@ -47,8 +47,7 @@ pub(super) fn part(
         inputs: vehicle_rows(&answer.analysis.vehicle, words.struck_vehicle, wording),
         sensitivity: sensitivity_table(&report.sensitivity, wording).into_iter().collect(),
         domain: domain(report, wording),
-        badges: report.badges.clone(),
-        assumptions: report.assumptions.clone(),
+        caveats: report.caveats.clone(),
         provenance: provenance_of(&report.provenance, &draws, wording),
         methods: methods.into_iter().chain(predicted).chain(sheet).collect(),
         ..Part::default()
@@ -124,10 +123,10 @@ fn pictures(
     let at_s = report.outcome.time_s;
     let density = Arc::new(DensityTask::new(&forecast.distribution, [at_s; 2]).on_cpu());
     let bands = MotionBands::of(&forecast.distribution, BAND_STRIDE);
-    let trust = Trust::new(&report.badges, &report.assumptions);
-    let still = forecast_still((request, answer), (&density, &trust), context);
+    let caveats = &report.caveats;
+    let still = forecast_still((request, answer), (&density, caveats), context);
     let shown = (at_s, wording.units);
-    let input = MotionForecastFigure::of(answer, (&bands, &trust), shown).with_motions(analysis);
+    let input = MotionForecastFigure::of(answer, (&bands, caveats), shown).with_motions(analysis);
     let yaw = FORECAST_CHANNELS.into_iter().find(|of| of.channel == Channel::Yaw);
     let yaw = yaw.map(|channel| {
         let caption = fill(words.forecast_yaw_picture, &[("name", &report.scenario)]);

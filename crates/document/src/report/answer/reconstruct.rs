@@ -14,12 +14,12 @@ use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::{Part, PartPicture};
 use crate::report::{Block, Table};
-use impactlab_core::uncertainty::BadgeKind;
+use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::units::Quantity;
 use impactlab_reconstruct::{QuantityEstimate, ReconstructedQuantity};
 use impactlab_study::{
     FrictionZoneReport, ReconstructAnswer, ReconstructReport, ReconstructRequest,
-    ReconstructedPaths, Trust,
+    ReconstructedPaths,
 };
 
 /// Quantities whose distribution is drawn.
@@ -27,7 +27,7 @@ const DRAWN: [ReconstructedQuantity; 2] =
     [ReconstructedQuantity::StruckSpeed, ReconstructedQuantity::ClosingSpeed];
 
 /// Restrictions with which an interval is no answer.
-const DOUBTS: [BadgeKind; 2] = [BadgeKind::EvidenceUnexplained, BadgeKind::FewParticles];
+const DOUBTS: [CaveatKind; 2] = [CaveatKind::EvidenceUnexplained, CaveatKind::FewParticles];
 
 /// What a reconstruction contributes.
 pub(super) fn part(
@@ -44,8 +44,8 @@ pub(super) fn part(
     }
     blocks.push(Block::Table(quantities(words.reconstruct_caption, &report.quantities, wording)));
     blocks.push(Block::List { items: meanings(report, wording) });
-    let doubts = report.badges.iter().filter(|badge| DOUBTS.contains(&badge.kind));
-    let mut doubts: Vec<String> = doubts.map(|badge| wording.term(badge.kind.label())).collect();
+    let doubts = report.caveats.iter().filter(|caveat| DOUBTS.contains(&caveat.kind));
+    let mut doubts: Vec<String> = doubts.map(|of| wording.term(of.kind.label())).collect();
     doubts.dedup();
     for badge in doubts {
         blocks.push(Block::paragraph(fill(words.meaning_doubtful, &[("badge", &badge)])));
@@ -72,8 +72,7 @@ pub(super) fn part(
             Block::paragraph(words.budget_text),
             Block::Table(budget(report, wording)),
         ],
-        badges: report.badges.clone(),
-        assumptions: report.assumptions.clone(),
+        caveats: report.caveats.clone(),
         provenance: provenance_of(&report.provenance, &draws, wording),
         methods: [Method::Reconstruction, Method::Impact, Method::FourDof, Method::DataSheet]
             .into(),
@@ -154,28 +153,28 @@ fn pictures(
 ) -> Vec<PartPicture> {
     let Context { wording, .. } = context;
     let (words, units, report) = (wording.words, wording.units, &answer.report);
-    let trust = Trust::new(&report.badges, &report.assumptions);
+    let caveats = &report.caveats;
     let name = ("name", &*report.case);
     let paths = ReconstructedPaths::of(answer);
     let scene = ReconstructionScene::of(answer, &paths);
     let plan = PartPicture::figure(
         fill(words.reconstruction_picture, &[name]),
-        reconstruction_scene_figure(&scene, &trust, units),
+        reconstruction_scene_figure(&scene, caveats, units),
     );
-    let still = reconstruction_still((answer, &paths), site, &trust, context);
+    let still = reconstruction_still((answer, &paths), site, caveats, context);
     let mut pictures: Vec<PartPicture> = still.into_iter().chain([plan]).collect();
     for quantity in DRAWN {
         let prior = prior_values(&answer.target, quantity);
         let label = wording.term(quantity.label());
         pictures.push(PartPicture::figure(
             fill(words.marginal_picture, &[name, ("quantity", &label)]),
-            marginal_figure(answer, (quantity, &prior), &trust, units),
+            marginal_figure(answer, (quantity, &prior), caveats, units),
         ));
     }
     if report.budget.iter().any(|item| item.believable) {
         pictures.push(PartPicture::figure(
             fill(words.budget_picture, &[name]),
-            budget_figure(answer, &trust, units),
+            budget_figure(answer, caveats, units),
         ));
     }
     pictures

@@ -17,7 +17,7 @@ use impactlab_core::data::Channel;
 use impactlab_core::units::Quantity;
 use impactlab_study::analysis::{RestOutcome, Sensitivity, Spread};
 use impactlab_study::{
-    FrictionZoneReport, SimulateAnswer, SimulateReport, SimulateRequest, Trust, VehicleUncertainty,
+    FrictionZoneReport, SimulateAnswer, SimulateReport, SimulateRequest, VehicleUncertainty,
 };
 
 /// What a simulation contributes.
@@ -39,8 +39,8 @@ pub(super) fn part(
         sensitivity.extend(sensitivity_table(&uncertainty.sensitivity, wording));
         draws.push((words.vehicles_drawn, uncertainty.n_draws.to_string()));
     }
-    let noted = |note: &String| fill(words.noted, &[("note", &wording.quoted(note))]);
-    blocks.extend(report.notes.iter().map(|note| Block::paragraph(noted(note))));
+    let noted = |note: &str| fill(words.noted, &[("note", &wording.quoted(note))]);
+    blocks.extend(report.caveats.notes().map(|note| Block::paragraph(noted(note))));
     let scenario = report.momentum.as_ref().map(|_| Method::Impact);
     let sheet = report.uncertainty.as_ref().map(|_| Method::DataSheet);
     Part {
@@ -54,8 +54,7 @@ pub(super) fn part(
         ]
         .concat(),
         sensitivity,
-        badges: report.badges.clone(),
-        assumptions: report.assumptions.clone(),
+        caveats: report.caveats.clone(),
         provenance: provenance_of(&report.provenance, &draws, wording),
         methods: [Method::FourDof].into_iter().chain(scenario).chain(sheet).collect(),
         ..Part::default()
@@ -189,17 +188,17 @@ fn pictures(
 ) -> Vec<PartPicture> {
     let (words, units) = (context.wording.words, context.wording.units);
     let (report, analysis) = (&answer.report, &answer.analysis);
-    let trust = Trust::new(&report.badges, &report.assumptions);
+    let caveats = &report.caveats;
     let name = [("name", &*report.name)];
     let picture = |caption, figure| PartPicture::figure(fill(caption, &name), figure);
     let end_s = report.rest.as_ref().map_or(report.duration_s, |rest| rest.time_s);
     let has_motion = analysis.simulation.is_some() || analysis.reference.is_some();
     let contact_end_s = report.force.as_ref().and_then(|force| force.contact_end_s);
     let moments = [contact_end_s.filter(|_| has_motion), has_motion.then_some(end_s)];
-    let mut pictures = simulation_stills((analysis, &trust), site, moments, context);
-    let force = analysis_force_figure((analysis, &trust), None, &[], units).ok().flatten();
+    let mut pictures = simulation_stills((analysis, caveats), site, moments, context);
+    let force = analysis_force_figure((analysis, caveats), None, &[], units).ok().flatten();
     pictures.extend(force.map(|figure| picture(words.force_picture, figure)));
-    let yaw_rate = analysis_motion_figure((analysis, &trust), Channel::YawRate, units);
+    let yaw_rate = analysis_motion_figure((analysis, caveats), Channel::YawRate, units);
     if !yaw_rate.elements.is_empty() {
         pictures.push(picture(words.yaw_rate_picture, yaw_rate));
     }

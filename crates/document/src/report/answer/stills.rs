@@ -13,9 +13,10 @@ use crate::scene::{
     add_forecast, reconstruction_scene, simulation_scene,
 };
 use impactlab_core::error_chain;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_study::analysis::{Analysis, DensityMap};
 use impactlab_study::{
-    PredictMotionAnswer, PredictMotionRequest, ReconstructAnswer, ReconstructedPaths, Trust,
+    PredictMotionAnswer, PredictMotionRequest, ReconstructAnswer, ReconstructedPaths,
 };
 
 /// Paths that are drawn from a forecast, as ghosts.
@@ -30,14 +31,14 @@ const NEAR_M: f64 = 16.0;
 /// - `site`: file of the ground below it;
 /// - `[contact_end_s, end_s]`: the moments, s; no contact if it is `None`.
 pub(super) fn simulation_stills(
-    (analysis, trust): (&Analysis, &Trust),
+    (analysis, caveats): (&Analysis, &Caveats),
     site: Option<&Path>,
     [contact_end_s, end_s]: [Option<f64>; 2],
     context: Context<'_>,
 ) -> Vec<PartPicture> {
     let Context { wording, .. } = context;
     let words = wording.words;
-    let input = SimulationScene { analysis, others: &[], units: wording.units, trust };
+    let input = SimulationScene { analysis, others: &[], units: wording.units, caveats };
     let (scene, note) = on_ground(simulation_scene(&input), site, context);
     let still = |caption, time_s, view, near_m| {
         let caption = fill(caption, &[("name", &analysis.name)]) + &note;
@@ -53,12 +54,12 @@ pub(super) fn simulation_stills(
 /// The still of a forecast from above: its draws as ghosts, density and regions at a moment.
 pub(super) fn forecast_still(
     (request, answer): (&PredictMotionRequest, &PredictMotionAnswer),
-    (density, trust): (&Arc<DensityMap>, &Trust),
+    (density, caveats): (&Arc<DensityMap>, &Caveats),
     context: Context<'_>,
 ) -> PartPicture {
     let Context { wording, .. } = context;
     let (analysis, report) = (&answer.analysis, &answer.report);
-    let input = SimulationScene { analysis, others: &[], units: wording.units, trust };
+    let input = SimulationScene { analysis, others: &[], units: wording.units, caveats };
     let mut scene = simulation_scene(&input);
     add_forecast(
         &mut scene,
@@ -84,12 +85,12 @@ pub(super) fn forecast_still(
 pub(super) fn reconstruction_still(
     (answer, paths): (&ReconstructAnswer, &ReconstructedPaths),
     site: Option<&Path>,
-    trust: &Trust,
+    caveats: &Caveats,
     context: Context<'_>,
 ) -> Option<PartPicture> {
     paths.median.as_ref()?;
     let Context { wording, .. } = context;
-    let parts = ReconstructionParts::of((answer, paths), wording.units, trust);
+    let parts = ReconstructionParts::of((answer, paths), wording.units, caveats);
     let scene = reconstruction_scene(&parts);
     let caption = fill(wording.words.reconstruction_cars, &[("name", &answer.report.case)]);
     let (scene, note) = on_ground(scene, site, context);

@@ -301,6 +301,7 @@ pub(super) const WORDS: Words = Words {
     allowed_range: "{quantity}: {value}, ohne Einschränkung {range}",
     at_least: "mindestens {low}",
     at_most: "höchstens {high}",
+    remedy_outdated: "Neu rechnen.",
     remedy_outside_domain: "Einen Wert im Bereich wählen, sich auf die Physik daneben stützen oder ein Netz mit \
         solchen Kollisionen trainieren.",
     remedy_implausible_contact: "Kontaktpunkt, Seite und Geschwindigkeiten prüfen; die Impulslösung verwenden.",

@@ -229,6 +229,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("locked", "blockiert"),
     ("side slip", "seitlich rutschend"),
     // Restrictions.
+    ("outdated", "überholt"),
     ("outside the domain", "außerhalb des Gültigkeitsbereichs"),
     ("implausible contact", "unplausibler Kontakt"),
     ("disagreement", "Widerspruch"),

@@ -296,6 +296,7 @@ pub(super) const WORDS: Words = Words {
     allowed_range: "{quantity}: {value}, without restriction {range}",
     at_least: "at least {low}",
     at_most: "at most {high}",
+    remedy_outdated: "Ask again.",
     remedy_outside_domain: "Use a value inside the range, rely on the physics beside it, or train a network on such \
         collisions.",
     remedy_implausible_contact: "Check contact point, side and velocities; use the momentum solution.",

@@ -261,6 +261,8 @@ pub(in crate::report) struct Words {
     pub allowed_range: &'static str,
     pub at_least: &'static str,
     pub at_most: &'static str,
+    /// What is to be done about an answer to an earlier question.
+    pub remedy_outdated: &'static str,
     pub remedy_outside_domain: &'static str,
     pub remedy_implausible_contact: &'static str,
     pub remedy_disagreement: &'static str,

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::force::physics::CentreCurve;
 use crate::force::{ForceCase, ForceScenario};
 use crate::nn::{Expected, NnError, check_length, check_number, check_numbers};
-use impactlab_core::uncertainty::{Badge, BadgeKind, CURVE_N_INSTANTS};
+use impactlab_core::uncertainty::{CURVE_N_INSTANTS, Caveat, CaveatKind};
 use impactlab_core::units::significant;
 
 /// Names of the scenario's features as shown to the user, with units.
@@ -59,8 +59,8 @@ pub struct OutsideTraining {
 }
 
 impl OutsideTraining {
-    /// The badge that names the feature.
-    pub(crate) fn badge(&self) -> Badge {
+    /// The caveat that names the feature.
+    pub(crate) fn caveat(&self) -> Caveat {
         let [low, high] = self.range.map(significant);
         let text = format!(
             "{} is {}, trained on {low} to {high}: {} standard deviations outside",
@@ -68,7 +68,7 @@ impl OutsideTraining {
             significant(self.value),
             significant(self.deviations)
         );
-        Badge::new(BadgeKind::OutsideDomain, text)
+        Caveat::new(CaveatKind::OutsideDomain, text)
             .with_value(self.feature, self.value)
             .with_range(self.range)
     }

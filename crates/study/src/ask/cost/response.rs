@@ -12,6 +12,7 @@ use crate::{
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::jobs::Progress;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_networks::learning::{TEST_SHARE, TrainingReport};
 use impactlab_networks::response::evaluate::evaluate_motion_model;
 use impactlab_networks::response::{
@@ -175,7 +176,7 @@ impl EvaluateResponseRequest {
         (library, observer): (&Library, &mut Observer<'_>),
     ) -> Result<Outcome<Cost>, StudyError> {
         let model = library.response_model(&self.model)?;
-        let cases = self.cases(&model, &mut Vec::new(), (library, observer))?;
+        let cases = self.cases(&model, &mut Caveats::default(), (library, observer))?;
         let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
         let cases = usable.cases;
         let n = rayon::current_num_threads().min(cases.len());
@@ -197,7 +198,7 @@ impl CompareRequest {
     ) -> Result<Outcome<Cost>, StudyError> {
         self.check()?;
         let (config, given) = self.settings(library)?;
-        let cases = self.cases(&mut Vec::new(), (library, observer))?;
+        let cases = self.cases(&mut Caveats::default(), (library, observer))?;
         let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
         let name = data_name(&self.data);
         let all = ResponseTrainingSet::of_split(&name, &usable.cases, self.seed, TEST_SHARE);

@@ -1,12 +1,14 @@
 //! The cases that a training, an evaluation or a comparison is made with.
 
+use crate::caveats::assumed;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use impactlab_core::uncertainty::{CaveatSubject, Caveats};
 use serde::{Deserialize, Serialize};
 
 use crate::ask::inputs::{OpenVehicle, struck_vehicle};
-use crate::{AssumedQuantity, Assumption, Library, Observer, StudyError, VehicleChoice};
+use crate::{Library, Observer, StudyError, VehicleChoice};
 use impactlab_core::data::{Case, Dataset, DatasetKind, Outcome, list_folder};
 use impactlab_core::error_chain;
 use impactlab_networks::force::ForceCase;
@@ -65,11 +67,11 @@ pub(crate) fn force_cases(
     usable(&dataset, bad_cases, ForceCase::from_case).map(Outcome::Complete)
 }
 
-/// The trajectories of a data set; a vehicle that nobody named is added to the assumptions.
+/// The trajectories of a data set; a vehicle that nobody named is added to the caveats.
 pub(crate) fn response_cases(
     (root, choice): (&Path, &VehicleChoice),
     bad_cases: BadCases,
-    assumptions: &mut Vec<Assumption>,
+    caveats: &mut Caveats,
     (library, observer): (&Library, &mut Observer<'_>),
 ) -> Result<Outcome<UsableCases<ResponseCase>>, StudyError> {
     let Outcome::Complete(dataset) = library.dataset(root, observer)? else {
@@ -77,8 +79,8 @@ pub(crate) fn response_cases(
     };
     check_kind(&dataset, DatasetKind::Trajectory)?;
     let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
-    let vehicle = struck_vehicle(choice, &own, assumptions)?;
-    assumptions.extend(Assumption::medians(AssumedQuantity::VehicleParameter, &vehicle));
+    let vehicle = struck_vehicle(choice, &own, caveats)?;
+    caveats.extend(assumed::medians(CaveatSubject::VehicleParameter, &vehicle));
     let from_case = |case: &Case| ResponseCase::from_case(case, &vehicle);
     usable(&dataset, bad_cases, from_case).map(Outcome::Complete)
 }

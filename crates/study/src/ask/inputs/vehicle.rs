@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use serde::{Deserialize, Serialize};
 
-use crate::{AssumedQuantity, Assumption, StudyError};
+use crate::StudyError;
 use impactlab_core::vehicle::{DataSheet, Preset, VehicleParameters, built_in_vehicle};
 
 /// The struck vehicle where neither the question nor the data set says which it is: the car that
@@ -66,11 +67,11 @@ pub(crate) enum OpenVehicle<'a> {
     Unknown,
 }
 
-/// The struck vehicle; one that nobody named is added to the assumptions.
+/// The struck vehicle; one that nobody named is added to the caveats.
 pub(crate) fn struck_vehicle(
     choice: &VehicleChoice,
     open: &OpenVehicle<'_>,
-    assumptions: &mut Vec<Assumption>,
+    caveats: &mut Caveats,
 ) -> Result<VehicleParameters, StudyError> {
     if let Some(vehicle) = choice.chosen()? {
         return Ok(vehicle);
@@ -89,17 +90,17 @@ pub(crate) fn struck_vehicle(
         "{reason}; this is the car that the shipped response network has learned; \
          another one: --vehicle"
     );
-    assumptions.push(Assumption::new(AssumedQuantity::Vehicle, DEFAULT_VEHICLE.id(), reason));
+    caveats.push(Caveat::assumed(CaveatSubject::Vehicle, DEFAULT_VEHICLE.id(), reason));
     Ok(DEFAULT_VEHICLE.parameters())
 }
 
-/// The striking vehicle; one that nobody named is added to the assumptions.
+/// The striking vehicle; one that nobody named is added to the caveats.
 ///
 /// - `named`: the vehicle that the scenario names, if it names one.
 pub(crate) fn striking_vehicle(
     choice: &VehicleChoice,
     named: Option<&str>,
-    assumptions: &mut Vec<Assumption>,
+    caveats: &mut Caveats,
 ) -> Result<VehicleParameters, StudyError> {
     if let Some(vehicle) = choice.chosen()? {
         return Ok(vehicle);
@@ -109,6 +110,6 @@ pub(crate) fn striking_vehicle(
     }
     let reason = "no striking vehicle was named; its mass, inertia and outline are those of the \
                   case; another one: --bullet";
-    assumptions.push(Assumption::new(AssumedQuantity::Striking, DEFAULT_STRIKING.id(), reason));
+    caveats.push(Caveat::assumed(CaveatSubject::Striking, DEFAULT_STRIKING.id(), reason));
     Ok(DEFAULT_STRIKING.parameters())
 }

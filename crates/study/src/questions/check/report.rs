@@ -10,6 +10,7 @@ use impactlab_core::data::{
     contact_interval, map_from_proposals,
 };
 use impactlab_core::error_chain;
+use impactlab_core::uncertainty::Caveats;
 
 /// All that was found.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -24,6 +25,9 @@ pub struct CheckReport {
     pub models: Vec<InputFileReport>,
     /// What cannot be read.
     pub problems: Vec<PathProblem>,
+    /// What restricts the answer and what it rests on.
+    #[serde(flatten)]
+    pub caveats: Caveats,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,

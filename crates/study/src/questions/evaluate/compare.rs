@@ -8,15 +8,15 @@ use serde::{Deserialize, Serialize};
 use crate::ask::checks::{check, check_count};
 use crate::ask::inputs::{UsableCases, data_name, dataset_folders, response_cases};
 use crate::ask::question::progress_of;
-use crate::caveats::badges;
+use crate::caveats::restrictions;
 use crate::{
-    Assumption, BadCases, ConfigChoice, Library, ModelChoice, Observer, Provenance, Question,
-    StudyError, Trust, VehicleChoice,
+    BadCases, ConfigChoice, Library, ModelChoice, Observer, Provenance, Question, StudyError,
+    VehicleChoice,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::data::write::ModelDigest;
 use impactlab_core::ranges::{CHOICES, TRAJECTORIES, TRAJECTORY_SETS};
-use impactlab_core::uncertainty::Badge;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_networks::response::evaluate::{
     Comparison, ComparisonSettings, compare_models, compare_on_unseen_cars,
 };
@@ -108,7 +108,7 @@ impl CompareRequest {
     /// The trajectories, and why others are left out.
     pub(crate) fn cases(
         &self,
-        assumptions: &mut Vec<Assumption>,
+        caveats: &mut Caveats,
         (library, observer): (&Library, &mut Observer<'_>),
     ) -> Result<Outcome<UsableCases<ResponseCase>>, StudyError> {
         let folders = match self.leave_one_car_out {
@@ -120,7 +120,7 @@ impl CompareRequest {
         let mut usable = UsableCases { cases: Vec::new(), left_out: Vec::new() };
         for folder in folders {
             let chosen = (folder.as_path(), &self.vehicle);
-            let cases = response_cases(chosen, self.bad_cases, assumptions, (library, observer))?;
+            let cases = response_cases(chosen, self.bad_cases, caveats, (library, observer))?;
             let Outcome::Complete(of_folder) = cases else { return Ok(Outcome::Cancelled) };
             usable.cases.extend(of_folder.cases);
             usable.left_out.extend(of_folder.left_out);
@@ -130,11 +130,6 @@ impl CompareRequest {
 }
 
 impl CompareReport {
-    /// What restricts it.
-    pub fn trust(&self) -> Trust {
-        Trust::new(&self.badges, &self.assumptions)
-    }
-
     /// Version of the program, seed and the networks that were given.
     pub fn provenance_with_seed(&self) -> Provenance {
         Provenance { seed: Some(self.comparison.seed), ..self.provenance.clone() }
@@ -149,10 +144,9 @@ pub struct CompareReport {
     pub comparison: Comparison,
     /// Cases that were left out, and why.
     pub left_out: Vec<String>,
-    /// What was assumed.
-    pub assumptions: Vec<Assumption>,
-    /// What restricts the answer.
-    pub badges: Vec<Badge>,
+    /// What restricts the answer and what it rests on.
+    #[serde(flatten)]
+    pub caveats: Caveats,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -169,13 +163,12 @@ impl CompareAnswer {
     /// - `models`: the networks that were given; the comparison has the seed itself.
     pub(crate) fn new(
         comparison: Comparison,
-        (left_out, assumptions): (Vec<String>, Vec<Assumption>),
+        (left_out, mut caveats): (Vec<String>, Caveats),
         models: impl IntoIterator<Item = ModelDigest>,
     ) -> Self {
         let provenance = Provenance::default().with_models(models);
-        let badges = badges::of_left_out(left_out.len(), "cases").into_iter();
-        let badges = badges.chain(badges::of_assumptions(&assumptions)).collect();
-        Self { report: CompareReport { comparison, left_out, assumptions, badges, provenance } }
+        caveats.extend(restrictions::of_left_out(left_out.len(), "cases"));
+        Self { report: CompareReport { comparison, left_out, caveats, provenance } }
     }
 }
 
@@ -204,8 +197,8 @@ impl Question for CompareRequest {
         let (config, start) = self.settings(library)?;
         let digest = |model| library.response_model_digest(model);
         let digest = self.model.as_ref().map(digest).transpose()?;
-        let mut assumptions = Vec::new();
-        let cases = self.cases(&mut assumptions, (library, observer))?;
+        let mut caveats = Caveats::default();
+        let cases = self.cases(&mut caveats, (library, observer))?;
         let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
         let settings = ComparisonSettings {
             config,
@@ -229,7 +222,7 @@ impl Question for CompareRequest {
             None => Outcome::Cancelled,
             Some(comparison) => Outcome::Complete(CompareAnswer::new(
                 comparison,
-                (usable.left_out, assumptions),
+                (usable.left_out, caveats),
                 digest,
             )),
         })

@@ -8,17 +8,16 @@ use crate::analysis::{Estimate, ForceForecast, ForecastSettings};
 use crate::ask::checks::check_count;
 use crate::ask::inputs::{UsableCases, force_cases};
 use crate::ask::question::progress_of;
-use crate::caveats::badges;
-use crate::caveats::unused::not_used;
+use crate::caveats::restrictions;
 use crate::{
-    Assumption, BadCases, EvaluatedCases, Event, Library, ModelChoice, Observer, Provenance,
-    Question, StudyError, Trust,
+    BadCases, EvaluatedCases, Event, Library, ModelChoice, Observer, Provenance, Question,
+    StudyError,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::jobs::Progress;
 use impactlab_core::numerics::random_stream;
 use impactlab_core::ranges::FOLDS;
-use impactlab_core::uncertainty::{Badge, CurveMixture};
+use impactlab_core::uncertainty::{Caveat, Caveats, CurveMixture};
 use impactlab_networks::force::metrics::ProbabilisticSettings;
 use impactlab_networks::force::{
     ColumnSet, CrossValidation, Evaluation, EvaluationSettings, ForceCase, ForceError, ForceModel,
@@ -106,6 +105,14 @@ pub enum ForceEvaluation {
 }
 
 impl ForceEvaluation {
+    /// What restricts it and what it rests on.
+    pub fn caveats(&self) -> &Caveats {
+        match self {
+            Self::Cases(report) => &report.caveats,
+            Self::Folds(report) => &report.caveats,
+        }
+    }
+
     /// Version of the program, seed and the network.
     pub fn provenance(&self) -> &Provenance {
         match self {
@@ -133,20 +140,12 @@ pub struct EvaluateForceReport {
     pub evaluation: Evaluation,
     /// Cases that were left out, and why.
     pub left_out: Vec<String>,
-    /// What was assumed: nothing.
-    pub assumptions: Vec<Assumption>,
-    /// What restricts the answer.
-    pub badges: Vec<Badge>,
+    /// What restricts the answer and what it rests on.
+    #[serde(flatten)]
+    pub caveats: Caveats,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
-}
-
-impl EvaluateForceReport {
-    /// What restricts it.
-    pub fn trust(&self) -> Trust {
-        Trust::new(&self.badges, &self.assumptions)
-    }
 }
 
 /// A cross-validation over the training cases of a force network.
@@ -155,10 +154,9 @@ pub struct CrossValidateForceReport {
     /// The metrics over all folds, and of each fold.
     #[serde(flatten)]
     pub validation: CrossValidation,
-    /// What was given and is not used.
-    pub assumptions: Vec<Assumption>,
-    /// What restricts the answer.
-    pub badges: Vec<Badge>,
+    /// What restricts the answer and what it rests on.
+    #[serde(flatten)]
+    pub caveats: Caveats,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -219,10 +217,8 @@ impl Question for EvaluateForceRequest {
             return Ok(validated.map(|validation| {
                 let what = format!("data set {}", self.data.display());
                 let reason = "a cross-validation uses the training cases that the model holds";
-                let assumptions = vec![not_used(what, reason)];
-                let badges = badges::of_assumptions(&assumptions);
-                let report =
-                    CrossValidateForceReport { validation, assumptions, badges, provenance };
+                let caveats = Caveats::from(vec![Caveat::not_used(what, reason)]);
+                let report = CrossValidateForceReport { validation, caveats, provenance };
                 EvaluateForceAnswer {
                     report: ForceEvaluation::Folds(Box::new(report)),
                     cases: None,
@@ -245,7 +241,7 @@ impl Question for EvaluateForceRequest {
             None
         };
         let n_trained_on = test.iter().filter(|case| model.is_trained_on(case)).count();
-        let trained_on = badges::of_trained_on(n_trained_on, test.len()).into_iter();
+        let trained_on = restrictions::of_trained_on(n_trained_on, test.len()).into_iter();
         let report = EvaluateForceReport {
             model_file: self.model.to_string(),
             data: self.data.clone(),
@@ -254,8 +250,7 @@ impl Question for EvaluateForceRequest {
             n_trained_on,
             evaluation,
             left_out,
-            assumptions: Vec::new(),
-            badges: trained_on.chain(badges::of_left_out(n_left_out, "cases")).collect(),
+            caveats: trained_on.chain(restrictions::of_left_out(n_left_out, "cases")).collect(),
             provenance,
         };
         let report = ForceEvaluation::Cases(Box::new(report));

@@ -8,14 +8,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
 use crate::questions::evaluate::reconstruction_estimates::{Asked, CaseEstimates, FinishedCases};
-use crate::{
-    Assumption, Event, Library, Observer, Provenance, Question, ReconstructRequest, StudyError,
-};
+use crate::{Event, Library, Observer, Provenance, Question, ReconstructRequest, StudyError};
 use impactlab_core::data::Outcome;
 use impactlab_core::error_chain;
 use impactlab_core::jobs::Progress;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
-use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_reconstruct::evaluate::{
     CaseScore, KnownEvidence, MethodSummary, ReconstructionMethod, StagedCollisions, StagedSplit,
     TrueSpeeds,
@@ -81,10 +79,9 @@ pub struct EvaluateReconstructionReport {
     pub cases: Vec<CaseScore>,
     /// Cases that have no answer, and why.
     pub left_out: Vec<String>,
-    /// What was assumed: of each case what its reconstruction assumes, and no more.
-    pub assumptions: Vec<Assumption>,
-    /// What restricts the answer.
-    pub badges: Vec<Badge>,
+    /// What restricts the answer and what it rests on.
+    #[serde(flatten)]
+    pub caveats: Caveats,
     /// Version of the program, seed.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -248,9 +245,8 @@ impl Question for EvaluateReconstructionRequest {
             stopped,
             summary: MethodSummary::of(&scores),
             cases: scores,
-            badges: of_missing(n_answers, cases.len() * self.known.len()).into_iter().collect(),
+            caveats: of_missing(n_answers, cases.len() * self.known.len()).into_iter().collect(),
             left_out,
-            assumptions: Vec::new(),
             provenance: Provenance::of_seed(self.seed),
         };
         Ok(Outcome::Complete(EvaluateReconstructionAnswer { report }))
@@ -258,16 +254,16 @@ impl Question for EvaluateReconstructionRequest {
 }
 
 /// Reconstructions that have no answer: they failed, or the evaluation was stopped.
-fn of_missing(n_answers: usize, n_asked: usize) -> Option<Badge> {
+fn of_missing(n_answers: usize, n_asked: usize) -> Option<Caveat> {
     let n_missing = n_asked.saturating_sub(n_answers);
-    let badge = || {
+    let caveat = || {
         let text = format!("{n_missing} of {n_asked} reconstructions have no answer");
         let quantity = "reconstructions without an answer";
-        Badge::new(BadgeKind::LeftOut, text)
+        Caveat::new(CaveatKind::LeftOut, text)
             .with_value(quantity, n_missing as f64)
             .with_range([0.0, 0.0])
     };
-    (n_missing > 0).then(badge)
+    (n_missing > 0).then(caveat)
 }
 
 #[cfg(test)]

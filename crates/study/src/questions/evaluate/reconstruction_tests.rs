@@ -29,7 +29,7 @@ fn what_is_finished_when_an_evaluation_is_stopped_is_reported() {
     let told: Vec<_> = report.cases.iter().map(|of| (of.known, of.method)).collect();
     let methods = [ReconstructionMethod::Reconstruction, ReconstructionMethod::Hand];
     assert_eq!(told, methods.map(|method| (KnownEvidence::RestOnly, method)));
-    assert!(report.badges[0].text.starts_with("1 of 2 "), "{:?}", report.badges);
+    assert!(report.caveats.restrictions()[0].text.starts_with("1 of 2 "), "{:?}", report.caveats);
     assert_eq!(stopped_at(0.1), None);
 }
 

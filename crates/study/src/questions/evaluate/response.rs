@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use impactlab_core::uncertainty::Caveats;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::inputs::{UsableCases, data_name, response_cases};
 use crate::{
-    Assumption, BadCases, CompareAnswer, CompareReport, EvaluatedCases, Library, ModelChoice,
-    Observer, Question, StudyError, VehicleChoice,
+    BadCases, CompareAnswer, CompareReport, EvaluatedCases, Library, ModelChoice, Observer,
+    Question, StudyError, VehicleChoice,
 };
 use impactlab_core::data::Outcome;
 use impactlab_networks::response::evaluate::{MotionModel, evaluate_motion_model};
@@ -40,11 +41,11 @@ impl EvaluateResponseRequest {
     pub(crate) fn cases(
         &self,
         model: &ResponseModel,
-        assumptions: &mut Vec<Assumption>,
+        caveats: &mut Caveats,
         (library, observer): (&Library, &mut Observer<'_>),
     ) -> Result<Outcome<UsableCases<ResponseCase>>, StudyError> {
         let chosen = (self.data.as_path(), &self.vehicle);
-        let cases = response_cases(chosen, self.bad_cases, assumptions, (library, observer))?;
+        let cases = response_cases(chosen, self.bad_cases, caveats, (library, observer))?;
         let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
         let cases = match self.split {
             EvaluatedCases::All => usable.cases,
@@ -89,8 +90,8 @@ impl Question for EvaluateResponseRequest {
     ) -> Result<Outcome<EvaluateResponseAnswer>, StudyError> {
         let model = library.response_model(&self.model)?;
         let digest = library.response_model_digest(&self.model)?;
-        let mut assumptions = Vec::new();
-        let cases = self.cases(&model, &mut assumptions, (library, observer))?;
+        let mut caveats = Caveats::default();
+        let cases = self.cases(&model, &mut caveats, (library, observer))?;
         let Outcome::Complete(UsableCases { cases, left_out }) = cases else {
             return Ok(Outcome::Cancelled);
         };
@@ -100,7 +101,7 @@ impl Question for EvaluateResponseRequest {
         let name = data_name(&self.data);
         let comparison =
             evaluate_motion_model((&name, &chosen), &compared, (trajectories, self.seed))?;
-        let answer = CompareAnswer::new(comparison, (left_out, assumptions), [digest]);
+        let answer = CompareAnswer::new(comparison, (left_out, caveats), [digest]);
         Ok(Outcome::Complete(answer))
     }
 }

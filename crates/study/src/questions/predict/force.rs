@@ -1,22 +1,23 @@
 //! The distribution of an impact force history: `predict force`.
 
+use crate::caveats::assumed;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{Estimate, ForceForecast, ForecastSettings, Mode};
 use crate::ask::checks::{check_all, check_count};
-use crate::caveats::badges;
-use crate::caveats::unused::{by_force_network, not_used};
+use crate::caveats::restrictions;
+use crate::caveats::unused::by_force_network;
 use crate::questions::simulate::dataset::take_case;
 use crate::{
-    Assumption, ImpliedContactReport, Library, ModelChoice, Observer, Provenance, Question,
-    ScenarioChoice, StudyError,
+    ImpliedContactReport, Library, ModelChoice, Observer, Provenance, Question, ScenarioChoice,
+    StudyError,
 };
 use impactlab_core::collision::{
     DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, Impact, PrincipalDirectionOfForce,
 };
 use impactlab_core::data::{DatasetKind, Outcome};
 use impactlab_core::ranges::SAMPLES;
-use impactlab_core::uncertainty::Badge;
+use impactlab_core::uncertainty::{Caveat, Caveats};
 use impactlab_networks::force::{ForceError, ForcePrediction, ForceScenario, OutsideTraining};
 
 /// Asks which force a collision brings about, and how sure that is.
@@ -103,10 +104,9 @@ pub struct PredictForceReport {
     pub is_contact_open: bool,
     /// Whether the bullet's body is open and drawn from that of the training cases.
     pub is_body_open: bool,
-    /// What was given and is not used. Nothing is assumed, since what is open is drawn.
-    pub assumptions: Vec<Assumption>,
-    /// What restricts the answer.
-    pub badges: Vec<Badge>,
+    /// What restricts the answer and what it rests on.
+    #[serde(flatten)]
+    pub caveats: Caveats,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -145,9 +145,9 @@ struct AskedCollision {
     /// Its planar impact in world axes and the heading of the target, where the contact is known.
     impact: Option<(Impact, f64)>,
     /// What the network does not use of what the question says.
-    unused: Vec<Assumption>,
+    unused: Vec<Caveat>,
     /// That its outlines overlap.
-    overlap: Option<Badge>,
+    overlap: Option<Caveat>,
 }
 
 impl ForceQuestion {
@@ -166,8 +166,8 @@ impl ForceQuestion {
                 let scenario = choice.load()?;
                 unused = by_force_network(choice, &scenario)?;
                 let geometry = scenario.geometry().ok();
-                unused.extend(geometry.as_ref().and_then(Assumption::first_touch));
-                overlap = geometry.as_ref().and_then(badges::of_overlap);
+                unused.extend(geometry.as_ref().and_then(assumed::first_touch));
+                overlap = geometry.as_ref().and_then(restrictions::of_overlap);
                 let numbers = ForceScenario::from_scenario(&scenario);
                 let numbers = numbers.map_err(|source| choice.unsolved(source))?;
                 let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
@@ -226,7 +226,7 @@ impl Question for PredictForceRequest {
             collision.striking_body = Some(body.clone());
             if model.bodies().len() == 1 {
                 let reason = "the cases that the force network has learned from have one kind";
-                unused.push(not_used(format!("kind of bullet body, {body}"), reason));
+                unused.push(Caveat::not_used(format!("kind of bullet body, {body}"), reason));
             }
         }
         if self.open_contact {
@@ -241,12 +241,11 @@ impl Question for PredictForceRequest {
             Provenance::of_seed(self.seed).with_models([library.force_model_digest(&self.model)?]);
         let mut report = PredictForceReport::of(name, &self.model, (&prediction, &forecast));
         report.provenance = provenance;
-        report.assumptions = unused;
         report.implied_contact = impact.and_then(|(impact, heading_rad)| {
             ImpliedContactReport::of(&prediction, (&impact, heading_rad), self.seed)
         });
-        report.badges = badges::of_predicted_force(&report, &prediction.badges);
-        report.badges.extend(overlap);
+        report.caveats = restrictions::of_predicted_force(&report, &prediction.caveats).into();
+        report.caveats.extend(unused.into_iter().chain(overlap));
         Ok(Outcome::Complete(PredictForceAnswer { report, collision, forecast, prediction }))
     }
 }
@@ -279,8 +278,7 @@ impl PredictForceReport {
             outside_training: prediction.outside.clone(),
             is_contact_open: prediction.is_contact_open,
             is_body_open: prediction.is_body_open,
-            assumptions: Vec::new(),
-            badges: Vec::new(),
+            caveats: Caveats::default(),
             provenance: Provenance::default(),
         }
     }

@@ -10,17 +10,17 @@ use crate::analysis::{
     Sensitivity, StruckVehicle, forecast_collision, forecast_forces,
 };
 use crate::ask::checks::{check, check_count};
-use crate::caveats::badges;
+use crate::caveats::restrictions;
 use crate::caveats::unused::{by_force_network, by_forecast, zones_by_network};
 use crate::questions::simulate::dataset::take_case;
 use crate::{
-    AssumedQuantity, Assumption, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, Library,
-    ModelChoice, MotionSource, Observer, Provenance, Question, SeriesFile, SimulateAnswer,
-    SimulateRequest, StudyError, VehicleChoice,
+    DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, Library, ModelChoice, MotionSource,
+    Observer, Provenance, Question, SeriesFile, SimulateAnswer, SimulateRequest, StudyError,
+    VehicleChoice,
 };
 use impactlab_core::data::{DatasetKind, ForceHistory, Outcome, check_contact_within};
 use impactlab_core::ranges::{DRAWS, FORECAST_DURATION, REST_LIMIT};
-use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
 use impactlab_networks::force::{ForceModel, ForceScenario, OutsideTraining};
 use impactlab_networks::response::OutsideDomain;
 
@@ -108,10 +108,9 @@ pub struct PredictMotionReport {
     pub applicability: f64,
     /// Where vehicle, road or impact lie outside what the response network has learned from.
     pub outside_domain: Vec<OutsideDomain>,
-    /// What was assumed.
-    pub assumptions: Vec<Assumption>,
-    /// What restricts the answer.
-    pub badges: Vec<Badge>,
+    /// What restricts the answer and what it rests on.
+    #[serde(flatten)]
+    pub caveats: Caveats,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -257,12 +256,12 @@ impl Question for PredictMotionRequest {
         let forecast = match &self.force {
             ForceSource::Given => {
                 let own = Some(own_force).filter(|_| self.motion.source.is_recorded());
-                cut = own.and_then(badges::of_cut_record);
+                cut = own.and_then(restrictions::of_cut_record);
                 forecast_forces(std::slice::from_ref(own_force), &model, struck, &settings)
             }
             ForceSource::File(path) => {
                 let force = given_force(path, (struck, settings.duration_s), library)?;
-                cut = badges::of_cut_record(&force);
+                cut = restrictions::of_cut_record(&force);
                 forecast_forces(&[force], &model, struck, &settings)
             }
             ForceSource::Predicted(choice) => {
@@ -275,24 +274,22 @@ impl Question for PredictMotionRequest {
             }
         };
         let forecast = forecast.map_err(failed)?;
-        let overlap = simulated.badges.into_iter().find(|badge| badge.kind == BadgeKind::Overlap);
-        let mut assumptions = simulated.assumptions;
-        assumptions.retain(|assumption| self.rests_on(assumption));
-        assumptions.extend(unused);
+        let holds_here = |caveat: &Caveat| self.rests_on(caveat);
+        let mut caveats: Caveats = simulated.caveats.into_iter().filter(holds_here).collect();
+        caveats.extend(unused);
         let provenance = self.provenance(library)?;
-        let known = (assumptions, provenance);
-        let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.badges);
+        let known = (caveats, provenance);
+        let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.caveats);
         let mut report = PredictMotionReport {
             implied_contact: self.implied_contact(&forecast)?,
             flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
             ..self.report(&analysis.name, struck, (&forecast, known))
         };
-        report.badges = badges::of_predicted_motion(&report, predicted);
+        let restrictions = restrictions::of_predicted_motion(&report, predicted);
+        report.caveats.extend(restrictions);
         let has_same_force = self.force == ForceSource::Given;
-        let apart = badges::of_disagreement((&forecast, &analysis), has_same_force);
-        report.badges.extend(apart);
-        report.badges.extend(cut);
-        report.badges.extend(overlap);
+        let apart = restrictions::of_disagreement((&forecast, &analysis), has_same_force);
+        report.caveats.extend(apart.into_iter().chain(cut));
         Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
     }
 }
@@ -356,14 +353,18 @@ impl PredictMotionRequest {
         Some(FlagReport::from(&met))
     }
 
-    /// Whether the motion of the struck vehicle depends on what was assumed for the simulation.
-    fn rests_on(&self, assumption: &Assumption) -> bool {
-        match assumption.quantity {
-            AssumedQuantity::Striking | AssumedQuantity::StrikingParameter => false,
-            AssumedQuantity::Pulse | AssumedQuantity::Restitution => {
-                self.force == ForceSource::Given
-            }
-            _ => true,
+    /// Whether what holds for the simulation holds for the motion of the struck vehicle, too.
+    fn rests_on(&self, caveat: &Caveat) -> bool {
+        match (caveat.kind, caveat.subject) {
+            (CaveatKind::Overlap | CaveatKind::Note | CaveatKind::NotUsed, _) => true,
+            (CaveatKind::Assumed, Some(subject)) => match subject {
+                CaveatSubject::Striking | CaveatSubject::StrikingParameter => false,
+                CaveatSubject::Pulse | CaveatSubject::Restitution => {
+                    self.force == ForceSource::Given
+                }
+                _ => true,
+            },
+            _ => false,
         }
     }
 
@@ -381,7 +382,7 @@ impl PredictMotionRequest {
         &self,
         name: &str,
         struck: &StruckVehicle,
-        (forecast, (assumptions, provenance)): (&MotionForecast, (Vec<Assumption>, Provenance)),
+        (forecast, (caveats, provenance)): (&MotionForecast, (Caveats, Provenance)),
     ) -> PredictMotionReport {
         let predicted = forecast.force.as_ref();
         PredictMotionReport {
@@ -410,8 +411,7 @@ impl PredictMotionRequest {
             outside_training: predicted.map_or_else(Vec::new, |force| force.outside.clone()),
             applicability: forecast.applicability.value,
             outside_domain: forecast.applicability.outside.clone(),
-            assumptions,
-            badges: Vec::new(),
+            caveats,
             provenance,
         }
     }

@@ -1,7 +1,7 @@
 //! Vehicles, roads and damage that a reconstruction is not made for.
 
 use impactlab_core::collision::{Footprint, OffOutline, Side};
-use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{STANDARD_GRAVITY_M_S2, significant};
 use impactlab_core::vehicle::{FrictionZone, VehicleParameters};
 use impactlab_reconstruct::evidence::{Damage, Measured};
@@ -57,12 +57,12 @@ fn rear_load_kg(car: &VehicleParameters) -> f64 {
 }
 
 /// What of both vehicles lies outside of what rules and model are known to hold for.
-pub(crate) fn of_vehicles(cars: &Cars) -> Vec<Badge> {
+pub(crate) fn of_vehicles(cars: &Cars) -> Vec<Caveat> {
     let both = [("struck car", &cars.struck), ("striking car", &cars.striking)];
     both.into_iter().flat_map(|(which, car)| of_vehicle(which, car)).collect()
 }
 
-fn of_vehicle<'a>(which: &'a str, car: &'a Car) -> impl Iterator<Item = Badge> + 'a {
+fn of_vehicle<'a>(which: &'a str, car: &'a Car) -> impl Iterator<Item = Caveat> + 'a {
     KNOWN.iter().filter_map(move |Known { name, unit, of, range }| {
         let value = of(&car.parameters);
         let [low, high] = *range;
@@ -73,15 +73,15 @@ fn of_vehicle<'a>(which: &'a str, car: &'a Car) -> impl Iterator<Item = Badge> +
             significant(low),
             significant(high)
         );
-        let badge = Badge::new(BadgeKind::OutsideDomain, text)
+        let caveat = Caveat::new(CaveatKind::OutsideDomain, text)
             .with_value(format!("{name} of the {which} [{unit}]"), value)
             .with_range(*range);
-        (!(low..=high).contains(&value)).then_some(badge)
+        (!(low..=high).contains(&value)).then_some(caveat)
     })
 }
 
 /// A road whose measured friction is beyond those on which the model was tried.
-pub(crate) fn of_road(friction: Option<Measured>) -> Option<Badge> {
+pub(crate) fn of_road(friction: Option<Measured>) -> Option<Caveat> {
     let Measured { value, sigma } = friction?;
     let [low, high] = ROAD_FRICTION;
     let reach = FRICTION_REACH * sigma;
@@ -89,14 +89,14 @@ pub(crate) fn of_road(friction: Option<Measured>) -> Option<Badge> {
         "friction of the road is {}; how a car moves is known of roads of {low} to {high}",
         significant(value)
     );
-    let badge = Badge::new(BadgeKind::OutsideDomain, text)
+    let caveat = Caveat::new(CaveatKind::OutsideDomain, text)
         .with_value("friction of the road", value)
         .with_range(ROAD_FRICTION);
-    (!(low - reach..=high + reach).contains(&value)).then_some(badge)
+    (!(low - reach..=high + reach).contains(&value)).then_some(caveat)
 }
 
 /// Zones of the ground whose friction is beyond that of the roads on which the model was tried.
-pub(crate) fn of_zones(zones: &[FrictionZone]) -> impl Iterator<Item = Badge> {
+pub(crate) fn of_zones(zones: &[FrictionZone]) -> impl Iterator<Item = Caveat> {
     let [low, high] = ROAD_FRICTION;
     let outside = zones.iter().filter(move |zone| !(low..=high).contains(&zone.friction));
     outside.map(move |zone| {
@@ -104,7 +104,7 @@ pub(crate) fn of_zones(zones: &[FrictionZone]) -> impl Iterator<Item = Badge> {
             "friction of the zone {:?} is {}; how a car moves is known of roads of {low} to {high}",
             zone.name, zone.friction
         );
-        Badge::new(BadgeKind::OutsideDomain, text)
+        Caveat::new(CaveatKind::OutsideDomain, text)
             .with_value(format!("friction of the zone {:?}", zone.name), zone.friction)
             .with_range(ROAD_FRICTION)
     })
@@ -138,8 +138,8 @@ mod tests {
     use impactlab_reconstruct::evidence::{CarEvidence, Evidence};
 
     fn said(evidence: &Evidence) -> Vec<(String, f64)> {
-        let badges = of_vehicles(&Cars::of(evidence, None, None));
-        badges.into_iter().map(|of| (of.quantity.unwrap(), of.value.unwrap())).collect()
+        let caveats = of_vehicles(&Cars::of(evidence, None, None));
+        caveats.into_iter().map(|of| (of.quantity.unwrap(), of.value.unwrap())).collect()
     }
 
     #[test]

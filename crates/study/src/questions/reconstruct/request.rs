@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
-use crate::caveats::badges;
 use crate::questions::reconstruct::domain::{check_damage, of_road, of_vehicles, of_zones};
 use crate::{
-    AssumedQuantity, Assumption, Event, FrictionZoneReport, Library, Observer, Provenance,
-    Question, Sampling, StudyError, VehicleChoice,
+    Event, FrictionZoneReport, Library, Observer, Provenance, Question, Sampling, StudyError,
+    VehicleChoice,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::jobs::Progress;
@@ -17,7 +16,7 @@ use impactlab_core::numerics::sha256_hex;
 use impactlab_core::program;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_core::site::Site;
-use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
 use impactlab_core::vehicle::FrictionZone;
 use impactlab_reconstruct::evidence::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Evidence};
 use impactlab_reconstruct::sampler::{
@@ -107,10 +106,9 @@ pub struct ReconstructReport {
     pub friction_zones: Vec<FrictionZoneReport>,
     /// What was taken to be likely before.
     pub priors: Vec<PriorComponent>,
-    /// What nobody said.
-    pub assumptions: Vec<Assumption>,
-    /// What restricts the answer.
-    pub badges: Vec<Badge>,
+    /// What restricts the answer and what it rests on.
+    #[serde(flatten)]
+    pub caveats: Caveats,
     /// Version of the program, seed.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -285,11 +283,11 @@ impl Question for ReconstructRequest {
             let speed = hand.struck_speed_m_s;
             [speed.value, speed.sigma]
         });
-        let mut badges = of_particles(&particles);
-        badges.extend(outside);
-        badges.extend(of_fit(&fit));
-        badges.push(of_validation(target.model().zones()));
-        badges.extend(badges::of_assumptions(&assumptions));
+        let mut caveats = Caveats::from(of_particles(&particles));
+        caveats.extend(outside);
+        caveats.extend(of_fit(&fit));
+        caveats.push(of_validation(target.model().zones()));
+        caveats.extend(assumptions);
         let quantities = posterior.quantities();
         let report = ReconstructReport {
             case: target.evidence().case.clone(),
@@ -305,8 +303,7 @@ impl Question for ReconstructRequest {
             by_hand_m_s,
             friction_zones,
             priors: target.model().prior().components().to_vec(),
-            assumptions,
-            badges,
+            caveats,
             provenance: Provenance::of_seed(self.seed),
         };
         Ok(Outcome::Complete(ReconstructAnswer { report, target, particles, posterior }))
@@ -342,11 +339,11 @@ fn progress(report: &SamplerReport<'_>, settings: &SamplerSettings) -> Progress 
 }
 
 /// Whether there are enough particles, and whether they are of the posterior.
-fn of_particles(particles: &Particles) -> Vec<Badge> {
+fn of_particles(particles: &Particles) -> Vec<Caveat> {
     let stopped = (!particles.of_posterior()).then(|| {
         let text = "sampling was stopped before all of the evidence was used: these particles are \
                     not of the posterior";
-        Badge::new(BadgeKind::FewParticles, text)
+        Caveat::new(CaveatKind::FewParticles, text)
             .with_value("temperature", particles.temperature)
             .with_range([1.0, f64::INFINITY])
     });
@@ -356,7 +353,7 @@ fn of_particles(particles: &Particles) -> Vec<Badge> {
              too narrow; more particles: --particles",
             particles.ess
         );
-        Badge::new(BadgeKind::FewParticles, text)
+        Caveat::new(CaveatKind::FewParticles, text)
             .with_value("effective sample size", particles.ess)
             .with_range([LEAST_ESS, f64::INFINITY])
     });
@@ -364,7 +361,7 @@ fn of_particles(particles: &Particles) -> Vec<Badge> {
 }
 
 /// What the intervals have been tried on, as long as that is not enough.
-fn of_validation(zones: &[FrictionZone]) -> Badge {
+fn of_validation(zones: &[FrictionZone]) -> Caveat {
     let on_zones = match zones.is_empty() {
         true => "",
         false => ", all of which stood on one friction",
@@ -373,11 +370,11 @@ fn of_validation(zones: &[FrictionZone]) -> Badge {
         "intervals were tried on 40 simulated collisions of one make of car{on_zones} and on no real \
          one; how often they held is in docs/guide/limits.md"
     );
-    Badge::new(BadgeKind::HardlyValidated, text)
+    Caveat::new(CaveatKind::HardlyValidated, text)
 }
 
 /// Evidence that no particle explains.
-fn of_fit(fit: &[EvidenceFit]) -> Vec<Badge> {
+fn of_fit(fit: &[EvidenceFit]) -> Vec<Caveat> {
     let unexplained = fit.iter().filter(|item| item.is_unexplained());
     unexplained
         .map(|item| {
@@ -389,7 +386,7 @@ fn of_fit(fit: &[EvidenceFit]) -> Vec<Badge> {
                 shown(item.found),
                 shown(item.expected),
             );
-            Badge::new(BadgeKind::EvidenceUnexplained, text)
+            Caveat::new(CaveatKind::EvidenceUnexplained, text)
                 .with_value(format!("p of {}", item.evidence), item.p)
                 .with_range([EvidenceFit::UNEXPLAINED_BELOW, 1.0])
         })
@@ -397,48 +394,48 @@ fn of_fit(fit: &[EvidenceFit]) -> Vec<Badge> {
 }
 
 /// What the evidence leaves open and the defaults of the prior fill.
-fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Assumption> {
+fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Caveat> {
     let cars = model.cars();
     let mut all = Vec::new();
-    let mut add = |quantity, value: &str, reason: &str| {
-        all.push(Assumption::new(quantity, value, reason));
+    let mut add = |subject, value: &str, reason: &str| {
+        all.push(Caveat::assumed(subject, value, reason));
     };
     if evidence.prior.striking_speed_m_s.is_none() && cars.is_hit_behind_cg(evidence) {
         let value = "the striking car was faster by 1 ± 3 m/s";
         let reason = "it hit a flank behind the CG, as in a PIT manoeuvre; otherwise: [prior] \
                       bullet_speed_m_s";
-        add(AssumedQuantity::Speed, value, reason);
+        add(CaveatSubject::Speed, value, reason);
     }
     if evidence.damage.angle_rad.is_none() && evidence.prior.heading_difference_rad.is_none() {
         let reason = "by the struck side; otherwise: [damage] angle_deg or [prior] \
                       heading_difference_deg";
-        add(AssumedQuantity::ContactPoint, "direction of the striking car", reason);
+        add(CaveatSubject::ContactPoint, "direction of the striking car", reason);
     }
     if evidence.prior.restitution.is_none() {
         let reason = "finite-element runs; otherwise: [prior] restitution, contact_friction";
-        add(AssumedQuantity::Restitution, "0.24 to 0.66 up to 5 m/s, less beyond", reason);
+        add(CaveatSubject::Restitution, "0.24 to 0.66 up to 5 m/s, less beyond", reason);
     }
     if evidence.friction.is_none() {
-        let value = format!("road friction {DEFAULT_FRICTION} ± {DEFAULT_FRICTION_SIGMA}");
+        let value = format!("{DEFAULT_FRICTION} ± {DEFAULT_FRICTION_SIGMA}");
         let reason = "dry and wet asphalt together; otherwise: [road] friction";
-        add(AssumedQuantity::VehicleParameter, &value, reason);
+        add(CaveatSubject::RoadFriction, &value, reason);
     }
     if !model.zones().is_empty() {
-        let value = "friction of the zones of the site, each ± 15 %";
+        let value = "zones of the site, each ± 15 %";
         let reason = "nothing says how well it is known; all zones are better or worse together";
-        add(AssumedQuantity::VehicleParameter, value, reason);
+        add(CaveatSubject::RoadFriction, value, reason);
     }
     let estimated = cars.struck.estimated().count();
     if estimated > 0 {
         let value = format!("{estimated} estimated from the rest");
         let reason = "the evidence does not say them; a data sheet: --vehicle";
-        add(AssumedQuantity::VehicleParameter, &value, reason);
+        add(CaveatSubject::VehicleParameter, &value, reason);
     }
     let estimated = cars.striking.estimated().count();
     if estimated > 0 {
         let value = format!("{estimated} estimated from the rest, at their medians");
         let reason = "the evidence does not say them; a data sheet: --striking";
-        add(AssumedQuantity::StrikingParameter, &value, reason);
+        add(CaveatSubject::StrikingParameter, &value, reason);
     }
     all
 }

@@ -2,6 +2,7 @@ use std::ops::ControlFlow;
 
 use super::*;
 use crate::examples::spin;
+use impactlab_core::uncertainty::{CaveatKind, CaveatSubject};
 use impactlab_reconstruct::Latent;
 use impactlab_reconstruct::evidence::Measured;
 
@@ -52,8 +53,8 @@ fn evidence_that_contradicts_itself_is_said() {
     evidence.edr.speed_before_m_s = Some(Measured { value: 5.0, sigma: 0.2 });
     evidence.rest.as_mut().unwrap().x_m = 150.0;
     let report = answer(&request).report;
-    let said = report.badges.iter().any(|badge| badge.kind == BadgeKind::EvidenceUnexplained);
-    assert!(said, "{:?} {:?}", report.badges, report.fit);
+    let said = report.caveats.has(CaveatKind::EvidenceUnexplained);
+    assert!(said, "{:?} {:?}", report.caveats, report.fit);
 }
 
 #[test]
@@ -61,8 +62,8 @@ fn a_stop_keeps_what_was_sampled_and_says_that_it_is_not_the_posterior() {
     let request = request(60);
     let outcome = request.answer(&Library::default(), &mut |_| ControlFlow::Break(()));
     let report = outcome.unwrap().complete().unwrap().report;
-    let stopped = report.badges.iter().find(|badge| badge.kind == BadgeKind::FewParticles);
-    assert!(stopped.unwrap().text.contains("stopped"), "{:?}", report.badges);
+    let stopped = report.caveats.iter().find(|caveat| caveat.kind == CaveatKind::FewParticles);
+    assert!(stopped.unwrap().text.contains("stopped"), "{:?}", report.caveats);
 }
 
 #[test]
@@ -129,13 +130,24 @@ fn a_way_over_ice_is_no_sign_of_a_high_speed() {
     assert!((known.median / true_m_s - 1.0).abs() < 0.25, "{true_m_s} m/s, {known:?}");
     assert_eq!(report.friction_zones[0].name, "ice");
     for part in ["friction of the zone \"ice\" is 0.15", "all of which stood on one friction"] {
-        assert!(report.badges.iter().any(|badge| badge.text.contains(part)), "{part}");
+        assert!(report.caveats.iter().any(|caveat| caveat.text.contains(part)), "{part}");
     }
     assert!(report.priors.iter().any(|of| of.latent == Latent::ZoneFrictionFactor));
-    let said = report.assumptions.iter().any(|of| of.value.contains("zones of the site"));
-    assert!(said, "{:?}", report.assumptions);
+    let zones = report.caveats.iter().find(|of| of.text.contains("zones of the site")).unwrap();
+    assert_eq!(zones.subject, Some(CaveatSubject::RoadFriction));
     let without = ReconstructRequest { site: None, evidence: inline(&evidence), ..asked };
     let (blind, report) = speed(&without);
     assert!(blind.median > 1.2 * true_m_s, "{true_m_s} m/s, {blind:?}");
     assert!(report.friction_zones.is_empty());
+}
+
+#[test]
+fn a_friction_that_the_evidence_leaves_open_is_that_of_the_road() {
+    let mut evidence = spin();
+    evidence.friction = None;
+    let choice = EvidenceChoice::Inline(Box::new(evidence.clone()));
+    let model = ReconstructRequest { evidence: choice, ..request(100) }.model(&evidence).unwrap();
+    let told = assumptions(&evidence, &model);
+    let friction = told.iter().find(|of| of.to_string().contains("[road] friction")).unwrap();
+    assert!(friction.to_string().starts_with("assumed road friction: 0."), "{friction}");
 }

@@ -1,20 +1,18 @@
 //! Every case of a trajectory data set against its recorded motion: `simulate --dataset`.
 
+use crate::caveats::assumed;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
 use crate::ask::inputs::{OpenVehicle, struck_vehicle};
 use crate::ask::question::progress_of;
-use crate::caveats::badges;
-use crate::{
-    AssumedQuantity, Assumption, FlagReport, Library, Observer, Provenance, Question, StudyError,
-    Trust, VehicleChoice, word,
-};
+use crate::caveats::restrictions;
+use crate::{FlagReport, Library, Observer, Provenance, Question, StudyError, VehicleChoice, word};
 use impactlab_core::compare::{DatasetReplay, ErrorSummary, MotionError, Replay, replay_dataset};
 use impactlab_core::data::{DataError, Dataset, DatasetKind, Outcome};
 use impactlab_core::error_chain;
-use impactlab_core::uncertainty::Badge;
+use impactlab_core::uncertainty::{CaveatSubject, Caveats};
 use impactlab_core::vehicle::{Equations, Integrator};
 
 /// Asks how far the 4DOF model lies from every recorded motion of a data set.
@@ -57,10 +55,9 @@ pub struct SimulateDatasetReport {
     pub not_spinning: Option<ErrorSummary>,
     /// Cases that could not be read or simulated, and why.
     pub failures: Vec<String>,
-    /// What was assumed.
-    pub assumptions: Vec<Assumption>,
-    /// What restricts the answer.
-    pub badges: Vec<Badge>,
+    /// What restricts the answer and what it rests on.
+    #[serde(flatten)]
+    pub caveats: Caveats,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -119,10 +116,10 @@ impl Question for SimulateDatasetRequest {
                 expected: "one of trajectories",
             });
         }
-        let mut assumptions = Vec::new();
+        let mut caveats = Caveats::default();
         let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
-        let vehicle = struck_vehicle(&self.vehicle, &own, &mut assumptions)?;
-        assumptions.extend(Assumption::medians(AssumedQuantity::VehicleParameter, &vehicle));
+        let vehicle = struck_vehicle(&self.vehicle, &own, &mut caveats)?;
+        caveats.extend(assumed::medians(CaveatSubject::VehicleParameter, &vehicle));
         let vehicle = match self.equations {
             Some(equations) => vehicle.with_equations(equations),
             None => vehicle,
@@ -141,21 +138,20 @@ impl Question for SimulateDatasetRequest {
         let cases: Vec<ReplayedCaseReport> =
             replay.cases.iter().map(ReplayedCaseReport::of).collect();
         let failures: Vec<String> = problems.chain(failed).collect();
-        let flagged = badges::of_flagged_cases(&cases).into_iter();
-        let left_out = badges::of_left_out(failures.len(), "cases");
-        let assumed = badges::of_assumptions(&assumptions);
+        let flagged = restrictions::of_flagged_cases(&cases).into_iter();
+        let left_out = restrictions::of_left_out(failures.len(), "cases");
+        caveats.extend(flagged.chain(left_out));
         let report = SimulateDatasetReport {
             dataset: self.dataset.clone(),
             vehicle: vehicle.name.clone(),
             equations: word(&vehicle.equations),
             integrator: word(&self.integrator),
-            badges: flagged.chain(left_out).chain(assumed).collect(),
             cases,
             overall: summary(|_| true),
             spinning: summary(|replay| replay.spin),
             not_spinning: summary(|replay| !replay.spin),
             failures,
-            assumptions,
+            caveats,
             provenance: Provenance::default(),
         };
         Ok(Outcome::Complete(SimulateDatasetAnswer { report, replay }))
@@ -164,10 +160,10 @@ impl Question for SimulateDatasetRequest {
 
 impl SimulateDatasetReport {
     /// What restricts the motion of one case.
-    pub fn trust_of(&self, case: &str) -> Trust {
+    pub fn caveats_of(&self, case: &str) -> Caveats {
         let flags = self.cases.iter().filter(|of| of.case == case).flat_map(|of| &of.flags);
-        let badges: Vec<Badge> = flags.map(badges::of_flag).collect();
-        Trust::new(&badges, &self.assumptions)
+        let assumptions = self.caveats.assumptions().cloned();
+        flags.map(restrictions::of_flag).chain(assumptions).collect()
     }
 }
 

@@ -1,11 +1,12 @@
 //! A start with the files of what pushes, steers, brakes and drives the vehicle.
 
+use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{AnalysisError, DriveSetup, Settings};
 use crate::ask::checks::{check, check_contact, check_given};
 use crate::questions::simulate::motion_source::acting_force;
-use crate::{AssumedQuantity, Assumption, Library, SeriesFile, StudyError};
+use crate::{Library, SeriesFile, StudyError};
 use impactlab_core::data::{
     Channel, ForceHistory, Loaded, Sampling, TIME_TOLERANCE_S, TimeSeries, read_force_file,
     read_steer_file, read_wheels_file,
@@ -68,12 +69,12 @@ impl Drive {
         &self,
         settings: &Settings,
         library: &Library,
-        assumptions: &mut Vec<Assumption>,
+        caveats: &mut Caveats,
     ) -> Result<DriveSetup, StudyError> {
         let speed_m_s = self.speed_m_s.unwrap_or_else(|| {
             let reason = "the speed before the impact is not known; another one: --speed";
             let value = format!("{ASSUMED_SPEED_M_S} m/s");
-            assumptions.push(Assumption::new(AssumedQuantity::Speed, value, reason));
+            caveats.push(Caveat::assumed(CaveatSubject::Speed, value, reason));
             ASSUMED_SPEED_M_S
         });
         self.check_one_control(&settings.ending)?;
@@ -83,7 +84,7 @@ impl Drive {
                 let loaded = library.series(file)?;
                 notes.extend(loaded.notes.iter().map(ToString::to_string));
                 let force = force_of(&loaded, self.sampling, file)?;
-                Some(acting_force(force, (self.contact, &settings.struck), assumptions))
+                Some(acting_force(force, (self.contact, &settings.struck), caveats))
             }
             None => None,
         };
@@ -92,9 +93,9 @@ impl Drive {
             yaw_rate_rad_s: self.yaw_rate_rad_s,
             ..VehicleState::driving_straight(speed_m_s)
         };
-        let steer = self.steer((&settings.struck, &initial), assumptions)?;
+        let steer = self.steer((&settings.struck, &initial), caveats)?;
         let held = steer.as_ref().and_then(|steer| held_steer(steer, settings.duration_s));
-        assumptions.extend(held);
+        caveats.extend(held);
         let wheels = self.wheels.as_ref().map(|file| wheel_history(file, &settings.struck));
         Ok(DriveSetup { initial, load, steer, wheels: wheels.transpose()?, notes })
     }
@@ -117,7 +118,7 @@ impl Drive {
     fn steer(
         &self,
         (vehicle, initial): (&VehicleParameters, &VehicleState<f64>),
-        assumptions: &mut Vec<Assumption>,
+        caveats: &mut Caveats,
     ) -> Result<Option<SteerHistory>, StudyError> {
         if !self.fishhook {
             let of_file = |file| steer_history(file, self.steering_ratio);
@@ -128,7 +129,7 @@ impl Drive {
             let reason = "the fishhook turns the steering wheel at 720 deg/s; another ratio: \
                           --steering-ratio";
             let value = format!("ratio {USUAL_STEERING_RATIO}");
-            assumptions.push(Assumption::new(AssumedQuantity::Steer, value, reason));
+            caveats.push(Caveat::assumed(CaveatSubject::Steer, value, reason));
             USUAL_STEERING_RATIO
         });
         let amplitude_rad = fishhook_amplitude_rad(angle_rad);
@@ -162,7 +163,7 @@ fn force_of(
 }
 
 /// What stands for the steer angle where its recording does not reach.
-fn held_steer(steer: &SteerHistory, duration_s: f64) -> Option<Assumption> {
+fn held_steer(steer: &SteerHistory, duration_s: f64) -> Option<Caveat> {
     let (&start_s, &end_s) = (steer.time_s.first()?, steer.time_s.last()?);
     let (&first_rad, &last_rad) = (steer.steer_rad.first()?, steer.steer_rad.last()?);
     let mut held = Vec::new();
@@ -174,7 +175,7 @@ fn held_steer(steer: &SteerHistory, duration_s: f64) -> Option<Assumption> {
     }
     let reason = "the recording of the steer angle does not reach further; its ends are held";
     let is_held = !held.is_empty();
-    is_held.then(|| Assumption::new(AssumedQuantity::Steer, held.join(", "), reason))
+    is_held.then(|| Caveat::assumed(CaveatSubject::Steer, held.join(", "), reason))
 }
 
 /// The road-wheel angle of a file: that of the front axle, the mean of its wheels, or that of the

@@ -1,16 +1,16 @@
 //! What drives the motion of a struck vehicle: a case, a recorded motion, a start with files of force
 //! and controls, or a scenario.
 
+use crate::caveats::assumed;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::PulseSetup;
 use crate::ask::checks::{check, check_contact};
-use crate::{
-    AssumedQuantity, Assumption, Drive, Library, ScenarioChoice, SeriesFile, StudyError, word,
-};
+use crate::{Drive, Library, ScenarioChoice, SeriesFile, StudyError, word};
 use impactlab_core::data::{Case, Channel, FileKind, ForceAttributes, ForceHistory, Loaded};
 use impactlab_core::ranges::{CONTACT_HEIGHT, PULSE_DURATION};
 use impactlab_core::vehicle::{ContactPoint, VehicleParameters};
@@ -137,7 +137,7 @@ pub(crate) fn recorded_force(
 pub(crate) fn acting_force(
     mut force: ForceHistory,
     (contact, vehicle): (Option<ContactPoint>, &VehicleParameters),
-    assumptions: &mut Vec<Assumption>,
+    caveats: &mut Caveats,
 ) -> (ForceHistory, ContactPoint) {
     if let Some(contact) = contact {
         force.mz_n_m = None;
@@ -149,13 +149,13 @@ pub(crate) fn acting_force(
     }
     let reason = "the force has no yaw moment (mz) and nothing says where it acts; another point: \
                   --contact";
-    assumptions.push(Assumption::contact_point(ASSUMED_CONTACT, reason));
+    caveats.push(assumed::contact_point(ASSUMED_CONTACT, reason));
     (force, ASSUMED_CONTACT)
 }
 
 /// What stands for the rates and the roll with which a recorded motion starts, if it does not say
 /// them.
-pub(crate) fn start_of_record(loaded: &Loaded) -> Option<Assumption> {
+pub(crate) fn start_of_record(loaded: &Loaded) -> Option<Caveat> {
     let is_missing = |channel: &Channel| loaded.series.get(*channel).is_none();
     let missing = [Channel::YawRate, Channel::Roll, Channel::RollRate].into_iter();
     let zeros: Vec<String> =
@@ -163,34 +163,34 @@ pub(crate) fn start_of_record(loaded: &Loaded) -> Option<Assumption> {
     let is_assumed = !zeros.is_empty();
     is_assumed.then(|| {
         let reason = "the file does not record them";
-        Assumption::new(AssumedQuantity::StartOfRecord, zeros.join(", "), reason)
+        Caveat::assumed(CaveatSubject::StartOfRecord, zeros.join(", "), reason)
     })
 }
 
 /// What stands for the contact height of a force case that does not state it.
-pub(crate) fn contact_height_assumption(case: &Case) -> Result<Option<Assumption>, StudyError> {
+pub(crate) fn contact_height_assumption(case: &Case) -> Result<Option<Caveat>, StudyError> {
     let is_known = ForceAttributes::read(&case.attributes)?.contact_height_m.is_some();
     Ok((!is_known).then(|| {
         let reason = "the case does not say how high the vehicles touch";
-        Assumption::new(AssumedQuantity::ContactHeight, "that of the CG", reason)
+        Caveat::assumed(CaveatSubject::ContactHeight, "that of the CG", reason)
     }))
 }
 
 /// What the pulse of a scenario adds to what the momentum solution says.
-pub(crate) fn pulse_assumptions(pulse: &PulseSetup) -> Vec<Assumption> {
+pub(crate) fn pulse_assumptions(pulse: &PulseSetup) -> Vec<Caveat> {
     if *pulse != PulseSetup::default() {
         return Vec::new();
     }
     let shape = format!("{} of {:.0} ms", pulse.shape.label(), pulse.duration_s * 1e3);
     let height = format!("{} m above the ground", pulse.contact_height_m);
     vec![
-        Assumption::new(
-            AssumedQuantity::Pulse,
+        Caveat::assumed(
+            CaveatSubject::Pulse,
             shape,
             "the momentum solution gives the impulse, not the force over time",
         ),
-        Assumption::new(
-            AssumedQuantity::ContactHeight,
+        Caveat::assumed(
+            CaveatSubject::ContactHeight,
             height,
             "a scenario does not say how high the vehicles touch",
         ),

@@ -1,10 +1,10 @@
 //! The force of a case or a file as it was recorded.
 
-use crate::caveats::badges;
+use crate::caveats::restrictions;
 use crate::questions::simulate::dataset::take_case;
-use crate::{Library, MotionSource, Observer, Question, SeriesFile, StudyError, Trust};
+use crate::{Library, MotionSource, Observer, Question, SeriesFile, StudyError};
 use impactlab_core::data::{ForceHistory, Outcome};
-use impactlab_core::uncertainty::Badge;
+use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 
 /// Asks for a recorded force, to be shown.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,16 +20,15 @@ pub struct RecordedForceAnswer {
     pub name: String,
     /// The force.
     pub force: ForceHistory,
-    /// What a person should know about how the file was read.
-    pub notes: Vec<String>,
     /// What restricts it.
-    pub trust: Trust,
+    pub caveats: Caveats,
 }
 
 impl RecordedForceAnswer {
     fn new(name: String, force: ForceHistory, notes: Vec<String>) -> Self {
-        let badges: Vec<Badge> = badges::of_cut_record(&force).into_iter().collect();
-        Self { name, force, notes, trust: Trust::new(&badges, &[]) }
+        let notes = notes.into_iter().map(|text| Caveat::new(CaveatKind::Note, text));
+        let caveats = restrictions::of_cut_record(&force).into_iter().chain(notes).collect();
+        Self { name, force, caveats }
     }
 }
 

@@ -6,14 +6,13 @@ use serde::Serialize;
 
 use crate::analysis::{Analysis, MotionEnd, SecondContacts};
 use crate::{
-    Assumption, MomentumReport, Provenance, SimulateRequest, TireMarkReport, VehicleUncertainty,
-    word,
+    MomentumReport, Provenance, SimulateRequest, TireMarkReport, VehicleUncertainty, word,
 };
 use impactlab_core::collision::{PrincipalDirectionOfForce, SecondContact};
 use impactlab_core::compare::{MotionError, largest_yaw_change_rad};
 use impactlab_core::data::{Channel, ForceAxes, SeriesError, TimeSeries, contact_interval};
 use impactlab_core::numerics::interpolate;
-use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_core::units::percent;
 use impactlab_core::vehicle::frames::world_from_body;
 use impactlab_core::vehicle::{FrictionZone, Motion, MotionFlag};
@@ -83,12 +82,9 @@ pub struct SimulateReport {
     pub uncertainty: Option<VehicleUncertainty>,
     /// Wheel lift, roll beyond the limit, a second contact.
     pub flags: Vec<FlagReport>,
-    /// What a person should know about how this was made.
-    pub notes: Vec<String>,
-    /// What was assumed.
-    pub assumptions: Vec<Assumption>,
-    /// What restricts the answer.
-    pub badges: Vec<Badge>,
+    /// What restricts the answer and what it rests on.
+    #[serde(flatten)]
+    pub caveats: Caveats,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -162,7 +158,7 @@ pub struct EndState {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FlagReport {
     /// `wheel_lift`, `roll_limit`, `energy_gain` or `second_contact`.
-    pub kind: BadgeKind,
+    pub kind: CaveatKind,
     /// When it is first raised, s.
     pub time_s: f64,
     /// The wheel that lifts.
@@ -189,7 +185,7 @@ impl From<&SecondContact> for FlagReport {
         let ([x, y], speed) = (second.point_m, second.closing_speed_m_s);
         let how = if second.was_apart { "meet again" } else { "go deeper into each other" };
         Self {
-            kind: BadgeKind::SecondContact,
+            kind: CaveatKind::SecondContact,
             time_s: second.time_s,
             wheel: None,
             roll_rad: None,
@@ -229,7 +225,7 @@ impl From<&SecondContacts> for FlagReport {
             ),
         };
         Self {
-            kind: BadgeKind::SecondContact,
+            kind: CaveatKind::SecondContact,
             time_s,
             wheel: None,
             roll_rad: None,
@@ -255,12 +251,12 @@ impl From<&MotionFlag> for FlagReport {
         };
         match flag {
             MotionFlag::WheelLift { wheel, time_s } => {
-                Self { wheel: Some(word(wheel)), ..of(BadgeKind::WheelLift, *time_s) }
+                Self { wheel: Some(word(wheel)), ..of(CaveatKind::WheelLift, *time_s) }
             }
             MotionFlag::RollLimit { time_s, roll_rad } => {
-                Self { roll_rad: Some(*roll_rad), ..of(BadgeKind::RollLimit, *time_s) }
+                Self { roll_rad: Some(*roll_rad), ..of(CaveatKind::RollLimit, *time_s) }
             }
-            MotionFlag::EnergyGain { time_s } => of(BadgeKind::EnergyGain, *time_s),
+            MotionFlag::EnergyGain { time_s } => of(CaveatKind::EnergyGain, *time_s),
         }
     }
 }
@@ -270,8 +266,10 @@ impl SimulateReport {
     pub(crate) fn of(
         request: &SimulateRequest,
         analysis: &Analysis,
-        assumptions: Vec<Assumption>,
+        mut caveats: Caveats,
     ) -> Result<Self, SeriesError> {
+        let notes = analysis.notes.iter().map(|text| Caveat::new(CaveatKind::Note, text));
+        caveats.extend(notes);
         let motion = analysis.simulation.as_ref();
         let series = motion.map(|motion| &motion.series);
         let interval = analysis.force.as_ref().and_then(contact_interval);
@@ -305,9 +303,7 @@ impl SimulateReport {
                 .flat_map(|motion| motion.flags.iter().map(FlagReport::from))
                 .chain(analysis.second_contact.iter().map(FlagReport::from))
                 .collect(),
-            notes: analysis.notes.clone(),
-            assumptions,
-            badges: Vec::new(),
+            caveats,
             provenance: Provenance::default(),
         })
     }

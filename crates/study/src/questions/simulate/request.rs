@@ -1,5 +1,6 @@
 //! The motion of one struck vehicle by the 4DOF model: `simulate`.
 
+use crate::caveats::assumed;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
@@ -10,7 +11,7 @@ use crate::analysis::{
 };
 use crate::ask::checks::{check, check_all, check_count, check_given};
 use crate::ask::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
-use crate::caveats::badges;
+use crate::caveats::restrictions;
 use crate::caveats::unused::by_simulation;
 use crate::questions::simulate::dataset::take_case;
 use crate::questions::simulate::motion_source::{
@@ -19,14 +20,14 @@ use crate::questions::simulate::motion_source::{
 };
 use crate::questions::simulate::vehicle_uncertainty::vehicle_uncertainty;
 use crate::{
-    AssumedQuantity, Assumption, Library, MomentumReport, MotionSource, Observer, Provenance,
-    Question, SimulateReport, StudyError, VehicleChoice,
+    Library, MomentumReport, MotionSource, Observer, Provenance, Question, SimulateReport,
+    StudyError, VehicleChoice,
 };
 use impactlab_core::collision::Scenario;
 use impactlab_core::data::{ContactOutside, DatasetKind, Outcome};
 use impactlab_core::ranges::{ROAD_FRICTION, SIMULATED_DURATION, VEHICLE_DRAWS};
 use impactlab_core::site::Site;
-use impactlab_core::uncertainty::Badge;
+use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use impactlab_core::vehicle::{ContactPoint, Ending, Equations, FrictionZone, Integrator};
 
 /// Asks where the struck vehicle goes, by the 4DOF model.
@@ -117,9 +118,9 @@ impl SimulateRequest {
     fn settings(
         &self,
         (open, named_striking): (&OpenVehicle<'_>, Option<&str>),
-        assumptions: &mut Vec<Assumption>,
+        caveats: &mut Caveats,
     ) -> Result<Settings, StudyError> {
-        let mut struck = struck_vehicle(&self.vehicle, open, assumptions)?;
+        let mut struck = struck_vehicle(&self.vehicle, open, caveats)?;
         if let Some(equations) = self.equations {
             struck = struck.with_equations(equations);
         }
@@ -133,10 +134,10 @@ impl SimulateRequest {
             }
             MotionSource::Trajectory { .. } | MotionSource::Drive(_) => false,
         };
-        let mut unused = Vec::new();
-        let assumed = if has_striking { assumptions } else { &mut unused };
+        let mut unused = Caveats::default();
+        let assumed = if has_striking { caveats } else { &mut unused };
         let striking = striking_vehicle(&self.striking, named_striking, assumed)?;
-        assumed.extend(Assumption::medians(AssumedQuantity::StrikingParameter, &striking));
+        assumed.extend(assumed::medians(CaveatSubject::StrikingParameter, &striking));
         Ok(Settings {
             struck,
             striking,
@@ -189,7 +190,7 @@ impl Question for SimulateRequest {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<SimulateAnswer>, StudyError> {
-        let (mut assumptions, mut momentum, mut overlap) = (Vec::new(), None, None);
+        let (mut caveats, mut momentum, mut overlap) = (Caveats::default(), None, None);
         let (settings, analyse): (Settings, Box<Analyse<'_>>) = match &self.source {
             MotionSource::Case { dataset, case } => {
                 let Outcome::Complete(dataset) = library.dataset(dataset, observer)? else {
@@ -199,26 +200,25 @@ impl Question for SimulateRequest {
                 if let (DatasetKind::Trajectory, Some(_)) = (case.kind, self.friction) {
                     return Err(StudyError::FrictionOfCase { case: case.name.clone() });
                 }
-                assumptions.extend(by_simulation(self, case.kind == DatasetKind::Trajectory));
+                caveats.extend(by_simulation(self, case.kind == DatasetKind::Trajectory));
                 if case.kind == DatasetKind::Force {
-                    assumptions.extend(contact_height_assumption(case)?);
+                    caveats.extend(contact_height_assumption(case)?);
                 }
                 let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
-                let (settings, case) =
-                    (self.settings((&own, None), &mut assumptions)?, case.clone());
+                let (settings, case) = (self.settings((&own, None), &mut caveats)?, case.clone());
                 (settings, Box::new(move |settings| analyse_case(&case, settings)))
             }
             MotionSource::Trajectory { file, contact } => {
-                let settings = self.settings((&OpenVehicle::Unknown, None), &mut assumptions)?;
+                let settings = self.settings((&OpenVehicle::Unknown, None), &mut caveats)?;
                 let loaded = trajectory(library, file)?;
-                assumptions.extend(by_simulation(self, true));
+                caveats.extend(by_simulation(self, true));
                 let force = recorded_force(&loaded, file)?;
                 if force.is_some() {
-                    assumptions.extend(start_of_record(&loaded));
+                    caveats.extend(start_of_record(&loaded));
                 }
                 let load = force.map(|force| {
                     let vehicle = &settings.struck;
-                    acting_force(force, (*contact, vehicle), &mut assumptions)
+                    acting_force(force, (*contact, vehicle), &mut caveats)
                 });
                 let title = file.title();
                 let analyse = move |settings: &Settings| {
@@ -227,24 +227,24 @@ impl Question for SimulateRequest {
                 (settings, Box::new(analyse))
             }
             MotionSource::Drive(drive) => {
-                let settings = self.settings((&OpenVehicle::Unknown, None), &mut assumptions)?;
-                assumptions.extend(by_simulation(self, false));
-                let setup = drive.setup(&settings, library, &mut assumptions)?;
+                let settings = self.settings((&OpenVehicle::Unknown, None), &mut caveats)?;
+                caveats.extend(by_simulation(self, false));
+                let setup = drive.setup(&settings, library, &mut caveats)?;
                 let name = drive.name();
                 let analyse =
                     move |settings: &Settings| analyse_drive(&name, setup.clone(), settings);
                 (settings, Box::new(analyse))
             }
             MotionSource::Scenario { scenario, pulse } => {
-                assumptions.extend(pulse_assumptions(pulse));
+                caveats.extend(pulse_assumptions(pulse));
                 let scenario = scenario.load()?;
                 let open = OpenVehicle::OfScenario(scenario.struck_vehicle.as_deref());
                 let vehicles = (&open, scenario.striking_vehicle.as_deref());
-                let mut settings = self.settings(vehicles, &mut assumptions)?;
+                let mut settings = self.settings(vehicles, &mut caveats)?;
                 if let (None, Some(ending)) = (&self.ending, &scenario.ending) {
                     settings.ending.clone_from(ending);
                 }
-                (momentum, overlap) = contact_of(&scenario, &mut assumptions);
+                (momentum, overlap) = contact_of(&scenario, &mut caveats);
                 (settings, Box::new(move |settings| analyse_scenario(&scenario, pulse, settings)))
             }
         };
@@ -254,8 +254,8 @@ impl Question for SimulateRequest {
         };
         let analysis = analyse(&settings).map_err(failed)?;
         refuse_contact_off_vehicle(&analysis)?;
-        assumptions.extend(Assumption::estimates(&analysis.vehicle));
-        let mut report = SimulateReport::of(self, &analysis, assumptions)
+        caveats.extend(assumed::estimates(&analysis.vehicle));
+        let mut report = SimulateReport::of(self, &analysis, caveats)
             .map_err(|source| failed(AnalysisError::Series(source)))?;
         report.momentum = momentum;
         let asked = (self.vehicle_draws, self.seed);
@@ -263,10 +263,11 @@ impl Question for SimulateRequest {
         if report.uncertainty.is_some() {
             report.provenance = Provenance::of_seed(self.seed);
         }
-        report.badges = badges::of_simulation(&report, self.until_rest);
-        report.badges.extend(overlap);
+        let restrictions = restrictions::of_simulation(&report, self.until_rest);
+        report.caveats.extend(restrictions);
+        report.caveats.extend(overlap);
         let recorded = analysis.force.as_ref().filter(|_| self.source.is_recorded());
-        report.badges.extend(recorded.and_then(badges::of_cut_record));
+        report.caveats.extend(recorded.and_then(restrictions::of_cut_record));
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
     }
 }
@@ -275,13 +276,13 @@ impl Question for SimulateRequest {
 /// or solution, the analysis says why.
 fn contact_of(
     scenario: &Scenario,
-    assumptions: &mut Vec<Assumption>,
-) -> (Option<MomentumReport>, Option<Badge>) {
+    caveats: &mut Caveats,
+) -> (Option<MomentumReport>, Option<Caveat>) {
     let geometry = scenario.geometry().ok();
-    assumptions.extend(geometry.as_ref().and_then(Assumption::first_touch));
-    let overlap = geometry.as_ref().and_then(badges::of_overlap);
+    caveats.extend(geometry.as_ref().and_then(assumed::first_touch));
+    let overlap = geometry.as_ref().and_then(restrictions::of_overlap);
     let Ok(impact) = scenario.impact() else { return (None, overlap) };
-    assumptions.extend(Assumption::contact_default(scenario, &impact));
+    caveats.extend(assumed::contact_default(scenario, &impact));
     (MomentumReport::of(&impact, 0.0), overlap)
 }
 

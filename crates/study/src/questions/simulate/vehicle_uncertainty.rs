@@ -111,10 +111,11 @@ mod tests {
 
     use crate::analysis::PulseSetup;
     use crate::{
-        AssumedQuantity, Drive, Library, MotionSource, Question, ScenarioChoice, SimulateReport,
-        SimulateRequest, VehicleChoice,
+        Drive, Library, MotionSource, Question, ScenarioChoice, SimulateReport, SimulateRequest,
+        VehicleChoice,
     };
     use impactlab_core::collision::Scenario;
+    use impactlab_core::uncertainty::{Caveat, CaveatSubject};
     use impactlab_core::vehicle::sheet::SheetQuantity;
 
     fn report(source: MotionSource, vehicle: &str, n_draws: usize) -> SimulateReport {
@@ -148,12 +149,9 @@ mod tests {
         let has = |quantity| shares.iter().any(|share| share.quantity == quantity);
         assert!(has(SheetQuantity::RearCornering) && has(SheetQuantity::Friction), "{shares:?}");
         assert!(!has(SheetQuantity::Mass) && !has(SheetQuantity::YawInertia), "{shares:?}");
-        let n_assumed = report
-            .assumptions
-            .iter()
-            .filter(|assumption| assumption.quantity == AssumedQuantity::VehicleParameter)
-            .count();
-        assert_eq!(n_assumed, shares.len());
+        let estimated = [CaveatSubject::VehicleParameter, CaveatSubject::RoadFriction].map(Some);
+        let is_estimate = |caveat: &&Caveat| estimated.contains(&caveat.subject);
+        assert_eq!(report.caveats.iter().filter(is_estimate).count(), shares.len());
     }
 
     #[test]

@@ -1,19 +1,20 @@
 //! What the response network learns from recorded motions: `fine-tune response`, and `condition
 //! response`.
 
+use crate::caveats::assumed;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
+use impactlab_core::uncertainty::CaveatSubject;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::{check, check_count};
 use crate::ask::inputs::{OpenVehicle, data_name, dataset_folders, response_cases, struck_vehicle};
 use crate::questions::train::response::TrainingNotes;
 use crate::{
-    AssumedQuantity, Assumption, ConfigChoice, Event, Library, ModelChoice, MotionLogs, Observer,
-    Question, ResponseTrainingAnswer, ResponseTrainingReport, StudyError, TrainingOptions,
-    VehicleChoice,
+    ConfigChoice, Event, Library, ModelChoice, MotionLogs, Observer, Question,
+    ResponseTrainingAnswer, ResponseTrainingReport, StudyError, TrainingOptions, VehicleChoice,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::ranges::{TEST_SHARE as SHARE_OF_TEST, TRAJECTORIES};
@@ -117,10 +118,9 @@ impl FineTuneRequest {
         (library, observer): (&Library, &mut Observer<'_>),
     ) -> Result<Outcome<ResponseTrainingSet>, StudyError> {
         if let Some(logs) = &self.logs {
-            let vehicle =
-                struck_vehicle(&self.vehicle, &OpenVehicle::Unknown, &mut notes.assumptions)?;
-            let medians = Assumption::medians(AssumedQuantity::VehicleParameter, &vehicle);
-            notes.assumptions.extend(medians);
+            let vehicle = struck_vehicle(&self.vehicle, &OpenVehicle::Unknown, &mut notes.caveats)?;
+            let medians = assumed::medians(CaveatSubject::VehicleParameter, &vehicle);
+            notes.caveats.extend(medians);
             let (train, reports) = logs.read(vehicle)?;
             notes.logs = reports;
             let names: Vec<&str> = train.iter().map(|case| case.name.as_str()).collect();
@@ -130,9 +130,9 @@ impl FineTuneRequest {
         let mut sets = Vec::new();
         for root in dataset_folders(&self.data)? {
             let chosen = (root.as_path(), &self.vehicle);
-            let assumptions = &mut notes.assumptions;
+            let caveats = &mut notes.caveats;
             let cases =
-                response_cases(chosen, self.training.bad_cases, assumptions, (library, observer))?;
+                response_cases(chosen, self.training.bad_cases, caveats, (library, observer))?;
             let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
             notes.left_out.extend(usable.left_out);
             let (name, share) = (data_name(&root), self.test_share);

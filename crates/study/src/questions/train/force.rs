@@ -3,14 +3,15 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+use impactlab_core::uncertainty::Caveats;
 use serde::{Deserialize, Serialize};
+
+use crate::caveats::restrictions;
 
 use crate::ask::checks::check_count;
 use crate::ask::inputs::{data_names, force_cases};
 use crate::ask::provenance::FORCE_NETWORK;
-use crate::{
-    Assumption, Event, Library, Observer, Provenance, Question, StudyError, TrainingOptions,
-};
+use crate::{Event, Library, Observer, Provenance, Question, StudyError, TrainingOptions};
 use impactlab_core::data::Outcome;
 use impactlab_core::ranges::EPOCHS;
 use impactlab_networks::force::{
@@ -66,8 +67,9 @@ pub struct TrainForceReport {
     pub validation: Option<LossTerms>,
     /// Cases that were left out, and why.
     pub left_out: Vec<String>,
-    /// What was assumed: nothing, since cases and settings say everything.
-    pub assumptions: Vec<Assumption>,
+    /// What restricts the answer and what it rests on.
+    #[serde(flatten)]
+    pub caveats: Caveats,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -178,8 +180,8 @@ impl TrainForceReport {
             variance_factors: record.detail.variance_factors,
             train: best.map(|record| record.detail.train),
             validation: best.map(|record| record.detail.validation),
+            caveats: restrictions::of_left_out(left_out.len(), "cases").into_iter().collect(),
             left_out,
-            assumptions: Vec::new(),
             provenance,
         }
     }

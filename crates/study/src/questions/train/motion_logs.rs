@@ -9,6 +9,7 @@ use crate::ask::checks::{check, check_contact, check_given};
 use crate::questions::simulate::motion_source::acting_force;
 use impactlab_core::data::{ColumnMap, ForceHistory, list_folder, read_any_series};
 use impactlab_core::ranges::{INSTANT, LOG_DURATION};
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::vehicle::{ContactLoad, ContactPoint, VehicleParameters};
 use impactlab_networks::response::{
     ForceOrigin, LogNoise, LogSettings, LoggedImpact, MotionLog, ResponseCase,
@@ -135,7 +136,8 @@ impl MotionLogs {
         if self.contact.is_none() && force.mz_n_m.is_none() {
             return Err(StudyError::NoYawMoment { path: path.to_owned() });
         }
-        let (force, contact) = acting_force(force, (self.contact, vehicle), &mut Vec::new());
+        let (force, contact) =
+            acting_force(force, (self.contact, vehicle), &mut Caveats::default());
         Ok(ContactLoad { recorded_moment: force.mz_n_m.is_some(), force, contact })
     }
 }

@@ -1,16 +1,20 @@
 //! The pre-training of the response network: `train response`; and what is told of any training of
 //! it.
 
+use crate::caveats::assumed;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use impactlab_core::uncertainty::{CaveatSubject, Caveats};
 use serde::{Deserialize, Serialize};
+
+use crate::caveats::restrictions;
 
 use crate::ask::inputs::{OpenVehicle, data_name, force_cases, response_cases, struck_vehicle};
 use crate::ask::provenance::RESPONSE_NETWORK;
 use crate::{
-    AssumedQuantity, Assumption, Event, Library, LogReport, Observer, Provenance, Question,
-    StudyError, TrainingOptions, VehicleChoice,
+    Event, Library, LogReport, Observer, Provenance, Question, StudyError, TrainingOptions,
+    VehicleChoice,
 };
 use impactlab_core::data::write::ModelDigest;
 use impactlab_core::data::{DatasetKind, Outcome};
@@ -73,8 +77,9 @@ pub struct ResponseTrainingReport {
     pub logs: Vec<LogReport>,
     /// Cases that were left out, and why.
     pub left_out: Vec<String>,
-    /// What was assumed.
-    pub assumptions: Vec<Assumption>,
+    /// What restricts the answer and what it rests on.
+    #[serde(flatten)]
+    pub caveats: Caveats,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -110,9 +115,9 @@ impl TrainResponseRequest {
     ) -> Result<Outcome<Vec<ImpactRecord>>, StudyError> {
         if DatasetKind::of_folder(&self.data) == Some(DatasetKind::Trajectory) {
             let chosen = (self.data.as_path(), &self.vehicle);
-            let assumptions = &mut notes.assumptions;
+            let caveats = &mut notes.caveats;
             let cases =
-                response_cases(chosen, self.training.bad_cases, assumptions, (library, observer))?;
+                response_cases(chosen, self.training.bad_cases, caveats, (library, observer))?;
             return Ok(cases.map(|usable| {
                 notes.left_out = usable.left_out;
                 let kept = self.learned_from(&usable.cases);
@@ -120,9 +125,9 @@ impl TrainResponseRequest {
             }));
         }
         let vehicle =
-            struck_vehicle(&self.vehicle, &OpenVehicle::OfDataset(None), &mut notes.assumptions)?;
-        let medians = Assumption::medians(AssumedQuantity::VehicleParameter, &vehicle);
-        notes.assumptions.extend(medians);
+            struck_vehicle(&self.vehicle, &OpenVehicle::OfDataset(None), &mut notes.caveats)?;
+        let medians = assumed::medians(CaveatSubject::VehicleParameter, &vehicle);
+        notes.caveats.extend(medians);
         let cases = force_cases(&self.data, self.training.bad_cases, (library, observer))?;
         Ok(cases.map(|usable| {
             notes.left_out = usable.left_out;
@@ -153,7 +158,7 @@ fn impact_record(case: &ForceCase, vehicle: &VehicleParameters) -> Option<Impact
 pub(crate) struct TrainingNotes {
     pub(crate) logs: Vec<LogReport>,
     pub(crate) left_out: Vec<String>,
-    pub(crate) assumptions: Vec<Assumption>,
+    pub(crate) caveats: Caveats,
     /// The network from which the training starts, if it starts from one.
     pub(crate) start: Option<ModelDigest>,
 }
@@ -204,6 +209,8 @@ impl ResponseTrainingAnswer {
         // The report has the seed already.
         let provenance = Provenance::default().with_models(notes.start);
         let provenance = provenance.with_trained(RESPONSE_NETWORK, &model)?;
+        let mut caveats = notes.caveats;
+        caveats.extend(restrictions::of_left_out(notes.left_out.len(), "cases"));
         let record = model.record();
         let last = record.history.last();
         let report = ResponseTrainingReport {
@@ -221,8 +228,8 @@ impl ResponseTrainingAnswer {
             latents: *model.latents(),
             keeps_latents: record.detail.keeps_latents,
             logs: notes.logs,
+            caveats,
             left_out: notes.left_out,
-            assumptions: notes.assumptions,
             provenance,
         };
         Ok(Self { report, model })

@@ -5,8 +5,8 @@ use egui::{Color32, FontId, RichText, Ui};
 
 use crate::{FigureOptions, figure_ui, theme};
 use impactlab_core::data::Severity;
+use impactlab_core::uncertainty::{Caveat, Caveats};
 use impactlab_document::figure::Figure;
-use impactlab_study::{Trust, TrustLine};
 
 /// Size of the text below a figure, points.
 const TEXT_SIZE: f32 = 10.5;
@@ -19,7 +19,7 @@ const SPACING: f32 = 3.0;
 /// and what was assumed. Where the picture is too small for all of it, the values that were assumed
 /// are only counted; what does not fit even then is said to be in the table of the figure.
 pub fn picture_ui(ui: &mut Ui, figure: &Figure) {
-    framed_ui(ui, (&figure.title, &figure.trust), |ui, height| {
+    framed_ui(ui, (&figure.title, &figure.caveats), |ui, height| {
         figure_ui(ui, figure, &FigureOptions { height, ..FigureOptions::default() });
     });
 }
@@ -29,12 +29,12 @@ pub fn picture_ui(ui: &mut Ui, figure: &Figure) {
 /// - `draw`: given the height that is left, points; `None` if that is all the space there is.
 pub fn framed_ui(
     ui: &mut Ui,
-    (title, trust): (&str, &Trust),
+    (title, caveats): (&str, &Caveats),
     draw: impl FnOnce(&mut Ui, Option<f32>),
 ) {
     let area = ui.available_size();
     let heading = ui.label(RichText::new(title).strong().size(15.0));
-    let paragraphs = fitting(ui, trust, [area.x, area.y * LARGEST_SHARE]);
+    let paragraphs = fitting(ui, caveats, [area.x, area.y * LARGEST_SHARE]);
     let text_height: f32 = paragraphs.iter().map(|job| height(ui, job, area.x) + SPACING).sum();
     let between = ui.spacing().item_spacing.y;
     let rest = area.y - heading.rect.height() - text_height - 2.0 * between - SPACING;
@@ -48,22 +48,36 @@ pub fn framed_ui(
     }
 }
 
+/// A paragraph below a figure.
+struct Paragraph {
+    severity: Severity,
+    label: &'static str,
+    text: String,
+}
+
+impl From<&Caveat> for Paragraph {
+    fn from(caveat: &Caveat) -> Self {
+        let (severity, label) = (caveat.severity, caveat.kind.label());
+        Self { severity, label, text: caveat.statement() }
+    }
+}
+
 /// The paragraphs below a figure, as many as fit into width and height, points.
-fn fitting(ui: &Ui, trust: &Trust, [width, largest]: [f32; 2]) -> Vec<LayoutJob> {
-    let badges: Vec<LayoutJob> =
-        trust.restrictions().iter().map(|line| paragraph(ui, line)).collect();
-    let all = |assumed: Vec<TrustLine>| -> Vec<LayoutJob> {
-        let assumed = assumed.iter().map(|line| paragraph(ui, line));
-        badges.iter().cloned().chain(assumed).collect()
+fn fitting(ui: &Ui, caveats: &Caveats, [width, largest]: [f32; 2]) -> Vec<LayoutJob> {
+    let restrictions: Vec<LayoutJob> =
+        caveats.restrictions().iter().map(|caveat| layout(ui, &Paragraph::from(*caveat))).collect();
+    let all = |assumed: Vec<Paragraph>| -> Vec<LayoutJob> {
+        let assumed = assumed.iter().map(|paragraph| layout(ui, paragraph));
+        restrictions.iter().cloned().chain(assumed).collect()
     };
     let size = |jobs: &[LayoutJob]| -> f32 {
         jobs.iter().map(|job| height(ui, job, width) + SPACING).sum()
     };
-    let in_full = all(together(trust));
+    let in_full = all(together(caveats));
     if size(&in_full) <= largest {
         return in_full;
     }
-    let mut short = all(counted(trust));
+    let mut short = all(counted(caveats));
     if size(&short) <= largest {
         return short;
     }
@@ -72,18 +86,17 @@ fn fitting(ui: &Ui, trust: &Trust, [width, largest]: [f32; 2]) -> Vec<LayoutJob>
         short.pop();
     }
     let text = format!("{} more, see the numbers of this figure (CSV)", n_all - short.len());
-    let more = TrustLine { is_warning: true, label: "not shown".to_owned(), text };
-    short.push(paragraph(ui, &more));
+    short.push(layout(ui, &Paragraph { severity: Severity::Warning, label: "not shown", text }));
     short
 }
 
 /// What was assumed, and what is not used, in a paragraph each.
-fn together(trust: &Trust) -> Vec<TrustLine> {
-    grouped(trust, |texts| texts.join("; "))
+fn together(caveats: &Caveats) -> Vec<Paragraph> {
+    grouped(caveats, |texts| texts.join("; "))
 }
 
 /// How many values were assumed, and how many are not used.
-fn counted(trust: &Trust) -> Vec<TrustLine> {
+fn counted(caveats: &Caveats) -> Vec<Paragraph> {
     let count = |texts: Vec<String>| {
         let n = texts.len();
         format!(
@@ -91,39 +104,36 @@ fn counted(trust: &Trust) -> Vec<TrustLine> {
             if n == 1 { "value" } else { "values" }
         )
     };
-    grouped(trust, count)
+    grouped(caveats, count)
 }
 
-/// The assumptions as one line for each label.
-fn grouped(trust: &Trust, joined: impl Fn(Vec<String>) -> String) -> Vec<TrustLine> {
-    let mut groups: Vec<(String, Vec<String>)> = Vec::new();
-    for TrustLine { label, text, .. } in trust.assumed() {
-        match groups.iter_mut().find(|(of, _)| *of == label) {
+/// The assumptions as one paragraph for each label.
+fn grouped(caveats: &Caveats, joined: impl Fn(Vec<String>) -> String) -> Vec<Paragraph> {
+    let mut groups: Vec<(&'static str, Vec<String>)> = Vec::new();
+    for caveat in caveats.assumptions() {
+        let (label, text) = (caveat.kind.label(), caveat.statement());
+        match groups.iter_mut().find(|(known, _)| *known == label) {
             Some((_, texts)) => texts.push(text),
             None => groups.push((label, vec![text])),
         }
     }
-    let line = |(label, texts): (String, Vec<String>)| TrustLine {
-        is_warning: false,
-        label,
-        text: joined(texts),
-    };
-    groups.into_iter().map(line).collect()
+    let severity = Severity::Info;
+    let paragraph = |(label, texts)| Paragraph { severity, label, text: joined(texts) };
+    groups.into_iter().map(paragraph).collect()
 }
 
-/// A line with its label in the colour of its severity. The severity of a warning is a word, too.
-fn paragraph(ui: &Ui, line: &TrustLine) -> LayoutJob {
+/// A paragraph with its label in the colour of its severity. The severity of a warning is a word, too.
+fn layout(ui: &Ui, paragraph: &Paragraph) -> LayoutJob {
     let visuals = ui.visuals();
-    let severity = if line.is_warning { Severity::Warning } else { Severity::Info };
-    let color = theme::severity_color(severity, visuals.dark_mode);
+    let color = theme::severity_color(paragraph.severity, visuals.dark_mode);
     let format = |color: Color32| TextFormat::simple(FontId::proportional(TEXT_SIZE), color);
-    let label = match line.is_warning {
-        true => format!("Warning: {}: ", line.label),
-        false => format!("{}: ", capitalised(&line.label)),
+    let label = match paragraph.severity > Severity::Info {
+        true => format!("Warning: {}: ", paragraph.label),
+        false => format!("{}: ", capitalised(paragraph.label)),
     };
     let mut job = LayoutJob::default();
     job.append(&label, 0.0, format(color));
-    job.append(&line.text, 0.0, format(visuals.strong_text_color()));
+    job.append(&paragraph.text, 0.0, format(visuals.strong_text_color()));
     job
 }
 

@@ -1,14 +1,14 @@
-//! The badges of an answer: what a report says in words of its own, in one form for all reports.
+//! What restricts an answer: findings that a report has in a form of its own, as caveats.
 
 use crate::analysis::{Analysis, MotionForecast, RestOutcome};
 use crate::questions::predict::implied_contact::{LEAST_P_RIGID, MOST_P_ENERGY_GAIN};
 use crate::{
-    AssumedQuantity, Assumption, FlagReport, ImpliedContactReport, PredictForceReport,
-    PredictMotionReport, ReplayedCaseReport, SimulateReport,
+    FlagReport, ImpliedContactReport, PredictForceReport, PredictMotionReport, ReplayedCaseReport,
+    SimulateReport,
 };
 use impactlab_core::collision::{ScenarioGeometry, TOUCH_TOLERANCE_M};
 use impactlab_core::data::{CONTACT_SHARE_OF_PEAK, Channel, ForceHistory, cut_at_s};
-use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{percent, significant};
 use impactlab_core::vehicle::{REST_SPEED_M_S, ROLL_LIMIT_RAD};
 use impactlab_networks::response::{OutsideDomain, STEP_S};
@@ -19,33 +19,20 @@ const AGREEMENT_LEVEL: f64 = 0.99;
 /// motions of the fleet: what is nearer to it is no disagreement.
 const PHYSICS_ERROR: f64 = 0.125;
 
-/// What was assumed and what is not used, one badge for each.
-pub(crate) fn of_assumptions(assumptions: &[Assumption]) -> Vec<Badge> {
-    let is_unused = |of: &&Assumption| of.quantity == AssumedQuantity::NotUsed;
-    let mut assumed: Vec<&str> =
-        assumptions.iter().filter(|of| !is_unused(of)).map(|of| of.quantity.label()).collect();
-    assumed.dedup();
-    let unused: Vec<&str> =
-        assumptions.iter().filter(is_unused).map(|of| of.value.as_str()).collect();
-    let of = |kind, what: &[&str]| (!what.is_empty()).then(|| Badge::new(kind, what.join("; ")));
-    let badges = [of(BadgeKind::Assumed, &assumed), of(BadgeKind::NotUsed, &unused)];
-    badges.into_iter().flatten().collect()
-}
-
 /// Outlines that overlap by more than the tolerance within which they touch.
-pub(crate) fn of_overlap(geometry: &ScenarioGeometry) -> Option<Badge> {
+pub(crate) fn of_overlap(geometry: &ScenarioGeometry) -> Option<Caveat> {
     let overlap_m = geometry.overlap_m.filter(|overlap_m| *overlap_m > TOUCH_TOLERANCE_M)?;
     let text = format!(
         "the outlines overlap by {overlap_m:.2} m; the contact is that at which they first touched"
     );
-    let badge = Badge::new(BadgeKind::Overlap, text)
+    let caveat = Caveat::new(CaveatKind::Overlap, text)
         .with_value("overlap of the outlines [m]", overlap_m)
         .with_range([f64::NEG_INFINITY, TOUCH_TOLERANCE_M]);
-    Some(badge)
+    Some(caveat)
 }
 
 /// A record of a force that ends during the contact.
-pub(crate) fn of_cut_record(force: &ForceHistory) -> Option<Badge> {
+pub(crate) fn of_cut_record(force: &ForceHistory) -> Option<Caveat> {
     let at_s = cut_at_s(force)?;
     let (peak_n, _) = force.peak()?;
     let (x, y) = force.fx_n.last().zip(force.fy_n.last())?;
@@ -55,38 +42,38 @@ pub(crate) fn of_cut_record(force: &ForceHistory) -> Option<Badge> {
          impulse is not complete, nor the motion that follows from it",
         percent(share)
     );
-    let badge = Badge::new(BadgeKind::ContactNotEnded, text)
+    let caveat = Caveat::new(CaveatKind::ContactNotEnded, text)
         .with_value("force at the end as a share of the peak", share)
         .with_range([0.0, CONTACT_SHARE_OF_PEAK]);
-    Some(badge)
+    Some(caveat)
 }
 
 /// A flag of a simulated motion.
-pub(crate) fn of_flag(flag: &FlagReport) -> Badge {
-    let badge = Badge::new(flag.kind, &*flag.message);
+pub(crate) fn of_flag(flag: &FlagReport) -> Caveat {
+    let caveat = Caveat::new(flag.kind, &*flag.message);
     match flag.roll_rad {
-        Some(roll_rad) => badge
+        Some(roll_rad) => caveat
             .with_value("roll angle [rad]", roll_rad)
             .with_range([-ROLL_LIMIT_RAD, ROLL_LIMIT_RAD]),
-        None => badge.with_value("time [s]", flag.time_s),
+        None => caveat.with_value("time [s]", flag.time_s),
     }
 }
 
-/// The badges of the simulation of one vehicle.
+/// What restricts the simulation of one vehicle.
 ///
 /// - `until_rest`: whether the question asks where the vehicle comes to rest.
-pub(crate) fn of_simulation(report: &SimulateReport, until_rest: bool) -> Vec<Badge> {
+pub(crate) fn of_simulation(report: &SimulateReport, until_rest: bool) -> Vec<Caveat> {
     let moving = report.end.filter(|_| until_rest && report.rest.is_none());
     let moving = moving.map(|end| of_motion(end.speed_m_s, report.duration_s));
     let n_failed = report.uncertainty.as_ref().map_or(0, |of| of.n_failed);
     let left_out = of_left_out(n_failed, "vehicles drawn from the data sheet");
     let flags = report.flags.iter().map(of_flag);
-    flags.chain(moving).chain(left_out).chain(of_assumptions(&report.assumptions)).collect()
+    flags.chain(moving).chain(left_out).collect()
 }
 
 /// How many cases raise each kind of flag.
-pub(crate) fn of_flagged_cases(cases: &[ReplayedCaseReport]) -> Vec<Badge> {
-    let mut kinds: Vec<BadgeKind> =
+pub(crate) fn of_flagged_cases(cases: &[ReplayedCaseReport]) -> Vec<Caveat> {
+    let mut kinds: Vec<CaveatKind> =
         cases.iter().flat_map(|case| case.flags.iter().map(|flag| flag.kind)).collect();
     kinds.sort_unstable();
     kinds.dedup();
@@ -94,7 +81,7 @@ pub(crate) fn of_flagged_cases(cases: &[ReplayedCaseReport]) -> Vec<Badge> {
         let is_flagged = |case: &&ReplayedCaseReport| case.flags.iter().any(|of| of.kind == kind);
         let n = cases.iter().filter(is_flagged).count();
         let text = format!("in {n} of {} cases", cases.len());
-        Badge::new(kind, text).with_value("cases", n as f64).with_range([0.0, 0.0])
+        Caveat::new(kind, text).with_value("cases", n as f64).with_range([0.0, 0.0])
     };
     kinds.into_iter().map(of_kind).collect()
 }
@@ -102,18 +89,18 @@ pub(crate) fn of_flagged_cases(cases: &[ReplayedCaseReport]) -> Vec<Badge> {
 /// A motion that goes on at the end of its answer.
 ///
 /// - `speed_m_s`: speed at the end.
-pub(crate) fn of_motion(speed_m_s: f64, after_s: f64) -> Badge {
+pub(crate) fn of_motion(speed_m_s: f64, after_s: f64) -> Caveat {
     let text = format!(
         "the vehicle still moves at {speed_m_s:.1} m/s after {after_s:.2} s: its end is not where it \
          comes to rest"
     );
-    Badge::new(BadgeKind::NotAtRest, text)
+    Caveat::new(CaveatKind::NotAtRest, text)
         .with_value("speed at the end [m/s]", speed_m_s)
         .with_range([0.0, REST_SPEED_M_S])
 }
 
 /// Draws of a motion that is followed to rest and still move at the limit of time.
-pub(crate) fn of_rest(rest: &RestOutcome) -> Option<Badge> {
+pub(crate) fn of_rest(rest: &RestOutcome) -> Option<Caveat> {
     let speed_m_s = rest.moving_speed_m_s?;
     let text = format!(
         "in {} of {} draws the vehicle still moves after {:.2} s, at {speed_m_s:.1} m/s in the median: \
@@ -122,14 +109,14 @@ pub(crate) fn of_rest(rest: &RestOutcome) -> Option<Badge> {
         rest.n_draws,
         rest.limit_s,
     );
-    let badge = Badge::new(BadgeKind::NotAtRest, text)
+    let caveat = Caveat::new(CaveatKind::NotAtRest, text)
         .with_value("share of the draws at rest", rest.share_at_rest)
         .with_range([1.0, 1.0]);
-    Some(badge)
+    Some(caveat)
 }
 
 /// A motion that lasts longer than those that the response network has learned from.
-fn of_duration(report: &PredictMotionReport) -> Option<Badge> {
+fn of_duration(report: &PredictMotionReport) -> Option<Caveat> {
     let end_s = match &report.rest {
         Some(rest) => rest.time_s.ninety[1],
         None => report.outcome.time_s,
@@ -143,36 +130,38 @@ fn of_duration(report: &PredictMotionReport) -> Option<Badge> {
         "the motion lasts {end_s:.2} s, the response network has learned from motions of up to \
          {learned_s:.2} s: from there on this is the 4DOF model with the strengths that it knows"
     );
-    let badge = Badge::new(BadgeKind::OutsideDomain, text)
+    let caveat = Caveat::new(CaveatKind::OutsideDomain, text)
         .with_value("duration of the motion [s]", end_s)
         .with_range([0.0, learned_s]);
-    Some(badge)
+    Some(caveat)
 }
 
 /// A quantity of a motion that lies outside what a response network has learned from.
-fn of_outside_domain(outside: &OutsideDomain) -> Badge {
+fn of_outside_domain(outside: &OutsideDomain) -> Caveat {
     let OutsideDomain { quantity, value, range } = outside;
     let [low, high] = range.map(significant);
     let text = format!(
         "{quantity} is {}, the response network has learned from {low} to {high}",
         significant(*value)
     );
-    Badge::new(BadgeKind::OutsideDomain, text).with_value(*quantity, *value).with_range(*range)
+    Caveat::new(CaveatKind::OutsideDomain, text).with_value(*quantity, *value).with_range(*range)
 }
 
-/// The badges of a predicted force.
+/// What restricts a predicted force.
 ///
 /// - `predicted`: those of the force network.
-pub(crate) fn of_predicted_force(report: &PredictForceReport, predicted: &[Badge]) -> Vec<Badge> {
+pub(crate) fn of_predicted_force(report: &PredictForceReport, predicted: &[Caveat]) -> Vec<Caveat> {
     let contact = report.implied_contact.as_ref().and_then(of_contact);
-    let assumed = of_assumptions(&report.assumptions);
-    predicted.iter().cloned().chain(contact).chain(assumed).collect()
+    predicted.iter().cloned().chain(contact).collect()
 }
 
-/// The badges of a predicted motion.
+/// What restricts a predicted motion.
 ///
 /// - `predicted`: those of the force network, where it predicts the force.
-pub(crate) fn of_predicted_motion(report: &PredictMotionReport, predicted: &[Badge]) -> Vec<Badge> {
+pub(crate) fn of_predicted_motion(
+    report: &PredictMotionReport,
+    predicted: &[Caveat],
+) -> Vec<Caveat> {
     let domain = report.outside_domain.iter().map(of_outside_domain);
     let contact = report.implied_contact.as_ref().and_then(of_contact);
     let flags = report.flags.iter().map(of_flag);
@@ -181,21 +170,20 @@ pub(crate) fn of_predicted_motion(report: &PredictMotionReport, predicted: &[Bad
         Some(rest) => of_rest(rest),
         None => (!end.is_at_rest).then(|| of_motion(end.speed_m_s, end.time_s)),
     };
-    let assumed = of_assumptions(&report.assumptions);
     let beyond = of_duration(report);
     let outside = predicted.iter().cloned().chain(domain).chain(beyond);
-    outside.chain(contact).chain(flags).chain(moving).chain(assumed).collect()
+    outside.chain(contact).chain(flags).chain(moving).collect()
 }
 
 /// A predicted impulse that no contact brings about.
-pub(crate) fn of_contact(implied: &ImpliedContactReport) -> Option<Badge> {
-    let badge = Badge::new(BadgeKind::ImplausibleContact, implied.warning.as_ref()?);
+pub(crate) fn of_contact(implied: &ImpliedContactReport) -> Option<Caveat> {
+    let caveat = Caveat::new(CaveatKind::ImplausibleContact, implied.warning.as_ref()?);
     Some(if implied.p_rigid < LEAST_P_RIGID {
         let quantity = "share of the impulse with a restitution between 0 and 1";
-        badge.with_value(quantity, implied.p_rigid).with_range([LEAST_P_RIGID, 1.0])
+        caveat.with_value(quantity, implied.p_rigid).with_range([LEAST_P_RIGID, 1.0])
     } else {
         let quantity = "share of the impulse that adds kinetic energy";
-        badge.with_value(quantity, implied.p_energy_gain).with_range([0.0, MOST_P_ENERGY_GAIN])
+        caveat.with_value(quantity, implied.p_energy_gain).with_range([0.0, MOST_P_ENERGY_GAIN])
     })
 }
 
@@ -207,7 +195,7 @@ pub(crate) fn of_contact(implied: &ImpliedContactReport) -> Option<Badge> {
 pub(crate) fn of_disagreement(
     (forecast, simulated): (&MotionForecast, &Analysis),
     has_same_force: bool,
-) -> Option<Badge> {
+) -> Option<Caveat> {
     let motion = &simulated.simulation.as_ref()?.series;
     let n_steps = forecast.distribution.n_instants().checked_sub(1)?;
     let end_s = motion.time_s().last()?.min(n_steps as f64 * STEP_S);
@@ -234,53 +222,30 @@ pub(crate) fn of_disagreement(
          than it is known to err: network and physics do not say the same",
         100.0 * AGREEMENT_LEVEL
     );
-    let badge = Badge::new(BadgeKind::Disagreement, text)
+    let caveat = Caveat::new(CaveatKind::Disagreement, text)
         .with_value("distance to the 4DOF model [m]", apart_m)
         .with_range([0.0, known_m]);
-    Some(badge)
+    Some(caveat)
 }
 
 /// Cases or draws that could not be used.
 ///
 /// - `what`: what they are, in the plural.
-pub(crate) fn of_left_out(n: usize, what: &str) -> Option<Badge> {
-    let badge = || {
+pub(crate) fn of_left_out(n: usize, what: &str) -> Option<Caveat> {
+    let caveat = || {
         let text = format!("{n} {what} could not be used");
-        Badge::new(BadgeKind::LeftOut, text).with_value(what, n as f64).with_range([0.0, 0.0])
+        Caveat::new(CaveatKind::LeftOut, text).with_value(what, n as f64).with_range([0.0, 0.0])
     };
-    (n > 0).then(badge)
+    (n > 0).then(caveat)
 }
 
 /// Cases that the network which they judge has learned from.
-pub(crate) fn of_trained_on(n_known: usize, n_test: usize) -> Option<Badge> {
-    let badge = || {
+pub(crate) fn of_trained_on(n_known: usize, n_test: usize) -> Option<Caveat> {
+    let caveat = || {
         let text = format!("the model was trained on {n_known} of these {n_test} cases");
-        Badge::new(BadgeKind::TrainedOn, text)
+        Caveat::new(CaveatKind::TrainedOn, text)
             .with_value("cases that it was trained on", n_known as f64)
             .with_range([0.0, 0.0])
     };
-    (n_known > 0).then(badge)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_was_assumed_and_what_is_not_used_are_one_badge_each() {
-        let of = |quantity, value: &str| Assumption::new(quantity, value, "nobody said it");
-        let list = [
-            of(AssumedQuantity::VehicleParameter, "mass 1500 kg"),
-            of(AssumedQuantity::VehicleParameter, "track 1.5 m"),
-            of(AssumedQuantity::Speed, "15 m/s"),
-            of(AssumedQuantity::NotUsed, "restitution, 0.3"),
-        ];
-        let badges = of_assumptions(&list);
-        let told: Vec<(BadgeKind, &str)> =
-            badges.iter().map(|badge| (badge.kind, badge.text.as_str())).collect();
-        let assumed = "parameter of the vehicle; speed before the impact";
-        let expected = [(BadgeKind::Assumed, assumed), (BadgeKind::NotUsed, "restitution, 0.3")];
-        assert_eq!(told, expected);
-        assert_eq!(of_assumptions(&[]), []);
-    }
+    (n_known > 0).then(caveat)
 }

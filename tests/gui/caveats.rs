@@ -6,26 +6,25 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{App, Command, Pane, State};
 use impactlab_core::data::Severity;
-use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_document::figure::{
     Axis, Figure, FigureElement, ForceComponent, ForecastFigure, Role, forecast_figure,
 };
 use impactlab_draw::{Canvas, figure_image, picture_ui, theme};
-use impactlab_study::Trust;
 
 use crate::harness::{apply, is_idle, open, step_until};
 
 const SENTENCE: &str = "bullet mass [kg] is 3900, the force network has learned from 800 to 3000";
 
-fn figure(trust: &Trust) -> Figure {
+fn figure(caveats: &Caveats) -> Figure {
     let axis = |label| Axis::shown(label, Quantity::Ratio, UnitSystem::Si);
     let line = FigureElement::line("line", Role::Model, vec![[0.0, 0.0], [1.0, 1.0]]);
-    Figure::new("A forecast", [axis("x"), axis("y")], vec![line]).with_trust(trust)
+    Figure::new("A forecast", [axis("x"), axis("y")], vec![line]).with_caveats(caveats)
 }
 
-fn outside() -> Trust {
-    Trust::new(&[Badge::new(BadgeKind::OutsideDomain, SENTENCE)], &[])
+fn outside() -> Caveats {
+    Caveats::from(vec![Caveat::new(CaveatKind::OutsideDomain, SENTENCE)])
 }
 
 /// Number of pixels of a picture with a colour, within a tolerance, below a share of its height.
@@ -47,21 +46,20 @@ fn a_picture_says_what_restricts_it_in_words_and_in_both_themes() {
     for dark in [false, true] {
         let canvas = Canvas { dark, ..Canvas::default() };
         let color = theme::severity_color(Severity::Warning, dark);
-        let n = |trust: &Trust| {
-            let image = figure_image(&figure(trust), canvas).expect("a picture");
+        let n = |caveats: &Caveats| {
+            let image = figure_image(&figure(caveats), canvas).expect("a picture");
             n_pixels(&image, color, 0.85)
         };
         assert!(n(&outside()) > 100, "dark {dark}: {}", n(&outside()));
-        assert_eq!(n(&Trust::default()), 0, "dark {dark}");
+        assert_eq!(n(&Caveats::default()), 0, "dark {dark}");
     }
 }
 
-/// A sentence for each of very many badges would leave no room for the figure.
+/// A sentence for each of very many caveats would leave no room for the figure.
 #[test]
 fn a_small_picture_says_how_much_it_does_not_show() {
-    let badge = |i: usize| Badge::new(BadgeKind::OutsideDomain, format!("{SENTENCE}, {i}"));
-    let badges: Vec<Badge> = (0..40).map(badge).collect();
-    let shown = figure(&Trust::new(&badges, &[]));
+    let caveat = |i: usize| Caveat::new(CaveatKind::OutsideDomain, format!("{SENTENCE}, {i}"));
+    let shown = figure(&(0..40).map(caveat).collect());
     let harness =
         Harness::builder().with_size([600.0, 300.0]).build_ui(|ui| picture_ui(ui, &shown));
     let more = harness.get_by_label_contains("not shown: ");
@@ -103,9 +101,9 @@ fn with_heavy_striking() -> Harness<'static, App> {
 fn what_the_window_exports_says_what_restricts_it() {
     let mut harness = with_heavy_striking();
     let answer = state(&harness).session.force.forecast.ok().expect("an answer").clone();
-    let is_outside = |badge: &&Badge| badge.kind == BadgeKind::OutsideDomain;
+    let is_outside = |badge: &&Caveat| badge.kind == CaveatKind::OutsideDomain;
     let sentence =
-        answer.report.badges.iter().find(is_outside).expect("it is outside").text.clone();
+        answer.report.caveats.iter().find(is_outside).expect("it is outside").text.clone();
     harness.get_all_by_label("Export").next().expect("a figure").click();
     harness.run_steps(3);
     harness.get_by_label("Copy numbers").click();
@@ -126,7 +124,7 @@ fn what_the_window_exports_says_what_restricts_it() {
         physics: None,
         pulses: &[],
         units: UnitSystem::Si,
-        trust: &Trust::new(&answer.report.badges, &answer.report.assumptions),
+        caveats: &answer.report.caveats,
     };
     let figure = forecast_figure(ForceComponent::Y, &input);
     for name in ["force.png", "force.csv"] {
@@ -147,7 +145,7 @@ fn what_is_not_of_what_is_asked_any_more_is_not_saved() {
     step_until(&mut harness, "the first case", is_idle);
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("old.csv");
-    let old = figure(&Trust::default().outdated_if(true));
+    let old = figure(&Caveats::default().outdated_if(true));
     let before = state(&harness).session.messages.len();
     for command in
         [Command::Export(Box::new(old.clone()), path.clone()), Command::CopyNumbers(Box::new(old))]
@@ -165,5 +163,5 @@ fn what_is_not_of_what_is_asked_any_more_is_not_saved() {
     harness.step();
     let session = &state(&harness).session;
     let report = &session.analysis.ok().expect("the old answer").report;
-    assert_eq!(session.simulation_trust(report).is_outdated, session.analysis.is_waiting());
+    assert_eq!(session.simulation_caveats(report).is_outdated(), session.analysis.is_waiting());
 }

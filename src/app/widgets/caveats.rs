@@ -1,10 +1,11 @@
-//! The badges of an answer as coloured chips.
+//! What restricts an answer as coloured chips.
 
 use egui::{Color32, Frame, Label, Margin, RichText, Sense, TextStyle, Ui};
 
+use crate::app::command::Command;
 use crate::app::looks::{self, Icon};
-use impactlab_core::data::Severity;
-use impactlab_core::uncertainty::Badge;
+use crate::app::widgets::assumptions_ui;
+use impactlab_core::uncertainty::{Caveat, Caveats};
 use impactlab_core::units::significant;
 use impactlab_draw::theme;
 
@@ -13,38 +14,42 @@ const FILL: f32 = 0.16;
 /// Room between the text of a chip and its frame, points.
 const MARGIN: Margin = Margin::symmetric(8, 2);
 
-/// Draws each badge as a chip; hovering over it shows what it says in full. Badges that stand for
-/// assumptions are left to [`assumptions_ui`](crate::app::widgets::assumptions_ui), beside which
-/// the chips are drawn. An empty list draws nothing.
-pub fn badges_ui<'a>(ui: &mut Ui, badges: impl IntoIterator<Item = &'a Badge>) {
-    let shown: Vec<&Badge> =
-        badges.into_iter().filter(|badge| !badge.kind.is_assumption()).collect();
+/// Draws what restricts an answer as chips, and lists what it rests on.
+pub fn caveats_ui(ui: &mut Ui, caveats: &Caveats, commands: &mut Vec<Command>) {
+    restrictions_ui(ui, caveats);
+    assumptions_ui(ui, caveats, commands);
+}
+
+/// Draws what restricts an answer as chips; hovering over one shows what it says in full. Where
+/// nothing restricts it, this draws nothing.
+pub fn restrictions_ui(ui: &mut Ui, caveats: &Caveats) {
+    let shown = caveats.restrictions();
     if shown.is_empty() {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        for (i, badge) in shown.into_iter().enumerate() {
+        for (i, caveat) in shown.into_iter().enumerate() {
             // A chip that does not fit beside the others begins a row, instead of breaking its words.
-            if i > 0 && chip_width(ui, badge) > ui.available_size_before_wrap().x {
+            if i > 0 && chip_width(ui, caveat) > ui.available_size_before_wrap().x {
                 ui.end_row();
             }
-            chip_ui(ui, badge);
+            chip_ui(ui, caveat);
         }
     });
 }
 
 /// Width of a chip on a row of its own, points.
-fn chip_width(ui: &Ui, badge: &Badge) -> f32 {
+fn chip_width(ui: &Ui, caveat: &Caveat) -> f32 {
     let font = TextStyle::Body.resolve(ui.style());
-    let text = ui.painter().layout_no_wrap(chip_text(badge), font, Color32::PLACEHOLDER);
+    let text = ui.painter().layout_no_wrap(chip_text(caveat), font, Color32::PLACEHOLDER);
     let icon = looks::icon_size(ui) + looks::GRID;
     icon + text.size().x + 2.0 * f32::from(MARGIN.left) + 2.0
 }
 
-fn chip_ui(ui: &mut Ui, badge: &Badge) {
-    let (severity, icon) = match badge.kind.is_warning() {
-        true => (Severity::Warning, Icon::TriangleAlert),
-        false => (Severity::Info, Icon::Info),
+fn chip_ui(ui: &mut Ui, caveat: &Caveat) {
+    let (severity, icon) = match caveat.is_warning() {
+        true => (caveat.severity, Icon::TriangleAlert),
+        false => (caveat.severity, Icon::Info),
     };
     let color = theme::severity_color(severity, ui.visuals().dark_mode);
     let frame = Frame::new()
@@ -57,16 +62,16 @@ fn chip_ui(ui: &mut Ui, badge: &Badge) {
         ui.horizontal(|ui| {
             looks::icon_ui(ui, icon, color);
             // Not selectable, so that the pointer over the text is over the chip.
-            ui.add(Label::new(RichText::new(chip_text(badge)).color(color)).selectable(false));
+            ui.add(Label::new(RichText::new(chip_text(caveat)).color(color)).selectable(false));
         });
     });
-    chip.response.interact(Sense::hover()).on_hover_text(&badge.text);
+    chip.response.interact(Sense::hover()).on_hover_text(&caveat.text);
 }
 
 /// What a chip says: kind, quantity and value.
-fn chip_text(badge: &Badge) -> String {
-    let label = badge.kind.label();
-    match (&badge.quantity, badge.value) {
+fn chip_text(caveat: &Caveat) -> String {
+    let label = caveat.kind.label();
+    match (&caveat.quantity, caveat.value) {
         (Some(quantity), Some(value)) => format!("{label}: {quantity} {}", significant(value)),
         _ => label.to_owned(),
     }
@@ -77,25 +82,20 @@ mod tests {
     use egui::{Context, RawInput};
 
     use super::*;
-    use impactlab_core::uncertainty::BadgeKind;
+    use impactlab_core::uncertainty::CaveatKind;
 
     #[test]
     fn a_chip_that_does_not_fit_begins_a_row() {
-        let badges = [
-            (BadgeKind::OutsideDomain, "duration of the motion [s]"),
-            (BadgeKind::NotAtRest, "share of the draws at rest"),
+        let caveats = [
+            (CaveatKind::OutsideDomain, "duration of the motion [s]"),
+            (CaveatKind::NotAtRest, "share of the draws at rest"),
         ];
-        let badges = badges.map(|(kind, quantity)| Badge {
-            kind,
-            text: String::new(),
-            quantity: Some(quantity.to_owned()),
-            value: Some(120.0),
-            range: None,
-        });
+        let caveats = caveats.map(|(kind, what)| Caveat::new(kind, "").with_value(what, 120.0));
+        let caveats = Caveats::from_iter(caveats);
         let mut height = 0.0;
         let _ = Context::default().run_ui(RawInput::default(), |ui| {
             ui.set_max_width(340.0);
-            height = ui.scope(|ui| badges_ui(ui, &badges)).response.rect.height();
+            height = ui.scope(|ui| restrictions_ui(ui, &caveats)).response.rect.height();
         });
         // Two rows, and not one letter of the second chip in each.
         assert!((30.0..80.0).contains(&height), "{height}");

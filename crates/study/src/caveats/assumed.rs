@@ -1,0 +1,131 @@
+//! Values that a question leaves open and the program chose.
+
+use impactlab_core::collision::{
+    DEFAULT_CONTACT_CLOSING_M_S, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, Impact, Scenario,
+    ScenarioGeometry, TOUCH_TOLERANCE_M,
+};
+use impactlab_core::uncertainty::{Caveat, CaveatSubject};
+use impactlab_core::vehicle::sheet::{Estimate, SheetQuantity};
+use impactlab_core::vehicle::{ContactPoint, VehicleParameters};
+
+/// Each parameter that was estimated because the data sheet of a vehicle does not state it.
+pub(crate) fn estimates(vehicle: &VehicleParameters) -> Vec<Caveat> {
+    let sheet = vehicle.sheet.as_ref();
+    let estimates = sheet.map_or_else(Vec::new, |sheet| sheet.estimates());
+    estimates.iter().map(estimate).collect()
+}
+
+fn estimate(estimate: &Estimate) -> Caveat {
+    let Estimate { quantity, unit, median, ninety: [low, high], rule, source } = estimate;
+    let [median, low, high] = [*median, *low, *high].map(three_digits);
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    let value = format!("{} {median}{unit}, 90 %: {low} to {high}", quantity.label());
+    Caveat::assumed(subject_of(*quantity), value, format!("{rule}; {source}"))
+}
+
+/// Where a person finds what a data sheet leaves open: the friction is that of the road.
+fn subject_of(quantity: SheetQuantity) -> CaveatSubject {
+    match quantity {
+        SheetQuantity::Friction => CaveatSubject::RoadFriction,
+        _ => CaveatSubject::VehicleParameter,
+    }
+}
+
+/// That the parameters of a vehicle are estimates of which only the medians are used.
+pub(crate) fn medians(subject: CaveatSubject, vehicle: &VehicleParameters) -> Option<Caveat> {
+    let n = vehicle.sheet.as_ref()?.estimated().count();
+    let value = format!("{n} of {}, at their medians", vehicle.name);
+    let reason = "its data sheet does not state them; impactlab vehicles lists the rules";
+    (n > 0).then(|| Caveat::assumed(subject, value, reason))
+}
+
+/// What stands for the contact of vehicles whose outlines overlap.
+pub(crate) fn first_touch(geometry: &ScenarioGeometry) -> Option<Caveat> {
+    let (surface, overlap_m) = geometry.surface.zip(geometry.overlap_m)?;
+    let reason = format!(
+        "the outlines overlap by {overlap_m:.2} m; they first touched there at their velocities, \
+         and the middle of the overlap is the contact point"
+    );
+    let value = format!("normal {surface}");
+    let is_deep = overlap_m > TOUCH_TOLERANCE_M;
+    is_deep.then(|| Caveat::assumed(CaveatSubject::FirstTouch, value, reason))
+}
+
+/// Restitution and friction limit of a scenario where they are the default.
+pub(crate) fn contact_default(scenario: &Scenario, impact: &Impact) -> Option<Caveat> {
+    let contact = &scenario.contact;
+    let (e, mu) = (contact.restitution, contact.friction_limit);
+    let is_default = [
+        ("e", e, e == DEFAULT_RESTITUTION),
+        ("μ_c", mu, mu == DEFAULT_FRICTION_LIMIT && contact.friction_of_critical.is_none()),
+    ];
+    let defaults = is_default.into_iter().filter(|(.., is_default)| *is_default);
+    let values: Vec<String> =
+        defaults.map(|(name, value, _)| format!("{name} = {value}")).collect();
+    if values.is_empty() {
+        return None;
+    }
+    let [low, high] = DEFAULT_CONTACT_CLOSING_M_S;
+    let [closing, _] = impact.closing_velocity_m_s();
+    let here = match closing {
+        closing if closing > high => {
+            format!("; here {closing:.1} m/s, where restitution is usually smaller")
+        }
+        closing => format!("; here {closing:.1} m/s"),
+    };
+    let reason = format!(
+        "the default, fitted to finite-element runs that close at {low} to {high} m/s{here}"
+    );
+    Some(Caveat::assumed(CaveatSubject::Restitution, values.join(", "), reason))
+}
+
+/// The contact point that stands for an unknown one.
+pub(crate) fn contact_point(contact: ContactPoint, reason: &str) -> Caveat {
+    let ContactPoint { x_body_m, y_body_m, height_m } = contact;
+    let value = format!(
+        "x {x_body_m} m, y {y_body_m} m from the CG (x forward, y left), {height_m} m high"
+    );
+    Caveat::assumed(CaveatSubject::ContactPoint, value, reason)
+}
+
+/// A number with three digits.
+fn three_digits(value: f64) -> String {
+    let size = value.abs();
+    let decimals = if size < 1e-9 { 0 } else { (2 - size.log10().floor() as i32).clamp(0, 6) };
+    let rounded = format!("{value:.*}", decimals as usize);
+    match decimals {
+        0 => format!("{:.0}", value),
+        _ => rounded.trim_end_matches('0').trim_end_matches('.').to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn estimates_are_told_with_three_digits() {
+        for (value, expected) in [
+            (2451.7, "2452"),
+            (0.6049, "0.605"),
+            (0.0110, "0.011"),
+            (0.0, "0"),
+            (-74.25, "-74.2"),
+            (5.7, "5.7"),
+            (12.34, "12.3"),
+        ] {
+            assert_eq!(three_digits(value), expected);
+        }
+    }
+
+    #[test]
+    fn the_friction_of_a_data_sheet_is_that_of_the_road() {
+        let sheet = impactlab_core::vehicle::built_in_vehicle("toyota-camry-2018").unwrap();
+        let caveats = estimates(&sheet);
+        let friction = caveats.iter().find(|caveat| caveat.text.contains("friction")).unwrap();
+        assert_eq!(friction.subject, Some(CaveatSubject::RoadFriction), "{friction}");
+        assert!(friction.to_string().starts_with("assumed road friction: "), "{friction}");
+        let parameters = |of: &&Caveat| of.subject == Some(CaveatSubject::VehicleParameter);
+        assert_eq!(caveats.iter().filter(parameters).count() + 1, caveats.len());
+    }
+}
