@@ -8,27 +8,36 @@ use std::sync::Arc;
 
 use egui::Context;
 
-use crate::app::case::{Leaving, VariantCommand};
-use crate::app::dialog::{Dialog, FileDialog, PathDialog, Purpose};
+use crate::app::case::{Leaving, SavedCase, VariantCommand};
+use crate::app::cost::CostPlace;
+use crate::app::dialog::{Dialog, PathDialog, Purpose, ask_for_path};
 use crate::app::export::{self, SceneExport};
 use crate::app::film::FilmForm;
+use crate::app::found::Found;
 use crate::app::ground::GroundCommand;
-use crate::app::kept::{KeptEntry, ModelsDialog, Removal};
+use crate::app::import::ImportAnswer;
+use crate::app::kept::{KeptEntry, KeptEvent, ModelsDialog, Removal};
+use crate::app::model::ModelEvent;
 use crate::app::network::Network;
 use crate::app::panes::Pane;
 use crate::app::reconstruction::ReconstructionCommand;
 use crate::app::report::ReportCommand;
+use crate::app::source::OpenedPath;
 use crate::app::state::{Session, State, Subject};
+use crate::app::tasks::TaskKey;
 use crate::app::widgets::OUTDATED;
 use crate::app::workspaces::Workspace;
-use impactlab_core::data::{ColumnMap, Existing, Severity, contact_interval};
+use impactlab_core::data::{ColumnMap, Existing, Outcome, Severity, contact_interval};
 use impactlab_core::vehicle::DataSheet;
 use impactlab_document::figure::Figure;
 use impactlab_document::report::ReportDocument;
 use impactlab_draw::film::Film;
 use impactlab_draw::scene::ScenePicture;
+use impactlab_networks::force::ForceModel;
+use impactlab_networks::response::ResponseModel;
+use impactlab_networks::response::evaluate::Comparison;
 use impactlab_reconstruct::evidence::Evidence;
-use impactlab_study::SimulateAnswer;
+use impactlab_study::{Cost, Request, SimulateAnswer};
 
 /// Time step of the left and right arrow keys in the scene, s.
 pub(in crate::app) const TIME_STEP_S: f64 = 0.05;
@@ -158,6 +167,24 @@ pub enum Command {
     ShowDoors,
     /// Restore the default layout of the panes of the workspace that is shown.
     ResetLayout,
+    /// Take what was found at a path that was opened.
+    Opened(PathBuf, Result<Outcome<Found<OpenedPath>>, String>),
+    /// Say that a file or folder has been written, or why it could not be.
+    Written(Result<PathBuf, String>),
+    /// Say how the film for a file has ended.
+    FilmEnded(PathBuf, Result<Outcome<()>, String>),
+    /// Take the case that was written, or say why it was not.
+    CaseSaved(Result<Found<SavedCase>, String>),
+    /// Take what was read for the import dialog of a file.
+    ImportRead(PathBuf, Result<Found<ImportAnswer>, String>),
+    /// Take what a form with this question will cost.
+    Measured(CostPlace, Box<Request>, Result<Outcome<Option<Cost>>, String>),
+    /// Take what has become of a model of the force network.
+    ForceModel(Found<ModelEvent<ForceModel>>),
+    /// Take what has become of a model of the response network.
+    ResponseModel(Found<ModelEvent<ResponseModel>>),
+    /// Take what has become of what is kept.
+    Kept(Found<KeptEvent>),
     /// Show a message in the status line.
     Say(Severity, String),
     /// Take the latest message out of the status line. It stays in the list of all messages.
@@ -210,6 +237,8 @@ pub enum ComparisonCommand {
     Cancel,
     /// Read a comparison from a `comparison.json` file.
     Open(PathBuf),
+    /// Show the comparison that was read, or why there is none.
+    Read(Result<Found<Comparison>, String>),
     /// Write the comparison that is shown into a folder.
     Save(PathBuf),
 }
@@ -242,27 +271,27 @@ impl State {
             Command::Open(paths) => self.open(paths, context),
             Command::Close(path) => self.close(&path),
             command if command.exports_outdated() => self.say(Severity::Warning, OUTDATED),
-            Command::Ask(purpose) => self.ask(purpose, context),
+            Command::Ask(purpose) => self.ask(purpose),
             Command::Select(subject) => self.select(subject),
             Command::SelectNeighbour(step) => self.select_neighbour(step),
             Command::List(path) => self.view.listed = Some(path),
             Command::AskMapping(path) => self.ask_mapping(path),
             Command::OpenMapped(path, map) => {
                 self.end_mapping();
-                self.load(path, Some(map), context);
+                self.load(path, Some(map));
             }
             Command::CloseDialog => self.close_dialog(),
             Command::ReplayDataset(path) => self.replay(path, context),
             Command::CancelReplay(path) => self.cancel_replay(&path),
             Command::NewCase => self.leave(Leaving::New, context),
             Command::SaveCase => match self.case.path.clone() {
-                None => self.ask(Purpose::SaveCase, context),
+                None => self.ask(Purpose::SaveCase),
                 Some(path) if self.is_case_file_foreign() => {
                     self.session.dialogs.open(Dialog::Replace(Box::new(Command::SaveCaseAs(path))));
                 }
-                Some(path) => self.save_case((path, Existing::Replace), context),
+                Some(path) => self.save_case(path, Existing::Replace),
             },
-            Command::Variant(command) => self.change_variant(command, context),
+            Command::Variant(command) => self.change_variant(command),
             Command::Leave { to, ask: true } => self.leave(to, context),
             Command::Leave { to, ask: false } => self.go(to, context),
             Command::SaveAndLeave => self.save_and_leave(context),
@@ -291,7 +320,27 @@ impl State {
                 let form = FilmForm::new(*picture, self.view.dark);
                 self.session.dialogs.open(Dialog::Film(Box::new(form)));
             }
-            Command::CancelFilm => self.session.film.cancel(),
+            Command::CancelFilm => {
+                if let Some(path) = self.session.tasks.film() {
+                    self.session.tasks.cancel(&TaskKey::Film(path.to_owned()));
+                }
+            }
+            Command::Opened(path, result) => self.take_opened(&path, result),
+            Command::Written(result) => self.say_of_file(result),
+            Command::FilmEnded(path, result) => self.say_of_film(&path, result),
+            Command::CaseSaved(result) => self.take_saved_case(result),
+            Command::ImportRead(path, result) => {
+                let dialog = self.session.dialogs.import_mut();
+                if let Some(dialog) = dialog.filter(|dialog| dialog.path() == path) {
+                    dialog.receive(result.map(Found::take));
+                }
+            }
+            Command::Measured(place, question, result) => {
+                self.session.costs.take(place, *question, result);
+            }
+            Command::ForceModel(event) => self.take_force_model(&event),
+            Command::ResponseModel(event) => self.take_response_model(&event),
+            Command::Kept(event) => self.take_kept_event(event.take(), context),
             Command::PredictCase => self.predict_case(),
             Command::PredictScenario => self.predict_scenario(),
             Command::UseModel(network, path) => self.use_model(network, path),
@@ -304,7 +353,7 @@ impl State {
             Command::CancelEvaluation => self.session.force.evaluation.cancel(),
             Command::Ground(command) => self.change_ground(command),
             Command::Reconstruct(command) => self.reconstruct(command, context),
-            Command::Report(command) => self.report(command, context),
+            Command::Report(command) => self.report(command),
             command => self.apply_to_view(command),
         }
     }
@@ -343,11 +392,8 @@ impl State {
         self.session.dialogs.open(Dialog::Path(PathDialog::new(purpose)));
     }
 
-    fn ask(&mut self, purpose: Purpose, context: &Context) {
-        match FileDialog::open(purpose, wake(context)) {
-            Ok(dialog) => self.session.file_dialog = Some(dialog),
-            Err(error) => self.say(Severity::Error, error.to_string()),
-        }
+    fn ask(&mut self, purpose: Purpose) {
+        ask_for_path(purpose, &mut self.session.tasks);
     }
 
     /// Selects a subject and shows it from time zero. Selecting the current subject again changes

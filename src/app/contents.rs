@@ -174,7 +174,7 @@ impl State {
 
     fn source_entry(&self, source: &Source) -> ContentsEntry {
         let (detail, missing, command) = match &source.content {
-            Content::Loading(_) => ("loading…".to_owned(), None, Command::Show(Pane::Data)),
+            Content::Loading => ("loading…".to_owned(), None, Command::Show(Pane::Data)),
             Content::Dataset(checked) => {
                 let detail = format!("{} cases", checked.dataset.cases.len());
                 let n_problems = checked.dataset.problems.len();

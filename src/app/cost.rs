@@ -10,11 +10,11 @@ use std::time::Duration;
 
 use egui::Context;
 
-use crate::app::command::wake;
+use crate::app::command::Command;
 use crate::app::state::{Session, State};
+use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::data::Outcome;
 use impactlab_core::error_chain;
-use impactlab_core::jobs::Job;
 use impactlab_study::{Cost, Event, Request};
 
 /// Time for which the settings have to rest before they are measured.
@@ -48,8 +48,6 @@ impl CostPlace {
 /// What has been measured of a question; `None` if it takes a moment.
 pub type MeasuredCost = Result<Option<Cost>, String>;
 
-type CostJob = Job<Result<Outcome<Option<Cost>>, String>>;
-
 /// What forms will cost.
 #[derive(Default)]
 pub struct Costs {
@@ -57,7 +55,7 @@ pub struct Costs {
     seen: Vec<CostPlace>,
     /// The question of each form, and since when it is that, in seconds of the window's clock.
     asked: BTreeMap<CostPlace, (Request, f64)>,
-    running: Option<(CostPlace, Request, CostJob)>,
+    running: Option<(CostPlace, Request)>,
     measured: BTreeMap<CostPlace, (Request, MeasuredCost)>,
 }
 
@@ -87,10 +85,14 @@ impl Costs {
         (question == asked).then_some(cost)
     }
 
-    fn poll(&mut self) {
-        let Some((_, _, job)) = &mut self.running else { return };
-        let Some(result) = job.poll().into_result("the measurement") else { return };
-        let Some((place, question, _)) = self.running.take() else { return };
+    /// Takes what has been measured.
+    pub(in crate::app) fn take(
+        &mut self,
+        place: CostPlace,
+        question: Request,
+        result: Result<Outcome<Option<Cost>>, String>,
+    ) {
+        self.running = None;
         let cost = match result {
             Ok(Outcome::Cancelled) => return,
             Ok(Outcome::Complete(cost)) => Ok(cost),
@@ -111,13 +113,18 @@ impl Costs {
     }
 
     /// Cancels a measurement of a form that has changed or is out of view.
-    fn drop_outdated(&mut self) {
-        if let Some((place, question, _)) = &self.running {
+    fn drop_outdated(&mut self, tasks: &mut Tasks) {
+        if let Some((place, question)) = &self.running {
             let is_asked = self.asked.get(place).is_some_and(|(asked, _)| asked == question);
             if !is_asked || !self.seen.contains(place) {
-                self.running = None;
+                self.stop(tasks);
             }
         }
+    }
+
+    fn stop(&mut self, tasks: &mut Tasks) {
+        self.running = None;
+        tasks.stop(&TaskKey::Cost);
     }
 
     /// Returns a form whose settings have rested and that is to be measured.
@@ -146,9 +153,8 @@ impl Session {
 }
 
 impl State {
-    /// Receives what has been measured and starts to measure a form whose settings have rested.
+    /// Starts to measure a form whose settings have rested.
     pub(in crate::app) fn update_costs(&mut self, context: &Context) {
-        self.session.costs.poll();
         let now_s = context.input(|input| input.time);
         for place in CostPlace::ALL {
             if self.session.costs.seen.contains(&place) {
@@ -156,33 +162,33 @@ impl State {
                 self.session.costs.ask(place, question, now_s);
             }
         }
-        self.session.costs.drop_outdated();
-        if self.session.is_working() {
-            self.session.costs.running = None;
+        let is_working = self.session.is_working();
+        let Session { costs, tasks, .. } = &mut self.session;
+        costs.drop_outdated(tasks);
+        if is_working {
+            costs.stop(tasks);
         } else if let Some((place, question)) = self.session.costs.due(now_s) {
-            self.measure(place, question, context);
+            self.measure(place, question);
         } else if !self.session.costs.seen.is_empty() && self.session.costs.running.is_none() {
             context.request_repaint_after(REST);
         }
         self.session.costs.seen.clear();
     }
 
-    fn measure(&mut self, place: CostPlace, question: Request, context: &Context) {
+    fn measure(&mut self, place: CostPlace, question: Request) {
         let (asked, library) = (question.clone(), self.session.library.clone());
-        let job = Job::spawn_in_background("measure", wake(context), move |report| {
-            let mut observer = |event: Event<'_>| match event {
-                Event::Progress(progress) => report(progress),
-                Event::Training(_) | Event::Sampling(_) => std::ops::ControlFlow::Continue(()),
-            };
-            asked.cost(&library, &mut observer).map_err(|error| error_chain(&error))
-        });
-        let costs = &mut self.session.costs;
-        match job {
-            Ok(job) => costs.running = Some((place, question, job)),
-            Err(error) => {
-                costs.measured.insert(place, (question, Err(error.to_string())));
-            }
-        }
+        self.session.costs.running = Some((place, question.clone()));
+        self.session.tasks.start_in_background(
+            TaskKey::Cost,
+            move |report| {
+                let mut observer = |event: Event<'_>| match event {
+                    Event::Progress(progress) => report(progress),
+                    Event::Training(_) | Event::Sampling(_) => std::ops::ControlFlow::Continue(()),
+                };
+                asked.cost(&library, &mut observer).map_err(|error| error_chain(&error))
+            },
+            move |result| Command::Measured(place, Box::new(question), result),
+        );
     }
 
     /// Returns the question that a form asks; `None` if something is missing.

@@ -1,11 +1,10 @@
-//! Writes figures to files in the background, as pictures or as tables.
+//! Writes figures, scenes and reports to files. It takes seconds, so that tasks do it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use impactlab_core::data::{Existing, write_atomically};
 use impactlab_core::error_chain;
-use impactlab_core::jobs::Job;
 use impactlab_document::exchange::{DxfOptions, dxf, glb};
 use impactlab_document::figure::{Figure, write_figure_csv};
 use impactlab_document::report::{ReportDocument, ReportFormat};
@@ -13,61 +12,59 @@ use impactlab_document::scene::Scene;
 use impactlab_draw::scene::{ScenePicture, scene_image};
 use impactlab_draw::{Canvas, figure_image, report_picture, save_png};
 
-/// Starts writing a figure to a file: its numbers if the path ends in `.csv`, otherwise a PNG
-/// picture.
+/// Writes a figure to a file: its numbers if the path ends in `.csv`, otherwise a PNG picture.
 ///
-/// - `existing`: what happens to a file that exists already;
-/// - `dark`: whether the picture has the dark theme;
-/// - `wake`: called at the end;
-/// - returns the job, whose result is the path that was written or a message for the user.
+/// - `dark`: whether the picture has the dark theme.
 ///
 /// # Errors
-/// The error of the operating system, if the thread cannot be started.
-pub fn spawn(
-    figure: Figure,
-    (path, existing): (PathBuf, Existing),
+/// A message for the user.
+pub fn write_figure(
+    figure: &Figure,
+    path: &Path,
+    existing: Existing,
     dark: bool,
-    wake: impl Fn() + Send + 'static,
-) -> std::io::Result<Job<Result<PathBuf, String>>> {
-    Job::spawn("export", wake, move |_| write(&figure, (&path, existing), dark).map(|()| path))
+) -> Result<(), String> {
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) {
+        let text = numbers(figure)?;
+        return write_atomically(path, existing, |out| out.write_all(text.as_bytes()))
+            .map_err(|error| error_chain(&error));
+    }
+    let canvas = Canvas { dark, ..Canvas::default() };
+    figure_image(figure, canvas)
+        .and_then(|image| save_png(&image, path, existing))
+        .map_err(|error| error_chain(&error))
 }
 
-/// Starts writing a scene to a PNG file, as [`spawn`] does for a figure.
+/// Writes a scene to a PNG file.
 ///
 /// # Errors
-/// The error of the operating system, if the thread cannot be started.
-pub fn spawn_scene(
-    picture: ScenePicture,
-    (path, existing): (PathBuf, Existing),
+/// A message for the user.
+pub fn write_scene(
+    picture: &ScenePicture,
+    path: &Path,
+    existing: Existing,
     dark: bool,
-    wake: impl Fn() + Send + 'static,
-) -> std::io::Result<Job<Result<PathBuf, String>>> {
-    Job::spawn("export", wake, move |_| {
-        let canvas = Canvas { dark, ..Canvas::default() };
-        scene_image(&picture, canvas)
-            .and_then(|image| save_png(&image, &path, existing))
-            .map_err(|error| error_chain(&error))?;
-        Ok(path)
-    })
+) -> Result<(), String> {
+    let canvas = Canvas { dark, ..Canvas::default() };
+    scene_image(picture, canvas)
+        .and_then(|image| save_png(&image, path, existing))
+        .map_err(|error| error_chain(&error))
 }
 
-/// Starts writing a report to a file, in the format of its ending, as [`spawn`] does for a figure.
+/// Writes a report to a file, in the format of its ending.
 ///
 /// # Errors
-/// The error of the operating system, if the thread cannot be started.
-pub fn spawn_report(
-    document: Arc<ReportDocument>,
-    (path, existing): (PathBuf, Existing),
-    wake: impl Fn() + Send + 'static,
-) -> std::io::Result<Job<Result<PathBuf, String>>> {
-    Job::spawn("export", wake, move |_| {
-        let format = ReportFormat::of(&path).map_err(|error| error_chain(&error))?;
-        let bytes = document.bytes(format, Some(&report_picture));
-        let bytes = bytes.map_err(|error| error_chain(&error))?;
-        write_atomically(&path, existing, |out| out.write_all(&bytes))
-            .map_err(|error| error_chain(&error))?;
-        Ok(path)
-    })
+/// A message for the user.
+pub fn write_report(
+    document: &ReportDocument,
+    path: &Path,
+    existing: Existing,
+) -> Result<(), String> {
+    let format = ReportFormat::of(path).map_err(|error| error_chain(&error))?;
+    let bytes = document.bytes(format, Some(&report_picture));
+    let bytes = bytes.map_err(|error| error_chain(&error))?;
+    write_atomically(path, existing, |out| out.write_all(&bytes))
+        .map_err(|error| error_chain(&error))
 }
 
 /// A scene for another program.
@@ -100,38 +97,19 @@ impl SceneFormat {
     }
 }
 
-/// Starts writing a scene for another program, as [`spawn`] does for a figure.
+/// Writes a scene for another program.
 ///
 /// # Errors
-/// The error of the operating system, if the thread cannot be started.
-pub fn spawn_exchange(
-    export: SceneExport,
-    (path, existing): (PathBuf, Existing),
-    wake: impl Fn() + Send + 'static,
-) -> std::io::Result<Job<Result<PathBuf, String>>> {
-    Job::spawn("export", wake, move |_| {
-        let SceneExport { scene, format, outlines_s } = export;
-        let mut bytes = Vec::new();
-        match format {
-            SceneFormat::Dxf => dxf(&scene, &DxfOptions { outlines_s }, &mut bytes),
-            SceneFormat::Glb => glb(&scene, &mut bytes),
-        }
-        .map_err(|error| error_chain(&error))?;
-        write_atomically(&path, existing, |out| out.write_all(&bytes))
-            .map_err(|error| error_chain(&error))?;
-        Ok(path)
-    })
-}
-
-fn write(figure: &Figure, (path, existing): (&Path, Existing), dark: bool) -> Result<(), String> {
-    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) {
-        let text = numbers(figure)?;
-        return write_atomically(path, existing, |out| out.write_all(text.as_bytes()))
-            .map_err(|error| error_chain(&error));
+/// A message for the user.
+pub fn write_exchange(export: SceneExport, path: &Path, existing: Existing) -> Result<(), String> {
+    let SceneExport { scene, format, outlines_s } = export;
+    let mut bytes = Vec::new();
+    match format {
+        SceneFormat::Dxf => dxf(&scene, &DxfOptions { outlines_s }, &mut bytes),
+        SceneFormat::Glb => glb(&scene, &mut bytes),
     }
-    let canvas = Canvas { dark, ..Canvas::default() };
-    figure_image(figure, canvas)
-        .and_then(|image| save_png(&image, path, existing))
+    .map_err(|error| error_chain(&error))?;
+    write_atomically(path, existing, |out| out.write_all(&bytes))
         .map_err(|error| error_chain(&error))
 }
 

@@ -1,15 +1,13 @@
-//! Films of the scene: the form that asks how, and the job that makes one in the background.
+//! Films of the scene: the form that asks how, and the task that makes one in the background.
 
 use std::path::{Path, PathBuf};
 
-use egui::Context;
-
-use crate::app::command::wake;
+use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::state::State;
+use crate::app::tasks::TaskKey;
 use impactlab_core::data::{Existing, Outcome, Severity};
 use impactlab_core::error_chain;
-use impactlab_core::jobs::Job;
 use impactlab_document::scene::{FilmSection, FilmTiming};
 use impactlab_draw::Canvas;
 use impactlab_draw::film::{Film, write_film};
@@ -17,15 +15,6 @@ use impactlab_draw::scene::ScenePicture;
 
 /// Duration and speed of a part in slow motion that is added to a form, s and seconds in a second.
 const USUAL_SECTION: (f64, f64) = (0.3, 0.1);
-
-/// The thread that makes a film.
-type FilmJob = Job<Result<Outcome<()>, String>>;
-
-/// The film that is being made.
-#[derive(Default)]
-pub struct FilmSession {
-    running: Option<(PathBuf, FilmJob)>,
-}
 
 /// What is asked before a film is made.
 #[derive(Debug, Clone)]
@@ -52,64 +41,33 @@ impl FilmForm {
     }
 }
 
-impl FilmSession {
-    /// The film that is being made: its file, and the job, which knows its progress.
-    pub fn running(&self) -> Option<(&Path, &FilmJob)> {
-        self.running.as_ref().map(|(path, job)| (path.as_path(), job))
-    }
-
-    /// Cancels the film that is being made. Nothing is written then.
-    pub fn cancel(&self) {
-        if let Some((_, job)) = &self.running {
-            job.cancel();
-        }
-    }
-
-    /// Whether the film that is being made has been cancelled, or what there is to say of its end.
-    fn poll(&mut self) -> Option<(Severity, String)> {
-        let (_, job) = self.running.as_mut()?;
-        let result = job.poll().into_result("the film")?;
-        let (path, _) = self.running.take()?;
-        Some(match result {
-            Ok(Outcome::Complete(())) => (Severity::Info, format!("{} written", path.display())),
-            Ok(Outcome::Cancelled) => {
-                (Severity::Info, format!("{} not written: cancelled", path.display()))
-            }
-            Err(why) => (Severity::Error, why),
-        })
-    }
-}
-
 impl State {
-    /// Receives the end of the film that is being made.
-    pub(in crate::app) fn poll_film(&mut self) {
-        if let Some((severity, text)) = self.session.film.poll() {
-            self.say(severity, text);
+    /// Tells the user how a film has ended.
+    pub(in crate::app) fn say_of_film(&mut self, path: &Path, result: Result<Outcome<()>, String>) {
+        match result {
+            Ok(Outcome::Complete(())) => self.say_of_file(Ok(path.to_owned())),
+            Ok(Outcome::Cancelled) => {
+                self.say(Severity::Info, format!("{} not written: cancelled", path.display()));
+            }
+            Err(why) => self.say(Severity::Error, why),
         }
     }
 
     /// Starts to make a film and closes its form, unless another one is being made.
-    pub(in crate::app) fn make_film(
-        &mut self,
-        film: Film,
-        (path, existing): (PathBuf, Existing),
-        context: &Context,
-    ) {
-        if let Some((other, _)) = self.session.film.running() {
+    pub(in crate::app) fn make_film(&mut self, film: Film, path: PathBuf, existing: Existing) {
+        if let Some(other) = self.session.tasks.film() {
             let text = format!("{} is being made; wait for it or cancel it", other.display());
             self.say(Severity::Warning, text);
             return;
         }
+        self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Film(_)));
         let target = path.clone();
-        let job = Job::spawn_in_background("film", wake(context), move |report| {
-            write_film(&film, (&target, existing), report).map_err(|error| error_chain(&error))
-        });
-        match job {
-            Ok(job) => {
-                self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Film(_)));
-                self.session.film.running = Some((path, job));
-            }
-            Err(error) => self.say(Severity::Error, error.to_string()),
-        }
+        self.session.tasks.start_in_background(
+            TaskKey::Film(path.clone()),
+            move |report| {
+                write_film(&film, (&target, existing), report).map_err(|error| error_chain(&error))
+            },
+            |result| Command::FilmEnded(path, result),
+        );
     }
 }

@@ -4,16 +4,15 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use egui::Context;
 use serde::{Deserialize, Serialize};
 
-use crate::app::command::wake;
+use crate::app::command::Command;
 use crate::app::panes::Pane;
 use crate::app::state::{Session, State};
+use crate::app::tasks::{TaskKey, Tasks};
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::{Existing, Severity, write_atomically};
 use impactlab_core::error_chain;
-use impactlab_core::jobs::{Job, Update};
 use impactlab_core::ranges::SITE_DISTANCE;
 use impactlab_core::site::PixelMap;
 use impactlab_document::scene::LoadedGround;
@@ -30,7 +29,7 @@ pub struct SiteChoice {
 }
 
 /// An action on the ground.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum GroundCommand {
     /// Scale the orthophoto so that two places that are shown have a distance; the first one stays.
     Scale {
@@ -41,6 +40,8 @@ pub enum GroundCommand {
     },
     /// Take the ground away.
     Remove,
+    /// Take the ground that was read of this file, or why it cannot be shown.
+    Read(PathBuf, Result<Arc<LoadedGround>, String>),
 }
 
 /// The ground that was read.
@@ -48,7 +49,7 @@ pub enum GroundCommand {
 pub struct GroundSession {
     /// What was asked for last.
     asked: Option<PathBuf>,
-    job: Option<Job<Result<LoadedGround, String>>>,
+    is_loading: bool,
     read: Option<Arc<LoadedGround>>,
     /// The ground with its orthophoto where the project puts it.
     shown: Option<(Option<PixelMap>, Arc<LoadedGround>)>,
@@ -64,7 +65,7 @@ impl GroundSession {
 
     /// Whether a ground is being read.
     pub fn is_loading(&self) -> bool {
-        self.job.is_some()
+        self.is_loading
     }
 
     /// Reads the ground again, since its files may have changed.
@@ -72,44 +73,25 @@ impl GroundSession {
         *self = Self::default();
     }
 
-    /// Starts to read a ground that has not been asked for, and receives the one that has been read.
-    ///
-    /// - `extent_m`: gives smallest and largest `[X, Y]` of the scene, m;
-    /// - returns what the user has to know.
-    fn update(
-        &mut self,
-        choice: Option<&SiteChoice>,
-        extent_m: impl Fn() -> [[f64; 2]; 2],
-        context: &Context,
-    ) -> Vec<(Severity, String)> {
+    /// Starts to read a ground that has not been asked for, and puts the one that was read where the
+    /// project wants it.
+    fn update(&mut self, choice: Option<&SiteChoice>, tasks: &mut Tasks) {
         let file = choice.map(|choice| &choice.file);
         if file != self.asked.as_ref() {
             self.forget();
             self.asked = file.cloned();
             if let Some(path) = file.cloned() {
-                let job = Job::spawn("ground", wake(context), move |_| {
-                    LoadedGround::load(&path).map_err(|error| error_chain(&error))
-                });
-                match job {
-                    Ok(job) => self.job = Some(job),
-                    Err(error) => self.problem = Some(error.to_string()),
-                }
+                self.is_loading = true;
+                let asked = path.clone();
+                tasks.start(
+                    TaskKey::Ground,
+                    move |_| match LoadedGround::load(&path) {
+                        Ok(ground) => Ok(Arc::new(ground)),
+                        Err(error) => Err(error_chain(&error)),
+                    },
+                    |result| Command::Ground(GroundCommand::Read(asked, result)),
+                );
             }
-        }
-        let mut said = Vec::new();
-        match self.job.as_mut().map(Job::poll) {
-            None | Some(Update::Running) => {}
-            Some(Update::Finished(Ok(ground))) => {
-                said.extend(ground.notes.iter().map(|note| (Severity::Info, note.clone())));
-                let far = ground.far_notes(extent_m());
-                said.extend(far.into_iter().map(|note| (Severity::Warning, note)));
-                (self.job, self.read) = (None, Some(Arc::new(ground)));
-            }
-            Some(Update::Finished(Err(why)) | Update::Panicked(why)) => {
-                said.push((Severity::Error, why.clone()));
-                (self.job, self.problem) = (None, Some(why));
-            }
-            Some(Update::Gone) => self.job = None,
         }
         let map = choice.and_then(|choice| choice.map);
         if self.shown.as_ref().map(|(map, _)| map) != Some(&map) || self.read.is_none() {
@@ -119,7 +101,36 @@ impl GroundSession {
             };
             self.shown = self.read.as_ref().map(|read| (map, placed(read)));
         }
-        said
+    }
+
+    /// Takes what was read, unless another ground was asked for meanwhile.
+    ///
+    /// - `extent_m`: smallest and largest `[X, Y]` of the scene, m;
+    /// - returns what the user has to know.
+    fn take(
+        &mut self,
+        path: &Path,
+        result: Result<Arc<LoadedGround>, String>,
+        extent_m: [[f64; 2]; 2],
+    ) -> Vec<(Severity, String)> {
+        if !self.is_loading || self.asked.as_deref() != Some(path) {
+            return Vec::new();
+        }
+        self.is_loading = false;
+        match result {
+            Ok(ground) => {
+                let notes = ground.notes.iter().map(|note| (Severity::Info, note.clone()));
+                let far = ground.far_notes(extent_m);
+                let far = far.into_iter().map(|note| (Severity::Warning, note));
+                let said = notes.chain(far).collect();
+                self.read = Some(ground);
+                said
+            }
+            Err(why) => {
+                self.problem = Some(why.clone());
+                vec![(Severity::Error, why)]
+            }
+        }
     }
 }
 
@@ -142,17 +153,21 @@ impl State {
     }
 
     /// Reads the ground of the project where that has changed.
-    pub(in crate::app) fn update_ground(&mut self, context: &Context) {
-        let Session { scene, ground, .. } = &mut self.session;
-        let extent_m = || scene.extent_m().unwrap_or_default();
-        let said = ground.update(self.project.site.as_ref(), extent_m, context);
-        said.into_iter().for_each(|(severity, text)| self.say(severity, text));
+    pub(in crate::app) fn update_ground(&mut self) {
+        let Session { ground, tasks, .. } = &mut self.session;
+        ground.update(self.project.site.as_ref(), tasks);
     }
 
     /// Carries out a command on the ground.
     pub(in crate::app) fn change_ground(&mut self, command: GroundCommand) {
         match command {
             GroundCommand::Remove => self.project.site = None,
+            GroundCommand::Read(path, result) => {
+                let extent_m = self.session.scene.extent_m().unwrap_or_default();
+                for (severity, text) in self.session.ground.take(&path, result, extent_m) {
+                    self.say(severity, text);
+                }
+            }
             GroundCommand::Scale { ends_m: [from, to], distance_m } => {
                 let photo = self.session.ground.shown().and_then(|of| of.site.orthophoto.as_ref());
                 let shown_m = (to[0] - from[0]).hypot(to[1] - from[1]);

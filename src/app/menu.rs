@@ -13,8 +13,8 @@ use crate::app::panels;
 use crate::app::panes::Pane;
 use crate::app::reconstruction::ReconstructionCommand;
 use crate::app::report::ReportCommand;
-use crate::app::source::{Content, Source};
 use crate::app::state::{Session, State};
+use crate::app::tasks::TaskKey;
 use crate::app::widgets::duration_text;
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::Severity;
@@ -213,10 +213,11 @@ fn help_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
 /// Draws the status line: the work in progress with its progress bars, and the latest message.
 pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     Panel::bottom("status").show(ui, |ui| {
+        let tasks = &state.session.tasks;
         for source in &state.session.sources {
-            if let Source { content: Content::Loading(job), opened, .. } = source {
-                let cancel = Command::Close(opened.clone());
-                job_ui(ui, &format!("Loading {}", source.name()), job, cancel, commands);
+            if let Some(progress) = tasks.progress(&TaskKey::Load(source.opened.clone())) {
+                let cancel = Command::Close(source.opened.clone());
+                progress_ui(ui, &format!("Loading {}", source.name()), progress, cancel, commands);
             }
         }
         for (path, replay) in &state.session.replays {
@@ -247,15 +248,17 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             let cancel = Command::Reconstruct(ReconstructionCommand::Cancel);
             job_ui(ui, "Reconstructing", job, cancel, commands);
         }
-        if let Some(job) = state.session.report.job()
+        if let Some(progress) = tasks.progress(&TaskKey::Report)
             && state.view.workspaces.shown != Workspace::Report
         {
             let cancel = Command::Report(ReportCommand::Cancel);
-            job_ui(ui, "Making the report", job, cancel, commands);
+            progress_ui(ui, "Making the report", progress, cancel, commands);
         }
-        if let Some((path, job)) = state.session.film.running() {
+        if let Some(path) = tasks.film()
+            && let Some(progress) = tasks.progress(&TaskKey::Film(path.to_owned()))
+        {
             let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-            job_ui(ui, &format!("Making {name}"), job, Command::CancelFilm, commands);
+            progress_ui(ui, &format!("Making {name}"), progress, Command::CancelFilm, commands);
         }
         if state.session.shows_frame_times {
             ui.weak(state.session.frame_times.text());

@@ -14,6 +14,7 @@ mod dialog;
 mod export;
 mod film;
 mod force;
+mod found;
 mod frame_times;
 mod ground;
 mod import;
@@ -44,6 +45,7 @@ mod state;
 #[cfg(test)]
 mod state_tests;
 mod store;
+mod tasks;
 mod training;
 mod training_status;
 mod unfinished;
@@ -91,6 +93,7 @@ pub use response::{DensityChoice, ForceChoice, MotionAnswer, ResponseSession, Tr
 pub use scene::{SceneSession, SceneSettings, SceneSource};
 pub use source::{Content, Source};
 pub use state::{FileStart, Project, RestoreError, State, Subject, View};
+pub use tasks::{TaskKey, Tasks};
 pub use unfinished::{Unfinished, UnfinishedTrainings};
 pub use variants::AnsweredVariant;
 pub use workspaces::{Layout, Workspace, Workspaces};
@@ -164,6 +167,7 @@ impl App {
         let OpenedState { store, restored, message } = open_state(state_file);
         let (is_asked, is_restored) = (!paths.is_empty(), restored.is_some());
         let (mut state, last_open) = restored.unwrap_or_default();
+        state.session.tasks.wake(cc.egui_ctx.clone());
         if let Some(message) = message {
             state.say(Severity::Warning, message);
         }
@@ -174,7 +178,7 @@ impl App {
         };
         if let Some(folder) = data_folder {
             // Trainings are stored by the window that stores its state.
-            state.open_data_folder((folder, store.is_some()), &cc.egui_ctx);
+            state.open_data_folder(folder, store.is_some());
         }
         state.session.response.gpu = graphics_processor(cc);
         draw_scenes_on(cc, &mut state);
@@ -223,8 +227,8 @@ impl App {
 
 impl eframe::App for App {
     fn logic(&mut self, context: &Context, _frame: &mut eframe::Frame) {
+        self.state.update(context);
         let mut commands = Vec::new();
-        self.state.update(context, &mut commands);
         let session = &mut self.state.session;
         let views = [&mut session.scene.view, &mut session.reconstruction.cars.view];
         for refusal in views.map(SceneView::take_refusal).into_iter().flatten() {

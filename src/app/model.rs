@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use crate::app::kept::{KeptEntry, KeptError, KeptFolder, NOTE_ENDING, name_of};
 use crate::app::network::TrainedModel;
+use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::data::Existing;
 use impactlab_core::error_chain;
-use impactlab_core::jobs::Job;
+use impactlab_core::jobs::ProgressCallback;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{Library, ModelChoice};
 
@@ -24,17 +25,34 @@ pub struct CurrentModel<M> {
     pub is_saved: bool,
 }
 
-/// A model that is being written, which need not be the one in use when it has been written.
-struct Saving<M> {
-    model: Arc<M>,
-    job: Job<Result<PathBuf, String>>,
+impl<M> Clone for CurrentModel<M> {
+    fn clone(&self) -> Self {
+        let Self { choice, model, name, is_saved } = self;
+        let (choice, model, name) = (choice.clone(), Arc::clone(model), name.clone());
+        Self { choice, model, name, is_saved: *is_saved }
+    }
 }
 
-/// A model that is being kept in the user's data folder.
-struct Keeping<M> {
-    model: Arc<M>,
-    /// Why the model is not kept, with its name.
-    job: Job<Result<(KeptEntry, PathBuf), String>>,
+/// What a task has made of a model, which need not be the one in use any more.
+pub enum ModelEvent<M> {
+    /// The model that the project requests was read, or why it could not be.
+    Loaded(Result<CurrentModel<M>, String>),
+    /// The model is in this file of the user now, or why it is not.
+    Saved(Arc<M>, Result<PathBuf, String>),
+    /// The model is kept in this file of the user's data folder now, or why it is not, with its name.
+    Kept(Arc<M>, Result<(KeptEntry, PathBuf), String>),
+}
+
+/// What the user has to know of it.
+pub enum ModelNews {
+    /// Nothing.
+    Nothing,
+    /// A model could not be read.
+    Problem(String),
+    /// A model was written, or could not be.
+    Saved(Result<PathBuf, String>),
+    /// A model is kept, or could not be.
+    Kept(Result<KeptEntry, String>),
 }
 
 /// The state of the model of one network: the model in use, the one that is being loaded or saved,
@@ -43,9 +61,10 @@ pub struct ModelStatus<M> {
     /// The file that was requested last; the inner `None` is the shipped model. The outer `None`
     /// means that no model has been requested yet, or that it must be read again.
     requested: Option<Option<PathBuf>>,
-    job: Option<Job<Result<CurrentModel<M>, String>>>,
-    saving: Option<Saving<M>>,
-    keeping: Vec<Keeping<M>>,
+    is_loading: bool,
+    is_saving: bool,
+    /// Number of models that are being kept.
+    n_keeping: usize,
     /// Number of models that trainings have given since the start of the program.
     n_trained: usize,
     /// The model that answers questions; `None` before the first one is loaded.
@@ -63,9 +82,9 @@ impl<M> Default for ModelStatus<M> {
     fn default() -> Self {
         Self {
             requested: None,
-            job: None,
-            saving: None,
-            keeping: Vec::new(),
+            is_loading: false,
+            is_saving: false,
+            n_keeping: 0,
             n_trained: 0,
             current: None,
             set_aside: None,
@@ -76,39 +95,71 @@ impl<M> Default for ModelStatus<M> {
 }
 
 impl<M: TrainedModel> ModelStatus<M> {
-    /// Starts to load a model if the project requests another one than before, and receives the
-    /// model that has been loaded. If loading fails, the model in use stays.
+    /// Starts to load a model if the project requests another one than before. If loading fails, the
+    /// model in use stays.
     ///
-    /// - `wanted`: file of the requested model; `None` is the shipped one;
-    /// - `wake`: called when the model is loaded;
-    /// - returns the reason why a model could not be loaded, once.
-    pub fn update(
+    /// - `wanted`: file of the requested model; `None` is the shipped one.
+    pub fn update(&mut self, wanted: &Option<PathBuf>, library: &Arc<Library>, tasks: &mut Tasks) {
+        if self.requested.as_ref() == Some(wanted) {
+            return;
+        }
+        self.requested = Some(wanted.clone());
+        self.is_loading = true;
+        let (path, library) = (wanted.clone(), Arc::clone(library));
+        let event = |result| M::command(ModelEvent::Loaded(result));
+        tasks.start(TaskKey::LoadModel(M::NETWORK), move |_| load(path, &library), event);
+    }
+
+    /// Takes what a task has made of a model. One that was saved or kept is identified by its file from
+    /// then on, also if another model has come into use meanwhile.
+    ///
+    /// - `wanted`: file of the model that the project requests.
+    pub fn take(
         &mut self,
-        wanted: &Option<PathBuf>,
-        library: &Arc<Library>,
-        wake: impl Fn() + Send + 'static,
-    ) -> Option<String> {
-        if self.requested.as_ref() != Some(wanted) {
-            self.requested = Some(wanted.clone());
-            let (path, library) = (wanted.clone(), Arc::clone(library));
-            match Job::spawn("load model", wake, move |_| load(path, &library)) {
-                Ok(job) => self.job = Some(job),
-                Err(error) => return Some(error.to_string()),
+        event: &ModelEvent<M>,
+        library: &Library,
+        wanted: &mut Option<PathBuf>,
+    ) -> ModelNews {
+        match event {
+            // Another model has come into use meanwhile.
+            ModelEvent::Loaded(_) if !self.is_loading => ModelNews::Nothing,
+            ModelEvent::Loaded(result) => {
+                (self.is_loading, self.problem) = (false, None);
+                match result {
+                    Ok(current) => self.current = Some(current.clone()),
+                    Err(problem) => {
+                        self.problem = Some(problem.clone());
+                        return ModelNews::Problem(problem.clone());
+                    }
+                }
+                ModelNews::Nothing
+            }
+            ModelEvent::Saved(model, result) => {
+                self.is_saving = false;
+                if let Ok(path) = result {
+                    self.identify((model, path), file_name(path), (library, wanted));
+                }
+                ModelNews::Saved(result.clone())
+            }
+            ModelEvent::Kept(model, result) => {
+                self.n_keeping = self.n_keeping.saturating_sub(1);
+                ModelNews::Kept(result.clone().map(|(entry, path)| {
+                    // A file to which the user has saved it meanwhile comes before the kept one.
+                    let current = self.current.as_ref();
+                    if current.is_some_and(|of| Arc::ptr_eq(&of.model, model) && of.is_saved) {
+                        M::hold(library, ModelChoice::file(&path), Arc::clone(model));
+                    } else {
+                        self.identify((model, &path), entry.name.clone(), (library, wanted));
+                    }
+                    entry
+                }))
             }
         }
-        let result = self.job.as_mut()?.poll().into_result("the loader")?;
-        self.job = None;
-        self.problem = None;
-        match result {
-            Ok(current) => self.current = Some(current),
-            Err(problem) => self.problem = Some(problem),
-        }
-        self.problem.clone()
     }
 
     /// Whether a model is being loaded.
     pub fn is_loading(&self) -> bool {
-        self.job.is_some()
+        self.is_loading
     }
 
     /// Receives a model that was just trained and puts it into the library.
@@ -144,19 +195,19 @@ impl<M: TrainedModel> ModelStatus<M> {
     /// training cannot be lost any more, and the checkpoint of a completed training is removed.
     ///
     /// - `draft`: its note;
-    /// - `checkpoint`: the files of the training, if this window stores any;
-    /// - `wake`: called when it is kept.
-    ///
-    /// # Errors
-    /// The error of the operating system, if the thread cannot be started.
+    /// - `checkpoint`: the files of the training, if this window stores any.
     pub fn keep(
         &mut self,
-        (model, draft): (Arc<M>, KeptEntry),
-        (folder, checkpoint): (KeptFolder, Option<PathBuf>),
-        wake: impl Fn() + Send + 'static,
-    ) -> std::io::Result<()> {
+        model: Arc<M>,
+        draft: KeptEntry,
+        folder: KeptFolder,
+        checkpoint: Option<PathBuf>,
+        tasks: &mut Tasks,
+    ) {
         let written = Arc::clone(&model);
-        let job = Job::spawn("keep model", wake, move |_| {
+        self.n_keeping += 1;
+        let key = TaskKey::KeepModel(M::NETWORK, draft.name.clone());
+        let work = move |_: &mut ProgressCallback<'_>| {
             let (name, is_complete) = (draft.name.clone(), !draft.is_cancelled);
             let entry = keep(&*written, draft, &folder)
                 .map_err(|error| format!("{name} is not kept: {}", error_chain(&error)))?;
@@ -167,50 +218,19 @@ impl<M: TrainedModel> ModelStatus<M> {
             }
             let path = folder.path_of(&entry);
             Ok((entry, path))
-        })?;
-        self.keeping.push(Keeping { model, job });
-        Ok(())
+        };
+        tasks.start(key, work, |result| M::command(ModelEvent::Kept(model, result)));
     }
 
     /// Whether a model is being kept.
     pub fn is_keeping(&self) -> bool {
-        !self.keeping.is_empty()
+        self.n_keeping > 0
     }
 
     /// Returns the name of a model that is in no file: the one in use or the one that was set aside.
     pub fn unsaved(&self) -> Option<&str> {
         let mut models = [&self.current, &self.set_aside].into_iter().flatten();
         models.find(|model| !model.is_saved).map(|model| model.name.as_str())
-    }
-
-    /// Returns the note of a model that has just been kept, or why it could not be; `None` otherwise.
-    /// The model is identified by its file from then on.
-    ///
-    /// - `wanted`: file of the model that the project requests, which becomes that of the kept one
-    ///   if it is in use.
-    pub fn poll_keeping(
-        &mut self,
-        library: &Library,
-        wanted: &mut Option<PathBuf>,
-    ) -> Option<Result<KeptEntry, String>> {
-        let poll = |keeping: &mut Keeping<M>| keeping.job.poll().into_result("the writer");
-        let (idx, result) = self
-            .keeping
-            .iter_mut()
-            .enumerate()
-            .find_map(|(idx, keeping)| Some((idx, poll(keeping)?)))?;
-        let Keeping { model, .. } = self.keeping.remove(idx);
-        // A file to which the user has saved it meanwhile comes before the kept one.
-        let current = self.current.as_ref();
-        let is_saved = current.is_some_and(|of| Arc::ptr_eq(&of.model, &model) && of.is_saved);
-        Some(result.map(|(entry, path)| {
-            if is_saved {
-                M::hold(library, ModelChoice::file(&path), model);
-            } else {
-                self.identify((&model, &path), entry.name.clone(), (library, wanted));
-            }
-            entry
-        }))
     }
 
     /// Identifies a model by a file that holds it from now on, also if it is not in use.
@@ -239,7 +259,7 @@ impl<M: TrainedModel> ModelStatus<M> {
     /// - returns the file that holds it, if there is one: what the project requests from now on.
     pub fn use_trained(&mut self) -> Option<PathBuf> {
         let trained = self.set_aside.take()?;
-        self.job = None;
+        self.is_loading = false;
         self.problem = None;
         let path = match &trained.choice {
             ModelChoice::Source(ModelSource::File(path)) => Some(path.clone()),
@@ -259,47 +279,31 @@ impl<M: TrainedModel> ModelStatus<M> {
 
     /// Starts writing the model in use to a file.
     ///
-    /// - `existing`: what happens to a file that exists already;
-    /// - `wake`: called when the file has been written.
+    /// - `existing`: what happens to a file that exists already.
     ///
     /// # Errors
-    /// A message for the user, if there is no model or the thread cannot be started.
+    /// A message for the user, if there is no model.
     pub fn save(
         &mut self,
-        (path, existing): (PathBuf, Existing),
-        wake: impl Fn() + Send + 'static,
+        path: PathBuf,
+        existing: Existing,
+        tasks: &mut Tasks,
     ) -> Result<(), String> {
         let Some(current) = &self.current else {
             return Err(format!("there is no {} to save", M::NETWORK.model()));
         };
         let (model, written) = (Arc::clone(&current.model), Arc::clone(&current.model));
-        let job =
-            Job::spawn("save model", wake, move |_| written.write(&path, existing).map(|()| path));
-        self.saving = Some(Saving { model, job: job.map_err(|error| error.to_string())? });
+        self.is_saving = true;
+        let write =
+            move |_: &mut ProgressCallback<'_>| written.write(&path, existing).map(|()| path);
+        let event = |result| M::command(ModelEvent::Saved(model, result));
+        tasks.start(TaskKey::SaveModel(M::NETWORK), write, event);
         Ok(())
     }
 
     /// Whether a file is being written.
     pub fn is_saving(&self) -> bool {
-        self.saving.is_some()
-    }
-
-    /// Returns the path of the file that has just been written, or why it could not be; `None`
-    /// otherwise. If the model that was written is still in use, it is identified by that file from
-    /// then on; another model that has come into use meanwhile stays in use and unsaved.
-    ///
-    /// - `wanted`: file of the model that the project requests, which becomes the written one.
-    pub fn poll_saving(
-        &mut self,
-        library: &Library,
-        wanted: &mut Option<PathBuf>,
-    ) -> Option<Result<PathBuf, String>> {
-        let result = self.saving.as_mut()?.job.poll().into_result("the writer")?;
-        let model = self.saving.take()?.model;
-        if let Ok(path) = &result {
-            self.identify((&model, path), file_name(path), (library, wanted));
-        }
-        Some(result)
+        self.is_saving
     }
 }
 
@@ -335,34 +339,48 @@ pub fn file_name(path: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::command::Command;
     use impactlab_networks::force::ForceModel;
+
+    /// Receives what the tasks have made of the force model, until they have ended.
+    fn settle(
+        status: &mut ModelStatus<ForceModel>,
+        tasks: &mut Tasks,
+        library: &Library,
+        wanted: &mut Option<PathBuf>,
+    ) -> Vec<ModelNews> {
+        let mut news = Vec::new();
+        while status.is_loading() || status.is_saving() {
+            for command in tasks.poll() {
+                let Command::ForceModel(event) = command else { panic!("{command:?}") };
+                news.push(status.take(&event, library, wanted));
+            }
+        }
+        news
+    }
 
     #[test]
     fn a_model_that_comes_into_use_while_another_is_written_is_not_taken_for_the_written_one() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("written.safetensors");
-        let library = Arc::new(Library::default());
+        let (library, mut tasks) = (Arc::new(Library::default()), Tasks::default());
         let (mut status, mut wanted) = (ModelStatus::<ForceModel>::default(), None);
-        while status.current.is_none() {
-            assert_eq!(status.update(&wanted, &library, || {}), None);
-        }
+        status.update(&wanted, &library, &mut tasks);
+        settle(&mut status, &mut tasks, &library, &mut wanted);
         let written = Arc::clone(&status.current.as_ref().unwrap().model);
-        status.save((path.clone(), Existing::Replace), || {}).unwrap();
+        status.save(path.clone(), Existing::Replace, &mut tasks).unwrap();
         let trained = ModelSource::Shipped.force_model().unwrap();
         status.take_trained(trained, "trained meanwhile".to_owned(), (&library, true));
-        let saved = loop {
-            if let Some(saved) = status.poll_saving(&library, &mut wanted) {
-                break saved;
-            }
-        };
-        assert_eq!((saved, &wanted), (Ok(path.clone()), &None));
+        let saved = settle(&mut status, &mut tasks, &library, &mut wanted);
+        assert!(matches!(&saved[..], [ModelNews::Saved(Ok(saved))] if *saved == path));
+        assert_eq!(wanted, None);
         let held = library.force_model(&ModelChoice::file(&path)).unwrap();
         assert!(Arc::ptr_eq(&held, &written));
         let current = status.current.as_ref().unwrap();
         assert_eq!((current.name.as_str(), current.is_saved), ("trained meanwhile", false));
 
-        status.save((path.clone(), Existing::Replace), || {}).unwrap();
-        while status.poll_saving(&library, &mut wanted).is_none() {}
+        status.save(path.clone(), Existing::Replace, &mut tasks).unwrap();
+        settle(&mut status, &mut tasks, &library, &mut wanted);
         let current = status.current.as_ref().unwrap();
         assert_eq!((current.name.as_str(), current.is_saved), ("written.safetensors", true));
         assert_eq!(wanted, Some(path));

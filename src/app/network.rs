@@ -6,7 +6,10 @@ use std::sync::Arc;
 use impactlab_core::uncertainty::Caveats;
 use serde::{Deserialize, Serialize};
 
+use crate::app::command::Command;
+use crate::app::found::Found;
 use crate::app::kept::{Fact, differences};
+use crate::app::model::ModelEvent;
 use impactlab_core::data::Existing;
 use impactlab_core::error_chain;
 use impactlab_core::units::significant;
@@ -69,6 +72,9 @@ pub trait TrainedModel: Sized + Send + Sync + 'static {
     /// The report of a training of this network.
     type Report;
 
+    /// The command that hands over what a task has made of a model.
+    fn command(event: ModelEvent<Self>) -> Command;
+
     /// Returns the model to which questions refer by `choice`; it is read from its file if it is
     /// not in memory.
     ///
@@ -125,6 +131,10 @@ impl TrainedModel for ForceModel {
 
     type Answer = TrainForceAnswer;
     type Report = TrainForceReport;
+
+    fn command(event: ModelEvent<Self>) -> Command {
+        Command::ForceModel(Found::new(event))
+    }
 
     fn of_library(library: &Library, choice: &ModelChoice) -> Result<Arc<Self>, StudyError> {
         library.force_model(choice)
@@ -198,6 +208,10 @@ impl TrainedModel for ResponseModel {
 
     type Answer = ResponseTrainingAnswer;
     type Report = ResponseTrainingReport;
+
+    fn command(event: ModelEvent<Self>) -> Command {
+        Command::ResponseModel(Found::new(event))
+    }
 
     fn of_library(library: &Library, choice: &ModelChoice) -> Result<Arc<Self>, StudyError> {
         library.response_model(choice)

@@ -1,17 +1,20 @@
 //! Opens and closes data, models, vehicles, scenarios and comparisons, and saves models.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use egui::Context;
 
 use crate::app::case::Leaving;
-use crate::app::command::{ComparisonCommand, wake};
+use crate::app::command::{Command, ComparisonCommand};
 use crate::app::dialog::Dialog;
+use crate::app::found::Found;
 use crate::app::import::ImportDialog;
 use crate::app::network::Network;
 use crate::app::panes::Pane;
-use crate::app::source::{Content, Source};
-use crate::app::state::{State, Subject};
+use crate::app::source::{Content, Source, read_source};
+use crate::app::state::{Session, State, Subject};
+use crate::app::tasks::TaskKey;
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::{ColumnMap, Existing, Severity};
 use impactlab_networks::learning::ModelFile;
@@ -44,7 +47,7 @@ impl State {
                         self.view.workspaces.shown = Workspace::Data;
                     }
                     self.session.shows_doors = false;
-                    self.load(path, None, context);
+                    self.load(path, None);
                 }
             }
         }
@@ -81,15 +84,23 @@ impl State {
     ///
     /// - `map`: the columns that the user has assigned, for a file whose header does not identify
     ///   them.
-    pub(super) fn load(&mut self, path: PathBuf, map: Option<ColumnMap>, context: &Context) {
+    pub(super) fn load(&mut self, path: PathBuf, map: Option<ColumnMap>) {
         self.forget_sources(|source| source.opened == path || source.path == path);
         self.session.select_when_loaded = Some(path.clone());
         // Why it could not be read before is out of date.
         let of_path = path.display().to_string();
         self.session.messages.retain(|message| !message.text.starts_with(&of_path));
-        let source =
-            Source::load(path, (map, &self.view.column_maps), &self.session.library, wake(context));
-        self.session.sources.push(source);
+        self.session.sources.push(Source::loading(path.clone(), map.clone()));
+        let (maps, library) = (self.view.column_maps.clone(), Arc::clone(&self.session.library));
+        let (key, opened) = (TaskKey::Load(path.clone()), path.clone());
+        self.session.tasks.start(
+            key,
+            move |report| {
+                let found = read_source(&path, map, &maps, &library, report)?;
+                Ok(found.map(Found::new))
+            },
+            |result| Command::Opened(opened, result),
+        );
     }
 
     /// Asks how a file is to be read; if a dialog is open that asks that, after it.
@@ -133,6 +144,7 @@ impl State {
             if !is_kept {
                 session.library.forget(&source.path);
                 session.replays.remove(&source.path);
+                session.tasks.stop(&TaskKey::Load(source.opened.clone()));
             }
             is_kept
         });
@@ -194,15 +206,11 @@ impl State {
 
     /// Starts writing the current model of a network to a file, or tells the user why that is not
     /// possible.
-    pub(super) fn save_model(
-        &mut self,
-        network: Network,
-        target: (PathBuf, Existing),
-        context: &Context,
-    ) {
+    pub(super) fn save_model(&mut self, network: Network, path: PathBuf, existing: Existing) {
+        let Session { force, response, tasks, .. } = &mut self.session;
         let started = match network {
-            Network::Force => self.session.force.model.save(target, wake(context)),
-            Network::Response => self.session.response.model.save(target, wake(context)),
+            Network::Force => force.model.save(path, existing, tasks),
+            Network::Response => response.model.save(path, existing, tasks),
         };
         if let Err(problem) = started {
             self.say(Severity::Warning, problem);
@@ -213,15 +221,6 @@ impl State {
     pub(super) fn say_problem(&mut self, problem: Option<String>) {
         if let Some(problem) = problem {
             self.say(Severity::Error, problem);
-        }
-    }
-
-    /// Tells the user that a file has been written, or why it could not be.
-    pub(super) fn say_of_file(&mut self, written: Option<Result<PathBuf, String>>) {
-        match written {
-            None => {}
-            Some(Ok(path)) => self.say(Severity::Info, format!("{} written", path.display())),
-            Some(Err(problem)) => self.say(Severity::Error, problem),
         }
     }
 

@@ -1,15 +1,18 @@
 //! Asks before a file or a folder of results that exists already is replaced.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use egui::{Context, Ui};
 
-use crate::app::command::{Command, ComparisonCommand, wake};
+use crate::app::command::{Command, ComparisonCommand};
 use crate::app::dialog::Dialog;
 use crate::app::export;
 use crate::app::state::State;
+use crate::app::tasks::TaskKey;
 use impactlab_core::data::write::{MANIFEST_FILE, check_inputs};
-use impactlab_core::data::{DataError, Existing, Severity, write_atomically};
+use impactlab_core::data::{
+    DataError, Existing, MAX_MODEL_BYTES, Severity, read_bytes, write_atomically,
+};
 use impactlab_core::error_chain;
 use impactlab_study::InputKind;
 
@@ -58,25 +61,21 @@ impl State {
         }
         match command {
             Command::Export(figure, path) => {
-                match export::spawn(*figure, (path, existing), self.view.dark, wake(context)) {
-                    Ok(job) => self.session.exports.push(job),
-                    Err(error) => self.say(Severity::Error, error.to_string()),
-                }
+                let dark = self.view.dark;
+                self.start_writing(path, move |to| {
+                    export::write_figure(&figure, to, existing, dark)
+                });
             }
             Command::ExportScene(picture, path) => {
-                let wake = wake(context);
-                match export::spawn_scene(*picture, (path, existing), self.view.dark, wake) {
-                    Ok(job) => self.session.exports.push(job),
-                    Err(error) => self.say(Severity::Error, error.to_string()),
-                }
+                let dark = self.view.dark;
+                self.start_writing(path, move |to| {
+                    export::write_scene(&picture, to, existing, dark)
+                });
             }
-            Command::ExportExchange(of, path) => {
-                match export::spawn_exchange(*of, (path, existing), wake(context)) {
-                    Ok(job) => self.session.exports.push(job),
-                    Err(error) => self.say(Severity::Error, error.to_string()),
-                }
+            Command::ExportExchange(scene, path) => {
+                self.start_writing(path, move |to| export::write_exchange(*scene, to, existing));
             }
-            Command::SaveFilm(film, path) => self.make_film(*film, (path, existing), context),
+            Command::SaveFilm(film, path) => self.make_film(*film, path, existing),
             Command::SaveScenario(path) => {
                 self.write_text(&self.project.scenario.to_toml(), (&path, existing));
             }
@@ -87,19 +86,40 @@ impl State {
                 self.write_text(&evidence.to_toml(), (&path, existing));
             }
             Command::SaveSite(path) => self.save_site(&path, existing),
-            Command::SaveCaseAs(path) => self.save_case((path, existing), context),
-            Command::PackCase(path) => self.pack_case((path, existing), context),
+            Command::SaveCaseAs(path) => self.save_case(path, existing),
+            Command::PackCase(path) => self.pack_case(path, existing),
             Command::SaveReport(document, path) => {
-                self.save_report(document, (&path, existing), context);
+                self.start_writing(path, move |to| export::write_report(&document, to, existing));
             }
-            Command::SaveModel(network, path) => {
-                self.save_model(network, (path, existing), context);
-            }
-            Command::SaveKept(kept, path) => self.copy_kept((kept, path), existing, context),
+            Command::SaveModel(network, path) => self.save_model(network, path, existing),
+            Command::SaveKept(kept, path) => self.start_writing(path, move |to| {
+                let bytes =
+                    read_bytes(&kept, MAX_MODEL_BYTES).map_err(|error| error_chain(&error))?;
+                write_atomically(to, existing, |out| out.write_all(&bytes))
+                    .map_err(|error| error_chain(&error))
+            }),
             Command::Compare(ComparisonCommand::Save(folder)) => {
-                self.save_comparison((folder, existing), context);
+                self.save_comparison(folder, existing);
             }
             other => self.apply(other, context),
+        }
+    }
+
+    /// Starts to write a file or folder.
+    pub(in crate::app) fn start_writing(
+        &mut self,
+        path: PathBuf,
+        write: impl FnOnce(&Path) -> Result<(), String> + Send + 'static,
+    ) {
+        let key = TaskKey::Write(path.clone());
+        self.session.tasks.start(key, move |_| write(&path).map(|()| path), Command::Written);
+    }
+
+    /// Tells the user that a file has been written, or why it could not be.
+    pub(in crate::app) fn say_of_file(&mut self, written: Result<PathBuf, String>) {
+        match written {
+            Ok(path) => self.say(Severity::Info, format!("{} written", path.display())),
+            Err(problem) => self.say(Severity::Error, problem),
         }
     }
 

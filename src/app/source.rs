@@ -10,7 +10,7 @@ use crate::app::model::file_name;
 use crate::app::question_job::Answered;
 use impactlab_core::data::{ColumnMap, Dataset, DatasetKind, Flag, Loaded, Note, Outcome};
 use impactlab_core::error_chain;
-use impactlab_core::jobs::Job;
+use impactlab_core::jobs::ProgressCallback;
 use impactlab_core::vehicle::VehicleParameters;
 use impactlab_study::{
     CheckAnswer, CheckRequest, CheckedContent, CheckedItem, Event, Library, Observer, PathProblem,
@@ -33,9 +33,10 @@ pub struct Source {
 }
 
 /// The content of a source.
+#[derive(Clone)]
 pub enum Content {
     /// The data are being loaded.
-    Loading(Job<Result<Outcome<OpenedPath>, String>>),
+    Loading,
     /// A data set.
     Dataset(Arc<CheckedDataset>),
     /// A single file.
@@ -97,7 +98,7 @@ pub struct CheckedFile {
 /// The result of opening a path.
 pub struct OpenedPath {
     /// The check of the path.
-    check: Answered<CheckRequest>,
+    check: Arc<Answered<CheckRequest>>,
     /// The data sets and files at the path, each with its own path, among them those that cannot be
     /// read.
     contents: Vec<(PathBuf, Content)>,
@@ -121,34 +122,9 @@ pub struct OpenedMap {
 }
 
 impl Source {
-    /// Starts to read and check a path in the background.
-    ///
-    /// - `map`: the columns that the user assigned, for a single file whose header does not
-    ///   identify them;
-    /// - `maps`: those of earlier files, which serve for a file with the same header;
-    /// - `wake`: called after every report of progress and at the end.
-    pub fn load(
-        path: PathBuf,
-        (map, maps): (Option<ColumnMap>, &ColumnMaps),
-        library: &Arc<Library>,
-        wake: impl Fn() + Send + 'static,
-    ) -> Self {
-        let (library, maps, chosen) = (Arc::clone(library), maps.clone(), map.clone());
-        let file = path.clone();
-        let job = Job::spawn("load", wake, move |report| {
-            let mut observer = |event: Event<'_>| match event {
-                Event::Progress(progress) => report(progress),
-                Event::Training(_) | Event::Sampling(_) => ControlFlow::Continue(()),
-            };
-            read(&file, (chosen, &maps), &library, &mut observer)
-        });
-        match job {
-            Ok(job) => {
-                let content = Content::Loading(job);
-                Self { opened: path.clone(), path, map, check: None, content }
-            }
-            Err(error) => Self::failed(path, error.to_string()),
-        }
+    /// A source of a path that is being read.
+    pub fn loading(path: PathBuf, map: Option<ColumnMap>) -> Self {
+        Self { opened: path.clone(), path, map, check: None, content: Content::Loading }
     }
 
     /// Returns a source for a path that could not be opened.
@@ -162,21 +138,26 @@ impl Source {
     /// Returns the sources found at the path once it has been read, and puts their data into the
     /// library. A file with columns that the user assigned is not put there, because the library
     /// identifies files by their path alone.
-    pub fn opened(self, opened: OpenedPath, library: &Library) -> Vec<Self> {
-        let check = Some(Arc::new(opened.check));
-        let map = opened.map.map(|of| of.map);
-        let source = |(path, content): (PathBuf, Content)| {
-            match &content {
+    pub fn opened(&self, found: &OpenedPath, library: &Library) -> Vec<Self> {
+        let map = found.map.as_ref().map(|map| map.map.clone());
+        let source = |(path, content): &(PathBuf, Content)| {
+            match content {
                 Content::Dataset(checked) => library.hold_dataset(Arc::clone(&checked.dataset)),
                 Content::File(file) if map.is_none() => {
                     library.hold_series(path.clone(), Arc::clone(&file.loaded));
                 }
-                Content::File(_) | Content::Loading(_) | Content::Failed(_) => {}
+                Content::File(_) | Content::Loading | Content::Failed(_) => {}
             }
-            let (opened, map) = (self.opened.clone(), map.clone());
-            Self { opened, path, map, check: check.clone(), content }
+            let (opened, path, map) = (self.opened.clone(), path.clone(), map.clone());
+            Self {
+                opened,
+                path,
+                map,
+                check: Some(Arc::clone(&found.check)),
+                content: content.clone(),
+            }
         };
-        opened.contents.into_iter().map(source).collect()
+        found.contents.iter().map(source).collect()
     }
 
     /// Returns the last component of the path, as text.
@@ -186,7 +167,7 @@ impl Source {
 
     /// Whether loading has ended, with data or with an error.
     pub fn is_settled(&self) -> bool {
-        !matches!(self.content, Content::Loading(_))
+        !matches!(self.content, Content::Loading)
     }
 
     /// Returns the data set, if the source holds one.
@@ -219,7 +200,7 @@ impl OpenedPath {
             CheckedContent::Dataset(..) => false,
         };
         let is_doubtful = question.map.is_none() && answer.items.iter().any(is_doubtful);
-        let check = Answered { question, answer: Ok(Arc::new(answer)) };
+        let check = Arc::new(Answered { question, answer: Ok(Arc::new(answer)) });
         Self { check, contents, failure, map: None, is_doubtful }
     }
 
@@ -232,12 +213,23 @@ impl OpenedPath {
 
 /// Reads and checks a path. Without a map, a file is read with the one that it had before; if its
 /// columns are doubtful, with the one of another file with the same header.
-fn read(
+///
+/// - `chosen`: the columns that the user assigned;
+/// - `maps`: those of earlier files.
+///
+/// # Errors
+/// A message for the user.
+pub fn read_source(
     path: &Path,
-    (chosen, maps): (Option<ColumnMap>, &ColumnMaps),
+    chosen: Option<ColumnMap>,
+    maps: &ColumnMaps,
     library: &Library,
-    observer: &mut Observer<'_>,
+    report: &mut ProgressCallback<'_>,
 ) -> Result<Outcome<OpenedPath>, String> {
+    let observer: &mut Observer<'_> = &mut |event: Event<'_>| match event {
+        Event::Progress(progress) => report(progress),
+        Event::Training(_) | Event::Sampling(_) => ControlFlow::Continue(()),
+    };
     let mut ask = |map: Option<&ColumnMap>| -> Result<Outcome<OpenedPath>, String> {
         let map = map.cloned();
         let question = CheckRequest { paths: vec![path.to_owned()], all: false, map };

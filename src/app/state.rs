@@ -7,11 +7,10 @@ use std::sync::Arc;
 use impactlab_core::uncertainty::Caveats;
 use serde::{Deserialize, Serialize};
 
-use crate::app::case::{OpenCase, SavedCase};
+use crate::app::case::OpenCase;
 use crate::app::case_table::CaseList;
 use crate::app::cost::Costs;
-use crate::app::dialog::{Dialogs, FileDialog};
-use crate::app::film::FilmSession;
+use crate::app::dialog::Dialogs;
 use crate::app::force::{ForceProject, ForceSession, ForceView};
 use crate::app::frame_times::FrameTimes;
 use crate::app::ground::{GroundSession, SiteChoice};
@@ -28,13 +27,13 @@ use crate::app::report::{ReportSession, ReportView};
 use crate::app::response::{DensityChoice, ResponseProject, ResponseSession, ResponseView};
 use crate::app::scene::{SceneSession, SceneSettings};
 use crate::app::source::Source;
+use crate::app::tasks::Tasks;
 use crate::app::unfinished::UnfinishedTrainings;
 use crate::app::variants::OtherVariants;
 use crate::app::widgets::BetweenCursors;
 use crate::app::workspaces::Workspaces;
 use impactlab_core::collision::{ChannelClass, Scenario};
 use impactlab_core::data::{Channel, Severity};
-use impactlab_core::jobs::Job;
 use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::{ContactPoint, Ending, Equations, Integrator};
 use impactlab_document::figure::MOTION_CHANNELS;
@@ -240,6 +239,8 @@ impl Default for View {
 /// Loaded data, answers and running work, which are not saved.
 #[derive(Default)]
 pub struct Session {
+    /// The work on other threads that ends by itself.
+    pub tasks: Tasks,
     /// The data and models in memory to which questions refer.
     pub library: Arc<Library>,
     /// The sources that are open, in the order of opening.
@@ -282,22 +283,14 @@ pub struct Session {
     pub messages: Vec<Message>,
     /// All messages since the program was started, each with the time of day in UTC, the newest last.
     pub log: Vec<(String, Message)>,
-    /// The native file dialog that is open.
-    pub file_dialog: Option<FileDialog>,
     /// The dialogs that are open in the window.
     pub dialogs: Dialogs,
     /// Whether the window may close without a question.
     pub may_close: bool,
     /// Whether what was done before cannot be undone any more: the project is of another variant.
     pub history_ends: bool,
-    /// The case that is being written.
-    pub saving_case: Option<Job<Result<SavedCase, String>>>,
     /// Whether the three ways to begin are shown in the place of the panes.
     pub shows_doors: bool,
-    /// The film of the scene that is asked about or being made.
-    pub film: FilmSession,
-    /// Jobs that write figures to files.
-    pub exports: Vec<Job<Result<PathBuf, String>>>,
     /// The path that the user opened last. Its first case or file is selected once it is loaded.
     pub select_when_loaded: Option<PathBuf>,
     /// The path in the text field of the data pane, as the user has typed it so far.

@@ -11,16 +11,17 @@ use std::path::{Path, PathBuf};
 use egui::Context;
 use serde::{Deserialize, Serialize};
 
-use crate::app::command::wake;
-use crate::app::kept::{KeptError, NOTE_ENDING};
+use crate::app::command::{Command, wake};
+use crate::app::kept::{KeptError, KeptEvent, NOTE_ENDING};
 use crate::app::network::Network;
 use crate::app::state::{Session, State};
+use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::data::write::WriterLock;
 use impactlab_core::data::{
     Existing, MAX_RESULTS_BYTES, Severity, list_folder, read_bytes, write_atomically,
 };
 use impactlab_core::error_chain;
-use impactlab_core::jobs::Job;
+use impactlab_core::jobs::ProgressCallback;
 use impactlab_networks::force::FORCE_CHECKPOINT;
 use impactlab_networks::learning::{TrainingReport, stored_epochs};
 use impactlab_networks::response::RESPONSE_CHECKPOINT;
@@ -76,8 +77,8 @@ pub struct LostTraining {
 #[derive(Default)]
 pub struct UnfinishedTrainings {
     folder: Option<PathBuf>,
-    reading: Option<Job<Result<UnfinishedList, String>>>,
-    /// Whether something has changed since the job was started.
+    is_reading: bool,
+    /// Whether something has changed since the reading began.
     is_outdated: bool,
     /// What can go on.
     pub list: UnfinishedList,
@@ -86,7 +87,7 @@ pub struct UnfinishedTrainings {
 }
 
 /// What is in the folder.
-#[derive(Debug, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct UnfinishedList {
     /// What can go on, the latest first.
     pub trainings: Vec<Unfinished>,
@@ -124,34 +125,23 @@ impl Unfinished {
 
 impl UnfinishedTrainings {
     /// Takes the user's data folder and starts to read what has not ended.
-    ///
-    /// - `wake`: called when it has been read.
-    ///
-    /// # Errors
-    /// The error of the operating system, if the thread cannot be started.
-    pub fn open(
-        &mut self,
-        data_folder: &Path,
-        wake: impl Fn() + Send + 'static,
-    ) -> std::io::Result<()> {
+    pub fn open(&mut self, data_folder: &Path, tasks: &mut Tasks) {
         self.folder = Some(data_folder.join(FOLDER));
-        self.read(wake)
+        self.read(tasks);
     }
 
     /// Starts to read again what has not ended, after the reading that is under way, which holds the
     /// locks of the checkpoints.
-    ///
-    /// # Errors
-    /// The error of the operating system, if the thread cannot be started.
-    pub fn read(&mut self, wake: impl Fn() + Send + 'static) -> std::io::Result<()> {
-        let Some(folder) = self.folder.clone() else { return Ok(()) };
-        self.is_outdated = self.reading.is_some();
+    pub fn read(&mut self, tasks: &mut Tasks) {
+        let Some(folder) = self.folder.clone() else { return };
+        self.is_outdated = self.is_reading;
         if self.is_outdated {
-            return Ok(());
+            return;
         }
-        let job = Job::spawn("read trainings", wake, move |_| Ok(UnfinishedList::read(&folder)))?;
-        self.reading = Some(job);
-        Ok(())
+        self.is_reading = true;
+        let work = move |_: &mut ProgressCallback<'_>| Ok(UnfinishedList::read(&folder));
+        let take = |result| Command::from(KeptEvent::Trainings(result));
+        tasks.start(TaskKey::ListTrainings, work, take);
     }
 
     /// Returns where checkpoints are stored; `None` if this window stores none.
@@ -159,18 +149,16 @@ impl UnfinishedTrainings {
         self.folder.as_deref()
     }
 
-    /// Receives what has been read. Returns whether it has to be read again.
-    pub fn poll(&mut self) -> bool {
-        let read = self.reading.as_mut().and_then(|job| job.poll().into_result("the reader"));
-        let Some(read) = read else { return false };
-        self.reading = None;
-        match read {
+    /// Takes what has been read, and reads it again if something has changed meanwhile.
+    pub fn take(&mut self, list: Result<UnfinishedList, String>, tasks: &mut Tasks) {
+        self.is_reading = false;
+        match list {
             Ok(list) => self.list = list,
-            Err(reason) => {
-                self.list.lost = vec![LostTraining { files: Vec::new(), reason }];
-            }
+            Err(reason) => self.list.lost = vec![LostTraining { files: Vec::new(), reason }],
         }
-        self.is_outdated
+        if self.is_outdated {
+            self.read(tasks);
+        }
     }
 
     /// Returns the trainings that the end of the program has interrupted.

@@ -1,16 +1,16 @@
 //! The work that is done before each frame: results of jobs are received, time advances, and
 //! questions that have changed are asked.
 
-use std::sync::Arc;
+use std::path::Path;
 use std::time::Duration;
 
 use egui::Context;
 
-use crate::app::command::{Command, wake};
+use crate::app::command::wake;
+use crate::app::found::Found;
 use crate::app::source::{Content, OpenedMap, OpenedPath, Source};
 use crate::app::state::{Session, State, Subject};
 use impactlab_core::data::{DatasetKind, Outcome, Severity};
-use impactlab_core::jobs::Update;
 
 /// Time after which the window is drawn again while an answer is awaited, so that it can be marked late.
 const WAITING_REPAINT: Duration = Duration::from_millis(120);
@@ -19,26 +19,20 @@ impl State {
     /// Receives the results of the jobs, asks the questions that have changed and advances the
     /// time.
     ///
-    /// - `commands`: receives the commands that follow, such as opening the paths chosen in a file
-    ///   dialog.
-    pub fn update(&mut self, context: &Context, commands: &mut Vec<Command>) {
-        self.poll_sources(commands);
-        self.poll_replays();
-        self.poll_exports();
-        self.poll_film();
-        self.poll_case();
-        self.leave_if_saved(context);
-        if let Some(answer) = self.session.file_dialog.as_mut().and_then(|dialog| dialog.poll()) {
-            self.session.file_dialog = None;
-            commands.extend(answer);
+    pub fn update(&mut self, context: &Context) {
+        for command in self.session.tasks.poll() {
+            self.apply(command, context);
         }
-        if let Some(dialog) = self.session.dialogs.import_mut() {
-            dialog.update(self.view.units, wake(context));
+        self.poll_replays();
+        self.leave_if_saved(context);
+        let Session { dialogs, tasks, .. } = &mut self.session;
+        if let Some(dialog) = dialogs.import_mut() {
+            dialog.update(self.view.units, tasks);
         }
         self.select_something();
         let Session { cases, sources, replays, .. } = &mut self.session;
         cases.update(sources, replays, &self.view);
-        self.update_ground(context);
+        self.update_ground();
         self.update_simulation(context);
         self.update_force(context);
         self.update_response(context);
@@ -46,7 +40,7 @@ impl State {
         self.update_reconstruction(context);
         self.update_variants(context);
         self.update_report();
-        self.update_kept(context);
+        self.take_kept_names();
         self.update_costs(context);
         self.advance_time(context);
         if self.session.is_waiting() {
@@ -54,40 +48,42 @@ impl State {
         }
     }
 
-    fn poll_sources(&mut self, commands: &mut Vec<Command>) {
-        let sources = std::mem::take(&mut self.session.sources);
-        for mut source in sources {
-            let Content::Loading(job) = &mut source.content else {
-                self.session.sources.push(source);
-                continue;
-            };
-            let Some(result) = job.poll().into_result("the loader") else {
-                self.session.sources.push(source);
-                continue;
-            };
-            self.ask_again();
-            match result {
-                Ok(Outcome::Cancelled) => {}
-                Ok(Outcome::Complete(opened)) => {
-                    if let Some(failure) = &opened.failure {
-                        self.say(Severity::Error, failure.message.clone());
-                        if failure.columns.is_some() {
-                            commands.push(Command::AskMapping(failure.path.clone()));
-                        }
-                    }
-                    if opened.is_doubtful {
-                        commands.push(Command::AskMapping(source.path));
-                        continue;
-                    }
-                    self.remember_map(&source, &opened);
-                    let library = Arc::clone(&self.session.library);
-                    self.session.sources.extend(source.opened(opened, &library));
+    /// Takes what was found at a path that was opened. A doubtful file is asked about and closed until
+    /// the user has answered.
+    pub(super) fn take_opened(
+        &mut self,
+        path: &Path,
+        result: Result<Outcome<Found<OpenedPath>>, String>,
+    ) {
+        let is_it = |source: &Source| source.opened == path && !source.is_settled();
+        let Some(idx) = self.session.sources.iter().position(is_it) else { return };
+        let source = self.session.sources.remove(idx);
+        self.ask_again();
+        let (found, asked_about) = match result {
+            Ok(Outcome::Cancelled) => return,
+            Ok(Outcome::Complete(opened)) => {
+                let failure = opened.failure.as_ref();
+                if let Some(failure) = failure {
+                    self.say(Severity::Error, failure.message.clone());
                 }
-                Err(why) => {
-                    self.say(Severity::Error, format!("{}: {why}", source.opened.display()));
-                    self.session.sources.push(Source::failed(source.opened, why));
+                let failed = failure.filter(|failure| failure.columns.is_some());
+                let asked_about = failed.map(|failure| failure.path.clone());
+                match opened.is_doubtful {
+                    true => (Vec::new(), Some(source.path.clone())),
+                    false => {
+                        self.remember_map(&source, &opened);
+                        (source.opened(&opened, &self.session.library), asked_about)
+                    }
                 }
             }
+            Err(why) => {
+                self.say(Severity::Error, format!("{}: {why}", path.display()));
+                (vec![Source::failed(path.to_owned(), why)], None)
+            }
+        };
+        self.session.sources.splice(idx..idx, found);
+        if let Some(path) = asked_about {
+            self.ask_mapping(path);
         }
     }
 
@@ -117,23 +113,6 @@ impl State {
         for problem in problems {
             self.say(Severity::Error, problem);
         }
-    }
-
-    fn poll_exports(&mut self) {
-        let mut jobs = std::mem::take(&mut self.session.exports);
-        jobs.retain_mut(|job| match job.poll() {
-            Update::Running => true,
-            Update::Finished(Ok(path)) => {
-                self.say(Severity::Info, format!("{} written", path.display()));
-                false
-            }
-            Update::Finished(Err(text)) | Update::Panicked(text) => {
-                self.say(Severity::Error, text);
-                false
-            }
-            Update::Gone => false,
-        });
-        self.session.exports.append(&mut jobs);
     }
 
     /// Selects the first case or file of what the user opened last, once everything is loaded. If
@@ -202,7 +181,7 @@ fn first_subject<'a>(sources: impl Iterator<Item = &'a Source>) -> Option<Subjec
             Some((rank, Subject::Case { dataset: source.path.clone(), case }))
         }
         Content::File(_) => Some((2, Subject::File(source.path.clone()))),
-        Content::Loading(_) | Content::Failed(_) => None,
+        Content::Loading | Content::Failed(_) => None,
     };
     sources.filter_map(subject).min_by_key(|(rank, _)| *rank).map(|(_, subject)| subject)
 }

@@ -8,7 +8,7 @@ use std::time::Duration;
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, ForceChoice, Leaving, State, Subject, VariantCommand};
+use impactlab::app::{App, Command, ForceChoice, Leaving, State, Subject, TaskKey, VariantCommand};
 use impactlab_core::data::Severity;
 use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::units::{Quantity, UnitSystem};
@@ -42,7 +42,7 @@ fn is_answered(state: &State) -> bool {
 fn save_as(harness: &mut Harness<'_, App>, path: &Path) {
     apply(harness, Command::SaveCaseAs(path.to_owned()));
     step_until(harness, "the case on disk", |state| {
-        state.session.saving_case.is_none() && state.case.path.is_some()
+        !state.session.tasks.is_running(&TaskKey::SaveCase) && state.case.path.is_some()
     });
 }
 
@@ -102,7 +102,7 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
     // The package opens elsewhere, with the same numbers.
     let zip = folder.path().join("pit.zip");
     apply(&mut harness, Command::PackCase(zip.clone()));
-    step_until(&mut harness, "the package", |state| state.session.exports.is_empty());
+    step_until(&mut harness, "the package", |state| !state.session.tasks.is_writing());
     let elsewhere = unpack(&zip, &folder.path().join("elsewhere")).expect("unpacked");
     assert_eq!(asked(&elsewhere), answers);
 }
@@ -303,7 +303,9 @@ fn the_example_case_is_what_the_window_saves_and_has_an_answer_to_every_question
     if std::env::var_os("UPDATE_EXAMPLES").is_some() {
         apply(&mut harness, Command::SaveCaseAs(shipped.clone()));
         apply(&mut harness, Command::Replace(Box::new(Command::SaveCaseAs(shipped.clone()))));
-        step_until(&mut harness, "the example", |state| state.session.saving_case.is_none());
+        step_until(&mut harness, "the example", |state| {
+            !state.session.tasks.is_running(&TaskKey::SaveCase)
+        });
     }
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("pit.impactlab");

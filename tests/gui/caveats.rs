@@ -130,7 +130,7 @@ fn what_the_window_exports_says_what_restricts_it() {
     for name in ["force.png", "force.csv"] {
         let path = folder.path().join(name);
         apply(&mut harness, Command::Export(Box::new(figure.clone()), path));
-        step_until(&mut harness, "the export", |state| state.session.exports.is_empty());
+        step_until(&mut harness, "the export", |state| !state.session.tasks.is_writing());
     }
     let csv = std::fs::read_to_string(folder.path().join("force.csv")).expect("a table");
     assert!(csv.contains(&sentence), "{csv}");
@@ -156,7 +156,7 @@ fn what_is_not_of_what_is_asked_any_more_is_not_saved() {
     let messages = &state(&harness).session.messages[before..];
     let said = messages.iter().filter(|message| message.text.contains("not the answer to what"));
     assert_eq!(said.count(), 2, "{messages:?}");
-    assert!(!path.exists() && state(&harness).session.exports.is_empty());
+    assert!(!path.exists() && !state(&harness).session.tasks.is_writing());
 
     // A question that is awaited makes the figures of the answer before outdated at once.
     harness.state_mut().state_mut().project.duration_s += 1.0;

@@ -242,7 +242,7 @@ fn the_window_films_the_cars_of_a_reconstruction() {
     let n_frames = film.instants().expect("a possible film").len();
     let path = folder.path().join("film.mp4");
     apply(&mut harness, Command::SaveFilm(Box::new(film.clone()), path.clone()));
-    step_until(&mut harness, "the film", |state| state.session.film.running().is_none());
+    step_until(&mut harness, "the film", |state| state.session.tasks.film().is_none());
     assert_eq!(decoded(&path, 30).len(), n_frames);
     assert!(said(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
 
@@ -256,7 +256,7 @@ fn cancel_a_long_one(harness: &mut Harness<'_, App>, mut film: Film, path: &Path
     apply(harness, Command::SaveFilm(Box::new(film), path.to_owned()));
     harness.run_steps(2);
     apply(harness, Command::CancelFilm);
-    step_until(harness, "the end of the film", |state| state.session.film.running().is_none());
+    step_until(harness, "the end of the film", |state| state.session.tasks.film().is_none());
     assert!(said(harness).is_some_and(|text| text.ends_with("not written: cancelled")));
     assert!(!path.exists());
 }
@@ -285,8 +285,8 @@ fn the_window_makes_a_film_of_the_scene_as_it_is_seen() {
     let n_frames = film.instants().expect("a possible film").len();
     apply(&mut harness, Command::SaveFilm(Box::new(film.clone()), path.clone()));
     let session = &harness.state().state().session;
-    assert!(session.film.running().is_some() && session.dialogs.film().is_none());
-    step_until(&mut harness, "the film", |state| state.session.film.running().is_none());
+    assert!(session.tasks.film().is_some() && session.dialogs.film().is_none());
+    step_until(&mut harness, "the film", |state| state.session.tasks.film().is_none());
     assert_eq!(decoded(&path, 30).len(), n_frames);
     assert!(said(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
 

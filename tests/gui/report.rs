@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, MadeReport, ReportCommand, State, Workspace};
+use impactlab::app::{App, Command, MadeReport, ReportCommand, State, TaskKey, Workspace};
 use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{
     Language, ReportFormat, ReportSettings, SectionKind, report_case,
@@ -48,7 +48,7 @@ fn make(harness: &mut Harness<'static, App>) {
     harness.get_by_label("Make the report").click();
     harness.run_steps(2);
     step_until(harness, "the report", |state| {
-        !state.session.report.is_running() && state.session.report.made.is_some()
+        !state.session.report.is_running && state.session.report.made.is_some()
     });
 }
 
@@ -63,7 +63,9 @@ fn the_report_on_screen_is_the_one_of_the_case_file() {
 
     let case_file = folder.path().join("pit.impactlab");
     apply(&mut harness, Command::SaveCaseAs(case_file.clone()));
-    step_until(&mut harness, "the case file", |state| state.session.saving_case.is_none());
+    step_until(&mut harness, "the case file", |state| {
+        !state.session.tasks.is_running(&TaskKey::SaveCase)
+    });
     let case = CaseFile::load(&case_file).expect("a case");
     let settings = ReportSettings {
         language: Language::En,
@@ -102,7 +104,7 @@ fn a_report_is_saved_as_its_ending_says_unless_the_case_has_changed() {
     for name in ["report.pdf", "report.md", "report.json"] {
         let path = folder.path().join(name);
         apply(&mut harness, Command::SaveReport(document.clone(), path.clone()));
-        step_until(&mut harness, name, |state| state.session.exports.is_empty());
+        step_until(&mut harness, name, |state| !state.session.tasks.is_writing());
         let format = ReportFormat::of(&path).expect("a format");
         let drawing = &impactlab_draw::report_picture;
         let expected = document.bytes(format, Some(drawing)).expect("a report");
@@ -110,7 +112,7 @@ fn a_report_is_saved_as_its_ending_says_unless_the_case_has_changed() {
     }
     let other: PathBuf = folder.path().join("report.docx");
     apply(&mut harness, Command::SaveReport(document, other.clone()));
-    step_until(&mut harness, "the refusal", |state| state.session.exports.is_empty());
+    step_until(&mut harness, "the refusal", |state| !state.session.tasks.is_writing());
     assert!(!other.exists());
     let said = &state(&harness).session.messages.last().expect("a message").text;
     assert!(said.contains(".json"), "{said}");
@@ -138,7 +140,7 @@ fn a_report_is_cancelled_and_none_is_made_of_nothing() {
     harness.get_by_label("Make the report").click();
     harness.run_steps(2);
     apply(&mut harness, Command::Report(ReportCommand::Cancel));
-    step_until(&mut harness, "the end", |state| !state.session.report.is_running());
+    step_until(&mut harness, "the end", |state| !state.session.report.is_running);
     assert!(state(&harness).session.report.made.is_none());
 
     apply(&mut harness, Command::NewCase);

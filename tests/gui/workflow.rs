@@ -174,7 +174,7 @@ fn a_dropped_file_opens_and_a_figure_is_exported() {
     for name in ["scene.png", "scene.csv"] {
         let path = folder.path().join(name);
         apply(&mut harness, Command::Export(Box::new(figure.clone()), path.clone()));
-        step_until(&mut harness, "the export", |state| state.session.exports.is_empty());
+        step_until(&mut harness, "the export", |state| !state.session.tasks.is_writing());
         assert!(path.metadata().unwrap().len() > 1000, "{name}");
     }
     let png = image::open(folder.path().join("scene.png")).unwrap();

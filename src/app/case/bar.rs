@@ -6,6 +6,7 @@ use crate::app::case::VariantCommand;
 use crate::app::command::Command;
 use crate::app::keyboard;
 use crate::app::state::State;
+use crate::app::tasks::TaskKey;
 
 /// Draws the name of the case, whether it is saved, and its variants.
 pub fn case_bar_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
@@ -23,7 +24,7 @@ pub fn case_bar_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) 
             ui.label(RichText::new(format!("{}{mark}", file.name)).strong()).on_hover_text(hint);
             let save = Button::new("Save").small();
             let shortcut = ui.ctx().format_shortcut(&keyboard::SAVE);
-            let can_save = is_changed && state.session.saving_case.is_none();
+            let can_save = is_changed && !state.session.tasks.is_running(&TaskKey::SaveCase);
             let saved =
                 ui.add_enabled(can_save, save).on_hover_text(format!("Save the case ({shortcut})"));
             if saved.clicked() {

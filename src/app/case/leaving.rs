@@ -7,6 +7,7 @@ use egui::{Context, Ui, ViewportCommand};
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::state::{Session, State};
+use crate::app::tasks::TaskKey;
 use impactlab_core::data::Existing;
 
 /// Where the user goes.
@@ -63,10 +64,10 @@ impl State {
                 self.session.may_close = true;
                 context.send_viewport_cmd(ViewportCommand::Close);
             }
-            Leaving::New => self.new_case(context),
-            Leaving::Pit => self.open_pit(context),
-            Leaving::Example => self.open_example(context),
-            Leaving::Open(path) => self.open_case(&path, context),
+            Leaving::New => self.new_case(),
+            Leaving::Pit => self.open_pit(),
+            Leaving::Example => self.open_example(),
+            Leaving::Open(path) => self.open_case(&path),
         }
     }
 
@@ -81,9 +82,7 @@ impl State {
         if !is_quit {
             return reasons;
         }
-        let Session {
-            force, response, replays, exports, saving_case, reconstruction, report, ..
-        } = &self.session;
+        let Session { force, response, replays, tasks, reconstruction, report, .. } = &self.session;
         for (is_running, what) in [
             (force.training.run.is_running(), "The training of the force network"),
             (response.training.run.is_running(), "The training of the response network"),
@@ -98,7 +97,7 @@ impl State {
             (response.comparison.progress().is_some(), "A comparison or evaluation"),
             (force.evaluation.is_running(), "The evaluation of the force network"),
             (reconstruction.run.is_running(), "The reconstruction"),
-            (report.is_running(), "The report that is being made"),
+            (report.is_running, "The report that is being made"),
             (
                 replays.values().any(|replay| replay.question.is_running()),
                 "The simulation of a data set",
@@ -118,10 +117,10 @@ impl State {
                 reasons.push(format!("The {what} {name:?} is in no file and is lost."));
             }
         }
-        if self.session.film.running().is_some() {
+        if tasks.film().is_some() {
             reasons.push("A film that is being made is stopped and not written.".to_owned());
         }
-        if !exports.is_empty() || saving_case.is_some() {
+        if tasks.is_writing() || tasks.is_running(&TaskKey::SaveCase) {
             reasons.push("A file is still being written.".to_owned());
         }
         reasons
@@ -144,12 +143,12 @@ impl State {
         if let Some(to) = open {
             self.session.dialogs.open(Dialog::Leave { to, once_saved: true });
         }
-        self.save_case((path, Existing::Replace), context);
+        self.save_case(path, Existing::Replace);
     }
 
     /// Goes on where a case was to be saved first and now is.
     pub(in crate::app) fn leave_if_saved(&mut self, context: &Context) {
-        if self.session.saving_case.is_some() {
+        if self.session.tasks.is_running(&TaskKey::SaveCase) {
             return;
         }
         let waiting = self.session.dialogs.iter().find_map(|dialog| match dialog {

@@ -2,18 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::Context;
-
 use crate::app::case::{Forms, OpenCase, VariantCommand};
-use crate::app::command::wake;
+use crate::app::command::Command;
+use crate::app::found::Found;
 use crate::app::panes::Pane;
 use crate::app::source::Source;
 use crate::app::state::{Project, Session, State, Subject};
+use crate::app::tasks::TaskKey;
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::write::{ModelDigest, sha256_hex};
 use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, Severity, read_utf8};
 use impactlab_core::error_chain;
-use impactlab_core::jobs::{Job, Update};
+use impactlab_core::jobs::ProgressCallback;
 use impactlab_study::case_file::{CaseFile, UsedModel, pack};
 use impactlab_study::{Request, SeriesFile};
 
@@ -24,7 +24,7 @@ const EXAMPLE: &str = include_str!("../../../assets/examples/pit.impactlab");
 const MAX_RECENT: usize = 10;
 
 /// A case that was written.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct SavedCase {
     file: CaseFile,
     path: PathBuf,
@@ -140,7 +140,7 @@ impl State {
 
     /// Puts forms into the window and opens the data that they need. What was done before cannot be
     /// undone after that.
-    fn show_forms(&mut self, forms: Forms, context: &Context) {
+    fn show_forms(&mut self, forms: Forms) {
         let Forms { project, sources } = forms;
         let [force, response] =
             [|p: &Project| p.force.model.clone(), |p: &Project| p.response.model.clone()];
@@ -162,7 +162,7 @@ impl State {
         for SeriesFile { path, map } in sources {
             let is_open = self.session.sources.iter().any(|source| source.path == path);
             if !is_open {
-                self.load(path, map, context);
+                self.load(path, map);
             }
         }
         self.session.shows_doors = false;
@@ -180,7 +180,7 @@ impl State {
     }
 
     /// Carries out an action on the variants.
-    pub(in crate::app) fn change_variant(&mut self, command: VariantCommand, context: &Context) {
+    pub(in crate::app) fn change_variant(&mut self, command: VariantCommand) {
         self.capture();
         let file = &mut self.case.file;
         match command {
@@ -221,15 +221,15 @@ impl State {
                 file.shown = file.variants.first().map_or(removed, |first| first.name.clone());
             }
         }
-        self.show_variant(context);
+        self.show_variant();
     }
 
     /// Puts the forms of the variant that is shown into the window.
-    fn show_variant(&mut self, context: &Context) {
+    fn show_variant(&mut self) {
         let file = &self.case.file;
         let forms = file.variant(&file.shown).map(|variant| variant.forms.clone());
         match serde_json::from_value::<Option<Forms>>(forms.unwrap_or_default()) {
-            Ok(forms) => self.show_forms(forms.unwrap_or_default(), context),
+            Ok(forms) => self.show_forms(forms.unwrap_or_default()),
             Err(error) => {
                 let why = format!("the forms of variant {:?} cannot be read: {error}", file.shown);
                 self.say(Severity::Error, why);
@@ -238,28 +238,28 @@ impl State {
     }
 
     /// Begins a case with nothing in it.
-    pub(in crate::app) fn new_case(&mut self, context: &Context) {
+    pub(in crate::app) fn new_case(&mut self) {
         self.case = OpenCase::default();
         let forms = Forms {
             project: Project { subject: Some(Subject::Scenario), ..Project::default() },
             sources: Vec::new(),
         };
-        self.show_forms(forms, context);
+        self.show_forms(forms);
     }
 
     /// Begins a case with a PIT, and shows its scene.
-    pub(in crate::app) fn open_pit(&mut self, context: &Context) {
-        self.new_case(context);
+    pub(in crate::app) fn open_pit(&mut self) {
+        self.new_case();
         self.view.workspaces.show_pane(Pane::Scene);
     }
 
     /// Opens the finished example case, which has no file of its own yet.
-    pub(in crate::app) fn open_example(&mut self, context: &Context) {
+    pub(in crate::app) fn open_example(&mut self) {
         let beside = std::env::current_dir().unwrap_or_default().join("example.impactlab");
         match CaseFile::parse(EXAMPLE, &beside) {
             Ok(file) => {
                 self.case = OpenCase { file, path: None, on_disk: None, saved: None };
-                self.show_variant(context);
+                self.show_variant();
                 self.case.saved = Some(self.case.fingerprint(&self.stored_forms()));
                 self.view.workspaces.show_pane(Pane::MotionForecast);
             }
@@ -268,7 +268,7 @@ impl State {
     }
 
     /// Opens a case in the place of the one that is open.
-    pub(in crate::app) fn open_case(&mut self, path: &Path, context: &Context) {
+    pub(in crate::app) fn open_case(&mut self, path: &Path) {
         let read = || -> Result<_, String> {
             let path = std::path::absolute(path).map_err(|error| error.to_string())?;
             let text = read_utf8(&path, MAX_RESULTS_BYTES).map_err(|error| error_chain(&error))?;
@@ -284,7 +284,7 @@ impl State {
         }
         let on_disk = Some(sha256_hex(text.as_bytes()));
         self.case = OpenCase { file, path: Some(path.clone()), on_disk, saved: None };
-        self.show_variant(context);
+        self.show_variant();
         self.case.saved = Some(self.case.fingerprint(&self.stored_forms()));
         self.case.file.note("opened");
         self.remember_case(path);
@@ -315,11 +315,7 @@ impl State {
     }
 
     /// Starts to write the case to a file, which becomes its own.
-    pub(in crate::app) fn save_case(
-        &mut self,
-        (path, existing): (PathBuf, Existing),
-        context: &Context,
-    ) {
+    pub(in crate::app) fn save_case(&mut self, path: PathBuf, existing: Existing) {
         self.capture();
         let fingerprint = self.case.fingerprint(&self.forms());
         let mut file = self.case.file.clone();
@@ -333,49 +329,30 @@ impl State {
             }
         };
         file.note("saved");
-        let job = Job::spawn("save case", wake(context), move |_| {
+        let write = move |_: &mut ProgressCallback<'_>| {
             file.record_files();
             let path = std::path::absolute(&path).map_err(|error| error.to_string())?;
             let text = file.to_text(&path).map_err(|error| error_chain(&error))?;
             file.save(&path, existing).map_err(|error| error_chain(&error))?;
             let on_disk = sha256_hex(text.as_bytes());
-            Ok(SavedCase { file, path, on_disk, fingerprint })
-        });
-        match job {
-            Ok(job) => self.session.saving_case = Some(job),
-            Err(error) => self.say(Severity::Error, error.to_string()),
-        }
+            Ok(Found::new(SavedCase { file, path, on_disk, fingerprint }))
+        };
+        self.session.tasks.start(TaskKey::SaveCase, write, Command::CaseSaved);
     }
 
     /// Starts to write one zip of the case and its files.
-    pub(in crate::app) fn pack_case(
-        &mut self,
-        (path, existing): (PathBuf, Existing),
-        context: &Context,
-    ) {
+    pub(in crate::app) fn pack_case(&mut self, path: PathBuf, existing: Existing) {
         self.capture();
         self.case.file.note(format!("packed into {}", path.display()));
         let file = self.case.file.clone();
-        let job = Job::spawn("pack case", wake(context), move |_| {
-            pack(&file, &path, existing).map_err(|error| error_chain(&error)).map(|()| path)
+        self.start_writing(path, move |to| {
+            pack(&file, to, existing).map_err(|error| error_chain(&error))
         });
-        match job {
-            Ok(job) => self.session.exports.push(job),
-            Err(error) => self.say(Severity::Error, error.to_string()),
-        }
     }
 
     /// Receives the case that was written. What was changed since is not in its file.
-    pub(in crate::app) fn poll_case(&mut self) {
-        let Some(job) = &mut self.session.saving_case else { return };
-        let written = match job.poll() {
-            Update::Running => return,
-            Update::Finished(written) => written,
-            Update::Panicked(why) => Err(why),
-            Update::Gone => Err("the case was not written".to_owned()),
-        };
-        self.session.saving_case = None;
-        match written {
+    pub(in crate::app) fn take_saved_case(&mut self, written: Result<Found<SavedCase>, String>) {
+        match written.map(Found::take) {
             Ok(SavedCase { file, path, on_disk, fingerprint }) => {
                 let case = &mut self.case;
                 case.file.name = file.name;

@@ -7,7 +7,7 @@ mod purpose;
 mod stack;
 mod ui;
 
-pub use native::FileDialog;
+pub use native::ask_for_path;
 pub use path::PathDialog;
 pub use purpose::Purpose;
 pub use stack::{Dialog, Dialogs};

@@ -8,7 +8,8 @@ use rfd::AsyncFileDialog;
 
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::dialog::purpose::Purpose;
-use impactlab_core::jobs::{Job, Update};
+use crate::app::tasks::{TaskKey, Tasks};
+use impactlab_core::jobs::ProgressCallback;
 use impactlab_study::MODEL_ENDING;
 use impactlab_study::case_file::CASE_ENDING;
 
@@ -16,17 +17,15 @@ use impactlab_study::case_file::CASE_ENDING;
 const GROUNDS: [&str; 6] = ["toml", "png", "jpg", "jpeg", "tif", "tiff"];
 
 impl Purpose {
-    /// The commands that follow once paths are known.
+    /// The command that follows once paths are known.
     ///
     /// - `was_asked`: whether the user was asked already if a file of that name is to be replaced.
-    pub(in crate::app) fn commands(&self, paths: Vec<PathBuf>, was_asked: bool) -> Vec<Command> {
-        let Some(first) = paths.first().cloned() else {
-            return Vec::new();
-        };
+    pub(in crate::app) fn command(&self, paths: Vec<PathBuf>, was_asked: bool) -> Option<Command> {
+        let first = paths.first().cloned()?;
         let written = |ending: &str, command: &dyn Fn(PathBuf) -> Command| {
             written((&first, ending), was_asked, command)
         };
-        vec![match self {
+        Some(match self {
             Self::Folder | Self::Files | Self::Ground | Self::OpenModel | Self::OpenComparison => {
                 Command::Open(paths)
             }
@@ -59,7 +58,7 @@ impl Purpose {
             Self::Report(document) => {
                 written("pdf", &|path| Command::SaveReport(Arc::clone(document), path))
             }
-        }]
+        })
     }
 }
 
@@ -85,46 +84,21 @@ impl Answer {
     }
 }
 
-/// A native file dialog that waits for the user on its own thread.
-pub struct FileDialog {
-    purpose: Purpose,
-    job: Job<Answer>,
-}
-
-impl FileDialog {
-    /// Opens a dialog.
-    ///
-    /// - `purpose`: decides which dialog is opened and which command follows;
-    /// - `wake`: called when the user has answered.
-    ///
-    /// # Errors
-    /// The error of the operating system, if the thread cannot be started.
-    pub fn open(purpose: Purpose, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let asked = purpose.clone();
-        let job = Job::spawn("file dialog", wake, move |_| {
-            let start = Instant::now();
-            let paths = pollster::block_on(ask(&asked));
-            Answer { paths, took: start.elapsed() }
-        })?;
-        Ok(Self { purpose, job })
-    }
-
-    /// Returns the commands that follow from the user's answer; `None` while the dialog is open.
-    ///
-    /// The list is empty if the user cancelled. If the desktop has no file dialog, it asks for the path
-    /// within the window.
-    pub fn poll(&mut self) -> Option<Vec<Command>> {
-        match self.job.poll() {
-            Update::Running => None,
-            Update::Finished(answer) if answer.is_unseen() => {
-                Some(vec![Command::AskPath(self.purpose.clone())])
-            }
-            Update::Finished(answer) => Some(self.purpose.commands(answer.paths, true)),
-            Update::Panicked(_) | Update::Gone => {
-                Some(vec![Command::AskPath(self.purpose.clone())])
-            }
-        }
-    }
+/// Opens a dialog, which waits for the user on a thread of its own. If the desktop has none, the path is
+/// asked for within the window.
+///
+/// - `purpose`: decides which dialog is opened and which command follows.
+pub fn ask_for_path(purpose: Purpose, tasks: &mut Tasks) {
+    let asked = purpose.clone();
+    let work = move |_: &mut ProgressCallback<'_>| {
+        let start = Instant::now();
+        let paths = pollster::block_on(ask(&asked));
+        Ok(Answer { paths, took: start.elapsed() })
+    };
+    tasks.start(TaskKey::FileDialog, work, move |answer| match answer {
+        Ok(answer) if !answer.is_unseen() => purpose.command(answer.paths, true),
+        _ => Some(Command::AskPath(purpose)),
+    });
 }
 
 /// Returns the command that writes a file which the user has chosen in a dialog. A native dialog has

@@ -41,7 +41,7 @@ impl PathDialog {
             let is_clicked = ui.add_enabled(is_typed, egui::Button::new(label)).clicked();
             if is_clicked || is_entered && is_typed {
                 commands.push(Command::CloseDialog);
-                commands.extend(self.purpose.commands(vec![path], false));
+                commands.extend(self.purpose.command(vec![path], false));
             }
             if ui.button("Cancel").clicked() {
                 commands.push(Command::CloseDialog);

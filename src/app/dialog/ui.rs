@@ -54,7 +54,7 @@ fn dialog_ui(ui: &mut Ui, dialog: &mut Dialog, state: &mut State, commands: &mut
         Dialog::Path(dialog) => dialog.ui(ui, commands),
         Dialog::Models(dialog) => models_dialog_ui(ui, dialog, commands),
         Dialog::Film(form) => {
-            let is_busy = state.session.film.running().is_some();
+            let is_busy = state.session.tasks.film().is_some();
             film_ui(ui, form, is_busy, commands);
         }
     }

@@ -6,10 +6,11 @@ use std::sync::Arc;
 use egui::Context;
 
 use crate::app::command::{TrainingCommand, wake};
+use crate::app::force::ForceSession;
 use crate::app::kept::{KeptEntry, keep_trained};
 use crate::app::network::Network;
 use crate::app::source::{OpenDataset, Source, chosen_dataset, open_datasets};
-use crate::app::state::{State, Subject};
+use crate::app::state::{Session, State, Subject};
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::error_chain;
 use impactlab_core::uncertainty::ForceCurve;
@@ -34,24 +35,21 @@ impl State {
     /// Receives the results of the loader, the training, the evaluation and the forecast, and asks
     /// for a new forecast if the question has changed.
     pub(in crate::app) fn update_force(&mut self, context: &Context) {
-        let (force, library) = (&mut self.session.force, &self.session.library);
-        let problem = force.model.update(&self.project.force.model, library, wake(context));
-        let saved = force.model.poll_saving(library, &mut self.project.force.model);
-        self.say_problem(problem);
-        self.say_of_file(saved);
+        let Session { force, library, tasks, .. } = &mut self.session;
+        force.model.update(&self.project.force.model, library, tasks);
         self.follow_scenario();
         self.find_recorded_case();
-        self.poll_training(context);
+        self.poll_training();
         if self.session.force.evaluation.poll() {
-            self.keep_force_evaluation(context);
+            self.keep_force_evaluation();
         }
         self.session.force.forecast.poll();
         self.ask_for_force(context);
     }
 
-    fn poll_training(&mut self, context: &Context) {
+    fn poll_training(&mut self) {
         let was_running = self.session.force.training.run.is_running();
-        let (force, library) = (&mut self.session.force, &self.session.library);
+        let Session { force, library, kept, tasks, .. } = &mut self.session;
         match force.training.poll() {
             None => {}
             Some(Ok((model, is_complete))) => {
@@ -62,16 +60,14 @@ impl State {
                 let draft = force.training.kept_note(&model, name.clone(), is_complete);
                 let taken = force.model.take_trained(model, name, (library, is_complete));
                 let draft = draft.map(|draft| KeptEntry { name: taken.1, ..draft });
-                let folder = self.session.kept.folder();
-                let trained = (&mut force.model, &force.training);
-                let problem = keep_trained(trained, (taken.0, draft), folder, context);
-                self.say_problem(problem);
+                let ForceSession { model: status, training, .. } = force;
+                keep_trained(status, training, taken.0, draft, kept.folder(), tasks);
                 self.say_of_training(&of, is_complete);
             }
             Some(Err(problem)) => self.say(Severity::Error, format!("training: {problem}")),
         }
         if was_running && !self.session.force.training.run.is_running() {
-            self.read_unfinished(context);
+            self.read_unfinished();
         }
     }
 

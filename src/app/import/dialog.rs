@@ -7,6 +7,7 @@ use std::sync::Arc;
 use egui::{ComboBox, Grid, RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
+use crate::app::found::Found;
 use crate::app::import::choices::Choices;
 use crate::app::import::column_row::column_ui;
 use crate::app::import::preview::Preview;
@@ -14,12 +15,12 @@ use crate::app::looks;
 use crate::app::model::file_name;
 use crate::app::panels::{file_vehicle_ui, start_fields};
 use crate::app::state::FileStart;
+use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::data::{
     Channel, ColumnMap, FileKind, HeaderLine, ReadSettings, Severity, Sheet, SheetRef, Table,
     VelocityAxes, VelocityFit, proposals,
 };
 use impactlab_core::error_chain;
-use impactlab_core::jobs::{Job, Update};
 use impactlab_core::units::UnitSystem;
 use impactlab_draw::{FigureOptions, figure_ui, theme};
 use impactlab_study::VehicleChoice;
@@ -35,11 +36,12 @@ const COLUMNS_HEIGHT: f32 = 220.0;
 const CURVE_HEIGHT: f32 = 260.0;
 
 /// What the dialog reads in the background.
-enum Answer {
+#[derive(Clone)]
+pub enum ImportAnswer {
     /// The table, with the lines of header and units that were chosen.
     Table(ReadSettings, Result<Arc<Table>, String>),
     /// The curve with the choices of a map.
-    Preview(ColumnMap, Result<Box<Preview>, String>),
+    Preview(ColumnMap, Result<Arc<Preview>, String>),
 }
 
 /// The dialog in which the user says how a file is read.
@@ -54,8 +56,8 @@ pub struct ImportDialog {
     beginning: Vec<(u64, String)>,
     choices: Choices,
     /// The curve, and the map with which it was read.
-    preview: Option<(ColumnMap, Result<Box<Preview>, String>)>,
-    job: Option<Job<Answer>>,
+    preview: Option<(ColumnMap, Result<Arc<Preview>, String>)>,
+    is_reading: bool,
     /// Whether the user has said in which axes the velocities are.
     says_velocities: bool,
     /// System of units of the curve.
@@ -77,7 +79,7 @@ impl ImportDialog {
             beginning: Vec::new(),
             choices: Choices::default(),
             preview: None,
-            job: None,
+            is_reading: false,
             units: UnitSystem::default(),
         }
     }
@@ -89,7 +91,7 @@ impl ImportDialog {
 
     /// Whether the curve is that of the choices as they are.
     pub fn is_settled(&self) -> bool {
-        self.job.is_none() && !self.is_table_stale() && !self.is_preview_stale()
+        !self.is_reading && !self.is_table_stale() && !self.is_preview_stale()
     }
 
     /// The map of the choices as they are.
@@ -97,47 +99,36 @@ impl ImportDialog {
         self.choices.map(&self.settings)
     }
 
-    /// Receives what was read in the background, and starts to read what has changed.
-    ///
-    /// - `wake`: called when there is something to receive.
-    pub fn update(&mut self, units: UnitSystem, wake: impl Fn() + Send + 'static) {
+    /// Starts to read what has changed.
+    pub fn update(&mut self, units: UnitSystem, tasks: &mut Tasks) {
         if self.units != units {
             (self.units, self.preview) = (units, None);
         }
-        if let Some(job) = &mut self.job {
-            match job.poll() {
-                Update::Running => return,
-                Update::Finished(answer) => self.receive(answer),
-                Update::Panicked(why) => {
-                    self.table = Some((self.settings.clone(), Err(why)));
-                }
-                Update::Gone => {}
-            }
-            self.job = None;
+        if self.is_reading {
+            return;
         }
         if self.is_table_stale() {
             let (path, settings) = (self.path.clone(), self.settings.clone());
-            self.start(wake, move || {
+            self.start(tasks, move || {
                 let table = Table::read_as(&path, &settings).map(Arc::new);
-                Answer::Table(settings, table.map_err(|error| error_chain(&error)))
+                ImportAnswer::Table(settings, table.map_err(|error| error_chain(&error)))
             });
         } else if self.is_preview_stale()
             && let Some((_, Ok(table))) = &self.table
         {
             let (table, map) = (Arc::clone(table), self.map());
-            self.start(wake, move || {
-                let preview = Preview::of(&table, &map, units).map(Box::new);
-                Answer::Preview(map, preview.map_err(|error| error_chain(&error)))
+            self.start(tasks, move || {
+                let preview = Preview::of(&table, &map, units).map(Arc::new);
+                ImportAnswer::Preview(map, preview.map_err(|error| error_chain(&error)))
             });
         }
     }
 
-    fn start(
-        &mut self,
-        wake: impl Fn() + Send + 'static,
-        read: impl FnOnce() -> Answer + Send + 'static,
-    ) {
-        self.job = Job::spawn("import", wake, move |_| read()).ok();
+    fn start(&mut self, tasks: &mut Tasks, read: impl FnOnce() -> ImportAnswer + Send + 'static) {
+        self.is_reading = true;
+        let path = self.path.clone();
+        let take = |result| Command::ImportRead(path, result);
+        tasks.start(TaskKey::Import, |_| Ok(Found::new(read())), take);
     }
 
     /// Whether the table was read with another sheet, header or row of units.
@@ -153,9 +144,12 @@ impl ImportDialog {
         is_read && self.choices.open_questions().is_empty() && shown != Some(&self.map())
     }
 
-    fn receive(&mut self, answer: Answer) {
+    /// Takes what was read, or why the reading broke off.
+    pub fn receive(&mut self, answer: Result<ImportAnswer, String>) {
+        self.is_reading = false;
         match answer {
-            Answer::Table(settings, table) => {
+            Err(why) => self.table = Some((self.settings.clone(), Err(why))),
+            Ok(ImportAnswer::Table(settings, table)) => {
                 if let Ok(table) = &table {
                     let found = proposals(table);
                     self.choices = match self.first_map.take() {
@@ -167,7 +161,7 @@ impl ImportDialog {
                 self.table = Some((settings, table));
                 self.preview = None;
             }
-            Answer::Preview(map, preview) => {
+            Ok(ImportAnswer::Preview(map, preview)) => {
                 // Velocities that fit the path in world axes only are proposed as such.
                 let fit = preview.as_ref().ok().and_then(|preview| preview.fit);
                 if !self.says_velocities {

@@ -7,6 +7,6 @@ mod dialog;
 mod preview;
 mod remembered;
 
-pub use dialog::ImportDialog;
+pub use dialog::{ImportAnswer, ImportDialog};
 pub use remembered::ColumnMaps;
 pub(in crate::app) use remembered::fingerprint;

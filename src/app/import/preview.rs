@@ -16,7 +16,7 @@ const FIRST_SPEED_OVER_S: f64 = 0.1;
 const SHOWN_IN_KN: f64 = 1e3;
 
 /// What a file holds if it is read as the user has chosen.
-pub(super) struct Preview {
+pub struct Preview {
     pub kind: FileKind,
     /// The curve: force over time, path from above, or angle over time.
     pub figure: Figure,

@@ -24,7 +24,7 @@ const RESULT_ENDING: &str = "json";
 pub struct KeptFolder(PathBuf);
 
 /// What is kept.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct KeptList {
     /// Everything that is whole, the latest first.
     pub entries: Vec<KeptEntry>,

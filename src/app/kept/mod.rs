@@ -23,5 +23,5 @@ pub(in crate::app) use entry::moment_text;
 pub use entry::{Fact, KeptEntry, KeptKind};
 pub use error::KeptError;
 pub use folder::{KeptFolder, KeptList, KeptProblem, NOTE_ENDING, name_of};
-pub use status::{KeptStatus, ModelsDialog, OpenedResult, Removal};
+pub use status::{KeptEvent, KeptStatus, ModelsDialog, OpenedResult, Removal};
 pub(in crate::app) use update::{LIMIT_BYTES, bytes_text, keep_trained};

@@ -2,12 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::app::command::Command;
+use crate::app::found::Found;
 use crate::app::kept::{KeptEntry, KeptError, KeptFolder, KeptList};
 use crate::app::model::file_name;
+use crate::app::tasks::{TaskKey, Tasks};
+use crate::app::unfinished::UnfinishedList;
 use impactlab_core::data::write::sha256_hex;
 use impactlab_core::data::{Existing, write_atomically};
 use impactlab_core::error_chain;
-use impactlab_core::jobs::Job;
+use impactlab_core::jobs::ProgressCallback;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{CompareReport, EvaluateForceReport, ModelChoice, Request};
 
@@ -36,7 +40,29 @@ pub enum ModelsDialog {
     Remove(Removal),
 }
 
+/// What a task has done with what is kept.
+#[derive(Clone)]
+pub enum KeptEvent {
+    /// The list was read.
+    Listed(Result<KeptList, String>),
+    /// An entry was written, anew or with another name.
+    Put(Result<KeptEntry, String>),
+    /// Files were removed.
+    Removed(Result<Removal, String>),
+    /// A comparison or an evaluation was read.
+    Opened(Result<OpenedResult, String>),
+    /// The list of trainings that have not ended was read.
+    Trainings(Result<UnfinishedList, String>),
+}
+
+impl From<KeptEvent> for Command {
+    fn from(event: KeptEvent) -> Self {
+        Self::Kept(Found::new(event))
+    }
+}
+
 /// A comparison or an evaluation that is shown again.
+#[derive(Clone)]
 pub enum OpenedResult {
     /// A comparison of response models, or the evaluation of one.
     Comparison(Box<CompareReport>),
@@ -48,30 +74,22 @@ pub enum OpenedResult {
 #[derive(Default)]
 pub struct KeptStatus {
     folder: Option<KeptFolder>,
-    reading: Option<Job<Result<KeptList, String>>>,
-    writing: Vec<Job<Result<KeptEntry, String>>>,
-    removing: Vec<Job<Result<Removal, String>>>,
-    opening: Option<Job<Result<OpenedResult, String>>>,
+    is_reading: bool,
     /// What is kept.
     pub list: KeptList,
 }
 
 impl KeptStatus {
     /// Takes the user's data folder and starts to read what is kept there.
-    ///
-    /// - `wake`: called when it has been read.
-    ///
-    /// # Errors
-    /// The error of the operating system, if the thread cannot be started.
-    pub fn open(
-        &mut self,
-        folder: PathBuf,
-        wake: impl Fn() + Send + 'static,
-    ) -> std::io::Result<()> {
+    pub fn open(&mut self, folder: PathBuf, tasks: &mut Tasks) {
         let folder = KeptFolder::new(folder);
         self.folder = Some(folder.clone());
-        self.reading = Some(Job::spawn("read kept models", wake, move |_| Ok(folder.read()))?);
-        Ok(())
+        self.is_reading = true;
+        tasks.start(
+            TaskKey::ListKept,
+            move |_| Ok(folder.read()),
+            |result| Command::from(KeptEvent::Listed(result)),
+        );
     }
 
     /// Returns where results are kept; `None` if this window keeps nothing.
@@ -81,12 +99,7 @@ impl KeptStatus {
 
     /// Whether what is kept is still being read.
     pub fn is_reading(&self) -> bool {
-        self.reading.is_some()
-    }
-
-    /// Whether something is being written.
-    pub fn is_writing(&self) -> bool {
-        !self.writing.is_empty()
+        self.is_reading
     }
 
     /// Returns the entry of a model file; `None` for a file of the user.
@@ -114,54 +127,32 @@ impl KeptStatus {
     /// Starts to keep a comparison or an evaluation. Without a folder nothing is kept.
     ///
     /// - `draft`: its note;
-    /// - `content`: the report as JSON;
-    /// - `wake`: called when it has been written.
-    ///
-    /// # Errors
-    /// The error of the operating system, if the thread cannot be started.
-    pub fn keep_result(
-        &mut self,
-        draft: KeptEntry,
-        content: Vec<u8>,
-        wake: impl Fn() + Send + 'static,
-    ) -> std::io::Result<()> {
-        let Some(folder) = self.folder.clone() else { return Ok(()) };
-        let job = Job::spawn("keep result", wake, move |_| {
+    /// - `content`: the report as JSON.
+    pub fn keep_result(&self, draft: KeptEntry, content: Vec<u8>, tasks: &mut Tasks) {
+        let Some(folder) = self.folder.clone() else { return };
+        let key = TaskKey::PutKept(sha256_hex(&content));
+        let work = move |_: &mut ProgressCallback<'_>| {
             let name = draft.name.clone();
             let kept = keep_bytes(&folder, draft, &content);
             kept.map_err(|error| format!("{name} is not kept: {}", error_chain(&error)))
-        })?;
-        self.writing.push(job);
-        Ok(())
+        };
+        tasks.start(key, work, |result| Command::from(KeptEvent::Put(result)));
     }
 
     /// Starts to give an entry another name.
-    ///
-    /// # Errors
-    /// The error of the operating system, if the thread cannot be started.
-    pub fn rename(
-        &mut self,
-        (entry, name): (KeptEntry, String),
-        wake: impl Fn() + Send + 'static,
-    ) -> std::io::Result<()> {
-        let Some(folder) = self.folder.clone() else { return Ok(()) };
-        let job = Job::spawn("rename", wake, move |_| {
+    pub fn rename(&self, entry: KeptEntry, name: String, tasks: &mut Tasks) {
+        let Some(folder) = self.folder.clone() else { return };
+        let key = TaskKey::PutKept(entry.sha256.clone());
+        let work = move |_: &mut ProgressCallback<'_>| {
             folder.rename(entry, name).map_err(|error| error_chain(&error))
-        })?;
-        self.writing.push(job);
-        Ok(())
+        };
+        tasks.start(key, work, |result| Command::from(KeptEvent::Put(result)));
     }
 
     /// Starts to remove files. What is missing already counts as removed.
-    ///
-    /// # Errors
-    /// The error of the operating system, if the thread cannot be started.
-    pub fn remove(
-        &mut self,
-        removal: Removal,
-        wake: impl Fn() + Send + 'static,
-    ) -> std::io::Result<()> {
-        let job = Job::spawn("remove", wake, move |_| {
+    pub fn remove(&self, removal: Removal, tasks: &mut Tasks) {
+        let key = TaskKey::RemoveKept(removal.files.clone());
+        let work = move |_: &mut ProgressCallback<'_>| {
             for path in &removal.files {
                 match std::fs::remove_file(path) {
                     Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
@@ -171,24 +162,26 @@ impl KeptStatus {
                 }
             }
             Ok(removal)
-        })?;
-        self.removing.push(job);
-        Ok(())
+        };
+        tasks.start(key, work, |result| Command::from(KeptEvent::Removed(result)));
     }
 
     /// Starts to read a comparison or an evaluation.
-    ///
-    /// # Errors
-    /// The error of the operating system, if the thread cannot be started.
-    pub fn open_result(
-        &mut self,
-        entry: KeptEntry,
-        wake: impl Fn() + Send + 'static,
-    ) -> std::io::Result<()> {
-        let Some(folder) = self.folder.clone() else { return Ok(()) };
-        let job = Job::spawn("open result", wake, move |_| read_result(&folder, entry))?;
-        self.opening = Some(job);
-        Ok(())
+    pub fn open_result(&self, entry: KeptEntry, tasks: &mut Tasks) {
+        let Some(folder) = self.folder.clone() else { return };
+        let work = move |_: &mut ProgressCallback<'_>| read_result(&folder, entry);
+        tasks.start(TaskKey::OpenKept, work, |result| Command::from(KeptEvent::Opened(result)));
+    }
+
+    /// Takes the list that was read. What was kept while it was being read is in it or is newer.
+    pub fn take_list(&mut self, list: KeptList) {
+        let newer = std::mem::replace(&mut self.list, list);
+        newer.entries.into_iter().for_each(|entry| self.add(entry));
+    }
+
+    /// Notes that the list has been read, or that it could not be.
+    pub fn end_reading(&mut self) {
+        self.is_reading = false;
     }
 
     /// Adds an entry, or replaces the one with the same content.
@@ -200,71 +193,8 @@ impl KeptStatus {
         }
     }
 
-    /// Receives the results of the jobs.
-    ///
-    /// - returns the comparison or evaluation that has been read, the files that have been removed,
-    ///   and messages for the user about what went wrong.
-    pub fn poll(&mut self) -> (Option<OpenedResult>, Vec<Removal>, Vec<String>) {
-        let mut problems = Vec::new();
-        let read = self.reading.as_mut().and_then(|job| job.poll().into_result("the reader"));
-        match read {
-            None => {}
-            Some(Err(problem)) => {
-                self.reading = None;
-                problems.push(problem);
-            }
-            Some(Ok(list)) => {
-                self.reading = None;
-                // What was kept while the list was being read is in it or is newer.
-                let newer = std::mem::replace(&mut self.list, list);
-                newer.entries.into_iter().for_each(|entry| self.add(entry));
-            }
-        }
-        let mut written = Vec::new();
-        self.writing.retain_mut(|job| match job.poll().into_result("the writer") {
-            None => true,
-            Some(result) => {
-                written.push(result);
-                false
-            }
-        });
-        for result in written {
-            match result {
-                Ok(entry) => self.add(entry),
-                Err(problem) => problems.push(problem),
-            }
-        }
-        let mut removed = Vec::new();
-        self.removing.retain_mut(|job| match job.poll().into_result("the remover") {
-            None => true,
-            Some(Ok(removal)) => {
-                removed.push(removal);
-                false
-            }
-            Some(Err(problem)) => {
-                problems.push(problem);
-                false
-            }
-        });
-        for removal in &removed {
-            self.forget(removal);
-        }
-        let opened = self.opening.as_mut().and_then(|job| job.poll().into_result("the reader"));
-        if opened.is_some() {
-            self.opening = None;
-        }
-        let opened = match opened {
-            Some(Err(problem)) => {
-                problems.push(problem);
-                None
-            }
-            Some(Ok(opened)) => Some(opened),
-            None => None,
-        };
-        (opened, removed, problems)
-    }
-
-    fn forget(&mut self, removal: &Removal) {
+    /// Takes files that were removed out of the list.
+    pub fn forget(&mut self, removal: &Removal) {
         if let Some(folder) = &self.folder {
             let is_left = |entry: &KeptEntry| !removal.files.contains(&folder.path_of(entry));
             self.list.entries.retain(is_left);

@@ -5,22 +5,23 @@ use std::sync::Arc;
 
 use egui::Context;
 
-use crate::app::command::{Command, ModelsCommand, wake};
+use crate::app::command::{Command, ModelsCommand};
 use crate::app::dialog::Dialog;
 use crate::app::kept::{
-    Fact, KeptEntry, KeptFolder, KeptKind, KeptStatus, ModelsDialog, OpenedResult,
+    Fact, KeptEntry, KeptEvent, KeptFolder, KeptKind, KeptStatus, ModelsDialog, OpenedResult,
 };
-use crate::app::model::{ModelStatus, file_name};
+use crate::app::model::{ModelEvent, ModelNews, ModelStatus, file_name};
 use crate::app::network::TrainedModel;
 use crate::app::question_job::Answered;
 use crate::app::reconstruction::KeptRuns;
-use crate::app::state::State;
+use crate::app::state::{Session, State};
+use crate::app::tasks::Tasks;
 use crate::app::training_status::TrainingStatus;
-use impactlab_core::data::{Existing, MAX_MODEL_BYTES, Severity, read_bytes, write_atomically};
-use impactlab_core::error_chain;
-use impactlab_core::jobs::Job;
+use impactlab_core::data::Severity;
 use impactlab_core::units::{percent, significant};
 use impactlab_document::figure::model_name;
+use impactlab_networks::force::ForceModel;
+use impactlab_networks::response::ResponseModel;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{
     CompareAnswer, CompareReport, EvaluateForceAnswer, EvaluateForceReport, ForceEvaluation,
@@ -35,54 +36,61 @@ impl State {
     ///
     /// - `stores_trainings`: whether this window stores the state of its trainings; a second window
     ///   does not, since it would offer those of the first one.
-    pub(in crate::app) fn open_data_folder(
-        &mut self,
-        (folder, stores_trainings): (PathBuf, bool),
-        context: &Context,
-    ) {
+    pub(in crate::app) fn open_data_folder(&mut self, folder: PathBuf, stores_trainings: bool) {
+        let Session { unfinished, kept, reconstruction, tasks, .. } = &mut self.session;
         if stores_trainings {
-            let opened = self.session.unfinished.open(&folder, wake(context));
-            self.say_io(opened);
+            unfinished.open(&folder, tasks);
         }
-        self.session.reconstruction.kept_runs = Some(KeptRuns::new(&folder));
-        let opened = self.session.kept.open(folder, wake(context));
-        self.say_io(opened);
+        reconstruction.kept_runs = Some(KeptRuns::new(&folder));
+        kept.open(folder, tasks);
     }
 
-    fn say_io(&mut self, result: std::io::Result<()>) {
-        self.say_problem(result.err().map(|error| error.to_string()));
-    }
-
-    /// Receives what has been kept, read and removed.
-    pub(in crate::app) fn update_kept(&mut self, context: &Context) {
-        let (opened, removed, problems) = self.session.kept.poll();
-        for problem in problems {
-            self.say(Severity::Error, problem);
-        }
-        if let Some(opened) = opened {
-            self.show_result(opened, context);
-        }
-        if !removed.is_empty() {
-            self.read_unfinished(context);
-        }
-        if self.session.unfinished.poll() {
-            self.read_unfinished(context);
-        }
-        self.poll_kept_models(context);
-        self.take_kept_names();
-    }
-
-    fn poll_kept_models(&mut self, context: &Context) {
-        let (project, session) = (&mut self.project, &mut self.session);
-        let library = &session.library;
-        let force = session.force.model.poll_keeping(library, &mut project.force.model);
-        let response = session.response.model.poll_keeping(library, &mut project.response.model);
-        for kept in [force, response].into_iter().flatten() {
-            match kept {
-                Ok(entry) => self.take_kept(entry),
-                Err(problem) => self.say(Severity::Error, problem),
+    /// Takes what a task has done with what is kept.
+    pub(in crate::app) fn take_kept_event(&mut self, event: KeptEvent, context: &Context) {
+        let Session { kept, unfinished, tasks, .. } = &mut self.session;
+        let problem = match event {
+            KeptEvent::Trainings(list) => return unfinished.take(list, tasks),
+            KeptEvent::Listed(list) => {
+                kept.end_reading();
+                list.map(|list| kept.take_list(list)).err()
             }
-            self.read_unfinished(context);
+            KeptEvent::Put(entry) => entry.map(|entry| kept.add(entry)).err(),
+            KeptEvent::Removed(Ok(removal)) => {
+                kept.forget(&removal);
+                return self.read_unfinished();
+            }
+            KeptEvent::Opened(Ok(opened)) => return self.show_result(opened, context),
+            KeptEvent::Removed(Err(problem)) | KeptEvent::Opened(Err(problem)) => Some(problem),
+        };
+        self.say_problem(problem);
+    }
+
+    /// Takes what a task has made of a model of the force network.
+    pub(in crate::app) fn take_force_model(&mut self, event: &ModelEvent<ForceModel>) {
+        let Session { force, library, .. } = &mut self.session;
+        let news = force.model.take(event, library, &mut self.project.force.model);
+        self.take_model_news(news);
+    }
+
+    /// Takes what a task has made of a model of the response network.
+    pub(in crate::app) fn take_response_model(&mut self, event: &ModelEvent<ResponseModel>) {
+        let Session { response, library, .. } = &mut self.session;
+        let news = response.model.take(event, library, &mut self.project.response.model);
+        self.take_model_news(news);
+    }
+
+    fn take_model_news(&mut self, news: ModelNews) {
+        match news {
+            ModelNews::Nothing => {}
+            ModelNews::Problem(problem) => self.say(Severity::Error, problem),
+            ModelNews::Saved(written) => self.say_of_file(written),
+            ModelNews::Kept(kept) => {
+                match kept {
+                    Ok(entry) => self.take_kept(entry),
+                    Err(problem) => self.say(Severity::Error, problem),
+                }
+                self.read_unfinished();
+            }
         }
     }
 
@@ -100,7 +108,7 @@ impl State {
     }
 
     /// Names models in use as the user has named them in the list.
-    fn take_kept_names(&mut self) {
+    pub(in crate::app) fn take_kept_names(&mut self) {
         let (kept, session) = (&self.session.kept, &self.session);
         let name_of = |choice: Option<&ModelChoice>| match choice {
             Some(ModelChoice::Source(ModelSource::File(path))) => {
@@ -119,72 +127,52 @@ impl State {
     }
 
     /// Reads again which trainings have not ended.
-    pub(in crate::app) fn read_unfinished(&mut self, context: &Context) {
-        let read = self.session.unfinished.read(wake(context));
-        self.say_io(read);
+    pub(in crate::app) fn read_unfinished(&mut self) {
+        self.session.unfinished.read(&mut self.session.tasks);
     }
 
     /// Keeps a comparison or an evaluation of response models that has just been finished.
-    pub(in crate::app) fn keep_comparison(
-        &mut self,
-        (question, answer): (Request, Arc<CompareAnswer>),
-        context: &Context,
-    ) {
+    pub(in crate::app) fn keep_comparison(&mut self, question: Request, answer: &CompareAnswer) {
         let content = serde_json::to_vec(&answer.report).map_err(|error| error.to_string());
         let draft = comparison_note(question, &answer.report, &self.session.kept);
-        self.keep_result(draft, content, context);
+        self.keep_result(draft, content);
     }
 
     /// Keeps the evaluation of the force model that has just been finished.
-    pub(in crate::app) fn keep_force_evaluation(&mut self, context: &Context) {
+    pub(in crate::app) fn keep_force_evaluation(&mut self) {
         let Some(latest) = &self.session.force.evaluation.latest else { return };
         let Ok(answer) = &latest.answer else { return };
         let ForceEvaluation::Cases(report) = &answer.report else { return };
         let content = serde_json::to_vec(report).map_err(|error| error.to_string());
         let question = Request::from(latest.question.clone());
         let draft = evaluation_note(question, report, &self.session.kept);
-        self.keep_result(draft, content, context);
+        self.keep_result(draft, content);
     }
 
-    fn keep_result(
-        &mut self,
-        draft: KeptEntry,
-        content: Result<Vec<u8>, String>,
-        context: &Context,
-    ) {
+    fn keep_result(&mut self, draft: KeptEntry, content: Result<Vec<u8>, String>) {
+        let Session { kept, tasks, .. } = &mut self.session;
         match content {
-            Ok(content) => {
-                let kept = self.session.kept.keep_result(draft, content, wake(context));
-                self.say_io(kept);
-            }
+            Ok(content) => kept.keep_result(draft, content, tasks),
             Err(problem) => {
-                self.say(Severity::Error, format!("{} is not kept: {problem}", draft.name))
+                self.say(Severity::Error, format!("{} is not kept: {problem}", draft.name));
             }
         }
     }
 
     /// Carries out a command of the Models pane.
     pub(in crate::app) fn change_models(&mut self, command: ModelsCommand, context: &Context) {
-        let done = match command {
-            ModelsCommand::Ask(dialog) => {
-                return self.session.dialogs.open(Dialog::Models(dialog));
-            }
-            ModelsCommand::Rename(entry, name) => {
-                self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Models(_)));
-                self.session.kept.rename((*entry, name), wake(context))
-            }
-            ModelsCommand::Remove(removal) => {
-                self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Models(_)));
-                self.session.kept.remove(removal, wake(context))
-            }
-            ModelsCommand::Open(entry) => self.session.kept.open_result(*entry, wake(context)),
-            ModelsCommand::Resume(checkpoint) => return self.resume_training(&checkpoint, context),
-            ModelsCommand::HideInterrupted => {
-                self.session.unfinished.is_hidden = true;
-                return;
-            }
-        };
-        self.say_io(done);
+        let Session { kept, tasks, dialogs, unfinished, .. } = &mut self.session;
+        if matches!(command, ModelsCommand::Rename(..) | ModelsCommand::Remove(_)) {
+            dialogs.close_if(|dialog| matches!(dialog, Dialog::Models(_)));
+        }
+        match command {
+            ModelsCommand::Ask(dialog) => dialogs.open(Dialog::Models(dialog)),
+            ModelsCommand::Rename(entry, name) => kept.rename(*entry, name, tasks),
+            ModelsCommand::Remove(removal) => kept.remove(removal, tasks),
+            ModelsCommand::Open(entry) => kept.open_result(*entry, tasks),
+            ModelsCommand::Resume(checkpoint) => self.resume_training(&checkpoint, context),
+            ModelsCommand::HideInterrupted => unfinished.is_hidden = true,
+        }
     }
 
     fn show_result(&mut self, opened: OpenedResult, context: &Context) {
@@ -208,25 +196,6 @@ impl State {
             self.apply(Command::Show(pane), context);
         }
     }
-
-    /// Starts to write a copy of a kept model to a file of the user.
-    pub(in crate::app) fn copy_kept(
-        &mut self,
-        (kept, path): (PathBuf, PathBuf),
-        existing: Existing,
-        context: &Context,
-    ) {
-        let job = Job::spawn("copy model", wake(context), move |_| {
-            let bytes = read_bytes(&kept, MAX_MODEL_BYTES).map_err(|error| error_chain(&error))?;
-            write_atomically(&path, existing, |out| out.write_all(&bytes))
-                .map_err(|error| error_chain(&error))?;
-            Ok(path)
-        });
-        match job {
-            Ok(job) => self.session.exports.push(job),
-            Err(error) => self.say(Severity::Error, error.to_string()),
-        }
-    }
 }
 
 impl ModelsDialog {
@@ -245,18 +214,17 @@ impl ModelsDialog {
 }
 
 /// Starts to keep a model that was just trained.
-///
-/// - returns a message for the user if that is not possible.
 pub(in crate::app) fn keep_trained<M: TrainedModel>(
-    (status, training): (&mut ModelStatus<M>, &TrainingStatus<M>),
-    (model, draft): (Arc<M>, Option<KeptEntry>),
+    status: &mut ModelStatus<M>,
+    training: &TrainingStatus<M>,
+    model: Arc<M>,
+    draft: Option<KeptEntry>,
     folder: Option<&KeptFolder>,
-    context: &Context,
-) -> Option<String> {
-    let (folder, draft) = (folder?.clone(), draft?);
-    let checkpoint = training.checkpoint.clone();
-    let started = status.keep((model, draft), (folder, checkpoint), wake(context));
-    started.err().map(|error| error.to_string())
+    tasks: &mut Tasks,
+) {
+    if let (Some(folder), Some(draft)) = (folder, draft) {
+        status.keep(model, draft, folder.clone(), training.checkpoint.clone(), tasks);
+    }
 }
 
 fn comparison_note(question: Request, report: &CompareReport, kept: &KeptStatus) -> KeptEntry {

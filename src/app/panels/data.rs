@@ -71,7 +71,7 @@ fn source_ui(
     commands: &mut Vec<Command>,
 ) {
     match &source.content {
-        Content::Loading(_) => {
+        Content::Loading => {
             ui.horizontal(|ui| (ui.spinner(), ui.label(source.name())));
         }
         Content::Dataset(checked) => {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use impactlab_core::data::Outcome;
 use impactlab_core::error_chain;
-use impactlab_core::jobs::{Job, Progress};
+use impactlab_core::jobs::{Progress, ProgressCallback};
 use impactlab_document::report::{Pixels, ReportDocument, ReportSettings, report_case};
 use impactlab_draw::report_picture;
 use impactlab_study::case_file::{CaseFile, Change};
@@ -39,54 +39,40 @@ pub struct MadeReport {
 /// A picture, or why it could not be drawn.
 pub type DrawnPicture = Result<Pixels, String>;
 
-/// What the thread returns.
-pub(in crate::app) type Made = Result<Outcome<MadeReport>, String>;
-
-/// A report that is being made.
-pub(super) struct ReportJob {
-    pub(super) job: Job<Made>,
-}
-
-impl ReportJob {
-    /// Starts to make a report.
-    ///
-    /// # Errors
-    /// The error of the operating system, if the thread cannot be started.
-    pub(super) fn start(
-        (case, origin): (CaseFile, ReportOrigin),
-        library: &Arc<Library>,
-        wake: impl Fn() + Send + 'static,
-    ) -> std::io::Result<Self> {
-        let library = Arc::clone(library);
-        let job = Job::spawn("report", wake, move |tell| {
-            let mut observer = |event: Event<'_>| match event {
-                Event::Progress(progress) => tell(progress),
-                Event::Training(_) | Event::Sampling(_) => std::ops::ControlFlow::Continue(()),
-            };
-            let asked = (&case, origin.variants.as_slice());
-            let answered = report_case(asked, &origin.settings, &library, &mut observer);
-            let (document, report) = match answered.map_err(|error| error_chain(&error))? {
-                Outcome::Complete(answered) => answered,
-                Outcome::Cancelled => return Ok(Outcome::Cancelled),
-            };
-            let n = document.pictures().count() as u64;
-            let mut pictures = Vec::new();
-            for (i, picture) in document.pictures().enumerate() {
-                let progress = Progress::new(i as u64, n, "drawing pictures");
-                if tell(progress).is_break() {
-                    return Ok(Outcome::Cancelled);
-                }
-                pictures.push(report_picture(&picture.content));
-            }
-            let answers = report.variants.iter().flat_map(|variant| &variant.answers);
-            Ok(Outcome::Complete(MadeReport {
-                document: Arc::new(document),
-                pictures,
-                n_unanswered: answers.filter(|answer| answer.error.is_some()).count(),
-                changes: report.changes,
-                origin,
-            }))
-        })?;
-        Ok(Self { job })
+/// Makes a report: asks the questions, lays out the document and draws its pictures.
+///
+/// # Errors
+/// A message for the user.
+pub(super) fn make_report(
+    case: &CaseFile,
+    origin: ReportOrigin,
+    library: &Library,
+    tell: &mut ProgressCallback<'_>,
+) -> Result<Outcome<Arc<MadeReport>>, String> {
+    let mut observer = |event: Event<'_>| match event {
+        Event::Progress(progress) => tell(progress),
+        Event::Training(_) | Event::Sampling(_) => std::ops::ControlFlow::Continue(()),
+    };
+    let asked = (case, origin.variants.as_slice());
+    let answered = report_case(asked, &origin.settings, library, &mut observer);
+    let (document, report) = match answered.map_err(|error| error_chain(&error))? {
+        Outcome::Complete(answered) => answered,
+        Outcome::Cancelled => return Ok(Outcome::Cancelled),
+    };
+    let n = document.pictures().count() as u64;
+    let mut pictures = Vec::new();
+    for (i, picture) in document.pictures().enumerate() {
+        if tell(Progress::new(i as u64, n, "drawing pictures")).is_break() {
+            return Ok(Outcome::Cancelled);
+        }
+        pictures.push(report_picture(&picture.content));
     }
+    let answers = report.variants.iter().flat_map(|variant| &variant.answers);
+    Ok(Outcome::Complete(Arc::new(MadeReport {
+        document: Arc::new(document),
+        pictures,
+        n_unanswered: answers.filter(|answer| answer.error.is_some()).count(),
+        changes: report.changes,
+        origin,
+    })))
 }

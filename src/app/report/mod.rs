@@ -1,4 +1,4 @@
-//! The report in the window: its settings, the thread that makes it, and what it was made of. The panes
+//! The report in the window: its settings, the task that makes it, and what it was made of. The panes
 //! Report and Report pages show them.
 
 mod make;
@@ -14,8 +14,7 @@ use std::time::SystemTime;
 use egui::{ColorImage, Context, TextureHandle, TextureOptions};
 use serde::{Deserialize, Serialize};
 
-use crate::app::report::make::ReportJob;
-use impactlab_core::jobs::Job;
+use impactlab_core::data::Outcome;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{Language, Paper, ReportDate, ReportSettings, SectionKind};
 
@@ -34,12 +33,14 @@ pub struct ReportView {
 }
 
 /// An action on the report.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub enum ReportCommand {
     /// Ask the questions of the case and make the report of the answers.
     Make,
     /// Stop making it. The report that was there stays.
     Cancel,
+    /// Show the report that was made, or why there is none.
+    Made(Result<Outcome<Arc<MadeReport>>, String>),
     /// Bring a section to the top of its pane.
     ShowSection(SectionKind),
 }
@@ -47,7 +48,8 @@ pub enum ReportCommand {
 /// The report that is shown, and the one that is being made; not saved.
 #[derive(Default)]
 pub struct ReportSession {
-    running: Option<ReportJob>,
+    /// Whether a report is being made.
+    pub is_running: bool,
     textures: BTreeMap<usize, TextureHandle>,
     /// The latest report.
     pub made: Option<Arc<MadeReport>>,
@@ -87,20 +89,17 @@ impl ReportView {
 }
 
 impl ReportSession {
-    /// The thread that makes a report, with its progress; `None` if none does.
-    pub fn job(&self) -> Option<&Job<make::Made>> {
-        self.running.as_ref().map(|running| &running.job)
-    }
-
-    /// Whether a report is being made.
-    pub fn is_running(&self) -> bool {
-        self.running.is_some()
-    }
-
-    /// Shows another report.
-    fn show(&mut self, made: MadeReport) {
-        self.textures.clear();
-        (self.made, self.problem) = (Some(Arc::new(made)), None);
+    /// Shows the report that was made. A cancelled one leaves what was there.
+    fn take(&mut self, result: Result<Outcome<Arc<MadeReport>>, String>) {
+        self.is_running = false;
+        match result {
+            Ok(Outcome::Complete(made)) => {
+                self.textures.clear();
+                (self.made, self.problem) = (Some(made), None);
+            }
+            Ok(Outcome::Cancelled) => {}
+            Err(why) => self.problem = Some(why),
+        }
     }
 
     /// A picture of the report, by its number from 0, or why it was not drawn. It is given to the

@@ -1,19 +1,15 @@
-//! Starts, receives and saves reports.
+//! Starts and receives reports.
 
-use std::path::Path;
 use std::sync::Arc;
 
-use egui::Context;
-
-use crate::app::command::wake;
-use crate::app::export;
+use crate::app::command::Command;
 use crate::app::panes::Pane;
-use crate::app::report::make::ReportJob;
+use crate::app::report::make::make_report;
 use crate::app::report::{ReportCommand, ReportOrigin};
 use crate::app::state::State;
+use crate::app::tasks::TaskKey;
 use crate::app::workspaces::Workspace;
-use impactlab_core::data::{Existing, Outcome, Severity};
-use impactlab_document::report::ReportDocument;
+use impactlab_core::data::Severity;
 
 impl State {
     /// What a report would be made of now.
@@ -34,14 +30,13 @@ impl State {
     }
 
     /// Carries out an action on the report.
-    pub(in crate::app) fn report(&mut self, command: ReportCommand, context: &Context) {
+    pub(in crate::app) fn report(&mut self, command: ReportCommand) {
         match command {
-            ReportCommand::Make => self.make_report(context),
+            ReportCommand::Make => self.make_report(),
             ReportCommand::Cancel => {
-                if let Some(job) = self.session.report.job() {
-                    job.cancel();
-                }
+                self.session.tasks.cancel(&TaskKey::Report);
             }
+            ReportCommand::Made(result) => self.session.report.take(result),
             ReportCommand::ShowSection(kind) => {
                 self.session.report.wanted_section = Some(kind);
                 self.view.workspaces.show_pane(Pane::ReportPages);
@@ -49,7 +44,7 @@ impl State {
         }
     }
 
-    fn make_report(&mut self, context: &Context) {
+    fn make_report(&mut self) {
         let origin = match self.report_origin() {
             Ok(origin) => origin,
             Err(why) => return self.say(Severity::Error, why),
@@ -61,28 +56,17 @@ impl State {
             );
         }
         let case = self.captured_case();
-        let started = ReportJob::start((case, origin), &self.session.library, wake(context));
-        match started {
-            Ok(job) => self.session.report.running = Some(job),
-            Err(error) => self.say(Severity::Error, error.to_string()),
-        }
+        let library = Arc::clone(&self.session.library);
+        self.session.report.is_running = true;
+        self.session.tasks.start(
+            TaskKey::Report,
+            move |tell| make_report(&case, origin, &library, tell),
+            |result| Command::Report(ReportCommand::Made(result)),
+        );
     }
 
-    /// Receives the report, and finds out whether the one that is shown is of the case as it is.
+    /// Finds out whether the report that is shown is of the case as it is.
     pub(in crate::app) fn update_report(&mut self) {
-        let session = &mut self.session.report;
-        if let Some(running) = &mut session.running
-            && let Some(result) = running.job.poll().into_result("the report")
-        {
-            session.running = None;
-            match result {
-                Ok(Outcome::Complete(made)) => {
-                    session.show(made);
-                }
-                Ok(Outcome::Cancelled) => {}
-                Err(why) => session.problem = Some(why),
-            }
-        }
         if self.view.workspaces.shown != Workspace::Report {
             return;
         }
@@ -92,18 +76,5 @@ impl State {
         let is_other = |made: &Arc<super::MadeReport>| Some(&made.origin) != origin.as_ref();
         session.is_outdated = session.made.as_ref().is_some_and(is_other);
         session.asks_nothing = asks_nothing;
-    }
-
-    /// Starts to write a report to a file, in the format of its ending.
-    pub(in crate::app) fn save_report(
-        &mut self,
-        document: Arc<ReportDocument>,
-        (path, existing): (&Path, Existing),
-        context: &Context,
-    ) {
-        match export::spawn_report(document, (path.to_owned(), existing), wake(context)) {
-            Ok(job) => self.session.exports.push(job),
-            Err(error) => self.say(Severity::Error, error.to_string()),
-        }
     }
 }

@@ -5,11 +5,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::app::command::{Command, ComparisonCommand};
+use crate::app::found::Found;
 use crate::app::question_job::QuestionJob;
+use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::data::write::{OutputFolder, RunRecord};
 use impactlab_core::data::{DataError, Existing};
 use impactlab_core::error_chain;
-use impactlab_core::jobs::{Job, Progress};
+use impactlab_core::jobs::{Progress, ProgressCallback};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_networks::response::evaluate::{Comparison, write_comparison};
 use impactlab_study::{
@@ -24,8 +27,7 @@ pub struct ComparisonStatus {
     pub compare: QuestionJob<CompareRequest>,
     /// The evaluation of the current model alone.
     pub evaluate: QuestionJob<EvaluateResponseRequest>,
-    opening: Option<Job<Result<Comparison, String>>>,
-    saving: Option<Job<Result<PathBuf, String>>>,
+    is_opening: bool,
     /// The latest result of a comparison, an evaluation or a file, or the reason why there is none.
     pub shown: Option<Result<Arc<CompareAnswer>, String>>,
     /// What was finished since it was asked for last.
@@ -73,7 +75,7 @@ impl ComparisonStatus {
 
     /// Whether a comparison, an evaluation or the reading of a file is running.
     pub fn is_running(&self) -> bool {
-        self.compare.is_running() || self.evaluate.is_running() || self.opening.is_some()
+        self.compare.is_running() || self.evaluate.is_running() || self.is_opening
     }
 
     /// Returns a description of the running comparison or evaluation, its progress and the time
@@ -85,43 +87,32 @@ impl ComparisonStatus {
     }
 
     /// Starts to read a `comparison.json` file.
-    ///
-    /// # Errors
-    /// The error of the operating system, if the thread cannot be started.
-    pub fn open(&mut self, path: PathBuf, wake: impl Fn() + Send + 'static) -> std::io::Result<()> {
-        let job = Job::spawn("open comparison", wake, move |_| {
-            Comparison::load(&path).map_err(|error| error_chain(&error))
-        })?;
-        self.opening = Some(job);
-        Ok(())
-    }
-
-    /// Starts to write the comparison that is shown into a folder, as JSON, Markdown and tables.
-    ///
-    /// - `existing`: what happens to results that the folder holds already.
-    ///
-    /// # Errors
-    /// A message for the user, if there is no comparison or the thread cannot be started.
-    pub fn save(
-        &mut self,
-        (folder, existing): (PathBuf, Existing),
-        wake: impl Fn() + Send + 'static,
-    ) -> Result<(), String> {
-        let Some(Ok(answer)) = &self.shown else {
-            return Err("there is no comparison to save".to_owned());
+    pub fn open(&mut self, path: PathBuf, tasks: &mut Tasks) {
+        self.is_opening = true;
+        let work = move |_: &mut ProgressCallback<'_>| {
+            let comparison = Comparison::load(&path).map_err(|error| error_chain(&error))?;
+            Ok(Found::new(comparison))
         };
-        let answer = Arc::clone(answer);
-        let job = Job::spawn("save comparison", wake, move |_| {
-            let written = write(&folder, existing, &answer.report);
-            written.map(|()| folder).map_err(|error| error_chain(&error))
-        });
-        self.saving = Some(job.map_err(|error| error.to_string())?);
-        Ok(())
+        let take = |result| Command::Compare(ComparisonCommand::Read(result));
+        tasks.start(TaskKey::OpenComparison, work, take);
     }
 
-    /// Receives the results that have arrived. Returns the folder that has just been written, or
-    /// why it could not be; `None` otherwise.
-    pub fn poll(&mut self) -> Option<Result<PathBuf, String>> {
+    /// Shows the comparison that was read, or why there is none.
+    pub fn take(&mut self, comparison: Result<Comparison, String>) {
+        self.is_opening = false;
+        self.shown = Some(comparison.map(|comparison| {
+            let report = CompareReport {
+                comparison,
+                left_out: Vec::new(),
+                caveats: Caveats::default(),
+                provenance: Provenance::default(),
+            };
+            Arc::new(CompareAnswer { report })
+        }));
+    }
+
+    /// Receives the results that have arrived.
+    pub fn poll(&mut self) {
         if self.compare.poll() {
             self.shown = self.compare.latest.as_ref().map(|latest| latest.answer.clone());
             self.finished = finished(&self.compare);
@@ -130,22 +121,6 @@ impl ComparisonStatus {
             self.shown = self.evaluate.latest.as_ref().map(|latest| latest.answer.clone());
             self.finished = finished(&self.evaluate);
         }
-        let opened = self.opening.as_mut().and_then(|job| job.poll().into_result("the reader"));
-        if let Some(opened) = opened {
-            self.opening = None;
-            self.shown = Some(opened.map(|comparison| {
-                let report = CompareReport {
-                    comparison,
-                    left_out: Vec::new(),
-                    caveats: Caveats::default(),
-                    provenance: Provenance::default(),
-                };
-                Arc::new(CompareAnswer { report })
-            }));
-        }
-        let saved = self.saving.as_mut()?.poll().into_result("the writer")?;
-        self.saving = None;
-        Some(saved)
     }
 
     /// Returns the comparison or evaluation that has just been finished, once, with its question.
@@ -169,8 +144,15 @@ where
     Some((latest.question.clone().into(), Arc::clone(answer)))
 }
 
-/// Writes a comparison into a folder with a manifest.
-fn write(folder: &Path, existing: Existing, report: &CompareReport) -> Result<(), DataError> {
+/// Writes a comparison into a folder, as JSON, Markdown and tables, with a manifest.
+///
+/// # Errors
+/// [`DataError`] if the folder cannot be written.
+pub fn write_comparison_folder(
+    folder: &Path,
+    existing: Existing,
+    report: &CompareReport,
+) -> Result<(), DataError> {
     let output = OutputFolder::begin(folder, existing, &["comparison.json", "comparison.md"])?;
     let said = report.caveats.text();
     write_comparison(output.staging(), &report.comparison, said.as_deref())?;

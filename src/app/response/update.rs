@@ -6,15 +6,18 @@ use std::sync::Arc;
 use egui::Context;
 
 use crate::app::command::{Command, ComparisonCommand, TrainingCommand, wake};
+use crate::app::found::Found;
 use crate::app::kept::{KeptEntry, keep_trained};
 use crate::app::model::file_name;
 use crate::app::network::Network;
+use crate::app::response::comparison::write_comparison_folder;
 use crate::app::response::{
-    DensityChoice, DensityQuestion, MotionAnswer, MotionQuestion, TrainingMode,
+    DensityChoice, DensityQuestion, MotionAnswer, MotionQuestion, ResponseSession, TrainingMode,
 };
 use crate::app::source::{chosen_dataset, open_datasets};
-use crate::app::state::State;
+use crate::app::state::{Session, State};
 use impactlab_core::data::{DatasetKind, Existing, Severity};
+use impactlab_core::error_chain;
 use impactlab_study::Request;
 
 const NO_MODEL: &str = "there is no current response model";
@@ -23,26 +26,22 @@ impl State {
     /// Receives the results of the loader, the training, the comparison and the forecast, and asks
     /// for a new forecast and a new density if their questions have changed.
     pub(in crate::app) fn update_response(&mut self, context: &Context) {
-        let (response, library) = (&mut self.session.response, &self.session.library);
-        let problem = response.model.update(&self.project.response.model, library, wake(context));
-        let saved = response.model.poll_saving(library, &mut self.project.response.model);
-        let written = response.comparison.poll();
-        self.say_problem(problem);
-        self.say_of_file(saved);
-        self.say_of_file(written);
-        if let Some(finished) = self.session.response.comparison.take_finished() {
-            self.keep_comparison(finished, context);
+        let Session { response, library, tasks, .. } = &mut self.session;
+        response.model.update(&self.project.response.model, library, tasks);
+        response.comparison.poll();
+        if let Some((question, answer)) = response.comparison.take_finished() {
+            self.keep_comparison(question, &answer);
         }
-        self.poll_response_training(context);
+        self.poll_response_training();
         self.session.response.forecast.poll();
         self.ask_for_motion(context);
         self.session.response.density.poll();
         self.ask_for_density(context);
     }
 
-    fn poll_response_training(&mut self, context: &Context) {
+    fn poll_response_training(&mut self) {
         let was_running = self.session.response.training.run.is_running();
-        let (response, library) = (&mut self.session.response, &self.session.library);
+        let Session { response, library, kept, tasks, .. } = &mut self.session;
         match response.training.poll() {
             None => {}
             Some(Ok((model, is_complete))) => {
@@ -55,16 +54,14 @@ impl State {
                 let taken =
                     response.model.take_trained(model, name.clone(), (library, is_complete));
                 let draft = draft.map(|draft| KeptEntry { name: taken.1, ..draft });
-                let folder = self.session.kept.folder();
-                let trained = (&mut response.model, &response.training);
-                let problem = keep_trained(trained, (taken.0, draft), folder, context);
-                self.say_problem(problem);
+                let ResponseSession { model: status, training, .. } = response;
+                keep_trained(status, training, taken.0, draft, kept.folder(), tasks);
                 self.say_of_training(&name, is_complete);
             }
             Some(Err(problem)) => self.say(Severity::Error, format!("training: {problem}")),
         }
         if was_running && !self.session.response.training.run.is_running() {
-            self.read_unfinished(context);
+            self.read_unfinished();
         }
     }
 
@@ -142,33 +139,28 @@ impl State {
 
     /// Starts or cancels a comparison or an evaluation, or opens or saves a comparison.
     pub(in crate::app) fn compare(&mut self, command: ComparisonCommand, context: &Context) {
-        let comparison = &mut self.session.response.comparison;
-        let problem = match command {
-            ComparisonCommand::Start => return self.start_comparison(context),
-            ComparisonCommand::Evaluate => return self.evaluate_response(context),
-            ComparisonCommand::Cancel => return comparison.cancel(),
-            ComparisonCommand::Open(path) => {
-                comparison.open(path, wake(context)).err().map(|error| error.to_string())
-            }
+        let Session { response, tasks, .. } = &mut self.session;
+        match command {
+            ComparisonCommand::Start => self.start_comparison(context),
+            ComparisonCommand::Evaluate => self.evaluate_response(context),
+            ComparisonCommand::Cancel => response.comparison.cancel(),
+            ComparisonCommand::Open(path) => response.comparison.open(path, tasks),
+            ComparisonCommand::Read(result) => response.comparison.take(result.map(Found::take)),
             ComparisonCommand::Save(_) => {
-                return self.write(Command::Compare(command), Existing::Refuse, context);
+                self.write(Command::Compare(command), Existing::Refuse, context);
             }
-        };
-        if let Some(problem) = problem {
-            self.say(Severity::Error, problem);
         }
     }
 
     /// Starts to write the comparison that is shown into a folder.
-    pub(in crate::app) fn save_comparison(
-        &mut self,
-        target: (PathBuf, Existing),
-        context: &Context,
-    ) {
-        let comparison = &mut self.session.response.comparison;
-        if let Err(problem) = comparison.save(target, wake(context)) {
-            self.say(Severity::Error, problem);
-        }
+    pub(in crate::app) fn save_comparison(&mut self, folder: PathBuf, existing: Existing) {
+        let Some(Ok(answer)) = self.session.response.comparison.shown.clone() else {
+            return self.say(Severity::Error, "there is no comparison to save");
+        };
+        self.start_writing(folder, move |to| {
+            write_comparison_folder(to, existing, &answer.report)
+                .map_err(|error| error_chain(&error))
+        });
     }
 
     /// Starts a comparison on the chosen data set.

@@ -8,7 +8,9 @@ use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::panes::PaneContext;
-use crate::app::report::{MadeReport, ReportCommand, ReportSession, ReportView};
+use crate::app::report::{MadeReport, ReportCommand, ReportView};
+use crate::app::state::Session;
+use crate::app::tasks::TaskKey;
 use crate::app::widgets::duration_text;
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
@@ -26,7 +28,7 @@ pub fn report_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         settings_ui(ui, &mut view.report, view.units);
         ui.add_space(looks::PART);
-        run_ui(ui, &session.report, &view.report, commands);
+        run_ui(ui, session, &view.report, commands);
         let Some(made) = &session.report.made else { return };
         ui.add_space(looks::PART);
         made_ui(ui, made, session.report.is_outdated, commands);
@@ -72,10 +74,10 @@ fn choice_ui<T: Copy + PartialEq>(ui: &mut Ui, id: &str, chosen: &mut T, all: &[
 }
 
 /// Draws the button that makes the report, or its progress.
-fn run_ui(ui: &mut Ui, report: &ReportSession, view: &ReportView, commands: &mut Vec<Command>) {
-    if let Some(job) = report.job() {
-        let progress = job.progress();
-        let left = progress.time_left(job.elapsed());
+fn run_ui(ui: &mut Ui, session: &Session, view: &ReportView, commands: &mut Vec<Command>) {
+    let report = &session.report;
+    if let Some((progress, elapsed)) = session.tasks.progress(&TaskKey::Report) {
+        let left = progress.time_left(elapsed);
         let left = left.map_or(String::new(), |time| format!(", {} left", duration_text(time)));
         match progress.fraction() {
             Some(fraction) => drop(ui.add(ProgressBar::new(fraction).show_percentage())),

@@ -1,0 +1,288 @@
+//! The work that the window has done on other threads and that ends by itself: reading, writing,
+//! measuring, making reports and films.
+//!
+//! A task ends with a [`Command`], which [`State::update`](crate::app::State::update) carries out
+//! before anything else. So there is one place in which threads are started and one in which their
+//! results are received. What is asked again and again has a thread of its own instead
+//! ([`Latest`](crate::app::latest::Latest)), and so do long questions and trainings.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use egui::Context;
+
+use crate::app::command::Command;
+use crate::app::network::Network;
+use impactlab_core::jobs::{Job, Progress, ProgressCallback};
+
+/// Which work a task does. There is one task of each at a time; a new one takes the place of the other,
+/// which is cancelled and whose result never comes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum TaskKey {
+    /// A path that is opened is read and checked.
+    Load(PathBuf),
+    /// A file or folder is written of what is shown.
+    Write(PathBuf),
+    /// The case is written.
+    SaveCase,
+    /// A film is made and written.
+    Film(PathBuf),
+    /// The report of the case is made.
+    Report,
+    /// The ground of the scene is read.
+    Ground,
+    /// The table or the curve of a file is read for the import dialog.
+    Import,
+    /// The desktop asks the user for a path.
+    FileDialog,
+    /// A trained network is read.
+    LoadModel(Network),
+    /// The network in use is written to a file of the user.
+    SaveModel(Network),
+    /// A network of this name is kept in the user's data folder.
+    KeepModel(Network, String),
+    /// The list of what is kept is read.
+    ListKept,
+    /// The note or the content of something that is kept is written, by its digest.
+    PutKept(String),
+    /// Files of what is kept are removed.
+    RemoveKept(Vec<PathBuf>),
+    /// A comparison or an evaluation that is kept is read.
+    OpenKept,
+    /// The list of trainings that have not ended is read.
+    ListTrainings,
+    /// A comparison is read from a file of the user.
+    OpenComparison,
+    /// What a form will cost is measured.
+    Cost,
+}
+
+/// What a task makes of its result.
+type Then<T> = Box<dyn FnOnce(Result<T, String>) -> Option<Command>>;
+
+/// A task with a result of some type.
+trait Work {
+    /// The command that follows once the task has ended; the outer `None` while it is running.
+    fn poll(&mut self) -> Option<Option<Command>>;
+
+    fn progress(&self) -> (&Progress, Duration);
+
+    fn cancel(&self);
+}
+
+struct Running<T> {
+    job: Job<Result<T, String>>,
+    then: Option<Then<T>>,
+}
+
+impl<T: Send + 'static> Work for Running<T> {
+    fn poll(&mut self) -> Option<Option<Command>> {
+        let result = self.job.poll().into_result("the task")?;
+        Some(self.then.take().and_then(|then| then(result)))
+    }
+
+    fn progress(&self) -> (&Progress, Duration) {
+        (self.job.progress(), self.job.elapsed())
+    }
+
+    fn cancel(&self) {
+        self.job.cancel();
+    }
+}
+
+/// The tasks that are running.
+#[derive(Default)]
+pub struct Tasks {
+    /// The window that is drawn again when a task has news; `None` without a window.
+    window: Option<Context>,
+    running: Vec<(TaskKey, Box<dyn Work>)>,
+    /// The commands of tasks that could not be started.
+    ended: Vec<Command>,
+}
+
+impl Tasks {
+    /// Lets tasks draw a window again when they have news.
+    pub fn wake(&mut self, window: Context) {
+        self.window = Some(window);
+    }
+
+    /// Starts a task on a thread of normal priority.
+    ///
+    /// - `work`: receives a callback for its progress, which says whether to go on;
+    /// - `then`: makes a command of the result, or of the reason why there is none: a message of the
+    ///   work, a panic, or that no thread could be started.
+    pub fn start<T: Send + 'static, C: Into<Option<Command>>>(
+        &mut self,
+        key: TaskKey,
+        work: impl FnOnce(&mut ProgressCallback<'_>) -> Result<T, String> + Send + 'static,
+        then: impl FnOnce(Result<T, String>) -> C + 'static,
+    ) {
+        let job = Job::spawn(key.thread_name(), self.waker(), work);
+        self.add(key, job, then);
+    }
+
+    /// Starts a task that takes a while, on threads of the lowest priority.
+    pub fn start_in_background<T: Send + 'static, C: Into<Option<Command>>>(
+        &mut self,
+        key: TaskKey,
+        work: impl FnOnce(&mut ProgressCallback<'_>) -> Result<T, String> + Send + 'static,
+        then: impl FnOnce(Result<T, String>) -> C + 'static,
+    ) {
+        let job = Job::spawn_in_background(key.thread_name(), self.waker(), work);
+        self.add(key, job, then);
+    }
+
+    fn waker(&self) -> impl Fn() + Send + 'static {
+        let window = self.window.clone();
+        move || window.iter().for_each(Context::request_repaint)
+    }
+
+    fn add<T: Send + 'static, C: Into<Option<Command>>>(
+        &mut self,
+        key: TaskKey,
+        job: std::io::Result<Job<Result<T, String>>>,
+        then: impl FnOnce(Result<T, String>) -> C + 'static,
+    ) {
+        self.stop(&key);
+        match job {
+            Ok(job) => {
+                let then: Then<T> = Box::new(move |result| then(result).into());
+                self.running.push((key, Box::new(Running { job, then: Some(then) })));
+            }
+            Err(error) => self.ended.extend(then(Err(error.to_string())).into()),
+        }
+    }
+
+    /// Receives what the tasks have found, as commands, in the order in which they were started.
+    pub fn poll(&mut self) -> Vec<Command> {
+        let mut commands = std::mem::take(&mut self.ended);
+        self.running.retain_mut(|(_, work)| match work.poll() {
+            None => true,
+            Some(command) => {
+                commands.extend(command);
+                false
+            }
+        });
+        commands
+    }
+
+    /// Whether a task is running.
+    pub fn is_running(&self, key: &TaskKey) -> bool {
+        self.get(key).is_some()
+    }
+
+    /// Progress of a task that is running, and the time since its start.
+    pub fn progress(&self, key: &TaskKey) -> Option<(&Progress, Duration)> {
+        self.get(key).map(|work| work.progress())
+    }
+
+    /// Asks a task to end. It still ends with a command.
+    pub fn cancel(&self, key: &TaskKey) {
+        if let Some(work) = self.get(key) {
+            work.cancel();
+        }
+    }
+
+    /// Cancels a task whose result is not wanted any more: it ends without a command.
+    pub fn stop(&mut self, key: &TaskKey) {
+        self.running.retain(|(of, _)| of != key);
+    }
+
+    /// Whether a file is being written of what is shown.
+    pub fn is_writing(&self) -> bool {
+        self.running.iter().any(|(key, _)| matches!(key, TaskKey::Write(_)))
+    }
+
+    /// The file of the film that is being made.
+    pub fn film(&self) -> Option<&Path> {
+        self.running.iter().find_map(|(key, _)| match key {
+            TaskKey::Film(path) => Some(path.as_path()),
+            _ => None,
+        })
+    }
+
+    fn get(&self, key: &TaskKey) -> Option<&dyn Work> {
+        self.running.iter().find(|(of, _)| of == key).map(|(_, work)| &**work)
+    }
+}
+
+impl TaskKey {
+    fn thread_name(&self) -> &'static str {
+        match self {
+            Self::Load(_) => "load",
+            Self::Write(_) => "write",
+            Self::SaveCase => "save case",
+            Self::Film(_) => "film",
+            Self::Report => "report",
+            Self::Ground => "ground",
+            Self::Import => "import",
+            Self::FileDialog => "file dialog",
+            Self::LoadModel(_) => "load model",
+            Self::SaveModel(_) => "save model",
+            Self::KeepModel(..) => "keep model",
+            Self::ListKept | Self::ListTrainings => "list",
+            Self::PutKept(_) => "keep result",
+            Self::RemoveKept(_) => "remove",
+            Self::OpenKept => "open result",
+            Self::OpenComparison => "open comparison",
+            Self::Cost => "measure",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::data::Severity;
+
+    fn said(result: Result<&'static str, String>) -> Command {
+        match result {
+            Ok(text) => Command::Say(Severity::Info, text.to_owned()),
+            Err(why) => Command::Say(Severity::Error, why),
+        }
+    }
+
+    fn settled(tasks: &mut Tasks) -> Vec<String> {
+        let mut texts = Vec::new();
+        while !tasks.running.is_empty() || !tasks.ended.is_empty() {
+            texts.extend(tasks.poll().into_iter().map(|command| match command {
+                Command::Say(severity, text) => format!("{severity:?} {text}"),
+                other => format!("{other:?}"),
+            }));
+            std::thread::yield_now();
+        }
+        texts
+    }
+
+    #[test]
+    fn a_task_ends_with_a_command_also_if_it_fails_or_panics() {
+        let mut tasks = Tasks::default();
+        tasks.start(TaskKey::Report, |_| Ok("made"), said);
+        assert!(tasks.is_running(&TaskKey::Report));
+        assert_eq!(settled(&mut tasks), ["Info made"]);
+        assert!(!tasks.is_running(&TaskKey::Report));
+        tasks.start(TaskKey::Report, |_| Err("no case".to_owned()), said);
+        assert_eq!(settled(&mut tasks), ["Error no case"]);
+        tasks.start(TaskKey::Report, |_| panic!("row 7"), said);
+        assert_eq!(settled(&mut tasks), ["Error internal error: row 7"]);
+    }
+
+    #[test]
+    fn a_task_takes_the_place_of_the_same_and_a_stopped_one_is_silent() {
+        let mut tasks = Tasks::default();
+        let (sender, waits) = std::sync::mpsc::channel::<()>();
+        let first = move |_: &mut ProgressCallback<'_>| {
+            let _ = waits.recv();
+            Ok("first")
+        };
+        tasks.start(TaskKey::Cost, first, said);
+        tasks.start(TaskKey::Cost, |_| Ok("second"), said);
+        drop(sender);
+        assert_eq!(settled(&mut tasks), ["Info second"]);
+        tasks.start(TaskKey::Ground, |_| Ok("read"), said);
+        tasks.stop(&TaskKey::Ground);
+        assert!(settled(&mut tasks).is_empty());
+        tasks.start(TaskKey::FileDialog, |_| Ok(()), |_| None::<Command>);
+        assert!(settled(&mut tasks).is_empty());
+    }
+}
