@@ -12,10 +12,9 @@ use crate::app::state::{State, Subject};
 use impactlab_core::data::Severity;
 use impactlab_core::numerics::quantile_of_sorted;
 use impactlab_core::uncertainty::Caveats;
-use impactlab_core::units::{Quantity, UnitSystem, percent};
+use impactlab_core::units::{Estimate, Interval, NumberFormat, Quantity, UnitSystem, percent};
 use impactlab_draw::theme;
 use impactlab_study::SimulateReport;
-use impactlab_study::analysis::Spread;
 
 /// Ends of the interval that is shown with a figure, as probabilities.
 const ENDS: [f64; 2] = [0.05, 0.95];
@@ -120,10 +119,11 @@ fn force_link(
         sizes.sort_by(f64::total_cmp);
         let at = |share| quantile_of_sorted(&sizes, share);
         let [low, median, high] = [ENDS[0], 0.5, ENDS[1]].map(at);
-        let ends = low.zip(high).zip(median);
-        let figure = ends.map(|((low, high), median)| {
-            Quantity::Impulse.shown_interval(median, [low, high], units)
-        });
+        let intervals = low.zip(high).map(|(low, high)| vec![Interval { level: 0.9, low, high }]);
+        let estimate = median.zip(intervals);
+        let estimate = estimate.map(|(median, intervals)| Estimate { median, intervals });
+        let format = NumberFormat::english(units);
+        let figure = estimate.map(|of| format.estimate_in_words(Quantity::Impulse, &of));
         let model = motion.answer.report.force_model.clone().unwrap_or_default();
         (figure, format!("force network {model}, 90 % of its draws"), Pane::ForcePrediction)
     } else {
@@ -161,10 +161,9 @@ fn outcome_link(
     let (figure, source, pane) = match (motion, report.and_then(|report| report.end)) {
         (Some(motion), _) => {
             let outcome = &motion.answer.report.outcome;
-            let shown = |spread: Spread| {
-                Quantity::Length.shown_interval(spread.median, spread.ninety, units)
-            };
-            let figure = format!("X {}, Y {}", shown(outcome.x_m), shown(outcome.y_m));
+            let format = NumberFormat::english(units);
+            let shown = |of: &Estimate| format.estimate_in_words(Quantity::Length, of);
+            let figure = format!("X {}, Y {}", shown(&outcome.x_m), shown(&outcome.y_m));
             let when = format!("forecast after {:.2} s, 90 % intervals", outcome.time_s);
             (Some(figure), when, Pane::MotionForecast)
         }

@@ -44,8 +44,8 @@ fn outlines_that_overlap_deeply_keep_the_normal_of_the_approach() {
         let assumed = report["assumptions"].to_string();
         assert_eq!(assumed.contains("they first touched there"), overlap_m > 0.1, "{assumed}");
         let told = ok(program().arg("impact").arg(&scenario).output().unwrap());
-        let told = told.lines().find(|line| line.starts_with("normal")).unwrap().to_owned();
-        assert!(told.contains("into the target's right side; overlap"), "{told}");
+        assert!(told.contains("into the target's right side"), "{told}");
+        assert!(told.contains("overlap of the outlines"), "{told}");
     }
     for (pair, step) in overlaps.windows(2).zip([0.2, 0.2, 0.2, 0.06, 0.14, 0.1]) {
         assert!((pair[1] - pair[0] - step).abs() < 1e-9, "{overlaps:?}");
@@ -149,7 +149,9 @@ fn a_predicted_impulse_is_told_as_restitution_and_impulse_ratio() {
     assert_eq!(answer(&predict)["implied_contact"], *implied);
     assert_eq!(answer(&["simulate", "--scenario", SCENARIO])["momentum"], implied["momentum"]);
     let told = ok(program().args(["predict", "force", "--scenario", SCENARIO]).output().unwrap());
-    assert!(told.contains("implied e ") && told.contains("\nmomentum "), "{told}");
+    for name in ["implied restitution", "implied impulse ratio", "momentum solution beside it"] {
+        assert!(told.contains(name), "{told}");
+    }
 }
 
 /// A force depends on the relative velocity alone: a standing target takes the same as a moving one.

@@ -80,8 +80,8 @@ fn the_draws_of_a_simulation_follow_their_seed_and_are_told() {
     assert_ne!(with(&draws)["x_m"], other["x_m"]);
     assert_eq!(with(&["--vehicle-draws", "0"]), Value::Null);
     let told = out(&args);
-    assert!(told.contains("over 100 vehicles drawn from the data sheet"), "{told}");
-    assert!(told.contains("estimate") && told.contains("position"), "{told}");
+    assert!(told.contains("over vehicles drawn from what the data sheet leaves open"), "{told}");
+    assert!(told.contains("variance of the end") && told.contains("position"), "{told}");
 }
 
 #[test]

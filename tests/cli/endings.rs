@@ -68,7 +68,10 @@ fn a_locked_stop_tells_its_four_marks_and_a_rolling_car_none() {
         assert!((26.0..34.0).contains(&number("length_m")), "{mark}");
     }
     let shown = ok(program().args(STRAIGHT).args(["--brake", "1.5"]).output().unwrap());
-    assert!(shown.contains("tire marks, computed") && shown.contains("struck, rear left"));
+    assert!(
+        shown.contains("Tire marks that the simulation leaves")
+            && shown.contains("struck, rear left")
+    );
     assert_eq!(answer(&STRAIGHT)["tyre_marks"], serde_json::json!([]));
 }
 

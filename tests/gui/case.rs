@@ -11,7 +11,7 @@ use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, ForceChoice, Leaving, State, Subject, TaskKey, VariantCommand};
 use impactlab_core::data::Severity;
 use impactlab_core::uncertainty::CaveatKind;
-use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_core::vehicle::{Braking, Ending};
 use impactlab_study::case_file::{CaseFile, unpack};
 use impactlab_study::{Library, Report};
@@ -386,8 +386,8 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
     assert!(chain.iter().all(|link| link.figure.is_some() && !link.is_late), "{chain:?}");
     let outcome = &state(&harness).session.response.forecast.ok().unwrap().answer.report.outcome;
     let figure = chain[4].figure.clone().unwrap();
-    let (median, ends) = (outcome.x_m.median, outcome.x_m.ninety);
-    let x = Quantity::Length.shown_interval(median, ends, UnitSystem::Si);
+    let format = NumberFormat::english(UnitSystem::Si);
+    let x = format.estimate_in_words(Quantity::Length, &outcome.x_m);
     assert!(figure.starts_with(&format!("X {x}")), "{figure} {x}");
     // Two figures of one quantity do not differ: that of the scenario panel is the chain's.
     let delta_v_m_s =

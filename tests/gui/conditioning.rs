@@ -92,7 +92,7 @@ fn is_forecast(state: &State) -> bool {
 /// Ends of the 90 % interval of X at the end of the forecast, m.
 fn interval_m(harness: &Harness<'_, App>) -> [f64; 2] {
     let forecast = harness.state().state().motion_forecast().expect("a forecast");
-    forecast.answer.report.outcome.x_m.ninety
+    forecast.answer.report.outcome.x_m.ninety()
 }
 
 #[test]

@@ -95,10 +95,10 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
     assert!(!is_outdated(&harness));
     let answer = state(&harness).session.reconstruction.answer().expect("an answer");
     assert_eq!(answer.answer.report.n_particles, 60);
-    for said in ["Play the median", "What each piece of evidence says"] {
+    for said in ["Play the median", "Items of the evidence: found and expected"] {
         assert!(harness.query_by_label(said).is_some(), "{said}");
     }
-    assert!(harness.query_by_label_contains("By hand: struck car").is_some());
+    assert!(harness.query_by_label_contains("struck car by hand").is_some());
 
     // The course of events that is clicked is shown alone, and a path of it is played.
     let name = answer.answer.report.modes[0].name.clone();

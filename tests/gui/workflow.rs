@@ -197,7 +197,7 @@ fn a_scenario_is_solved_simulated_and_survives_a_kill() {
     step_until(&mut harness, "the first case", shows("c001"));
     apply(&mut harness, Command::Show(impactlab::app::Pane::Scenario));
     step_until(&mut harness, "the solution", |state| state.session.impact.ok().is_some());
-    harness.get_by_label("Momentum solution");
+    harness.get_by_label_contains("Contact and impulse");
     harness.get_by_label("Simulate in the scene").click();
     step_until(&mut harness, "the scenario", shows("PIT, right rear quarter"));
     let analysis = &state(&harness).analysis().unwrap().analysis;

@@ -400,7 +400,7 @@ fn a_car_that_spins_fast_goes_where_the_physics_takes_it() {
     let answer = answer.complete().expect("nothing cancels");
     let series = &answer.analysis.simulation.expect("a simulation").series;
     let x = series.require(Channel::X).expect("x").last().copied().expect("an end");
-    let [low, high] = answer.report.outcome.x_m.ninety;
+    let [low, high] = answer.report.outcome.x_m.ninety();
     assert!((low..high).contains(&x) && high - low < 60.0, "{x} {:?}", answer.report.outcome);
     assert_eq!(answer.forecast.distribution.n_instants(), 401);
     assert!(answer.report.applicability < 0.05 && answer.report.rest.is_none());
@@ -413,7 +413,7 @@ fn a_hard_frontal_crash_is_answered_with_wide_bands_and_a_warning() {
     let path = Path::new("barrier.toml");
     let barrier = Scenario::from_toml(&text.expect("the scenario"), path).expect("a scenario");
     let report = forecast(barrier, 0.8, false).expect("an answer");
-    let [low, high] = report.outcome.x_m.ninety;
+    let [low, high] = report.outcome.x_m.ninety();
     assert!(high - low > 2.0, "{:?}", report.outcome);
     let named = |quantity: &str| {
         report.caveats.iter().any(|caveat| caveat.quantity.as_deref() == Some(quantity))
@@ -439,7 +439,7 @@ proptest! {
         let report = forecast(scenario, friction, until_rest);
         let report = report.map_err(|error| TestCaseError::fail(error.to_string()))?;
         let width = |of: [f64; 2]| of[1] - of[0];
-        prop_assert!(width(report.outcome.x_m.ninety) > 0.0, "{:?}", report.outcome);
+        prop_assert!(width(report.outcome.x_m.ninety()) > 0.0, "{:?}", report.outcome);
         let is_outside = report.applicability < 1.0
             || report.force_applicability.is_some_and(|of| of < 1.0);
         let is_said = report.caveats.has(CaveatKind::OutsideDomain);

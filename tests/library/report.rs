@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 use impactlab_core::data::Existing;
 use impactlab_core::uncertainty::{Caveat, Caveats};
-use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem};
 use impactlab_core::vehicle::Integrator;
 use impactlab_document::report::{
     Block, Language, Paper, PictureContent, Pixels, ReportDate, ReportDocument, ReportSettings,
@@ -114,11 +114,10 @@ fn the_example_has_every_section_and_the_numbers_of_its_answers() {
     }
     assert!(answers.is_clean());
     let shown = |quantity: Quantity, si: f64| quantity.shown(si, UnitSystem::Si);
-    let interval = |quantity: Quantity, median: f64, ends: [f64; 2]| {
-        let parts = quantity.interval_parts(median, ends, UnitSystem::Si);
-        let [low, high] = parts.ends;
-        assert_says(document, &format!("{} {}", parts.median, parts.symbol));
-        assert_says(document, &format!("{low} to {high} {}", parts.symbol));
+    let interval = |quantity: Quantity, estimate: &Estimate| {
+        let text = NumberFormat::english(UnitSystem::Si).estimate(quantity, estimate);
+        assert_says(document, &text.median);
+        assert_says(document, &text.at(0.9).expect("90 %").range);
     };
     let mut kinds = [0; 4];
     for answer in answers.variants.iter().flat_map(|variant| variant.reports()) {
@@ -128,10 +127,8 @@ fn the_example_has_every_section_and_the_numbers_of_its_answers() {
                 for body in [&report.struck, &report.striking] {
                     assert_says(document, &shown(Quantity::Speed, body.delta_v_magnitude_m_s));
                     assert_says(document, &shown(Quantity::AngularVelocity, body.yaw_rate_rad_s));
-                    assert_says(
-                        document,
-                        &format!("{:.1} deg", body.pdof_deg.expect("a direction")),
-                    );
+                    let direction_rad = body.pdof_deg.expect("a direction").to_radians();
+                    assert_says(document, &shown(Quantity::Angle, direction_rad));
                 }
                 assert_says(document, &shown(Quantity::Impulse, report.impulse_magnitude_n_s));
                 assert_says(document, &shown(Quantity::Energy, report.dissipated_energy_j));
@@ -145,17 +142,14 @@ fn the_example_has_every_section_and_the_numbers_of_its_answers() {
             }
             Report::PredictForce(report) => {
                 kinds[2] += 1;
-                let peak = &report.peak_n;
-                interval(Quantity::Force, peak.median, peak.interval(0.9).expect("90 %"));
-                let impulse = &report.impulse_n_s.magnitude;
-                interval(Quantity::Impulse, impulse.median, impulse.interval(0.9).expect("90 %"));
+                interval(Quantity::Force, &report.peak_n);
+                interval(Quantity::Impulse, &report.impulse_n_s.magnitude);
             }
             Report::PredictMotion(report) => {
                 kinds[3] += 1;
                 let outcome = &report.outcome;
-                interval(Quantity::Length, outcome.x_m.median, outcome.x_m.ninety);
-                let turn = &outcome.heading_change_rad;
-                interval(Quantity::Angle, turn.median, turn.ninety);
+                interval(Quantity::Length, &outcome.x_m);
+                interval(Quantity::Angle, &outcome.heading_change_rad);
             }
             other => panic!("an answer of another kind: {other:?}"),
         }
@@ -214,14 +208,15 @@ fn a_reconstruction_tells_evidence_courses_budget_and_prior() {
         panic!("a reconstruction");
     };
     for of in &report.quantities {
-        let shown = of.shown(UnitSystem::Si);
-        for [low, high] in [&shown.interval_50, &shown.interval_90, &shown.interval_95] {
-            assert_says(document, format!("{low} to {high} {}", shown.unit).trim_end());
+        let text = NumberFormat::english(UnitSystem::Si).estimate(of.quantity(), &of.estimate);
+        for level in [0.5, 0.9, 0.95] {
+            assert_says(document, &text.at(level).expect("an interval").range);
         }
     }
     for item in &report.fit {
         assert_says(document, &item.evidence);
-        assert_says(document, &format!("{:.3}", item.p));
+        let p = if item.p < 0.001 { "< 0.001".to_owned() } else { format!("{:.3}", item.p) };
+        assert_says(document, &p);
     }
     for mode in &report.modes {
         assert_says(document, &mode.name);

@@ -76,19 +76,17 @@ fn simulated(answers: &CaseReport) -> &SimulateReport {
 #[test]
 fn computed_tire_marks_have_the_figures_of_the_answer_in_both_languages_and_units() {
     let case = braked_simulation();
-    for (language, units, caption, to, [locked, struck]) in [
+    for (language, units, caption, [locked, struck]) in [
         (
             Language::En,
             UnitSystem::Si,
             "Tire marks that the simulation leaves",
-            "to",
             ["locked", "struck, "],
         ),
         (
             Language::De,
             UnitSystem::Us,
             "Reifenspuren, die die Simulation hinterlässt",
-            "bis",
             ["blockiert", "gestoßenes Fahrzeug, "],
         ),
     ] {
@@ -104,9 +102,13 @@ fn computed_tire_marks_have_the_figures_of_the_answer_in_both_languages_and_unit
         for (row, mark) in table.rows.iter().zip(marks) {
             let [from, end] = [mark.from_s, mark.to_s].map(|of| shown(Quantity::Time, of));
             assert_eq!(row[2], shown(Quantity::Length, mark.length_m));
-            assert_eq!(row[3], format!("{from} {to} {end}"));
-            for place in mark.start_m.into_iter().chain(mark.end_m) {
-                assert!(row[4].contains(&shown(Quantity::Length, place)), "{row:?} {mark:?}");
+            assert_eq!([&row[3], &row[5]], [&from, &end]);
+            let unit = Quantity::Length.display_unit(units);
+            for (cell, [x, y]) in [(&row[4], mark.start_m), (&row[6], mark.end_m)] {
+                let [x, y] = [x, y].map(|si| format!("{:.2}", unit.from_si(si)));
+                let place = format!("({x}; {y}) {}", unit.symbol);
+                let decimal = if language == Language::De { "," } else { "." };
+                assert_eq!(*cell, place.replace('.', decimal), "{mark:?}");
             }
         }
         let says =

@@ -77,7 +77,7 @@ impl Car {
         };
         let sheet = completed(sheet, evidence);
         let scatter = sheet.estimates().into_iter().map(|estimate| {
-            (estimate.quantity, (estimate.ninety[1] / estimate.median).ln() / Z_95)
+            (estimate.quantity, (estimate.value.ninety()[1] / estimate.value.median).ln() / Z_95)
         });
         let scatter = scatter.filter(|(_, sigma)| *sigma > 0.0).collect();
         Self { parameters: lean(sheet.vehicle()), scatter }

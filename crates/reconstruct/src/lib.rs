@@ -44,7 +44,5 @@ pub use impact_state::ImpactState;
 pub use latent::{BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues};
 pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
 pub use modes::{ParticleMode, cluster_keys, modes_by};
-pub use posterior::{
-    BudgetItem, Mode, Posterior, QuantityEstimate, ReconstructedQuantity, ShownEstimate,
-};
+pub use posterior::{BudgetItem, Mode, Posterior, QuantityEstimate, ReconstructedQuantity};
 pub use prior::{Prior, PriorComponent, PriorSource};

@@ -9,7 +9,7 @@ use crate::{
     modes_by,
 };
 use impactlab_core::numerics::quantile_of_sorted;
-use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem};
 
 macro_rules! quantities {
     ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $of:expr;)+) => {
@@ -88,23 +88,49 @@ impl ReconstructedQuantity {
     }
 }
 
+/// Levels of the intervals of a quantity.
+pub(crate) const LEVELS: [f64; 4] = [0.5, 0.8, 0.9, 0.95];
+
 /// A quantity with its intervals, which leave out as much below as above.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(into = "WrittenEstimate")]
 pub struct QuantityEstimate {
     /// Name with its unit.
     pub name: &'static str,
     /// Symbol of the unit; empty for a pure number.
     pub unit: &'static str,
-    /// Median.
-    pub median: f64,
-    /// Holds the value with a probability of 50 %.
-    pub interval_50: [f64; 2],
-    /// … of 80 %.
-    pub interval_80: [f64; 2],
-    /// … of 90 %.
-    pub interval_90: [f64; 2],
-    /// … of 95 %.
-    pub interval_95: [f64; 2],
+    /// Median and intervals.
+    pub estimate: Estimate,
+}
+
+/// A [`QuantityEstimate`] as it is written, with the keys of version 0.1, which a later version will
+/// not write.
+#[derive(Serialize)]
+struct WrittenEstimate {
+    /// Name with its unit.
+    name: &'static str,
+    /// Symbol of the unit; empty for a pure number.
+    unit: &'static str,
+    /// Median and intervals.
+    #[serde(flatten)]
+    estimate: Estimate,
+    /// Former key: ends of the interval of 50 %.
+    interval_50: [f64; 2],
+    /// Former key: ends of the interval of 80 %.
+    interval_80: [f64; 2],
+    /// Former key: ends of the interval of 90 %.
+    interval_90: [f64; 2],
+    /// Former key: ends of the interval of 95 %.
+    interval_95: [f64; 2],
+}
+
+impl From<QuantityEstimate> for WrittenEstimate {
+    fn from(of: QuantityEstimate) -> Self {
+        let ends = |level| of.estimate.interval(level).unwrap_or([of.estimate.median; 2]);
+        let [interval_50, interval_80, interval_90, interval_95] = LEVELS.map(ends);
+        let QuantityEstimate { name, unit, estimate } = of;
+        Self { name, unit, estimate, interval_50, interval_80, interval_90, interval_95 }
+    }
 }
 
 /// A kind of course of events that the evidence leaves possible.
@@ -194,7 +220,7 @@ impl Posterior {
         quantities: &[QuantityEstimate],
     ) -> Option<usize> {
         let speed = ReconstructedQuantity::StruckSpeed;
-        let median = quantities.iter().find(|of| of.name == speed.key())?.median;
+        let median = quantities.iter().find(|of| of.name == speed.key())?.estimate.median;
         let speeds = self.of_quantity(speed);
         let off = |idx: &usize| speeds.get(*idx).map_or(f64::INFINITY, |v| (v - median).abs());
         members.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
@@ -298,53 +324,25 @@ impl BudgetItem {
 
     /// The measurement with its standard deviation, such as `friction test, ± 0.02`.
     pub fn shown(&self, units: UnitSystem) -> String {
-        let unit = self.quantity().display_unit(units);
-        let sigma = unit.from_si(self.sigma);
-        let decimals = (1 - sigma.log10().floor() as i32).clamp(0, 6) as usize;
-        let mut text = format!("{sigma:.decimals$}");
-        if text.contains('.') {
-            text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
-        }
-        format!("{}, ± {text} {}", self.measurement(), unit.symbol).trim_end().to_owned()
+        let sigma = NumberFormat::english(units).sigma(self.quantity(), self.sigma);
+        format!("{}, ± {sigma}", self.measurement())
     }
 }
 
-/// The numbers of a [`QuantityEstimate`] as they are shown, without their unit.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ShownEstimate {
-    /// Symbol of the unit of all of them; empty for a pure number.
-    pub unit: &'static str,
-    /// Median.
-    pub median: String,
-    /// Ends of the interval of 50 %.
-    pub interval_50: [String; 2],
-    /// … of 90 %.
-    pub interval_90: [String; 2],
-    /// … of 95 %.
-    pub interval_95: [String; 2],
-}
-
 impl QuantityEstimate {
-    /// The numbers for a person, on the command line and in a report.
-    pub fn shown(&self, units: UnitSystem) -> ShownEstimate {
-        let quantity = match self.unit {
-            "m/s" => Quantity::Speed,
-            "rad" => Quantity::Angle,
-            "rad/s" => Quantity::AngularVelocity,
-            _ => Quantity::Ratio,
-        };
-        let unit = quantity.display_unit(units);
-        let number = |si: f64| match quantity {
-            Quantity::Ratio => format!("{si:.3}"),
-            _ => format!("{:.1}", unit.from_si(si)),
-        };
-        ShownEstimate {
-            unit: unit.symbol,
-            median: number(self.median),
-            interval_50: self.interval_50.map(number),
-            interval_90: self.interval_90.map(number),
-            interval_95: self.interval_95.map(number),
-        }
+    /// Which quantity it is.
+    fn asked(&self) -> Option<ReconstructedQuantity> {
+        ReconstructedQuantity::ALL.iter().copied().find(|quantity| quantity.key() == self.name)
+    }
+
+    /// What it is called.
+    pub fn label(&self) -> &'static str {
+        self.asked().map_or(self.name, ReconstructedQuantity::label)
+    }
+
+    /// What kind of quantity it is.
+    pub fn quantity(&self) -> Quantity {
+        self.asked().map_or(Quantity::Ratio, ReconstructedQuantity::quantity)
     }
 
     /// Intervals of equally likely values; `None` without values.
@@ -357,16 +355,8 @@ impl QuantityEstimate {
     ///
     /// - `at`: the value below which the quantity lies with a probability.
     pub fn by(quantity: ReconstructedQuantity, at: impl Fn(f64) -> Option<f64>) -> Option<Self> {
-        let interval = |share: f64| Some([at((1.0 - share) / 2.0)?, at((1.0 + share) / 2.0)?]);
-        Some(Self {
-            name: quantity.key(),
-            unit: quantity.unit(),
-            median: at(0.5)?,
-            interval_50: interval(0.5)?,
-            interval_80: interval(0.8)?,
-            interval_90: interval(0.9)?,
-            interval_95: interval(0.95)?,
-        })
+        let estimate = Estimate::from_quantiles(&LEVELS, at)?;
+        Some(Self { name: quantity.key(), unit: quantity.unit(), estimate })
     }
 }
 

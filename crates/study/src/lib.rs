@@ -23,6 +23,7 @@
 
 pub mod analysis;
 pub mod case_file;
+pub mod facts;
 
 mod ask;
 mod caveats;

@@ -6,6 +6,7 @@ use egui::{Id, Ui};
 use crate::app::command::Command;
 use crate::app::state::View;
 use crate::app::widgets::figure_frame;
+use impactlab_core::units::Estimate;
 use impactlab_core::units::Quantity;
 use impactlab_document::figure::{
     CoveragePoint, Figure, ForceComponent, ForecastFigure, ParityPoint, RecordedCurve, Role,
@@ -14,7 +15,6 @@ use impactlab_document::figure::{
 use impactlab_draw::FigureOptions;
 use impactlab_networks::force::ForceCase;
 use impactlab_networks::force::metrics::{BAND_LEVELS, IntervalCoverage};
-use impactlab_study::analysis::Estimate;
 use impactlab_study::{EvaluateForceReport, EvaluatedForceCases};
 
 /// Height of a plot, points.

@@ -11,7 +11,6 @@ use crate::app::dialog::Purpose;
 use crate::app::looks;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
-use crate::app::panels::motion_outcome::outcome_ui;
 use crate::app::panels::scene::clock_ui;
 use crate::app::panels::vehicle::until_rest_ui;
 use crate::app::panes::PaneContext;
@@ -21,7 +20,9 @@ use crate::app::response::{
 };
 use crate::app::state::{Session, View};
 use crate::app::variants::{AnsweredVariant, are_others_awaited, other_forecasts};
-use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, count_field, figure_frame};
+use crate::app::widgets::{
+    MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame,
+};
 use impactlab_core::data::{Severity, TimeSeries};
 use impactlab_core::ranges::DRAWS;
 use impactlab_core::units::UnitSystem;
@@ -70,7 +71,11 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             if let Some(shown) = shown_forecast(session) {
                 ui.separator();
                 let answer = shown.answer;
-                super::faded(ui, shown.is_late, |ui| outcome_ui(ui, answer, view.units, commands));
+                super::faded(ui, shown.is_late, |ui| {
+                    let report = &answer.answer.report;
+                    caveats_ui(ui, &report.caveats, commands);
+                    facts_ui(ui, &report.scenario, &report.facts(), view.units);
+                });
             }
         });
     });

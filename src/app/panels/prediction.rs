@@ -8,10 +8,11 @@ use crate::app::force::ForceSession;
 use crate::app::looks;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
 use crate::app::panels::prediction_form::form_ui;
-use crate::app::panels::prediction_numbers::numbers_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::View;
-use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, count_field, figure_frame};
+use crate::app::widgets::{
+    MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame,
+};
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::SAMPLES;
 use impactlab_document::figure::{ForceComponent, ForecastFigure, RecordedCurve, forecast_figure};
@@ -41,7 +42,9 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 ui.separator();
                 let is_late = session.force.forecast.is_late();
                 super::faded(ui, is_late, |ui| {
-                    numbers_ui(ui, &answer.report, view.units, commands)
+                    let report = &answer.report;
+                    caveats_ui(ui, &report.caveats, commands);
+                    facts_ui(ui, &report.scenario, &report.facts(), view.units);
                 });
             }
         });

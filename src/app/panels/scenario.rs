@@ -8,7 +8,7 @@ use crate::app::panels::ending::ending_form;
 use crate::app::panels::scenario_plan::scenario_plan_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Project, Subject};
-use crate::app::widgets::{caveats_ui, quantity_field, value_row};
+use crate::app::widgets::{caveats_ui, facts_ui, quantity_field};
 use impactlab_core::collision::{
     ContactLocation, PulseShape, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle, Side,
 };
@@ -18,12 +18,8 @@ use impactlab_core::ranges::{
     CONTACT_HEIGHT, CONTACT_OFFSET, FRICTION_LIMIT, FRICTION_OF_CRITICAL, HEADING, POSITION,
     PULSE_DURATION, RESTITUTION, Range, SPEED, YAW_RATE,
 };
-use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::units::UnitSystem;
 use impactlab_draw::theme;
-use impactlab_study::{BodyReport, ImpactReport};
-
-/// Overlap of the outlines below which they just touch, m.
-const SHOWN_OVERLAP_M: f64 = 5e-4;
 
 /// Draws the plan view of the vehicles at first contact, the momentum solution, and the form that
 /// edits the scenario.
@@ -49,7 +45,11 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let plan = (solved, view.units, session.fit_plots);
         scenario_plan_ui(ui, &mut project.scenario, plan, commands);
         match answer {
-            Some(Ok(answer)) => solution_ui(ui, &answer.report, view.units, commands),
+            Some(Ok(answer)) => {
+                let report = &answer.report;
+                facts_ui(ui, &report.name, &report.facts(), view.units);
+                caveats_ui(ui, &report.caveats, commands);
+            }
             Some(Err(problem)) => {
                 let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
                 ui.colored_label(color, problem);
@@ -205,54 +205,4 @@ fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem)
             length(ui, "Bullet's CG, Y", striking_y_world_m, &POSITION);
         }
     }
-}
-
-/// Draws the momentum solution: impulse, regime of the contact, closing speed, dissipated energy,
-/// and the motion of each vehicle after the impact.
-fn solution_ui(ui: &mut Ui, report: &ImpactReport, units: UnitSystem, commands: &mut Vec<Command>) {
-    let impulse = |vector| Quantity::Impulse.shown_vector(vector, units);
-    ui.strong("Momentum solution");
-    Grid::new("solution").striped(true).num_columns(2).show(ui, |ui| {
-        value_row(ui, "Impulse on target", &impulse(report.impulse_n_s));
-        let parts = [report.impulse_normal_n_s, report.impulse_tangential_n_s];
-        value_row(ui, "normal, tangential", &impulse(parts));
-        let side = report.struck_surface.map_or("as given".to_owned(), |side| side.to_string());
-        let angle = Quantity::Angle.shown(report.normal_angle_rad, units);
-        value_row(ui, "Contact normal", &angle);
-        value_row(ui, "Struck surface", &side);
-        if let Some(overlap_m) = report.overlap_m {
-            // A gap within the tolerance counts as touching.
-            let overlap = match overlap_m > SHOWN_OVERLAP_M {
-                true => Quantity::Length.shown(overlap_m, units),
-                false => "none, they touch".to_owned(),
-            };
-            value_row(ui, "Overlap of outlines", &overlap);
-        }
-        value_row(ui, "Regime", report.regime.label());
-        let closing = Quantity::Speed.shown(report.closing_velocity_m_s[0].abs(), units);
-        value_row(ui, "Closing speed", &closing);
-        let energy = Quantity::Energy.shown(report.dissipated_energy_j, units);
-        value_row(ui, "Dissipated energy", &energy);
-        for (name, after) in [("target", &report.struck), ("bullet", &report.striking)] {
-            for (label, text) in body_rows(after, units) {
-                value_row(ui, &format!("{label}, {name}"), &text);
-            }
-        }
-    });
-    caveats_ui(ui, &report.caveats, commands);
-}
-
-/// Labels and values of the change of velocity and of the motion of one vehicle after the impact.
-fn body_rows(after: &BodyReport, units: UnitSystem) -> Vec<(&'static str, String)> {
-    let vector = |value| Quantity::Speed.shown_vector(value, units);
-    let mut rows = vec![
-        ("Δv", Quantity::Speed.shown(after.delta_v_magnitude_m_s, units)),
-        ("Δv (X, Y)", vector(after.delta_v_m_s)),
-        ("Velocity after", vector(after.velocity_m_s)),
-        ("Yaw rate after", Quantity::AngularVelocity.shown(after.yaw_rate_rad_s, units)),
-    ];
-    if let (Some(angle_deg), Some(clock)) = (after.pdof_deg, after.pdof_clock) {
-        rows.push(("PDOF", format!("{angle_deg:.0} deg, {clock} o'clock")));
-    }
-    rows
 }

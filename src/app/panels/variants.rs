@@ -7,9 +7,8 @@ use crate::app::command::Command;
 use crate::app::panes::PaneContext;
 use crate::app::variants::AnsweredVariant;
 use impactlab_core::data::Severity;
-use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem};
 use impactlab_draw::theme;
-use impactlab_study::analysis::Spread;
 
 /// The columns of the table.
 const COLUMNS: [&str; 8] = [
@@ -94,17 +93,16 @@ fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 8] {
     let delta_v = report.and_then(|report| report.delta_v_magnitude_m_s);
     let end = report.and_then(|report| report.end);
     let rest = report.and_then(|report| report.rest.as_ref());
-    let spread = |spread: Spread, quantity: Quantity| {
-        quantity.shown_interval(spread.median, spread.ninety, units)
-    };
+    let format = NumberFormat::english(units);
+    let spread = |of: &Estimate, quantity: Quantity| format.estimate_in_words(quantity, of);
     [
         variant.name.clone(),
         of(delta_v.map(|m_s| Quantity::Speed.shown(m_s, units))),
         of(end.map(|end| Quantity::Length.shown_vector([end.x_m, end.y_m], units))),
         of(rest.map(|rest| Quantity::Time.shown(rest.time_s, units))),
-        of(outcome.map(|outcome| spread(outcome.x_m, Quantity::Length))),
-        of(outcome.map(|outcome| spread(outcome.y_m, Quantity::Length))),
-        of(outcome.map(|outcome| spread(outcome.heading_change_rad, Quantity::Angle))),
+        of(outcome.map(|outcome| spread(&outcome.x_m, Quantity::Length))),
+        of(outcome.map(|outcome| spread(&outcome.y_m, Quantity::Length))),
+        of(outcome.map(|outcome| spread(&outcome.heading_change_rad, Quantity::Angle))),
         match warning_texts(variant).len() {
             0 => NONE.to_owned(),
             n => n.to_string(),

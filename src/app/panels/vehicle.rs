@@ -9,13 +9,10 @@ use crate::app::panels::file_start::file_start_ui;
 use crate::app::panels::vehicle_form::vehicle_form_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::Project;
-use crate::app::widgets::{
-    SpreadRow, quantity_field, sensitivity_ui, spread_table_ui, value_row, within_view,
-};
+use crate::app::widgets::{facts_ui, quantity_field, value_row, within_view};
 use impactlab_core::data::Severity;
 use impactlab_core::error_chain;
 use impactlab_core::ranges::{REST_LIMIT, SIMULATED_DURATION};
-use impactlab_core::units::Quantity;
 use impactlab_core::vehicle::{
     DataSheet, Equations, Integrator, LibraryVehicle, Preset, VehicleParameters, built_in_vehicle,
 };
@@ -74,29 +71,8 @@ fn uncertainty_ui(ui: &mut Ui, pane: &PaneContext<'_>) {
     let Some(answer) = pane.session.analysis.ok() else { return };
     let Some(uncertainty) = &answer.report.uncertainty else { return };
     ui.separator();
-    let row = |label, quantity: Quantity, spread| SpreadRow {
-        label,
-        unit: quantity.display_unit(pane.view.units),
-        spread,
-        ninety_five: None,
-        hint: "Over the vehicles that are drawn",
-    };
-    let mut rows = vec![
-        row("X at the end", Quantity::Length, uncertainty.x_m),
-        row("Y at the end", Quantity::Length, uncertainty.y_m),
-        row("Heading at the end", Quantity::Angle, uncertainty.yaw_rad),
-        row("Speed at the end", Quantity::Speed, uncertainty.speed_m_s),
-    ];
-    if let Some(rest) = &uncertainty.rest {
-        rows.extend([
-            row("Time to rest", Quantity::Time, rest.time_s),
-            row("Distance to rest", Quantity::Length, rest.distance_m),
-        ]);
-    }
-    let n_draws = uncertainty.n_draws;
-    ui.label(format!("4DOF model, {n_draws} vehicles drawn from the data sheet:"));
-    spread_table_ui(ui, &answer.report.name, &rows);
-    sensitivity_ui(ui, "simulation", &uncertainty.sensitivity);
+    ui.label("4DOF model:");
+    facts_ui(ui, &answer.report.name, &uncertainty.facts(), pane.view.units);
 }
 
 /// Draws the choice whether motions are followed to rest. The duration is then the time after which they

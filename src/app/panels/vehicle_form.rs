@@ -7,7 +7,7 @@ use crate::app::dialog::Purpose;
 use crate::app::widgets::quantity_value;
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::Range;
-use impactlab_core::units::{Quantity, UnitSystem, significant};
+use impactlab_core::units::{NumberFormat, UnitSystem};
 use impactlab_core::vehicle::sheet::{Drive, Estimate};
 use impactlab_core::vehicle::{DataSheet, SheetQuantity, VehicleClass};
 use impactlab_draw::theme;
@@ -107,7 +107,7 @@ fn quantity_ui(
     let known = ui.checkbox(&mut is_known, label).on_hover_text("Ticked: known. Else: estimated");
     if known.changed() {
         match estimate {
-            Some(estimate) => sheet.set(quantity, estimate.median),
+            Some(estimate) => sheet.set(quantity, estimate.value.median),
             None => sheet.forget(quantity),
         }
     }
@@ -129,13 +129,8 @@ fn quantity_ui(
 
 /// Draws an estimate with the range that holds it with a probability of 90 %.
 fn estimate_ui(ui: &mut Ui, (estimate, range): (&Estimate, &Range), units: UnitSystem) {
-    let unit = range.quantity.display_unit(units);
-    let shown = |value: f64| match range.quantity {
-        Quantity::Ratio => significant(value),
-        _ => significant(unit.from_si(value)),
-    };
-    let [low, high] = estimate.ninety.map(shown);
-    let text = format!("{} ({low} to {high}) {}", shown(estimate.median), unit.symbol);
+    let format = NumberFormat::english(units);
+    let text = format.estimate_in_words(range.quantity, &estimate.value);
     let hint =
         format!("Estimated: {}\nSource: {}\nIn brackets: 90 %", estimate.rule, estimate.source);
     ui.add(egui::Label::new(RichText::new(text).italics()).wrap()).on_hover_text(hint);

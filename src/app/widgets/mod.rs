@@ -5,10 +5,9 @@ mod bad_cases;
 mod caveats;
 mod cost;
 mod dataset_choice;
+mod facts;
 mod figure_frame;
 mod quantity;
-mod sensitivity;
-mod spread_table;
 mod time_figure;
 
 pub use assumptions::{assumptions_ui, evidence_assumptions_ui};
@@ -16,11 +15,10 @@ pub use bad_cases::bad_cases_ui;
 pub use caveats::{caveats_ui, restrictions_ui};
 pub use cost::cost_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
+pub use facts::facts_ui;
 pub use figure_frame::{MIN_PLOT_HEIGHT, OUTDATED, TITLE_HEIGHT, figure_frame};
 pub use quantity::{
     SliderRange, count_field, duration_text, quantity_field, quantity_slider, quantity_value,
-    value_row, within_view,
+    value_row, value_ui, within_view,
 };
-pub use sensitivity::sensitivity_ui;
-pub use spread_table::{SpreadRow, spread_table_ui};
 pub use time_figure::{BetweenCursors, time_figure};

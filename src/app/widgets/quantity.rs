@@ -224,12 +224,17 @@ pub fn within_view<R>(ui: &mut Ui, draw: impl FnOnce(&mut Ui) -> R) -> R {
 /// Draws a row of a two-column grid: a label and a text that is copied to the clipboard on a click.
 pub fn value_row(ui: &mut Ui, label: &str, text: &str) {
     ui.label(label);
+    value_ui(ui, text);
+    ui.end_row();
+}
+
+/// Draws a text that is copied to the clipboard on a click.
+pub fn value_ui(ui: &mut Ui, text: &str) {
     let value = egui::Label::new(egui::RichText::new(text).monospace()).sense(egui::Sense::click());
     let response = within_view(ui, |ui| ui.add(value.wrap())).on_hover_text("Click to copy");
     if response.clicked() {
         ui.ctx().copy_text(text.to_owned());
     }
-    ui.end_row();
 }
 
 #[cfg(test)]

@@ -7,16 +7,14 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::cli::console::{
-    Console, Verdict, print_caveats, shown, shown_path, shown_vector, under_bar,
-};
+use crate::cli::console::{Console, Verdict, shown_path, under_bar};
 use crate::cli::options::{OverwriteArg, UnitsArg};
-use crate::cli::text::{print_force_prediction, print_motion_prediction, print_simulation};
-use impactlab_core::units::{Quantity, UnitSystem};
+use crate::cli::text::print_answer;
+use impactlab_core::units::UnitSystem;
+use impactlab_study::Report;
 use impactlab_study::case_file::{
     AnsweredQuestion, CaseFile, CaseReport, Change, UsedFile, VariantReport, pack, unpack,
 };
-use impactlab_study::{ImpactReport, Report};
 
 /// Run, check, pack or unpack a case, as the window saves it
 #[derive(Debug, Args)]
@@ -169,34 +167,24 @@ fn print_case(out: &mut dyn Write, report: &CaseReport, units: UnitSystem) -> io
         writeln!(out, "\n== {name}")?;
         for answer in answers {
             writeln!(out)?;
-            print_answer(out, answer, units)?;
+            print_question(out, answer, units)?;
         }
     }
     print_changes(out, &report.changes)
 }
 
-fn print_answer(
+fn print_question(
     out: &mut dyn Write,
     answer: &AnsweredQuestion,
     units: UnitSystem,
 ) -> io::Result<()> {
     match (&answer.report, &answer.error) {
-        (Some(Report::Impact(report)), _) => print_impact(out, report, units),
-        (Some(Report::Simulate(report)), _) => print_simulation(out, (report, None), units),
-        (Some(Report::PredictForce(report)), _) => print_force_prediction(out, report, units),
-        (Some(Report::PredictMotion(report)), _) => print_motion_prediction(out, report, units),
+        (Some(Report::Impact(report)), _) => print_answer(out, &**report, units),
+        (Some(Report::Simulate(report)), _) => print_answer(out, &**report, units),
+        (Some(Report::PredictForce(report)), _) => print_answer(out, &**report, units),
+        (Some(Report::PredictMotion(report)), _) => print_answer(out, &**report, units),
+        (Some(Report::Reconstruct(report)), _) => print_answer(out, &**report, units),
         (Some(_), _) => writeln!(out, "answered; --json prints it"),
         (None, error) => writeln!(out, "no answer: {}", error.as_deref().unwrap_or_default()),
     }
-}
-
-/// The change of velocity of both vehicles.
-fn print_impact(out: &mut dyn Write, report: &ImpactReport, units: UnitSystem) -> io::Result<()> {
-    let impulse = shown_vector(Quantity::Impulse, report.impulse_n_s, ["x", "y"], units);
-    writeln!(out, "{}: impulse on the target {impulse}", report.name)?;
-    for (who, vehicle) in [("target", &report.struck), ("bullet", &report.striking)] {
-        let delta_v = shown(Quantity::Speed, vehicle.delta_v_magnitude_m_s, units);
-        writeln!(out, "{who}: change of velocity {delta_v}")?;
-    }
-    print_caveats(out, &report.caveats)
 }

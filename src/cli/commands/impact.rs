@@ -1,16 +1,14 @@
 //! `impactlab impact`: the impulse solution of a scenario.
 
-use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::Args;
 
 use crate::cli::CliError;
-use crate::cli::console::{Console, Verdict, print_caveats, print_facts, shown, shown_vector};
+use crate::cli::console::{Console, Verdict};
 use crate::cli::options::UnitsArg;
-use impactlab_core::collision::FrictionModel;
-use impactlab_core::units::{Quantity, UnitSystem, percent, significant};
-use impactlab_study::{ImpactAnswer, ImpactReport, ImpactRequest, ScenarioChoice};
+use crate::cli::text::print_answer;
+use impactlab_study::{ImpactRequest, ScenarioChoice};
 
 /// Solve an impact: impulse, velocities after it, delta-v, energy, direction of force
 #[derive(Debug, Args)]
@@ -50,80 +48,6 @@ pub(in crate::cli) fn run(
     let scenario = ScenarioChoice::File(args.scenario.clone());
     let request = ImpactRequest { scenario, paper: args.paper };
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    console.print(&answer.report, |out| print_text(out, &answer, args.units.into()))?;
+    console.print(&answer.report, |out| print_answer(out, &answer.report, args.units.into()))?;
     Ok(Verdict::Clean)
-}
-
-/// The friction limit that was used, beside the critical impulse ratio.
-fn friction(report: &ImpactReport) -> String {
-    let limit = match report.friction_of_critical {
-        Some(_) => significant(report.friction_limit),
-        None => report.friction_limit.to_string(),
-    };
-    let of_critical = match report.critical_impulse_ratio {
-        Some(critical) if critical > 0.0 => {
-            let share = percent(report.friction_limit / critical);
-            format!(" ({share} of the critical impulse ratio {})", significant(critical))
-        }
-        _ => String::new(),
-    };
-    let model = match report.friction_model {
-        FrictionModel::Limit => "",
-        FrictionModel::Paper => ", always sliding (paper)",
-    };
-    format!("{limit}{of_critical}{model}")
-}
-
-/// Overlap or gap that the text leaves out, m.
-const SHOWN_OVERLAP_M: f64 = 5e-4;
-
-/// Direction of the normal, the side that it belongs to, and the overlap of the outlines.
-fn normal(report: &ImpactReport, units: UnitSystem) -> String {
-    let angle = shown(Quantity::Angle, report.normal_angle_rad, units);
-    let side = report.struck_surface.map_or(String::new(), |side| format!(", {side}"));
-    let overlap = match report.overlap_m {
-        Some(depth_m) if depth_m.abs() < SHOWN_OVERLAP_M => "; the outlines touch".to_owned(),
-        Some(depth_m) if depth_m < 0.0 => {
-            format!("; gap {}", shown(Quantity::Length, -depth_m, units))
-        }
-        Some(depth_m) => format!("; overlap {}", shown(Quantity::Length, depth_m, units)),
-        None => "; contact as given".to_owned(),
-    };
-    format!("{angle} (world axes){side}{overlap}")
-}
-
-fn print_text(out: &mut dyn Write, answer: &ImpactAnswer, units: UnitSystem) -> io::Result<()> {
-    const XY: [&str; 2] = ["x", "y"];
-    let ImpactAnswer { scenario, solution, report } = answer;
-    let number = |quantity, value| shown(quantity, value, units);
-    let vector = |quantity, value, names| shown_vector(quantity, value, names, units);
-    let closing = solution.closing_velocity_m_s;
-    writeln!(out, "{}\n", scenario.name)?;
-    let facts = [
-        ("restitution", format!("{} {}", report.restitution, report.restitution_form.label())),
-        ("friction limit", friction(report)),
-        ("normal", normal(report, units)),
-        ("regime", solution.regime.label().to_owned()),
-        ("closing velocity", vector(Quantity::Speed, closing, ["normal", "tangential"])),
-        ("impulse", vector(Quantity::Impulse, solution.impulse_world_n_s, XY)),
-        ("P_n", number(Quantity::Impulse, solution.impulse_normal_n_s)),
-        ("P_τ", number(Quantity::Impulse, solution.impulse_tangential_n_s)),
-        ("energy loss", number(Quantity::Energy, solution.dissipated_energy_j)),
-    ];
-    print_facts(out, &facts)?;
-    for (name, body) in [("target", &solution.struck), ("bullet", &solution.striking)] {
-        let pdof = body.pdof.map_or("none".to_owned(), |pdof| {
-            format!("{:.1} deg, {} o'clock", pdof.angle_deg(), pdof.clock())
-        });
-        writeln!(out, "\n{name}")?;
-        let facts = [
-            ("  Δv", vector(Quantity::Speed, body.delta_v_world_m_s, XY)),
-            ("  velocity after", vector(Quantity::Speed, body.velocity_world_m_s, XY)),
-            ("  yaw rate after", number(Quantity::AngularVelocity, body.yaw_rate_rad_s)),
-            ("  yaw rate change", number(Quantity::AngularVelocity, body.delta_yaw_rate_rad_s)),
-            ("  PDOF", pdof),
-        ];
-        print_facts(out, &facts)?;
-    }
-    print_caveats(out, &report.caveats)
 }

@@ -9,7 +9,7 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_force_prediction;
 use crate::cli::options::{OverwriteArg, UnitsArg, count};
-use crate::cli::text::print_force_prediction;
+use crate::cli::text::print_answer;
 use impactlab_core::ranges::SAMPLES;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{ForceQuestion, PredictForceReport, PredictForceRequest, ScenarioChoice};
@@ -100,7 +100,7 @@ pub(in crate::cli) fn run(
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
     let printed = PrintedForce { report: &answer.report, out };
     let report = &answer.report;
-    console.print(&printed, |out| print_force_prediction(out, report, args.units.into()))?;
+    console.print(&printed, |out| print_answer(out, report, args.units.into()))?;
     Ok(Verdict::Clean)
 }
 

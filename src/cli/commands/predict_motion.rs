@@ -11,7 +11,7 @@ use crate::cli::files::{MotionFiles, write_motion_prediction};
 use crate::cli::options::{
     EndingArgs, OverwriteArg, UnitsArg, VehicleArg, contact_point, count, number, window_s,
 };
-use crate::cli::text::print_motion_prediction;
+use crate::cli::text::print_answer;
 use impactlab_core::data::{DatasetKind, Existing, write_atomically};
 use impactlab_core::ranges::{DRAWS, REST_LIMIT, ROAD_FRICTION, VEHICLE_DRAWS};
 use impactlab_core::vehicle::ContactPoint;
@@ -176,7 +176,7 @@ pub(in crate::cli) fn run(
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
     let printed = PrintedMotion { report: &answer.report, files: &files };
     let report = &answer.report;
-    console.print(&printed, |out| print_motion_prediction(out, report, args.units.into()))?;
+    console.print(&printed, |out| print_answer(out, report, args.units.into()))?;
     Ok(Verdict::Clean)
 }
 

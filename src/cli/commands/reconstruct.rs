@@ -9,7 +9,7 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_reconstruction;
 use crate::cli::options::{EvidenceArgs, OverwriteArg, UnitsArg};
-use crate::cli::text::print_reconstruction;
+use crate::cli::text::print_answer;
 use impactlab_study::{ReconstructReport, ReconstructRequest};
 
 /// From the evidence to the speeds before the impact, as a distribution
@@ -83,6 +83,6 @@ pub(in crate::cli) fn run(
     })?;
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
     let printed = PrintedReconstruction { report: &answer.report, out };
-    console.print(&printed, |out| print_reconstruction(out, &answer.report, args.units.into()))?;
+    console.print(&printed, |out| print_answer(out, &answer.report, args.units.into()))?;
     Ok(Verdict::Clean)
 }

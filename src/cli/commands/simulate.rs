@@ -7,12 +7,12 @@ use clap::{ArgGroup, Args};
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::cli::console::{Console, Verdict};
+use crate::cli::console::{Console, Verdict, shown_path};
 use crate::cli::options::{
     EndingArgs, EquationsArg, IntegratorArg, OverwriteArg, SamplingArg, UnitsArg, VehicleArg,
     contact_point, count, number,
 };
-use crate::cli::text::{print_dataset_simulation, print_simulation};
+use crate::cli::text::{print_answer, print_dataset_simulation};
 use impactlab_core::data::{ColumnMap, DatasetKind, Existing, write_restricted_series_csv};
 use impactlab_core::ranges::{
     REST_LIMIT, ROAD_FRICTION, SIMULATED_DURATION, SPEED, VEHICLE_DRAWS, YAW_RATE,
@@ -241,7 +241,10 @@ fn simulate_one(
         write_restricted_series_csv(path, existing, (&motion.series, said.as_deref()))?;
     }
     let printed = PrintedSimulation { report, out };
-    console.print(&printed, |text| print_simulation(text, (report, out), args.units.into()))?;
+    console.print(&printed, |text| {
+        print_answer(text, report, args.units.into())?;
+        out.map_or(Ok(()), |path| writeln!(text, "written: {}", shown_path(path)))
+    })?;
     Ok(Verdict::Clean)
 }
 

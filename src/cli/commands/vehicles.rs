@@ -89,7 +89,8 @@ fn print_one(id: &str, estimates: bool, console: &mut Console<'_>) -> Result<(),
         return Ok(());
     }
     let row = |estimate: &Estimate| {
-        let Estimate { quantity, unit, median, ninety: [low, high], rule, source } = estimate;
+        let Estimate { quantity, unit, value, rule, source } = estimate;
+        let (median, [low, high]) = (value.median, value.ninety());
         let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
         vec![
             format!("{}{unit}", quantity.label()),

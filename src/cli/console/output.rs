@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::within_line;
-use impactlab_core::units::{Quantity, UnitSystem};
 
 /// Number of characters of a cell that are printed.
 const MAX_CELL_CHARS: usize = 200;
@@ -78,29 +77,6 @@ impl TextColumn {
         let width = self.width;
         if self.is_numeric { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
     }
-}
-
-/// A number of a quantity in the shown unit, with the unit: `54.0 km/h`.
-pub(in crate::cli) fn shown(quantity: Quantity, value_si: f64, units: UnitSystem) -> String {
-    let unit = quantity.display_unit(units);
-    let value = unit.from_si(value_si);
-    match unit.symbol {
-        "" => format!("{value:.3}"),
-        symbol => format!("{value:.3} {symbol}"),
-    }
-}
-
-/// Two components and their size: `12.00 (x 10.00, y 6.63) km/h`.
-pub(in crate::cli) fn shown_vector(
-    quantity: Quantity,
-    [x, y]: [f64; 2],
-    names: [&str; 2],
-    units: UnitSystem,
-) -> String {
-    let unit = quantity.display_unit(units);
-    let [size, x, y] = [x.hypot(y), x, y].map(|value| unit.from_si(value));
-    let [first, second] = names;
-    format!("{size:.3} {} ({first} {x:.3}, {second} {y:.3})", unit.symbol)
 }
 
 #[cfg(test)]

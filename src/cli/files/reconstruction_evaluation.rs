@@ -57,8 +57,10 @@ fn row(score: &CaseScore) -> Vec<String> {
 
 /// The numbers of a speed in the order of [`COLUMNS`].
 fn numbers(ScoredQuantity { estimate, truth, crps }: &ScoredQuantity) -> [f64; COLUMNS.len()] {
-    let ([low_50, high_50], [low_80, high_80]) = (estimate.interval_50, estimate.interval_80);
-    let ([low_90, high_90], [low_95, high_95]) = (estimate.interval_90, estimate.interval_95);
+    let estimate = &estimate.estimate;
+    let ends = |level| estimate.interval(level).unwrap_or([f64::NAN; 2]);
+    let [[low_50, high_50], [low_80, high_80], [low_90, high_90], [low_95, high_95]] =
+        [0.5, 0.8, 0.9, 0.95].map(ends);
     [
         *truth,
         estimate.median,

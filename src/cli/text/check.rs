@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use crate::cli::console::{print_facts, print_table, shown, shown_path, shown_vector};
+use crate::cli::console::{print_facts, print_table, shown_path};
 use impactlab_core::data::Channel;
-use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::units::{NumberFormat, Quantity};
 use impactlab_study::{
     CaseFlag, CheckReport, ColumnReport, DatasetReport, FileReport, PathProblem, ProposedColumn,
     word,
@@ -87,10 +87,10 @@ fn print_file(out: &mut dyn Write, file: &FileReport) -> io::Result<()> {
         facts.push(("  force is", sampling.replace('_', " ")));
     }
     if let Some(force) = &file.force {
-        let units = UnitSystem::Si;
-        let impulse = shown_vector(Quantity::Impulse, force.impulse_n_s, ["x", "y"], units);
+        let format = NumberFormat::default();
+        let impulse = format.vector(Quantity::Impulse, force.impulse_n_s, ["x", "y"]);
         let [peak, at] = [(Quantity::Force, force.peak_n), (Quantity::Time, force.peak_time_s)]
-            .map(|(quantity, value)| shown(quantity, value, units));
+            .map(|(quantity, value)| format.value(quantity, value));
         let contact = force.contact_s.map(|[from, to]| format!("{from:.4} s to {to:.4} s"));
         facts.push(("  impulse", format!("{impulse}, {} axes", force.axes)));
         facts.push(("  peak", format!("{peak} at {at}")));

@@ -64,11 +64,13 @@ pub fn marginal_figure(
         FigureElement::Band(band("after it", &histogram(&posterior, range))),
     ];
     let estimate = answer.report.quantities.iter().find(|of| of.name == quantity.key());
-    if let Some(QuantityEstimate { median, interval_90: [low, high], .. }) = estimate {
-        for (name, value) in [("90 % interval", low), ("median", median), ("90 % interval", high)] {
+    if let Some(QuantityEstimate { estimate, .. }) = estimate {
+        let [low, high] = estimate.ninety();
+        let lines = [("90 % interval", low), ("median", estimate.median), ("90 % interval", high)];
+        for (name, value) in lines {
             let role = if name == "median" { Role::Model } else { Role::Muted };
             let name = name.to_owned();
-            elements.push(FigureElement::VerticalLine { name, role, x: x.unit.from_si(*value) });
+            elements.push(FigureElement::VerticalLine { name, role, x: x.unit.from_si(value) });
         }
     }
     let title = format!("{}: {label}", answer.report.case);

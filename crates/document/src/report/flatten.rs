@@ -4,9 +4,9 @@ use serde_json::Value;
 
 use crate::report::keys::{is_silent, quantity_of_key};
 use crate::report::language::phrase_of;
-use crate::report::numbers::{Wording, trimmed};
+use crate::report::numbers::Wording;
 use crate::report::paths::ShownPaths;
-use impactlab_core::units::significant;
+use impactlab_core::units::{significant, trimmed};
 
 /// Numbers of a list that are written; more are counted.
 const MAX_LISTED: usize = 12;

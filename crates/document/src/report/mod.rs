@@ -46,7 +46,8 @@ pub use build::report_case;
 pub use document::{
     Block, Column, InputClass, Picture, PictureContent, ReportDocument, Section, SectionKind, Table,
 };
-pub use settings::{DateError, Language, Paper, ReportDate, ReportSettings};
+pub use impactlab_core::units::Language;
+pub use settings::{DateError, Paper, ReportDate, ReportSettings};
 pub use validation::{VALIDATION_TABLES, ValidationTable};
 pub use write::{
     Drawing, FormatError, PdfError, Pixels, ReportFormat, WriteError, column_widths, pdf,

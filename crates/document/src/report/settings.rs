@@ -6,18 +6,7 @@ use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
-use impactlab_core::units::UnitSystem;
-
-/// Language of a report.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Language {
-    /// English.
-    #[default]
-    En,
-    /// German.
-    De,
-}
+use impactlab_core::units::{Language, UnitSystem};
 
 /// Size of the pages.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -56,16 +45,6 @@ pub struct ReportSettings {
 #[error("{text:?} is no day, expected YYYY-MM-DD")]
 pub struct DateError {
     text: String,
-}
-
-impl Language {
-    /// The tag of the language, BCP 47.
-    pub fn tag(self) -> &'static str {
-        match self {
-            Self::En => "en",
-            Self::De => "de",
-        }
-    }
 }
 
 impl Paper {

@@ -63,11 +63,12 @@ impl CaseScore {
 impl ScoredQuantity {
     /// Estimated less true value.
     pub fn error(&self) -> f64 {
-        self.estimate.median - self.truth
+        self.estimate.estimate.median - self.truth
     }
 
     /// Width of the interval of 90 %.
     pub fn width_90(&self) -> f64 {
-        self.estimate.interval_90[1] - self.estimate.interval_90[0]
+        let [low, high] = self.estimate.estimate.ninety();
+        high - low
     }
 }

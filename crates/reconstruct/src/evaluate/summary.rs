@@ -94,10 +94,10 @@ impl QuantitySummary {
     pub fn of(scored: &[&ScoredQuantity]) -> Option<Self> {
         let first = scored.first()?;
         let n = scored.len();
-        let share = |interval: fn(&ScoredQuantity) -> [f64; 2]| {
+        let share = |level: f64| {
             let holds = |of: &&&ScoredQuantity| {
-                let [low, high] = interval(of);
-                (low..=high).contains(&of.truth)
+                let interval = of.estimate.estimate.interval(level);
+                interval.is_some_and(|[low, high]| (low..=high).contains(&of.truth))
             };
             scored.iter().filter(holds).count() as f64 / n as f64
         };
@@ -108,10 +108,10 @@ impl QuantitySummary {
             name: first.estimate.name,
             unit: first.estimate.unit,
             n,
-            coverage_50: share(|of| of.estimate.interval_50),
-            coverage_80: share(|of| of.estimate.interval_80),
-            coverage_90: share(|of| of.estimate.interval_90),
-            coverage_95: share(|of| of.estimate.interval_95),
+            coverage_50: share(0.5),
+            coverage_80: share(0.8),
+            coverage_90: share(0.9),
+            coverage_95: share(0.95),
             median_absolute_error: median(|of| of.error().abs())?,
             median_error: median(ScoredQuantity::error)?,
             median_width_90: median(ScoredQuantity::width_90)?,

@@ -12,6 +12,7 @@ use impactlab_core::uncertainty::{
     CURVE_INTERVAL_S, CurveBands, CurveMixture, CurveQuantities, ForceCurve, MixtureError,
     NormalMixture,
 };
+use impactlab_core::units::{Estimate, Interval};
 use impactlab_networks::force::metrics::BAND_LEVELS;
 
 /// Number of curves drawn for quantities whose distribution has no closed form; a 5 % tail then has
@@ -25,37 +26,6 @@ pub struct ForecastSettings {
     pub n_curves: usize,
     /// Seed of all random draws.
     pub seed: u64,
-}
-
-/// Median of a quantity with its central 50 % and 90 % intervals, in SI units.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Spread {
-    /// Median: the value that is exceeded with a probability of 50 %.
-    pub median: f64,
-    /// Lower and upper end of the central interval that holds 50 %.
-    pub half: [f64; 2],
-    /// Lower and upper end of the central interval that holds 90 %.
-    pub ninety: [f64; 2],
-}
-
-/// A central interval of a quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Interval {
-    /// Probability that the interval holds the quantity, 0 to 1.
-    pub level: f64,
-    /// Lower end of the interval.
-    pub low: f64,
-    /// Upper end of the interval.
-    pub high: f64,
-}
-
-/// Median of a quantity with its central intervals at [`BAND_LEVELS`], in SI units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Estimate {
-    /// Median: the value that is exceeded with a probability of 50 %.
-    pub median: f64,
-    /// Intervals from the narrowest to the widest.
-    pub intervals: Vec<Interval>,
 }
 
 /// One component of the predicted mixture: one of the possible courses of the collision.
@@ -98,79 +68,39 @@ pub struct ForceForecast {
     pub modes: Vec<Mode>,
 }
 
-impl Spread {
-    /// Median and intervals of a normal mixture.
-    pub fn of(distribution: &NormalMixture) -> Self {
-        Self {
-            median: distribution.quantile(0.5),
-            half: distribution.interval(0.5),
-            ninety: distribution.interval(0.9),
-        }
-    }
-
-    /// Median and intervals of draws; NaN without any.
-    pub fn of_draws(mut draws: Vec<f64>) -> Self {
-        draws.sort_by(f64::total_cmp);
-        let at = |probability| quantile_of_sorted(&draws, probability).unwrap_or(f64::NAN);
-        Self { median: at(0.5), half: [at(0.25), at(0.75)], ninety: [at(0.05), at(0.95)] }
-    }
+/// Median, 50 % and 90 % of a normal mixture.
+pub(crate) fn spread_of(distribution: &NormalMixture) -> Estimate {
+    let [half, ninety] = [0.5, 0.9].map(|level| distribution.interval(level));
+    Estimate::new(distribution.quantile(0.5), half, ninety)
 }
 
-impl Estimate {
-    /// Median and intervals from a quantile function, which takes a probability.
-    fn of_quantiles(quantile: impl Fn(f64) -> f64) -> Self {
-        let interval = |level: f64| Interval {
-            level,
-            low: quantile((1.0 - level) / 2.0),
-            high: quantile((1.0 + level) / 2.0),
-        };
-        let intervals = BAND_LEVELS.into_iter().map(interval).collect();
-        Self { median: quantile(0.5), intervals }
-    }
+/// Median, 50 % and 90 % of draws; NaN without any.
+pub(crate) fn spread_of_draws(mut draws: Vec<f64>) -> Estimate {
+    draws.sort_by(f64::total_cmp);
+    let at = |probability| quantile_of_sorted(&draws, probability).unwrap_or(f64::NAN);
+    Estimate::new(at(0.5), [at(0.25), at(0.75)], [at(0.05), at(0.95)])
+}
 
-    /// Median and intervals of a normal mixture.
-    pub fn of(distribution: &NormalMixture) -> Self {
-        Self::of_quantiles(|probability| distribution.quantile(probability))
-    }
+/// Median and the intervals at [`BAND_LEVELS`] of a normal mixture.
+fn bands_of(distribution: &NormalMixture) -> Estimate {
+    estimate(|probability| distribution.quantile(probability))
+}
 
-    /// Median and intervals of draws; NaN without any.
-    pub fn of_draws(mut draws: Vec<f64>) -> Self {
-        draws.sort_by(f64::total_cmp);
-        Self::of_quantiles(|probability| {
-            quantile_of_sorted(&draws, probability).unwrap_or(f64::NAN)
-        })
-    }
+/// Median and the intervals at [`BAND_LEVELS`] of draws; NaN without any.
+pub(crate) fn bands_of_draws(mut draws: Vec<f64>) -> Estimate {
+    draws.sort_by(f64::total_cmp);
+    estimate(|probability| quantile_of_sorted(&draws, probability).unwrap_or(f64::NAN))
+}
 
-    /// Ends `[low, high]` of the interval at a level; `None` if there is no interval at this level.
-    pub fn interval(&self, level: f64) -> Option<[f64; 2]> {
-        let of_level = self.intervals.iter().find(|interval| interval.level == level)?;
-        Some([of_level.low, of_level.high])
-    }
-
-    /// The median with the 50 % and 90 % intervals alone.
-    pub fn spread(&self) -> Spread {
-        let ends = |level| self.interval(level).unwrap_or([self.median; 2]);
-        Spread { median: self.median, half: ends(0.5), ninety: ends(0.9) }
-    }
-
-    /// The same estimate in another unit.
-    ///
-    /// - `factor`: positive; median and ends are multiplied by it.
-    #[must_use]
-    pub fn scaled(&self, factor: f64) -> Self {
-        self.mapped(|value| value * factor)
-    }
-
-    /// Applies an increasing function to the median and the ends.
-    fn mapped(&self, map: impl Fn(f64) -> f64) -> Self {
-        let intervals = self.intervals.iter();
-        let of = |Interval { level, low, high }: &Interval| Interval {
-            level: *level,
-            low: map(*low),
-            high: map(*high),
-        };
-        Self { median: map(self.median), intervals: intervals.map(of).collect() }
-    }
+/// Median and the intervals at [`BAND_LEVELS`] of a distribution.
+fn estimate(quantile: impl Fn(f64) -> f64) -> Estimate {
+    let interval = |level: f64| Interval {
+        level,
+        low: quantile((1.0 - level) / 2.0),
+        high: quantile((1.0 + level) / 2.0),
+    };
+    let intervals = BAND_LEVELS.into_iter().map(interval).collect();
+    Estimate { median: quantile(0.5), intervals }
 }
 
 impl ForceForecast {
@@ -184,14 +114,14 @@ impl ForceForecast {
         let mut curves = mixture.sample(N_DRAWS.max(settings.n_curves), &mut rng);
         let draws = CurveQuantities::of(&curves);
         curves.truncate(settings.n_curves);
-        let duration_s = Estimate::of(&mixture.duration_s());
+        let duration_s = bands_of(&mixture.duration_s());
         let mean = ForceCurve { duration_s: duration_s.median, ..mixture.mean() };
         Ok(Self {
             bands: mixture.bands(&BAND_LEVELS)?,
-            impulse_n_s: [0, 1].map(|axis| Estimate::of(&mixture.impulse(axis))),
-            impulse_magnitude_n_s: Estimate::of_draws(draws.impulse_magnitude_n_s()),
-            peak_n: Estimate::of_draws(draws.peak_n),
-            peak_time_s: Estimate::of_draws(draws.peak_time_s),
+            impulse_n_s: [0, 1].map(|axis| bands_of(&mixture.impulse(axis))),
+            impulse_magnitude_n_s: bands_of_draws(draws.impulse_magnitude_n_s()),
+            peak_n: bands_of_draws(draws.peak_n),
+            peak_time_s: bands_of_draws(draws.peak_time_s),
             pdof_rad: pdof_rad(mean.impulse_n_s(), &draws.impulse_n_s),
             duration_s,
             mean,
@@ -207,7 +137,7 @@ fn pdof_rad(mean: [f64; 2], impulses: &[[f64; 2]]) -> Estimate {
     let angle = |impulse| PrincipalDirectionOfForce::from_impulse(impulse, 0.0);
     let centre_rad = angle(mean).map_or(0.0, |pdof| pdof.angle_rad);
     let off = |impulse: &[f64; 2]| Some(wrap_angle_rad(angle(*impulse)?.angle_rad - centre_rad));
-    let around = Estimate::of_draws(impulses.iter().filter_map(off).collect());
+    let around = bands_of_draws(impulses.iter().filter_map(off).collect());
     let median = around.median + centre_rad;
     let shift = centre_rad + median.rem_euclid(TAU) - median;
     around.mapped(|angle| angle + shift)
@@ -285,10 +215,9 @@ mod tests {
             ("duration", forecast.duration_s.clone()),
             ("PDOF", forecast.pdof_rad.clone()),
         ] {
-            let spread = spread.spread();
-            let [low, high] = spread.half;
+            let [low, high] = spread.half();
             assert!(low <= spread.median && spread.median <= high, "{name}: {spread:?}");
-            assert!(spread.ninety[0] <= low && high <= spread.ninety[1], "{name}: {spread:?}");
+            assert!(spread.ninety()[0] <= low && high <= spread.ninety()[1], "{name}: {spread:?}");
         }
         assert_eq!((forecast.curves.len(), forecast.bands.fx.len()), (5, 4));
         assert!(forecast.modes.windows(2).all(|pair| pair[0].weight >= pair[1].weight));
@@ -299,8 +228,8 @@ mod tests {
     fn a_direction_from_straight_ahead_does_not_jump() {
         let impulses: Vec<[f64; 2]> = (-10..=10).map(|i| [-1000.0, 20.0 * f64::from(i)]).collect();
         for mean in [[-1000.0, 100.0], [-1000.0, -100.0]] {
-            let spread = pdof_rad(mean, &impulses).spread();
-            let [low, high] = spread.ninety;
+            let spread = pdof_rad(mean, &impulses);
+            let [low, high] = spread.ninety();
             assert!((0.0..TAU).contains(&spread.median), "{spread:?}");
             assert!((high - low - 0.358).abs() < 0.01, "{spread:?}");
         }

@@ -27,9 +27,8 @@ use impactlab_core::vehicle::{
 
 pub use case::analyse_case;
 pub use file::{DriveSetup, analyse_drive, analyse_recording};
-pub use forecast::{
-    Estimate, ForceForecast, ForecastSettings, Interval, Mode, Spread, pulse_curves,
-};
+pub use forecast::{ForceForecast, ForecastSettings, Mode, pulse_curves};
+pub(crate) use forecast::{bands_of_draws, spread_of, spread_of_draws};
 pub use motion_bands::{MOTION_BAND_LEVELS, MotionBands};
 pub use motion_density::{DensityMap, DensityTask, Region};
 pub use motion_forecast::{

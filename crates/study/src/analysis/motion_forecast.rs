@@ -14,7 +14,7 @@ use serde::Serialize;
 use crate::analysis::motion_to_rest::{Settled, ToRest};
 use crate::analysis::rest::{Pace, rest_instant};
 use crate::analysis::rest_outcome::region_m2;
-use crate::analysis::{RestOutcome, Sensitivity, Spread, VehicleDraws};
+use crate::analysis::{RestOutcome, Sensitivity, VehicleDraws, spread_of, spread_of_draws};
 use impactlab_core::collision::Pose;
 use impactlab_core::data::{
     ContactOutside, ForceAxes, ForceHistory, check_contact_within, contact_interval,
@@ -22,6 +22,7 @@ use impactlab_core::data::{
 use impactlab_core::numerics::random_stream;
 use impactlab_core::ranges::{DRAWS, FORECAST_DURATION, OutOfRange, REST_LIMIT};
 use impactlab_core::uncertainty::{ForceCurve, PlanarMixture};
+use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::{
     ContactLoad, ContactPoint, ControlledVehicle, Controls, FrictionZone, Manoeuvre, VehicleInput,
     VehicleParameters, VehicleState,
@@ -117,12 +118,12 @@ pub struct MotionOutcome {
     /// forecast.
     pub is_at_rest: bool,
     /// X of the CG at that time, m.
-    pub x_m: Spread,
+    pub x_m: Estimate,
     /// Y of the CG at that time, m.
-    pub y_m: Spread,
+    pub y_m: Estimate,
     /// Change of heading since the start of the impact, rad, positive to the left. It is not
     /// wrapped: a full turn counts as 2π.
-    pub heading_change_rad: Spread,
+    pub heading_change_rad: Estimate,
     /// Speed of the CG, m/s: mean over the central paths under each force.
     pub speed_m_s: f64,
     /// Size of the yaw rate, rad/s: mean over the central paths under each force.
@@ -428,19 +429,14 @@ fn outcome(
     let (pace, start) = (pace.get(at)?, central.first()?);
     let position: PlanarMixture = distribution.position(at);
     let draws = position.sample(N_END_DRAWS, seed);
-    let of = |axis: usize| Spread::of_draws(draws.iter().map(|point| point[axis]).collect());
+    let of = |axis: usize| spread_of_draws(draws.iter().map(|point| point[axis]).collect());
     let heading = distribution.heading(at)?;
-    let turned = |spread: Spread| Spread {
-        median: spread.median - start.yaw_rad,
-        half: spread.half.map(|value| value - start.yaw_rad),
-        ninety: spread.ninety.map(|value| value - start.yaw_rad),
-    };
     Some(MotionOutcome {
         time_s: at as f64 * STEP_S,
         is_at_rest: rest.is_some(),
         x_m: of(0),
         y_m: of(1),
-        heading_change_rad: turned(Spread::of(&heading)),
+        heading_change_rad: spread_of(&heading).mapped(|yaw_rad| yaw_rad - start.yaw_rad),
         speed_m_s: pace.speed_m_s,
         yaw_rate_rad_s: pace.yaw_rate_rad_s,
         region_90_m2: region_m2(&position, 0.9),

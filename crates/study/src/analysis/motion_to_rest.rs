@@ -10,7 +10,7 @@ use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
 use crate::analysis::rest_outcome::groups;
-use crate::analysis::{MotionEnd, MotionOutcome, RestOutcome, Spread, StruckVehicle};
+use crate::analysis::{MotionEnd, MotionOutcome, RestOutcome, StruckVehicle, spread_of_draws};
 use impactlab_core::data::ForceHistory;
 use impactlab_core::vehicle::VehicleState;
 use impactlab_networks::response::{
@@ -190,11 +190,11 @@ fn outcome(
     MotionOutcome {
         time_s: n_instants.saturating_sub(1) as f64 * STEP_S,
         is_at_rest: rest.share_at_rest >= SHARE_AT_REST,
-        x_m: rest.x_m,
-        y_m: rest.y_m,
+        x_m: rest.x_m.clone(),
+        y_m: rest.y_m.clone(),
         p_quarter_turn: share_of(FRAC_PI_2),
         p_half_turn: share_of(PI),
-        heading_change_rad: Spread::of_draws(turned),
+        heading_change_rad: spread_of_draws(turned),
         speed_m_s: mean(|end| end.speed_m_s),
         yaw_rate_rad_s: mean(|end| end.yaw_rate_rad_s.abs()),
         region_90_m2: rest.region_90_m2,

@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 
-use crate::analysis::Spread;
+use crate::analysis::spread_of_draws;
 use impactlab_core::uncertainty::{PlanarMixture, PlanarPart};
+use impactlab_core::units::Estimate;
 
 /// Number of draws for the area of a region, which then has an error of some 2 %.
 const N_REGION_DRAWS: usize = 10_000;
@@ -49,15 +50,15 @@ pub struct RestOutcome {
     /// Time after which those that still move are followed no further, s.
     pub limit_s: f64,
     /// Time from the first contact to rest, s.
-    pub time_s: Spread,
+    pub time_s: Estimate,
     /// Length of the path of the CG to rest, m.
-    pub distance_m: Spread,
+    pub distance_m: Estimate,
     /// X of the CG, m.
-    pub x_m: Spread,
+    pub x_m: Estimate,
     /// Y of the CG, m.
-    pub y_m: Spread,
+    pub y_m: Estimate,
     /// Heading, rad; a full turn counts as 2π.
-    pub yaw_rad: Spread,
+    pub yaw_rad: Estimate,
     /// Area of the smallest region that holds the position with a probability of 50 %, m².
     pub region_50_m2: f64,
     /// Area of the smallest region that holds the position with a probability of 90 %, m².
@@ -72,7 +73,7 @@ impl RestOutcome {
         if ends.is_empty() {
             return None;
         }
-        let of = |value: fn(&MotionEnd) -> f64| Spread::of_draws(ends.iter().map(value).collect());
+        let of = |value: fn(&MotionEnd) -> f64| spread_of_draws(ends.iter().map(value).collect());
         let moving: Vec<f64> =
             ends.iter().filter(|end| !end.is_at_rest).map(|end| end.speed_m_s).collect();
         let position = position_of(ends);
@@ -87,7 +88,7 @@ impl RestOutcome {
             yaw_rad: of(|end| end.yaw_rad),
             region_50_m2: region_m2(&position, 0.5),
             region_90_m2: region_m2(&position, 0.9),
-            moving_speed_m_s: (!moving.is_empty()).then(|| Spread::of_draws(moving).median),
+            moving_speed_m_s: (!moving.is_empty()).then(|| spread_of_draws(moving).median),
         })
     }
 }
@@ -201,7 +202,7 @@ mod tests {
         assert!((rest.share_at_rest - 0.6).abs() < 1e-12, "{rest:?}");
         assert_eq!(rest.moving_speed_m_s, Some(1.0));
         assert!((rest.distance_m.median - 50.5).abs() < 1e-9, "{rest:?}");
-        assert!(rest.distance_m.ninety[1] > 94.0, "{rest:?}");
+        assert!(rest.distance_m.ninety()[1] > 94.0, "{rest:?}");
         assert!(RestOutcome::of(&ends[..60], 50.0).unwrap().moving_speed_m_s.is_none());
         assert_eq!(RestOutcome::of(&[], 50.0), None);
     }

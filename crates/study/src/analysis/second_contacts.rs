@@ -9,9 +9,10 @@
 
 use rayon::prelude::*;
 
-use crate::analysis::{MotionForecast, Spread, StruckVehicle, VehicleTrack};
+use crate::analysis::{MotionForecast, StruckVehicle, VehicleTrack, spread_of_draws};
 use impactlab_core::collision::{Footprint, Pose, SecondContact};
 use impactlab_core::data::{Channel, ForceAxes, ForceHistory, TimeSeries, contact_interval};
+use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::{ContactLoad, Integrator, Manoeuvre};
 use impactlab_networks::response::STEP_S;
 
@@ -26,13 +27,13 @@ pub struct SecondContacts {
     /// Share of them in which the vehicles meet again.
     pub probability: f64,
     /// When they do, s after the first contact.
-    pub time_s: Spread,
+    pub time_s: Estimate,
     /// Where they do: X, m.
-    pub x_m: Spread,
+    pub x_m: Estimate,
     /// Where they do: Y, m.
-    pub y_m: Spread,
+    pub y_m: Estimate,
     /// How fast their overlap grows then, m/s.
-    pub closing_speed_m_s: Spread,
+    pub closing_speed_m_s: Estimate,
     /// Share of these second contacts before which the vehicles were apart.
     pub apart_share: f64,
 }
@@ -61,7 +62,7 @@ impl SecondContacts {
             return None;
         }
         let of =
-            |value: fn(&SecondContact) -> f64| Spread::of_draws(met.iter().map(value).collect());
+            |value: fn(&SecondContact) -> f64| spread_of_draws(met.iter().map(value).collect());
         Some(Self {
             n_draws: followed.len(),
             probability: met.len() as f64 / followed.len() as f64,

@@ -16,8 +16,9 @@ pub(crate) fn estimates(vehicle: &VehicleParameters) -> Vec<Caveat> {
 }
 
 fn estimate(estimate: &Estimate) -> Caveat {
-    let Estimate { quantity, unit, median, ninety: [low, high], rule, source } = estimate;
-    let [median, low, high] = [*median, *low, *high].map(three_digits);
+    let Estimate { quantity, unit, value, rule, source } = estimate;
+    let (median, [low, high]) = (value.median, value.ninety());
+    let [median, low, high] = [median, low, high].map(three_digits);
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     let value = format!("{} {median}{unit}, 90 %: {low} to {high}", quantity.label());
     Caveat::assumed(subject_of(*quantity), value, format!("{rule}; {source}"))

@@ -118,7 +118,7 @@ pub(crate) fn of_rest(rest: &RestOutcome) -> Option<Caveat> {
 /// A motion that lasts longer than those that the response network has learned from.
 fn of_duration(report: &PredictMotionReport) -> Option<Caveat> {
     let end_s = match &report.rest {
-        Some(rest) => rest.time_s.ninety[1],
+        Some(rest) => rest.time_s.ninety()[1],
         None => report.outcome.time_s,
     };
     let learned_s = report.learned_duration_s;

@@ -6,20 +6,18 @@ use impactlab_core::uncertainty::Caveats;
 use crate::app::command::Command;
 use crate::app::looks;
 use crate::app::panels::faded_if;
-use crate::app::panels::reconstruction::findings::{budget_ui, fit_ui, modes_ui};
+use crate::app::panels::reconstruction::findings::{budget_ui, modes_ui};
 use crate::app::panels::reconstruction::{OUTDATED, notice_ui};
 use crate::app::panes::PaneContext;
 use crate::app::reconstruction::{PreparedReconstruction, ReconstructionView};
-use crate::app::widgets::{
-    SpreadRow, evidence_assumptions_ui, figure_frame, restrictions_ui, spread_table_ui,
-};
+use crate::app::widgets::{evidence_assumptions_ui, facts_ui, figure_frame, restrictions_ui};
 use impactlab_core::data::Severity;
-use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::{marginal_figure, pair_figure};
 use impactlab_draw::FigureOptions;
-use impactlab_reconstruct::{QuantityEstimate, ReconstructedQuantity};
+use impactlab_reconstruct::ReconstructedQuantity;
 use impactlab_study::ReconstructReport;
-use impactlab_study::analysis::Spread;
+use impactlab_study::facts::FactTable;
 
 /// Heights of the plots, points.
 const MARGINAL_HEIGHT: f32 = 190.0;
@@ -61,14 +59,17 @@ pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             let pair = options("pair", PAIR_HEIGHT);
             let drawn = (answer, &caveats, units);
             plots_ui(ui, drawn, (&mut view.reconstruction, [marginal, pair]), commands);
-            fit_ui(ui, &report.fit);
+            let found = [Some(report.fit_table()), report.mark_table()];
+            let found: Vec<FactTable> = found.into_iter().flatten().collect();
+            ui.add_space(looks::PART);
+            facts_ui(ui, "evidence", &found, units);
             modes_ui(ui, (report, of.mode), units, commands);
             budget_ui(ui, &answer.answer, (&caveats, units), commands);
         });
     });
 }
 
-/// Draws the table of quantities, what restricts it, and the hand calculation beside it.
+/// Draws what restricts the answer, the table of quantities, and what was assumed.
 fn numbers_ui(
     ui: &mut Ui,
     report: &ReconstructReport,
@@ -76,35 +77,8 @@ fn numbers_ui(
     commands: &mut Vec<Command>,
 ) {
     restrictions_ui(ui, &report.caveats);
-    ScrollArea::horizontal().id_salt("quantities").show(ui, |ui| {
-        spread_table_ui(ui, &report.case, &rows(report, units));
-    });
-    if let Some([value, sigma]) = report.by_hand_m_s {
-        let unit = Quantity::Speed.display_unit(units);
-        let [value, sigma] = [value, sigma].map(|of| unit.from_si(of));
-        let hint = "Momentum and the energy that was lost on the way to rest, as one computes it by hand; for comparison";
-        let text = format!("By hand: struck car {value:.1} ± {sigma:.1} {} (one σ)", unit.symbol);
-        ui.label(text).on_hover_text(hint);
-    }
-    let (n, ess) = (report.n_simulations, report.ess);
-    let n_particles = report.n_particles;
-    ui.weak(format!("{n} motions, {n_particles} particles worth {ess:.0} independent ones"));
+    facts_ui(ui, &report.case, &[report.speed_table()], units);
     evidence_assumptions_ui(ui, &report.caveats, commands);
-}
-
-fn rows(report: &ReconstructReport, units: UnitSystem) -> Vec<SpreadRow> {
-    let row = |of: &QuantityEstimate| {
-        let quantity = ReconstructedQuantity::ALL.iter().find(|known| known.key() == of.name)?;
-        let spread = Spread { median: of.median, half: of.interval_50, ninety: of.interval_90 };
-        Some(SpreadRow {
-            label: quantity.label(),
-            unit: quantity.quantity().display_unit(units),
-            spread,
-            ninety_five: Some(of.interval_95),
-            hint: "",
-        })
-    };
-    report.quantities.iter().filter_map(row).collect()
 }
 
 /// Draws the distribution of one quantity, and of two against each other.

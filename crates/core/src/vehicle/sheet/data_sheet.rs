@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::units::{self, Interval};
 use crate::vehicle::sheet::{Drive, Rule, SheetQuantity, VehicleClass};
 use crate::vehicle::{Equations, VehicleMismatch, VehicleParameters};
 
@@ -47,10 +48,10 @@ pub struct Estimate {
     pub quantity: SheetQuantity,
     /// Symbol of the unit.
     pub unit: &'static str,
-    /// Median, in that unit, with the quantities that it follows from at their medians.
-    pub median: f64,
-    /// Range that holds the value with a probability of 90 %, likewise.
-    pub ninety: [f64; 2],
+    /// Median and interval of 90 %, in that unit, with the quantities that it follows from at their
+    /// medians.
+    #[serde(flatten)]
+    pub value: units::Estimate,
     /// The rule in a few words.
     pub rule: &'static str,
     /// Where rule and scatter come from.
@@ -113,7 +114,7 @@ impl DataSheet {
     /// estimate, from which the scenario has it, remains an estimate. The value is not checked.
     pub(in crate::vehicle) fn state(&mut self, quantity: SheetQuantity, value: f64) {
         let is_median = |estimate: &Estimate| {
-            estimate.quantity == quantity && (value / estimate.median - 1.0).abs() < 1e-9
+            estimate.quantity == quantity && (value / estimate.value.median - 1.0).abs() < 1e-9
         };
         if !self.estimates().iter().any(is_median) {
             self.set(quantity, value);
@@ -145,11 +146,11 @@ impl DataSheet {
         let mut estimates = Vec::new();
         sheet.resolve(|quantity, rule| {
             let at = |latent: f64| bounded(quantity, rule.at(latent));
+            let ninety = Interval { level: 0.9, low: at(-LATENT_95), high: at(LATENT_95) };
             estimates.push(Estimate {
                 quantity,
                 unit: quantity.unit(),
-                median: at(0.0),
-                ninety: [at(-LATENT_95), at(LATENT_95)],
+                value: units::Estimate { median: at(0.0), intervals: vec![ninety] },
                 rule: rule.text,
                 source: rule.source,
             });
@@ -276,8 +277,9 @@ mod tests {
             latents[idx] = LATENT_95;
             let moved = sheet.at(&latents);
             let value = moved.resolve(|_, _| {}).get(estimate.quantity);
-            assert!((value / estimate.ninety[1] - 1.0).abs() < 1e-9, "{estimate:?}: {value}");
-            assert!(estimate.ninety[0] < estimate.median && estimate.median < estimate.ninety[1]);
+            let (median, [low, high]) = (estimate.value.median, estimate.value.ninety());
+            assert!((value / high - 1.0).abs() < 1e-9, "{estimate:?}: {value}");
+            assert!(low < median && median < high);
         }
     }
 
@@ -300,7 +302,8 @@ mod tests {
             let (quantity, value) = column(row, &sheet);
             let estimates = sheet.estimates();
             let estimate = estimates.iter().find(|e| e.quantity == quantity).unwrap();
-            (estimate.ninety[0]..=estimate.ninety[1]).contains(&value)
+            let [low, high] = estimate.value.ninety();
+            (low..=high).contains(&value)
         };
         let n_held = rows.iter().filter(is_held).count();
         (n_held as f64 / rows.len() as f64, rows.len())

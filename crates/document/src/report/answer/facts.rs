@@ -1,66 +1,56 @@
-//! Tables of figures with their intervals, and what these mean in words.
+//! Tables of facts in a report, and what their intervals mean in words.
 
+use std::path::Path;
+
+use crate::report::answer::Context;
+use crate::report::language::phrase_of;
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::PartProvenance;
-use crate::report::{Block, Table};
-use impactlab_core::units::Quantity;
+use crate::report::{Block, Column, Table};
+use impactlab_core::units::IntervalText;
 use impactlab_study::Provenance;
+use impactlab_study::facts::{FactTable, FactWriter, TextTable};
 
-/// A figure of an answer.
-pub(super) struct Fact {
-    label: String,
-    value: String,
-    interval: String,
-    meaning: Option<String>,
+/// A table of facts.
+pub(super) fn facts_table(table: &FactTable, context: Context<'_>) -> Block {
+    with_writer(context, |writer| Block::Table(table.to_text(writer).into()))
 }
 
-/// What a central interval of 90 % says, as a template with `{quantity}`, `{low}` and `{high}`.
-#[derive(Clone, Copy)]
-pub(super) struct Meaning(pub &'static str);
-
-impl Fact {
-    /// A figure without an interval.
-    pub fn plain(label: impl Into<String>, value: impl Into<String>) -> Self {
-        let (label, value) = (label.into(), value.into());
-        Self { label, value, interval: String::new(), meaning: None }
-    }
-
-    /// A median with the interval that holds 90 %.
-    pub fn ninety(
-        wording: &Wording,
-        (label, quantity): (&str, Quantity),
-        (median, ends): (f64, [f64; 2]),
-        meaning: Meaning,
-    ) -> Self {
-        let text = wording.interval(quantity, median, ends);
-        let values = [("quantity", label), ("low", &text.low), ("high", &text.high)];
-        Self {
-            label: label.to_owned(),
-            value: text.median,
-            meaning: Some(fill(meaning.0, &values)),
-            interval: text.range,
-        }
-    }
-}
-
-/// A table of figures, and below it what the intervals mean, a sentence each.
-pub(super) fn fact_blocks(caption: &str, facts: Vec<Fact>, wording: &Wording) -> Vec<Block> {
-    let words = wording.words;
-    let has_intervals = facts.iter().any(|fact| !fact.interval.is_empty());
-    let meanings: Vec<String> = facts.iter().filter_map(|fact| fact.meaning.clone()).collect();
-    let table = if has_intervals {
-        let rows = facts.into_iter().map(|fact| [fact.label, fact.value, fact.interval]);
-        Table::new(caption, [words.quantity, words.value, words.interval_90], rows.collect())
-    } else {
-        let rows = facts.into_iter().map(|fact| [fact.label, fact.value]);
-        Table::new(caption, [words.quantity, words.value], rows.collect())
+/// A table of facts, and below it what the intervals of 90 % mean, a sentence each.
+///
+/// - `meaning`: what an interval says, as a template with `{quantity}`, `{low}` and `{high}`.
+pub(super) fn facts_with_meanings(
+    table: &FactTable,
+    meaning: &str,
+    context: Context<'_>,
+) -> [Block; 2] {
+    let sentences: Vec<String> = with_writer(context, |writer| {
+        let intervals = table.intervals(0.9, writer);
+        let sentence = |(quantity, text): &(String, IntervalText)| {
+            let values = [("quantity", &**quantity), ("low", &*text.low), ("high", &*text.high)];
+            fill(meaning, &values)
+        };
+        intervals.iter().map(sentence).collect()
+    });
+    let below = match sentences.is_empty() {
+        true => Block::paragraph(context.wording.words.no_intervals),
+        false => Block::List { items: sentences },
     };
-    let mut blocks = vec![Block::Table(table)];
-    match meanings.is_empty() {
-        true => blocks.push(Block::paragraph(words.no_intervals)),
-        false => blocks.push(Block::List { items: meanings }),
-    }
-    blocks
+    [facts_table(table, context), below]
+}
+
+/// Calls a function with the writer of facts in the language of a report.
+fn with_writer<T>(context: Context<'_>, write: impl FnOnce(&FactWriter<'_>) -> T) -> T {
+    let Context { wording, paths, .. } = context;
+    write(&FactWriter {
+        format: **wording,
+        phrase: &|text: &str| {
+            let whole = phrase_of(wording.language, text);
+            whole.unwrap_or_else(|| wording.phrase(text))
+        },
+        english: &|text: &str| wording.quoted(text),
+        file: &|path: &Path| paths.name(path),
+    })
 }
 
 /// Version, seeds and numbers of draws of an answer.
@@ -75,4 +65,29 @@ pub(super) fn provenance_of(
         version: of.version.to_string(),
         seeds: seed.into_iter().chain(draws).collect(),
     }
+}
+
+impl From<TextTable> for Table {
+    /// The first letter of a title is a capital one, as in the other tables of a report.
+    fn from(table: TextTable) -> Self {
+        let is_list = table.is_list();
+        let is_number = |cell: &str| cell.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+        let column = |(idx, title): (usize, &String)| {
+            let mut cells = table.rows.iter().filter_map(|row| row.cells.get(idx));
+            let is_numeric = idx > 0 && !is_list && cells.all(|cell| is_number(cell));
+            Column { title: capitalized(title), is_numeric }
+        };
+        let columns = table.header.iter().enumerate().map(column).collect();
+        Self {
+            caption: table.title,
+            columns: columns,
+            rows: table.rows.into_iter().map(|row| row.cells).collect(),
+        }
+    }
+}
+
+fn capitalized(title: &str) -> String {
+    let mut chars = title.chars();
+    let first = chars.next().map(|first| first.to_uppercase().collect::<String>());
+    first.unwrap_or_default() + chars.as_str()
 }

@@ -5,7 +5,7 @@ use crate::report::flatten::{FlatRow, flatten};
 use crate::report::numbers::Wording;
 use crate::report::parts::InputRow;
 use crate::report::paths::ShownPaths;
-use impactlab_core::units::Quantity;
+use impactlab_core::units::{Quantity, Unit};
 use impactlab_core::vehicle::VehicleParameters;
 use impactlab_core::vehicle::sheet::Estimate;
 
@@ -54,23 +54,17 @@ pub(super) fn vehicle_rows(
 
 /// What the rules of a data sheet say of a quantity that it leaves open.
 pub(super) fn estimate_row(estimate: &Estimate, group: &str, wording: &Wording) -> InputRow {
-    let Estimate { quantity, unit, median, ninety, rule, source } = estimate;
-    let shown = Quantity::ALL.iter().find(|of| of.si_unit().symbol == *unit && !unit.is_empty());
-    let shown = shown.map(|of| of.display_unit(wording.units));
-    let in_shown = |value: f64| shown.as_ref().map_or(value, |unit| unit.from_si(value));
-    let unit = shown.as_ref().map_or(*unit, |unit| unit.symbol);
-    let (median, ninety) = (&in_shown(*median), &ninety.map(in_shown));
-    let decimals = (ninety[1] - ninety[0]).abs();
-    let decimals = match decimals > 0.0 && decimals.is_finite() {
-        true => (1 - decimals.log10().floor() as i32).clamp(0, 6) as usize,
-        false => 3,
+    let Estimate { quantity, unit, value, rule, source } = estimate;
+    let text = match Quantity::from_si_symbol(unit) {
+        Some(quantity) => wording.estimate(quantity, value),
+        None => wording
+            .estimate_in(Unit { quantity: Quantity::Ratio, symbol: unit, si_per_unit: 1.0 }, value),
     };
-    let text = |value: f64| format!("{value:.decimals$}");
-    let interval = wording.interval_of(&text(*median), &ninety.map(text), unit);
+    let range = text.at(0.9).map_or_else(String::new, |of| of.range.clone());
     InputRow {
         group: group.to_owned(),
         label: wording.term(quantity.label()),
-        value: format!("{} (90 %: {})", interval.median, interval.range),
+        value: format!("{} (90 %: {range})", text.median),
         class: InputClass::Estimated,
         source: wording.quoted(&format!("{rule}; {source}")),
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{Estimate, ForceForecast, ForecastSettings};
+use crate::analysis::{ForceForecast, ForecastSettings, bands_of_draws};
 use crate::ask::checks::check_count;
 use crate::ask::inputs::{UsableCases, force_cases};
 use crate::ask::question::progress_of;
@@ -18,6 +18,7 @@ use impactlab_core::jobs::Progress;
 use impactlab_core::numerics::random_stream;
 use impactlab_core::ranges::FOLDS;
 use impactlab_core::uncertainty::{Caveat, Caveats, CurveMixture};
+use impactlab_core::units::Estimate;
 use impactlab_networks::force::metrics::ProbabilisticSettings;
 use impactlab_networks::force::{
     ColumnSet, CrossValidation, Evaluation, EvaluationSettings, ForceCase, ForceError, ForceModel,
@@ -275,8 +276,8 @@ impl EvaluatedForceCases {
             }
             let mut rng = random_stream(seed, "draws", done as u64);
             let draws = distribution(model, case)?.sample_quantities(n_draws, &mut rng);
-            let impulse = Estimate::of_draws(draws.impulse_magnitude_n_s());
-            all.push((case.clone(), impulse, Estimate::of_draws(draws.peak_n)));
+            let impulse = bands_of_draws(draws.impulse_magnitude_n_s());
+            all.push((case.clone(), impulse, bands_of_draws(draws.peak_n)));
         }
         Ok(Outcome::Complete(Self { all, samples: samples(model, cases, seed)? }))
     }

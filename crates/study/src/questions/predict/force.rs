@@ -3,7 +3,7 @@
 use crate::caveats::assumed;
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{Estimate, ForceForecast, ForecastSettings, Mode};
+use crate::analysis::{ForceForecast, ForecastSettings, Mode};
 use crate::ask::checks::{check_all, check_count};
 use crate::caveats::restrictions;
 use crate::caveats::unused::by_force_network;
@@ -18,6 +18,7 @@ use impactlab_core::collision::{
 use impactlab_core::data::{DatasetKind, Outcome};
 use impactlab_core::ranges::SAMPLES;
 use impactlab_core::uncertainty::{Caveat, Caveats};
+use impactlab_core::units::Estimate;
 use impactlab_networks::force::{ForceError, ForcePrediction, ForceScenario, OutsideTraining};
 
 /// Asks which force a collision brings about, and how sure that is.

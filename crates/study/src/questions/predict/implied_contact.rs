@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
-use crate::analysis::Estimate;
+use crate::analysis::bands_of_draws;
 use impactlab_core::collision::{Impact, ImpliedContact, Regime, RestitutionForm, contact_work_j};
 use impactlab_core::numerics::random_stream;
 use impactlab_core::uncertainty::ForceCurve;
+use impactlab_core::units::Estimate;
 use impactlab_core::units::percent;
 use impactlab_networks::force::ForcePrediction;
 
@@ -98,7 +99,7 @@ impl ImpliedContactReport {
             return None;
         }
         let estimate =
-            |of: fn(&ImpliedContact) -> f64| Estimate::of_draws(implied.iter().map(of).collect());
+            |of: fn(&ImpliedContact) -> f64| bands_of_draws(implied.iter().map(of).collect());
         let share = |n: usize| n as f64 / curves.len() as f64;
         let rigid = implied.iter().filter(|of| (0.0..=1.0).contains(&of.restitution));
         let p_rigid = share(rigid.count());

@@ -30,11 +30,12 @@ fn a_tiny_case_is_reconstructed_the_same_way_each_time() {
         "delta_v_target_m_s",
     ] {
         let of = report.quantities.iter().find(|of| of.name == name).unwrap();
-        let [low, high] = of.interval_90;
-        assert!(low <= of.median && of.median <= high && low < high, "{of:?}");
-        assert!(of.interval_95[0] <= low && high <= of.interval_95[1], "{of:?}");
+        let (median, [low, high]) = (of.estimate.median, of.estimate.ninety());
+        assert!(low <= median && median <= high && low < high, "{of:?}");
+        let [least, most] = of.estimate.interval(0.95).unwrap();
+        assert!(least <= low && high <= most, "{of:?}");
     }
-    let speed = report.quantities[0].median;
+    let speed = report.quantities[0].estimate.median;
     assert!((17.0..23.0).contains(&speed), "{speed} m/s where a recorder says 20 ± 0.8");
     let probability: f64 = report.modes.iter().map(|mode| mode.probability).sum();
     assert!((0.9..=1.0 + 1e-9).contains(&probability), "{:?}", report.modes);
@@ -127,7 +128,7 @@ fn a_way_over_ice_is_no_sign_of_a_high_speed() {
     let (known, report) =
         speed(&ReconstructRequest { evidence: inline(&evidence), ..asked.clone() });
     let true_m_s = truth.impact.struck_speed_m_s;
-    assert!((known.median / true_m_s - 1.0).abs() < 0.25, "{true_m_s} m/s, {known:?}");
+    assert!((known.estimate.median / true_m_s - 1.0).abs() < 0.25, "{true_m_s} m/s, {known:?}");
     assert_eq!(report.friction_zones[0].name, "ice");
     for part in ["friction of the zone \"ice\" is 0.15", "all of which stood on one friction"] {
         assert!(report.caveats.iter().any(|caveat| caveat.text.contains(part)), "{part}");
@@ -137,7 +138,7 @@ fn a_way_over_ice_is_no_sign_of_a_high_speed() {
     assert_eq!(zones.subject, Some(CaveatSubject::RoadFriction));
     let without = ReconstructRequest { site: None, evidence: inline(&evidence), ..asked };
     let (blind, report) = speed(&without);
-    assert!(blind.median > 1.2 * true_m_s, "{true_m_s} m/s, {blind:?}");
+    assert!(blind.estimate.median > 1.2 * true_m_s, "{true_m_s} m/s, {blind:?}");
     assert!(report.friction_zones.is_empty());
 }
 

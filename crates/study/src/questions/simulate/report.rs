@@ -213,7 +213,7 @@ impl From<&SecondContacts> for FlagReport {
             false => "go deeper into each other",
         };
         let time_s = met.time_s.median;
-        let ([from_s, to_s], [slow, fast]) = (met.time_s.ninety, met.closing_speed_m_s.ninety);
+        let ([from_s, to_s], [slow, fast]) = (met.time_s.ninety(), met.closing_speed_m_s.ninety());
         let message = match met.n_draws {
             // One known force on one known vehicle: nothing is drawn.
             1 => second_contact_text(how, time_s, [x, y], speed),

@@ -3,9 +3,12 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use impactlab_core::units::Estimate;
+
 use crate::EndState;
 use crate::analysis::{
-    Analysis, AnalysisError, MotionEnd, RestOutcome, Sensitivity, Settings, Spread, VehicleDraws,
+    Analysis, AnalysisError, MotionEnd, RestOutcome, Sensitivity, Settings, VehicleDraws,
+    spread_of_draws,
 };
 use crate::questions::simulate::report::motion_end;
 
@@ -18,13 +21,13 @@ pub struct VehicleUncertainty {
     /// Of these, how many have a motion that cannot be simulated; they are left out.
     pub n_failed: usize,
     /// X of the CG at the end, m.
-    pub x_m: Spread,
+    pub x_m: Estimate,
     /// Y of the CG at the end, m.
-    pub y_m: Spread,
+    pub y_m: Estimate,
     /// Heading at the end, rad.
-    pub yaw_rad: Spread,
+    pub yaw_rad: Estimate,
     /// Speed of the CG at the end, m/s.
-    pub speed_m_s: Spread,
+    pub speed_m_s: Estimate,
     /// Where, when and after what distance the vehicle comes to rest; none unless the question asks for
     /// it.
     pub rest: Option<RestOutcome>,
@@ -75,7 +78,7 @@ pub(crate) fn vehicle_uncertainty(
         RestOutcome::of(&ends, settings.duration_s)
     };
     let of = |value: fn(&EndState) -> f64| {
-        Spread::of_draws(ends.iter().flatten().map(value).collect::<Vec<f64>>())
+        spread_of_draws(ends.iter().flatten().map(value).collect::<Vec<f64>>())
     };
     let places: Vec<_> =
         ends.iter().map(|end| end.map(|end| [end.x_m, end.y_m, end.yaw_rad])).collect();
@@ -141,7 +144,7 @@ mod tests {
         assert_eq!((uncertainty.n_draws, uncertainty.n_failed), (60, 0));
         let end = report.end.unwrap();
         assert!(uncertainty.second_contact_probability.unwrap() > 0.9, "{uncertainty:?}");
-        let [low, high] = uncertainty.x_m.ninety;
+        let [low, high] = uncertainty.x_m.ninety();
         assert!(high - low > 0.1, "{uncertainty:?}");
         assert!((low..=high).contains(&end.x_m), "{low} {high} {end:?}");
         // Mass and inertia are those of the scenario, so that they are no estimates.
@@ -161,9 +164,9 @@ mod tests {
         let drive = Drive { speed_m_s: Some(20.0), ..Drive::default() };
         let straight = report(MotionSource::Drive(drive), "generic-suv", 60).uncertainty.unwrap();
         assert_eq!(straight.second_contact_probability, None);
-        let [low, high] = straight.y_m.ninety;
+        let [low, high] = straight.y_m.ninety();
         assert!(low.abs() < 1e-6 && high.abs() < 1e-6, "{straight:?}");
-        assert!(straight.x_m.ninety[1] - straight.x_m.ninety[0] < 2.0, "{straight:?}");
+        assert!(straight.x_m.ninety()[1] - straight.x_m.ninety()[0] < 2.0, "{straight:?}");
         let most = &straight.sensitivity[0];
         let rolling =
             [SheetQuantity::RollingResistance, SheetQuantity::DragArea, SheetQuantity::Mass];

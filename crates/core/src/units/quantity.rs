@@ -1,10 +1,11 @@
-//! Physical constants, quantities and their units. All numbers inside the program are in SI units
-//! and radians; other units occur only where a file is read or a number is shown.
+//! Physical constants, quantities and their units.
 //!
 //! The conversion factors are exact by definition: [`Nist2008`](crate::bibliography::Nist2008),
 //! table B.8.
 
 use serde::{Deserialize, Serialize};
+
+use crate::units::{NumberFormat, significant};
 
 /// Standard gravity, m/s²; exact by definition (3rd CGPM, 1901).
 pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
@@ -98,17 +99,6 @@ impl Unit {
     }
 }
 
-/// A median and the interval around it as they are shown, without their unit.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ShownInterval {
-    /// The median.
-    pub median: String,
-    /// Lower and upper end.
-    pub ends: [String; 2],
-    /// Symbol of the unit of all three; empty for a ratio.
-    pub symbol: &'static str,
-}
-
 impl Quantity {
     /// Every quantity.
     pub const ALL: [Self; 14] = [
@@ -160,48 +150,15 @@ impl Quantity {
         *self.units().iter().find(|unit| unit.symbol == symbol).unwrap_or(&self.units()[0])
     }
 
-    /// A number in SI units as text for the user, with four significant digits and the unit of
-    /// display, such as `12.35 kN`.
+    /// The quantity whose SI unit has a symbol; `None` for another symbol, and for none.
+    pub fn from_si_symbol(symbol: &str) -> Option<Self> {
+        let is_unit = |quantity: &Self| quantity.si_unit().symbol == symbol && !symbol.is_empty();
+        Self::ALL.into_iter().find(is_unit)
+    }
+
+    /// A number in SI units as text for the user, as [`NumberFormat::value`] writes it in English.
     pub fn shown(self, value_si: f64, system: UnitSystem) -> String {
-        let unit = self.display_unit(system);
-        let number = significant(unit.from_si(value_si));
-        if unit.symbol.is_empty() { number } else { format!("{number} {}", unit.symbol) }
-    }
-
-    /// A median with the interval around it as text for the user, such as `31 (27 to 57) m`. The interval
-    /// decides the digits: two of its width, and none that it makes meaningless.
-    pub fn shown_interval(self, median_si: f64, ends_si: [f64; 2], system: UnitSystem) -> String {
-        let ShownInterval { median, ends: [low, high], symbol } =
-            self.interval_parts(median_si, ends_si, system);
-        if ends_si[0] == ends_si[1] {
-            return format!("{median} {symbol}").trim_end().to_owned();
-        }
-        format!("{median} ({low} to {high}) {symbol}").trim_end().to_owned()
-    }
-
-    /// The numbers of [`Quantity::shown_interval`], to be put into a table or into words.
-    pub fn interval_parts(
-        self,
-        median_si: f64,
-        ends_si: [f64; 2],
-        system: UnitSystem,
-    ) -> ShownInterval {
-        let unit = self.display_unit(system);
-        let [low, high] = ends_si.map(|end| unit.from_si(end));
-        let median = unit.from_si(median_si);
-        let width = (high - low).abs();
-        // Adding zero turns a negative zero into a positive one.
-        let text = |value: f64| match width {
-            0.0 => significant(value),
-            width if !width.is_finite() => value.to_string(),
-            width => {
-                let decimals = (1 - width.log10().floor() as i32).clamp(0, 6) as usize;
-                let scale = 10.0_f64.powi(decimals as i32);
-                format!("{:.decimals$}", (value * scale).round() / scale + 0.0)
-            }
-        };
-        let (median, ends) = (text(median), [text(low), text(high)]);
-        ShownInterval { median, ends, symbol: unit.symbol }
+        NumberFormat::english(system).value(self, value_si)
     }
 
     /// The two components of a vector in SI units as text for the user with one unit, such as
@@ -248,27 +205,6 @@ impl Quantity {
     }
 }
 
-/// A number as text with four significant digits, without an exponent. All digits before the
-/// decimal point are shown, and at most six after it.
-pub fn significant(value: f64) -> String {
-    // Adding zero turns a negative zero into a positive one.
-    let value = value + 0.0;
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let decimals = (3 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
-    let text = format!("{value:.decimals$}");
-    let is_zero = text.chars().all(|character| !('1'..='9').contains(&character));
-    if is_zero { "0".to_owned() } else { text }
-}
-
-/// A share of 1 as text in per cent with one decimal, such as `12.3 %`. A value that rounds to zero
-/// has no sign.
-pub fn percent(share: f64) -> String {
-    let tenths = (1000.0 * share).round() + 0.0;
-    format!("{:.1} %", tenths / 10.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -294,38 +230,5 @@ mod tests {
             let us = quantity.display_unit(UnitSystem::Us);
             assert!(quantity.units().contains(&us), "{quantity:?}");
         }
-    }
-
-    #[test]
-    fn numbers_are_shown_with_four_digits() {
-        for (value, expected) in [
-            (123_456.7, "123457"),
-            (12.3456, "12.35"),
-            (-0.012_345_6, "-0.01235"),
-            (0.0, "0"),
-            (-1e-9, "0"),
-        ] {
-            assert_eq!(significant(value), expected);
-        }
-        assert_eq!(Quantity::Force.shown(12_345.0, UnitSystem::Si), "12.35 kN");
-    }
-
-    #[test]
-    fn an_interval_decides_the_digits() {
-        let shown = |median, ends| Quantity::Length.shown_interval(median, ends, UnitSystem::Si);
-        assert_eq!(shown(30.741, [26.52, 57.24]), "31 (27 to 57) m");
-        assert_eq!(shown(-0.004, [-0.31, 0.27]), "0.00 (-0.31 to 0.27) m");
-        assert_eq!(shown(52.22, [51.55, 52.86]), "52.2 (51.6 to 52.9) m");
-        assert_eq!(shown(2.0, [2.0, 2.0]), "2.000 m");
-        assert_eq!(shown(2.0, [1.0, f64::INFINITY]), "2 (1 to inf) m");
-    }
-
-    #[test]
-    fn a_share_has_one_decimal_and_no_negative_zero() {
-        assert_eq!(
-            [0.1234, 1.0, -1e-17, -0.0].map(percent),
-            ["12.3 %", "100.0 %", "0.0 %", "0.0 %"]
-        );
-        assert_eq!(percent(-0.05), "-5.0 %");
     }
 }

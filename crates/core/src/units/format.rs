@@ -1,0 +1,346 @@
+//! How numbers are written: one place for the terminal, the window and reports.
+
+use serde::{Deserialize, Serialize};
+
+use crate::units::{Estimate, Interval, Quantity, Unit, UnitSystem};
+
+/// Language of a text.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Language {
+    /// English.
+    #[default]
+    En,
+    /// German.
+    De,
+}
+
+/// How numbers are written: their units, and the language of decimal signs and symbols.
+///
+/// The digits of a number follow its uncertainty: with an interval two digits of the width of that,
+/// without one four significant digits.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct NumberFormat {
+    /// Units.
+    pub units: UnitSystem,
+    /// Language.
+    pub language: Language,
+}
+
+/// A median and its intervals as text, all with the same decimals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EstimateText {
+    /// `31 m`.
+    pub median: String,
+    /// The intervals in their order.
+    pub intervals: Vec<IntervalText>,
+}
+
+/// The ends of an interval as text.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IntervalText {
+    /// Probability that the interval holds the quantity, 0 to 1.
+    pub level: f64,
+    /// `27 m`.
+    pub low: String,
+    /// `57 m`.
+    pub high: String,
+    /// `27 to 57 m`.
+    pub range: String,
+}
+
+impl Language {
+    /// The tag of the language, BCP 47.
+    pub fn tag(self) -> &'static str {
+        match self {
+            Self::En => "en",
+            Self::De => "de",
+        }
+    }
+}
+
+/// Digits of a number that was given, at most: more would be those of the conversion of its unit.
+const GIVEN_DIGITS: i32 = 8;
+
+impl EstimateText {
+    /// The interval of a level; `None` if there is none.
+    pub fn at(&self, level: f64) -> Option<&IntervalText> {
+        self.intervals.iter().find(|interval| interval.level == level)
+    }
+}
+
+impl NumberFormat {
+    /// Numbers in English, in the units of a system.
+    pub fn english(units: UnitSystem) -> Self {
+        Self { units, language: Language::En }
+    }
+
+    /// The decimal sign of the language in a text of numbers.
+    pub fn local(&self, text: &str) -> String {
+        if self.language == Language::En {
+            return text.to_owned();
+        }
+        let chars: Vec<char> = text.chars().collect();
+        let is_digit = |idx: Option<usize>| {
+            idx.and_then(|idx| chars.get(idx)).is_some_and(char::is_ascii_digit)
+        };
+        let is_decimal = |idx: usize| is_digit(idx.checked_sub(1)) && is_digit(Some(idx + 1));
+        let each = chars.iter().enumerate();
+        each.map(|(idx, c)| if *c == '.' && is_decimal(idx) { ',' } else { *c }).collect()
+    }
+
+    /// A number with its unit.
+    pub fn with_unit(&self, number: &str, symbol: &str) -> String {
+        let number = self.local(number);
+        match (symbol, self.language) {
+            ("", _) => number,
+            ("deg", Language::De) => format!("{number}°"),
+            (symbol, _) => format!("{number} {}", self.symbol(symbol)),
+        }
+    }
+
+    /// The symbol of a unit.
+    pub fn symbol(&self, symbol: &str) -> String {
+        match self.language {
+            Language::En => symbol.to_owned(),
+            Language::De => symbol.replace("deg", "°"),
+        }
+    }
+
+    /// A number in SI units without an interval: four significant digits and the unit of display, such
+    /// as `12.35 kN`.
+    pub fn value(&self, quantity: Quantity, value_si: f64) -> String {
+        let unit = quantity.display_unit(self.units);
+        self.with_unit(&significant(unit.from_si(value_si)), unit.symbol)
+    }
+
+    /// A pure number with four significant digits.
+    pub fn number(&self, value: f64) -> String {
+        self.local(&significant(value))
+    }
+
+    /// A number that was given, with all its digits up to the eighth and no more than it has.
+    pub fn given_number(&self, value: f64) -> String {
+        self.local(&in_full(value))
+    }
+
+    /// The same with its unit.
+    pub fn given(&self, quantity: Quantity, value_si: f64) -> String {
+        let unit = quantity.display_unit(self.units);
+        self.with_unit(&in_full(unit.from_si(value_si)), unit.symbol)
+    }
+
+    /// A number of a rule or an assumption, rounded as on the screen, without zeros at its end.
+    pub fn rounded(&self, quantity: Quantity, value_si: f64) -> String {
+        let unit = quantity.display_unit(self.units);
+        self.with_unit(&trimmed(significant(unit.from_si(value_si))), unit.symbol)
+    }
+
+    /// A number with a fixed number of decimals.
+    pub fn fixed(&self, value: f64, decimals: usize) -> String {
+        self.local(&format!("{:.decimals$}", value + 0.0))
+    }
+
+    /// A share of one.
+    pub fn percent(&self, share: f64) -> String {
+        self.local(&percent(share))
+    }
+
+    /// Size and components of a vector, such as `3.026 kN s (x 1.124, y 2.810)`.
+    pub fn vector(&self, quantity: Quantity, [x, y]: [f64; 2], names: [&str; 2]) -> String {
+        let unit = quantity.display_unit(self.units);
+        let [px, py] = [x, y].map(|si| self.number(unit.from_si(si)));
+        let [first, second] = names;
+        format!("{} ({first} {px}, {second} {py})", self.value(quantity, x.hypot(y)))
+    }
+
+    /// A median with its intervals. The interval of 90 %, or the widest if there is none, decides the
+    /// digits of all: two of its width, and none that it makes meaningless.
+    pub fn estimate(&self, quantity: Quantity, estimate: &Estimate) -> EstimateText {
+        self.estimate_in(quantity.display_unit(self.units), estimate)
+    }
+
+    /// The same in a unit of its own.
+    pub fn estimate_in(&self, unit: Unit, estimate: &Estimate) -> EstimateText {
+        let in_unit = estimate.mapped(|si| unit.from_si(si));
+        let deciding = in_unit.interval(0.9).or(in_unit.intervals.last().map(|of| of.ends()));
+        let width = deciding.map_or(0.0, |[low, high]| (high - low).abs());
+        let number = |value: f64| with_width(value, width);
+        let interval = |of: &Interval| {
+            let [low, high] = of.ends().map(number);
+            let texts = [&low, &high].map(|end| self.with_unit(end, unit.symbol));
+            let first = match (unit.symbol, self.language) {
+                ("deg", Language::De) => texts[0].clone(),
+                _ => self.local(&low),
+            };
+            let range = format!("{first} {} {}", self.to(), texts[1]);
+            let [low, high] = texts;
+            IntervalText { level: of.level, low, high, range }
+        };
+        EstimateText {
+            median: self.with_unit(&number(in_unit.median), unit.symbol),
+            intervals: in_unit.intervals.iter().map(interval).collect(),
+        }
+    }
+
+    /// The median with its interval of 90 % in one text, such as `31 (27 to 57) m`; the median alone
+    /// where the interval has no width.
+    pub fn estimate_in_words(&self, quantity: Quantity, estimate: &Estimate) -> String {
+        let unit = quantity.display_unit(self.units);
+        let [low, high] = estimate.ninety().map(|si| unit.from_si(si));
+        let number = |value: f64| self.local(&with_width(value, (high - low).abs()));
+        let median = number(unit.from_si(estimate.median));
+        if low == high {
+            return self.with_unit(&median, unit.symbol);
+        }
+        let text = format!("{median} ({} {} {})", number(low), self.to(), number(high));
+        self.with_unit(&text, unit.symbol)
+    }
+
+    /// A value with its standard deviation, such as `46.2 ± 3.1 km/h`; that decides the digits.
+    pub fn measured(&self, quantity: Quantity, value_si: f64, sigma_si: f64) -> String {
+        let unit = quantity.display_unit(self.units);
+        let [value, sigma] = [value_si, sigma_si].map(|si| unit.from_si(si));
+        let text = format!("{} ± {}", with_width(value, sigma), with_width(sigma, sigma));
+        self.with_unit(&text, unit.symbol)
+    }
+
+    /// A standard deviation with two digits, such as `0.02`.
+    pub fn sigma(&self, quantity: Quantity, sigma_si: f64) -> String {
+        let unit = quantity.display_unit(self.units);
+        let sigma = unit.from_si(sigma_si);
+        self.with_unit(&trimmed(with_width(sigma, sigma)), unit.symbol)
+    }
+
+    fn to(&self) -> &'static str {
+        match self.language {
+            Language::En => "to",
+            Language::De => "bis",
+        }
+    }
+}
+
+/// A number with two digits of a width, so that no digit is shown that the width makes meaningless;
+/// with four significant digits if the width is zero.
+fn with_width(value: f64, width: f64) -> String {
+    match width {
+        0.0 => significant(value),
+        width if !width.is_finite() => value.to_string(),
+        width => {
+            let decimals = (1 - width.log10().floor() as i32).clamp(0, 6) as usize;
+            let scale = 10.0_f64.powi(decimals as i32);
+            // Adding zero turns a negative zero into a positive one.
+            format!("{:.decimals$}", (value * scale).round() / scale + 0.0)
+        }
+    }
+}
+
+/// A number as text with four significant digits, without an exponent. All digits before the
+/// decimal point are shown, and at most six after it.
+pub fn significant(value: f64) -> String {
+    // Adding zero turns a negative zero into a positive one.
+    let value = value + 0.0;
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let decimals = (3 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
+    let text = format!("{value:.decimals$}");
+    let is_zero = text.chars().all(|character| !('1'..='9').contains(&character));
+    if is_zero { "0".to_owned() } else { text }
+}
+
+/// A share of 1 as text in per cent with one decimal, such as `12.3 %`. A value that rounds to zero
+/// has no sign.
+pub fn percent(share: f64) -> String {
+    let tenths = (1000.0 * share).round() + 0.0;
+    format!("{:.1} %", tenths / 10.0)
+}
+
+/// A number with the digits that it was given with.
+fn in_full(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return trimmed(significant(value));
+    }
+    let size = value.abs().log10().floor() as i32;
+    let decimals = (GIVEN_DIGITS - 1 - size).clamp(0, 12) as usize;
+    trimmed(format!("{value:.decimals$}"))
+}
+
+/// A number without zeros at the end of its decimals.
+pub fn trimmed(number: String) -> String {
+    match number.contains('.') {
+        true => number.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => number,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EN: NumberFormat = NumberFormat { units: UnitSystem::Si, language: Language::En };
+    const DE_US: NumberFormat = NumberFormat { units: UnitSystem::Us, language: Language::De };
+
+    #[test]
+    fn numbers_are_shown_with_four_digits() {
+        for (value, expected) in [
+            (123_456.7, "123457"),
+            (12.3456, "12.35"),
+            (-0.012_345_6, "-0.01235"),
+            (0.0, "0"),
+            (-1e-9, "0"),
+        ] {
+            assert_eq!(significant(value), expected);
+        }
+        assert_eq!(EN.value(Quantity::Force, 12_345.0), "12.35 kN");
+        assert_eq!(
+            EN.vector(Quantity::Length, [3.0, 4.0], ["x", "y"]),
+            "5.000 m (x 3.000, y 4.000)"
+        );
+    }
+
+    #[test]
+    fn an_interval_decides_the_digits() {
+        let shown = |median, ninety: [f64; 2]| {
+            EN.estimate_in_words(Quantity::Length, &Estimate::new(median, ninety, ninety))
+        };
+        assert_eq!(shown(30.741, [26.52, 57.24]), "31 (27 to 57) m");
+        assert_eq!(shown(-0.004, [-0.31, 0.27]), "0.00 (-0.31 to 0.27) m");
+        assert_eq!(shown(52.22, [51.55, 52.86]), "52.2 (51.6 to 52.9) m");
+        assert_eq!(shown(2.0, [2.0, 2.0]), "2.000 m");
+        assert_eq!(shown(2.0, [1.0, f64::INFINITY]), "2 (1 to inf) m");
+        let nested = Estimate::new(32.209, [30.11, 34.52], [26.789, 37.193]);
+        let text = EN.estimate(Quantity::Length, &nested);
+        let ranges: Vec<&str> = text.intervals.iter().map(|of| of.range.as_str()).collect();
+        assert_eq!((&*text.median, &*ranges), ("32 m", &["30 to 35 m", "27 to 37 m"][..]));
+        assert_eq!(EN.measured(Quantity::Speed, 12.34, 0.876), "44.4 ± 3.2 km/h");
+    }
+
+    #[test]
+    fn german_has_its_decimal_sign_and_degrees() {
+        assert_eq!(DE_US.value(Quantity::Speed, 44.704), "100,0 mph");
+        assert_eq!(DE_US.value(Quantity::Angle, 0.5), "28,65°");
+        assert_eq!(DE_US.local("2.5 kN. v1.x 3.0"), "2,5 kN. v1.x 3,0");
+        let turn = Estimate::new(0.5, [0.4, 0.6], [0.3, 0.7]);
+        assert_eq!(DE_US.estimate(Quantity::Angle, &turn).intervals[1].range, "17° bis 40°");
+    }
+
+    #[test]
+    fn what_was_given_keeps_its_digits() {
+        assert_eq!(EN.given(Quantity::Mass, 1999.4567), "1999.4567 kg");
+        assert_eq!(EN.given(Quantity::Length, -1.234567), "-1.234567 m");
+        assert_eq!(EN.given(Quantity::Speed, 15.0), "54 km/h");
+        assert_eq!(EN.given_number(0.1 + 0.2), "0.3");
+        assert_eq!(EN.given_number(0.0), "0");
+        assert_eq!(EN.rounded(Quantity::Mass, 1999.4567), "1999 kg");
+    }
+
+    #[test]
+    fn a_share_has_one_decimal_and_no_negative_zero() {
+        assert_eq!(
+            [0.1234, 1.0, -1e-17, -0.0].map(percent),
+            ["12.3 %", "100.0 %", "0.0 %", "0.0 %"]
+        );
+        assert_eq!(percent(-0.05), "-5.0 %");
+    }
+}

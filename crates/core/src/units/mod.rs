@@ -1,0 +1,15 @@
+//! Physical constants, quantities and their units, medians with their intervals, and how numbers are
+//! written. All numbers inside the program are in SI units and radians; other units occur only where a
+//! file is read or a number is shown.
+
+mod estimate;
+mod format;
+mod quantity;
+
+pub use estimate::{Estimate, Interval};
+pub use format::{
+    EstimateText, IntervalText, Language, NumberFormat, percent, significant, trimmed,
+};
+pub use quantity::{
+    MILE_PER_HOUR_M_S, Quantity, STANDARD_GRAVITY_M_S2, US_SURVEY_FOOT, Unit, UnitSystem,
+};

@@ -1,0 +1,101 @@
+//! The facts of an impulse solution.
+
+use impactlab_core::collision::FrictionModel;
+use impactlab_core::units::Quantity;
+
+use crate::facts::{Fact, FactTable, Term, Value};
+use crate::{BodyReport, ImpactReport};
+
+/// Overlap or gap of outlines that counts as touching, m.
+const TOUCHING_M: f64 = 5e-4;
+
+impl ImpactReport {
+    /// What the answer says: the contact, and both vehicles after it.
+    pub fn facts(&self) -> Vec<FactTable> {
+        let [struck, striking] = [self.struck.values(), self.striking.values()];
+        let terms = [
+            Term::DeltaV,
+            Term::VelocityAfter,
+            Term::YawRateAfter,
+            Term::YawRateChange,
+            Term::Pdof,
+            Term::ClockDirection,
+        ];
+        let both = terms.into_iter().zip(struck.into_iter().zip(striking));
+        let rows = both.map(|(term, (a, b))| Fact::row(Value::Term(term), vec![a, b])).collect();
+        let vehicles = FactTable::new(Term::VehiclesAfterImpact, rows)
+            .with_columns(&[Term::StruckVehicle, Term::StrikingVehicle]);
+        vec![FactTable::new(Term::Impact, self.contact()), vehicles]
+    }
+
+    /// The contact and what it brings about.
+    fn contact(&self) -> Vec<Fact> {
+        let phrase = |text: String| Value::Phrase(text);
+        let restitution = vec![
+            Value::Given(Quantity::Ratio, self.restitution),
+            phrase(self.restitution_form.label().to_owned()),
+        ];
+        let mut friction = vec![match self.friction_of_critical {
+            Some(_) => Value::Number(Quantity::Ratio, self.friction_limit),
+            None => Value::Given(Quantity::Ratio, self.friction_limit),
+        }];
+        if self.friction_model == FrictionModel::Paper {
+            friction.push(Value::Term(Term::AlwaysSliding));
+        }
+        let mut facts = vec![
+            Fact::new(Term::Restitution, Value::Joined(restitution, " ")),
+            Fact::new(Term::FrictionLimit, Value::Joined(friction, ", ")),
+        ];
+        if let Some(critical) = self.critical_impulse_ratio.filter(|critical| *critical > 0.0) {
+            let share = Value::Share(self.friction_limit / critical);
+            facts.push(Fact::number(Term::CriticalRatio, Quantity::Ratio, critical));
+            facts.push(Fact::new(Term::ShareOfCritical, share));
+        }
+        let surface = match &self.struck_surface {
+            Some(surface) => phrase(surface.to_string()),
+            None => Value::Term(Term::AsGiven),
+        };
+        facts.extend([
+            Fact::number(Term::ContactNormal, Quantity::Angle, self.normal_angle_rad),
+            Fact::new(Term::StruckSurface, surface),
+        ]);
+        facts.extend(self.overlap_m.map(overlap));
+        let closing = ["normal", "tangential"];
+        let closing = Value::Vector(Quantity::Speed, self.closing_velocity_m_s, closing);
+        facts.extend([
+            Fact::new(Term::Regime, phrase(self.regime.label().to_owned())),
+            Fact::new(Term::ClosingVelocity, closing),
+            Fact::vector(Term::ImpulseOnStruck, Quantity::Impulse, self.impulse_n_s),
+            Fact::number(Term::ImpulseNormal, Quantity::Impulse, self.impulse_normal_n_s),
+            Fact::number(Term::ImpulseTangential, Quantity::Impulse, self.impulse_tangential_n_s),
+            Fact::number(Term::EnergyLoss, Quantity::Energy, self.dissipated_energy_j),
+        ]);
+        facts
+    }
+}
+
+/// How far the outlines overlap or lie apart.
+fn overlap(overlap_m: f64) -> Fact {
+    match overlap_m {
+        m if m.abs() < TOUCHING_M => Fact::new(Term::Overlap, Value::Term(Term::Touch)),
+        m if m < 0.0 => Fact::number(Term::Gap, Quantity::Length, -m),
+        m => Fact::number(Term::Overlap, Quantity::Length, m),
+    }
+}
+
+impl BodyReport {
+    /// Change of velocity, velocity, yaw rate, its change and the direction of force.
+    fn values(&self) -> [Value; 6] {
+        let velocity = |value| Value::Vector(Quantity::Speed, value, ["x", "y"]);
+        let none = Value::Term(Term::None);
+        let pdof = self.pdof_deg.map(|deg| Value::Number(Quantity::Angle, deg.to_radians()));
+        [
+            velocity(self.delta_v_m_s),
+            velocity(self.velocity_m_s),
+            Value::Number(Quantity::AngularVelocity, self.yaw_rate_rad_s),
+            Value::Number(Quantity::AngularVelocity, self.delta_yaw_rate_rad_s),
+            pdof.unwrap_or_else(|| none.clone()),
+            self.pdof_clock.map_or(none, Value::Clock),
+        ]
+    }
+}

@@ -1,0 +1,19 @@
+//! What an answer says, as plain tables that the terminal, the window and reports print alike.
+//!
+//! A report gives its facts once: each has a name from [`Term`], which knows every language, and a
+//! [`Value`] in SI units. [`FactTable::to_text`] writes them with the one
+//! [`NumberFormat`](impactlab_core::units::NumberFormat); what is left to a printer is where the cells
+//! go.
+
+mod table;
+mod term;
+
+mod contact;
+mod impact;
+mod predict_force;
+mod predict_motion;
+mod reconstruct;
+mod simulate;
+
+pub use table::{Fact, FactTable, FactWriter, TextRow, TextTable, Value};
+pub use term::Term;

@@ -1,0 +1,60 @@
+//! The facts of a predicted force.
+
+use impactlab_core::units::Quantity;
+
+use crate::PredictForceReport;
+use crate::facts::table::PREDICTED;
+use crate::facts::{Fact, FactTable, Term, Value};
+
+impl PredictForceReport {
+    /// What the answer says: the force with its intervals, and the courses that the contact may take.
+    pub fn facts(&self) -> Vec<FactTable> {
+        [Some(self.force_table()), self.course_table()].into_iter().flatten().collect()
+    }
+
+    /// The force with its intervals.
+    pub fn force_table(&self) -> FactTable {
+        FactTable::new(Term::Force, self.force()).with_levels(PREDICTED)
+    }
+
+    fn force(&self) -> Vec<Fact> {
+        let impulse = &self.impulse_n_s;
+        let pdof_rad = self.pdof_interval_deg.scaled(1.0_f64.to_radians());
+        let hooking = self.hooking_probability;
+        let mut facts = vec![
+            Fact::estimate(Term::ImpulseSize, Quantity::Impulse, &impulse.magnitude),
+            Fact::estimate(Term::ImpulseX, Quantity::Impulse, &impulse.x),
+            Fact::estimate(Term::ImpulseY, Quantity::Impulse, &impulse.y),
+            Fact::estimate(Term::PeakForce, Quantity::Force, &self.peak_n),
+            Fact::estimate(Term::PeakTime, Quantity::Time, &self.peak_time_s),
+            Fact::estimate(Term::ContactDuration, Quantity::Time, &self.duration_s),
+            Fact::estimate(Term::Pdof, Quantity::Angle, &pdof_rad),
+            Fact::new(Term::ClockDirection, Value::Clock(self.pdof_clock)),
+            Fact::new(Term::Hooking, hooking.map_or(Value::Term(Term::Unknown), Value::Share)),
+        ];
+        let start = self.momentum_impulse_n_s;
+        facts.push(Fact::vector(Term::NetworkStart, Quantity::Impulse, start));
+        facts.extend(self.implied_contact.iter().flat_map(|implied| implied.facts()));
+        let open =
+            [(Term::ContactPoint, self.is_contact_open), (Term::StrikingBody, self.is_body_open)];
+        let drawn = |term| Fact::new(term, Value::Term(Term::DrawnFromTraining));
+        facts.extend(open.into_iter().filter(|(_, is_open)| *is_open).map(|(term, _)| drawn(term)));
+        facts
+    }
+
+    /// The components of the mixture, if there are several.
+    pub fn course_table(&self) -> Option<FactTable> {
+        let columns = [Term::Impulse, Term::PeakForce, Term::ContactDuration];
+        let row = |mode: &crate::analysis::Mode| {
+            let values = vec![
+                Value::Vector(Quantity::Impulse, mode.impulse_n_s, ["x", "y"]),
+                Value::Number(Quantity::Force, mode.peak_n),
+                Value::Number(Quantity::Time, mode.duration_s),
+            ];
+            Fact::row(Value::Share(mode.weight), values)
+        };
+        let rows = self.modes.iter().map(row).collect();
+        let table = FactTable::new(Term::ForceModes, rows).with_columns(&columns);
+        (self.modes.len() > 1).then_some(table)
+    }
+}

@@ -1,0 +1,69 @@
+//! The facts of a predicted motion.
+
+use impactlab_core::units::Quantity;
+
+use crate::PredictMotionReport;
+use crate::facts::simulate::sensitivity;
+use crate::facts::table::PREDICTED;
+use crate::facts::{Fact, FactTable, Term, Value};
+
+impl PredictMotionReport {
+    /// What the answer says: how the motion ends, and what that depends on.
+    pub fn facts(&self) -> Vec<FactTable> {
+        [Some(self.motion_table()), self.sensitivity_table()].into_iter().flatten().collect()
+    }
+
+    /// How the motion ends.
+    pub fn motion_table(&self) -> FactTable {
+        FactTable::new(Term::Forecast, self.motion()).with_levels(PREDICTED)
+    }
+
+    /// Which estimates of the vehicle the end depends on; none if no share is clear.
+    pub fn sensitivity_table(&self) -> Option<FactTable> {
+        sensitivity(&self.sensitivity)
+    }
+
+    fn motion(&self) -> Vec<Fact> {
+        let outcome = &self.outcome;
+        let mut facts = vec![
+            Fact::new(Term::Vehicle, Value::Text(self.vehicle.clone())),
+            match self.force_model {
+                Some(_) => Fact::new(Term::ForcesDrawn, Value::Count(self.n_forces)),
+                None => Fact::new(Term::MovedBy, Value::Term(Term::GivenForce)),
+            },
+        ];
+        facts.extend(self.force.clone().map(|path| Fact::new(Term::ForceFile, Value::File(path))));
+        if self.n_vehicles > 0 {
+            facts.push(Fact::new(Term::VehiclesDrawn, Value::Count(self.n_vehicles)));
+        }
+        match &self.rest {
+            Some(rest) => facts.extend(rest.facts()),
+            None => {
+                let end =
+                    if outcome.is_at_rest { Term::AtRestAfter } else { Term::StillMovingAfter };
+                facts.push(Fact::number(end, Quantity::Time, outcome.time_s));
+            }
+        }
+        facts.extend([
+            Fact::estimate(Term::EndX, Quantity::Length, &outcome.x_m),
+            Fact::estimate(Term::EndY, Quantity::Length, &outcome.y_m),
+            Fact::estimate(Term::HeadingChange, Quantity::Angle, &outcome.heading_change_rad),
+            Fact::number(Term::SpeedAtEnd, Quantity::Speed, outcome.speed_m_s),
+            Fact::number(Term::YawRateAtEnd, Quantity::AngularVelocity, outcome.yaw_rate_rad_s),
+        ]);
+        if self.rest.is_none() {
+            facts.push(Fact::new(Term::Region90, Value::Area(outcome.region_90_m2)));
+        }
+        facts.extend([
+            Fact::new(Term::QuarterTurn, Value::Share(outcome.p_quarter_turn)),
+            Fact::new(Term::HalfTurn, Value::Share(outcome.p_half_turn)),
+        ]);
+        let hooking = self.hooking_probability;
+        facts.extend(hooking.map(|share| Fact::new(Term::Hooking, Value::Share(share))));
+        facts.extend(self.implied_contact.iter().flat_map(|implied| implied.facts()));
+        if self.applicability < 1.0 {
+            facts.push(Fact::new(Term::Applicability, Value::Share(self.applicability)));
+        }
+        facts
+    }
+}

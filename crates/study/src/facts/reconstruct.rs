@@ -1,0 +1,134 @@
+//! The facts of a reconstruction.
+
+use impactlab_core::units::Quantity;
+use impactlab_reconstruct::{BudgetItem, EvidenceFit, MarkComparison, Mode, QuantityEstimate};
+
+use crate::ReconstructReport;
+use crate::facts::simulate::zones;
+use crate::facts::table::{PREDICTED, RECONSTRUCTED};
+use crate::facts::{Fact, FactTable, Term, Value};
+
+impl ReconstructReport {
+    /// What the answer says: the speeds, the courses of events, how well the evidence is explained, and
+    /// what further evidence would bring.
+    pub fn facts(&self) -> Vec<FactTable> {
+        let courses = (self.modes.len() > 1).then(|| self.course_table());
+        let tables = [Some(self.speed_table()), courses, Some(self.fit_table()), self.mark_table()];
+        tables.into_iter().flatten().chain([self.budget_table()]).collect()
+    }
+
+    /// The quantities with their intervals, and the hand calculation beside them.
+    pub fn speed_table(&self) -> FactTable {
+        let mut facts: Vec<Fact> = self.quantities.iter().map(quantity_fact).collect();
+        facts.extend(self.by_hand_m_s.map(|[value, sigma]| {
+            Fact::new(Term::ByHand, Value::Measured(Quantity::Speed, value, sigma))
+        }));
+        facts.extend(zones(&self.friction_zones));
+        facts.extend([
+            Fact::new(Term::Motions, Value::Count(self.n_simulations)),
+            Fact::new(Term::Particles, Value::Count(self.n_particles)),
+            Fact::new(Term::EffectiveSamples, Value::Fixed(self.ess, 0)),
+        ]);
+        FactTable::new(Term::Speeds, facts).with_levels(RECONSTRUCTED)
+    }
+
+    /// The courses of events, the most probable one first.
+    pub fn course_table(&self) -> FactTable {
+        let row = |mode: &Mode| {
+            let speed = mode.quantities.first();
+            let speed = speed.map(|of| Value::Estimate(of.quantity(), of.estimate.clone()));
+            let values = vec![
+                Value::Share(mode.probability),
+                Value::Share(mode.standard_error),
+                speed.unwrap_or_else(|| Value::Text(String::new())),
+            ];
+            Fact::row(Value::Phrase(mode.name.clone()), values)
+        };
+        let columns = [Term::Probability, Term::StandardError, Term::StruckCar];
+        let rows = self.modes.iter().map(row).collect();
+        FactTable::new(Term::Courses, rows).with_levels(PREDICTED).with_columns(&columns)
+    }
+
+    /// The quantities within each course of events; none if there is one course only.
+    pub fn course_tables(&self) -> Vec<FactTable> {
+        let table = |mode: &Mode| {
+            let title = vec![Value::Term(Term::IfThis), Value::Phrase(mode.name.clone())];
+            let facts = mode.quantities.iter().map(quantity_fact).collect();
+            let table = FactTable::new(Term::Speeds, facts).with_levels(RECONSTRUCTED);
+            FactTable { title: Value::Joined(title, ": "), ..table }
+        };
+        let several = self.modes.iter().filter(|_| self.modes.len() > 1);
+        several.map(table).collect()
+    }
+
+    /// Each item of the evidence: found, expected, and whether anything explains it.
+    pub fn fit_table(&self) -> FactTable {
+        let row = |item: &EvidenceFit| {
+            let is_warning = item.is_unexplained();
+            let verdict = if is_warning { Term::Unexplained } else { Term::Explained };
+            let values = vec![
+                in_unit(item.found, item.unit),
+                in_unit(item.expected, item.unit),
+                Value::Probability(item.p),
+                Value::Term(verdict),
+            ];
+            Fact { is_warning, ..Fact::row(Value::Phrase(item.evidence.clone()), values) }
+        };
+        let columns = [Term::Found, Term::Expected, Term::TailProbability, Term::Verdict];
+        FactTable::new(Term::Fit, self.fit.iter().map(row).collect()).with_columns(&columns)
+    }
+
+    /// The marks that were found beside those of a particle of median speed; none if none was found.
+    pub fn mark_table(&self) -> Option<FactTable> {
+        let length = |m| Value::Number(Quantity::Length, m);
+        let known = |m: Option<f64>| m.map_or(Value::Term(Term::NoMark), length);
+        let row = |mark: &MarkComparison| {
+            // A wheel that leaves no mark has no computed length, and not one of 0 m.
+            let computed = mark.mean_distance_m.map(|_| mark.computed_length_m);
+            let values = vec![
+                length(mark.found_length_m),
+                known(computed),
+                known(mark.mean_distance_m),
+                known(mark.largest_distance_m),
+            ];
+            Fact::row(Value::Phrase(mark.wheel.label().to_owned()), values)
+        };
+        let columns =
+            [Term::FoundLength, Term::ComputedLength, Term::MeanDistance, Term::LargestDistance];
+        let rows = self.marks.iter().map(row).collect();
+        FactTable::new(Term::MarksCompared, rows).with_columns(&columns).unless_empty()
+    }
+
+    /// What further evidence would bring, the most useful first; what cannot be believed is last.
+    pub fn budget_table(&self) -> FactTable {
+        let mut items: Vec<&BudgetItem> = self.budget.iter().collect();
+        items.sort_by(|a, b| {
+            b.believable.cmp(&a.believable).then(a.then_m_s.total_cmp(&b.then_m_s))
+        });
+        let row = |item: &&BudgetItem| {
+            let sigma = Value::Sigma(item.quantity(), item.sigma);
+            let name = vec![Value::Phrase(item.measurement().to_owned()), sigma];
+            let half = |m_s| Value::Number(Quantity::Speed, m_s);
+            let then = match item.believable {
+                true => half(item.then_m_s),
+                false => Value::Term(Term::NotBelievable),
+            };
+            Fact::row(Value::Joined(name, ", ± "), vec![half(item.now_m_s), then])
+        };
+        let rows = items.iter().map(row).collect();
+        FactTable::new(Term::Budget, rows).with_columns(&[Term::Now, Term::Then])
+    }
+}
+
+fn quantity_fact(of: &QuantityEstimate) -> Fact {
+    let value = Value::Estimate(of.quantity(), of.estimate.clone());
+    Fact::row(Value::Phrase(of.label().to_owned()), vec![value])
+}
+
+/// A number of an item of the evidence, whose unit is that of SI.
+fn in_unit(value: f64, unit: &str) -> Value {
+    match Quantity::from_si_symbol(unit) {
+        Some(quantity) => Value::Number(quantity, value),
+        None => Value::Fixed(value, 3),
+    }
+}

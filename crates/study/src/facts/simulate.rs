@@ -1,0 +1,187 @@
+//! The facts of the simulation of one vehicle.
+
+use impactlab_core::units::Quantity;
+
+use crate::analysis::{RestOutcome, Sensitivity};
+use crate::facts::table::PREDICTED;
+use crate::facts::{Fact, FactTable, Term, Value};
+use crate::{
+    ForceReport, FrictionZoneReport, RestState, SimulateReport, TireMarkReport, VehicleUncertainty,
+};
+
+impl SimulateReport {
+    /// What the answer says: the motion, the marks that it leaves, and how its end varies with what the
+    /// data sheet leaves open.
+    pub fn facts(&self) -> Vec<FactTable> {
+        let drawn = self.uncertainty.iter().flat_map(VehicleUncertainty::facts);
+        [self.motion_table()].into_iter().chain(self.mark_table()).chain(drawn).collect()
+    }
+
+    /// How the motion goes, with every input at its median.
+    pub fn motion_table(&self) -> FactTable {
+        FactTable::new(Term::Motion, self.motion())
+    }
+
+    fn motion(&self) -> Vec<Fact> {
+        let mut facts = vec![
+            Fact::new(Term::Vehicle, Value::Text(self.vehicle.clone())),
+            Fact::new(Term::Equations, Value::Phrase(self.equations.clone())),
+            Fact::new(Term::Integration, Value::Phrase(self.integrator.clone())),
+            Fact::new(Term::RoadFriction, Value::Given(Quantity::Ratio, self.friction)),
+            Fact::new(Term::Duration, Value::Given(Quantity::Time, self.duration_s)),
+        ];
+        facts.extend(zones(&self.friction_zones));
+        facts.extend(self.force.iter().flat_map(ForceReport::facts));
+        let surface = self.momentum.as_ref().map(|momentum| momentum.surface());
+        facts.extend(surface.map(|surface| Fact::new(Term::MomentumSurface, surface)));
+        let delta_v = self.delta_v_m_s;
+        facts
+            .extend(delta_v.map(|value| Fact::vector(Term::DeltaVContact, Quantity::Speed, value)));
+        if let Some(end) = &self.end {
+            facts.push(Fact::vector(Term::EndPosition, Quantity::Length, [end.x_m, end.y_m]));
+            let distance = self.distance_m;
+            facts.extend(distance.map(|m| Fact::number(Term::Distance, Quantity::Length, m)));
+            facts.push(Fact::number(Term::FinalHeading, Quantity::Angle, end.yaw_rad));
+            let turn = self.largest_yaw_change_rad;
+            facts.extend(turn.map(|rad| Fact::number(Term::LargestTurn, Quantity::Angle, rad)));
+            facts.push(Fact::number(Term::FinalSpeed, Quantity::Speed, end.speed_m_s));
+            match &self.rest {
+                Some(rest) => facts.extend(rest.facts()),
+                None => facts.push(Fact::new(Term::AtRest, Value::Term(Term::StillMoving))),
+            }
+        }
+        if let Some(error) = &self.error {
+            let length = |term, m| Fact::number(term, Quantity::Length, m);
+            facts.push(length(Term::AverageError, error.average_error_m));
+            facts.push(length(Term::FinalError, error.final_error_m));
+        }
+        facts
+    }
+
+    /// The marks that tires leave; none without marks.
+    pub fn mark_table(&self) -> Option<FactTable> {
+        let columns = [
+            Term::MarkCause,
+            Term::MarkLength,
+            Term::FromTime,
+            Term::FromPlace,
+            Term::ToTime,
+            Term::ToPlace,
+        ];
+        let row = |mark: &TireMarkReport| {
+            let wheel = [mark.vehicle, mark.wheel.label()].map(|of| Value::Phrase(of.to_owned()));
+            let values = vec![
+                Value::Phrase(mark.kind.label().to_owned()),
+                Value::Number(Quantity::Length, mark.length_m),
+                Value::Number(Quantity::Time, mark.from_s),
+                Value::Place(mark.start_m),
+                Value::Number(Quantity::Time, mark.to_s),
+                Value::Place(mark.end_m),
+            ];
+            Fact::row(Value::Joined(wheel.to_vec(), ", "), values)
+        };
+        let rows = self.tire_marks.iter().map(row).collect();
+        FactTable::new(Term::Marks, rows).with_columns(&columns).unless_empty()
+    }
+}
+
+/// Zones with their own friction, if there are any.
+pub(super) fn zones(zones: &[FrictionZoneReport]) -> Option<Fact> {
+    let zone = |zone: &FrictionZoneReport| {
+        let name = Value::Text(zone.name.clone());
+        Value::Joined(vec![name, Value::Given(Quantity::Ratio, zone.friction)], " ")
+    };
+    let all = Value::Joined(zones.iter().map(zone).collect(), "; ");
+    (!zones.is_empty()).then(|| Fact::new(Term::FrictionZones, all))
+}
+
+impl ForceReport {
+    fn facts(&self) -> Vec<Fact> {
+        let words = |text: &str| Value::Phrase(text.replace('_', " "));
+        let file = self.path.clone().map(|path| Fact::new(Term::ForceFile, Value::File(path)));
+        let contact = self.contact_start_s.zip(self.contact_end_s).map(|(from_s, to_s)| {
+            let ends = [from_s, to_s].map(|s| Value::Number(Quantity::Time, s));
+            Fact::new(Term::Contact, Value::Joined(ends.to_vec(), " – "))
+        });
+        let facts = [
+            Fact::new(Term::ForceAxes, words(&self.axes)),
+            Fact::new(Term::ForceSampling, words(&self.sampling)),
+            Fact::new(Term::YawMoment, words(self.yaw_moment)),
+            Fact::vector(Term::ImpulseOnStruck, Quantity::Impulse, self.impulse_n_s),
+            Fact::number(Term::PeakForce, Quantity::Force, self.peak_n),
+        ];
+        file.into_iter().chain(facts).chain(contact).collect()
+    }
+}
+
+impl RestState {
+    fn facts(&self) -> [Fact; 4] {
+        [
+            Fact::number(Term::AtRestAfter, Quantity::Time, self.time_s),
+            Fact::number(Term::DistanceToRest, Quantity::Length, self.distance_m),
+            Fact::vector(Term::RestPosition, Quantity::Length, [self.x_m, self.y_m]),
+            Fact::number(Term::HeadingAtRest, Quantity::Angle, self.yaw_rad),
+        ]
+    }
+}
+
+impl VehicleUncertainty {
+    /// How the end varies over the drawn vehicles, and which estimates it depends on.
+    pub fn facts(&self) -> Vec<FactTable> {
+        [Some(self.draw_table()), self.sensitivity_table()].into_iter().flatten().collect()
+    }
+
+    /// Which estimates the end depends on; none if no share is clear.
+    pub fn sensitivity_table(&self) -> Option<FactTable> {
+        sensitivity(&self.sensitivity)
+    }
+
+    /// How the end varies over the drawn vehicles.
+    pub fn draw_table(&self) -> FactTable {
+        let estimate = Fact::estimate;
+        let mut facts = vec![Fact::new(Term::VehiclesDrawn, Value::Count(self.n_draws))];
+        if self.n_failed > 0 {
+            facts.push(Fact::new(Term::LeftOut, Value::Count(self.n_failed)));
+        }
+        facts.extend([
+            estimate(Term::EndX, Quantity::Length, &self.x_m),
+            estimate(Term::EndY, Quantity::Length, &self.y_m),
+            estimate(Term::FinalHeading, Quantity::Angle, &self.yaw_rad),
+            estimate(Term::FinalSpeed, Quantity::Speed, &self.speed_m_s),
+        ]);
+        facts.extend(self.rest.iter().flat_map(RestOutcome::facts));
+        let second = self.second_contact_probability;
+        facts.extend(second.map(|share| Fact::new(Term::SecondContact, Value::Share(share))));
+        FactTable::new(Term::Draws, facts).with_levels(PREDICTED)
+    }
+}
+
+impl RestOutcome {
+    /// When, where and after what distance the vehicle comes to rest. Where some of the draws still
+    /// move, the upper ends are those of the time for which they were followed.
+    pub(super) fn facts(&self) -> [Fact; 9] {
+        [
+            Fact::new(Term::ShareAtRest, Value::ShareOfDraws(self.share_at_rest, self.n_draws)),
+            Fact::new(Term::RestLimit, Value::Given(Quantity::Time, self.limit_s)),
+            Fact::estimate(Term::TimeToRest, Quantity::Time, &self.time_s),
+            Fact::estimate(Term::DistanceToRest, Quantity::Length, &self.distance_m),
+            Fact::estimate(Term::RestX, Quantity::Length, &self.x_m),
+            Fact::estimate(Term::RestY, Quantity::Length, &self.y_m),
+            Fact::estimate(Term::HeadingAtRest, Quantity::Angle, &self.yaw_rad),
+            Fact::new(Term::Region50, Value::Area(self.region_50_m2)),
+            Fact::new(Term::Region90, Value::Area(self.region_90_m2)),
+        ]
+    }
+}
+
+/// Shares of the estimates in the variance of the end, as far as they are more than chance; none if no
+/// vehicles were drawn or no share is clear.
+pub(super) fn sensitivity(shares: &[Sensitivity]) -> Option<FactTable> {
+    let row = |share: &Sensitivity| {
+        let values = [share.position_share, share.heading_share].map(Value::Share);
+        Fact::row(Value::Phrase(share.label.to_owned()), values.to_vec())
+    };
+    let rows = shares.iter().filter(|share| share.is_clear()).map(row).collect();
+    let columns = [Term::Position, Term::Heading];
+    FactTable::new(Term::Sensitivity, rows).with_columns(&columns).unless_empty()
+}

@@ -1,0 +1,327 @@
+//! Tables of facts as plain data, and as text.
+
+use std::path::{Path, PathBuf};
+
+use impactlab_core::units::{Estimate, IntervalText, Language, NumberFormat, Quantity, UnitSystem};
+
+use crate::facts::Term;
+
+/// The value of a fact.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A word of this table.
+    Term(Term),
+    /// A label of the program, which a report translates.
+    Phrase(String),
+    /// A name or a text that stays as it is.
+    Text(String),
+    /// A text that the program has in English only.
+    English(String),
+    /// A file.
+    File(PathBuf),
+    /// A count.
+    Count(usize),
+    /// A share of 1, written in per cent.
+    Share(f64),
+    /// The same of a number of draws.
+    ShareOfDraws(f64, usize),
+    /// A probability that may be small: three decimals, and never written as nothing.
+    Probability(f64),
+    /// A pure number with a fixed number of decimals.
+    Fixed(f64, usize),
+    /// A number without an interval, SI units.
+    Number(Quantity, f64),
+    /// A number that was given, SI units: written with all its digits.
+    Given(Quantity, f64),
+    /// A standard deviation, SI units.
+    Sigma(Quantity, f64),
+    /// A number with its standard deviation, SI units.
+    Measured(Quantity, f64, f64),
+    /// A median with its intervals, SI units.
+    Estimate(Quantity, Estimate),
+    /// Components of a vector, SI units, with their names.
+    Vector(Quantity, [f64; 2], [&'static str; 2]),
+    /// A place, SI units.
+    Place([f64; 2]),
+    /// An area, m².
+    Area(f64),
+    /// An hour of the clock.
+    Clock(u8),
+    /// Values one after the other, with a text between them.
+    Joined(Vec<Value>, &'static str),
+}
+
+/// A row of a table of facts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fact {
+    /// What it is.
+    pub name: Value,
+    /// What is known of it, a value for each column.
+    pub values: Vec<Value>,
+    /// Whether the row is one to be looked at before the answer is used.
+    pub is_warning: bool,
+}
+
+/// A table of facts: a name and its values in each row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FactTable {
+    /// What the table is about.
+    pub title: Value,
+    /// Names of the columns of values.
+    pub columns: Vec<Term>,
+    /// Probabilities of the intervals that are shown, ascending.
+    pub levels: &'static [f64],
+    /// The facts.
+    pub facts: Vec<Fact>,
+}
+
+/// A table of facts as text. Every row has as many cells as the header.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TextTable {
+    /// What the table is about.
+    pub title: String,
+    /// Titles of the columns; all empty where the rows speak for themselves.
+    pub header: Vec<String>,
+    /// What the columns mean, where their titles do not say it.
+    pub header_hints: Vec<Option<&'static str>>,
+    /// The rows.
+    pub rows: Vec<TextRow>,
+}
+
+/// A row of a [`TextTable`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TextRow {
+    /// The cells.
+    pub cells: Vec<String>,
+    /// What the row means, where its name does not say it.
+    pub hint: Option<&'static str>,
+    /// Whether it is one to be looked at before the answer is used.
+    pub is_warning: bool,
+}
+
+/// How values that are no numbers are written.
+#[derive(Clone, Copy)]
+pub struct FactWriter<'a> {
+    /// Numbers, and the language.
+    pub format: NumberFormat,
+    /// A label of the program in the language.
+    pub phrase: &'a dyn Fn(&str) -> String,
+    /// A text that the program has in English only, in the language.
+    pub english: &'a dyn Fn(&str) -> String,
+    /// What a file is called.
+    pub file: &'a dyn Fn(&Path) -> String,
+}
+
+/// Probability below which a table says only that it is smaller.
+const LEAST_PROBABILITY: f64 = 0.001;
+
+/// Levels of the intervals of a predicted quantity.
+pub(super) const PREDICTED: &[f64] = &[0.5, 0.9];
+
+/// Levels of the intervals of a reconstructed quantity.
+pub(super) const RECONSTRUCTED: &[f64] = &[0.5, 0.9, 0.95];
+
+impl Fact {
+    /// A fact with one value.
+    pub(super) fn new(term: Term, value: Value) -> Self {
+        Self::row(Value::Term(term), vec![value])
+    }
+
+    /// A fact with a value for each column of its table.
+    pub(super) fn row(name: Value, values: Vec<Value>) -> Self {
+        Self { name, values, is_warning: false }
+    }
+
+    /// A number without an interval.
+    pub(super) fn number(term: Term, quantity: Quantity, value_si: f64) -> Self {
+        Self::new(term, Value::Number(quantity, value_si))
+    }
+
+    /// A number with its intervals.
+    pub(super) fn estimate(term: Term, quantity: Quantity, estimate: &Estimate) -> Self {
+        Self::new(term, Value::Estimate(quantity, estimate.clone()))
+    }
+
+    /// A vector.
+    pub(super) fn vector(term: Term, quantity: Quantity, components_si: [f64; 2]) -> Self {
+        Self::new(term, Value::Vector(quantity, components_si, ["x", "y"]))
+    }
+}
+
+impl FactTable {
+    /// A table with one column of values that have no intervals.
+    pub(super) fn new(title: Term, facts: Vec<Fact>) -> Self {
+        Self { title: Value::Term(title), columns: vec![Term::Value], levels: &[], facts }
+    }
+
+    /// The same with intervals.
+    #[must_use]
+    pub(super) fn with_levels(self, levels: &'static [f64]) -> Self {
+        let columns = vec![Term::Median];
+        Self { levels, columns, ..self }
+    }
+
+    /// The same with other columns.
+    #[must_use]
+    pub(super) fn with_columns(self, columns: &[Term]) -> Self {
+        Self { columns: columns.to_vec(), ..self }
+    }
+
+    /// The table, unless it is empty.
+    pub(super) fn unless_empty(self) -> Option<Self> {
+        (!self.facts.is_empty()).then_some(self)
+    }
+
+    /// Whether a column holds intervals.
+    fn has_intervals(&self, column: usize) -> bool {
+        let value = |fact: &Fact| matches!(fact.values.get(column), Some(Value::Estimate(..)));
+        !self.levels.is_empty() && self.facts.iter().any(value)
+    }
+
+    /// The table as text.
+    pub fn to_text(&self, writer: &FactWriter<'_>) -> TextTable {
+        let language = writer.format.language;
+        let (mut header, mut header_hints) =
+            (vec![Term::Quantity.label(language).to_owned()], vec![None]);
+        for (idx, column) in self.columns.iter().enumerate() {
+            header.push(column.label(language).to_owned());
+            header_hints.push(column.hint());
+            for level in self.levels.iter().filter(|_| self.has_intervals(idx)) {
+                header.push(format!("{:.0} %", 100.0 * level));
+                header_hints.push(interval_hint(*level));
+            }
+        }
+        let row = |fact: &Fact| {
+            let mut cells = vec![writer.value(&fact.name)];
+            for (idx, value) in fact.values.iter().enumerate() {
+                match value {
+                    Value::Estimate(quantity, estimate) if self.has_intervals(idx) => {
+                        cells.extend(self.estimate_cells(*quantity, estimate, writer));
+                    }
+                    value => {
+                        cells.push(writer.value(value));
+                        let n_empty = if self.has_intervals(idx) { self.levels.len() } else { 0 };
+                        cells.extend(std::iter::repeat_n(String::new(), n_empty));
+                    }
+                }
+            }
+            let hint = match fact.name {
+                Value::Term(term) => term.hint(),
+                _ => None,
+            };
+            TextRow { cells, hint, is_warning: fact.is_warning }
+        };
+        let rows = self.facts.iter().map(row).collect();
+        TextTable { title: writer.value(&self.title), header, header_hints, rows }
+    }
+
+    /// Name and interval of each fact that has an interval of a level.
+    pub fn intervals(&self, level: f64, writer: &FactWriter<'_>) -> Vec<(String, IntervalText)> {
+        let interval = |fact: &Fact| {
+            let Some(Value::Estimate(quantity, estimate)) = fact.values.first() else {
+                return None;
+            };
+            let text = writer.format.estimate(*quantity, estimate);
+            Some((writer.value(&fact.name), text.at(level)?.clone()))
+        };
+        self.facts.iter().filter_map(interval).collect()
+    }
+
+    /// Median and intervals at the levels of the table.
+    fn estimate_cells(
+        &self,
+        quantity: Quantity,
+        estimate: &Estimate,
+        writer: &FactWriter<'_>,
+    ) -> Vec<String> {
+        let text = writer.format.estimate(quantity, estimate);
+        let range = |level: &f64| text.at(*level).map_or_else(String::new, |of| of.range.clone());
+        std::iter::once(text.median.clone()).chain(self.levels.iter().map(range)).collect()
+    }
+}
+
+/// What an interval of a level holds.
+fn interval_hint(level: f64) -> Option<&'static str> {
+    match level {
+        0.5 => Some("Interval that holds half of what may happen"),
+        0.9 => Some("Interval that holds nine tenths of what may happen"),
+        0.95 => Some("Interval that leaves out one case of twenty"),
+        _ => None,
+    }
+}
+
+impl TextTable {
+    /// Whether each row is a name and a value, which needs no titles.
+    pub fn is_list(&self) -> bool {
+        self.header.len() <= 2
+    }
+}
+
+impl FactWriter<'static> {
+    /// English, in the units of a system.
+    pub fn english(units: UnitSystem) -> Self {
+        Self {
+            format: NumberFormat::english(units),
+            phrase: &<str as ToOwned>::to_owned,
+            english: &<str as ToOwned>::to_owned,
+            file: &|path| path.display().to_string(),
+        }
+    }
+}
+
+impl FactWriter<'_> {
+    /// A value as text.
+    fn value(&self, value: &Value) -> String {
+        let format = &self.format;
+        match value {
+            Value::Term(term) => term.label(format.language).to_owned(),
+            Value::Phrase(text) => (self.phrase)(text),
+            Value::Text(text) => text.clone(),
+            Value::English(text) => (self.english)(text),
+            Value::File(path) => (self.file)(path),
+            Value::Count(n) => n.to_string(),
+            Value::Share(share) => format.percent(*share),
+            Value::ShareOfDraws(share, n) => match format.language {
+                Language::En => format!("{} of {n} draws", format.percent(*share)),
+                Language::De => format!("{} von {n} Ziehungen", format.percent(*share)),
+            },
+            Value::Probability(p) if *p < LEAST_PROBABILITY => {
+                format!("< {}", format.fixed(LEAST_PROBABILITY, 3))
+            }
+            Value::Probability(p) => format.fixed(*p, 3),
+            Value::Fixed(number, decimals) => format.fixed(*number, *decimals),
+            Value::Number(quantity, si) => format.value(*quantity, *si),
+            Value::Given(quantity, si) => format.given(*quantity, *si),
+            Value::Sigma(quantity, si) => format.sigma(*quantity, *si),
+            Value::Measured(quantity, si, sigma) => format.measured(*quantity, *si, *sigma),
+            Value::Estimate(quantity, estimate) => format.estimate_in_words(*quantity, estimate),
+            Value::Vector(quantity, components, names) => {
+                let names = names.map(|name| (self.phrase)(name));
+                format.vector(*quantity, *components, names.each_ref().map(String::as_str))
+            }
+            Value::Place(place_m) => self.place(*place_m),
+            Value::Area(area_m2) => self.area(*area_m2),
+            Value::Clock(hour) => match format.language {
+                Language::En => format!("{hour} o’clock"),
+                Language::De => format!("{hour} Uhr"),
+            },
+            Value::Joined(values, between) => {
+                let texts: Vec<String> = values.iter().map(|value| self.value(value)).collect();
+                texts.join(between)
+            }
+        }
+    }
+
+    fn place(&self, place_m: [f64; 2]) -> String {
+        let unit = Quantity::Length.display_unit(self.format.units);
+        let [x, y] = place_m.map(|si| self.format.fixed(unit.from_si(si), 2));
+        format!("({x}; {y}) {}", unit.symbol)
+    }
+
+    /// An area in squares of the unit of lengths.
+    fn area(&self, area_m2: f64) -> String {
+        let unit = Quantity::Length.display_unit(self.format.units);
+        let area = area_m2 / unit.si_per_unit.powi(2);
+        self.format.with_unit(&format!("{area:.1}"), &format!("{}²", unit.symbol))
+    }
+}

@@ -1,0 +1,230 @@
+//! What the facts of an answer are called, in each language.
+
+use serde::Serialize;
+
+use impactlab_core::units::Language;
+
+macro_rules! terms {
+    ($($name:ident: $en:literal, $de:literal $(, $hint:literal)?;)+) => {
+        /// What a fact, a column or a table of facts is called.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Term {
+            $(#[doc = $en] $name,)+
+        }
+
+        impl Term {
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$name),+];
+
+            /// The name in a language.
+            pub const fn label(self, language: Language) -> &'static str {
+                match (self, language) {
+                    $((Self::$name, Language::En) => $en, (Self::$name, Language::De) => $de,)+
+                }
+            }
+
+            /// What it means, where the name does not say it.
+            pub const fn hint(self) -> Option<&'static str> {
+                match self {
+                    $($(Self::$name => Some($hint),)?)+
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+terms! {
+    // Columns.
+    Quantity: "quantity", "Größe";
+    Value: "value", "Wert";
+    Median: "median", "Median", "As likely exceeded as not";
+    StruckVehicle: "struck vehicle", "gestoßenes Fahrzeug";
+    StrikingVehicle: "striking vehicle", "stoßendes Fahrzeug";
+    // The impact.
+    Impact: "Contact and impulse; the impulse acts on the struck vehicle, world axes",
+        "Kontakt und Impuls; der Impuls wirkt auf das gestoßene Fahrzeug, Weltachsen";
+    Restitution: "restitution", "Stoßziffer";
+    FrictionLimit: "friction limit of the contact", "Reibbeiwert im Kontakt";
+    AlwaysSliding: "always sliding", "stets gleitend";
+    CriticalRatio: "critical impulse ratio", "kritisches Impulsverhältnis",
+        "The smallest friction limit with which the vehicles do not slide";
+    ShareOfCritical: "friction limit over the critical impulse ratio",
+        "Reibbeiwert zum kritischen Impulsverhältnis";
+    ContactNormal: "contact normal, world axes", "Kontaktnormale, Weltachsen";
+    StruckSurface: "struck surface", "gestoßene Fläche";
+    AsGiven: "as given", "wie angegeben";
+    Overlap: "overlap of the outlines", "Überdeckung der Umrisse";
+    Gap: "gap between the outlines", "Abstand der Umrisse";
+    Touch: "none, they touch", "keine, sie berühren sich";
+    Regime: "regime", "Stoßart";
+    ClosingVelocity: "closing velocity", "Annäherungsgeschwindigkeit";
+    ImpulseOnStruck: "impulse on the struck vehicle", "Impuls auf das gestoßene Fahrzeug";
+    ImpulseNormal: "normal impulse P_n", "Normalimpuls P_n";
+    ImpulseTangential: "tangential impulse P_τ", "Tangentialimpuls P_τ";
+    EnergyLoss: "energy lost in the contact", "Energieverlust im Stoß";
+    VehiclesAfterImpact: "Both vehicles after the impact, world axes",
+        "Beide Fahrzeuge nach dem Stoß, Weltachsen";
+    DeltaV: "change of velocity Δv", "Geschwindigkeitsänderung Δv";
+    VelocityAfter: "velocity after the impact", "Geschwindigkeit nach dem Stoß";
+    YawRateAfter: "yaw rate after the impact", "Gierrate nach dem Stoß";
+    YawRateChange: "change of the yaw rate", "Änderung der Gierrate";
+    Pdof: "principal direction of force", "Hauptstoßrichtung (PDOF)",
+        "Clockwise from straight ahead, where the force comes from";
+    ClockDirection: "the same as an hour of the clock", "dieselbe als Uhrzeit";
+    None: "none", "keine";
+    // The simulation.
+    Motion: "Motion with each input at its median", "Bewegung, jede Eingangsgröße mit ihrem Median";
+    Equations: "equations of motion", "Bewegungsgleichungen";
+    Integration: "integration", "Integrationsverfahren";
+    RoadFriction: "friction of the road", "Reibbeiwert der Fahrbahn";
+    FrictionZones: "zones of their own friction", "Bereiche mit eigenem Reibbeiwert";
+    Duration: "duration", "Dauer";
+    ForceFile: "file of the force", "Kraftdatei";
+    ForceAxes: "axes of the force", "Achsen der Kraft";
+    ForceSampling: "samples of the force", "Werte der Kraft";
+    YawMoment: "yaw moment", "Giermoment";
+    PeakForce: "peak force", "größte Stoßkraft", "Largest size of the force, a mean over 1 ms";
+    Contact: "contact", "Kontakt";
+    MomentumSurface: "momentum solution with", "Impulslösung mit";
+    DeltaVContact: "Δv over the contact, tires included", "Δv über den Kontakt, mit Reifenkräften";
+    EndPosition: "position at the end", "Lage am Ende", "Of the CG, world axes";
+    Distance: "length of the path", "Weglänge", "Of the CG";
+    FinalHeading: "heading at the end", "Gierwinkel am Ende";
+    LargestTurn: "largest change of heading", "größte Änderung des Gierwinkels";
+    FinalSpeed: "speed at the end", "Geschwindigkeit am Ende";
+    AtRest: "at rest", "Stillstand";
+    StillMoving: "no, still moving at the end", "nein, am Ende noch in Bewegung";
+    AtRestAfter: "at rest after", "Stillstand nach",
+        "After the force, speed and yaw rate stay below 0.05 m/s and 0.01 rad/s to the end";
+    RestPosition: "position at rest", "Lage im Stillstand";
+    DistanceToRest: "distance to rest", "Auslaufstrecke", "Along the path of the CG";
+    HeadingAtRest: "heading at rest", "Gierwinkel im Stillstand", "To the left of the X axis";
+    AverageError: "mean distance from the recorded path", "mittlerer Abstand zur aufgezeichneten Bahn";
+    FinalError: "distance from the recorded end", "Abstand zum aufgezeichneten Ende";
+    Marks: "Tire marks that the simulation leaves", "Reifenspuren, die die Simulation hinterlässt";
+    MarkCause: "by", "durch";
+    MarkLength: "length", "Länge";
+    FromTime: "from, time", "von, Zeit";
+    FromPlace: "from (X; Y)", "von (X; Y)";
+    ToTime: "to, time", "bis, Zeit";
+    ToPlace: "to (X; Y)", "bis (X; Y)";
+    Draws: "The same over vehicles drawn from what the data sheet leaves open",
+        "Dasselbe über Fahrzeuge, gezogen aus dem, was das Datenblatt offen lässt";
+    VehiclesDrawn: "vehicles drawn from the data sheet", "nach dem Datenblatt gezogene Fahrzeuge";
+    LeftOut: "could not be computed and are left out", "ließen sich nicht berechnen und fehlen";
+    EndX: "X at the end", "X am Ende", "Of the CG, along the road from the impact";
+    EndY: "Y at the end", "Y am Ende", "Of the CG, to the left";
+    TimeToRest: "time to rest", "Zeit bis zum Stillstand", "From the first contact";
+    RestX: "X at rest", "X im Stillstand";
+    RestY: "Y at rest", "Y im Stillstand";
+    ShareAtRest: "comes to rest in", "kommt zum Stillstand in",
+        "After the force, speed and yaw rate have fallen below 0.05 m/s and 0.01 rad/s. Draws that \
+         still move count with where they are then";
+    RestLimit: "followed for at most", "verfolgt bis höchstens";
+    Region50: "area that holds the position with 50 %", "Fläche, in der die Lage mit 50 % liegt";
+    Region90: "area that holds the position with 90 %", "Fläche, in der die Lage mit 90 % liegt";
+    SecondContact: "probability of a second contact", "Wahrscheinlichkeit eines zweiten Kontakts";
+    Sensitivity: "Linear share of each estimate in the variance of the end; shares that may be chance \
+        are left out",
+        "Linearer Anteil jedes Schätzwerts an der Varianz des Endes; Anteile, die Zufall sein können, \
+         fehlen";
+    Position: "position", "Lage";
+    Heading: "heading", "Gierwinkel";
+    // The predicted force.
+    Force: "Predicted force on the struck vehicle, axes along its heading",
+        "Vorhergesagte Kraft auf das gestoßene Fahrzeug, Achsen längs seiner Fahrtrichtung";
+    ImpulseSize: "size of the impulse", "Betrag des Impulses";
+    ImpulseX: "impulse along x", "Impuls längs x", "On the struck vehicle, along its heading";
+    ImpulseY: "impulse along y", "Impuls längs y", "On the struck vehicle, to its left";
+    PeakTime: "time of the peak", "Zeitpunkt der größten Kraft";
+    ContactDuration: "duration of the contact", "Dauer des Kontakts",
+        "From first touch to last separation";
+    Hooking: "probability of hooking", "Wahrscheinlichkeit des Verhakens",
+        "That the corner of the striking vehicle stays caught";
+    Unknown: "unknown", "unbekannt";
+    ImpliedRestitution: "implied restitution", "sich ergebende Stoßziffer";
+    ImpliedRatio: "implied impulse ratio P_τ/P_n", "sich ergebendes Impulsverhältnis P_τ/P_n";
+    MomentumBeside: "momentum solution beside it", "Impulslösung zum Vergleich";
+    NetworkStart: "momentum solution that the network starts from",
+        "Impulslösung, von der das Netz ausgeht",
+        "With restitution and friction that were fitted to the training cases";
+    ContactPoint: "contact point", "Kontaktpunkt";
+    StrikingBody: "body of the striking vehicle", "Aufbau des stoßenden Fahrzeugs";
+    DrawnFromTraining: "open, drawn from that of the training cases",
+        "offen, aus dem der Trainingsfälle gezogen";
+    ForceModes: "Possible courses of the contact", "Mögliche Verläufe des Kontakts",
+        "Components of the mixture, each with its mean curve";
+    Probability: "probability", "Wahrscheinlichkeit";
+    Impulse: "impulse", "Impuls";
+    // The predicted motion.
+    Forecast: "Predicted motion", "Vorhergesagte Bewegung";
+    Vehicle: "vehicle", "Fahrzeug";
+    MovedBy: "moved by", "bewegt durch";
+    GivenForce: "the force as given, in one course", "die Kraft wie angegeben, in einem Verlauf";
+    ForcesDrawn: "forces drawn from the force network", "aus dem Kraftnetz gezogene Kräfte";
+    StillMovingAfter: "still moving after", "noch in Bewegung nach";
+    HeadingChange: "change of heading", "Änderung des Gierwinkels",
+        "Since the impact, to the left; goes on beyond a turn";
+    SpeedAtEnd: "speed at the end, mean of the central paths",
+        "Geschwindigkeit am Ende, Mittel der mittleren Bahnen";
+    YawRateAtEnd: "size of the yaw rate at the end, mean of the central paths",
+        "Betrag der Gierrate am Ende, Mittel der mittleren Bahnen";
+    QuarterTurn: "probability of a quarter turn or more",
+        "Wahrscheinlichkeit einer Vierteldrehung oder mehr";
+    HalfTurn: "probability of a half turn or more", "Wahrscheinlichkeit einer halben Drehung oder mehr";
+    Applicability: "share of the response network", "Anteil des Bewegungsnetzes",
+        "As it falls, the forecast goes over to the 4DOF model, and its bands to the error of that";
+    // The reconstruction.
+    Speeds: "What the evidence says of the speeds, before the impact unless said otherwise",
+        "Was die Spuren über die Geschwindigkeiten sagen, vor dem Aufprall, wenn nicht anders gesagt";
+    ByHand: "struck car by hand, ± one standard deviation",
+        "gestoßenes Fahrzeug von Hand gerechnet, ± eine Standardabweichung",
+        "Momentum and the energy that was lost on the way to rest, for comparison";
+    Motions: "simulated motions", "simulierte Bewegungen";
+    Particles: "particles", "Partikel";
+    EffectiveSamples: "independent particles that they are worth", "effektiver Stichprobenumfang";
+    Courses: "Courses of events that the evidence leaves possible",
+        "Abläufe, die nach den Spuren möglich bleiben";
+    IfThis: "If this happened", "Wenn es so war";
+    StandardError: "standard error", "Standardfehler", "By the number of particles";
+    StruckCar: "struck car", "gestoßenes Fzg.", "Its speed before the impact";
+    Fit: "Items of the evidence: found and expected", "Spuren: vorgefunden und erwartet";
+    Found: "found", "gefunden", "What was found, or how far it lies off";
+    Expected: "expected", "erwartet", "Median over the particles of what would be found";
+    TailProbability: "p", "p",
+        "Probability that measurement and model err by more than they do here";
+    Verdict: "", "Urteil";
+    Explained: "explained", "erklärt";
+    Unexplained: "not explained", "nicht erklärt";
+    MarksCompared: "Tire marks that were found beside those of a particle of median speed",
+        "Gefundene Reifenspuren neben denen einer Bewegung mit mittlerer Geschwindigkeit";
+    FoundLength: "found length", "gefundene Länge";
+    ComputedLength: "computed length", "berechnete Länge";
+    MeanDistance: "mean distance", "mittlerer Abstand";
+    LargestDistance: "largest distance", "größter Abstand";
+    NoMark: "no mark", "keine Spur";
+    Budget: "Half the width of the 90 % interval of the struck car’s speed, if it were measured as well",
+        "Halbe Breite des 90-%-Intervalls der Geschwindigkeit des gestoßenen Fahrzeugs, wenn \
+         zusätzlich gemessen würde";
+    Now: "now, ±", "jetzt, ±";
+    Then: "then, ±", "dann, ±";
+    NotBelievable: "too few particles to say", "zu wenige Partikel für eine Aussage";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_term_has_a_name_in_each_language_and_no_two_rows_share_one() {
+        let labels = |language| Term::ALL.iter().map(move |term| term.label(language));
+        assert!(labels(Language::De).all(|label| !label.is_empty()));
+        let mut english: Vec<&str> = labels(Language::En).collect();
+        english.sort_unstable();
+        let n = english.len();
+        english.dedup();
+        assert_eq!(english.len(), n);
+    }
+}
