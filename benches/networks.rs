@@ -44,7 +44,7 @@ fn print_epoch(name: &str, mut config: ForceConfig) {
     let mut go_on = |_| ControlFlow::Continue(());
     let cases = ForceCase::load_all(&root, &mut go_on).expect("the shipped data set can be read");
     let cases = cases.complete().expect("nothing cancels");
-    let set = ForceTrainingSet::of_split("fea", &cases, 0, config.training.test_share);
+    let set = ForceTrainingSet::from_split("fea", &cases, 0, config.training.test_share);
     let settings = TrainSettings::unsaved(config, 0);
     let model = train(&set, &settings, &mut |_| ControlFlow::Continue(())).expect("a training");
     let mut seconds: Vec<f64> =

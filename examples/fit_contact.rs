@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("expected: DATASET")?;
     let mut go_on = |_| ControlFlow::Continue(());
     let dataset = Dataset::load(Path::new(&path), &mut go_on)?.complete().ok_or("cancelled")?;
-    let (cases, problems) = ForceCase::of_dataset(&dataset);
+    let (cases, problems) = ForceCase::from_dataset(&dataset);
     if let Some(problem) = problems.into_iter().next() {
         return Err(problem.into());
     }
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let closing =
         clean.iter().filter_map(|case| Some(impact(case, [0.0; 2])?.closing_velocity_m_s()[0]));
-    if let Some(of) = Summary::of(closing) {
+    if let Some(of) = Summary::from_values(closing) {
         println!("closing speed {:.1} to {:.1} m/s", of.min, of.max);
     }
     for form in RestitutionForm::ALL {
@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for i in 0..=N_STEPS {
             for j in 0..=N_STEPS {
                 let surface = [i, j].map(|k| k as f64 / N_STEPS as f64);
-                let errors = Summary::of(errors(&clean, surface, form));
+                let errors = Summary::from_values(errors(&clean, surface, form));
                 let error = errors.map_or(f64::INFINITY, |of| of.mean);
                 if error < best.0 {
                     best = (error, surface);
@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for (name, cases) in [("training", &clean), ("test", &test)] {
             let of_default = [DEFAULT_RESTITUTION, DEFAULT_FRICTION_LIMIT];
             for (what, surface) in [("fitted", best.1), ("default", of_default)] {
-                let Some(of) = Summary::of(errors(cases, surface, form)) else { continue };
+                let Some(of) = Summary::from_values(errors(cases, surface, form)) else { continue };
                 let [median, mean] = [of.median, of.mean].map(|share| 100.0 * share);
                 println!("  {what:8} {name:9} median {median:5.1} %, mean {mean:5.1} %");
             }

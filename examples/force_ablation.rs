@@ -67,9 +67,9 @@ impl Variant {
             };
             let said = model.predict(&scenario)?;
             let settings = ProbabilisticSettings { n_samples: N_DRAWS, seed: SEED };
-            self.scores.push(ProbabilisticScores::of(case, &said.mixture, settings, i as u64)?);
-            let prediction = CurvePrediction::of_mixture(said.mixture, &said.likely);
-            self.errors.push((case.is_clean(), PointErrors::of(case, &prediction)));
+            self.scores.push(ProbabilisticScores::new(case, &said.mixture, settings, i as u64)?);
+            let prediction = CurvePrediction::from_mixture(said.mixture, &said.likely);
+            self.errors.push((case.is_clean(), PointErrors::new(case, &prediction)));
         }
         Ok(())
     }
@@ -80,7 +80,7 @@ impl Variant {
         let of = |is_all: bool, scores: &[&ProbabilisticScores]| {
             let chosen: Vec<&PointErrors> =
                 self.errors.iter().filter(|(clean, _)| is_all || *clean).map(|(_, e)| e).collect();
-            CurveMetrics::of(&chosen, scores)
+            CurveMetrics::new(&chosen, scores)
         };
         let scores: Vec<&ProbabilisticScores> = self.scores.iter().collect();
         let (Some(all), Some(clean)) = (of(true, &scores), of(false, &[])) else { return };

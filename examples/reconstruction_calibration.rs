@@ -63,7 +63,7 @@ fn kinds_of_evidence(case: &Evidence, idx: usize) -> Evidence {
 }
 
 fn model(evidence: &Evidence, zones: &[FrictionZone]) -> ForwardModel {
-    ForwardModel::new(evidence, Cars::of(evidence, None, None)).on_zones(zones.to_vec())
+    ForwardModel::new(evidence, Cars::new(evidence, None, None)).on_zones(zones.to_vec())
 }
 
 fn target(evidence: &Evidence, zones: &[FrictionZone]) -> ReconstructionTarget {
@@ -109,11 +109,11 @@ fn ranked(
     let model = target.model();
     let of = |quantity: ReconstructedQuantity, z: &[f64]| {
         let values = model.prior().values(z);
-        quantity.of(&values, &model.impact(&values))
+        quantity.value(&values, &model.impact(&values))
     };
     let us: Vec<f64> = QUANTITIES.iter().map(|_| rng.random()).collect();
     let quantities = QUANTITIES.iter().zip(us);
-    let ranked = quantities.map(|(q, u)| RankedQuantity::of(&particles, &truth, u, |z| of(*q, z)));
+    let ranked = quantities.map(|(q, u)| RankedQuantity::new(&particles, &truth, u, |z| of(*q, z)));
     let ranked: Vec<RankedQuantity> = ranked.collect();
     let below: Vec<String> = ranked.iter().map(|of| format!("{:.3}", share_below(of))).collect();
     let (ess, n_motions) = (particles.ess, particles.n_evaluations);

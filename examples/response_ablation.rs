@@ -259,7 +259,7 @@ fn cross_validate(
             let seen: Vec<ResponseCase> =
                 fold.train.iter().map(|&idx| cases[idx].clone()).collect();
             let n = Some(arguments.trajectories);
-            let set = TrainingSet::of_split("fold", &seen, SPLIT_SEED, 0.0).choose(n, seed)?;
+            let set = TrainingSet::from_split("fold", &seen, SPLIT_SEED, 0.0).choose(n, seed)?;
             let started = Instant::now();
             let model = fine_tune(
                 start.map(|(model, _)| model),

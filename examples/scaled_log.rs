@@ -153,7 +153,7 @@ fn next_case(truth: &VehicleParameters, rng: &mut ChaCha8Rng) -> Answer<Response
     let inputs = manoeuvre.inputs(STEP_S, 400);
     let states = rollout(truth, initial, &inputs, |_, _| [0.0; N_RESIDUAL]);
     let data_sheet = Preset::ScaledStruck.parameters();
-    Ok(ResponseCase::of_motion("next".to_owned(), data_sheet, states, inputs))
+    Ok(ResponseCase::from_motion("next".to_owned(), data_sheet, states, inputs))
 }
 
 /// Returns the average position error of a network on each case, m.
@@ -242,7 +242,7 @@ fn main() -> Answer<()> {
                 let settings = LogSettings { vehicle, impact_s: None, duration_s: 4.0 };
                 for (of, load) in [("measured", Some(struck.1.clone())), ("estimated", None)] {
                     let name = format!("{hz} Hz, {channels}, force {of}");
-                    let found = LoggedImpact::of(&log, load, &settings)?;
+                    let found = LoggedImpact::from_log(&log, load, &settings)?;
                     add_log(&mut rows, (&name, found), (&start, &config, seed), &next)?;
                 }
             }

@@ -83,7 +83,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&folder)?;
     let origin = SiteOrigin { survey_m: SURVEY_M, x_axis_azimuth_rad: AZIMUTH_DEG.to_radians() };
     let world = world_file(&origin);
-    let map = PixelMap::of_world_file(&world, &origin);
+    let map = PixelMap::from_world_file(&world, &origin);
     let picture = RgbImage::from_fn(SIZE_PX[0], SIZE_PX[1], |column, row| {
         Rgb(color(map.ground_m([f64::from(column) + 0.5, f64::from(row) + 0.5])))
     });

@@ -26,7 +26,7 @@ pub struct FilmForm {
 impl FilmForm {
     /// A film of the whole scene at its own speed, as it is seen.
     pub fn new(picture: ScenePicture, dark: bool) -> Self {
-        let timing = FilmTiming::of_scene(&picture.scene);
+        let timing = FilmTiming::from_scene(&picture.scene);
         let canvas = Canvas { size_px: [1920, 1080], dark, ..Canvas::default() };
         Self { film: Film { picture, timing, canvas } }
     }

@@ -74,7 +74,7 @@ impl Store {
             // If the folder cannot be created, taking the lock fails and reports the error.
             let _ = std::fs::create_dir_all(folder);
         }
-        let lock = WriterLock::of_file(&path)?;
+        let lock = WriterLock::lock_file(&path)?;
         Ok(Self { path, _lock: lock, written: String::new(), pending: None, job: None })
     }
 

@@ -204,7 +204,7 @@ impl UnfinishedList {
                 continue;
             }
             // The lock is held by a training that is running.
-            let Ok(_lock) = WriterLock::of_file(&checkpoint) else { continue };
+            let Ok(_lock) = WriterLock::lock_file(&checkpoint) else { continue };
             match read_training(&checkpoint, &note) {
                 Ok(training) => list.trainings.push(training),
                 Err(reason) => {

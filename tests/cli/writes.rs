@@ -84,12 +84,12 @@ fn a_folder_of_results_is_replaced_only_where_that_is_said_and_holds_one_run() {
     assert!(manifest["seconds"].as_f64().unwrap() > 0.0);
     assert_eq!(manifest["models"], told["model_digests"]);
     assert_eq!(manifest["inputs"][0]["name"], SCENARIO);
-    let scenario = FileDigest::of("", Path::new(SCENARIO)).unwrap();
+    let scenario = FileDigest::from_file("", Path::new(SCENARIO)).unwrap();
     assert_eq!(manifest["inputs"][0]["sha256"], scenario.sha256);
     assert_eq!(manifest["files"].as_array().unwrap().len(), 5);
     for file in manifest["files"].as_array().unwrap() {
         let name = file["name"].as_str().unwrap();
-        let found = FileDigest::of(name, &out.join(name)).unwrap();
+        let found = FileDigest::from_file(name, &out.join(name)).unwrap();
         assert_eq!(*file, serde_json::to_value(found).unwrap());
     }
 

@@ -145,7 +145,7 @@ fn a_killed_run_leaves_a_folder_that_the_next_one_makes_whole() {
         }
         for file in manifest["files"].as_array().unwrap() {
             let name = file["name"].as_str().unwrap();
-            let found = FileDigest::of(name, &out.join(name));
+            let found = FileDigest::from_file(name, &out.join(name));
             if manifest["complete"] == true {
                 assert_eq!(serde_json::to_value(found.unwrap()).unwrap(), *file, "kill {n}");
             }

@@ -35,7 +35,7 @@ fn world_files() {
         LengthUnit::Foot,
     ) {
         Ok(world) => {
-            let map = PixelMap::of_world_file(&world, &SiteOrigin::default());
+            let map = PixelMap::from_world_file(&world, &SiteOrigin::default());
             Answer::accepted(&(world, map, map.pixel([0.0, 0.0])))
         }
         Err(error) => Answer::refused(&error),

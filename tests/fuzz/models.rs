@@ -49,8 +49,8 @@ fn dataset(name: &str, kind: DatasetKind) -> Dataset {
 fn force_set() -> &'static ForceTrainingSet {
     static SET: OnceLock<ForceTrainingSet> = OnceLock::new();
     SET.get_or_init(|| {
-        let (cases, _) = ForceCase::of_dataset(&dataset("fea", DatasetKind::Force));
-        ForceTrainingSet::of_split("fea", &cases[..N_CASES], SEED, 0.0)
+        let (cases, _) = ForceCase::from_dataset(&dataset("fea", DatasetKind::Force));
+        ForceTrainingSet::from_split("fea", &cases[..N_CASES], SEED, 0.0)
     })
 }
 
@@ -85,7 +85,7 @@ fn records() -> &'static Vec<ImpactRecord> {
     static RECORDS: OnceLock<Vec<ImpactRecord>> = OnceLock::new();
     RECORDS.get_or_init(|| {
         let dataset = dataset("trajectories-fea", DatasetKind::Trajectory);
-        let (cases, _) = ResponseCase::of_dataset(&dataset, &Preset::Reference.parameters());
+        let (cases, _) = ResponseCase::from_dataset(&dataset, &Preset::Reference.parameters());
         cases[..N_CASES].iter().filter_map(ResponseCase::impact).collect()
     })
 }

@@ -142,7 +142,10 @@ fn a_vehicle_is_edited_in_a_form_and_the_answer_is_that_of_its_saved_file() {
     let VehicleChoice::Sheet(sheet) = &mut harness.state_mut().state_mut().project.vehicle else {
         panic!("a copy is in the form")
     };
-    assert_eq!(Some(&**sheet), DataSheet::of(&LibraryVehicle::ALL[0].parameters()).as_ref());
+    assert_eq!(
+        Some(&**sheet),
+        DataSheet::from_parameters(&LibraryVehicle::ALL[0].parameters()).as_ref()
+    );
     sheet.set(SheetQuantity::CgHeight, 0.6);
     let sheet = sheet.clone();
     step_until(&mut harness, "the edited vehicle", is_forecast);

@@ -43,7 +43,7 @@ fn film() -> Film {
         from_s: 0.2,
         to_s: 1.5,
         sections: vec![FilmSection { from_s: 0.4, to_s: 0.5, speed: 0.25 }],
-        ..FilmTiming::of_scene(&scene)
+        ..FilmTiming::from_scene(&scene)
     };
     let picture = ScenePicture {
         scene: Arc::new(scene),
@@ -252,7 +252,7 @@ fn the_window_films_the_cars_of_a_reconstruction() {
 /// Begins a film that takes long and cancels it, after which nothing of it is left.
 fn cancel_a_long_one(harness: &mut Harness<'_, App>, mut film: Film, path: &Path) {
     film.canvas.size_px = [1920, 1080];
-    film.timing = FilmTiming { frames_per_s: 120, ..FilmTiming::of_scene(&film.picture.scene) };
+    film.timing = FilmTiming { frames_per_s: 120, ..FilmTiming::from_scene(&film.picture.scene) };
     apply(harness, Command::SaveFilm(Box::new(film), path.to_owned()));
     harness.run_steps(2);
     apply(harness, Command::CancelFilm);

@@ -51,8 +51,8 @@ fn small() -> &'static Small {
             &mut go_on,
         )
         .expect("shipped data");
-        let (cases, _) = ForceCase::of_dataset(&dataset.complete().expect("nothing cancels"));
-        let set = TrainingSet::of_split("fea", &cases, 0, 0.25);
+        let (cases, _) = ForceCase::from_dataset(&dataset.complete().expect("nothing cancels"));
+        let set = TrainingSet::from_split("fea", &cases, 0, 0.25);
         let config = ForceConfig::load(&small.config()).expect("a good file");
         let settings = TrainSettings { config, seed: 0, checkpoint: None, resume: false };
         let model = train(&set, &settings, &mut |_| ControlFlow::Continue(())).expect("a model");

@@ -20,7 +20,7 @@ use nalgebra::DMatrix;
 fn cases() -> Vec<ForceCase> {
     let mut report = |_| ControlFlow::Continue(());
     let dataset = Dataset::load(Path::new("datasets/fea"), &mut report).expect("shipped data");
-    ForceCase::of_dataset(&dataset.complete().expect("nothing cancels")).0
+    ForceCase::from_dataset(&dataset.complete().expect("nothing cancels")).0
 }
 
 /// Returns a distribution around a curve in which the height and the tilt are uncertain.

@@ -158,7 +158,7 @@ fn a_run_that_is_cancelled_keeps_what_was_sampled() {
     let report = &answer.answer.report;
     assert_eq!(report.n_particles, 800);
     assert!(report.caveats.has(CaveatKind::FewParticles));
-    assert!(!answer.answer.particles.of_posterior());
+    assert!(!answer.answer.particles.is_posterior());
     assert!(harness.query_all_by_label_contains("temperature").count() > 0);
 }
 

@@ -254,7 +254,7 @@ fn closing_everything_leaves_an_empty_window_that_says_what_to_do() {
     harness.get_by_label("Open the shipped data").click();
     let shipped = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/datasets")).unwrap();
     let folders = shipped.map(|entry| entry.unwrap().path());
-    let n_shipped = folders.filter(|path| DatasetKind::of_folder(path).is_some()).count();
+    let n_shipped = folders.filter(|path| DatasetKind::from_folder(path).is_some()).count();
     step_until(&mut harness, "the shipped data", |state| {
         state.session.sources.len() == n_shipped && is_idle(state)
     });

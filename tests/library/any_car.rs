@@ -205,7 +205,7 @@ fn trajectories_of_a_car_narrow_its_bands_and_leave_other_cars_alone() {
             case
         })
         .collect();
-    let set = TrainingSet::of_split("van".to_owned(), &cases, 0, TEST_SHARE);
+    let set = TrainingSet::from_split("van".to_owned(), &cases, 0, TEST_SHARE);
     let set = set.choose(Some(3), 0).expect("three trajectories");
     let told = condition(&model, &set).expect("a conditioned network");
     let known = told.known_car(&cases[0].vehicle).expect("a known car");
@@ -235,7 +235,7 @@ fn slippery_car(mass_kg: f64, grip: f64) -> Vec<ResponseCase> {
         let initial = VehicleState { yaw_rate_rad_s, ..VehicleState::driving_straight(20.0) };
         let inputs = struck([0.0, 2.5], &vehicle, 200);
         let states = rollout(&truth, initial, &inputs, |_, _| [0.0; 4]);
-        ResponseCase::of_motion(yaw_rate_rad_s.to_string(), vehicle.clone(), states, inputs)
+        ResponseCase::from_motion(yaw_rate_rad_s.to_string(), vehicle.clone(), states, inputs)
     };
     [0.3, -0.6, 0.9].map(motion).into()
 }

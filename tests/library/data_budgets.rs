@@ -235,14 +235,14 @@ fn a_motion_or_a_log_of_ten_days_is_refused() {
     let Opened::Dataset(dataset) = opened.complete().unwrap() else { panic!("a data set") };
     assert_eq!(dataset.cases.len(), 1, "{:?}", dataset.problems);
     let vehicle = Preset::Reference.parameters();
-    let (cases, problems) = ResponseCase::of_dataset(&dataset, &vehicle);
+    let (cases, problems) = ResponseCase::from_dataset(&dataset, &vehicle);
     assert!(cases.is_empty());
     let message = problems[0].to_string();
     assert_eq!(message, "case FE_c001: lasts 900000 s, expected 3600 s or less; check its time");
     let series = read_motion_log(&path, None).unwrap().series;
     let log = MotionLog { path, series };
     let settings = LogSettings { vehicle, impact_s: None, duration_s: 4.0 };
-    let error = LoggedImpact::of(&log, None, &settings).unwrap_err();
+    let error = LoggedImpact::from_log(&log, None, &settings).unwrap_err();
     let message = error.to_string();
     assert!(
         message.ends_with(

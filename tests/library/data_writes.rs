@@ -173,19 +173,19 @@ fn any_name_that_a_file_may_have_can_be_written() {
 fn a_second_writer_is_told_who_the_first_one_is() {
     let here = folder();
     let path = here.path().join("model.training");
-    let first = WriterLock::of_file(&path).unwrap();
-    let second = WriterLock::of_file(&path).unwrap_err().to_string();
+    let first = WriterLock::lock_file(&path).unwrap();
+    let second = WriterLock::lock_file(&path).unwrap_err().to_string();
     assert!(second.contains(&format!("process {} is writing it", std::process::id())), "{second}");
     drop(first);
     assert!(names(here.path()).is_empty());
     // What a killed writer leaves stands in nobody's way.
     fs::write(here.path().join(".model.training.impactlab-lock"), "12345").unwrap();
-    drop(WriterLock::of_file(&path).unwrap());
+    drop(WriterLock::lock_file(&path).unwrap());
     assert!(names(here.path()).is_empty());
     // A link in place of the lock file is not followed.
     fs::write(here.path().join("victim"), "kept").unwrap();
     symlink("victim", here.path().join(".model.training.impactlab-lock")).unwrap();
-    assert!(WriterLock::of_file(&path).is_err());
+    assert!(WriterLock::lock_file(&path).is_err());
     assert_eq!(fs::read_to_string(here.path().join("victim")).unwrap(), "kept");
 }
 

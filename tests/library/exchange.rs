@@ -114,7 +114,7 @@ fn surveyed() -> (SimulateAnswer, Scene) {
 #[test]
 fn a_clock_from_1970_and_survey_coordinates_keep_their_precision() {
     let (answer, scene) = surveyed();
-    let frame = GltfFrame::of(&scene);
+    let frame = GltfFrame::new(&scene);
     assert_eq!((frame.start_s, frame.origin_m), (1.7e9, [512_000.0, 5_423_000.0]));
     let notes = frame.notes().join("\n");
     for part in ["time 0 of the animation is 1700000000 s", "X 512000 m, Y 5423000 m"] {

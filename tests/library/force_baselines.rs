@@ -14,7 +14,7 @@ use impactlab_networks::learning::{TEST_SHARE, split};
 fn shipped_cases() -> Vec<ForceCase> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea");
     let loaded = Dataset::load(&root, &mut |_| ControlFlow::Continue(())).expect("a data set");
-    let (cases, problems) = ForceCase::of_dataset(&loaded.complete().expect("not cancelled"));
+    let (cases, problems) = ForceCase::from_dataset(&loaded.complete().expect("not cancelled"));
     assert!(problems.is_empty(), "{problems:?}");
     cases
 }
@@ -26,7 +26,7 @@ fn evaluation(columns: ColumnSet) -> Evaluation {
     let split = split(&cases, 0, TEST_SHARE);
     let pick = |part: &[usize]| part.iter().map(|idx| &cases[*idx]).collect::<Vec<_>>();
     let (train, test) = (pick(&split.train), pick(&split.test));
-    let truth = test.iter().map(|case| CurvePrediction::of_curve(case.curve.clone()));
+    let truth = test.iter().map(|case| CurvePrediction::from_curve(case.curve.clone()));
     let settings = EvaluationSettings { columns, ..EvaluationSettings::default() };
     let mut report = |_| ControlFlow::Continue(());
     let parts = (train.as_slice(), test.as_slice());
@@ -93,7 +93,7 @@ fn an_evaluation_can_be_cancelled_and_needs_a_prediction_a_case() {
     let cases = shipped_cases();
     let some: Vec<&ForceCase> = cases.iter().take(8).collect();
     let truth: Vec<_> =
-        some.iter().map(|case| CurvePrediction::of_curve(case.curve.clone())).collect();
+        some.iter().map(|case| CurvePrediction::from_curve(case.curve.clone())).collect();
     let settings = EvaluationSettings::default();
     let mut stop = |_| ControlFlow::Break(());
     let parts = (some.as_slice(), some.as_slice());

@@ -34,7 +34,7 @@ fn cases(name: &str) -> Vec<ForceCase> {
 /// Quantiles of the size of the impulse, N s.
 fn impulse_quantiles(prediction: &ForcePrediction, levels: [f64; 3]) -> [f64; 3] {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
-    let drawn = CurveQuantities::of(&prediction.mixture.sample(N_DRAWS, &mut rng));
+    let drawn = CurveQuantities::from_curves(&prediction.mixture.sample(N_DRAWS, &mut rng));
     let mut sizes = drawn.impulse_magnitude_n_s();
     sizes.sort_by(f64::total_cmp);
     levels.map(|level| sizes[(level * (N_DRAWS - 1) as f64).round() as usize])

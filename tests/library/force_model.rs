@@ -26,7 +26,7 @@ fn set() -> &'static ForceTrainingSet {
         let mut go_on = |_| ControlFlow::Continue(());
         let cases = ForceCase::load_all(&root, &mut go_on).expect("the shipped data can be read");
         let cases = cases.complete().expect("nothing cancels");
-        ForceTrainingSet::of_split("fea", &cases[..N_CASES], 3, 0.25)
+        ForceTrainingSet::from_split("fea", &cases[..N_CASES], 3, 0.25)
     })
 }
 

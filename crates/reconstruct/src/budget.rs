@@ -51,7 +51,7 @@ impl Narrowing {
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|a, b| quantity[*a].total_cmp(&quantity[*b]));
         let sorted: Vec<f64> = order.iter().map(|idx| quantity[*idx]).collect();
-        let now = Spread::of(&sorted, &vec![1.0; n])?;
+        let now = Spread::from_sorted(&sorted, &vec![1.0; n])?;
         let mut rng = random_stream(seed, "evidence budget", 0);
         let n_outcomes = N_OUTCOMES.min(n);
         let mut then = Vec::with_capacity(n_outcomes);
@@ -62,7 +62,7 @@ impl Narrowing {
             let ln_weight = |idx: &usize| -((measured - x[*idx]) / std_x).powi(2) / 2.0;
             let weights: Vec<f64> = order.iter().map(|idx| ln_weight(idx).exp()).collect();
             // An outcome so far from every particle that all weights vanish says nothing.
-            then.extend(Spread::of(&sorted, &weights));
+            then.extend(Spread::from_sorted(&sorted, &weights));
         }
         let mean =
             |of: &dyn Fn(&Spread) -> f64| then.iter().map(of).sum::<f64>() / then.len() as f64;
@@ -93,7 +93,7 @@ struct Spread {
 }
 
 impl Spread {
-    fn of(sorted: &[f64], weights: &[f64]) -> Option<Self> {
+    fn from_sorted(sorted: &[f64], weights: &[f64]) -> Option<Self> {
         let at = |probability| quantile_of_weighted(sorted, weights, probability);
         let [sum, square] =
             weights.iter().fold([0.0; 2], |[s, q], weight| [s + weight, q + weight * weight]);

@@ -101,7 +101,7 @@ pub struct RankedQuantity {
 
 impl RankedQuantity {
     /// A quantity that is a function of z.
-    pub fn of(
+    pub fn new(
         particles: &Particles,
         truth: &[f64],
         u: f64,
@@ -144,7 +144,7 @@ mod tests {
             let target = Function { dim: 3, log_likelihood };
             let particles = sample(&target, &settings, None, &mut |_| ControlFlow::Continue(()))?;
             let mut ranked = |quantity: &dyn Fn(&[f64]) -> f64| {
-                RankedQuantity::of(&particles, &truth, rng.random(), quantity)
+                RankedQuantity::new(&particles, &truth, rng.random(), quantity)
             };
             Ok::<_, crate::sampler::SamplerError>(vec![
                 ranked(&|z| z[0]),

@@ -35,14 +35,14 @@ impl Cars {
     ///
     /// - `struck`, `striking`: vehicles whose values stand in where the evidence gives none; without
     ///   one, those of a data sheet of any car.
-    pub fn of(
+    pub fn new(
         evidence: &Evidence,
         struck: Option<&VehicleParameters>,
         striking: Option<&VehicleParameters>,
     ) -> Self {
         Self {
-            struck: Car::of(&evidence.struck_car, struck),
-            striking: Car::of(&evidence.striking_car, striking),
+            struck: Car::new(&evidence.struck_car, struck),
+            striking: Car::new(&evidence.striking_car, striking),
         }
     }
 
@@ -67,7 +67,7 @@ impl Cars {
 }
 
 impl Car {
-    fn of(evidence: &CarEvidence, vehicle: Option<&VehicleParameters>) -> Self {
+    fn new(evidence: &CarEvidence, vehicle: Option<&VehicleParameters>) -> Self {
         let sheet = match vehicle {
             None => DataSheet::new("car", VehicleClass::Any),
             Some(vehicle) => match &vehicle.sheet {
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn the_mass_of_a_car_is_known_by_scale_by_size_or_hardly() {
-        let scatter = |evidence: &CarEvidence| Car::of(evidence, None).mass_scatter();
+        let scatter = |evidence: &CarEvidence| Car::new(evidence, None).mass_scatter();
         let weighed = crate::evidence::Measured { value: 1500.0, sigma: 30.0 };
         let weighed = CarEvidence { mass_kg: Some(weighed), ..CarEvidence::default() };
         assert_eq!(scatter(&weighed), None);

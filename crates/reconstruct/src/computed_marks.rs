@@ -46,10 +46,10 @@ impl CollisionMotion {
 impl MarkComparison {
     /// Each mark that was found beside the computed marks, in the order of the found ones.
     pub fn all(found: &[Mark], computed: &[TireMark]) -> Vec<Self> {
-        found.iter().map(|mark| Self::of(mark, computed)).collect()
+        found.iter().map(|mark| Self::new(mark, computed)).collect()
     }
 
-    fn of(found: &Mark, computed: &[TireMark]) -> Self {
+    fn new(found: &Mark, computed: &[TireMark]) -> Self {
         let places = places_along(&found.points_m);
         let of_wheel = computed.iter().filter(|mark| mark.wheel == found.wheel);
         let compared = of_wheel.map(|mark| {

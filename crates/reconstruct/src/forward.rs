@@ -83,7 +83,7 @@ struct Prepared {
 impl ForwardModel {
     /// The model of a case.
     pub fn new(evidence: &Evidence, cars: Cars) -> Self {
-        let prior = Prior::of(evidence, &cars);
+        let prior = Prior::new(evidence, &cars);
         let side = evidence.damage.side;
         let of = |pose: &Option<_>| {
             pose.as_ref().map(|pose: &crate::evidence::RestPose| pose.x_m.hypot(pose.y_m))

@@ -33,7 +33,7 @@ fn evidence() -> Evidence {
 }
 
 fn target(evidence: &Evidence) -> ReconstructionTarget {
-    let model = ForwardModel::new(evidence, Cars::of(evidence, None, None));
+    let model = ForwardModel::new(evidence, Cars::new(evidence, None, None));
     ReconstructionTarget::new(evidence.clone(), model, Discrepancy::default())
 }
 
@@ -111,7 +111,7 @@ fn one_scale_that_weighed_both_cars_errs_for_both_alike() {
 #[test]
 fn every_distribution_says_who_gave_it() {
     let source_of = |evidence: &Evidence, vehicle: Option<&VehicleParameters>, latent: Latent| {
-        let prior = Prior::of(evidence, &Cars::of(evidence, vehicle, vehicle));
+        let prior = Prior::new(evidence, &Cars::new(evidence, vehicle, vehicle));
         let of_latent = prior.components().iter().find(|of| of.latent == latent);
         of_latent.map(|of| of.source)
     };
@@ -240,7 +240,7 @@ fn cars_that_draw_apart_are_no_explanation_of_damage() {
 #[test]
 fn the_wheels_stand_on_the_zones_of_the_ground() {
     let evidence = evidence();
-    let cars = Cars::of(&evidence, None, None);
+    let cars = Cars::new(&evidence, None, None);
     let road = ForwardModel::new(&evidence, cars.clone());
     let border_m = vec![[10.0, -40.0], [200.0, -40.0], [200.0, 40.0], [10.0, 40.0]];
     let ice = FrictionZone { name: "ice".to_owned(), border_m, friction: 0.2 };

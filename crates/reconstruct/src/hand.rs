@@ -49,7 +49,7 @@ impl HandCalculation {
     /// The speeds of a case; `None` if its rest position is not known.
     ///
     /// - `zones`: parts of the ground with their own friction.
-    pub fn of(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) -> Option<Self> {
+    pub fn new(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) -> Option<Self> {
         let rest = evidence.rest?;
         let distance_m = rest.x_m.hypot(rest.y_m);
         let road = evidence
@@ -154,23 +154,23 @@ mod tests {
         "#;
         let file = TomlFile { path: std::path::Path::new("case.toml"), text };
         let mut evidence = Evidence::from_toml(file).unwrap();
-        let cars = Cars::of(&evidence, None, None);
-        let hand = HandCalculation::of(&evidence, &cars, &[]).unwrap().struck_speed_m_s;
+        let cars = Cars::new(&evidence, None, None);
+        let hand = HandCalculation::new(&evidence, &cars, &[]).unwrap().struck_speed_m_s;
         let expected = (2.0 * 9.806_65 * 0.7 * 0.8 * 30.0_f64).sqrt();
         assert!((hand.value - expected).abs() < 1e-6, "{hand:?}, expected {expected}");
         // A recorder that is as good moves it half way, and narrows it.
         evidence.edr.speed_before_m_s = Some(Measured { value: expected + 1.0, ..hand });
-        let both = HandCalculation::of(&evidence, &cars, &[]).unwrap().struck_speed_m_s;
+        let both = HandCalculation::new(&evidence, &cars, &[]).unwrap().struck_speed_m_s;
         assert!((both.value - expected - 0.5).abs() < 1e-6, "{both:?}");
         assert!((both.sigma * 2_f64.sqrt() / hand.sigma - 1.0).abs() < 1e-9, "{both:?}");
         // The second half of the way on ice takes the friction that both halves have on the average.
         evidence.edr.speed_before_m_s = None;
         let border_m = vec![[15.0, -5.0], [40.0, -5.0], [40.0, 5.0], [15.0, 5.0]];
         let ice = FrictionZone { name: "ice".to_owned(), border_m, friction: 0.1 };
-        let icy = HandCalculation::of(&evidence, &cars, &[ice]).unwrap().struck_speed_m_s;
+        let icy = HandCalculation::new(&evidence, &cars, &[ice]).unwrap().struck_speed_m_s;
         let share = (0.4_f64 / 0.7).sqrt();
         assert!((icy.value / expected - share).abs() < 1e-6, "{icy:?}, expected {share} of it");
         evidence.rest = None;
-        assert_eq!(HandCalculation::of(&evidence, &cars, &[]), None);
+        assert_eq!(HandCalculation::new(&evidence, &cars, &[]), None);
     }
 }

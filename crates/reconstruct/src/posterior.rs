@@ -35,7 +35,7 @@ macro_rules! quantities {
             }
 
             /// Its value of a particle.
-            pub fn of(self, values: &LatentValues, impact: &ImpactState) -> f64 {
+            pub fn value(self, values: &LatentValues, impact: &ImpactState) -> f64 {
                 let of: fn(&LatentValues, &ImpactState) -> f64 = match self { $(Self::$name => $of),+ };
                 of(values, impact)
             }
@@ -183,22 +183,22 @@ const FIT_PARTICLES: usize = 300;
 
 impl Posterior {
     /// What follows from particles.
-    pub fn of(struck: &ReconstructionTarget, particles: &Particles) -> Self {
-        Self::of_points(struck.model(), &particles.z)
+    pub fn new(struck: &ReconstructionTarget, particles: &Particles) -> Self {
+        Self::from_points(struck.model(), &particles.z)
     }
 
     /// What follows from points.
     ///
     /// - `z`: standard normal variables of each point, `[n][dim]`.
-    pub fn of_points(model: &ForwardModel, z: &[Vec<f64>]) -> Self {
+    pub fn from_points(model: &ForwardModel, z: &[Vec<f64>]) -> Self {
         let values: Vec<LatentValues> = z.iter().map(|z| model.prior().values(z)).collect();
         let impacts = values.iter().map(|values| model.impact(values)).collect();
         Self { values, impacts }
     }
 
     /// Values of a quantity, one for each particle.
-    pub fn of_quantity(&self, quantity: ReconstructedQuantity) -> Vec<f64> {
-        self.values.iter().zip(&self.impacts).map(|(v, impact)| quantity.of(v, impact)).collect()
+    pub fn values(&self, quantity: ReconstructedQuantity) -> Vec<f64> {
+        self.values.iter().zip(&self.impacts).map(|(v, impact)| quantity.value(v, impact)).collect()
     }
 
     /// The interval that holds 90 % of a quantity that the motion depends on; `None` where the case does
@@ -221,7 +221,7 @@ impl Posterior {
     ) -> Option<usize> {
         let speed = ReconstructedQuantity::StruckSpeed;
         let median = quantities.iter().find(|of| of.name == speed.key())?.estimate.median;
-        let speeds = self.of_quantity(speed);
+        let speeds = self.values(speed);
         let off = |idx: &usize| speeds.get(*idx).map_or(f64::INFINITY, |v| (v - median).abs());
         members.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
     }
@@ -233,8 +233,8 @@ impl Posterior {
 
     fn quantities_of(&self, chosen: &[usize]) -> Vec<QuantityEstimate> {
         let of = |quantity: &ReconstructedQuantity| {
-            let value = |&idx: &usize| quantity.of(&self.values[idx], &self.impacts[idx]);
-            QuantityEstimate::of(*quantity, chosen.iter().map(value).collect())
+            let value = |&idx: &usize| quantity.value(&self.values[idx], &self.impacts[idx]);
+            QuantityEstimate::from_values(*quantity, chosen.iter().map(value).collect())
         };
         ReconstructedQuantity::ALL.iter().filter_map(of).collect()
     }
@@ -264,9 +264,9 @@ impl Posterior {
     ///
     /// - `(ess, seed)`: effective sample size of the particles, seed of the errors of measurements.
     pub fn budget(&self, (ess, seed): (f64, u64)) -> Vec<BudgetItem> {
-        let speeds = self.of_quantity(ReconstructedQuantity::StruckSpeed);
+        let speeds = self.values(ReconstructedQuantity::StruckSpeed);
         let latent = |latent: Latent| self.values.iter().map(|v| v.get(latent)).collect::<Vec<_>>();
-        let quantity = |quantity: ReconstructedQuantity| self.of_quantity(quantity);
+        let quantity = |quantity: ReconstructedQuantity| self.values(quantity);
         [
             ("road_friction", 0.02, latent(Latent::RoadFriction)),
             ("tire_friction_factor", 0.02, latent(Latent::TireFrictionFactor)),
@@ -346,7 +346,7 @@ impl QuantityEstimate {
     }
 
     /// Intervals of equally likely values; `None` without values.
-    fn of(quantity: ReconstructedQuantity, mut values: Vec<f64>) -> Option<Self> {
+    fn from_values(quantity: ReconstructedQuantity, mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
         Self::by(quantity, |share| quantile_of_sorted(&values, share))
     }

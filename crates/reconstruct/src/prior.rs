@@ -97,7 +97,7 @@ const SLIDING_SCATTER: f64 = 0.08;
 
 impl Prior {
     /// The prior of a case.
-    pub fn of(evidence: &Evidence, cars: &Cars) -> Self {
+    pub fn new(evidence: &Evidence, cars: &Cars) -> Self {
         let is_pit = cars.is_hit_behind_cg(evidence);
         let mut prior = Self { components: Vec::new(), fixed: LatentValues::NONE, is_pit };
         prior.add_speeds(evidence);

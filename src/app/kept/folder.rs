@@ -125,7 +125,7 @@ impl KeptFolder {
 
     fn check_content(&self, entry: &KeptEntry) -> Result<(), KeptError> {
         let path = self.path_of(entry);
-        let got = FileDigest::of("", &path).map_err(|error| match error.kind() {
+        let got = FileDigest::from_file("", &path).map_err(|error| match error.kind() {
             std::io::ErrorKind::NotFound => KeptError::NoContent { path: path.clone() },
             _ => KeptError::io(&path)(error),
         })?;

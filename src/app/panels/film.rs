@@ -63,7 +63,7 @@ fn size_row(ui: &mut Ui, film: &mut Film) {
 }
 
 fn timing_rows(ui: &mut Ui, film: &mut Film) {
-    let FilmTiming { from_s, to_s, .. } = FilmTiming::of_scene(&film.picture.scene);
+    let FilmTiming { from_s, to_s, .. } = FilmTiming::from_scene(&film.picture.scene);
     let instants = INSTANT.within([from_s, to_s]);
     let timing = &mut film.timing;
     let name = ui.label("Frames per second");

@@ -338,7 +338,7 @@ fn bare_figure<'a>(
     (answer, caveats): (&'a MotionAnswer, &'a Caveats),
     shown: (f64, UnitSystem),
 ) -> MotionForecastFigure<'a> {
-    MotionForecastFigure::of(&answer.answer, (&answer.bands, caveats), shown)
+    MotionForecastFigure::new(&answer.answer, (&answer.bands, caveats), shown)
 }
 
 /// The motion by the 4DOF model, if there is one.

@@ -210,7 +210,7 @@ fn export_menu_ui(
     ] {
         if ui.add(icon_button(icon, label)).clicked() {
             let ScenePicture { scene, time_s, .. } = exported().0;
-            let outlines_s = vec![FilmTiming::of_scene(&scene).from_s, time_s, scene.end_s];
+            let outlines_s = vec![FilmTiming::from_scene(&scene).from_s, time_s, scene.end_s];
             let export = SceneExport { scene, format, outlines_s };
             commands.push(Command::Ask(Purpose::Exchange(Box::new(export))));
         }

@@ -184,7 +184,7 @@ pub(super) fn evidence_vehicle_ui(
 fn edited_copy(choice: &VehicleChoice, default: &VehicleParameters) -> Result<DataSheet, String> {
     let chosen = choice.chosen().map_err(|error| error_chain(&error))?;
     let vehicle = chosen.as_ref().unwrap_or(default);
-    DataSheet::of(vehicle).ok_or_else(|| {
+    DataSheet::from_parameters(vehicle).ok_or_else(|| {
         format!("no data sheet leads to all parameters of {}: edit its file instead", vehicle.name)
     })
 }

@@ -40,7 +40,7 @@ fn particles(sampling: &Sampling<'_>) -> LiveParticles {
     let model = target.model();
     let speed = |z: &Vec<f64>| {
         let values = model.prior().values(z);
-        ReconstructedQuantity::StruckSpeed.of(&values, &model.impact(&values))
+        ReconstructedQuantity::StruckSpeed.value(&values, &model.impact(&values))
     };
     let mut speeds: Vec<f64> = z.iter().map(speed).collect();
     speeds.sort_by(f64::total_cmp);

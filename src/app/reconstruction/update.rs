@@ -50,8 +50,8 @@ impl EvidencePreview {
                 None
             })
         });
-        let cars = Cars::of(evidence, struck.as_ref(), striking.as_ref());
-        let prior = Prior::of(evidence, &cars);
+        let cars = Cars::new(evidence, struck.as_ref(), striking.as_ref());
+        let prior = Prior::new(evidence, &cars);
         let prior = if site.is_some() { prior.with_zones() } else { prior };
         let priors = prior.components().to_vec();
         Self { evidence: evidence.clone(), chosen, site, problem, cars, priors }

@@ -93,7 +93,7 @@ pub(in crate::cli) fn run(
     write(args, (format, &built))?;
     let mut notes = built.notes.clone();
     if format == FormatArg::Glb {
-        notes.extend(GltfFrame::of(&built.scene).notes());
+        notes.extend(GltfFrame::new(&built.scene).notes());
     }
     let (out, title, notes) = (&args.out, &built.scene.title, notes.as_slice());
     if console.json {

@@ -131,7 +131,7 @@ pub(in crate::cli) fn run(
 ) -> Result<Verdict, CliError> {
     let ending = ending.ending()?;
     let says_itself = args.trajectory.is_some()
-        || args.dataset.as_deref().and_then(DatasetKind::of_folder)
+        || args.dataset.as_deref().and_then(DatasetKind::from_folder)
             == Some(DatasetKind::Trajectory);
     if says_itself && ending.is_some() {
         return Err(CliError::EndingOfDataset);

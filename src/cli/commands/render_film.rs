@@ -167,7 +167,7 @@ fn reconstruction(
 
 /// The instants of the film; an end just after the motion is moved to its end, which is noted.
 fn timing(args: &FilmArgs, scene: &Scene, notes: &mut Vec<String>) -> FilmTiming {
-    let whole = FilmTiming::of_scene(scene);
+    let whole = FilmTiming::from_scene(scene);
     let asked = FilmTiming {
         frames_per_s: args.fps,
         from_s: args.from.unwrap_or(whole.from_s),

@@ -99,7 +99,8 @@ pub(super) fn figure(
     let input = MotionForecastFigure {
         density: Some(&density),
         components: true,
-        ..MotionForecastFigure::of(&answer, (&bands, caveats), (at_s, units)).with_motions(analysis)
+        ..MotionForecastFigure::new(&answer, (&bands, caveats), (at_s, units))
+            .with_motions(analysis)
     };
     let wanted = args.channel.map(Channel::from);
     let channel = FORECAST_CHANNELS.into_iter().find(|of| Some(of.channel) == wanted);

@@ -97,7 +97,7 @@ pub(super) fn figure(
                 let end_s = built.end_s;
                 ShownScene::fitted(built, end_s, view)
             });
-            reconstruction_scene_figure(&ReconstructionScene::of(answer, &paths), caveats, units)
+            reconstruction_scene_figure(&ReconstructionScene::new(answer, &paths), caveats, units)
         }
     };
     Ok(((figure, notes), cars))
@@ -144,7 +144,7 @@ impl Reconstructed {
 
     fn cars(&self, paths: &ReconstructedPaths, units: UnitSystem) -> Scene {
         let parts =
-            ReconstructionParts::of((&self.answer, paths), units, &self.answer.report.caveats);
+            ReconstructionParts::new((&self.answer, paths), units, &self.answer.report.caveats);
         let built = reconstruction_scene(&parts);
         Scene { ground: self.ground.as_ref().map(|of| Arc::clone(&of.ground)), ..built }
     }

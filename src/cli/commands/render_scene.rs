@@ -184,7 +184,7 @@ impl BuiltScene {
 
     /// The first instant of the motion, s.
     pub(super) fn start_s(&self) -> f64 {
-        FilmTiming::of_scene(&self.scene).from_s
+        FilmTiming::from_scene(&self.scene).from_s
     }
 }
 

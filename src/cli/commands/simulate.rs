@@ -197,7 +197,7 @@ pub(in crate::cli) fn run(
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     match (&args.dataset, &args.case) {
-        (Some(root), Some(case)) if DatasetKind::of_folder(root) == Some(DatasetKind::Force) => {
+        (Some(root), Some(case)) if DatasetKind::from_folder(root) == Some(DatasetKind::Force) => {
             let source = MotionSource::Case { dataset: root.clone(), case: case.clone() };
             simulate_one(args, source, console)
         }

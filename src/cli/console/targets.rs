@@ -87,7 +87,7 @@ impl Targets {
     /// why.
     fn digest(&mut self, files: &[PathBuf]) {
         for path in files {
-            let digest = FileDigest::of(path.to_string_lossy(), path).ok();
+            let digest = FileDigest::from_file(path.to_string_lossy(), path).ok();
             let inputs = &mut self.record.inputs;
             inputs.extend(digest.filter(|of| !inputs.contains(of)));
         }

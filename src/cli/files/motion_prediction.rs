@@ -48,7 +48,7 @@ pub(in crate::cli) fn write_motion_prediction(
         density: Some(&density),
         components: true,
         reference: answer.analysis.reference.as_ref(),
-        ..MotionForecastFigure::of(answer, (&bands, &caveats), shown)
+        ..MotionForecastFigure::new(answer, (&bands, &caveats), shown)
     };
     let mut figures = vec![("scene".to_owned(), forecast_scene_figure(&input))];
     for channel in FORECAST_CHANNELS {

@@ -32,7 +32,7 @@ pub(in crate::cli) fn write_reconstruction(
         .collect();
     let rows = (0..posterior.values.len()).map(|idx| {
         let (values, impact) = (&posterior.values[idx], &posterior.impacts[idx]);
-        let asked = quantities.iter().map(|quantity| quantity.of(values, impact));
+        let asked = quantities.iter().map(|quantity| quantity.value(values, impact));
         let open = open.iter().map(|latent| values.get(*latent));
         asked
             .chain(open)

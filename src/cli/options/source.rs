@@ -63,7 +63,7 @@ impl SourceArgs {
         }
         match &self.case {
             Some(case) => Ok(MotionSource::Case { dataset: path, case: case.clone() }),
-            None if DatasetKind::of_folder(&path).is_some() => Err(CliError::CaseNeeded { path }),
+            None if DatasetKind::from_folder(&path).is_some() => Err(CliError::CaseNeeded { path }),
             None => Err(DataError::NotRecognised { path }.into()),
         }
     }

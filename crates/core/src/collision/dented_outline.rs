@@ -32,7 +32,7 @@ impl DentedOutlines {
     /// Divides the overlap of two outlines; `None` if they do not cross at exactly two places.
     ///
     /// - `share_of_first`: share q of the penetration that the first vehicle takes, 0 to 1.
-    pub fn of([first, second]: [(&Footprint, &Pose); 2], share_of_first: f64) -> Option<Self> {
+    pub fn new([first, second]: [(&Footprint, &Pose); 2], share_of_first: f64) -> Option<Self> {
         let [a, b] = [first, second].map(|(footprint, pose)| footprint.corners_m(pose));
         let [p, q] = crossings(&a, &b)?;
         let (inside_a, outside_a) = parts(&a, [p.on_first, q.on_first], &b)?;
@@ -159,9 +159,9 @@ mod tests {
             (pose(1.0, 2.0, 70.0), pose(-0.5, -0.6, -10.0)),
         ] {
             let cars = [(&CAR, &struck), (&CAR, &striking)];
-            let none = DentedOutlines::of(cars, 0.0).unwrap();
-            let all = DentedOutlines::of(cars, 1.0).unwrap();
-            let half = DentedOutlines::of(cars, 0.5).unwrap();
+            let none = DentedOutlines::new(cars, 0.0).unwrap();
+            let all = DentedOutlines::new(cars, 1.0).unwrap();
+            let half = DentedOutlines::new(cars, 0.5).unwrap();
             let overlap_m2 = car_m2 - area_m2(&all.outlines_m[0]);
             assert!(overlap_m2 > 0.01, "{struck:?}: overlap of {overlap_m2} m²");
             assert!((area_m2(&none.outlines_m[0]) - car_m2).abs() < 1e-2, "{struck:?}");
@@ -181,7 +181,7 @@ mod tests {
         let (struck, apart, inside) =
             (pose(0.0, 0.0, 0.0), pose(0.0, 5.0, 0.0), pose(0.0, 0.0, 90.0));
         for other in [apart, inside] {
-            assert_eq!(DentedOutlines::of([(&CAR, &struck), (&CAR, &other)], 0.5), None);
+            assert_eq!(DentedOutlines::new([(&CAR, &struck), (&CAR, &other)], 0.5), None);
         }
     }
 }

@@ -306,7 +306,7 @@ impl<T: Scalar> Impact<T> {
             let zero = T::from(0.0);
             return Ok(self.apply([zero, zero], closing, Regime::NotApproaching));
         }
-        let line = RestitutionLine::of(self);
+        let line = RestitutionLine::new(self);
         let (p_t, regime) = line.tangential_impulse_n_s(&self.surface)?;
         let p = [line.normal_impulse_n_s(p_t), p_t];
         let (p, regime) = match self.surface.restitution_form {
@@ -332,7 +332,7 @@ impl<T: Scalar> Impact<T> {
     /// Returns `None` if the contact points do not approach each other, or if they slide whatever
     /// the friction, since the solution without sliding would need a pull along the normal.
     pub fn critical_impulse_ratio(&self) -> Option<T> {
-        let line = RestitutionLine::of(self);
+        let line = RestitutionLine::new(self);
         let p_t = line.no_slide_impulse_n_s();
         let p_n = line.normal_impulse_n_s(p_t);
         (self.closing_velocity_m_s()[0].re() > 0.0 && p_n.re() > 0.0).then(|| (p_t / p_n).abs())

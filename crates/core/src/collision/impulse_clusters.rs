@@ -33,12 +33,12 @@ pub struct ImpulseClusters {
 impl ImpulseFeatures {
     /// Computes the features of a force history. The contact lasts from the first to the last
     /// contact force ([`contact_interval`]). Returns `None` if all forces are zero.
-    pub fn of(history: &ForceHistory) -> Option<Self> {
+    pub fn from_history(history: &ForceHistory) -> Option<Self> {
         let (from_s, to_s) = contact_interval(history)?;
         let [px, py] = history.impulse_n_s();
         let samples = history.time_s.iter().zip(history.fx_n.iter().zip(&history.fy_n));
         let in_contact = samples.filter(|(time_s, _)| (from_s..=to_s).contains(*time_s));
-        let magnitude = Summary::of(in_contact.map(|(_, (x, y))| x.hypot(*y)))?;
+        let magnitude = Summary::from_values(in_contact.map(|(_, (x, y))| x.hypot(*y)))?;
         Some(Self {
             impulse_x_n_s: px,
             impulse_y_n_s: py.abs(),
@@ -76,7 +76,7 @@ impl ImpulseClusters {
     }
 
     /// Index of the cluster whose centre is nearest to the features of a collision.
-    pub fn of(&self, features: &ImpulseFeatures) -> usize {
+    pub fn nearest(&self, features: &ImpulseFeatures) -> usize {
         self.clusters.nearest(&features.row())
     }
 
@@ -107,8 +107,10 @@ mod tests {
         let dataset = Dataset::load(&root, &mut report).unwrap().complete().unwrap();
         let histories: Vec<ForceHistory> =
             dataset.cases.iter().map(|case| case.force_history().unwrap()).collect();
-        let features: Vec<ImpulseFeatures> =
-            histories.iter().map(|history| ImpulseFeatures::of(history).unwrap()).collect();
+        let features: Vec<ImpulseFeatures> = histories
+            .iter()
+            .map(|history| ImpulseFeatures::from_history(history).unwrap())
+            .collect();
         let clusters = ImpulseClusters::fit(&features, 0).unwrap();
         assert!((2..=6).contains(&clusters.n_clusters()));
         let impulses: Vec<f64> =
@@ -116,8 +118,9 @@ mod tests {
         assert!(impulses.is_sorted(), "{impulses:?}");
         for ((case, history), features) in dataset.cases.iter().zip(&histories).zip(&features) {
             let fy_n = history.fy_n.iter().map(|force| -force).collect();
-            let mirrored = ImpulseFeatures::of(&ForceHistory { fy_n, ..history.clone() }).unwrap();
-            assert_eq!(clusters.of(&mirrored), clusters.of(features), "{}", case.name);
+            let mirrored =
+                ImpulseFeatures::from_history(&ForceHistory { fy_n, ..history.clone() }).unwrap();
+            assert_eq!(clusters.nearest(&mirrored), clusters.nearest(features), "{}", case.name);
         }
         assert_eq!(clusters, ImpulseClusters::fit(&features, 0).unwrap());
     }

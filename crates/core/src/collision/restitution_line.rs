@@ -20,7 +20,7 @@ pub(super) struct RestitutionLine<T> {
 impl<T: Scalar> RestitutionLine<T> {
     /// The line of an impact; that of its compression, e = 0, if restitution starts at the common
     /// velocity.
-    pub(super) fn of(impact: &Impact<T>) -> Self {
+    pub(super) fn new(impact: &Impact<T>) -> Self {
         let k = impact.inverse_mass_1_kg();
         let normal = impact.surface.normal();
         let tangent = perpendicular(normal);

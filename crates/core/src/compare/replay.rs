@@ -268,19 +268,20 @@ pub fn replay_dataset(
 
 impl ErrorSummary {
     /// Summarises the cases for which `choose` returns true; `None` if there are none.
-    pub fn of<'a>(
+    pub fn from_replays<'a>(
         replays: impl IntoIterator<Item = &'a Replay>,
         choose: impl Fn(&Replay) -> bool,
     ) -> Option<Self> {
         let replays: Vec<&Replay> = replays.into_iter().filter(|replay| choose(replay)).collect();
         let errors = || replays.iter().map(|replay| &replay.error);
-        let of = |figure: &dyn Fn(&MotionError) -> f64| Summary::of(errors().map(figure));
-        let known =
-            |figure: fn(&MotionError) -> Option<f64>| Summary::of(errors().filter_map(figure));
+        let of = |figure: &dyn Fn(&MotionError) -> f64| Summary::from_values(errors().map(figure));
+        let known = |figure: fn(&MotionError) -> Option<f64>| {
+            Summary::from_values(errors().filter_map(figure))
+        };
         let average_error_m = of(&|error| error.average_error_m)?;
         let horizon = |index: usize| {
             let reached = errors().map(|error| error.horizon_error_m[index]);
-            Summary::of(reached.filter(|distance_m| !distance_m.is_nan()))
+            Summary::from_values(reached.filter(|distance_m| !distance_m.is_nan()))
         };
         Some(Self {
             average_error_m,

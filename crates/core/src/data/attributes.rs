@@ -27,7 +27,7 @@ pub struct Attributes {
 
 impl Attributes {
     /// Takes all rows of a table, in the order of the file.
-    pub(crate) fn of(table: &Table) -> Vec<Self> {
+    pub(crate) fn from_table(table: &Table) -> Vec<Self> {
         let (path, names) = (Arc::from(table.path()), Arc::from(table.header()));
         let value = |cell: Cow<'_, str>| match (table.dialect().number(&cell), cell) {
             (Some(number), _) => Some(Value::Number(number)),

@@ -229,7 +229,7 @@ impl Columns {
     /// [`DataError::NoSuchColumn`] if the mapping names a column that the table does not have,
     /// [`DataError::UnknownUnit`] if the unit of a mapped column does not measure its channel, and
     /// [`DataError::AmbiguousColumn`] if two headers name the same channel.
-    pub(crate) fn of(table: &Table, map: Option<&ColumnMap>) -> Result<Self, DataError> {
+    pub(crate) fn from_table(table: &Table, map: Option<&ColumnMap>) -> Result<Self, DataError> {
         let mut columns = Self::default();
         for (channel, source) in map.iter().flat_map(|map| map.iter()) {
             let column = mapped_column(table, channel, source)?;

@@ -75,7 +75,7 @@ pub fn check_contact_within(force: &ForceHistory, duration_s: f64) -> Result<(),
 
 /// Start and end of each contact pulse, s, in order of time; empty if the force is zero throughout.
 pub fn contact_pulses(force: &ForceHistory) -> Vec<(f64, f64)> {
-    let Some(signal) = ContactSignal::of(force) else {
+    let Some(signal) = ContactSignal::from_force(force) else {
         return Vec::new();
     };
     // Start, end and largest force.
@@ -106,7 +106,7 @@ struct ContactSignal {
 
 impl ContactSignal {
     /// `None` if the force is zero throughout.
-    fn of(force: &ForceHistory) -> Option<Self> {
+    fn from_force(force: &ForceHistory) -> Option<Self> {
         let (peak_n, _) = force.peak().filter(|(peak_n, _)| *peak_n > 0.0)?;
         let zero_n = CONTACT_SHARE_OF_PEAK * peak_n;
         let of = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x.hypot(*y)).collect();
@@ -179,7 +179,7 @@ pub fn contact_interval(force: &ForceHistory) -> Option<(f64, f64)> {
 /// Time of the last sample of a record that ends during the contact, s; `None` if the force has come
 /// to zero, or is zero throughout.
 pub fn cut_at_s(force: &ForceHistory) -> Option<f64> {
-    let signal = ContactSignal::of(force)?;
+    let signal = ContactSignal::from_force(force)?;
     let is_cut = signal.magnitude_n.last().is_some_and(|force_n| *force_n > signal.zero_n);
     force.time_s.last().copied().filter(|_| is_cut)
 }

@@ -116,7 +116,7 @@ impl DatasetKind {
 
     /// The kind of the data set in a folder, by the name of the subfolder that it has; `None` if
     /// the folder is no data set. A folder with both subfolders is a force data set.
-    pub fn of_folder(root: &Path) -> Option<Self> {
+    pub fn from_folder(root: &Path) -> Option<Self> {
         let is_there = |kind: &Self| root.join(kind.folder()).is_dir();
         Self::ALL.into_iter().find(is_there)
     }
@@ -163,7 +163,7 @@ impl Dataset {
         budget: &mut u64,
         report: &mut ProgressCallback<'_>,
     ) -> Result<Outcome<Self>, DataError> {
-        let kind = DatasetKind::of_folder(root)
+        let kind = DatasetKind::from_folder(root)
             .ok_or_else(|| DataError::NotRecognised { path: root.to_owned() })?;
         let table = Table::read_cases(&root.join(CASES_FILE))?;
         check_size(&table)?;
@@ -197,7 +197,7 @@ impl Dataset {
     /// data set has none.
     pub fn files(root: &Path) -> Vec<PathBuf> {
         let mut files = vec![root.join(CASES_FILE), root.join(VEHICLE_FILE)];
-        if let Some(kind) = DatasetKind::of_folder(root) {
+        if let Some(kind) = DatasetKind::from_folder(root) {
             let of_cases = std::fs::read_dir(root.join(kind.folder()));
             files.extend(of_cases.into_iter().flatten().flatten().map(|entry| entry.path()));
         }
@@ -267,7 +267,7 @@ fn named_rows(table: &Table, problems: &mut Vec<DataError>) -> Result<Vec<NamedR
     let column = case_idx + 1;
     let mut first_lines: BTreeMap<String, u64> = BTreeMap::new();
     let mut rows = Vec::new();
-    for (row_idx, attributes) in Attributes::of(table).into_iter().enumerate() {
+    for (row_idx, attributes) in Attributes::from_table(table).into_iter().enumerate() {
         let (path, line) = (|| table.path().to_owned(), attributes.line());
         let case = table.cell(row_idx, case_idx).into_owned();
         if !names_a_file(&case) {

@@ -228,7 +228,7 @@ fn read_table(path: &Path, map: Option<&ColumnMap>) -> Result<Table, DataError> 
 }
 
 fn columns_of(table: &Table, map: Option<&ColumnMap>) -> Result<Columns, DataError> {
-    Columns::of(table, map).map_err(|error| table.placed(error))
+    Columns::from_table(table, map).map_err(|error| table.placed(error))
 }
 
 fn load(

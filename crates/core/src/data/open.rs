@@ -39,7 +39,7 @@ pub fn open(path: &Path, report: &mut ProgressCallback<'_>) -> Result<Outcome<Op
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let is_table = path.file_name().is_some_and(|name| name == CASES_FILE);
-    if is_table && DatasetKind::of_folder(folder).is_some() {
+    if is_table && DatasetKind::from_folder(folder).is_some() {
         return open_folder(folder, report);
     }
     let loaded = read_any_series(path, None)?;
@@ -50,7 +50,7 @@ fn open_folder(
     root: &Path,
     report: &mut ProgressCallback<'_>,
 ) -> Result<Outcome<Opened>, DataError> {
-    if DatasetKind::of_folder(root).is_some() {
+    if DatasetKind::from_folder(root).is_some() {
         return Ok(Dataset::load(root, report)?.map(Opened::Dataset));
     }
     let roots = dataset_folders(root)?;
@@ -75,7 +75,7 @@ fn open_folder(
 /// # Errors
 /// [`DataError`] if the folder cannot be listed.
 fn dataset_folders(root: &Path) -> Result<Vec<PathBuf>, DataError> {
-    let is_dataset = |path: &PathBuf| DatasetKind::of_folder(path).is_some();
+    let is_dataset = |path: &PathBuf| DatasetKind::from_folder(path).is_some();
     let mut folders: Vec<PathBuf> = list_folder(root)?.into_iter().filter(is_dataset).collect();
     folders.sort();
     Ok(folders)

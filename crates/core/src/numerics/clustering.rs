@@ -143,7 +143,7 @@ impl Clusters {
         if let Some(row_idx) = rows.iter().position(is_bad) {
             return Err(ClusterError::Row { row_idx, expected });
         }
-        let column = |j: usize| Summary::of(rows.iter().map(|row| row[j]));
+        let column = |j: usize| Summary::from_values(rows.iter().map(|row| row[j]));
         let columns: Vec<Summary> = (0..expected).filter_map(column).collect();
         let inverse = |of: &Summary| if of.std > 0.0 { of.std.recip() } else { 0.0 };
         Ok(Self {

@@ -79,7 +79,7 @@ impl<S: Simd> Packed<S> {
     }
 
     #[inline(always)]
-    fn of(self, lanes: S::f64s) -> Self {
+    fn with_lanes(self, lanes: S::f64s) -> Self {
         Self { lanes, ..self }
     }
 }
@@ -92,7 +92,7 @@ macro_rules! operation {
 
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                self.of(self.simd.$of_simd(self.lanes, other.lanes))
+                self.with_lanes(self.simd.$of_simd(self.lanes, other.lanes))
             }
         }
 
@@ -101,7 +101,7 @@ macro_rules! operation {
 
             #[inline(always)]
             fn $method(self, other: f64) -> Self {
-                self.of(self.simd.$of_simd(self.lanes, self.simd.splat_f64s(other)))
+                self.with_lanes(self.simd.$of_simd(self.lanes, self.simd.splat_f64s(other)))
             }
         }
     };
@@ -117,7 +117,7 @@ impl<S: Simd> Neg for Packed<S> {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        self.of(self.simd.neg_f64s(self.lanes))
+        self.with_lanes(self.simd.neg_f64s(self.lanes))
     }
 }
 
@@ -141,7 +141,7 @@ impl<S: Simd> Elementary for Packed<S> {
         // In the unit of 2⁵² the digits of a number are those of a whole number.
         let digits = self.simd.transmute_u64s_f64s((self + (1023.0 + TWO_TO_52)).lanes);
         let shifted = self.simd.mul_u64s(digits, self.simd.splat_u64s(1 << 52));
-        self.of(self.simd.transmute_f64s_u64s(shifted))
+        self.with_lanes(self.simd.transmute_f64s_u64s(shifted))
     }
 }
 
@@ -156,12 +156,12 @@ impl<S: Simd> Lanes for Packed<S> {
 
     #[inline(always)]
     fn abs(self) -> Self {
-        self.of(self.simd.abs_f64s(self.lanes))
+        self.with_lanes(self.simd.abs_f64s(self.lanes))
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        self.of(self.simd.sqrt_f64s(self.lanes))
+        self.with_lanes(self.simd.sqrt_f64s(self.lanes))
     }
 
     #[inline(always)]
@@ -192,7 +192,7 @@ impl<S: Simd> Lanes for Packed<S> {
     #[inline(always)]
     fn if_less(self, limit: Self, then: Self, otherwise: Self) -> Self {
         let mask = self.simd.less_than_f64s(self.lanes, limit.lanes);
-        self.of(self.simd.select_f64s(mask, then.lanes, otherwise.lanes))
+        self.with_lanes(self.simd.select_f64s(mask, then.lanes, otherwise.lanes))
     }
 
     #[inline(always)]

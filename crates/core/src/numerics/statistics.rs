@@ -24,7 +24,7 @@ pub struct Summary {
 
 impl Summary {
     /// Computes the statistics of a sample; `None` if it is empty or contains NaN.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+    pub fn from_values(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let values: Vec<f64> = values.into_iter().collect();
         if values.is_empty() || values.iter().any(|value| value.is_nan()) {
             return None;
@@ -112,11 +112,11 @@ mod tests {
 
     #[test]
     fn a_small_sample_by_hand() {
-        let summary = Summary::of([1.0, 2.0, 3.0, 10.0]).unwrap();
+        let summary = Summary::from_values([1.0, 2.0, 3.0, 10.0]).unwrap();
         assert_eq!((summary.n, summary.mean, summary.median), (4, 4.0, 2.5));
         assert!((summary.std - (50.0_f64 / 3.0).sqrt()).abs() < 1e-12);
-        assert_eq!(Summary::of([5.0]).unwrap().std, 0.0);
-        assert_eq!(Summary::of([]), None);
-        assert_eq!(Summary::of([1.0, f64::NAN]), None);
+        assert_eq!(Summary::from_values([5.0]).unwrap().std, 0.0);
+        assert_eq!(Summary::from_values([]), None);
+        assert_eq!(Summary::from_values([1.0, f64::NAN]), None);
     }
 }

@@ -85,14 +85,14 @@ impl Site {
         picture.into_iter().chain(world).chain(beside).chain(drawing).collect()
     }
 
-    /// Reads a site file, or a picture as a site of its own ([`Site::of_picture`]). Orthophoto and drawing
+    /// Reads a site file, or a picture as a site of its own ([`Site::from_picture`]). Orthophoto and drawing
     /// are looked at but not decoded.
     ///
     /// # Errors
     /// [`SiteError`] with file, line, key and what is expected.
     pub fn load(path: &Path) -> Result<Self, SiteError> {
         if is_picture_file(path) {
-            return Self::of_picture(path);
+            return Self::from_picture(path);
         }
         let text = TomlFile::read(path)?;
         Self::from_toml(TomlFile { path, text: &text })
@@ -208,7 +208,9 @@ fn read_orthophoto(
     let world_unit = unit.unwrap_or_default();
     let map = match (map, &world_file) {
         (Some(map), _) => map,
-        (None, Some(file)) => PixelMap::of_world_file(&WorldFile::load(file, world_unit)?, &origin),
+        (None, Some(file)) => {
+            PixelMap::from_world_file(&WorldFile::load(file, world_unit)?, &origin)
+        }
         (None, None) => return Err(table.missing("world_file").into()),
     };
     table.finish()?;
@@ -249,7 +251,7 @@ fn read_points(
     let map = match places {
         Some(places) => {
             let two = <[[f64; 2]; 2]>::try_from(places).ok();
-            let map = two.and_then(|metres| PixelMap::of_two_points(px, metres));
+            let map = two.and_then(|metres| PixelMap::from_two_points(px, metres));
             map.ok_or_else(|| table.refuse_last("two points [X, Y] that differ"))?
         }
         None => {
@@ -257,7 +259,7 @@ fn read_points(
                 return Err(table.missing("points_m or distance_m").into());
             };
             let first_m = table.point("first_point_m", &SURVEY_COORDINATE)?.unwrap_or([0.0; 2]);
-            let map = PixelMap::of_distance(px, distance_m, first_m);
+            let map = PixelMap::from_distance(px, distance_m, first_m);
             map.ok_or_else(|| table.refuse_last("the distance of two points that differ"))?
         }
     };

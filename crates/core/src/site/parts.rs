@@ -162,13 +162,13 @@ impl Site {
     ///
     /// # Errors
     /// [`SiteError`] if the picture or the world file cannot be read.
-    pub fn of_picture(path: &Path) -> Result<Self, SiteError> {
+    pub fn from_picture(path: &Path) -> Result<Self, SiteError> {
         let size_px = picture_size_px(path)?;
         let world_file = world_file_beside(path).ok();
         let map = match &world_file {
             Some(file) => {
                 let world = WorldFile::load(file, LengthUnit::Metre)?;
-                PixelMap::of_world_file(&world, &SiteOrigin::default())
+                PixelMap::from_world_file(&world, &SiteOrigin::default())
             }
             None => {
                 let [width, height] = size_px.map(|side| ASSUMED_PIXEL_M * f64::from(side));

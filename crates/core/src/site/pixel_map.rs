@@ -31,7 +31,7 @@ pub struct PixelMap {
 
 impl PixelMap {
     /// The map of a world file, whose last two numbers are the **middle** of the left top pixel.
-    pub fn of_world_file(world: &WorldFile, origin: &SiteOrigin) -> Self {
+    pub fn from_world_file(world: &WorldFile, origin: &SiteOrigin) -> Self {
         let (column, row) = (world.per_column_m, world.per_row_m);
         let middle = origin.site_from_survey(world.first_pixel_m);
         let (column, row) = (origin.turned(column), origin.turned(row));
@@ -44,7 +44,7 @@ impl PixelMap {
     ///
     /// - `points_px`: the points, `[column, row]`;
     /// - `points_m`: where they are, `[X, Y]`.
-    pub fn of_two_points(points_px: [[f64; 2]; 2], points_m: [[f64; 2]; 2]) -> Option<Self> {
+    pub fn from_two_points(points_px: [[f64; 2]; 2], points_m: [[f64; 2]; 2]) -> Option<Self> {
         // As complex numbers, with the rows pointing up: points_m = a + s · points_px.
         let [du, dv] = [points_px[1][0] - points_px[0][0], points_px[0][1] - points_px[1][1]];
         let [dx, dy] = [points_m[1][0] - points_m[0][0], points_m[1][1] - points_m[0][1]];
@@ -64,7 +64,7 @@ impl PixelMap {
     /// `None` if the points coincide.
     ///
     /// - `first_m`: where the first point is.
-    pub fn of_distance(
+    pub fn from_distance(
         points_px: [[f64; 2]; 2],
         distance_m: f64,
         first_m: [f64; 2],
@@ -73,7 +73,7 @@ impl PixelMap {
         let scale = distance_m / way[0].hypot(way[1]);
         let second_m = [first_m[0] + scale * way[0], first_m[1] + scale * way[1]];
         second_m.iter().all(|value| value.is_finite()).then_some(())?;
-        Self::of_two_points(points_px, [first_m, second_m])
+        Self::from_two_points(points_px, [first_m, second_m])
     }
 
     /// The same map with everything farther from a point by a factor.
@@ -156,7 +156,7 @@ mod tests {
             first_pixel_m: [500_000.125, 5_400_099.875],
         };
         let origin = SiteOrigin { survey_m: [500_000.0, 5_400_000.0], ..SiteOrigin::default() };
-        let map = PixelMap::of_world_file(&world, &origin);
+        let map = PixelMap::from_world_file(&world, &origin);
         assert_eq!(map.corner_m, [0.0, 100.0], "the corner is half a pixel outside of the middle");
         assert_eq!(map.ground_m([0.5, 0.5]), [0.125, 99.875]);
         assert_eq!(map.ground_m([400.0, 400.0]), [100.0, 0.0]);
@@ -171,7 +171,7 @@ mod tests {
             per_row_m: [0.1 * sin, -0.1 * cos],
             first_pixel_m: [0.0, 0.0],
         };
-        let map = PixelMap::of_world_file(&world, &SiteOrigin::default());
+        let map = PixelMap::from_world_file(&world, &SiteOrigin::default());
         let right = map.ground_m([100.5, 0.5]);
         assert!(near(right, [10.0 * cos, 10.0 * sin], 1e-12), "{right:?}");
         let below = map.ground_m([0.5, 100.5]);
@@ -179,7 +179,7 @@ mod tests {
         assert!((map.area_m2() + 0.01).abs() < 1e-15, "not mirrored");
         // With X along the columns of the picture, it is upright in the site.
         let origin = SiteOrigin { survey_m: [0.0; 2], x_axis_azimuth_rad: f64::to_radians(60.0) };
-        let upright = PixelMap::of_world_file(&world, &origin);
+        let upright = PixelMap::from_world_file(&world, &origin);
         assert!(near(upright.per_column_m, [0.1, 0.0], 1e-15), "{upright:?}");
         assert!(near(upright.per_row_m, [0.0, -0.1], 1e-15), "{upright:?}");
     }
@@ -201,27 +201,27 @@ mod tests {
     fn two_points_lie_where_they_are_and_the_picture_is_not_mirrored() {
         let px = [[100.0, 400.0], [700.0, 100.0]];
         for metres in [[[0.0, 0.0], [42.0, 21.0]], [[5.0, 5.0], [-3.0, 60.0]]] {
-            let map = PixelMap::of_two_points(px, metres).unwrap();
+            let map = PixelMap::from_two_points(px, metres).unwrap();
             for (at, expected) in px.into_iter().zip(metres) {
                 assert!(near(map.ground_m(at), expected, 1e-9), "{metres:?}");
             }
             let [width, height] = map.pixel_size_m();
             assert!((width - height).abs() < 1e-12 && map.area_m2() < 0.0);
         }
-        let upright = PixelMap::of_two_points(px, [[0.0, 0.0], [42.0, 21.0]]).unwrap();
+        let upright = PixelMap::from_two_points(px, [[0.0, 0.0], [42.0, 21.0]]).unwrap();
         assert!(near(upright.per_column_m, [0.07, 0.0], 1e-12), "{upright:?}");
-        assert_eq!(PixelMap::of_two_points([[1.0, 1.0]; 2], [[0.0, 0.0], [1.0, 0.0]]), None);
-        assert_eq!(PixelMap::of_two_points(px, [[3.0, 3.0]; 2]), None);
+        assert_eq!(PixelMap::from_two_points([[1.0, 1.0]; 2], [[0.0, 0.0], [1.0, 0.0]]), None);
+        assert_eq!(PixelMap::from_two_points(px, [[3.0, 3.0]; 2]), None);
     }
 
     #[test]
     fn a_distance_scales_an_upright_picture() {
         let px = [[100.0, 400.0], [500.0, 100.0]];
-        let map = PixelMap::of_distance(px, 25.0, [3.0, 4.0]).unwrap();
+        let map = PixelMap::from_distance(px, 25.0, [3.0, 4.0]).unwrap();
         assert!(near(map.per_column_m, [0.05, 0.0], 1e-12), "{map:?}");
         assert!(near(map.per_row_m, [0.0, -0.05], 1e-12), "{map:?}");
         assert!(near(map.ground_m(px[0]), [3.0, 4.0], 1e-12));
-        assert_eq!(PixelMap::of_distance([[1.0, 1.0]; 2], 25.0, [0.0; 2]), None);
+        assert_eq!(PixelMap::from_distance([[1.0, 1.0]; 2], 25.0, [0.0; 2]), None);
         let double = map.scaled_about([3.0, 4.0], 2.0);
         assert!(near(double.ground_m(px[0]), [3.0, 4.0], 1e-12), "the point stays");
         let [a, b] = px.map(|at| double.ground_m(at));

@@ -76,7 +76,8 @@ impl WorldFile {
                 return Err(wrong(idx + 1, at(idx), expected));
             }
         }
-        if let Some(expected) = PixelMap::of_world_file(&world, &SiteOrigin::default()).problem() {
+        if let Some(expected) = PixelMap::from_world_file(&world, &SiteOrigin::default()).problem()
+        {
             return Err(wrong(4, at(3), expected));
         }
         for (idx, value) in [(4, c), (5, f)] {

@@ -47,7 +47,7 @@ impl CurveMixture {
         }
         let tails = levels.iter().flat_map(|level| [(1.0 - level) / 2.0, (1.0 + level) / 2.0]);
         let probabilities: Vec<f64> = tails.collect();
-        let marginals = Marginals::of(self);
+        let marginals = Marginals::from_mixture(self);
         let n = marginals.n_instants;
         let solver = QuantileSolver::new(&probabilities);
         let (magnitude, (fx, fy)) = rayon::join(
@@ -81,7 +81,7 @@ pub(super) struct Marginals {
 }
 
 impl Marginals {
-    fn of(mixture: &CurveMixture) -> Self {
+    fn from_mixture(mixture: &CurveMixture) -> Self {
         let n = mixture.n_instants();
         let components = mixture.components();
         let forces = |mut row: Vec<f64>| {

@@ -72,12 +72,12 @@ impl PlanarMixture {
 
     /// The parts in the form in which their density is computed.
     pub fn kernels(&self) -> Vec<PlanarKernel> {
-        self.parts.iter().map(PlanarKernel::of).collect()
+        self.parts.iter().map(PlanarKernel::from_part).collect()
     }
 
     /// Density at a point [x, y] in m, 1/m².
     pub fn density(&self, point: [f64; 2]) -> f64 {
-        self.parts.iter().map(|part| PlanarKernel::of(part).density(point)).sum()
+        self.parts.iter().map(|part| PlanarKernel::from_part(part).density(point)).sum()
     }
 
     /// Draws `n` positions [x, y], m; NaN for a mixture without parts.

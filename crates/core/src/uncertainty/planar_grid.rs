@@ -102,7 +102,7 @@ impl PlanarKernel {
     }
 
     /// Kernel of a part.
-    pub(super) fn of(part: &PlanarPart) -> Self {
+    pub(super) fn from_part(part: &PlanarPart) -> Self {
         let [xx, xy, yy] = part.covariance;
         let determinant = xx * yy - xy * xy;
         Self {

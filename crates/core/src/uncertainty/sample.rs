@@ -63,7 +63,7 @@ impl CurveMixture {
 
     /// Impulse, peak, time of the peak and duration of drawn curves.
     pub fn sample_quantities(&self, n_samples: usize, rng: &mut impl Rng) -> CurveQuantities {
-        CurveQuantities::of(&self.sample(n_samples, rng))
+        CurveQuantities::from_curves(&self.sample(n_samples, rng))
     }
 
     /// Index of a component, drawn with the weights as probabilities.
@@ -81,7 +81,7 @@ impl CurveMixture {
 
 impl CurveQuantities {
     /// Impulse, peak, time of the peak and duration of given curves.
-    pub fn of(curves: &[ForceCurve]) -> Self {
+    pub fn from_curves(curves: &[ForceCurve]) -> Self {
         let peaks = curves.iter().map(ForceCurve::peak);
         let (peak_n, peak_time_s) = peaks.unzip();
         Self {
@@ -151,7 +151,7 @@ mod tests {
         let n = 20_000;
         let mut rng = ChaCha8Rng::seed_from_u64(1);
         let drawn = mixture.sample(n, &mut rng);
-        let quantities = CurveQuantities::of(&drawn);
+        let quantities = CurveQuantities::from_curves(&drawn);
         // The bounds are four standard errors of a mean; the spread of the impulse may be off by 3
         // %, some six of its standard errors.
         for axis in [0, 1] {

@@ -50,7 +50,7 @@ impl<P: Copy> VehicleConstants<P> {
     ) -> VehicleEvaluation<T> {
         let (body, printed) = (&self.body, &self.printed);
         let zero = x.vx_body_m_s.constant(0.0);
-        let heading = Heading::of(x.yaw_rad);
+        let heading = Heading::new(x.yaw_rad);
         let collision = collision_wrench(heading, zero, u.collision.as_ref());
         let leaning_n_m = x.roll_rad.sin() * body.weight_moment_n_m;
         let mut acceleration = [zero; 2];

@@ -216,7 +216,7 @@ impl<P: Copy> VehicleConstants<P> {
         u: &VehicleInput<T>,
     ) -> VehicleEvaluation<T> {
         let body = &self.body;
-        let heading = Heading::of(x.yaw_rad);
+        let heading = Heading::new(x.yaw_rad);
         let collision = collision_wrench(heading, x.yaw_rad.constant(0.0), u.collision.as_ref());
         let leaning_n_m = x.roll_rad.sin() * body.weight_moment_n_m;
         let [arm_m, roll_arm_m] = match &u.collision {
@@ -286,7 +286,7 @@ impl<P: Copy> VehicleConstants<P> {
     ) -> (Wrench<T>, [T; 4]) {
         let body = &self.body;
         let zero = x.vx_body_m_s.constant(0.0);
-        let steer = Steer::of(u.steer_rad);
+        let steer = Steer::new(u.steer_rad);
         let slips = self.wheel_slips(x, &steer, u.friction_share.as_ref());
         let free = slips.free();
         let efforts = u.wheels.as_ref().map(side_by_side);
@@ -365,7 +365,7 @@ struct Steer<T>(Option<[T; 2]>);
 
 impl<T: Lanes> Steer<T> {
     #[inline(always)]
-    fn of(steer_rad: T) -> Self {
+    fn new(steer_rad: T) -> Self {
         if steer_rad.is_nothing() {
             return Self(None);
         }

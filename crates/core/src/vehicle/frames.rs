@@ -17,7 +17,7 @@ pub struct Heading<T> {
 impl<T: Lanes> Heading<T> {
     /// The direction at a yaw angle ψ, rad.
     #[inline(always)]
-    pub fn of(yaw_rad: T) -> Self {
+    pub fn new(yaw_rad: T) -> Self {
         let (sin, cos) = yaw_rad.sin_cos();
         Self { sin, cos }
     }
@@ -37,12 +37,12 @@ impl<T: Lanes> Heading<T> {
 
 /// Transforms a vector from world axes to body axes: `R(−ψ) v`, with the yaw angle ψ in rad.
 pub fn body_from_world<T: Lanes>(yaw_rad: T, vector: [T; 2]) -> [T; 2] {
-    Heading::of(yaw_rad).body_from_world(vector)
+    Heading::new(yaw_rad).body_from_world(vector)
 }
 
 /// Transforms a vector from body axes to world axes: `R(ψ) v`, with the yaw angle ψ in rad.
 pub fn world_from_body<T: Lanes>(yaw_rad: T, vector: [T; 2]) -> [T; 2] {
-    Heading::of(yaw_rad).world_from_body(vector)
+    Heading::new(yaw_rad).world_from_body(vector)
 }
 
 #[cfg(test)]

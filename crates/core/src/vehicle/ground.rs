@@ -50,7 +50,7 @@ impl<'a> Ground<'a> {
         if self.zones.is_empty() {
             return None;
         }
-        let heading = Heading::of(x.yaw_rad);
+        let heading = Heading::new(x.yaw_rad);
         let of_wheels = self.wheels_m.map(|place_m| {
             let [dx, dy] = heading.world_from_body(place_m);
             self.zone_share([x.x_m + dx, x.y_m + dy])

@@ -98,15 +98,16 @@ pub(super) fn vertical_loads_n<P: Copy, T: Lanes + LanesOver<P>>(
     let weight = zero + body.weight_n;
     let front = (transfer.to_front_n_m + body.weight_about_rear_n_m) * body.per_wheelbase_1_m;
     let front = front.clamped(zero, weight);
-    let [front_left, front_right] = of_axle_n(front, transfer.to_right_n_m * body.front_shift_1_m);
+    let [front_left, front_right] =
+        wheel_loads_n(front, transfer.to_right_n_m * body.front_shift_1_m);
     let [rear_left, rear_right] =
-        of_axle_n(weight - front, transfer.to_right_n_m * body.rear_shift_1_m);
+        wheel_loads_n(weight - front, transfer.to_right_n_m * body.rear_shift_1_m);
     [front_left, front_right, rear_left, rear_right]
 }
 
 /// Loads of the left and of the right wheel of an axle.
 #[inline(always)]
-fn of_axle_n<T: Lanes>(load_n: T, shift_n: T) -> [T; 2] {
+fn wheel_loads_n<T: Lanes>(load_n: T, shift_n: T) -> [T; 2] {
     let half = load_n * 0.5;
     let shift = shift_n.clamped(-half, half);
     [half - shift, half + shift]

@@ -125,7 +125,7 @@ pub fn leaves_mark([u, w]: [f64; 2], is_locked: bool) -> bool {
 ///   loads that it lacks are those at rest; front wheels whose steer angle it lacks are straight.
 /// - returns no marks without X, Y or yaw.
 pub fn tire_marks(series: &TimeSeries, of: ControlledVehicle<'_>) -> Vec<TireMark> {
-    let Some(track) = Track::of(series) else { return Vec::new() };
+    let Some(track) = Track::from_series(series) else { return Vec::new() };
     Wheel::ALL.into_iter().flat_map(|wheel| marks_of_wheel(&track, of, wheel)).collect()
 }
 
@@ -174,7 +174,7 @@ struct Track<'a> {
 }
 
 impl<'a> Track<'a> {
-    fn of(series: &'a TimeSeries) -> Option<Self> {
+    fn from_series(series: &'a TimeSeries) -> Option<Self> {
         let get = |channel| series.get(channel);
         let rates = [Channel::Vx, Channel::Vy, Channel::YawRate].map(get);
         Some(Self {

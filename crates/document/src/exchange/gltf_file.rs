@@ -37,7 +37,7 @@ const MAX_KEYS: f64 = 200_000.0;
 pub fn glb(scene: &Scene, out: &mut dyn Write) -> Result<(), ExchangeError> {
     let mut builder = GltfBuilder::default();
     let cars: Vec<&SceneCar> = scene.cars.iter().filter(|car| !is_draw(car)).collect();
-    let frame = GltfFrame::of(scene);
+    let frame = GltfFrame::new(scene);
     let time_s = key_times_s(scene.end_s, frame.start_s, &cars);
     let single: Vec<[f32; 1]> = time_s.iter().map(|time| [frame.time(*time)]).collect();
     let times = builder.list(&single, None);

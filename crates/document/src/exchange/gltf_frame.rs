@@ -25,7 +25,7 @@ pub struct GltfFrame {
 
 impl GltfFrame {
     /// The frame of a scene.
-    pub fn of(scene: &Scene) -> Self {
+    pub fn new(scene: &Scene) -> Self {
         let cars = scene.cars.iter().filter(|car| !is_draw(car));
         let times = cars.map(|car| car.motion.time_s()).filter(|all| all.len() > 1);
         let firsts = times.filter_map(|all| all.first().copied());

@@ -76,7 +76,7 @@ impl ForceComponent {
     }
 
     /// Values of the component in a force curve, N.
-    pub fn of(self, curve: &ForceCurve) -> Vec<f64> {
+    pub fn values_n(self, curve: &ForceCurve) -> Vec<f64> {
         match self {
             Self::X => curve.fx_n.clone(),
             Self::Y => curve.fy_n.clone(),
@@ -118,7 +118,7 @@ pub fn forecast_figure(component: ForceComponent, input: &ForecastFigure<'_>) ->
         values.iter().take(n_shown).map(|value| y.unit.from_si(*value)).collect()
     };
     let points = |curve: &ForceCurve| -> Vec<[f64; 2]> {
-        let values = shown(&component.of(curve));
+        let values = shown(&component.values_n(curve));
         let times = curve.time_s().into_iter().map(|t| x.unit.from_si(t));
         times.zip(values).map(|(t, value)| [t, value]).collect()
     };

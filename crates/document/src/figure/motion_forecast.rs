@@ -54,7 +54,7 @@ pub struct MotionForecastFigure<'a> {
 
 impl<'a> MotionForecastFigure<'a> {
     /// A forecast without density, components, recorded and simulated motion.
-    pub fn of(
+    pub fn new(
         answer: &'a PredictMotionAnswer,
         (bands, caveats): (&'a MotionBands, &'a Caveats),
         (time_s, units): (f64, UnitSystem),

@@ -31,7 +31,7 @@ pub fn prior_values(target: &ReconstructionTarget, quantity: ReconstructedQuanti
         let mut rng = random_stream(0, "prior of a reconstruction", number as u64);
         let z: Vec<f64> = (0..n).map(|_| rng.sample(StandardNormal)).collect();
         let values = model.prior().values(&z);
-        quantity.of(&values, &model.impact(&values))
+        quantity.value(&values, &model.impact(&values))
     };
     (0..N_PRIOR).into_par_iter().map(value).collect()
 }
@@ -51,7 +51,7 @@ pub fn marginal_figure(
     let shown = |values: Vec<f64>| -> Vec<f64> {
         values.into_iter().map(|value| x.unit.from_si(value)).collect()
     };
-    let posterior = shown(answer.posterior.of_quantity(quantity));
+    let posterior = shown(answer.posterior.values(quantity));
     let prior = shown(prior.to_vec());
     let range = range_of(&posterior, &prior);
     let mut elements = vec![
@@ -149,7 +149,7 @@ pub fn pair_figure(
         values.iter().map(|value| axes[i].unit.from_si(*value)).collect()
     };
     let posterior: [Vec<f64>; 2] =
-        [0, 1].map(|i| shown(i, &answer.posterior.of_quantity(quantities[i])));
+        [0, 1].map(|i| shown(i, &answer.posterior.values(quantities[i])));
     let prior: [Vec<f64>; 2] = [0, 1].map(|i| shown(i, priors[i]));
     let ranges = [0, 1].map(|i| range_of(&posterior[i], &prior[i]));
     let points = |[x, y]: &[Vec<f64>; 2]| -> Vec<[f64; 2]> {

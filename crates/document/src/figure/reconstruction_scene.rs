@@ -51,7 +51,7 @@ pub struct ReconstructionScene<'a> {
 
 impl<'a> ReconstructionScene<'a> {
     /// The scene of an answer, with a particle of median speed at its end.
-    pub fn of(answer: &'a ReconstructAnswer, paths: &'a ReconstructedPaths) -> Self {
+    pub fn new(answer: &'a ReconstructAnswer, paths: &'a ReconstructedPaths) -> Self {
         let name = ReconstructedPaths::MEDIAN;
         let at_end = |path: &'a VehiclePath| FollowedPath { name, path, time_s: f64::INFINITY };
         Self {

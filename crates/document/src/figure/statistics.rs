@@ -22,13 +22,13 @@ pub struct CurveStatistics {
 /// does not reach over the whole interval is left out.
 pub fn curve_statistics(figure: &Figure, span: [f64; 2]) -> Vec<CurveStatistics> {
     let curves = figure.elements.iter().filter_map(|element| match element {
-        FigureElement::Line(series) => of_curve(series, span),
+        FigureElement::Line(series) => line_statistics(series, span),
         _ => None,
     });
     curves.collect()
 }
 
-fn of_curve(series: &Series, [from, to]: [f64; 2]) -> Option<CurveStatistics> {
+fn line_statistics(series: &Series, [from, to]: [f64; 2]) -> Option<CurveStatistics> {
     let [x, y] = [0, 1].map(|axis| series.points.iter().map(|of| of[axis]).collect::<Vec<f64>>());
     let is_covered =
         x.first().is_some_and(|first| *first <= from) && x.last().is_some_and(|last| *last >= to);

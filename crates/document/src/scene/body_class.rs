@@ -54,7 +54,7 @@ impl BodyClass {
     /// The kind by the class of the data sheet. A passenger car is an estate or a hatchback if its name
     /// says so, and else a saloon from 4.45 m of length on. Where nobody said the class, height of the CG
     /// and length decide.
-    pub fn of(vehicle: &VehicleParameters) -> Self {
+    pub fn from_vehicle(vehicle: &VehicleParameters) -> Self {
         let class = vehicle.sheet.as_ref().map_or(VehicleClass::Any, |sheet| sheet.class);
         let (length_m, cg_height_m) =
             (vehicle.geometry.outer_length_m, vehicle.geometry.cg_height_m);
@@ -110,7 +110,7 @@ mod tests {
             let sheet = DataSheet::new(name, class)
                 .with(SheetQuantity::Length, length_m)
                 .with(SheetQuantity::CgHeight, cg_height_m);
-            BodyClass::of(&sheet.vehicle())
+            BodyClass::from_vehicle(&sheet.vehicle())
         };
         for (class, name, length_m, cg_height_m, expected) in [
             (VehicleClass::Suv, "a", 4.2, 0.5, BodyClass::Suv),
@@ -128,7 +128,7 @@ mod tests {
         }
         let mut vehicle = Preset::Reference.parameters();
         vehicle.sheet = Some(Arc::new(DataSheet::new("x", VehicleClass::Van)));
-        assert_eq!(BodyClass::of(&vehicle), BodyClass::Van);
+        assert_eq!(BodyClass::from_vehicle(&vehicle), BodyClass::Van);
     }
 
     #[test]

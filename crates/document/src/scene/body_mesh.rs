@@ -112,7 +112,7 @@ impl Shape<'_> {
 
 /// Builds body and cabin of a car.
 pub(super) fn body_mesh(body: &CarBody, detail: Detail) -> Mesh {
-    let shape = Shape { body, proportions: Proportions::of(body.class) };
+    let shape = Shape { body, proportions: Proportions::from_class(body.class) };
     let places = shape.places(detail);
     let sections: Vec<[[f64; 3]; 5]> =
         places.iter().map(|place| shape.section_m(*place, detail)).collect();

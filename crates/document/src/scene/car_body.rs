@@ -34,7 +34,7 @@ pub struct CarBody {
 impl CarBody {
     /// The body of a vehicle; the outline is that of the figures, which a scenario may set.
     pub fn new(vehicle: &VehicleParameters, outline: &Footprint) -> Self {
-        let class = BodyClass::of(vehicle);
+        let class = BodyClass::from_vehicle(vehicle);
         Self {
             class,
             length_m: outline.length_m,

@@ -41,7 +41,7 @@ impl CarMotion {
     ///
     /// - `controls`: what locks the wheels; without it they roll.
     /// - returns `None` without X or Y, or without samples.
-    pub fn of_series(
+    pub fn from_series(
         series: &TimeSeries,
         body: &CarBody,
         controls: Option<ControlledVehicle<'_>>,
@@ -82,7 +82,7 @@ impl CarMotion {
     }
 
     /// The motion along poses at the same distance in time, s; `None` without poses.
-    pub fn of_poses(poses: &[Pose], step_s: f64, body: &CarBody) -> Option<Self> {
+    pub fn from_poses(poses: &[Pose], step_s: f64, body: &CarBody) -> Option<Self> {
         let states = poses.iter().map(|pose| CarState { pose: *pose, ..CarState::default() });
         let time_s = (0..poses.len()).map(|idx| idx as f64 * step_s).collect();
         let mut motion = Self { time_s, states: states.collect() };
@@ -238,7 +238,7 @@ mod tests {
         };
         let motion = vehicle.simulate(&manoeuvre, Integrator::Rk4).unwrap();
         let body = CarBody::new(&vehicle, &Footprint::from(&vehicle.geometry));
-        let of = CarMotion::of_series(
+        let of = CarMotion::from_series(
             &motion.series,
             &body,
             Some(ControlledVehicle {
@@ -306,10 +306,10 @@ mod tests {
     fn a_car_stands_before_and_after_its_motion() {
         let pose = |x_m| Pose { x_m, y_m: 1.0, yaw_rad: 0.0 };
         let body = driven(&Ending::default(), 1.0).1;
-        let motion = CarMotion::of_poses(&[pose(0.0), pose(2.0), pose(4.0)], 0.5, &body).unwrap();
+        let motion = CarMotion::from_poses(&[pose(0.0), pose(2.0), pose(4.0)], 0.5, &body).unwrap();
         for (time_s, x_m) in [(-1.0, 0.0), (0.0, 0.0), (0.25, 1.0), (1.0, 4.0), (9.0, 4.0)] {
             assert_eq!(motion.at(time_s).pose.x_m, x_m, "at {time_s} s");
         }
-        assert_eq!(CarMotion::of_poses(&[], 0.5, &body), None);
+        assert_eq!(CarMotion::from_poses(&[], 0.5, &body), None);
     }
 }

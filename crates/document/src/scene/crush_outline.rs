@@ -32,7 +32,7 @@ pub(super) fn add_crush(scene: &mut Scene, analysis: &Analysis) {
     let Some((time_s, poses)) = largest_overlap(cars, &footprints, interval) else { return };
     let [of_struck, of_striking] = &footprints;
     let dented =
-        DentedOutlines::of([(of_struck, &poses[0]), (of_striking, &poses[1])], STRUCK_SHARE);
+        DentedOutlines::new([(of_struck, &poses[0]), (of_striking, &poses[1])], STRUCK_SHARE);
     let Some(DentedOutlines { dent_m, outlines_m }) = dented else { return };
     let when = match interval.1 - time_s > STEP_S / 2.0 {
         true => format!("at the largest overlap, at {time_s:.3} s"),

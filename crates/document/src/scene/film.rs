@@ -112,7 +112,7 @@ pub enum FilmTimingError {
 
 impl FilmTiming {
     /// Thirty frames per second of a whole scene at its own speed.
-    pub fn of_scene(scene: &Scene) -> Self {
+    pub fn from_scene(scene: &Scene) -> Self {
         let [from_s, to_s] = interval_s(scene);
         Self { frames_per_s: 30, from_s, to_s, speed: 1.0, sections: Vec::new() }
     }
@@ -346,7 +346,7 @@ mod tests {
     #[test]
     fn a_scene_in_which_nothing_moves_is_not_filmed() {
         let still = scene(0.0);
-        let error = FilmTiming::of_scene(&still).instants(&still);
+        let error = FilmTiming::from_scene(&still).instants(&still);
         assert_eq!(error, Err(FilmTimingError::NoMotion));
     }
 

@@ -31,7 +31,7 @@ pub fn add_forecast(scene: &mut Scene, input: &ForecastScene<'_>) {
     let drawn = input.forecast.distribution.draws(input.n_ghosts, input.seed);
     let mut ghosts = Vec::new();
     for poses in &drawn {
-        let Some(motion) = CarMotion::of_poses(poses, STEP_S, &shape.body).map(Arc::new) else {
+        let Some(motion) = CarMotion::from_poses(poses, STEP_S, &shape.body).map(Arc::new) else {
             continue;
         };
         let name = "draws of the forecast".to_owned();
@@ -62,7 +62,7 @@ pub fn add_forecast(scene: &mut Scene, input: &ForecastScene<'_>) {
         .iter()
         .map(|state| Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad })
         .collect();
-    let motion = CarMotion::of_poses(&central, STEP_S, &shape.body);
+    let motion = CarMotion::from_poses(&central, STEP_S, &shape.body);
     let named = ("central path of the forecast", "forecast");
     add(scene, (named, SceneRole::Forecast, CarLook::Ghost), (&shape, motion));
 }

@@ -74,7 +74,11 @@ impl SceneGround {
     ///
     /// - `picture`: its orthophoto;
     /// - `drawing`: its drawing.
-    pub fn of(site: &Site, picture: Option<Arc<GroundPicture>>, drawing: Option<&Drawing>) -> Self {
+    pub fn new(
+        site: &Site,
+        picture: Option<Arc<GroundPicture>>,
+        drawing: Option<&Drawing>,
+    ) -> Self {
         let surfaces = site.lanes.iter().map(surface);
         let areas = surfaces.chain(site.friction_zones.iter().map(zone)).collect();
         let of_drawing = drawing.iter().flat_map(|drawing| &drawing.lines).map(|line| GroundLine {

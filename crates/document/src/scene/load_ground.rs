@@ -62,7 +62,7 @@ impl LoadedGround {
                 of.file.display()
             ));
         }
-        let ground = Arc::new(SceneGround::of(&site, picture, drawing.as_ref()));
+        let ground = Arc::new(SceneGround::new(&site, picture, drawing.as_ref()));
         let drawing = drawing.map(|of| of.summary());
         Ok(Self { site, ground, drawing, notes })
     }

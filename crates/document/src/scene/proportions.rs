@@ -25,7 +25,7 @@ const TAPER_PLACES: [f64; 8] = [0.0, 0.02, 0.06, 0.14, 0.86, 0.95, 0.985, 1.0];
 const TAPER_WIDTHS: [f64; 8] = [0.70, 0.86, 0.955, 1.0, 1.0, 0.965, 0.90, 0.80];
 
 impl Proportions {
-    pub fn of(class: BodyClass) -> Self {
+    pub fn from_class(class: BodyClass) -> Self {
         let of = |nose, [cowl, deck, tail]: [f64; 3], cabin, roof_width| Self {
             nose,
             cowl,

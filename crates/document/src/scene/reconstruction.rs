@@ -45,7 +45,7 @@ pub struct ReconstructionParts<'a> {
 
 impl<'a> ReconstructionParts<'a> {
     /// What the scene of an answer shows, with a particle of median speed that drives.
-    pub fn of(
+    pub fn new(
         (answer, paths): (&'a ReconstructAnswer, &'a ReconstructedPaths),
         units: UnitSystem,
         caveats: &'a Caveats,
@@ -128,7 +128,7 @@ fn motion_of(path: &Path, body: &CarBody) -> Option<CarMotion> {
         Some(Pose { x_m: at(&x, time_s)?, y_m: at(&y, time_s)?, yaw_rad: at(&yaw, time_s)? })
     };
     let poses: Option<Vec<Pose>> = (0..=n_steps).map(pose).collect();
-    Some(CarMotion::of_poses(&poses?, step_s, body)?.later_by(start_s))
+    Some(CarMotion::from_poses(&poses?, step_s, body)?.later_by(start_s))
 }
 
 /// Marks of tires, and positions in a video.

@@ -57,21 +57,21 @@ pub fn simulation_scene(input: &SimulationScene<'_>) -> Scene {
     let shape = struck_shape(analysis);
     if let Some(series) = &analysis.reference {
         let look = if analysis.simulation.is_some() { CarLook::Ghost } else { CarLook::Solid };
-        let motion = CarMotion::of_series(series, &shape.body, None);
+        let motion = CarMotion::from_series(series, &shape.body, None);
         let named =
             ("recorded", if look == CarLook::Solid { "struck, recorded" } else { "recorded" });
         add(&mut scene, (named, SceneRole::Recorded, look), (&shape, motion));
     }
     for other in others {
         let shape = other.of.map_or_else(|| Arc::clone(&shape), struck_shape);
-        let motion = CarMotion::of_series(other.motion, &shape.body, None);
+        let motion = CarMotion::from_series(other.motion, &shape.body, None);
         let motion = motion.map(|motion| motion.later_by(other.offset_s));
         add(&mut scene, ((other.name, ""), other.role, CarLook::Ghost), (&shape, motion));
     }
     if let Some(simulated) = &analysis.simulation {
         let controls = analysis.controlled();
         add_marks(&mut scene, &tire_marks(&simulated.series, controls));
-        let motion = CarMotion::of_series(&simulated.series, &shape.body, Some(controls));
+        let motion = CarMotion::from_series(&simulated.series, &shape.body, Some(controls));
         let named = ("4DOF simulation", "struck");
         add(&mut scene, (named, SceneRole::Simulated, CarLook::Solid), (&shape, motion));
     }
@@ -97,7 +97,7 @@ pub(super) fn add_striking(scene: &mut Scene, analysis: &Analysis) {
     let body = CarBody::new(&track.start.vehicle, &track.footprint);
     let controls = track.start.controlled();
     add_marks(scene, &tire_marks(&track.motion, controls));
-    let motion = CarMotion::of_series(&track.motion, &body, Some(controls));
+    let motion = CarMotion::from_series(&track.motion, &body, Some(controls));
     let shape = Arc::new(CarShape::new(body));
     let named = ("striking vehicle", "striking");
     add(scene, (named, SceneRole::Striking, CarLook::Solid), (&shape, motion));

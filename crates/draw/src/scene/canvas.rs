@@ -102,7 +102,7 @@ impl SceneCanvas {
         self.ground.resize(width * height, Color32::BLACK);
         let projection = look.projection();
         let ground = ground_of(scene, look, &projection);
-        self.marks = MarkStrokes::of(&ground);
+        self.marks = MarkStrokes::new(&ground);
         draw_ground(&ground, look.size_px, &mut self.ground);
     }
 

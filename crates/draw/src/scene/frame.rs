@@ -43,7 +43,7 @@ impl Frame {
             let target = (&mut object, ground.projection);
             add_mesh(target, seen.mesh(part.kind), &part.placed, (seen.paint, part.is_locked));
         }
-        self.shadows.extend(Shadow::of(seen, ground.projection));
+        self.shadows.extend(Shadow::new(seen, ground.projection));
         self.objects.push(object);
     }
 }

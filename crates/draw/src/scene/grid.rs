@@ -46,7 +46,7 @@ pub struct Grid {
 
 impl Grid {
     /// The numbers of a ground.
-    pub fn of(ground: &Ground<'_>) -> Self {
+    pub fn new(ground: &Ground<'_>) -> Self {
         let target = ground.projection.target_m();
         let (_, step_m) = grid_step(ground.projection, ground.points, ground.scene.units);
         let [x, y, z] = ground.projection.eye_m();

@@ -49,7 +49,7 @@ pub struct Ground<'a> {
 impl Ground<'_> {
     /// Fills rows with ground, grid and density.
     pub fn fill(&self, rows: &mut Rows<'_>, underlay: &Underlay<'_>) {
-        let grid = Grid::of(self);
+        let grid = Grid::new(self);
         let (first, width) = (rows.first, rows.width.max(1));
         let columns = self.covered_columns(&grid, width);
         for (idx, row) in rows.pixels.chunks_mut(width).enumerate() {

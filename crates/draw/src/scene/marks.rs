@@ -28,7 +28,7 @@ pub struct MarkStrokes {
 impl MarkStrokes {
     /// The marks of a scene as its camera sees them. The colours are mixed with that of the ground, so
     /// that pieces that overlap at their ends are not darker there.
-    pub fn of(ground: &Ground<'_>) -> Self {
+    pub fn new(ground: &Ground<'_>) -> Self {
         let mut timed: Vec<(f64, Stroke)> = Vec::new();
         for mark in &ground.scene.marks {
             add_mark(ground, mark, &mut timed);

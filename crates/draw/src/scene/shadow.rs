@@ -33,7 +33,7 @@ pub fn shadow_opacity(dark: bool) -> f32 {
 impl Shadow {
     /// The shadow of a car; `None` where part of it is behind the camera, and below a car that is not
     /// opaque.
-    pub fn of(seen: &SeenCar<'_>, projection: &Projection) -> Option<Self> {
+    pub fn new(seen: &SeenCar<'_>, projection: &Projection) -> Option<Self> {
         if seen.opacity < 1.0 {
             return None;
         }

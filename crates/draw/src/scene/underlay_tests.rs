@@ -21,7 +21,7 @@ fn picture([easting_m, northing_m]: [f64; 2], origin: &SiteOrigin) -> GroundPict
         per_row_m: [0.0, -0.25],
         first_pixel_m: [easting_m + 0.125, northing_m - 0.125],
     };
-    GroundPicture::new(&of, PixelMap::of_world_file(&world, origin))
+    GroundPicture::new(&of, PixelMap::from_world_file(&world, origin))
 }
 
 fn scene(ground: SceneGround) -> Arc<Scene> {

@@ -43,7 +43,7 @@ pub struct CaseId {
 
 impl CaseId {
     /// The identity of a case.
-    pub fn of(case: &impl TrainingCase) -> Self {
+    pub fn from_case(case: &impl TrainingCase) -> Self {
         Self { name: case.name().to_owned(), digest: case.digest().to_owned() }
     }
 }

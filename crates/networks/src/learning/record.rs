@@ -86,7 +86,7 @@ pub struct TrainingRecord<E, T> {
 
 impl<E, T> TrainingRecord<E, T> {
     /// The record of a training on a set, all of whose cases were learned from.
-    pub fn of<C: TrainingCase + Clone, S>(
+    pub fn new<C: TrainingCase + Clone, S>(
         set: &TrainingSet<C>,
         settings: &TrainSettings<S>,
         detail: T,
@@ -97,7 +97,7 @@ impl<E, T> TrainingRecord<E, T> {
             data: set.name.clone(),
             data_digest: set.digest(),
             seed: settings.seed,
-            train: set.train.iter().map(CaseId::of).collect(),
+            train: set.train.iter().map(CaseId::from_case).collect(),
             test: set.test.clone(),
             detail,
             history,

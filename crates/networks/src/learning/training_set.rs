@@ -24,13 +24,13 @@ impl<C: TrainingCase + Clone> TrainingSet<C> {
     /// Splits cases by seed, see [`split()`].
     ///
     /// - `test_share`: share of the cases that is kept apart for the test, 0 to 1.
-    pub fn of_split(name: impl Into<String>, cases: &[C], seed: u64, test_share: f64) -> Self {
+    pub fn from_split(name: impl Into<String>, cases: &[C], seed: u64, test_share: f64) -> Self {
         let Split { train, test } = split(cases, seed, test_share);
         let pick = |indices: Vec<usize>| indices.into_iter().filter_map(|idx| cases.get(idx));
         Self {
             name: name.into(),
             train: pick(train).cloned().collect(),
-            test: pick(test).map(CaseId::of).collect(),
+            test: pick(test).map(CaseId::from_case).collect(),
         }
     }
 
@@ -135,7 +135,7 @@ mod tests {
     }
 
     fn set(name: &str, n: usize, seed: u64) -> TrainingSet<Numbered> {
-        TrainingSet::of_split(name, &cases(), 0, 0.25).choose(Some(n), seed).unwrap()
+        TrainingSet::from_split(name, &cases(), 0, 0.25).choose(Some(n), seed).unwrap()
     }
 
     #[test]
@@ -164,17 +164,17 @@ mod tests {
 
     #[test]
     fn more_than_there_are_cannot_be_chosen() {
-        let all = TrainingSet::of_split("made", &cases(), 0, 0.25);
+        let all = TrainingSet::from_split("made", &cases(), 0, 0.25);
         let message = all.choose(Some(76), 0).unwrap_err().to_string();
         assert_eq!(message, "75 cases to learn from, expected 76 or more");
-        let none = TrainingSet::<Numbered>::of_split("made", &[], 0, 0.25);
+        let none = TrainingSet::<Numbered>::from_split("made", &[], 0, 0.25);
         assert!(none.choose(None, 0).is_err());
     }
 
     #[test]
     fn cases_of_other_sets_are_learned_from_unless_they_test() {
         let cases = cases();
-        let set = TrainingSet::of_split("made", &cases, 0, 0.25).with_extra(&cases);
+        let set = TrainingSet::from_split("made", &cases, 0, 0.25).with_extra(&cases);
         assert_eq!((set.train.len(), set.test.len()), (150, 25));
     }
 }

@@ -70,7 +70,7 @@ pub struct PointOptimum {
 struct Cost<'a, T: ?Sized>(&'a T);
 
 impl<T: Target + ?Sized> Cost<'_, T> {
-    fn of(&self, z: &[Vec<f64>]) -> Vec<f64> {
+    fn costs(&self, z: &[Vec<f64>]) -> Vec<f64> {
         let values = self.0.log_likelihoods(z);
         let cost = |(value, z): (f64, &Vec<f64>)| {
             let cost = z.iter().map(|z| z * z).sum::<f64>() / 2.0 - value;
@@ -85,14 +85,14 @@ impl<T: Target + ?Sized> CostFunction for Cost<'_, T> {
     type Output = f64;
 
     fn cost(&self, z: &Vec<f64>) -> Result<f64, Error> {
-        Ok(self.of(std::slice::from_ref(z))[0])
+        Ok(self.costs(std::slice::from_ref(z))[0])
     }
 
     fn bulk_cost<P>(&self, z: &[P]) -> Result<Vec<f64>, Error>
     where
         P: std::borrow::Borrow<Vec<f64>> + SyncAlias,
     {
-        Ok(self.of(&z.iter().map(|z| z.borrow().clone()).collect::<Vec<_>>()))
+        Ok(self.costs(&z.iter().map(|z| z.borrow().clone()).collect::<Vec<_>>()))
     }
 }
 
@@ -167,7 +167,7 @@ impl Local {
         let points: Vec<Vec<f64>> = (0..MAX_HALVINGS)
             .map(|k| self.z.iter().zip(step.iter()).map(|(z, s)| z - share(k) * s).collect())
             .collect();
-        let costs = cost.of(&points);
+        let costs = cost.costs(&points);
         *n += points.len();
         for (z, cost) in points.into_iter().zip(costs) {
             if cost < self.cost {
@@ -183,7 +183,7 @@ impl Local {
             let both = steps.flat_map(|(j, h)| [self.moved(&[(j, *h)]), self.moved(&[(j, -h)])]);
             let points: Vec<Vec<f64>> = both.collect();
             *n += points.len();
-            let costs = cost.of(&points);
+            let costs = cost.costs(&points);
             let mut changed = false;
             for (h, pair) in self.steps.iter_mut().zip(costs.chunks_exact(2)) {
                 let rise = (pair[0] + pair[1]) / 2.0 - self.cost;
@@ -224,7 +224,7 @@ impl Curvature {
             }
         }
         *n += points.len();
-        let costs = cost.of(&points);
+        let costs = cost.costs(&points);
         let (own, mixed) = costs.split_at(2 * dim);
         let mut mixed = mixed.chunks_exact(2);
         let gradient = DVector::from_fn(dim, |i, _| (own[2 * i] - own[2 * i + 1]) / (2.0 * h[i]));

@@ -31,7 +31,7 @@ impl KnownEvidence {
     }
 
     /// What is used of the evidence.
-    pub fn of(self, evidence: &Evidence) -> Evidence {
+    pub fn select(self, evidence: &Evidence) -> Evidence {
         match self {
             Self::Everything => evidence.clone(),
             Self::WithoutEdr => evidence.without_edr(),

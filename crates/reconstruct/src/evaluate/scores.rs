@@ -38,14 +38,14 @@ pub struct CaseScore {
 
 impl CaseScore {
     /// The score of the estimates of a case. A speed without a distribution is left out.
-    pub fn of(
+    pub fn new(
         case: &str,
         known: KnownEvidence,
         estimates: &SpeedEstimates,
         truth: &TrueSpeeds,
     ) -> Self {
         let scored = estimates.speeds.iter().filter_map(|speed| {
-            let truth = truth.of(speed.quantity)?;
+            let truth = truth.speed_m_s(speed.quantity)?;
             let estimate = speed.distribution.estimate(speed.quantity)?;
             Some(ScoredQuantity { estimate, truth, crps: speed.distribution.crps(truth)? })
         });

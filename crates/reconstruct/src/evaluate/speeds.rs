@@ -80,7 +80,7 @@ impl ReconstructionMethod {
 
 impl SpeedDistribution {
     /// Equally likely values.
-    pub fn of_draws(mut draws: Vec<f64>) -> Self {
+    pub fn from_draws(mut draws: Vec<f64>) -> Self {
         draws.sort_by(f64::total_cmp);
         Self::Draws(draws)
     }
@@ -117,7 +117,7 @@ impl SpeedEstimates {
     /// The speeds of particles.
     ///
     /// - `(ess, n_simulations)`: their effective sample size, and the motions that they have cost.
-    pub fn of_posterior(
+    pub fn from_posterior(
         posterior: &Posterior,
         (ess, n_simulations): (f64, usize),
         seconds: f64,
@@ -159,7 +159,7 @@ impl SpeedEstimates {
         seconds: f64,
     ) -> Self {
         let drawn = found.and_then(|found| found.draws(n_draws, seed));
-        let of = |z: Vec<Vec<f64>>| speeds(&Posterior::of_points(struck.model(), &z));
+        let of = |z: Vec<Vec<f64>>| speeds(&Posterior::from_points(struck.model(), &z));
         Self {
             method: ReconstructionMethod::Swarm,
             seconds,
@@ -173,7 +173,7 @@ impl SpeedEstimates {
 fn speeds(posterior: &Posterior) -> Vec<EstimatedSpeed> {
     let of = |quantity: ReconstructedQuantity| EstimatedSpeed {
         quantity,
-        distribution: SpeedDistribution::of_draws(posterior.of_quantity(quantity)),
+        distribution: SpeedDistribution::from_draws(posterior.values(quantity)),
     };
     SPEEDS.map(of).into()
 }

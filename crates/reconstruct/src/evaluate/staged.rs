@@ -54,7 +54,7 @@ impl StagedCollisions {
     }
 
     /// The names of the cases of a split in their order.
-    pub fn of_split(&self, split: StagedSplit) -> Vec<String> {
+    pub fn names_in(&self, split: StagedSplit) -> Vec<String> {
         let mut shuffled = self.names.clone();
         shuffled.sort_by_cached_key(|name| sha256_hex([name.as_bytes()]));
         let (tuning, reported) = shuffled.split_at(shuffled.len() / 2);
@@ -116,7 +116,7 @@ impl TrueSpeeds {
     }
 
     /// The true value of a quantity; `None` if it is no speed before the impact.
-    pub fn of(&self, quantity: ReconstructedQuantity) -> Option<f64> {
+    pub fn speed_m_s(&self, quantity: ReconstructedQuantity) -> Option<f64> {
         match quantity {
             ReconstructedQuantity::StruckSpeed => Some(self.struck_m_s),
             ReconstructedQuantity::StrikingSpeed => Some(self.striking_m_s),
@@ -135,9 +135,9 @@ mod tests {
         // SHA-256 of a: ca97…, b: 3e23…, c: 2e7d…, d: 18ac…, e: 3f79….
         let names = ["a", "b", "c", "d", "e"].map(str::to_owned).to_vec();
         let staged = StagedCollisions { root: PathBuf::new(), names };
-        assert_eq!(staged.of_split(StagedSplit::Tuning), ["c", "d"]);
-        assert_eq!(staged.of_split(StagedSplit::Reported), ["a", "b", "e"]);
-        assert_eq!(staged.of_split(StagedSplit::All), staged.names());
+        assert_eq!(staged.names_in(StagedSplit::Tuning), ["c", "d"]);
+        assert_eq!(staged.names_in(StagedSplit::Reported), ["a", "b", "e"]);
+        assert_eq!(staged.names_in(StagedSplit::All), staged.names());
     }
 
     #[test]
@@ -148,7 +148,7 @@ mod tests {
         let truth = |text: &str| TrueSpeeds::from_toml(TomlFile { path: Path::new("t"), text });
         let found = truth(text).unwrap();
         assert_eq!(found, TrueSpeeds { struck_m_s: 10.0, striking_m_s: 13.6, closing_m_s: 5.0 });
-        assert_eq!(found.of(ReconstructedQuantity::RoadFriction), None);
+        assert_eq!(found.speed_m_s(ReconstructedQuantity::RoadFriction), None);
         let error = truth(&text.replace("velocity_before_m_s = [13, 4]", "")).unwrap_err();
         assert!(error.to_string().contains("velocity_before_m_s is missing"), "{error}");
     }

@@ -57,13 +57,13 @@ pub struct QuantitySummary {
 
 impl MethodSummary {
     /// The summary of each method for each part of the evidence that was used.
-    pub fn of(scores: &[CaseScore]) -> Vec<Self> {
+    pub fn from_scores(scores: &[CaseScore]) -> Vec<Self> {
         let methods = |known| ReconstructionMethod::ALL.map(|method| (known, method));
         let pairs = KnownEvidence::ALL.into_iter().flat_map(methods);
-        pairs.filter_map(|pair| Self::of_method(scores, pair)).collect()
+        pairs.filter_map(|pair| Self::for_method(scores, pair)).collect()
     }
 
-    fn of_method(
+    fn for_method(
         scores: &[CaseScore],
         (known, method): (KnownEvidence, ReconstructionMethod),
     ) -> Option<Self> {
@@ -75,7 +75,7 @@ impl MethodSummary {
         let quantities = SPEEDS.iter().filter_map(|speed| {
             let scored: Vec<&ScoredQuantity> =
                 scores.iter().filter_map(|of| of.quantity(speed.key())).collect();
-            QuantitySummary::of(&scored)
+            QuantitySummary::new(&scored)
         });
         Some(Self {
             known,
@@ -91,7 +91,7 @@ impl MethodSummary {
 
 impl QuantitySummary {
     /// The summary of one quantity over cases; `None` without cases.
-    pub fn of(scored: &[&ScoredQuantity]) -> Option<Self> {
+    pub fn new(scored: &[&ScoredQuantity]) -> Option<Self> {
         let first = scored.first()?;
         let n = scored.len();
         let share = |level: f64| {
@@ -145,7 +145,7 @@ mod tests {
             speeds: vec![EstimatedSpeed { quantity, distribution }],
         };
         let truth = TrueSpeeds { struck_m_s: truth_m_s, striking_m_s: 0.0, closing_m_s: 0.0 };
-        CaseScore::of("case", KnownEvidence::RestOnly, &estimates, &truth)
+        CaseScore::new("case", KnownEvidence::RestOnly, &estimates, &truth)
     }
 
     #[test]
@@ -154,7 +154,7 @@ mod tests {
         let truths = [21.0, 22.0, 17.0, 24.0];
         let cases = truths.iter().zip([1.0, 2.0, 4.0, 8.0]).zip([399.0, 400.0, 1.0, 500.0]);
         let scores: Vec<CaseScore> = cases.map(|((t, s), ess)| score(*t, s, ess)).collect();
-        let [summary] = MethodSummary::of(&scores).try_into().unwrap();
+        let [summary] = MethodSummary::from_scores(&scores).try_into().unwrap();
         assert_eq!((summary.known, summary.n_cases), (KnownEvidence::RestOnly, 4));
         assert_eq!((summary.median_seconds, summary.n_sufficient_ess), (3.0, Some(2)));
         assert!((summary.p90_seconds - 6.8).abs() < 1e-12);
@@ -173,7 +173,7 @@ mod tests {
     fn a_speed_without_a_distribution_is_left_out() {
         let mut none = score(20.0, 1.0, 1.0);
         none.quantities.clear();
-        let summary = MethodSummary::of(&[none, score(20.0, 1.0, 1.0)]);
+        let summary = MethodSummary::from_scores(&[none, score(20.0, 1.0, 1.0)]);
         assert_eq!((summary[0].n_cases, summary[0].quantities[0].n), (2, 1));
         for distribution in [
             SpeedDistribution::Draws(Vec::new()),

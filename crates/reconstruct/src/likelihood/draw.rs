@@ -63,7 +63,7 @@ mod tests {
         let mut evidence = read(SPIN);
         let at = |time_s| VideoPosition { time_s, x_m: 0.0, y_m: 0.0, sigma_m: 0.3 };
         evidence.positions = vec![at(0.5), at(0.6)];
-        let model = ForwardModel::new(&evidence, Cars::of(&evidence, None, None));
+        let model = ForwardModel::new(&evidence, Cars::new(&evidence, None, None));
         let z = vec![0.0; model.prior().components().len()];
         let motion = model.motions(&[z], |motion| motion).pop().unwrap();
         let discrepancy = Discrepancy::default();

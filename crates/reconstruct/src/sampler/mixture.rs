@@ -154,7 +154,7 @@ impl Mixture {
         let dim = particles.z.first().map_or(0, |z| z.len());
         let n = 1.0 / particles.weight.iter().map(|weight| weight * weight).sum::<f64>();
         let mut shares = vec![vec![1.0; particles.z.len()]];
-        let mut mixture = Self::of_shares(particles, &shares, f64::INFINITY);
+        let mut mixture = Self::from_shares(particles, &shares, f64::INFINITY);
         let mut score = mixture.mean_ln_density(particles) * n;
         let penalty = (dim + 1) as f64 * n.ln() / 2.0;
         while mixture.parts.len() < MAX_PARTS {
@@ -165,7 +165,7 @@ impl Mixture {
             }
             (score, mixture, shares) = (split_score, split.0, split.1);
         }
-        Self::of_shares(particles, &shares, SHARED_PARTICLES_PER_DIM * dim as f64 / n)
+        Self::from_shares(particles, &shares, SHARED_PARTICLES_PER_DIM * dim as f64 / n)
     }
 
     /// Logarithm of the density q of the draws, without the constant `−dim/2 ln 2π`.
@@ -225,9 +225,9 @@ impl Mixture {
     /// The mixture with the given shares of the particles in its parts, `[n_parts][n]`.
     ///
     /// - `shared`: `ν / n`, infinite for a common covariance.
-    fn of_shares(particles: Weighted<'_>, shares: &[Vec<f64>], shared: f64) -> Self {
+    fn from_shares(particles: Weighted<'_>, shares: &[Vec<f64>], shared: f64) -> Self {
         let moments: Vec<Moments> =
-            shares.par_iter().map(|share| Moments::of(particles, share)).collect();
+            shares.par_iter().map(|share| Moments::new(particles, share)).collect();
         let mut common = moments[0].covariance.clone() * moments[0].weight;
         for moments in &moments[1..] {
             common += &moments.covariance * moments.weight;
@@ -265,7 +265,7 @@ impl Mixture {
             if shares.iter().any(too_small) {
                 return None;
             }
-            let mixture = Self::of_shares(particles, &shares, f64::INFINITY);
+            let mixture = Self::from_shares(particles, &shares, f64::INFINITY);
             let of_particles: Vec<Vec<f64>> =
                 particles.z.par_iter().map(|z| mixture.ln_densities(z)).collect();
             for (idx, densities) in of_particles.into_iter().enumerate() {
@@ -276,7 +276,7 @@ impl Mixture {
             }
         }
         let is_bad = shares.iter().any(too_small);
-        (!is_bad).then(|| (Self::of_shares(particles, &shares, f64::INFINITY), shares))
+        (!is_bad).then(|| (Self::from_shares(particles, &shares, f64::INFINITY), shares))
     }
 }
 
@@ -297,7 +297,7 @@ impl Moments {
         if square > 0.0 { sum * sum / square } else { 0.0 }
     }
 
-    fn of(particles: Weighted<'_>, share: &[f64]) -> Self {
+    fn new(particles: Weighted<'_>, share: &[f64]) -> Self {
         let dim = particles.z.first().map_or(0, |z| z.len());
         let weights: Vec<f64> = particles.weight.iter().zip(share).map(|(w, s)| w * s).collect();
         let weight: f64 = weights.iter().sum();

@@ -27,7 +27,7 @@ pub struct Particles {
 
 impl Particles {
     /// Whether the particles are of the posterior; those of a cancelled run may not be.
-    pub fn of_posterior(&self) -> bool {
+    pub fn is_posterior(&self) -> bool {
         self.temperature >= 1.0
     }
 

@@ -62,7 +62,7 @@ const SAVED_GROWTH: f64 = 1.3;
 /// - `checkpoint`: where the run is saved every now and then, and resumed from.
 /// - `report`: called after each batch of evaluations. If it breaks, the sampler stops: what it
 ///   returns then are particles of the temperature that was reached
-///   ([`Particles::of_posterior`] tells whether that was 1).
+///   ([`Particles::is_posterior`] tells whether that was 1).
 ///
 /// # Errors
 /// [`SamplerError`] if a setting is outside its range, if the evidence is impossible everywhere, or

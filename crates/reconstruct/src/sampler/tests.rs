@@ -60,7 +60,7 @@ fn a_narrow_correlated_posterior_is_that_of_the_closed_form() {
     let target = LinearGaussian::narrow();
     let (expected, covariance, log_evidence) = target.closed_form();
     let particles = run(&target, SamplerSettings { n_particles: 1000, ..seed(1) });
-    assert!(particles.of_posterior() && particles.ess >= 400.0, "ESS {}", particles.ess);
+    assert!(particles.is_posterior() && particles.ess >= 400.0, "ESS {}", particles.ess);
     assert!(particles.n_evaluations <= 60_000, "{} evaluations", particles.n_evaluations);
     let n = particles.ess.min(particles.z.len() as f64);
     for j in 0..20 {
@@ -188,7 +188,7 @@ fn what_was_sampled_until_a_cancellation_is_kept_and_said_to_be_no_posterior() {
             "an eighth of the particles is shown at once"
         );
         assert_eq!(particles.z.len(), 2000);
-        assert!(!particles.of_posterior() && particles.temperature < 0.1);
+        assert!(!particles.is_posterior() && particles.temperature < 0.1);
     }
 }
 

@@ -112,7 +112,7 @@ impl ForceForecast {
     pub fn of(mixture: &CurveMixture, settings: ForecastSettings) -> Result<Self, MixtureError> {
         let mut rng = random_stream(settings.seed, "draws", 0);
         let mut curves = mixture.sample(N_DRAWS.max(settings.n_curves), &mut rng);
-        let draws = CurveQuantities::of(&curves);
+        let draws = CurveQuantities::from_curves(&curves);
         curves.truncate(settings.n_curves);
         let duration_s = bands_of(&mixture.duration_s());
         let mean = ForceCurve { duration_s: duration_s.median, ..mixture.mean() };

@@ -76,12 +76,12 @@ impl UsedFile {
     pub fn read(path: &Path) -> io::Result<Self> {
         let path = path.to_owned();
         if !path.is_dir() {
-            let FileDigest { bytes, sha256, .. } = FileDigest::of("", &path)?;
+            let FileDigest { bytes, sha256, .. } = FileDigest::from_file("", &path)?;
             return Ok(Self { path, bytes, sha256 });
         }
         let (mut list, mut bytes) = (String::new(), 0);
         for name in files_in(&path)? {
-            let file = FileDigest::of(name.as_str(), &path.join(&name))?;
+            let file = FileDigest::from_file(name.as_str(), &path.join(&name))?;
             list.push_str(&format!("{}  {name}\n", file.sha256));
             bytes += file.bytes;
         }

@@ -234,7 +234,7 @@ mod tests {
     /// The evidence after frames in each of which the figure said something, in the unit of its axes.
     fn edited(adds_to: Option<usize>, frames: &[FigureResponse]) -> Evidence {
         let (context, mut evidence) = (Context::default(), evidence());
-        let cars = Cars::of(&evidence, None, None);
+        let cars = Cars::new(&evidence, None, None);
         for shown in frames {
             let _ = context.run_ui(RawInput::default(), |ui| {
                 let mut edit = SceneEdit::begin(ui, (&cars, adds_to));
@@ -259,7 +259,7 @@ mod tests {
         assert!((moved.x_m - 32.0).abs() < 0.011 && (moved.y_m + 2.0).abs() < 0.011, "{moved:?}");
         assert_eq!(moved.heading_rad, evidence().rest.unwrap().heading_rad);
 
-        let cars = Cars::of(&evidence(), None, None);
+        let cars = Cars::new(&evidence(), None, None);
         let front =
             [30.0 + Footprint::from(&cars.struck.parameters.geometry).cg_from_front_m, -5.0];
         let turned = edited(None, &[shown([front, [30.0, -3.0]])]).rest.unwrap();

@@ -24,7 +24,7 @@ impl FileDigest {
     /// # Errors
     /// The error of the operating system; anything but a regular file is refused, as reading it
     /// might never end.
-    pub fn of(name: impl Into<String>, path: &Path) -> io::Result<Self> {
+    pub fn from_file(name: impl Into<String>, path: &Path) -> io::Result<Self> {
         if !std::fs::metadata(path)?.is_file() {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "is no regular file"));
         }

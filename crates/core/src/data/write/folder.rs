@@ -79,7 +79,7 @@ impl OutputFolder {
             return Err(WriteError::HoldsResults { path: folder.to_owned() }.into());
         }
         let made = MadeFolders::make(folder).map_err(WriteError::io(folder))?;
-        let lock = WriterLock::of_folder(folder)?;
+        let lock = WriterLock::lock_folder(folder)?;
         sweep_staging(folder);
         for name in known.iter().chain([&MANIFEST_FILE]) {
             Target::find(&folder.join(name), existing)?;
@@ -161,7 +161,7 @@ fn staged_files(staging: &Path) -> io::Result<Vec<FileDigest>> {
     for entry in fs::read_dir(staging)? {
         let entry = entry?;
         let name = entry.file_name().to_string_lossy().into_owned();
-        files.push(FileDigest::of(name, &entry.path())?);
+        files.push(FileDigest::from_file(name, &entry.path())?);
     }
     files.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(files)
@@ -180,7 +180,9 @@ fn remove_stale(folder: &Path, earlier: &[FileDigest], written: &[FileDigest]) {
     for file in earlier.iter().filter(|file| !is_written(&file.name)) {
         let path = folder.join(&file.name);
         let is_plain = path.symlink_metadata().is_ok_and(|found| found.is_file());
-        if is_plain && FileDigest::of(file.name.as_str(), &path).is_ok_and(|found| found == *file) {
+        if is_plain
+            && FileDigest::from_file(file.name.as_str(), &path).is_ok_and(|found| found == *file)
+        {
             // What cannot be removed is listed no longer and so is the user's from now on.
             let _ = fs::remove_file(path);
         }

@@ -30,7 +30,7 @@ impl WriterLock {
     /// # Errors
     /// [`WriteError::InUse`] within [`DataError::Write`] if somebody else holds it, with the number
     /// of the process; [`WriteError::Io`] if the lock file cannot be made.
-    pub fn of_file(target: &Path) -> Result<Self, DataError> {
+    pub fn lock_file(target: &Path) -> Result<Self, DataError> {
         let name = target.file_name().unwrap_or_default().to_string_lossy();
         let path = target.with_file_name(format!(".{name}.{MARK}-lock"));
         Ok(Self::take(path, target)?)
@@ -39,8 +39,8 @@ impl WriterLock {
     /// Takes the lock of a folder, which must exist. The lock file is in it.
     ///
     /// # Errors
-    /// As for [`WriterLock::of_file`].
-    pub(super) fn of_folder(folder: &Path) -> Result<Self, WriteError> {
+    /// As for [`WriterLock::lock_file`].
+    pub(super) fn lock_folder(folder: &Path) -> Result<Self, WriteError> {
         Self::take(folder.join(format!(".{MARK}-lock")), folder)
     }
 

@@ -147,8 +147,8 @@ impl GaussianProcess {
     pub fn fit(data: &GaussianProcessData<'_>) -> Result<Self, GaussianProcessError> {
         let n_outputs = check(data)?;
         let usual = |sample_idx: usize| !data.unusual.get(sample_idx).copied().unwrap_or(false);
-        let input_scaling = Scaling::of(data.inputs, |_| true);
-        let output_scaling = Scaling::of(data.outputs, usual);
+        let input_scaling = Scaling::fit(data.inputs, |_| true);
+        let output_scaling = Scaling::fit(data.outputs, usual);
         let inputs = input_scaling.standardise(data.inputs);
         let outputs = output_scaling.standardise(data.outputs);
         let weights = match data.weights {
@@ -305,7 +305,7 @@ struct Scaling {
 impl Scaling {
     /// Computes them from the rows whose index `choose` accepts, or from all rows if it accepts
     /// fewer than two.
-    fn of(rows: &[Vec<f64>], choose: impl Fn(usize) -> bool) -> Self {
+    fn fit(rows: &[Vec<f64>], choose: impl Fn(usize) -> bool) -> Self {
         let chosen: Vec<&Vec<f64>> =
             rows.iter().enumerate().filter(|(idx, _)| choose(*idx)).map(|(_, row)| row).collect();
         let chosen = if chosen.len() < 2 { rows.iter().collect() } else { chosen };

@@ -67,7 +67,7 @@ impl Rule {
     /// The rule for a quantity.
     ///
     /// - `values`: the quantities before it, known or estimated.
-    pub(super) fn of(
+    pub(super) fn new(
         quantity: SheetQuantity,
         (class, drive): (VehicleClass, Option<Drive>),
         values: &SheetValues<'_>,

@@ -76,7 +76,7 @@ impl DataSheet {
     /// The data sheet of a vehicle: its own, or one in which everything is known that its parameters say.
     ///
     /// - returns `None` if there is no sheet that leads to these parameters.
-    pub fn of(vehicle: &VehicleParameters) -> Option<Self> {
+    pub fn from_parameters(vehicle: &VehicleParameters) -> Option<Self> {
         if let Some(sheet) = &vehicle.sheet {
             return Some(Self { equations: vehicle.equations, ..Self::clone(sheet) });
         }
@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn a_sheet_is_the_same_after_it_was_written_and_read() {
         for vehicle in LibraryVehicle::ALL {
-            let sheet = DataSheet::of(&vehicle.parameters()).unwrap();
+            let sheet = DataSheet::from_parameters(&vehicle.parameters()).unwrap();
             let text = serde_json::to_string(&sheet).unwrap();
             let read: DataSheet = serde_json::from_str(&text).unwrap();
             assert_eq!(read, sheet, "{text}");
@@ -172,7 +172,7 @@ mod tests {
             let vehicle = preset.parameters();
             // The scaled models have roll arms that do not follow from CG and wheels.
             let is_car = vehicle.mass.mass_kg > 1000.0;
-            assert_eq!(DataSheet::of(&vehicle).is_some(), is_car, "{}", preset.id());
+            assert_eq!(DataSheet::from_parameters(&vehicle).is_some(), is_car, "{}", preset.id());
         }
     }
 }

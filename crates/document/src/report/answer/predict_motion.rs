@@ -80,7 +80,7 @@ fn pictures(
     let caveats = &report.caveats;
     let still = forecast_still((request, answer), (&density, caveats), context);
     let shown = (at_s, wording.units);
-    let input = MotionForecastFigure::of(answer, (&bands, caveats), shown).with_motions(analysis);
+    let input = MotionForecastFigure::new(answer, (&bands, caveats), shown).with_motions(analysis);
     let yaw = FORECAST_CHANNELS.into_iter().find(|of| of.channel == Channel::Yaw);
     let yaw = yaw.map(|channel| {
         let caption = fill(words.forecast_yaw_picture, &[("name", &report.scenario)]);

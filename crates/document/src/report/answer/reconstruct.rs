@@ -77,7 +77,7 @@ fn pictures(
     let caveats = &report.caveats;
     let name = ("name", &*report.case);
     let paths = ReconstructedPaths::of(answer);
-    let scene = ReconstructionScene::of(answer, &paths);
+    let scene = ReconstructionScene::new(answer, &paths);
     let plan = PartPicture::figure(
         fill(words.reconstruction_picture, &[name]),
         reconstruction_scene_figure(&scene, caveats, units),

@@ -90,7 +90,7 @@ pub(super) fn reconstruction_still(
 ) -> Option<PartPicture> {
     paths.median.as_ref()?;
     let Context { wording, .. } = context;
-    let parts = ReconstructionParts::of((answer, paths), wording.units, caveats);
+    let parts = ReconstructionParts::new((answer, paths), wording.units, caveats);
     let scene = reconstruction_scene(&parts);
     let caption = fill(wording.words.reconstruction_cars, &[("name", &answer.report.case)]);
     let (scene, note) = on_ground(scene, site, context);

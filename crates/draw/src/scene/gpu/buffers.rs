@@ -18,7 +18,7 @@ impl GrowingBuffer {
     }
 
     /// An empty buffer of vertices or of instances.
-    pub fn of_vertices(label: &'static str) -> Self {
+    pub fn for_vertices(label: &'static str) -> Self {
         Self::new(label, wgpu::BufferUsages::VERTEX)
     }
 

@@ -50,7 +50,7 @@ pub struct Meshes {
 impl Meshes {
     /// No meshes.
     pub fn new() -> Self {
-        Self { vertices: GrowingBuffer::of_vertices("meshes"), shapes: Vec::new() }
+        Self { vertices: GrowingBuffer::for_vertices("meshes"), shapes: Vec::new() }
     }
 
     /// Sends the meshes of cars, unless they are there.
@@ -129,7 +129,7 @@ impl CarParts {
     /// No cars.
     pub fn new() -> Self {
         let (opaque, ghosts) = (Vec::new(), Vec::new());
-        Self { parts: GrowingBuffer::of_vertices("parts"), opaque, ghosts, bounds: None }
+        Self { parts: GrowingBuffer::for_vertices("parts"), opaque, ghosts, bounds: None }
     }
 
     /// Replaces the cars.

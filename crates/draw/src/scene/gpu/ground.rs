@@ -43,7 +43,7 @@ impl GroundResources {
             density: (None, nothing(wgpu::TextureFormat::R32Float)),
             picture: (None, nothing(PICTURE)),
             corners: GrowingBuffer::new("corners", wgpu::BufferUsages::STORAGE),
-            areas: GrowingBuffer::of_vertices("areas"),
+            areas: GrowingBuffer::for_vertices("areas"),
             group: None,
         }
     }

@@ -125,13 +125,13 @@ impl GpuCanvas {
             ground: GroundResources::new(device),
             meshes: Meshes::new(),
             cars: CarParts::new(),
-            ground_strokes: GrowingBuffer::of_vertices("ground strokes"),
+            ground_strokes: GrowingBuffer::for_vertices("ground strokes"),
             marks: MarkStrokes::default(),
-            mark_strokes: GrowingBuffer::of_vertices("marks"),
-            shadows: GrowingBuffer::of_vertices("shadows"),
+            mark_strokes: GrowingBuffer::for_vertices("marks"),
+            shadows: GrowingBuffer::for_vertices("shadows"),
             lines: MovingLines::default(),
-            below: GrowingBuffer::of_vertices("lines below"),
-            above: GrowingBuffer::of_vertices("lines above"),
+            below: GrowingBuffer::for_vertices("lines below"),
+            above: GrowingBuffer::for_vertices("lines above"),
             kept: None,
             time_s: None,
             on,
@@ -225,7 +225,7 @@ impl GpuCanvas {
         on.queue.write_buffer(&self.scene_buffer, 0, bytemuck::cast_slice(&numbers));
         let shapes: Vec<_> = ground.scene.cars.iter().map(|car| &car.shape).collect();
         self.meshes.update(on.parts(), &shapes);
-        self.marks = MarkStrokes::of(ground);
+        self.marks = MarkStrokes::new(ground);
         self.mark_strokes.write(on.parts(), &stroke_instances(self.marks.all(), size));
         match self.ground.update(on.parts(), &on.pipelines, ground) {
             Ok(()) => {
@@ -270,7 +270,7 @@ impl GpuCanvas {
         let seen = seen_cars(ground, time_s);
         self.cars.update(on, &self.meshes, (&seen, projection));
         let target = projection.target_m();
-        let shadows = seen.iter().filter_map(|car| Shadow::of(car, projection));
+        let shadows = seen.iter().filter_map(|car| Shadow::new(car, projection));
         let shadows: Vec<_> = shadows.map(|shadow| shadow_instance(&shadow, target)).collect();
         self.shadows.write(on, &shadows);
         self.lines.fill(ground, time_s);

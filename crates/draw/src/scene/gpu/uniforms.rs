@@ -20,7 +20,7 @@ pub const N_VECTORS: usize = 21;
 /// - `size`: width and height of the picture, pixels.
 pub fn uniforms(ground: &Ground<'_>, size: [usize; 2]) -> [[f32; 4]; N_VECTORS] {
     let (projection, dark) = (ground.projection, ground.dark);
-    let grid = Grid::of(ground);
+    let grid = Grid::new(ground);
     let [width, height] = size.map(|side| side as f32);
     let [across, up] = projection.clip_per_m(size.map(|side| side as f64));
     let [map_x, map_y, map_d] = grid.map.map(|[a, b, c]| [a, b, c, 0.0]);

@@ -88,7 +88,7 @@ pub fn evaluate(
     let mut problems = Vec::new();
     let mut score = |name: &str, predict: &PredictOne<'_>| {
         let predictions = predict_all(test, (name, predict), &mut problems);
-        Scored::of(test, &predictions, settings.probabilistic)
+        Scored::new(test, &predictions, settings.probabilistic)
     };
     let pulse = score("pulse", &|scenario| baselines.pulse.predict(scenario))?;
     let nearest = score("nearest", &|scenario| baselines.nearest.predict(scenario))?;
@@ -96,7 +96,7 @@ pub fn evaluate(
     if !go_on(2, "scoring the model") {
         return Ok(Outcome::Cancelled);
     }
-    let scored = Scored::of(test, predictions, settings.probabilistic)?;
+    let scored = Scored::new(test, predictions, settings.probabilistic)?;
     let of_domain = |inside: bool| {
         let known = predictions.iter().enumerate();
         let known = known.filter(|(_, of)| (of.applicability == 1.0) == inside);
@@ -162,14 +162,14 @@ fn predict_all(
                 ));
                 let zeros = vec![0.0; case.curve.n_instants()];
                 let (fx_n, fy_n) = (zeros.clone(), zeros);
-                CurvePrediction::of_curve(ForceCurve { fx_n, fy_n, duration_s: 0.0 })
+                CurvePrediction::from_curve(ForceCurve { fx_n, fy_n, duration_s: 0.0 })
             })
         };
     test.iter().zip(predictions).map(&mut or_no_force).collect()
 }
 
 fn features(case: &ForceCase) -> Option<ImpulseFeatures> {
-    ImpulseFeatures::of(&case.curve.to_history())
+    ImpulseFeatures::from_history(&case.curve.to_history())
 }
 
 fn cluster(train: &[&ForceCase], seed: u64) -> Result<ImpulseClusters, ClusterError> {
@@ -183,7 +183,8 @@ fn cluster_metrics(
     (model, statistical): (&Scored, &Scored),
 ) -> Vec<ClusterMetrics> {
     let of = |number: usize| {
-        let is_in = |case: &ForceCase| features(case).is_some_and(|f| clusters.of(&f) == number);
+        let is_in =
+            |case: &ForceCase| features(case).is_some_and(|f| clusters.nearest(&f) == number);
         Some(ClusterMetrics {
             name: ImpulseClusters::label(number),
             impulse_n_s: clusters.impulse_n_s(number)?,
@@ -200,7 +201,7 @@ fn case_errors(
     [model, pulse, nearest, statistical]: [&Scored; 4],
 ) -> Vec<CaseErrors> {
     let of = |(idx, case): (usize, &&ForceCase)| {
-        let number = clusters.of(&features(case)?);
+        let number = clusters.nearest(&features(case)?);
         Some(CaseErrors {
             name: case.name.clone(),
             clean: case.is_clean(),

@@ -49,13 +49,13 @@ pub struct CrossValidation {
 }
 
 impl CrossValidation {
-    fn of(folds: Vec<Evaluation>) -> Self {
+    fn from_folds(folds: Vec<Evaluation>) -> Self {
         let compared = |choose: fn(&CaseErrors) -> bool| {
             let cases: Vec<&CaseErrors> =
                 folds.iter().flat_map(|fold| &fold.cases).filter(|case| choose(case)).collect();
             let metrics = |of: fn(&CaseErrors) -> &PointErrors| {
                 let errors: Vec<&PointErrors> = cases.iter().map(|case| of(case)).collect();
-                CurveMetrics::of(&errors, &[])
+                CurveMetrics::new(&errors, &[])
             };
             Some(ComparedMetrics {
                 model: metrics(|case| &case.model)?,
@@ -105,7 +105,7 @@ fn predictions(
     let predict = |case: &ForceCase| {
         let said = model.predict(&known(&case.scenario, settings.columns))?;
         let applicability = said.applicability;
-        let prediction = CurvePrediction::of_mixture(said.mixture, &said.likely);
+        let prediction = CurvePrediction::from_mixture(said.mixture, &said.likely);
         Ok(CurvePrediction { applicability, ..prediction })
     };
     test.iter().map(predict).collect()
@@ -166,5 +166,5 @@ pub fn cross_validate(
             Outcome::Cancelled => return Ok(Outcome::Cancelled),
         }
     }
-    Ok(Outcome::Complete(CrossValidation::of(evaluations)))
+    Ok(Outcome::Complete(CrossValidation::from_folds(evaluations)))
 }

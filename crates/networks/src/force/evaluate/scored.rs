@@ -16,20 +16,20 @@ pub(super) struct Scored {
 }
 
 impl Scored {
-    pub(super) fn of(
+    pub(super) fn new(
         test: &[&ForceCase],
         predictions: &[CurvePrediction],
         settings: ProbabilisticSettings,
     ) -> Result<Self, EvaluationError> {
         let pairs = || test.iter().zip(predictions);
-        let errors = pairs().map(|(case, prediction)| PointErrors::of(case, prediction)).collect();
+        let errors = pairs().map(|(case, prediction)| PointErrors::new(case, prediction)).collect();
         if predictions.iter().any(|prediction| prediction.mixture.is_none()) {
             return Ok(Self { errors, scores: Vec::new() });
         }
         let tasks: Vec<_> = pairs().enumerate().collect();
         let scores = tasks.par_iter().filter_map(|(stream, (case, prediction))| {
             let mixture = prediction.mixture.as_ref()?;
-            let scores = ProbabilisticScores::of(case, mixture, settings, *stream as u64);
+            let scores = ProbabilisticScores::new(case, mixture, settings, *stream as u64);
             let named = |source| EvaluationError::Mixture { case: case.name.clone(), source };
             Some(scores.map_err(named))
         });
@@ -57,6 +57,6 @@ impl Scored {
         let taken: Vec<usize> = indices.collect();
         let errors: Vec<_> = taken.iter().filter_map(|idx| self.errors.get(*idx)).collect();
         let scores: Vec<_> = taken.iter().filter_map(|idx| self.scores.get(*idx)).collect();
-        CurveMetrics::of(&errors, &scores)
+        CurveMetrics::new(&errors, &scores)
     }
 }

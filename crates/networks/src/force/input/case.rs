@@ -154,7 +154,7 @@ impl ForceCase {
     }
 
     /// The cases of a force data set that can be learned from, and the problems of the others.
-    pub fn of_dataset(dataset: &Dataset) -> (Vec<Self>, Vec<ForceCaseError>) {
+    pub fn from_dataset(dataset: &Dataset) -> (Vec<Self>, Vec<ForceCaseError>) {
         cases_and_problems(dataset, Self::from_case)
     }
 
@@ -253,7 +253,7 @@ pub(crate) mod tests {
             Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("datasets").join(name);
         let mut report = |_| ControlFlow::Continue(());
         let dataset = Dataset::load(&root, &mut report).unwrap().complete().unwrap();
-        let (cases, problems) = ForceCase::of_dataset(&dataset);
+        let (cases, problems) = ForceCase::from_dataset(&dataset);
         assert!(problems.is_empty(), "{problems:?}");
         cases
     }
@@ -284,7 +284,7 @@ pub(crate) mod tests {
             assert!(case.scenario.theta_b_rad > 0.0 && case.impulse_n_s[1] > 0.0, "{}", case.name);
         }
         // Where the table gave no times: weak contact at the end is cut.
-        let off_s = impactlab_core::numerics::Summary::of(off_s).unwrap();
+        let off_s = impactlab_core::numerics::Summary::from_values(off_s).unwrap();
         assert!(off_s.median < 5e-3 && off_s.p90 < 0.025, "{off_s:?}");
     }
 
@@ -352,7 +352,7 @@ pub(crate) mod tests {
     fn curves_turn_back_to_the_recorded_axes_and_keep_their_peak() {
         for case in &shipped("fea") {
             let recorded = case.as_recorded(&case.curve);
-            let features = ImpulseFeatures::of(&case.curve.to_history()).unwrap();
+            let features = ImpulseFeatures::from_history(&case.curve.to_history()).unwrap();
             assert!((features.peak_n - case.peak_n).abs() < 1e-9, "{}", case.name);
             assert_eq!(
                 recorded.fy_n[30],

@@ -86,10 +86,12 @@ impl CurveMetrics {
     /// Statistics over cases; `None` without any case.
     ///
     /// - `scores`: of the same cases, or empty.
-    pub fn of(errors: &[&PointErrors], scores: &[&ProbabilisticScores]) -> Option<Self> {
-        let of = |metric: fn(&PointErrors) -> f64| Summary::of(errors.iter().map(|e| metric(e)));
+    pub fn new(errors: &[&PointErrors], scores: &[&ProbabilisticScores]) -> Option<Self> {
+        let of = |metric: fn(&PointErrors) -> f64| {
+            Summary::from_values(errors.iter().map(|e| metric(e)))
+        };
         let known = |metric: fn(&PointErrors) -> Option<f64>| {
-            Summary::of(errors.iter().filter_map(|e| metric(e)))
+            Summary::from_values(errors.iter().filter_map(|e| metric(e)))
         };
         Some(Self {
             n_cases: errors.len(),
@@ -102,18 +104,19 @@ impl CurveMetrics {
             impulse_error: of(|e| e.impulse_error)?,
             peak_error: of(|e| e.peak_error)?,
             duration_error: of(|e| e.duration_error)?,
-            probabilistic: DistributionMetrics::of(scores),
+            probabilistic: DistributionMetrics::from_scores(scores),
         })
     }
 }
 
 impl DistributionMetrics {
     /// Statistics over cases; `None` without any case.
-    pub fn of(scores: &[&ProbabilisticScores]) -> Option<Self> {
-        let of =
-            |metric: fn(&ProbabilisticScores) -> f64| Summary::of(scores.iter().map(|s| metric(s)));
+    pub fn from_scores(scores: &[&ProbabilisticScores]) -> Option<Self> {
+        let of = |metric: fn(&ProbabilisticScores) -> f64| {
+            Summary::from_values(scores.iter().map(|s| metric(s)))
+        };
         let covered = |metric: fn(&ProbabilisticScores) -> &CaseCoverage| {
-            IntervalCoverage::of(&scores.iter().map(|s| metric(s)).collect::<Vec<_>>())
+            IntervalCoverage::from_cases(&scores.iter().map(|s| metric(s)).collect::<Vec<_>>())
         };
         let pit = |metric: fn(&ProbabilisticScores) -> &[u32; N_PIT_BINS]| {
             scores.iter().fold([0; N_PIT_BINS], |mut sum, score| {
@@ -143,10 +146,10 @@ impl DistributionMetrics {
 
 impl IntervalCoverage {
     /// Coverage at each of [`BAND_LEVELS`]; `None` without cases.
-    fn of(cases: &[&CaseCoverage]) -> Option<[Self; 4]> {
+    fn from_cases(cases: &[&CaseCoverage]) -> Option<[Self; 4]> {
         let at = |i: usize| {
-            let share = Summary::of(cases.iter().map(|case| case.share[i]))?;
-            let width = Summary::of(cases.iter().map(|case| case.width[i]))?;
+            let share = Summary::from_values(cases.iter().map(|case| case.share[i]))?;
+            let width = Summary::from_values(cases.iter().map(|case| case.width[i]))?;
             Some(Self {
                 level: BAND_LEVELS[i],
                 share: share.mean,
@@ -167,11 +170,11 @@ mod tests {
         let covered = |share: f64| CaseCoverage { share: [share; 4], width: [10.0; 4] };
         let cases = [covered(1.0), covered(0.0), covered(1.0), covered(1.0)];
         let all: Vec<&CaseCoverage> = cases.iter().collect();
-        let [coverage, ..] = IntervalCoverage::of(&all).unwrap();
+        let [coverage, ..] = IntervalCoverage::from_cases(&all).unwrap();
         assert_eq!((coverage.level, coverage.share, coverage.mean_width), (0.5, 0.75, 10.0));
         assert!((coverage.standard_error - 0.25).abs() < 1e-12, "{coverage:?}");
-        assert_eq!(IntervalCoverage::of(&[]), None);
-        assert_eq!(DistributionMetrics::of(&[]), None);
-        assert_eq!(CurveMetrics::of(&[], &[]), None);
+        assert_eq!(IntervalCoverage::from_cases(&[]), None);
+        assert_eq!(DistributionMetrics::from_scores(&[]), None);
+        assert_eq!(CurveMetrics::new(&[], &[]), None);
     }
 }

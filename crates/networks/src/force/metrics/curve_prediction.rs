@@ -19,7 +19,7 @@ pub struct CurvePrediction {
 
 impl CurvePrediction {
     /// The prediction of a curve alone, with the impulse and the peak of this curve.
-    pub fn of_curve(curve: ForceCurve) -> Self {
+    pub fn from_curve(curve: ForceCurve) -> Self {
         let (impulse_n_s, peak_n) = (curve.impulse_n_s(), curve.peak().0);
         Self { curve, impulse_n_s, peak_n, mixture: None, applicability: 1.0 }
     }
@@ -28,8 +28,8 @@ impl CurvePrediction {
     ///
     /// Curve, impulse and peak are those of the mean of `likely`, and the duration is its median. The
     /// median of drawn peaks would be too large, since drawn curves are rougher than recorded ones.
-    pub fn of_mixture(mixture: CurveMixture, likely: &CurveMixture) -> Self {
-        let mut prediction = Self::of_curve(likely.mean());
+    pub fn from_mixture(mixture: CurveMixture, likely: &CurveMixture) -> Self {
+        let mut prediction = Self::from_curve(likely.mean());
         prediction.curve.duration_s = likely.duration_s().quantile(0.5);
         prediction.mixture = Some(mixture);
         prediction

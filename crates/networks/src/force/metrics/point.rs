@@ -36,7 +36,7 @@ pub struct PointErrors {
 
 impl PointErrors {
     /// Errors of a prediction for a case.
-    pub fn of(case: &ForceCase, prediction: &CurvePrediction) -> Self {
+    pub fn new(case: &ForceCase, prediction: &CurvePrediction) -> Self {
         let (truth, curve) = (&case.curve, &prediction.curve);
         let n = truth.n_instants() as f64;
         let [ex, ey] = [difference(&curve.fx_n, &truth.fx_n), difference(&curve.fy_n, &truth.fy_n)];
@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn a_perfect_prediction_has_no_error() {
         let case = &shipped("fea")[0];
-        let errors = PointErrors::of(case, &CurvePrediction::of_curve(case.curve.clone()));
+        let errors = PointErrors::new(case, &CurvePrediction::from_curve(case.curve.clone()));
         let json = serde_json::to_value(errors).unwrap();
         for (name, value) in json.as_object().unwrap() {
             assert_eq!(value.as_f64(), Some(0.0), "{name}");
@@ -88,7 +88,7 @@ mod tests {
             *force *= 1.1;
         }
         curve.duration_s *= 0.8;
-        let errors = PointErrors::of(case, &CurvePrediction::of_curve(curve));
+        let errors = PointErrors::new(case, &CurvePrediction::from_curve(curve));
         for (name, got, expected) in [
             ("history", errors.history_error, 0.1),
             ("along", errors.history_error_x.unwrap(), 0.1),

@@ -79,7 +79,7 @@ impl ProbabilisticScores {
     ///
     /// # Errors
     /// [`MixtureError`] if the distribution is over another grid.
-    pub fn of(
+    pub fn new(
         case: &ForceCase,
         mixture: &CurveMixture,
         settings: ProbabilisticSettings,
@@ -89,7 +89,7 @@ impl ProbabilisticScores {
         rng.set_stream(stream);
         let nll_nats = -mixture.log_density(&case.curve)?;
         let draws = mixture.sample(settings.n_samples, &mut rng);
-        let quantities = CurveQuantities::of(&draws);
+        let quantities = CurveQuantities::from_curves(&draws);
         let [px, py] = case.impulse_n_s;
         let (impulse, duration_s) = (px.hypot(py), case.curve.duration_s);
         let impulses = quantities.impulse_magnitude_n_s();
@@ -98,7 +98,7 @@ impl ProbabilisticScores {
         for (axis, observed) in case.impulse_n_s.into_iter().enumerate() {
             pit_impulse[bin(mixture.impulse(axis).cdf(observed))] += 1;
         }
-        let force = ForceScores::of(case, mixture)?;
+        let force = ForceScores::new(case, mixture)?;
         Ok(Self {
             force_n: force.covered,
             impulse_n_s: CaseCoverage::by_draws(&impulses, impulse),
@@ -140,7 +140,7 @@ struct ForceScores {
 }
 
 impl ForceScores {
-    fn of(case: &ForceCase, mixture: &CurveMixture) -> Result<Self, MixtureError> {
+    fn new(case: &ForceCase, mixture: &CurveMixture) -> Result<Self, MixtureError> {
         let n_instants = mixture.n_instants();
         let n_contact = n_contact_instants(case).min(n_instants);
         let bands = mixture.bands(&BAND_LEVELS)?;
@@ -210,7 +210,8 @@ mod tests {
             (case.peak_n, case.peak_time_s) = curve.peak();
             case.curve = curve;
             let settings = ProbabilisticSettings { n_samples: 300, seed: 1 };
-            let scores = ProbabilisticScores::of(&case, &mixture, settings, stream as u64).unwrap();
+            let scores =
+                ProbabilisticScores::new(&case, &mixture, settings, stream as u64).unwrap();
             let of = [scores.force_n, scores.impulse_n_s, scores.peak_n, scores.duration_s];
             for (sums, covered) in shares.iter_mut().zip(of) {
                 for (sum, share) in sums.iter_mut().zip(covered.share) {
@@ -233,7 +234,7 @@ mod tests {
         let (case, other) = (&cases[0], &cases[1]);
         let score = |curve: &ForceCurve| {
             let settings = ProbabilisticSettings { n_samples: 100, seed: 1 };
-            ProbabilisticScores::of(case, &about(curve), settings, 0).unwrap()
+            ProbabilisticScores::new(case, &about(curve), settings, 0).unwrap()
         };
         let (good, bad) = (score(&case.curve), score(&other.curve));
         assert!(good.crps_force_n < bad.crps_force_n && good.nll_nats < bad.nll_nats);

@@ -51,7 +51,7 @@ impl ForceDomain {
     ///
     /// - `standardisation`: of the network's features;
     /// - `cases`: the training cases. Those without contact point are left out.
-    pub(crate) fn of(standardisation: &Standardisation, cases: &[ForceCase]) -> Self {
+    pub(crate) fn from_cases(standardisation: &Standardisation, cases: &[ForceCase]) -> Self {
         let at = |values: &[f64], i: usize| values.get(i).copied().unwrap_or(0.0);
         let indices: [usize; N_SCENARIO] = std::array::from_fn(|i| i);
         let mean = indices.map(|i| at(&standardisation.mean, i));
@@ -160,11 +160,11 @@ mod tests {
         let row = |case: &ForceCase| {
             scenario_numbers(&case.scenario, case.scenario.contact_m.unwrap()).to_vec()
         };
-        Standardisation::of(&cases.iter().map(row).collect::<Vec<_>>())
+        Standardisation::from_rows(&cases.iter().map(row).collect::<Vec<_>>())
     }
 
-    fn of(cases: &[ForceCase]) -> ForceDomain {
-        ForceDomain::of(&standardisation(cases), cases)
+    fn domain(cases: &[ForceCase]) -> ForceDomain {
+        ForceDomain::from_cases(&standardisation(cases), cases)
     }
 
     /// Five folds of both data sets: cases that a domain has not seen lie within it, with 1 for nearly
@@ -179,7 +179,7 @@ mod tests {
                 let part = (0..cases.len()).filter(|i| is_test(i) == test);
                 part.map(|i| cases[i].clone()).collect()
             };
-            let domain = of(&of_part(false));
+            let domain = domain(&of_part(false));
             applicability.extend(of_part(true).iter().map(|case| {
                 domain.applicability(&case.scenario, case.scenario.contact_m.unwrap())
             }));
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn applicability_falls_to_zero_outside_and_the_quantity_is_named() {
         let cases = [shipped("fea"), shipped("fea-wide")].concat();
-        let (domain, seen) = (of(&cases), cases[10].scenario.clone());
+        let (domain, seen) = (domain(&cases), cases[10].scenario.clone());
         let contact = seen.contact_m.unwrap();
         assert_eq!(domain.applicability(&seen, contact), 1.0);
         assert_eq!(domain.outside(&seen), vec![]);
@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn a_mass_that_was_never_varied_is_the_only_one_known() {
         let cases = shipped("fea");
-        let (domain, seen) = (of(&cases), &cases[10].scenario);
+        let (domain, seen) = (domain(&cases), &cases[10].scenario);
         let light = ForceScenario { mass_kg: [1700.0, seen.mass_kg[1]], ..seen.clone() };
         assert_eq!(domain.applicability(&light, seen.contact_m.unwrap()), 0.0);
         assert_eq!(domain.outside(&light)[0].feature, "target mass [kg]");

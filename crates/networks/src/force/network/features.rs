@@ -141,7 +141,7 @@ impl Standardisation {
     /// Statistics over the training cases.
     ///
     /// - `rows`: their features, all of one length.
-    pub(crate) fn of(rows: &[Vec<f64>]) -> Self {
+    pub(crate) fn from_rows(rows: &[Vec<f64>]) -> Self {
         let n = rows.len().max(1) as f64;
         let width = rows.first().map_or(0, Vec::len);
         let column = |i: usize| rows.iter().filter_map(move |row| row.get(i).copied());
@@ -193,7 +193,7 @@ impl OpenFeatures {
 
     /// The distribution over the training cases: contacts at the middles of `n_contacts` equal
     /// shares of the cases ordered by x, bodies by frequency.
-    pub(crate) fn of(cases: &[ForceCase], bodies: &[String], n_contacts: usize) -> Self {
+    pub(crate) fn from_cases(cases: &[ForceCase], bodies: &[String], n_contacts: usize) -> Self {
         let mut contacts: Vec<[f64; 2]> =
             cases.iter().filter_map(|case| case.scenario.contact_m).collect();
         contacts.sort_by(|a, b| a[0].total_cmp(&b[0]));

@@ -86,7 +86,7 @@ impl BareForce {
     ///
     /// # Errors
     /// [`ImpactError`] for masses or velocities out of range.
-    pub(crate) fn of(
+    pub(crate) fn new(
         momentum: &MomentumModel,
         (scenario, contact_m): (&ForceScenario, [f64; 2]),
         duration_s: f64,
@@ -209,7 +209,7 @@ mod tests {
 
     fn force(scenario: &ForceScenario, duration_s: f64) -> BareForce {
         let contact_m = scenario.contact_m.unwrap();
-        BareForce::of(&MomentumModel::prior(true), (scenario, contact_m), duration_s).unwrap()
+        BareForce::new(&MomentumModel::prior(true), (scenario, contact_m), duration_s).unwrap()
     }
 
     /// Whether the central half and the central 90 % of values hold one.

@@ -285,7 +285,7 @@ impl CentreModel {
         scenario: &ForceScenario,
         contact_m: [f64; 2],
     ) -> Result<BareForce, ForceError> {
-        Ok(BareForce::of(&self.momentum, (scenario, contact_m), self.duration_s)?)
+        Ok(BareForce::new(&self.momentum, (scenario, contact_m), self.duration_s)?)
     }
 
     fn unseen_histories(

@@ -125,8 +125,8 @@ fn best_share(cases: &[ForceCase], crush: &[ForceCurve], others: &[ForceCurve]) 
         let triples = cases.iter().zip(crush).zip(others);
         let chosen = triples.filter(|((case, _), _)| case.is_clean() || !any_clean);
         let errors = chosen.map(|((case, crush), other)| {
-            let prediction = CurvePrediction::of_curve(blend(share, crush, other));
-            let errors = PointErrors::of(case, &prediction);
+            let prediction = CurvePrediction::from_curve(blend(share, crush, other));
+            let errors = PointErrors::new(case, &prediction);
             errors.history_error + errors.impulse_error
         });
         errors.sum()

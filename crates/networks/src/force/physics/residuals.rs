@@ -84,12 +84,12 @@ impl ResidualModel {
         let plain = rows(&ForceCase::is_clean);
         let plain = if plain.len() < CASES_PER_FACTOR { rows(&|_| true) } else { plain };
         // The physics' own duration is nearer than one with the median residual added.
-        let usual = ResidualProfiles::of(&plain, n_factors, false);
+        let usual = ResidualProfiles::from_rows(&plain, n_factors, false);
         let hooked = rows(&|case| case.hooked);
         let mut hooking = if hooked.len() < CASES_PER_FACTOR {
             usual.clone()
         } else {
-            ResidualProfiles::of(&hooked, n_factors, true)
+            ResidualProfiles::from_rows(&hooked, n_factors, true)
         };
         // A handful of cases leaves little over, but what plain cases leave is there as well.
         for (variance, of_usual) in hooking.variance.iter_mut().zip(&usual.variance) {
@@ -135,7 +135,7 @@ impl ResidualModel {
 }
 
 impl ResidualProfiles {
-    fn of(rows: &[Vec<f64>], n_factors: usize, shifts_duration: bool) -> Self {
+    fn from_rows(rows: &[Vec<f64>], n_factors: usize, shifts_duration: bool) -> Self {
         let n = rows.len();
         let data = DMatrix::from_fn(n, N_VALUES, |i, j| rows[i][j]);
         // The median: one odd case in ten must not move the other nine.

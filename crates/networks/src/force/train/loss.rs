@@ -69,7 +69,7 @@ impl Loss {
     ///
     /// # Errors
     /// [`ForceError::Learning`] if a tensor operation fails.
-    pub(crate) fn of(
+    pub(crate) fn new(
         output: &NetworkOutput,
         targets: &Targets,
         weights: &LossWeights,

@@ -99,7 +99,7 @@ impl ModelFile for ForceModel {
         file.put("standardisation", &self.standardisation)?;
         file.put("open", &self.open)?;
         file.put("record", &self.record)?;
-        let stored: Vec<StoredCase> = self.cases.iter().map(StoredCase::of).collect();
+        let stored: Vec<StoredCase> = self.cases.iter().map(StoredCase::from_case).collect();
         file.put("cases", &stored)?;
         file.put_group("network", self.network.parameters().export()?);
         let values: Vec<f32> = self
@@ -154,7 +154,7 @@ impl ModelFile for ForceModel {
         let cases = stored.into_iter().zip(rows).map(|(case, row)| case.with_curve(&row));
         let cases: Vec<ForceCase> = cases.collect();
         Ok(Self {
-            domain: ForceDomain::of(&standardisation, &cases),
+            domain: ForceDomain::from_cases(&standardisation, &cases),
             standardisation,
             open,
             record,
@@ -168,7 +168,7 @@ impl ModelFile for ForceModel {
 }
 
 impl StoredCase {
-    fn of(case: &ForceCase) -> Self {
+    fn from_case(case: &ForceCase) -> Self {
         Self {
             name: case.name.clone(),
             scenario: case.scenario.clone(),

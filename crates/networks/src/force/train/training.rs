@@ -235,7 +235,7 @@ impl<'a> ForceTrainingRun<'a> {
             .map(|(case, centre)| case_features(case, centre, &bodies))
             .collect();
         let seen: Vec<Vec<f64>> = parts.train.iter().map(|&idx| rows[idx].clone()).collect();
-        let standardisation = Standardisation::of(&seen);
+        let standardisation = Standardisation::from_rows(&seen);
         let rows = rows.iter().map(|row| standardisation.apply(row)).collect();
         let cases: Vec<&ForceCase> = set.train.iter().collect();
         let residuals = ResidualModel::fit(&set.train, &centres, config.network.factors);
@@ -309,7 +309,7 @@ impl<'a> ForceTrainingRun<'a> {
         for batch in order.chunks(config.training.batch_cases) {
             let (input, targets) = self.tensors.select(batch)?;
             let output = self.network.forward(&input)?;
-            let loss = Loss::of(&output, &targets, &config.loss)?;
+            let loss = Loss::new(&output, &targets, &config.loss)?;
             let values = loss.values()?;
             if !values.total.is_finite() {
                 return Err(LearningError::Diverged { loss: values.total, epoch }.into());
@@ -351,7 +351,7 @@ impl<'a> ForceTrainingRun<'a> {
         }
         let (input, targets) = self.tensors.select(&self.validation)?;
         let output = self.network.forward_frozen(&input)?;
-        Loss::of(&output, &targets, &self.settings.config.loss)?.values()
+        Loss::new(&output, &targets, &self.settings.config.loss)?.values()
     }
 
     /// Builds the model with the parameters of the best epoch and calibrates its variances.
@@ -359,7 +359,7 @@ impl<'a> ForceTrainingRun<'a> {
         self.network.parameters().import(&self.best_parameters)?;
         let variance_factors = self.variance_factors(set)?;
         let ids = |indices: &[usize]| -> Vec<CaseId> {
-            indices.iter().filter_map(|&idx| set.train.get(idx)).map(CaseId::of).collect()
+            indices.iter().filter_map(|&idx| set.train.get(idx)).map(CaseId::from_case).collect()
         };
         let detail = ForceTraining {
             validation: ids(&self.validation),
@@ -368,14 +368,14 @@ impl<'a> ForceTrainingRun<'a> {
         };
         let record = ForceRecord {
             train: ids(&self.learned),
-            ..ForceRecord::of(set, self.settings, detail, self.history)
+            ..ForceRecord::new(set, self.settings, detail, self.history)
         };
-        let open = OpenFeatures::of(&set.train, &self.centre.bodies(), N_OPEN_CONTACTS);
+        let open = OpenFeatures::from_cases(&set.train, &self.centre.bodies(), N_OPEN_CONTACTS);
         Ok(ForceModel {
             config: self.settings.config.clone(),
             centre: self.centre,
             residuals: self.residuals,
-            domain: ForceDomain::of(&self.standardisation, &set.train),
+            domain: ForceDomain::from_cases(&self.standardisation, &set.train),
             standardisation: self.standardisation,
             open,
             network: self.network,

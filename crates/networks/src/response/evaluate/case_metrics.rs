@@ -77,7 +77,7 @@ impl MotionCaseMetrics {
     ///
     /// # Errors
     /// [`LearningError::Network`].
-    pub(crate) fn of(
+    pub(crate) fn evaluate(
         model: &MotionModel,
         case: &ResponseCase,
     ) -> Result<(Self, Vec<VehicleState<f64>>), LearningError> {

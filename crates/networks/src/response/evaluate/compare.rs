@@ -42,7 +42,7 @@ pub fn compare_models(
     settings: &ComparisonSettings,
     report: &mut ProgressCallback<'_>,
 ) -> Result<Option<Comparison>, LearningError> {
-    let all = TrainingSet::of_split(name, cases, settings.seed, TEST_SHARE);
+    let all = TrainingSet::from_split(name, cases, settings.seed, TEST_SHARE);
     // What cannot be trained is said before the hours that the trainings take.
     all.check_size(settings.trajectories.iter().copied().max().unwrap_or(1).max(1))?;
     if let Some(start) = start {
@@ -65,7 +65,7 @@ pub fn compare_models(
             }
         }
     }
-    Ok(Some(Comparison::of((name, settings), &test, &clusters, rows, &times)))
+    Ok(Some(Comparison::new((name, settings), &test, &clusters, rows, &times)))
 }
 
 /// One model on trajectories, as a comparison of one.
@@ -85,7 +85,7 @@ pub fn evaluate_motion_model(
         n_choices: 1,
         seed,
     };
-    Ok(Comparison::of((name, &settings), cases, &clusters, rows, &[]))
+    Ok(Comparison::new((name, &settings), cases, &clusters, rows, &[]))
 }
 
 /// Cluster of each trajectory, and the clusters, if there are any.
@@ -96,12 +96,12 @@ pub(super) struct CaseClusters {
 
 pub(super) fn clusters(cases: &[&ResponseCase], seed: u64) -> CaseClusters {
     let features: Vec<Option<ImpulseFeatures>> =
-        cases.iter().map(|case| ImpulseFeatures::of(&case.force_history())).collect();
+        cases.iter().map(|case| ImpulseFeatures::from_history(&case.force_history())).collect();
     let known: Vec<ImpulseFeatures> = features.iter().flatten().copied().collect();
     // Too few trajectories to cluster make one cluster.
     let clusters = ImpulseClusters::fit(&known, seed).ok();
     let of = |features: &Option<ImpulseFeatures>| match (&clusters, features) {
-        (Some(clusters), Some(features)) => clusters.of(features),
+        (Some(clusters), Some(features)) => clusters.nearest(features),
         _ => 0,
     };
     CaseClusters { of_case: features.iter().map(of).collect(), clusters }
@@ -115,7 +115,7 @@ pub(super) fn answers(
 ) -> Result<Vec<ComparedCase>, LearningError> {
     let kind = model.kind();
     let answer = |(case, cluster): (&&ResponseCase, &usize)| {
-        let (metrics, states) = MotionCaseMetrics::of(model, case)?;
+        let (metrics, states) = MotionCaseMetrics::evaluate(model, case)?;
         Ok(ComparedCase {
             case: case.name.clone(),
             cluster: *cluster,

@@ -66,7 +66,7 @@ pub fn compare_on_unseen_cars(
     let Asked { test, rows, .. } = asked;
     let test: Vec<&ResponseCase> = test.iter().collect();
     let clusters = clusters(&test, settings.seed);
-    Ok(Some(Comparison::of((&set.name, settings), &test, &clusters, rows, &[])))
+    Ok(Some(Comparison::new((&set.name, settings), &test, &clusters, rows, &[])))
 }
 
 /// The cars that were asked about.
@@ -83,7 +83,7 @@ impl Asked<'_> {
     fn ask(&mut self, model: &ResponseModel, cases: &[&ResponseCase]) -> Result<(), LearningError> {
         let seed = self.settings.seed;
         let cases: Vec<ResponseCase> = cases.iter().copied().cloned().collect();
-        let all = TrainingSet::of_split(String::new(), &cases, seed, TEST_SHARE);
+        let all = TrainingSet::from_split(String::new(), &cases, seed, TEST_SHARE);
         let is_test = |case: &&ResponseCase| all.test.iter().any(|id| id.digest == case.digest);
         let test: Vec<&ResponseCase> = cases.iter().filter(is_test).collect();
         let clusters = clusters(&test, seed);

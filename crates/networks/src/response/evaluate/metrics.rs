@@ -28,10 +28,10 @@ pub struct MotionMetrics {
     /// Average error, m.
     pub average_error_m: MeanStd,
     /// Average error over the first 4 s, m.
-    #[serde(default = "MeanStd::of_none")]
+    #[serde(default = "MeanStd::undefined")]
     pub average_error_4_s_m: MeanStd,
     /// Distance between recorded and predicted rest position, m, where a recording ends at rest.
-    #[serde(default = "MeanStd::of_none")]
+    #[serde(default = "MeanStd::undefined")]
     pub rest_error_m: MeanStd,
     /// Trajectories that end at rest, counted as in `n`.
     #[serde(default)]
@@ -117,12 +117,12 @@ impl MeanStd {
     }
 
     /// The statistics of no values, as in files from before something was measured.
-    fn of_none() -> Self {
-        Self::of([])
+    fn undefined() -> Self {
+        Self::from_values([])
     }
 
     /// The statistics of values; NaN without any.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+    pub fn from_values(values: impl IntoIterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.into_iter().collect();
         values.sort_by(f64::total_cmp);
         let n = values.len() as f64;
@@ -137,9 +137,9 @@ const KM_H_PER_M_S: f64 = 3.6;
 
 impl MotionMetrics {
     /// Metrics over trajectories.
-    pub fn of(cases: &[&MotionCaseMetrics]) -> Self {
+    pub fn from_cases(cases: &[&MotionCaseMetrics]) -> Self {
         let over = |value: &dyn Fn(&MotionCaseMetrics) -> f64| {
-            MeanStd::of(cases.iter().map(|case| value(case)))
+            MeanStd::from_values(cases.iter().map(|case| value(case)))
         };
         let known = |value: Option<f64>| value.unwrap_or(f64::NAN);
         let average_error_m = over(&|case| case.error.average_error_m);
@@ -147,7 +147,7 @@ impl MotionMetrics {
             n: cases.len(),
             average_error_m,
             average_error_4_s_m: over(&|case| case.average_error_4_s_m),
-            rest_error_m: MeanStd::of(cases.iter().filter_map(|case| case.rest_error_m)),
+            rest_error_m: MeanStd::from_values(cases.iter().filter_map(|case| case.rest_error_m)),
             n_at_rest: cases.iter().filter(|case| case.rest_error_m.is_some()).count(),
             score: 1.0 / average_error_m.mean,
             rmse: RootMeanSquares {
@@ -163,17 +163,17 @@ impl MotionMetrics {
             horizon_error_m: std::array::from_fn(|i| {
                 // NaN where a recording does not last as long.
                 let errors = cases.iter().map(|case| case.error.horizon_error_m[i]);
-                MeanStd::of(errors.filter(|error| !error.is_nan()))
+                MeanStd::from_values(errors.filter(|error| !error.is_nan()))
             }),
             violations: cases.iter().map(|case| case.violations).sum(),
             time_per_step_us: over(&|case| case.time_per_step_us).median,
-            coverage: CoverageMetrics::of(cases),
+            coverage: CoverageMetrics::from_cases(cases),
         }
     }
 }
 
 impl CoverageMetrics {
-    fn of(cases: &[&MotionCaseMetrics]) -> Option<Self> {
+    fn from_cases(cases: &[&MotionCaseMetrics]) -> Option<Self> {
         let all: Option<Vec<_>> = cases.iter().map(|case| case.coverage).collect();
         let all = all.filter(|all| !all.is_empty())?;
         let mean = |value: fn(&MotionCoverage) -> f64| {

@@ -126,7 +126,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    pub(super) fn of(
+    pub(super) fn new(
         (name, settings): (&str, &ComparisonSettings),
         test: &[&ResponseCase],
         clusters: &CaseClusters,
@@ -157,7 +157,7 @@ impl Comparison {
                 name: kind.label().to_owned(),
                 kind,
                 trajectories: n,
-                metrics: MotionMetrics::of(&metrics),
+                metrics: MotionMetrics::from_cases(&metrics),
                 average_error_by_choice_m: choices.iter().map(mean).collect(),
                 training_s: seconds.iter().sum::<f64>() / seconds.len().max(1) as f64,
             }
@@ -169,7 +169,7 @@ impl Comparison {
                 let rows = of_kind((kind, n));
                 let metrics: Vec<&MotionCaseMetrics> =
                     rows.iter().filter(|row| is_in_group(row)).map(|row| &row.metrics).collect();
-                let metrics = MotionMetrics::of(&metrics);
+                let metrics = MotionMetrics::from_cases(&metrics);
                 ClusterModel { name: kind.label().to_owned(), trajectories: n, metrics }
             };
             kinds.iter().map(of_model).collect()
@@ -195,7 +195,7 @@ impl Comparison {
             data: name.to_owned(),
             seed: settings.seed,
             n_choices: settings.n_choices,
-            test: test.iter().zip(&clusters.of_case).map(TestCase::of).collect(),
+            test: test.iter().zip(&clusters.of_case).map(TestCase::new).collect(),
             models,
             clusters: (0..n_clusters).map(cluster).filter(|row| row.n > 0).collect(),
             endings,
@@ -221,7 +221,7 @@ impl Comparison {
 }
 
 impl TestCase {
-    fn of((case, cluster): (&&ResponseCase, &usize)) -> Self {
+    fn new((case, cluster): (&&ResponseCase, &usize)) -> Self {
         Self {
             name: case.name.clone(),
             cluster: *cluster,

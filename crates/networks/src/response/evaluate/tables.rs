@@ -87,7 +87,7 @@ pub fn model_table(comparison: &Comparison) -> ComparisonTable {
     let row = |model: &ComparedModel| {
         let metrics = &model.metrics;
         let by_choice = &model.average_error_by_choice_m;
-        let choices = MeanStd::of(by_choice.iter().copied());
+        let choices = MeanStd::from_values(by_choice.iter().copied());
         let mut row = vec![
             model.name.clone(),
             count(model.trajectories),

@@ -63,7 +63,7 @@ impl LoggedImpact {
     ///
     /// # Errors
     /// [`LogError`].
-    pub fn of(
+    pub fn from_log(
         log: &MotionLog,
         load: Option<ContactLoad>,
         settings: &LogSettings,
@@ -113,7 +113,7 @@ impl LoggedImpact {
             Some(_) => states,
             None => with_model_roll(vehicle, states, &inputs),
         };
-        let case = ResponseCase::of_motion(name(&log.path), vehicle.clone(), states, inputs);
+        let case = ResponseCase::from_motion(name(&log.path), vehicle.clone(), states, inputs);
         Ok(Self { case, start_s, contact_s: window, force, impulse_n_s, noise })
     }
 }

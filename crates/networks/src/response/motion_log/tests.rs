@@ -102,7 +102,7 @@ fn smoothed_states_are_nearer_the_truth_than_the_samples() {
         for seed in 0..5 {
             let log = log(&motion, (stride, seed), &gnss_imu());
             assert_eq!(log.series.n_samples(), 100);
-            let found = LoggedImpact::of(&log, None, &settings()).unwrap();
+            let found = LoggedImpact::from_log(&log, None, &settings()).unwrap();
             let [position, velocity, yaw, yaw_rate] = errors(&found, &motion);
             let case = format!("{stride} {seed}: {position} {velocity} {yaw} {yaw_rate}");
             assert!(position < of_position * NOISE[0] && yaw < of_yaw * NOISE[1], "{case}");
@@ -120,9 +120,10 @@ fn smoothed_states_are_nearer_the_truth_than_the_samples() {
 fn velocities_are_of_use() {
     let motion = simulated(&truth_vehicle(), Some(load()), 0.99);
     let mut channels = gnss_imu();
-    let without = LoggedImpact::of(&log(&motion, (1, 0), &channels), None, &settings()).unwrap();
+    let without =
+        LoggedImpact::from_log(&log(&motion, (1, 0), &channels), None, &settings()).unwrap();
     channels.extend([(Channel::Vx, 0.03), (Channel::Vy, 0.03)]);
-    let with = LoggedImpact::of(&log(&motion, (1, 0), &channels), None, &settings()).unwrap();
+    let with = LoggedImpact::from_log(&log(&motion, (1, 0), &channels), None, &settings()).unwrap();
     let [without_m_s, with_m_s] = [&without, &with].map(|found| errors(found, &motion)[1]);
     assert!(with_m_s < 0.02 && with_m_s < 0.5 * without_m_s, "{with_m_s} {without_m_s}");
     let noise_m_s = with.noise.velocity_m_s.unwrap();
@@ -138,7 +139,7 @@ fn contact_is_found_where_it_was_and_nowhere_else() {
     for seed in 0..5 {
         let motion = simulated(&truth, Some(load()), 1.5);
         let struck = log(&motion, (1, seed), &gnss_imu());
-        let found = LoggedImpact::of(&struck, None, &settings()).unwrap();
+        let found = LoggedImpact::from_log(&struck, None, &settings()).unwrap();
         assert_eq!(found.force, ForceOrigin::Estimated);
         let [start_s, end_s] = found.contact_s.unwrap();
         assert!(
@@ -146,9 +147,9 @@ fn contact_is_found_where_it_was_and_nowhere_else() {
             "{start_s} {end_s}"
         );
         let known = LogSettings { impact_s: Some(0.21), ..settings() };
-        assert_eq!(LoggedImpact::of(&struck, None, &known).unwrap().start_s, 0.21);
+        assert_eq!(LoggedImpact::from_log(&struck, None, &known).unwrap().start_s, 0.21);
         let free = log(&simulated(&truth, None, 1.5), (1, seed), &gnss_imu());
-        let found = LoggedImpact::of(&free, None, &settings()).unwrap();
+        let found = LoggedImpact::from_log(&free, None, &settings()).unwrap();
         assert_eq!((found.force, found.contact_s, found.start_s), (ForceOrigin::None, None, 0.0));
         assert!(found.case.inputs.iter().all(|input| input.collision.is_none()));
     }
@@ -158,7 +159,7 @@ fn contact_is_found_where_it_was_and_nowhere_else() {
 fn a_recorded_force_keeps_its_impulse_and_its_clock() {
     let motion = simulated(&truth_vehicle(), Some(load()), 1.5);
     let log = log(&motion, (4, 0), &gnss_imu());
-    let found = LoggedImpact::of(&log, Some(load()), &settings()).unwrap();
+    let found = LoggedImpact::from_log(&log, Some(load()), &settings()).unwrap();
     assert_eq!(found.force, ForceOrigin::Recorded);
     assert!((found.start_s - CONTACT_S).abs() < 2e-3, "{}", found.start_s);
     let forces = found.case.inputs.iter().filter_map(|input| input.collision);
@@ -175,7 +176,7 @@ fn roll_is_the_models_where_it_was_not_recorded() {
     let mut channels = gnss_imu();
     let of = |channels: &[(Channel, f64)]| {
         let log = log(&motion, (1, 0), channels);
-        LoggedImpact::of(&log, Some(load()), &settings()).unwrap()
+        LoggedImpact::from_log(&log, Some(load()), &settings()).unwrap()
     };
     let roll = |found: &LoggedImpact| {
         let truth = motion.get(Channel::Roll).unwrap();
@@ -195,8 +196,9 @@ fn roll_is_the_models_where_it_was_not_recorded() {
 fn what_cannot_be_used_is_said() {
     let motion = simulated(&truth_vehicle(), Some(load()), 0.5);
     let log = log(&motion, (1, 0), &gnss_imu());
-    let error =
-        |settings: LogSettings| LoggedImpact::of(&log, None, &settings).unwrap_err().to_string();
+    let error = |settings: LogSettings| {
+        LoggedImpact::from_log(&log, None, &settings).unwrap_err().to_string()
+    };
     let late = LogSettings { impact_s: Some(0.45), ..settings() };
     assert!(error(late).starts_with("log.csv: 0.050 s of motion from the first contact at 0.45 s"));
     let outside = LogSettings { impact_s: Some(35.59), ..settings() };

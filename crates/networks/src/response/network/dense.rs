@@ -54,7 +54,7 @@ impl Rows {
 
 impl Dense {
     /// The layer of this name.
-    pub(crate) fn of(network: &ResponseNetwork, name: &str) -> Result<Self, NnError> {
+    pub(crate) fn from_network(network: &ResponseNetwork, name: &str) -> Result<Self, NnError> {
         let find = |part: &str| {
             let name = format!("{name}.{part}");
             let found =

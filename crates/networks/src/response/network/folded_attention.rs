@@ -26,7 +26,7 @@ impl FoldedAttention {
     ///
     /// # Errors
     /// [`NnError`] if a tensor cannot be read.
-    pub(crate) fn of(
+    pub(crate) fn new(
         network: &ResponseNetwork,
         vehicle: &VehicleParameters,
     ) -> Result<Self, NnError> {

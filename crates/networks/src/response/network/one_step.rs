@@ -58,7 +58,7 @@ pub(crate) struct OneStepBatch {
 
 impl OneStepData {
     /// Every step of the motions.
-    pub(crate) fn of(motions: &[MotionView<'_>], config: &ResponseNetworkConfig) -> Self {
+    pub(crate) fn from_motions(motions: &[MotionView<'_>], config: &ResponseNetworkConfig) -> Self {
         let correction = config.correction;
         let rows = |(motion_idx, motion): (usize, &MotionView<'_>)| -> Vec<OneStepRow> {
             let steps = motion.states.iter().zip(motion.states.iter().skip(1)).zip(motion.inputs);

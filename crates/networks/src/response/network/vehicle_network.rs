@@ -63,8 +63,8 @@ impl VehicleNetwork {
         vehicle: &VehicleParameters,
     ) -> Result<Self, NnError> {
         let config = network.config();
-        let folded = FoldedAttention::of(network, vehicle)?;
-        let dense = |name: String| Dense::of(network, &name);
+        let folded = FoldedAttention::new(network, vehicle)?;
+        let dense = |name: String| Dense::from_network(network, &name);
         let layers = |name: &str, n: usize| -> Result<Vec<Dense>, NnError> {
             (0..n).map(|i| dense(format!("{name}.{i}"))).collect()
         };

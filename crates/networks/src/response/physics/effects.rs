@@ -130,7 +130,7 @@ pub(crate) struct EffectAmounts<T> {
 }
 
 impl EffectModel {
-    pub fn of(vehicle: &VehicleParameters) -> Self {
+    pub fn new(vehicle: &VehicleParameters) -> Self {
         let (geometry, tires) = (&vehicle.geometry, &vehicle.tires);
         let [front, rear] =
             [tires.cornering_coefficient_front_per_rad, tires.cornering_coefficient_rear_per_rad];
@@ -223,7 +223,7 @@ pub fn effects<T: Lanes>(
     x: &VehicleState<T>,
     now: &VehicleEvaluation<T>,
 ) -> Effects<T> {
-    let model = EffectModel::of(vehicle);
+    let model = EffectModel::new(vehicle);
     model.each(&model.amounts(x, now))
 }
 
@@ -322,7 +322,7 @@ mod tests {
         let (vehicle, x) = (Preset::Reference.parameters(), state(1.0));
         let strengths: [f64; N_EFFECTS] = std::array::from_fn(|k| (k as f64 * 0.7).sin());
         let (model, now) =
-            (EffectModel::of(&vehicle), vehicle.evaluate(&x, &VehicleInput::released()));
+            (EffectModel::new(&vehicle), vehicle.evaluate(&x, &VehicleInput::released()));
         let sum = model.combined(&model.amounts(&x, &now), &strengths);
         for (got, expected) in sum.into_iter().zip(combined(&at(&x), &strengths)) {
             assert!((got - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{got} {expected}");

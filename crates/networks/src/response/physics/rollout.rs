@@ -14,7 +14,7 @@ pub fn rollout(
     mut residual: impl FnMut(usize, &VehicleState<f64>) -> [f64; N_RESIDUAL],
 ) -> Vec<VehicleState<f64>> {
     let mut states = Vec::with_capacity(inputs.len() + 1);
-    let model = StepModel::of(vehicle);
+    let model = StepModel::new(vehicle);
     let mut state = initial;
     states.push(state);
     for (i, input) in inputs.iter().enumerate() {

@@ -50,7 +50,7 @@ pub(crate) struct StepModel<P = f64> {
 }
 
 impl StepModel {
-    pub fn of(vehicle: &VehicleParameters) -> Self {
+    pub fn new(vehicle: &VehicleParameters) -> Self {
         Self { constants: vehicle.constants(), n_substeps: vehicle.roll_substeps(STEP_S) }
     }
 }
@@ -67,7 +67,7 @@ impl Correction {
         u: &VehicleInput<T>,
         value: [T; N_RESIDUAL],
     ) -> VehicleState<T> {
-        let model = StepModel::of(vehicle);
+        let model = StepModel::new(vehicle);
         self.step_from(&model, (x, u, &model.constants.evaluate(x, u).derivative), value)
     }
 
@@ -97,7 +97,7 @@ impl Correction {
                 let [ax, ay, yaw, roll] = value;
                 let f = |_, x: &[T; N_STATE]| {
                     let x = VehicleState::from_array(*x);
-                    x.derivative(Heading::of(x.yaw_rad), [ax, ay], [yaw, roll]).to_array()
+                    x.derivative(Heading::new(x.yaw_rad), [ax, ay], [yaw, roll]).to_array()
                 };
                 VehicleState::from_array(rk4_step(f, &x.to_array(), STEP_S))
             }

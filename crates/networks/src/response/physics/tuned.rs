@@ -72,7 +72,7 @@ impl Default for TuningConfig {
 
 impl Default for Tuning {
     fn default() -> Self {
-        Self::of_log(&[0.0; N_TUNED])
+        Self::from_log(&[0.0; N_TUNED])
     }
 }
 
@@ -106,7 +106,7 @@ impl Tuning {
                 .configure(|state| state.max_iters(config.iterations))
                 .run();
         }
-        Self::of_log(&best.into_inner().1)
+        Self::from_log(&best.into_inner().1)
     }
 
     /// Average error of a case, m.
@@ -117,7 +117,7 @@ impl Tuning {
         average_error_m(&states, &case.states)
     }
 
-    fn of_log(log: &[f64]) -> Self {
+    fn from_log(log: &[f64]) -> Self {
         let factor = |i: usize| log.get(i).copied().unwrap_or(0.0).exp();
         Self {
             friction: factor(0),
@@ -170,7 +170,7 @@ impl CostFunction for TuningProblem<'_> {
     type Output = f64;
 
     fn cost(&self, log: &Vec<f64>) -> Result<f64, Error> {
-        let tuning = Tuning::of_log(log);
+        let tuning = Tuning::from_log(log);
         let errors: Vec<f64> = self.cases.par_iter().map(|case| tuning.error_m(case)).collect();
         let shares = errors.iter().zip(&self.untuned_m);
         let share = |(error, untuned): (&f64, &f64)| error / (untuned + ERROR_FLOOR_M);

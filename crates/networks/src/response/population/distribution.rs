@@ -109,7 +109,11 @@ impl StrengthPopulation {
     /// The strengths of a car.
     ///
     /// - `of_network`: strengths of the network.
-    pub fn of(&self, vehicle: &VehicleParameters, of_network: &[f64; N_EFFECTS]) -> CarStrengths {
+    pub fn car_strengths(
+        &self,
+        vehicle: &VehicleParameters,
+        of_network: &[f64; N_EFFECTS],
+    ) -> CarStrengths {
         self.known(vehicle).map_or_else(|| self.prior(of_network), |car| car.strengths.clone())
     }
 
@@ -201,8 +205,11 @@ impl StrengthPopulation {
         cases: &[&ResponseCase],
     ) -> Result<Self, NnError> {
         let Some(first) = cases.first() else { return Ok(self) };
-        let strengths =
-            self.posterior(&self.of(&first.vehicle, &network.mean_strengths()?), network, cases)?;
+        let strengths = self.posterior(
+            &self.car_strengths(&first.vehicle, &network.mean_strengths()?),
+            network,
+            cases,
+        )?;
         let n_known = self.known(&first.vehicle).map_or(0, |car| car.n_trajectories);
         self.remember(first, n_known + cases.len(), strengths);
         Ok(self)
@@ -228,7 +235,7 @@ impl StrengthPopulation {
     ) -> Result<Vec<f64>, NnError> {
         let Some(first) = cases.first() else { return Ok(vec![0.0; N_EFFECTS]) };
         let of_network = network.mean_strengths()?;
-        let prior = self.of(&first.vehicle, &of_network);
+        let prior = self.car_strengths(&first.vehicle, &of_network);
         let added = self.posterior(&prior, network, cases)?.mean;
         Ok(of_network.iter().zip(&added).map(|(of_network, added)| of_network + added).collect())
     }

@@ -63,7 +63,7 @@ struct Rows {
 impl Rows {
     /// Squares of what is left, with windows that are far off counting less, and the variance by what is
     /// not known.
-    fn of(left: &DVector<f64>, noise: &[f64; N_ROWS], unknown: impl Fn(usize) -> f64) -> Self {
+    fn new(left: &DVector<f64>, noise: &[f64; N_ROWS], unknown: impl Fn(usize) -> f64) -> Self {
         let weights = window_weights(left, noise);
         let mut rows = Self { n_windows: weights.len() as f64, ..Self::default() };
         for (window, weight) in weights.into_iter().enumerate() {
@@ -161,7 +161,7 @@ impl StrengthPopulation {
             .par_iter()
             .map(|(car, of)| {
                 let left = &of.target - &of.by_strengths * &car.mean;
-                Rows::of(&left, &self.noise, |row| variance(of, row, &car.covariance))
+                Rows::new(&left, &self.noise, |row| variance(of, row, &car.covariance))
             })
             .collect();
         self.noise = Rows::mean(&left);
@@ -195,7 +195,7 @@ impl StrengthPopulation {
         let covariance = root.inverse();
         let left = left - &of.by_strengths * &mean;
         let unknown = &covariance + &car.covariance;
-        let rest = Rows::of(&left, rest, |row| variance(of, row, &unknown));
+        let rest = Rows::new(&left, rest, |row| variance(of, row, &unknown));
         let within = &mean * mean.transpose() + covariance;
         let is_finite = rest.sum.iter().chain(&within).all(|value| value.is_finite());
         is_finite.then_some(Motion { within, rest })

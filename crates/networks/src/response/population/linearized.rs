@@ -64,8 +64,8 @@ impl<'a> Predicted<'a> {
     ) -> Result<Self, NnError> {
         let network = VehicleNetwork::new(network, &case.vehicle)?.with_remainder(remainder);
         let strengths = DVector::from_row_slice(&network.mean_strengths());
-        let model = StepModel::of(&case.vehicle);
-        let effects = EffectModel::of(&case.vehicle);
+        let model = StepModel::new(&case.vehicle);
+        let effects = EffectModel::new(&case.vehicle);
         Ok(Self { case, model, effects, network, strengths })
     }
 

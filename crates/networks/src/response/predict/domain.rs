@@ -106,10 +106,10 @@ pub struct Applicability {
 impl Applicability {
     /// Everything within the ranges.
     pub fn whole() -> Self {
-        Self::of(0.0, Vec::new())
+        Self::new(0.0, Vec::new())
     }
 
-    fn of(distance: f64, outside: Vec<OutsideDomain>) -> Self {
+    fn new(distance: f64, outside: Vec<OutsideDomain>) -> Self {
         let value = 1.0 / (1.0 + (distance / HALF_DISTANCE).powi(4));
         Self { value, distance, outside }
     }
@@ -118,18 +118,18 @@ impl Applicability {
     #[must_use]
     pub fn and(&self, other: &Self) -> Self {
         let outside = self.outside.iter().chain(&other.outside).cloned().collect();
-        Self::of(self.distance.hypot(other.distance), outside)
+        Self::new(self.distance.hypot(other.distance), outside)
     }
 }
 
 impl MotionDomain {
     /// The ranges of trajectories.
-    pub(crate) fn of<'a>(cases: impl IntoIterator<Item = &'a ResponseCase>) -> Self {
+    pub(crate) fn from_cases<'a>(cases: impl IntoIterator<Item = &'a ResponseCase>) -> Self {
         let mut domain = Self::default();
         for case in cases {
-            widen(&mut domain.vehicle, of_vehicle(&case.vehicle));
+            widen(&mut domain.vehicle, vehicle_quantities(&case.vehicle));
             if let Some(initial) = case.states.first() {
-                widen(&mut domain.motion, of_motion(&case.vehicle, initial, &case.inputs));
+                widen(&mut domain.motion, motion_quantities(&case.vehicle, initial, &case.inputs));
             }
         }
         domain
@@ -152,26 +152,26 @@ impl MotionDomain {
     }
 
     /// How far the model holds for a vehicle.
-    pub(crate) fn of_vehicle(&self, vehicle: &VehicleParameters) -> Applicability {
-        applicability(&OF_VEHICLE, &self.vehicle, of_vehicle(vehicle))
+    pub(crate) fn vehicle_applicability(&self, vehicle: &VehicleParameters) -> Applicability {
+        applicability(&OF_VEHICLE, &self.vehicle, vehicle_quantities(vehicle))
     }
 
     /// How far the model holds on the road of a vehicle that it knows.
-    pub(crate) fn of_road(&self, vehicle: &VehicleParameters) -> Applicability {
+    pub(crate) fn road_applicability(&self, vehicle: &VehicleParameters) -> Applicability {
         let last = OF_VEHICLE.len() - 1;
         let range = self.vehicle.get(last..).unwrap_or_default();
-        applicability(&[OF_VEHICLE[last]], range, [of_vehicle(vehicle)[last]])
+        applicability(&[OF_VEHICLE[last]], range, [vehicle_quantities(vehicle)[last]])
     }
 
     /// How far the model holds for a motion.
-    pub(crate) fn of_motion(
+    pub(crate) fn motion_applicability(
         &self,
         vehicle: &VehicleParameters,
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> Applicability {
         // Beyond their duration the learned part fades along the motion, not as a whole.
-        let numbers = of_motion(vehicle, initial, inputs);
+        let numbers = motion_quantities(vehicle, initial, inputs);
         applicability(&OF_MOTION, &self.motion, std::array::from_fn(|i| numbers[i]))
     }
 }
@@ -201,10 +201,10 @@ fn applicability<const N: usize>(
             outside.push(OutsideDomain { quantity: of.name, value, range: [low, high] });
         }
     }
-    Applicability::of(squares.sqrt(), outside)
+    Applicability::new(squares.sqrt(), outside)
 }
 
-fn of_vehicle(vehicle: &VehicleParameters) -> [f64; OF_VEHICLE.len()] {
+fn vehicle_quantities(vehicle: &VehicleParameters) -> [f64; OF_VEHICLE.len()] {
     let VehicleParameters { mass, geometry, suspension, tires, .. } = vehicle;
     let [front, rear] = [geometry.cg_to_front_axle_m, geometry.cg_to_rear_axle_m];
     let weight_moment = mass.sprung_mass_kg * STANDARD_GRAVITY_M_S2 * suspension.roll_arm_m;
@@ -223,7 +223,7 @@ fn of_vehicle(vehicle: &VehicleParameters) -> [f64; OF_VEHICLE.len()] {
     ]
 }
 
-fn of_motion(
+fn motion_quantities(
     vehicle: &VehicleParameters,
     initial: &VehicleState<f64>,
     inputs: &[VehicleInput<f64>],
@@ -255,15 +255,15 @@ mod tests {
         let vehicle = Preset::Reference.parameters().with_friction(friction);
         let states = vec![VehicleState::driving_straight(speed_m_s); 11];
         let inputs = vec![VehicleInput::released(); 10];
-        ResponseCase::of_motion(String::new(), vehicle, states, inputs)
+        ResponseCase::from_motion(String::new(), vehicle, states, inputs)
     }
 
     #[test]
     fn what_lies_outside_is_named_with_value_and_range() {
         let cases = [case(0.5, 15.0), case(0.9, 25.0)];
-        let domain = MotionDomain::of(&cases);
+        let domain = MotionDomain::from_cases(&cases);
         let of = |case: &ResponseCase| {
-            domain.of_vehicle(&case.vehicle).and(&domain.of_motion(
+            domain.vehicle_applicability(&case.vehicle).and(&domain.motion_applicability(
                 &case.vehicle,
                 &case.states[0],
                 &case.inputs,
@@ -284,12 +284,12 @@ mod tests {
 
     #[test]
     fn a_model_of_one_car_does_not_know_others() {
-        let domain = MotionDomain::of(&[case(0.5, 15.0), case(0.9, 25.0)]);
+        let domain = MotionDomain::from_cases(&[case(0.5, 15.0), case(0.9, 25.0)]);
         let own = Preset::Reference.parameters().with_friction(0.8);
-        assert_eq!(domain.of_vehicle(&own), Applicability::whole());
-        let lighter = domain.of_vehicle(&own.clone().with_mass(1200.0, None));
+        assert_eq!(domain.vehicle_applicability(&own), Applicability::whole());
+        let lighter = domain.vehicle_applicability(&own.clone().with_mass(1200.0, None));
         assert!(lighter.value < 0.01 && lighter.outside[0].quantity == "mass [kg]", "{lighter:?}");
-        let little = domain.of_vehicle(&own.with_mass(1960.0, None));
+        let little = domain.vehicle_applicability(&own.with_mass(1960.0, None));
         assert!(little.value > 0.4 && little.value < 1.0, "{little:?}");
     }
 }

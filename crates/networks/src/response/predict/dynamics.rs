@@ -67,10 +67,10 @@ impl<'a> Dynamics<'a> {
     ) -> Self {
         Self {
             vehicle,
-            model: StepModel::of(vehicle),
+            model: StepModel::new(vehicle),
             network,
             latents,
-            effects: EffectModel::of(vehicle),
+            effects: EffectModel::new(vehicle),
             ignored: latents.directions.map(|of| of.iter().all(|change| *change == 0.0)),
         }
     }

@@ -184,7 +184,7 @@ impl Latents {
 
     /// The latent factors within component `j` of `n`: of the factor that is shared out, the component has
     /// the j-th of n equally likely parts of the standard normal distribution; of the others, the whole.
-    pub(crate) fn of_component(&self, j: usize, n: usize) -> [LatentShare; N_LATENTS] {
+    pub(crate) fn component_shares(&self, j: usize, n: usize) -> [LatentShare; N_LATENTS] {
         let whole = LatentShare { mean: 0.0, variance: 1.0 };
         let mut shares = [whole; N_LATENTS];
         if let Some(share) = shares.get_mut(self.shared_out) {

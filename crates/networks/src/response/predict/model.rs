@@ -110,7 +110,7 @@ impl ResponseModel {
     pub(crate) fn add_to_record(&mut self, data: &str, cases: &[ResponseCase]) {
         let record = &mut self.record;
         record.data = format!("{}, {data}", record.data);
-        record.train.extend(cases.iter().map(CaseId::of));
+        record.train.extend(cases.iter().map(CaseId::from_case));
         record.data_digest = sha256_hex(record.train.iter().map(|case| case.digest.as_bytes()));
     }
 
@@ -128,18 +128,18 @@ impl ResponseModel {
         let network = VehicleNetwork::new(&self.network, vehicle)?.learned_for(domain.duration_s());
         let strengths = match &self.population {
             Some(population) => {
-                let of_car = population.of(vehicle, &network.mean_strengths());
+                let of_car = population.car_strengths(vehicle, &network.mean_strengths());
                 SourceStrengths::Population(Arc::clone(population), of_car)
             }
             None => SourceStrengths::OneCar(self.latents),
         };
         let of_vehicle = match self.known_car(vehicle) {
             // The strengths of the car itself are known.
-            Some(_) => domain.of_road(vehicle),
-            None => domain.of_vehicle(vehicle),
+            Some(_) => domain.road_applicability(vehicle),
+            None => domain.vehicle_applicability(vehicle),
         };
         let source = PredictorSource { network, strengths, domain, of_vehicle };
-        Ok(Predictor::of_source(vehicle.clone(), source))
+        Ok(Predictor::from_source(vehicle.clone(), source))
     }
 }
 

@@ -107,7 +107,7 @@ impl Predictor {
     }
 
     /// A predictor whose learned part fades where a motion lies outside of what was learned from.
-    pub(super) fn of_source(vehicle: VehicleParameters, source: PredictorSource) -> Self {
+    pub(super) fn from_source(vehicle: VehicleParameters, source: PredictorSource) -> Self {
         let (network, latents) = source.at(&source.of_vehicle);
         Self { source: Some(Arc::new(source)), ..Self::new(vehicle, network, latents) }
     }
@@ -119,7 +119,7 @@ impl Predictor {
         inputs: &[VehicleInput<f64>],
     ) -> Applicability {
         self.source.as_ref().map_or_else(Applicability::whole, |source| {
-            let of_motion = source.domain.of_motion(&self.vehicle, initial, inputs);
+            let of_motion = source.domain.motion_applicability(&self.vehicle, initial, inputs);
             source.of_vehicle.and(&of_motion)
         })
     }
@@ -171,7 +171,7 @@ impl Predictor {
     ) -> Vec<ComponentPath> {
         let n = self.n_components();
         let of = self.fitted_to(initial, inputs);
-        of.paths_at(initial, inputs, |j| of.latents.of_component(j, n).map(|share| share.mean))
+        of.paths_at(initial, inputs, |j| of.latents.component_shares(j, n).map(|share| share.mean))
     }
 
     /// The path of each component at given latent factors.
@@ -247,7 +247,7 @@ impl Predictor {
         let draw = |idx: usize| {
             let mut rng = random_stream(seed, "coherent motions", idx as u64);
             let j = drawn(&weights, rng.random());
-            let shares = of.latents.of_component(j, weights.len());
+            let shares = of.latents.component_shares(j, weights.len());
             let width = of.latents.width(rng.random());
             let latents: [f64; N_LATENTS] = std::array::from_fn(|m| {
                 width * (shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng))

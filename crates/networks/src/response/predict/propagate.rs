@@ -169,7 +169,7 @@ impl Dynamics<'_> {
         let n_components = self.network.n_components();
         let mut mean = mean_of(initial, &[0.0; N_LATENTS]);
         let mut covariance = Covariance::identity() * LEAST_VARIANCE;
-        let shares = self.latents.of_component(component, n_components);
+        let shares = self.latents.component_shares(component, n_components);
         for (m, share) in shares.into_iter().enumerate() {
             mean[N_SEEN + m] = share.mean;
             covariance[(N_SEEN + m, N_SEEN + m)] = share.variance.max(LEAST_VARIANCE);
@@ -179,7 +179,7 @@ impl Dynamics<'_> {
         let n_struck = last_struck.map_or(0, |last| last + 1);
         let mut states = Vec::with_capacity(inputs.len() + 1);
         let (shared_out, tail_ratio) = (self.latents.shared_out, self.latents.tail_ratio);
-        states.push(StateDistribution::of(&mean, &covariance, shared_out));
+        states.push(StateDistribution::new(&mean, &covariance, shared_out));
         let mut weight = 0.0;
         for (i, u) in inputs.iter().enumerate() {
             if i == n_struck {
@@ -189,7 +189,7 @@ impl Dynamics<'_> {
             (mean, covariance) =
                 self.propagate((component, &weights), (&mean, &covariance), at, &mut buffers);
             weight += self.weight(component, &buffers.batch) / inputs.len() as f64;
-            states.push(StateDistribution::of(&mean, &covariance, shared_out));
+            states.push(StateDistribution::new(&mean, &covariance, shared_out));
         }
         ComponentMotion { weight, states, tail_ratio }
     }
@@ -365,7 +365,7 @@ fn root_of(covariance: &Covariance) -> Covariance {
 
 impl StateDistribution {
     /// - `shared_out`: the latent factor that the components share out.
-    fn of(mean: &Mean, covariance: &Covariance, shared_out: usize) -> Self {
+    fn new(mean: &Mean, covariance: &Covariance, shared_out: usize) -> Self {
         let order = [X, Y, PSI, 0, 1, 2];
         let latent = N_SEEN + shared_out.min(N_LATENTS - 1);
         let per_variance = mean[latent] / covariance[(latent, latent)];

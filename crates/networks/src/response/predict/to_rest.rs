@@ -70,7 +70,7 @@ impl Predictor {
         let draw = |&idx: &usize| {
             let mut rng = random_stream(search.seed, "motions to rest", idx as u64);
             let component = drawn(&weights, rng.random());
-            let shares = of.latents.of_component(component, weights.len());
+            let shares = of.latents.component_shares(component, weights.len());
             let width = of.latents.width(rng.random());
             let latents = std::array::from_fn(|m| {
                 width * (shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng))

@@ -104,14 +104,14 @@ impl ResponseCase {
         let inputs = manoeuvre.inputs(STEP_S, states.len() - 1);
         let spins = largest_yaw_change_rad(&case.series).map_err(in_case)? > SPIN_YAW_CHANGE_RAD;
         let vehicle = vehicle.clone().with_friction(friction);
-        Ok(Self { spins, ..Self::of_motion(case.name.clone(), vehicle, states, inputs) })
+        Ok(Self { spins, ..Self::from_motion(case.name.clone(), vehicle, states, inputs) })
     }
 
     /// The trajectory of a motion on the grid of [`STEP_S`].
     ///
     /// - `states`: every [`STEP_S`] from the start of the impact;
     /// - `inputs`: over each step, one fewer than states.
-    pub fn of_motion(
+    pub fn from_motion(
         name: String,
         vehicle: VehicleParameters,
         states: Vec<VehicleState<f64>>,
@@ -157,7 +157,7 @@ impl ResponseCase {
     }
 
     /// The cases of a trajectory data set that can be learned from, and what is wrong with the rest.
-    pub fn of_dataset(
+    pub fn from_dataset(
         dataset: &Dataset,
         vehicle: &VehicleParameters,
     ) -> (Vec<Self>, Vec<ResponseCaseError>) {
@@ -252,7 +252,8 @@ mod tests {
         let Outcome::Complete(dataset) = Dataset::load(path, go_on).unwrap() else {
             panic!("nothing cancels");
         };
-        let (cases, problems) = ResponseCase::of_dataset(&dataset, &Preset::Reference.parameters());
+        let (cases, problems) =
+            ResponseCase::from_dataset(&dataset, &Preset::Reference.parameters());
         assert_eq!((cases.len(), problems.len()), (100, 0));
         assert_eq!(cases.iter().filter(|case| case.spins).count(), 52);
         let first = &cases[0];

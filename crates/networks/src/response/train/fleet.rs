@@ -254,7 +254,7 @@ pub fn learn_population(
         let widths = if is_well_known { well_known } else { population.widths() };
         population = population.with_learned_car((model.network(), widths), &cases)?;
     }
-    model.set_domain(MotionDomain::of(train));
+    model.set_domain(MotionDomain::from_cases(train));
     model.set_population(population);
     Ok(())
 }

@@ -47,7 +47,7 @@ pub fn pretrain(
     // The last state: the whole motion led there.
     let last: Vec<Vec<u8>> = motions.iter().map(bytes_of_last).collect();
     let identity = sha256_hex(last.iter().map(Vec::as_slice));
-    let data = TrainingData::of_simulations(&motions, config);
+    let data = TrainingData::from_simulations(&motions, config);
     let set = ResponseTrainingSet { name: name.to_owned(), ..ResponseTrainingSet::default() };
     let plan =
         vec![Planned { stage: ResponseStage::Pretraining, n_epochs: config.pretraining.epochs }];
@@ -56,7 +56,7 @@ pub fn pretrain(
     let detail = ResponseTraining { n_simulated: motions.len(), keeps_latents: false };
     let record = ResponseRecord {
         data_digest: identity,
-        ..ResponseRecord::of(&set, settings, detail, history)
+        ..ResponseRecord::new(&set, settings, detail, history)
     };
     Ok(ResponseModel::new(config.clone(), network, record))
 }
@@ -118,7 +118,7 @@ pub fn fine_tune(
         model.keep_latents(start.latents());
     }
     if !is_cut.get() {
-        model.set_domain(MotionDomain::of(&set.train));
+        model.set_domain(MotionDomain::from_cases(&set.train));
     }
     Ok(model)
 }
@@ -169,11 +169,11 @@ pub(super) fn fine_tune_once(
     } else {
         network.freeze(0.0);
     }
-    let data = TrainingData::of_trajectories(&set.train, config, settings.seed);
+    let data = TrainingData::from_trajectories(&set.train, config, settings.seed);
     if let Some(population) = start.and_then(ResponseModel::population) {
         let cases: Vec<&ResponseCase> = set.train.iter().collect();
         if let Some(first) = cases.first() {
-            let of_car = population.of(&first.vehicle, &network.mean_strengths()?);
+            let of_car = population.car_strengths(&first.vehicle, &network.mean_strengths()?);
             network.keep_remainder(of_car.remainder)?;
         }
         network.set_strengths(&population.strengths_of(&network, &cases)?)?;
@@ -193,7 +193,7 @@ pub(super) fn fine_tune_once(
     let training = TrainingRun::new(settings, (network, data, plan), history)?;
     let (network, history) = run(training, settings, identity, report)?;
     let detail = ResponseTraining { n_simulated, keeps_latents: false };
-    let record = ResponseRecord::of(set, settings, detail, history);
+    let record = ResponseRecord::new(set, settings, detail, history);
     Ok(ResponseModel::new(config.clone(), network, record))
 }
 

@@ -17,13 +17,13 @@ pub(super) struct TrainingData<'a> {
 }
 
 impl<'a> TrainingData<'a> {
-    pub(super) fn of_simulations(motions: &[SimulatedMotion], config: &ResponseConfig) -> Self {
+    pub(super) fn from_simulations(motions: &[SimulatedMotion], config: &ResponseConfig) -> Self {
         let views: Vec<MotionView<'_>> = motions.iter().map(SimulatedMotion::view).collect();
-        let instants = OneStepData::of(&views, &config.network);
+        let instants = OneStepData::from_motions(&views, &config.network);
         Self { instants, physics_points: None, rollouts: Vec::new() }
     }
 
-    pub(super) fn of_trajectories(
+    pub(super) fn from_trajectories(
         cases: &'a [ResponseCase],
         config: &ResponseConfig,
         seed: u64,
@@ -35,7 +35,7 @@ impl<'a> TrainingData<'a> {
             inputs: &case.inputs,
         };
         let views: Vec<MotionView<'_>> = cases.iter().map(view).collect();
-        let instants = OneStepData::of(&views, &config.network);
+        let instants = OneStepData::from_motions(&views, &config.network);
         let records: Vec<ImpactRecord> = cases.iter().filter_map(ResponseCase::impact).collect();
         let physics_points = (config.loss.physics > 0.0 && config.physics.batch_instants > 0)
             .then(|| PhysicsPoints::about(&instants, &records, (config, seed)));

@@ -201,7 +201,7 @@ impl CompareRequest {
         let cases = self.cases(&mut Caveats::default(), (library, observer))?;
         let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
         let name = data_name(&self.data);
-        let all = ResponseTrainingSet::of_split(&name, &usable.cases, self.seed, TEST_SHARE);
+        let all = ResponseTrainingSet::from_split(&name, &usable.cases, self.seed, TEST_SHARE);
         let records: Vec<ImpactRecord> =
             all.train.iter().filter_map(ResponseCase::impact).collect();
         let (mut cost, mut starts) = (Cost::default(), Vec::new());

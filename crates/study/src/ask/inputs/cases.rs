@@ -92,12 +92,12 @@ pub(crate) fn response_cases(
 pub(crate) fn dataset_folders(paths: &[PathBuf]) -> Result<Vec<PathBuf>, StudyError> {
     let mut folders = Vec::new();
     for path in paths {
-        let inside = match DatasetKind::of_folder(path) {
+        let inside = match DatasetKind::from_folder(path) {
             None if path.is_dir() => list_folder(path)?,
             _ => Vec::new(),
         };
         let mut sets: Vec<PathBuf> =
-            inside.into_iter().filter(|path| DatasetKind::of_folder(path).is_some()).collect();
+            inside.into_iter().filter(|path| DatasetKind::from_folder(path).is_some()).collect();
         sets.sort();
         // What is no data set is said where it is read.
         if sets.is_empty() {

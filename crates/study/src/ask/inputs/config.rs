@@ -63,7 +63,7 @@ impl TrainingOptions {
     pub(crate) fn claim(&self) -> Result<Option<WriterLock>, StudyError> {
         let Some(path) = &self.checkpoint else { return Ok(None) };
         check_target(path, Existing::Replace)?;
-        let lock = WriterLock::of_file(path)?;
+        let lock = WriterLock::lock_file(path)?;
         if path.exists() && !self.resume && !self.overwrite {
             return Err(StudyError::TrainingExists { path: path.clone() });
         }

@@ -97,14 +97,14 @@ impl InputKind {
     /// Finds out what a path holds. Nothing is said of what is wrong with it; reading it does that.
     pub fn from_path(path: &Path) -> Self {
         if path.is_dir() {
-            return match DatasetKind::of_folder(path) {
+            return match DatasetKind::from_folder(path) {
                 Some(_) => Self::Dataset,
                 None => Self::Folder,
             };
         }
         let folder = path.parent().unwrap_or(Path::new(""));
         let is_table = path.file_name().is_some_and(|name| name == CASES_FILE);
-        if is_table && DatasetKind::of_folder(folder).is_some() {
+        if is_table && DatasetKind::from_folder(folder).is_some() {
             return Self::Dataset;
         }
         from_content(path).unwrap_or_else(|| from_name(path))

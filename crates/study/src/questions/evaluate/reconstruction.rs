@@ -115,7 +115,7 @@ impl EvaluateReconstructionRequest {
     /// [`StudyError::NoSuchCase`], [`StudyError::NoStagedCase`], [`StudyError::NoTruth`], and if the
     /// folder cannot be listed.
     fn cases(&self, staged: &StagedCollisions) -> Result<Vec<String>, StudyError> {
-        let of_split = staged.of_split(self.split);
+        let of_split = staged.names_in(self.split);
         if let Some(unknown) = self.only.iter().find(|name| !staged.names().contains(name)) {
             return Err(StudyError::NoSuchCase {
                 path: self.data.clone(),
@@ -200,7 +200,7 @@ impl Estimated {
                 Ok(truth) => scores.extend(
                     done.methods
                         .iter()
-                        .map(|estimates| CaseScore::of(&done.case, done.known, estimates, &truth)),
+                        .map(|estimates| CaseScore::new(&done.case, done.known, estimates, &truth)),
                 ),
                 Err(error) => self.failed.push(format!("{}: {}", done.case, error_chain(&error))),
             }
@@ -243,7 +243,7 @@ impl Question for EvaluateReconstructionRequest {
             n_cases: cases.len(),
             n_particles: self.particles,
             stopped,
-            summary: MethodSummary::of(&scores),
+            summary: MethodSummary::from_scores(&scores),
             cases: scores,
             caveats: of_missing(n_answers, cases.len() * self.known.len()).into_iter().collect(),
             left_out,

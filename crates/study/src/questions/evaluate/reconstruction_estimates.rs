@@ -93,9 +93,9 @@ impl Asked<'_> {
             return Ok(Outcome::Cancelled);
         }
         let cost = (answer.report.ess, answer.report.n_simulations);
-        let ours = SpeedEstimates::of_posterior(&answer.posterior, cost, seconds());
+        let ours = SpeedEstimates::from_posterior(&answer.posterior, cost, seconds());
         let started = Instant::now();
-        let hand = HandCalculation::of(evidence, answer.target.model().cars(), &[]);
+        let hand = HandCalculation::new(evidence, answer.target.model().cars(), &[]);
         let by_hand = SpeedEstimates::by_hand(hand.as_ref(), started.elapsed().as_secs_f64());
         let mut methods = vec![ours, by_hand];
         if of.swarm {
@@ -129,7 +129,7 @@ impl<'a> FinishedCases<'a> {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<CaseEstimates>, StudyError> {
-        let evidence = asked.known.of(&Evidence::load(&asked.evidence)?);
+        let evidence = asked.known.select(&Evidence::load(&asked.evidence)?);
         let Some(folder) = self.folder else {
             return asked.estimates(&evidence, of, (library, observer));
         };

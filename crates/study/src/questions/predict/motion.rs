@@ -338,7 +338,7 @@ impl PredictMotionRequest {
         match &self.motion.source {
             MotionSource::Trajectory { .. } => true,
             MotionSource::Case { dataset, .. } => {
-                DatasetKind::of_folder(dataset) == Some(DatasetKind::Trajectory)
+                DatasetKind::from_folder(dataset) == Some(DatasetKind::Trajectory)
             }
             MotionSource::Scenario { .. } | MotionSource::Drive(_) => false,
         }

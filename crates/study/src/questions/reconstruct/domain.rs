@@ -138,7 +138,7 @@ mod tests {
     use impactlab_reconstruct::evidence::{CarEvidence, Evidence};
 
     fn said(evidence: &Evidence) -> Vec<(String, f64)> {
-        let caveats = of_vehicles(&Cars::of(evidence, None, None));
+        let caveats = of_vehicles(&Cars::new(evidence, None, None));
         caveats.into_iter().map(|of| (of.quantity.unwrap(), of.value.unwrap())).collect()
     }
 
@@ -179,7 +179,7 @@ mod tests {
     fn no_vehicle_of_the_library_lies_outside() {
         let evidence = Evidence { striking_car: CarEvidence::default(), ..spin() };
         for vehicle in LibraryVehicle::ALL {
-            let cars = Cars::of(&evidence, None, Some(&vehicle.parameters()));
+            let cars = Cars::new(&evidence, None, Some(&vehicle.parameters()));
             assert_eq!(of_vehicles(&cars), [], "{}", vehicle.id());
         }
     }
@@ -188,7 +188,7 @@ mod tests {
     fn damage_lies_at_the_car_within_its_errors() {
         let mut evidence = spin();
         let check = |evidence: &Evidence| {
-            check_damage(&evidence.damage, &Cars::of(evidence, None, None))
+            check_damage(&evidence.damage, &Cars::new(evidence, None, None))
                 .map_err(|off| off.x_body_m)
         };
         assert_eq!(check(&evidence), Ok(()));

@@ -161,7 +161,7 @@ impl ReconstructRequest {
 
     fn cars(&self, evidence: &Evidence) -> Result<Cars, StudyError> {
         let (struck, striking) = (self.vehicle.chosen()?, self.striking.chosen()?);
-        Ok(Cars::of(evidence, struck.as_ref(), striking.as_ref()))
+        Ok(Cars::new(evidence, struck.as_ref(), striking.as_ref()))
     }
 
     /// The forward model of the case.
@@ -275,10 +275,10 @@ impl Question for ReconstructRequest {
             sample(&target, &settings, checkpoint.as_ref(), &mut told).map_err(|source| {
                 StudyError::Reconstruction { name: self.evidence.name(), source: Box::new(source) }
             })?;
-        let posterior = Posterior::of(&target, &particles);
+        let posterior = Posterior::new(&target, &particles);
         let (fit, turned_rad) = target.fit(&particles);
         let ground = target.model().zones();
-        let by_hand = HandCalculation::of(target.evidence(), target.model().cars(), ground);
+        let by_hand = HandCalculation::new(target.evidence(), target.model().cars(), ground);
         let by_hand_m_s = by_hand.map(|hand| {
             let speed = hand.struck_speed_m_s;
             [speed.value, speed.sigma]
@@ -340,7 +340,7 @@ fn progress(report: &SamplerReport<'_>, settings: &SamplerSettings) -> Progress 
 
 /// Whether there are enough particles, and whether they are of the posterior.
 fn of_particles(particles: &Particles) -> Vec<Caveat> {
-    let stopped = (!particles.of_posterior()).then(|| {
+    let stopped = (!particles.is_posterior()).then(|| {
         let text = "sampling was stopped before all of the evidence was used: these particles are \
                     not of the posterior";
         Caveat::new(CaveatKind::FewParticles, text)

@@ -134,7 +134,8 @@ impl Question for SimulateDatasetRequest {
         let unread = self.case.is_none().then_some(&dataset.problems);
         let problems = unread.into_iter().flatten().map(|problem| error_chain(problem));
         let failed = replay.failures.iter().map(|failure| error_chain(failure));
-        let summary = |choose: fn(&Replay) -> bool| ErrorSummary::of(&replay.cases, choose);
+        let summary =
+            |choose: fn(&Replay) -> bool| ErrorSummary::from_replays(&replay.cases, choose);
         let cases: Vec<ReplayedCaseReport> =
             replay.cases.iter().map(ReplayedCaseReport::of).collect();
         let failures: Vec<String> = problems.chain(failed).collect();

@@ -130,7 +130,7 @@ impl SimulateRequest {
         let has_striking = match &self.source {
             MotionSource::Scenario { .. } => true,
             MotionSource::Case { dataset, .. } => {
-                DatasetKind::of_folder(dataset) == Some(DatasetKind::Force)
+                DatasetKind::from_folder(dataset) == Some(DatasetKind::Force)
             }
             MotionSource::Trajectory { .. } | MotionSource::Drive(_) => false,
         };

@@ -136,7 +136,8 @@ impl FineTuneRequest {
             let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
             notes.left_out.extend(usable.left_out);
             let (name, share) = (data_name(&root), self.test_share);
-            let set = ResponseTrainingSet::of_split(name, &usable.cases, self.training.seed, share);
+            let set =
+                ResponseTrainingSet::from_split(name, &usable.cases, self.training.seed, share);
             sets.push(set.choose(self.trajectories, self.choice_seed())?);
         }
         if sets.is_empty() {

@@ -115,7 +115,7 @@ impl TrainForceRequest {
         }
         let name = data_names(std::iter::once(&self.data).chain(&self.extra));
         let share = self.settings()?.training.test_share;
-        let set = ForceTrainingSet::of_split(name, &usable.cases, self.training.seed, share);
+        let set = ForceTrainingSet::from_split(name, &usable.cases, self.training.seed, share);
         Ok(Outcome::Complete((set.with_extra(&extra), usable.left_out)))
     }
 }

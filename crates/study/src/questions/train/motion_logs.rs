@@ -91,7 +91,7 @@ impl MotionLogs {
                 Some(force) => Some(self.load(force, &settings.vehicle)?),
                 None => None,
             };
-            let found = LoggedImpact::of(&log, load, &settings)?;
+            let found = LoggedImpact::from_log(&log, load, &settings)?;
             reports.push(LogReport {
                 log: path.clone(),
                 start_s: found.start_s,

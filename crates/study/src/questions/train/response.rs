@@ -113,7 +113,7 @@ impl TrainResponseRequest {
         notes: &mut TrainingNotes,
         (library, observer): (&Library, &mut Observer<'_>),
     ) -> Result<Outcome<Vec<ImpactRecord>>, StudyError> {
-        if DatasetKind::of_folder(&self.data) == Some(DatasetKind::Trajectory) {
+        if DatasetKind::from_folder(&self.data) == Some(DatasetKind::Trajectory) {
             let chosen = (self.data.as_path(), &self.vehicle);
             let caveats = &mut notes.caveats;
             let cases =

@@ -70,7 +70,8 @@ impl NearestBaseline {
         let known: Vec<Known> = known.collect::<Result<_, CurveFitError>>()?;
         let n_features = known.first().map_or(0, |first| first.row.len());
         let inverse_std = |j: usize| {
-            let std = Summary::of(known.iter().map(|known| known.row[j])).map_or(0.0, |of| of.std);
+            let std = Summary::from_values(known.iter().map(|known| known.row[j]))
+                .map_or(0.0, |of| of.std);
             if std > 0.0 { std.recip() } else { 0.0 }
         };
         let inverse_std = (0..n_features).map(inverse_std).collect();
@@ -97,7 +98,7 @@ impl NearestBaseline {
                 *force *= ratio;
             }
         }
-        Ok(CurvePrediction::of_curve(curve))
+        Ok(CurvePrediction::from_curve(curve))
     }
 }
 
@@ -121,7 +122,7 @@ mod tests {
             let baseline = NearestBaseline::fit(&cases, columns, 0).unwrap();
             for case in &cases {
                 let prediction = baseline.predict(&case.scenario).unwrap();
-                assert!(PointErrors::of(case, &prediction).history_error < 1e-9, "{}", case.name);
+                assert!(PointErrors::new(case, &prediction).history_error < 1e-9, "{}", case.name);
             }
         }
     }

@@ -90,7 +90,7 @@ impl PulseBaseline {
         let impulse_n_s = self.momentum.solve(scenario)?.impulse_world_n_s;
         let pulse = Pulse::new(self.shape, impulse_n_s, start_s, length_s)?;
         let curve = ForceCurve { duration_s: ln_duration.exp(), ..on_grid(&pulse) };
-        Ok(CurvePrediction { impulse_n_s, ..CurvePrediction::of_curve(curve) })
+        Ok(CurvePrediction { impulse_n_s, ..CurvePrediction::from_curve(curve) })
     }
 }
 
@@ -147,7 +147,7 @@ mod tests {
         let baseline = PulseBaseline::fit(train, ColumnSet::ThetaContactAndBody, 0).unwrap();
         assert_eq!(baseline.shape, PulseShape::Triangle);
         let error = |case: &&ForceCase| {
-            PointErrors::of(case, &baseline.predict(&case.scenario).unwrap()).history_error
+            PointErrors::new(case, &baseline.predict(&case.scenario).unwrap()).history_error
         };
         let error = mean(test.iter().map(error));
         assert!(error < 0.1, "{error}");

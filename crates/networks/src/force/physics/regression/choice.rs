@@ -65,7 +65,7 @@ fn fold_losses(
         for n_components in N_COMPONENTS {
             let options = CurveRegressionOptions { n_components, ..options };
             let parts = (scales.clone(), shapes.clone().truncated(n_components));
-            let model = CurveRegression::of_parts(train, parts, options, seed);
+            let model = CurveRegression::from_parts(train, parts, options, seed);
             let error = |case: &&ForceCase| history_error(case, model.point(&case.scenario));
             losses.push((mean(test.iter().map(error)) * test.len() as f64, options));
         }

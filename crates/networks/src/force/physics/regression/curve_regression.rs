@@ -115,10 +115,10 @@ impl CurveRegression {
     ) -> Result<Self, CurveFitError> {
         let scales = Scales::fit(cases, columns, options.with_impulse)?;
         let shapes = Shapes::fit(cases, &scales, options)?;
-        Ok(Self::of_parts(cases, (scales, shapes), options, seed))
+        Ok(Self::from_parts(cases, (scales, shapes), options, seed))
     }
 
-    pub(super) fn of_parts(
+    pub(super) fn from_parts(
         cases: &[&ForceCase],
         (scales, shapes): (Scales, Shapes),
         options: CurveRegressionOptions,
@@ -272,8 +272,8 @@ mod tests {
         let model = CurveRegression::fit_with(&fitted_to, columns, OPTIONS, 0).unwrap();
         let predict = |case: &ForceCase| model.predict(&case.scenario).unwrap();
         let clean = kept_back.iter().map(|(_, case)| **case).filter(|case| case.is_clean());
-        let errors = clean.map(|case| PointErrors::of(case, &predict(case)).history_error);
-        let error = Summary::of(errors).unwrap();
+        let errors = clean.map(|case| PointErrors::new(case, &predict(case)).history_error);
+        let error = Summary::from_values(errors).unwrap();
         assert!(error.median < 0.4 && error.mean < 0.45, "{error:?}");
         let first = predict(fitted_to[0]);
         let mixture = first.mixture.as_ref().unwrap();

@@ -54,7 +54,8 @@ impl Shapes {
         let CurveRegressionOptions { alignment, n_components, .. } = options;
         let unusual = unusual(cases);
         let shapes: Vec<Vec<f64>> = cases.iter().map(|case| shape_of(alignment, case)).collect();
-        let basis = Basis::of(&shapes, &unusual, n_components).ok_or(CurveFitError::NoCases)?;
+        let basis =
+            Basis::from_shapes(&shapes, &unusual, n_components).ok_or(CurveFitError::NoCases)?;
         let inputs = cases.iter().map(|case| Ok(scales.row(&case.scenario)?.0));
         let inputs: Vec<Vec<f64>> = inputs.collect::<Result<_, CurveFitError>>()?;
         let regress = |outputs: &[Vec<f64>], weights: &[f64]| {
@@ -138,7 +139,7 @@ struct Basis {
 impl Basis {
     /// By the eigenvectors of the Gram matrix, as there are fewer shapes than values. `None` for
     /// fewer than two usual shapes.
-    fn of(shapes: &[Vec<f64>], unusual: &[bool], n_components: usize) -> Option<Self> {
+    fn from_shapes(shapes: &[Vec<f64>], unusual: &[bool], n_components: usize) -> Option<Self> {
         let usual = shapes.iter().zip(unusual).filter(|(_, unusual)| !**unusual);
         let mut usual: Vec<&Vec<f64>> = usual.map(|(shape, _)| shape).collect();
         if usual.len() < 2 {
@@ -202,7 +203,7 @@ mod tests {
         let shape = |a: f64, b: f64| vec![1.0 + a, 2.0 + b, 3.0 - a, b];
         let shapes: Vec<Vec<f64>> =
             (0..9).map(|i| shape(f64::from(i).sin(), 0.3 * f64::from(i * i).cos())).collect();
-        let basis = Basis::of(&shapes, &[false; 9], 2).unwrap();
+        let basis = Basis::from_shapes(&shapes, &[false; 9], 2).unwrap();
         for shape in &shapes {
             let c = basis.coefficients(shape);
             for (j, value) in shape.iter().enumerate() {
@@ -213,6 +214,6 @@ mod tests {
         }
         assert!((basis.weights.iter().sum::<f64>() - COEFFICIENTS_WEIGHT).abs() < 1e-9);
         assert!(basis.residual_std(&shapes, &[false; 9]).iter().all(|std| *std < 1e-9));
-        assert!(Basis::of(&shapes[..1], &[false], 2).is_none());
+        assert!(Basis::from_shapes(&shapes[..1], &[false], 2).is_none());
     }
 }

@@ -24,7 +24,7 @@ pub(crate) fn history_error(
     case: &ForceCase,
     prediction: Result<CurvePrediction, CurveFitError>,
 ) -> f64 {
-    prediction.map_or(1.0, |prediction| PointErrors::of(case, &prediction).history_error)
+    prediction.map_or(1.0, |prediction| PointErrors::new(case, &prediction).history_error)
 }
 
 /// Mean of values; infinite without values, so that a candidate without them is never chosen.
