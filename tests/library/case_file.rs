@@ -45,7 +45,8 @@ fn case(force: &Path) -> CaseFile {
     case.variants.push(Variant {
         name: "measured".to_owned(),
         questions: vec![simulate.into()],
-        forms: serde_json::json!({"file": force, "speed": 20.0}),
+        view: serde_json::json!({"file": force, "speed": 20.0}),
+        ..Variant::default()
     });
     case.notes = "two lines\nof notes".to_owned();
     case.record_files();

@@ -10,8 +10,8 @@
 //!   saved.
 //! - [`CaseFile::ask`] answers every question of every variant, as the commands of the questions do.
 //! - [`pack`] and [`unpack`] make one zip of a case and all its files, and a folder of that again.
-//!
-//! The window keeps its forms with each variant ([`Variant::forms`]); nothing else reads them.
+//! - A variant is its questions, which the window edits. What several of them have in common, such as the
+//!   scenario, stands once in the file; in memory each question is whole.
 
 mod error;
 
@@ -20,6 +20,8 @@ mod paths;
 mod used;
 
 mod store;
+
+mod common;
 
 mod package;
 
@@ -68,15 +70,19 @@ pub struct CaseFile {
 
 /// One way in which it may have happened.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(try_from = "common::VariantText", into = "common::VariantText")]
 pub struct Variant {
     /// What it is called.
     pub name: String,
     /// What is asked of it.
-    #[serde(default)]
     pub questions: Vec<Request>,
-    /// How the forms of the window are filled in.
-    #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
+    /// Questions that are filled in and not asked, such as those about a scenario while a recorded case is
+    /// looked at.
+    pub unasked: Vec<Request>,
+    /// How the window draws it; nothing else reads that.
+    pub view: serde_json::Value,
+    /// How the forms of the window were filled in beside the questions, in files of version 1. The window
+    /// takes from them what no question says, and writes none.
     pub forms: serde_json::Value,
 }
 

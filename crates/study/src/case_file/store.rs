@@ -12,9 +12,10 @@ use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, read_utf8, write_atomica
 /// Ending of the names of case files.
 pub const CASE_ENDING: &str = "impactlab";
 
-/// What every case file says that it is, and the version of its schema.
+/// What every case file says that it is, and the version of its schema. Version 1 had no common part of
+/// the questions, and forms of the window beside them.
 pub(crate) const FORMAT: &str = "impactlab case";
-pub(super) const VERSION: u32 = 1;
+pub(super) const VERSION: u32 = 2;
 
 /// What is read of a file before anything else.
 #[derive(Deserialize)]
@@ -50,6 +51,7 @@ impl CaseFile {
             return Err(CaseError::Version { path, got, expected: VERSION });
         }
         let case: Self = serde_json::from_str(text).map_err(wrong)?;
+        let case = Self { version: VERSION, ..case };
         case.check_names(path)?;
         let io = |source| CaseError::Io { path: path.to_owned(), source };
         let folder = folder_of(&std::path::absolute(path).map_err(io)?);

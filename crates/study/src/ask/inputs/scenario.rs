@@ -30,6 +30,22 @@ impl ScenarioChoice {
         }
     }
 
+    /// The scenario that is in memory; `None` for a file.
+    pub fn inline(&self) -> Option<&Scenario> {
+        match self {
+            Self::File(_) => None,
+            Self::Inline(scenario) => Some(scenario),
+        }
+    }
+
+    /// The same, to be edited.
+    pub fn inline_mut(&mut self) -> Option<&mut Scenario> {
+        match self {
+            Self::File(_) => None,
+            Self::Inline(scenario) => Some(scenario),
+        }
+    }
+
     /// Checks every number of a scenario that stands in the question; a file is checked when it is
     /// read.
     pub(crate) fn check(&self) -> Result<(), StudyError> {
@@ -56,7 +72,7 @@ impl ScenarioChoice {
     }
 
     /// The file, or the name of the scenario, for messages.
-    pub(crate) fn name(&self) -> String {
+    pub fn name(&self) -> String {
         match self {
             Self::File(path) => path.display().to_string(),
             Self::Inline(scenario) => scenario.name.clone(),

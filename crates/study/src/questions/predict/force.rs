@@ -151,6 +151,20 @@ struct AskedCollision {
     overlap: Option<Caveat>,
 }
 
+impl PredictForceRequest {
+    /// The force of a collision about which nothing else is said.
+    pub fn new(collision: ForceQuestion) -> Self {
+        Self {
+            collision,
+            model: ModelChoice::default(),
+            body: None,
+            open_contact: false,
+            samples: 0,
+            seed: 0,
+        }
+    }
+}
+
 impl ForceQuestion {
     /// What the network is asked, and what the collision is called.
     fn numbers(

@@ -50,6 +50,13 @@ pub enum MotionSource {
     },
 }
 
+impl Default for MotionSource {
+    /// A start on which nothing acts.
+    fn default() -> Self {
+        Self::Drive(Drive::default())
+    }
+}
+
 impl MotionSource {
     /// The source of a file that was opened, by what the file is about.
     ///
