@@ -10,7 +10,8 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
-use impactlab::app::{App, Command, Network, Pane, Source, State, TrainingCommand};
+use impactlab::app::{App, Command, Network, Pane, Source, State, TrainingCommand, collision_of};
+use impactlab_networks::force::ForceScenario;
 use impactlab_networks::learning::TrainingReport;
 
 /// Time between two frames of a display at 60 Hz.
@@ -88,7 +89,7 @@ impl Window {
                 while !self
                     .state()
                     .force_forecast()
-                    .is_some_and(|answer| answer.collision == self.state().project.force.scenario)
+                    .is_some_and(|answer| collision_is(self.state(), &answer.collision))
                 {
                     self.frame();
                 }
@@ -107,7 +108,16 @@ impl Window {
 
 /// Changes the lateral speed of the bullet, from 3 m/s to 4 m/s as `share` goes from 0 to 1.
 fn move_slider(state: &mut State, share: f64) {
-    state.project.force.scenario.striking_velocity_m_s[1] = 3.0 + share;
+    let asked = collision_of(&state.project.predict_force, &state.session.sources);
+    let mut collision = asked.expect("a collision");
+    collision.numbers.striking_velocity_m_s[1] = 3.0 + share;
+    collision.put_into(&mut state.project.predict_force);
+}
+
+/// Whether the collision in the form has these numbers.
+fn collision_is(state: &State, numbers: &ForceScenario) -> bool {
+    let asked = collision_of(&state.project.predict_force, &state.session.sources);
+    asked.is_some_and(|collision| collision.numbers == *numbers)
 }
 
 /// Prints a row with the median, the 90th and the 99th percentile of the durations in ms, and the
@@ -130,7 +140,7 @@ fn main() {
     println!("| frame | median, ms | 90 % | 99 % | over 20 ms |\n| --- | --- | --- | --- | --- |");
     window.measure_all("at rest");
 
-    let form = &mut window.0.state_mut().state_mut().project.force.training;
+    let form = &mut window.0.state_mut().state_mut().project.force_training;
     form.epochs = Some(100_000);
     window.apply(Command::Train(Network::Force, TrainingCommand::Start));
     let is_fitting = |state: &State| {

@@ -60,7 +60,7 @@ impl State {
     /// The change of velocity of the struck vehicle: of a scenario by the momentum solution, which the
     /// scenario panel shows; of a recorded force over its contact, with what the tires add.
     fn impact_link(&self, report: Option<&SimulateReport>) -> Link {
-        let is_scenario = self.project.subject == Some(Subject::Scenario);
+        let is_scenario = self.project.subject() == Some(Subject::Scenario);
         let solved = self.session.impact.ok().filter(|_| is_scenario && report.is_some());
         let (delta_v, source, pane) = match (is_scenario, solved) {
             (true, solved) => {
@@ -84,15 +84,19 @@ impl State {
     }
 
     fn subject_link(&self) -> Link {
-        let (figure, source, pane) = match &self.project.subject {
+        let (figure, source, pane) = match &self.project.subject() {
             Some(Subject::Scenario) => {
-                let name = self.project.scenario.name.clone();
+                let name = self.project.impact.scenario.name();
                 (Some(name), "as entered".to_owned(), Pane::Scenario)
             }
             Some(Subject::Case { dataset, case }) => {
                 (Some(case.clone()), format!("case of {}", file_name(dataset)), Pane::Cases)
             }
             Some(Subject::File(path)) => (Some(file_name(path)), "file".to_owned(), Pane::Data),
+            Some(Subject::Manoeuvre) => {
+                let name = self.project.simulate.source.name();
+                (Some(name), "as entered".to_owned(), Pane::Vehicle)
+            }
             None => (None, "nothing selected".to_owned(), Pane::Data),
         };
         Link { title: "Scenario", figure, source, warnings: Vec::new(), is_late: false, pane }

@@ -403,8 +403,11 @@ impl State {
         if let Subject::Case { dataset, .. } = &subject {
             self.view.listed = Some(dataset.clone());
         }
-        if self.project.subject.as_ref() != Some(&subject) {
-            self.project.subject = Some(subject);
+        let before = self.project.subject();
+        if before.as_ref() != Some(&subject) {
+            self.project.put_aside(self.takes_ending(before.as_ref()));
+            let takes_ending = self.takes_ending(Some(&subject));
+            self.project.take_up(self.source_of(subject), takes_ending);
             self.drop_answers();
             self.session.time_s = 0.0;
             self.session.fit_plots = true;
@@ -417,7 +420,7 @@ impl State {
     fn select_neighbour(&mut self, step: isize) {
         let Session { cases, sources, replays, .. } = &self.session;
         let Some(table) = cases.table(sources, replays, &self.view) else { return };
-        let current = match &self.project.subject {
+        let current = match &self.project.subject() {
             Some(Subject::Case { case, .. }) => table.position(case),
             _ => None,
         };

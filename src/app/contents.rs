@@ -6,9 +6,9 @@ use crate::app::model::{ModelStatus, file_name};
 use crate::app::network::TrainedModel;
 use crate::app::panes::Pane;
 use crate::app::source::{Content, Source};
-use crate::app::state::{Project, State, Subject};
+use crate::app::state::{State, Subject};
 use impactlab_core::units::Quantity;
-use impactlab_study::{DEFAULT_STRIKING, DEFAULT_VEHICLE, VehicleChoice};
+use impactlab_study::{DEFAULT_STRIKING, DEFAULT_VEHICLE, SimulateRequest, VehicleChoice};
 
 /// A part of the case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,7 +103,7 @@ impl State {
     }
 
     fn vehicle_entries(&self) -> [ContentsEntry; 2] {
-        let Project { vehicle, striking, .. } = &self.project;
+        let SimulateRequest { vehicle, striking, .. } = &self.project.simulate;
         let struck = choice_text(vehicle, DEFAULT_VEHICLE.id());
         let striking = choice_text(striking, DEFAULT_STRIKING.id());
         [("Struck", struck), ("Striking", striking)].map(|(label, detail)| {
@@ -115,19 +115,22 @@ impl State {
     fn scene_entries(&self) -> [ContentsEntry; 2] {
         let report = self.analysis().map(|answer| &answer.report);
         let road = report.map_or("–".to_owned(), |report| format!("μ {:.2}", report.friction));
-        let until = match self.project.until_rest {
+        let until = match self.project.simulate.until_rest {
             true => "until rest".to_owned(),
-            false => Quantity::Time.shown(self.project.duration_s, self.view.units),
+            false => Quantity::Time.shown(self.project.simulate.duration_s, self.view.units),
         };
-        let ending = match &self.project.subject {
-            Some(Subject::Scenario) => self.project.scenario.ending.is_some(),
-            _ => self.project.ending.is_some(),
+        let subject = self.project.subject();
+        let ending = match &subject {
+            Some(Subject::Scenario) => {
+                self.project.scenario().is_some_and(|of| of.ending.is_some())
+            }
+            _ => self.project.simulate.ending.is_some(),
         };
         let after = match ending {
             true => format!("{until}, wheels as entered"),
             false => format!("{until}, coasting"),
         };
-        let pane = match self.project.subject {
+        let pane = match subject {
             Some(Subject::Scenario) => Pane::Scenario,
             _ => Pane::Vehicle,
         };
@@ -139,12 +142,12 @@ impl State {
 
     /// The ground of the scene, if there is one.
     fn ground_entry(&self) -> Option<ContentsEntry> {
-        let site = self.project.site.as_ref()?;
+        let file = self.project.simulate.site.as_ref()?;
         let ground = &self.session.ground;
         let detail = match ground.shown() {
             Some(loaded) => loaded.site.name.clone(),
             None if ground.is_loading() => "loading…".to_owned(),
-            None => file_name(&site.file),
+            None => file_name(file),
         };
         let missing = ground.shown().and_then(|loaded| loaded.notes.first().cloned());
         let missing = ground.problem.clone().or(missing);
@@ -153,17 +156,21 @@ impl State {
     }
 
     fn impact_entry(&self) -> ContentsEntry {
-        let (label, detail, pane) = match &self.project.subject {
+        let subject = self.project.subject();
+        let (label, detail, pane) = match &subject {
             Some(Subject::Scenario) => {
-                ("Scenario", self.project.scenario.name.clone(), Pane::Scenario)
+                ("Scenario", self.project.impact.scenario.name(), Pane::Scenario)
             }
             Some(Subject::Case { dataset, case }) => {
                 ("Recorded case", format!("{case} of {}", file_name(dataset)), Pane::Cases)
             }
             Some(Subject::File(path)) => ("File", file_name(path), Pane::Vehicle),
+            Some(Subject::Manoeuvre) => {
+                ("Manoeuvre", self.project.simulate.source.name(), Pane::Vehicle)
+            }
             None => ("nothing selected", String::new(), Pane::Scenario),
         };
-        let missing = match (&self.project.subject, self.session.analysis.problem()) {
+        let missing = match (&subject, self.session.analysis.problem()) {
             (None, _) => {
                 Some("choose a scenario, a case of a data set, or a file with a force".to_owned())
             }
@@ -195,7 +202,7 @@ impl State {
 
     /// The evidence of a reconstruction, if there is any.
     fn evidence_entry(&self) -> Option<ContentsEntry> {
-        self.project.reconstruction.evidence.as_ref()?;
+        self.project.reconstruct.as_ref()?;
         let file = self.session.reconstruction.file.as_ref();
         let problem = file.and_then(|file| file.evidence.as_ref().err().cloned());
         let (detail, problem) = match self.evidence() {

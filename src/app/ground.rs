@@ -4,8 +4,6 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
 use crate::app::command::Command;
 use crate::app::panes::Pane;
 use crate::app::state::{Session, State};
@@ -16,17 +14,6 @@ use impactlab_core::error_chain;
 use impactlab_core::ranges::SITE_DISTANCE;
 use impactlab_core::site::PixelMap;
 use impactlab_document::scene::LoadedGround;
-
-/// The site of a project.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SiteChoice {
-    /// The site file, or an orthophoto alone.
-    pub file: PathBuf,
-    /// Where the orthophoto was put in the window, instead of where the file says.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub map: Option<PixelMap>,
-}
 
 /// An action on the ground.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,8 +62,10 @@ impl GroundSession {
 
     /// Starts to read a ground that has not been asked for, and puts the one that was read where the
     /// project wants it.
-    fn update(&mut self, choice: Option<&SiteChoice>, tasks: &mut Tasks) {
-        let file = choice.map(|choice| &choice.file);
+    ///
+    /// - `file`: the site file, or an orthophoto alone;
+    /// - `map`: where the orthophoto was put in the window, instead of where the file says.
+    fn update(&mut self, file: Option<&PathBuf>, map: Option<PixelMap>, tasks: &mut Tasks) {
         if file != self.asked.as_ref() {
             self.forget();
             self.asked = file.cloned();
@@ -93,7 +82,6 @@ impl GroundSession {
                 );
             }
         }
-        let map = choice.and_then(|choice| choice.map);
         if self.shown.as_ref().map(|(map, _)| map) != Some(&map) || self.read.is_none() {
             let placed = |read: &Arc<LoadedGround>| match map {
                 Some(map) => Arc::new(read.placed(map)),
@@ -139,10 +127,11 @@ impl State {
     pub(in crate::app) fn open_ground(&mut self, path: PathBuf) {
         // A file that is opened again is read again, and an answer is of what it said before.
         self.session.ground.forget();
-        if self.project.reconstruction.site.as_ref() == Some(&path) {
+        let of_reconstruction = self.project.reconstruct.as_ref().and_then(|of| of.site.as_ref());
+        if of_reconstruction == Some(&path) {
             self.drop_reconstruction();
         }
-        self.project.site = Some(SiteChoice { file: path, map: None });
+        self.project.put_on_site(Some(path));
         self.ask_again();
         self.session.shows_doors = false;
         match self.view.workspaces.shown {
@@ -155,13 +144,14 @@ impl State {
     /// Reads the ground of the project where that has changed.
     pub(in crate::app) fn update_ground(&mut self) {
         let Session { ground, tasks, .. } = &mut self.session;
-        ground.update(self.project.site.as_ref(), tasks);
+        let (site, map) = (self.project.simulate.site.as_ref(), self.project.beside.orthophoto);
+        ground.update(site, map, tasks);
     }
 
     /// Carries out a command on the ground.
     pub(in crate::app) fn change_ground(&mut self, command: GroundCommand) {
         match command {
-            GroundCommand::Remove => self.project.site = None,
+            GroundCommand::Remove => self.project.put_on_site(None),
             GroundCommand::Read(path, result) => {
                 let extent_m = self.session.scene.extent_m().unwrap_or_default();
                 for (severity, text) in self.session.ground.take(&path, result, extent_m) {
@@ -171,11 +161,11 @@ impl State {
             GroundCommand::Scale { ends_m: [from, to], distance_m } => {
                 let photo = self.session.ground.shown().and_then(|of| of.site.orthophoto.as_ref());
                 let shown_m = (to[0] - from[0]).hypot(to[1] - from[1]);
-                let (Some(photo), Some(site)) = (photo, &mut self.project.site) else { return };
+                let Some(photo) = photo else { return };
                 let map = photo.map.scaled_about(from, distance_m / shown_m);
                 let is_possible = SITE_DISTANCE.contains(distance_m) && shown_m > 0.0;
                 match map.problem().filter(|_| is_possible) {
-                    None if is_possible => site.map = Some(map),
+                    None if is_possible => self.project.beside.orthophoto = Some(map),
                     problem => {
                         let expected = problem.unwrap_or("a distance of 0.05 m to 100 km");
                         let text = format!("the orthophoto keeps its scale, expected {expected}");
@@ -196,7 +186,7 @@ impl State {
         match write_atomically(path, existing, |out| out.write_all(text.as_bytes())) {
             Ok(()) => {
                 self.say(Severity::Info, format!("{} written", path.display()));
-                self.project.site = Some(SiteChoice { file: path.to_owned(), map: None });
+                self.project.put_on_site(Some(path.to_owned()));
                 self.session.ground.forget();
             }
             Err(error) => self.say(Severity::Error, error_chain(&error)),

@@ -30,6 +30,7 @@ mod network;
 mod open;
 mod panels;
 mod panes;
+mod project;
 mod question_job;
 mod reconstruction;
 mod recording;
@@ -76,23 +77,24 @@ pub use command::{Command, ComparisonCommand, ModelsCommand, TrainingCommand};
 pub use contents::{ContentsEntry, Group};
 pub use cost::{CostPlace, Costs};
 pub use dialog::{Dialog, Dialogs, Purpose};
-pub use force::ForceSession;
-pub use ground::{GroundCommand, GroundSession, SiteChoice};
+pub use force::{ForceSession, NamedCollision, collision_of};
+pub use ground::{GroundCommand, GroundSession};
 pub use kept::{KeptEntry, KeptKind, KeptStatus, ModelsDialog, Removal};
 pub use latest::Latest;
 pub use measure::{Measure, Measurement, Measuring};
 pub use network::Network;
 pub use panes::Pane;
+pub use project::{Beside, Project};
 pub use question_job::{Answered, QuestionJob};
 pub use reconstruction::{FollowedParticle, ReconstructionCommand, ReconstructionSession};
 pub use recording::OverlaidRecording;
 pub use renderer::RendererChoice;
 pub use replay::ReplayStatus;
 pub use report::{MadeReport, ReportCommand, ReportSession, ReportView};
-pub use response::{DensityChoice, ForceChoice, MotionAnswer, ResponseSession, TrainingMode};
+pub use response::{DensityChoice, MotionAnswer, ResponseSession, TrainingMode};
 pub use scene::{SceneSession, SceneSettings, SceneSource};
 pub use source::{Content, Source};
-pub use state::{FileStart, Project, RestoreError, State, Subject, View};
+pub use state::{RestoreError, State, Subject, View};
 pub use tasks::{TaskKey, Tasks};
 pub use unfinished::{Unfinished, UnfinishedTrainings};
 pub use variants::AnsweredVariant;
@@ -182,8 +184,8 @@ impl App {
         }
         state.session.response.gpu = graphics_processor(cc);
         draw_scenes_on(cc, &mut state);
-        if to_open.is_empty() && state.project.subject.is_none() {
-            state.project.subject = Some(Subject::Scenario);
+        if to_open.is_empty() && state.project.subject().is_none() {
+            state.select(Subject::Scenario);
         }
         let shown = state.view.workspaces.shown;
         state.apply(Command::Open(to_open), &cc.egui_ctx);
@@ -191,7 +193,7 @@ impl App {
             state.view.workspaces.shown = shown;
             state.session.shows_doors = !is_restored;
         }
-        if state.project.subject.is_some() {
+        if state.project.subject().is_some() {
             state.session.select_when_loaded = None; // The subject of the last run stays.
         }
         Self { state, undoer: Undoer::default(), store }

@@ -10,7 +10,6 @@ use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::data::Existing;
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
-use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{Library, ModelChoice};
 
 /// A model in use or ready for use, and its origin.
@@ -58,9 +57,9 @@ pub enum ModelNews {
 /// The state of the model of one network: the model in use, the one that is being loaded or saved,
 /// and the one that a cancelled training has left.
 pub struct ModelStatus<M> {
-    /// The file that was requested last; the inner `None` is the shipped model. The outer `None`
-    /// means that no model has been requested yet, or that it must be read again.
-    requested: Option<Option<PathBuf>>,
+    /// The model that was requested last; `None` if none has been requested yet, or if it must be read
+    /// again.
+    requested: Option<ModelChoice>,
     is_loading: bool,
     is_saving: bool,
     /// Number of models that are being kept.
@@ -98,27 +97,27 @@ impl<M: TrainedModel> ModelStatus<M> {
     /// Starts to load a model if the project requests another one than before. If loading fails, the
     /// model in use stays.
     ///
-    /// - `wanted`: file of the requested model; `None` is the shipped one.
-    pub fn update(&mut self, wanted: &Option<PathBuf>, library: &Arc<Library>, tasks: &mut Tasks) {
+    /// - `wanted`: the model in the question.
+    pub fn update(&mut self, wanted: &ModelChoice, library: &Arc<Library>, tasks: &mut Tasks) {
         if self.requested.as_ref() == Some(wanted) {
             return;
         }
         self.requested = Some(wanted.clone());
         self.is_loading = true;
-        let (path, library) = (wanted.clone(), Arc::clone(library));
+        let (choice, library) = (wanted.clone(), Arc::clone(library));
         let event = |result| M::command(ModelEvent::Loaded(result));
-        tasks.start(TaskKey::LoadModel(M::NETWORK), move |_| load(path, &library), event);
+        tasks.start(TaskKey::LoadModel(M::NETWORK), move |_| load(choice, &library), event);
     }
 
     /// Takes what a task has made of a model. One that was saved or kept is identified by its file from
     /// then on, also if another model has come into use meanwhile.
     ///
-    /// - `wanted`: file of the model that the project requests.
+    /// - `wanted`: the model in the question.
     pub fn take(
         &mut self,
         event: &ModelEvent<M>,
         library: &Library,
-        wanted: &mut Option<PathBuf>,
+        wanted: &mut ModelChoice,
     ) -> ModelNews {
         match event {
             // Another model has come into use meanwhile.
@@ -166,13 +165,13 @@ impl<M: TrainedModel> ModelStatus<M> {
     ///
     /// - `name`: description of the training, shown to the user; a number is appended from the
     ///   second training on;
-    /// - `is_used`: whether the model answers questions from now on; otherwise it is set aside;
+    /// - `wanted`: the model in the question, which becomes this one; `None` sets it aside;
     /// - returns the model and the name that it has got.
     pub fn take_trained(
         &mut self,
         model: M,
         name: String,
-        (library, is_used): (&Library, bool),
+        (library, wanted): (&Library, Option<&mut ModelChoice>),
     ) -> (Arc<M>, String) {
         self.n_trained += 1;
         // The library identifies a model by its name. Two models of the same name would make the
@@ -185,8 +184,8 @@ impl<M: TrainedModel> ModelStatus<M> {
         M::hold(library, choice.clone(), Arc::clone(&model));
         let taken = (Arc::clone(&model), name.clone());
         self.set_aside = Some(CurrentModel { choice, model, name, is_saved: false });
-        if is_used {
-            self.use_trained();
+        if let Some(wanted) = wanted {
+            self.use_trained(wanted);
         }
         taken
     }
@@ -238,13 +237,13 @@ impl<M: TrainedModel> ModelStatus<M> {
         &mut self,
         (model, path): (&Arc<M>, &Path),
         name: String,
-        (library, wanted): (&Library, &mut Option<PathBuf>),
+        (library, wanted): (&Library, &mut ModelChoice),
     ) {
         let choice = ModelChoice::file(path);
         let is_it = |of: &&mut CurrentModel<M>| Arc::ptr_eq(&of.model, model);
         if let Some(current) = self.current.as_mut().filter(is_it) {
-            *wanted = Some(path.to_owned());
-            self.requested = Some(wanted.clone());
+            wanted.clone_from(&choice);
+            self.requested = Some(choice.clone());
             current.choice = choice.clone();
             (current.name, current.is_saved) = (name, true);
         } else if let Some(set_aside) = self.set_aside.as_mut().filter(is_it) {
@@ -256,23 +255,17 @@ impl<M: TrainedModel> ModelStatus<M> {
 
     /// Puts the model that was set aside into use and stops loading another one.
     ///
-    /// - returns the file that holds it, if there is one: what the project requests from now on.
-    pub fn use_trained(&mut self) -> Option<PathBuf> {
-        let trained = self.set_aside.take()?;
+    /// - `wanted`: the model in the question, which becomes this one.
+    pub fn use_trained(&mut self, wanted: &mut ModelChoice) {
+        let Some(trained) = self.set_aside.take() else { return };
         self.is_loading = false;
         self.problem = None;
-        let path = match &trained.choice {
-            ModelChoice::Source(ModelSource::File(path)) => Some(path.clone()),
-            _ => None,
-        };
-        if path.is_some() {
-            self.requested = Some(path.clone());
-        }
+        wanted.clone_from(&trained.choice);
+        self.requested = Some(trained.choice.clone());
         self.current = Some(trained);
-        path
     }
 
-    /// Makes the next update read the requested file again.
+    /// Makes the next update read the requested model again.
     pub fn reload(&mut self) {
         self.requested = None;
     }
@@ -319,11 +312,10 @@ fn keep<M: TrainedModel>(
 }
 
 fn load<M: TrainedModel>(
-    path: Option<PathBuf>,
+    choice: ModelChoice,
     library: &Library,
 ) -> Result<CurrentModel<M>, String> {
-    let name = path.as_deref().map(|path| name_of(path).unwrap_or_else(|| file_name(path)));
-    let choice = path.map_or_else(ModelChoice::default, ModelChoice::file);
+    let name = choice.path().map(|path| name_of(path).unwrap_or_else(|| file_name(path)));
     let name = name.unwrap_or_else(|| choice.to_string());
     match M::of_library(library, &choice) {
         Ok(model) => Ok(CurrentModel { choice, model, name, is_saved: true }),
@@ -341,13 +333,14 @@ mod tests {
     use super::*;
     use crate::app::command::Command;
     use impactlab_networks::force::ForceModel;
+    use impactlab_networks::shipped::ModelSource;
 
     /// Receives what the tasks have made of the force model, until they have ended.
     fn settle(
         status: &mut ModelStatus<ForceModel>,
         tasks: &mut Tasks,
         library: &Library,
-        wanted: &mut Option<PathBuf>,
+        wanted: &mut ModelChoice,
     ) -> Vec<ModelNews> {
         let mut news = Vec::new();
         while status.is_loading() || status.is_saving() {
@@ -364,16 +357,19 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("written.safetensors");
         let (library, mut tasks) = (Arc::new(Library::default()), Tasks::default());
-        let (mut status, mut wanted) = (ModelStatus::<ForceModel>::default(), None);
+        let mut status = ModelStatus::<ForceModel>::default();
+        let mut wanted = ModelChoice::default();
         status.update(&wanted, &library, &mut tasks);
         settle(&mut status, &mut tasks, &library, &mut wanted);
         let written = Arc::clone(&status.current.as_ref().unwrap().model);
         status.save(path.clone(), Existing::Replace, &mut tasks).unwrap();
         let trained = ModelSource::Shipped.force_model().unwrap();
-        status.take_trained(trained, "trained meanwhile".to_owned(), (&library, true));
+        let used = Some(&mut wanted);
+        status.take_trained(trained, "trained meanwhile".to_owned(), (&library, used));
+        let in_use = wanted.clone();
         let saved = settle(&mut status, &mut tasks, &library, &mut wanted);
         assert!(matches!(&saved[..], [ModelNews::Saved(Ok(saved))] if *saved == path));
-        assert_eq!(wanted, None);
+        assert_eq!(wanted, in_use);
         let held = library.force_model(&ModelChoice::file(&path)).unwrap();
         assert!(Arc::ptr_eq(&held, &written));
         let current = status.current.as_ref().unwrap();
@@ -383,6 +379,6 @@ mod tests {
         settle(&mut status, &mut tasks, &library, &mut wanted);
         let current = status.current.as_ref().unwrap();
         assert_eq!((current.name.as_str(), current.is_saved), ("written.safetensors", true));
-        assert_eq!(wanted, Some(path));
+        assert_eq!(wanted, ModelChoice::file(path));
     }
 }

@@ -19,7 +19,7 @@ use crate::app::workspaces::Workspace;
 use impactlab_core::data::{ColumnMap, Existing, Severity};
 use impactlab_networks::learning::ModelFile;
 use impactlab_networks::response::ResponseModel;
-use impactlab_study::{InputFile, InputKind, VehicleChoice};
+use impactlab_study::{InputFile, InputKind, ModelChoice, ScenarioChoice, VehicleChoice};
 
 impl State {
     /// Opens paths as what they hold: a case, a ground, evidence, a vehicle, a scenario, a model, a
@@ -58,12 +58,12 @@ impl State {
         match InputFile::load_as(&path, kind) {
             Ok(InputFile::Evidence(evidence)) => self.open_evidence(path, *evidence),
             Ok(InputFile::Vehicle(vehicle)) => {
-                self.project.vehicle = VehicleChoice::File(path);
+                self.project.simulate.vehicle = VehicleChoice::File(path);
                 self.ask_again();
                 self.say(Severity::Info, format!("struck vehicle: {}", vehicle.name));
             }
             Ok(InputFile::Scenario(scenario)) => {
-                self.project.scenario = *scenario;
+                self.project.impact.scenario = ScenarioChoice::Inline(scenario);
                 self.select(Subject::Scenario);
             }
             Ok(InputFile::Network(kind)) if kind == ResponseModel::KIND.name => {
@@ -176,13 +176,14 @@ impl State {
             self.session.response.forecast.ask_again();
             self.session.other_variants.clear();
         }
+        let choice = path.map_or_else(ModelChoice::default, ModelChoice::file);
         match network {
             Network::Force => {
-                self.project.force.model = path;
+                self.project.predict_force.model = choice;
                 self.session.force.model.reload();
             }
             Network::Response => {
-                self.project.response.model = path;
+                self.project.predict_motion.response_model = choice;
                 self.session.response.model.reload();
             }
         }
@@ -192,14 +193,11 @@ impl State {
     pub(super) fn use_trained(&mut self, network: Network) {
         match network {
             Network::Force => {
-                if let Some(path) = self.session.force.model.use_trained() {
-                    self.project.force.model = Some(path);
-                }
+                self.session.force.model.use_trained(&mut self.project.predict_force.model);
             }
             Network::Response => {
-                if let Some(path) = self.session.response.model.use_trained() {
-                    self.project.response.model = Some(path);
-                }
+                let wanted = &mut self.project.predict_motion.response_model;
+                self.session.response.model.use_trained(wanted);
             }
         }
     }
@@ -229,13 +227,14 @@ impl State {
     pub(super) fn close(&mut self, path: &Path) {
         self.forget_sources(|source| source.opened == path || source.path == path);
         let is_open = |open: &Path| self.session.sources.iter().any(|s| s.path == *open);
-        let closed = match &self.project.subject {
+        let subject = self.project.subject();
+        let closed = match &subject {
             Some(Subject::Case { dataset, .. }) => !is_open(dataset),
             Some(Subject::File(file)) => !is_open(file),
-            Some(Subject::Scenario) | None => false,
+            Some(Subject::Scenario | Subject::Manoeuvre) | None => false,
         };
         if closed {
-            self.project.subject = None;
+            self.project.put_aside(self.takes_ending(subject.as_ref()));
         }
     }
 }

@@ -8,7 +8,8 @@ use crate::app::command::Command;
 use crate::app::contents::ContentsEntry;
 use crate::app::looks::{self, Icon};
 use crate::app::panels;
-use crate::app::state::{Project, Session, View};
+use crate::app::project::Project;
+use crate::app::state::{Session, View};
 use crate::app::variants::AnsweredVariant;
 use crate::app::widgets::BetweenCursors;
 

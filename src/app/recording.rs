@@ -1,18 +1,17 @@
 //! A recording that is drawn over the motion, such as a measured one over a scenario.
 
-use std::path::PathBuf;
-
 use egui::{DragValue, Ui};
 use serde::{Deserialize, Serialize};
 
 use crate::app::source::{CheckedFile, Content, Source};
 use impactlab_core::data::{Channel, TimeSeries};
+use impactlab_study::SeriesFile;
 
 /// The recording that is drawn over the motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OverlaidRecording {
     /// Its file, which is open.
-    pub path: PathBuf,
+    pub file: SeriesFile,
     /// Time of the motion at which the recording begins its own time, s.
     pub offset_s: f64,
 }
@@ -26,7 +25,7 @@ pub fn overlaid<'a>(
     sources: &'a [Source],
 ) -> Option<Overlaid<'a>> {
     let chosen = chosen?;
-    let source = sources.iter().find(|source| source.path == chosen.path)?;
+    let source = sources.iter().find(|source| source.path == chosen.file.path)?;
     Some((source.name(), &motion_file(source)?.loaded.series, chosen.offset_s))
 }
 
@@ -47,9 +46,9 @@ pub fn recording_menu_ui(ui: &mut Ui, chosen: &mut Option<OverlaidRecording>, so
         ui.weak("Drawn over the motion; open its file first");
         ui.selectable_value(chosen, None, "none");
         for source in files {
-            let is_chosen = chosen.as_ref().is_some_and(|chosen| chosen.path == source.path);
+            let is_chosen = chosen.as_ref().is_some_and(|chosen| chosen.file.path == source.path);
             if ui.selectable_label(is_chosen, source.name()).clicked() && !is_chosen {
-                *chosen = Some(OverlaidRecording { path: source.path.clone(), offset_s: 0.0 });
+                *chosen = Some(OverlaidRecording { file: source.series_file(), offset_s: 0.0 });
             }
         }
     });

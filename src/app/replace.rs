@@ -77,7 +77,9 @@ impl State {
             }
             Command::SaveFilm(film, path) => self.make_film(*film, path, existing),
             Command::SaveScenario(path) => {
-                self.write_text(&self.project.scenario.to_toml(), (&path, existing));
+                if let Some(scenario) = self.project.scenario() {
+                    self.write_text(&scenario.to_toml(), (&path, existing));
+                }
             }
             Command::SaveVehicle(sheet, path) => {
                 self.write_text(&sheet.to_toml(), (&path, existing));

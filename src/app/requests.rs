@@ -1,4 +1,5 @@
-//! Makes questions from the project.
+//! The questions of the window: those of the project as they are asked of the data and models that are
+//! open, and those of trainings.
 //!
 //! What the project leaves open stays open in the question, so that [`study`](impactlab_study) decides
 //! it as it does for the command line.
@@ -7,135 +8,157 @@ use std::path::{Path, PathBuf};
 
 use crate::app::force::ForceTrainingForm;
 use crate::app::model::CurrentModel;
-use crate::app::response::{ComparisonForm, ForceChoice, ResponseTrainingForm, TrainingMode};
+use crate::app::response::{ComparisonForm, ResponseTrainingForm, TrainingMode};
 use crate::app::source::{Content, OpenDataset, Source};
 use crate::app::state::{State, Subject};
 use impactlab_core::data::{DatasetKind, FileKind};
-use impactlab_networks::force::ForceScenario;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{
-    CompareRequest, ConfigChoice, DEFAULT_DRAWS, DEFAULT_LOG_DURATION_S, Drive,
-    EvaluateForceRequest, EvaluateResponseRequest, FineTuneRequest, ForceQuestion, ForceSource,
-    ImpactRequest, Learning, ModelChoice, MotionLogs, MotionSource, PredictForceRequest,
-    PredictMotionRequest, ScenarioChoice, SeriesFile, SimulateDatasetRequest, SimulateRequest,
-    TrainForceRequest, TrainResponseRequest, TrainingOptions,
+    CompareRequest, ConfigChoice, DEFAULT_LOG_DURATION_S, Drive, EvaluateForceRequest,
+    EvaluateResponseRequest, FineTuneRequest, ForceQuestion, ForceSource, ImpactRequest, Learning,
+    ModelChoice, MotionLogs, MotionSource, PredictForceRequest, PredictMotionRequest, SeriesFile,
+    SimulateDatasetRequest, SimulateRequest, TrainForceRequest, TrainResponseRequest,
+    TrainingOptions,
 };
 
 impl State {
     /// Returns the question for the impulse solution of the scenario in the scenario pane.
     pub fn impact_request(&self) -> ImpactRequest {
-        ImpactRequest { scenario: self.scenario(), paper: false }
+        self.project.impact.clone()
     }
 
-    /// Returns the question for the simulation of the subject; `None` if nothing is selected or its
-    /// data are not open.
+    /// Returns the question for the simulation of what is selected; `None` if nothing is or its data are
+    /// not open.
     pub fn simulate_request(&self) -> Option<SimulateRequest> {
-        let project = &self.project;
-        Some(SimulateRequest {
-            vehicle: project.vehicle.clone(),
-            striking: project.striking.clone(),
-            equations: project.equations,
-            integrator: project.integrator,
-            duration_s: project.duration_s,
-            until_rest: project.until_rest,
-            site: project.site.as_ref().map(|site| site.file.clone()),
-            ending: self.says_no_ending().then(|| project.ending.clone()).flatten(),
-            ..SimulateRequest::new(self.motion_source()?)
-        })
+        let is_open = match self.project.subject()? {
+            Subject::Case { dataset, case } => {
+                let checked = self.open_source(&dataset).and_then(Source::dataset);
+                checked.is_some_and(|checked| checked.dataset.case(&case).is_some())
+            }
+            Subject::File(path) => {
+                let source = self.open_source(&path);
+                source.is_some_and(|source| matches!(source.content, Content::File(_)))
+            }
+            Subject::Manoeuvre | Subject::Scenario => true,
+        };
+        is_open.then(|| self.project.simulate.clone())
     }
 
     /// Returns the question for the simulation of all cases of a data set.
     pub(in crate::app) fn replay_request(&self, dataset: PathBuf) -> SimulateDatasetRequest {
+        let SimulateRequest { vehicle, equations, integrator, .. } = &self.project.simulate;
         SimulateDatasetRequest {
             dataset,
             case: None,
-            vehicle: self.project.vehicle.clone(),
-            equations: self.project.equations,
-            integrator: self.project.integrator,
+            vehicle: vehicle.clone(),
+            equations: *equations,
+            integrator: *integrator,
         }
     }
 
-    /// Returns the question for the force of the collision in the force prediction pane; `None` if
-    /// no force model is loaded.
+    /// Returns the question for the force of the collision in the force prediction pane, of the model
+    /// that is in use; `None` if there is none or the data set of the collision is not open.
     pub fn force_request(&self) -> Option<PredictForceRequest> {
-        let view = &self.view.force;
-        Some(PredictForceRequest {
-            collision: self.collision(),
-            model: choice(self.session.force.model.current.as_ref())?,
-            body: None,
-            open_contact: false,
-            samples: view.n_curves,
-            seed: view.seed,
+        let request = &self.project.predict_force;
+        if let ForceQuestion::Case { dataset, .. } = &request.collision {
+            self.open_source(dataset)?.dataset()?;
+        }
+        let model = choice(self.session.force.model.current.as_ref())?;
+        Some(PredictForceRequest { model, ..request.clone() })
+    }
+
+    /// Returns the question for the motion of the struck vehicle that the force causes, of the models
+    /// that are in use; `None` if no response model is loaded or there is nothing to simulate.
+    pub fn motion_request(&self) -> Option<PredictMotionRequest> {
+        let request = &self.project.predict_motion;
+        let force_model = choice(self.session.force.model.current.as_ref());
+        let force = match (self.driving_force(), force_model) {
+            (ForceSource::Predicted(_), Some(model)) => ForceSource::Predicted(model),
+            (ForceSource::Predicted(_), None) => ForceSource::Given,
+            (force, _) => force,
+        };
+        let SimulateRequest { vehicle_draws, seed, .. } = request.motion;
+        Some(PredictMotionRequest {
+            motion: SimulateRequest { vehicle_draws, seed, ..self.simulate_request()? },
+            force,
+            response_model: choice(self.session.response.model.current.as_ref())?,
+            ..request.clone()
         })
     }
 
-    /// Returns the collision in the force prediction pane. As long as its numbers are those of the
-    /// scenario or of the selected case from which they were taken, it is that scenario or case,
-    /// which say more: outlines, restitution and friction.
-    fn collision(&self) -> ForceQuestion {
-        let (form, scenario) = (&self.project.force, &self.project.scenario);
-        let is_taken = |(name, numbers): (&str, &ForceScenario)| {
-            form.name == name && form.scenario == *numbers
-        };
-        let of_scenario = ForceScenario::from_scenario(scenario);
-        if of_scenario.is_ok_and(|numbers| is_taken((&scenario.name, &numbers))) {
-            return ForceQuestion::Scenario(self.scenario());
-        }
-        match &self.session.force.recorded {
-            Some(of) if is_taken((&of.case, &of.scenario)) => {
-                ForceQuestion::Case { dataset: of.dataset.clone(), case: of.case.clone() }
+    /// The force that drives the forecast: that of the subject where its collision is not known, so that
+    /// no force can be predicted.
+    pub(in crate::app) fn driving_force(&self) -> ForceSource {
+        let is_known = match self.project.subject() {
+            Some(Subject::Case { dataset, .. }) => {
+                let checked = self.open_source(&dataset).and_then(Source::dataset);
+                checked.is_none_or(|checked| checked.dataset.kind == DatasetKind::Force)
             }
-            _ => ForceQuestion::Numbers {
-                name: form.name.clone(),
-                numbers: Box::new(form.scenario.clone()),
+            Some(Subject::Scenario) => true,
+            Some(Subject::File(_) | Subject::Manoeuvre) | None => false,
+        };
+        match &self.project.predict_motion.force {
+            ForceSource::Predicted(_) if !is_known => ForceSource::Given,
+            force => force.clone(),
+        }
+    }
+
+    /// Whether a subject leaves open what happens to the wheels after the impact.
+    pub(in crate::app) fn takes_ending(&self, subject: Option<&Subject>) -> bool {
+        subject.is_some_and(|subject| subject.takes_ending(&self.session.sources))
+    }
+
+    fn open_source(&self, path: &Path) -> Option<&Source> {
+        self.session.sources.iter().find(|source| source.path == *path)
+    }
+
+    /// What drives the motion of a subject, with what was entered for it before.
+    pub(in crate::app) fn source_of(&self, subject: Subject) -> MotionSource {
+        let project = &self.project;
+        match subject {
+            Subject::Case { dataset, case } => MotionSource::Case { dataset, case },
+            Subject::File(path) => {
+                let open = self.open_source(&path);
+                let kind = match open.map(|source| &source.content) {
+                    Some(Content::File(file)) => file.loaded.kind,
+                    _ => FileKind::Force,
+                };
+                let file = open.map_or_else(|| SeriesFile::new(&path), Source::series_file);
+                MotionSource::of_file(file, kind, project.beside.start.clone())
+            }
+            Subject::Manoeuvre => project.simulate.source.clone(),
+            Subject::Scenario => MotionSource::Scenario {
+                scenario: project.impact.scenario.clone(),
+                pulse: project.beside.pulse,
             },
         }
     }
 
-    /// Returns the question for the motion of the struck vehicle that the force causes; `None` if
-    /// no response model is loaded or there is nothing to simulate.
-    ///
-    /// The force is predicted if the user wants that, a force model is loaded and the collision of
-    /// the subject is known. Otherwise it is the force that the subject gives.
-    pub fn motion_request(&self) -> Option<PredictMotionRequest> {
-        let form = &self.project.response.forecast;
-        let force_model = choice(self.session.force.model.current.as_ref());
-        let force = match (form.force, force_model) {
-            (ForceChoice::Predicted, Some(model)) if self.is_collision_known() => {
-                ForceSource::Predicted(model)
-            }
-            _ => ForceSource::Given,
+    /// Brings the questions in step, with files as they are open: with the columns that the user has
+    /// assigned, and as what they are about.
+    pub(in crate::app) fn keep_questions_in_step(&mut self) {
+        let open = |path: &PathBuf| match &self.open_source(path)?.content {
+            Content::File(file) => Some((self.open_source(path)?.series_file(), file.loaded.kind)),
+            _ => None,
         };
-        Some(PredictMotionRequest {
-            motion: SimulateRequest { vehicle_draws: DEFAULT_DRAWS, ..self.simulate_request()? },
-            force,
-            response_model: choice(self.session.response.model.current.as_ref())?,
-            draws: form.n_curves,
-            seed: form.seed,
-        })
-    }
-
-    /// Whether the subject leaves open what happens to the wheels after the impact.
-    pub(in crate::app) fn says_no_ending(&self) -> bool {
-        match &self.project.subject {
-            Some(Subject::Case { dataset, .. }) => {
-                let source = self.session.sources.iter().find(|source| source.path == *dataset);
-                let kind = source.and_then(Source::dataset).map(|checked| checked.dataset.kind);
-                kind == Some(DatasetKind::Force)
+        let own = match self.project.subject() {
+            Some(Subject::File(path)) => open(&path),
+            _ => None,
+        };
+        let beside = |file: &Option<SeriesFile>| open(&file.as_ref()?.path).map(|(file, _)| file);
+        let (steer, wheels) = (&self.project.start().steer, &self.project.start().wheels);
+        let (steer, wheels) = (beside(steer), beside(wheels));
+        let start = self.project.start_mut();
+        start.steer = steer.or(start.steer.take());
+        start.wheels = wheels.or(start.wheels.take());
+        if let Some((file, kind)) = own {
+            let start = Drive { force: None, ..start.clone() };
+            if kind == FileKind::Trajectory {
+                self.project.beside.start.clone_from(&start);
             }
-            Some(Subject::File(_)) => true,
-            Some(Subject::Scenario) | None => false,
+            self.project.simulate.source = MotionSource::of_file(file, kind, start);
         }
-    }
-
-    /// Whether the subject describes the collision of the two vehicles, so that its force can be
-    /// predicted.
-    fn is_collision_known(&self) -> bool {
-        match &self.project.subject {
-            Some(Subject::Case { .. }) => self.session.force.recorded.is_some(),
-            Some(Subject::Scenario) => true,
-            Some(Subject::File(_)) | None => false,
-        }
+        self.project.keep_in_step();
     }
 
     /// Returns the question that trains the force network.
@@ -146,7 +169,7 @@ impl State {
         &self,
         (chosen, extra): (&OpenDataset<'_>, &[OpenDataset<'_>]),
     ) -> TrainForceRequest {
-        let form: &ForceTrainingForm = &self.project.force.training;
+        let form: &ForceTrainingForm = &self.project.force_training;
         TrainForceRequest {
             data: chosen.path.to_owned(),
             extra: extra.iter().map(|of| of.path.to_owned()).collect(),
@@ -164,10 +187,10 @@ impl State {
     /// Returns the question that pre-trains the response network on simulations with the forces of
     /// a data set.
     pub(in crate::app) fn train_response_request(&self, data: PathBuf) -> TrainResponseRequest {
-        let form: &ResponseTrainingForm = &self.project.response.training;
+        let form: &ResponseTrainingForm = &self.project.response_training;
         TrainResponseRequest {
             data,
-            vehicle: self.project.vehicle.clone(),
+            vehicle: self.project.simulate.vehicle.clone(),
             plain: false,
             training: TrainingOptions {
                 config: config(&form.config),
@@ -181,7 +204,7 @@ impl State {
     /// The log that the response network is to learn from instead of a data set; `None` if none is
     /// chosen, or if its file is not open any more.
     pub(in crate::app) fn log_to_learn_from(&self) -> Option<MotionLogs> {
-        let form = &self.project.response.training;
+        let form = &self.project.response_training;
         let source_of = |path: &PathBuf| self.session.sources.iter().find(|of| of.path == *path);
         let log = form.log.as_ref().filter(|_| form.mode.takes_log()).and_then(source_of)?;
         let force = form.log_force.as_ref().and_then(source_of);
@@ -189,7 +212,7 @@ impl State {
             logs: vec![log.path.clone()],
             forces: force.map(|source| source.path.clone()).into_iter().collect(),
             map: log.map.clone(),
-            contact: force.and(self.project.file_start.contact),
+            contact: force.and(self.project.start().contact),
             impact_s: None,
             duration_s: DEFAULT_LOG_DURATION_S,
         })
@@ -201,7 +224,7 @@ impl State {
         &self,
         (data, logs): (Vec<PathBuf>, Option<MotionLogs>),
     ) -> Option<FineTuneRequest> {
-        let form: &ResponseTrainingForm = &self.project.response.training;
+        let form: &ResponseTrainingForm = &self.project.response_training;
         let model = match form.mode {
             TrainingMode::FineTuneShipped => Some(ModelSource::ShippedPretrained.into()),
             TrainingMode::FineTuneCurrent | TrainingMode::Condition => {
@@ -219,7 +242,7 @@ impl State {
             data,
             logs,
             trajectories: form.n_trajectories,
-            vehicle: self.project.vehicle.clone(),
+            vehicle: self.project.simulate.vehicle.clone(),
             choice: form.choice,
             training: TrainingOptions {
                 config: config(&form.config),
@@ -253,12 +276,12 @@ impl State {
         &self,
         data: PathBuf,
     ) -> Option<EvaluateResponseRequest> {
-        let form: &ComparisonForm = &self.project.response.comparison;
+        let form: &ComparisonForm = &self.project.comparison;
         Some(EvaluateResponseRequest {
             model: choice(self.session.response.model.current.as_ref())?,
             data,
             split: form.evaluated_cases,
-            vehicle: self.project.vehicle.clone(),
+            vehicle: self.project.simulate.vehicle.clone(),
             seed: form.seed,
             bad_cases: form.bad_cases,
         })
@@ -269,62 +292,16 @@ impl State {
     /// # Errors
     /// A message for the user, if the form does not list positive numbers of trajectories.
     pub(in crate::app) fn compare_request(&self, data: PathBuf) -> Result<CompareRequest, String> {
-        let form: &ComparisonForm = &self.project.response.comparison;
+        let form: &ComparisonForm = &self.project.comparison;
         Ok(CompareRequest {
             trajectories: trajectories(&form.trajectories)?,
             choices: form.n_choices,
             seed: form.seed,
-            vehicle: self.project.vehicle.clone(),
+            vehicle: self.project.simulate.vehicle.clone(),
             config: config(&form.config),
             bad_cases: form.bad_cases,
             ..CompareRequest::new(data)
         })
-    }
-
-    fn scenario(&self) -> ScenarioChoice {
-        ScenarioChoice::Inline(Box::new(self.project.scenario.clone()))
-    }
-
-    /// Returns the source of force and motion of the subject; `None` if nothing is selected or its
-    /// data are not open.
-    fn motion_source(&self) -> Option<MotionSource> {
-        let find = |path: &Path| self.session.sources.iter().find(|source| source.path == path);
-        match self.project.subject.as_ref()? {
-            Subject::Case { dataset, case } => {
-                find(dataset)?.dataset()?.dataset.case(case)?;
-                Some(MotionSource::Case { dataset: dataset.clone(), case: case.clone() })
-            }
-            Subject::File(path) => {
-                let Source { content: Content::File(file), map, .. } = find(path)? else {
-                    return None;
-                };
-                let series = SeriesFile { path: path.clone(), map: map.clone() };
-                let kind = file.loaded.kind;
-                let of = &self.project.file_start;
-                let beside = |path: &Option<PathBuf>| {
-                    let of_path = |path: &PathBuf| {
-                        let map = find(path).and_then(|source| source.map.clone());
-                        SeriesFile { path: path.clone(), map }
-                    };
-                    path.as_ref().map(of_path)
-                };
-                let start = Drive {
-                    speed_m_s: of.speed_m_s,
-                    contact: of.contact,
-                    steer: beside(&of.steer),
-                    wheels: beside(&of.wheels),
-                    ..Drive::default()
-                };
-                let is_steered = kind == FileKind::Steer || start.steer.is_some();
-                let steering_ratio = of.steering_ratio.filter(|_| is_steered);
-                let start = Drive { steering_ratio, ..start };
-                Some(MotionSource::of_file(series, kind, start))
-            }
-            Subject::Scenario => {
-                let pulse = self.project.pulse;
-                Some(MotionSource::Scenario { scenario: self.scenario(), pulse })
-            }
-        }
     }
 }
 

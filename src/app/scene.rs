@@ -9,10 +9,11 @@ use serde::{Deserialize, Serialize};
 use crate::app::command::wake;
 use crate::app::latest::Latest;
 use crate::app::measure::Measuring;
+use crate::app::project::Project;
 use crate::app::recording::{OverlaidRecording, overlaid};
 use crate::app::response::{DensityAnswer, DensityQuestion, MotionAnswer};
 use crate::app::source::Source;
-use crate::app::state::{Project, Session, State, View};
+use crate::app::state::{Session, State, View};
 use crate::app::variants::AnsweredVariant;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::{
@@ -188,7 +189,7 @@ impl State {
         let density = session.scene.end_density.ok().cloned();
         Some(ShownForecast {
             motion: Arc::clone(motion),
-            seed: project.response.forecast.seed,
+            seed: project.predict_motion.seed,
             density: density.filter(|density| Arc::ptr_eq(&density.motion, motion)),
         })
     }

@@ -14,7 +14,7 @@ use impactlab_core::jobs::ProgressCallback;
 use impactlab_core::vehicle::VehicleParameters;
 use impactlab_study::{
     CheckAnswer, CheckRequest, CheckedContent, CheckedItem, Event, Library, Observer, PathProblem,
-    Question,
+    Question, SeriesFile,
 };
 
 /// A data set or a file that the user has opened.
@@ -163,6 +163,11 @@ impl Source {
     /// Returns the last component of the path, as text.
     pub fn name(&self) -> String {
         file_name(&self.path)
+    }
+
+    /// The file with the columns that the user assigned, as questions name it.
+    pub fn series_file(&self) -> SeriesFile {
+        SeriesFile { path: self.path.clone(), map: self.map.clone() }
     }
 
     /// Whether loading has ended, with data or with an error.

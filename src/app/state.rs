@@ -11,20 +11,18 @@ use crate::app::case::OpenCase;
 use crate::app::case_table::CaseList;
 use crate::app::cost::Costs;
 use crate::app::dialog::Dialogs;
-use crate::app::force::{ForceProject, ForceSession, ForceView};
+use crate::app::force::{ForceSession, ForceView};
 use crate::app::frame_times::FrameTimes;
-use crate::app::ground::{GroundSession, SiteChoice};
+use crate::app::ground::GroundSession;
 use crate::app::import::ColumnMaps;
 use crate::app::kept::KeptStatus;
 use crate::app::latest::Latest;
 use crate::app::network::Network;
-use crate::app::reconstruction::{
-    ReconstructionProject, ReconstructionSession, ReconstructionView,
-};
-use crate::app::recording::OverlaidRecording;
+use crate::app::project::Project;
+use crate::app::reconstruction::{ReconstructionSession, ReconstructionView};
 use crate::app::replay::Replays;
 use crate::app::report::{ReportSession, ReportView};
-use crate::app::response::{DensityChoice, ResponseProject, ResponseSession, ResponseView};
+use crate::app::response::{DensityChoice, ResponseSession, ResponseView};
 use crate::app::scene::{SceneSession, SceneSettings};
 use crate::app::source::Source;
 use crate::app::tasks::Tasks;
@@ -32,19 +30,13 @@ use crate::app::unfinished::UnfinishedTrainings;
 use crate::app::variants::OtherVariants;
 use crate::app::widgets::BetweenCursors;
 use crate::app::workspaces::Workspaces;
-use impactlab_core::collision::{ChannelClass, Scenario};
-use impactlab_core::data::{Channel, Severity};
+use impactlab_core::data::{Channel, DatasetKind, Severity};
 use impactlab_core::units::UnitSystem;
-use impactlab_core::vehicle::{ContactPoint, Ending, Equations, Integrator};
 use impactlab_document::figure::MOTION_CHANNELS;
-use impactlab_study::analysis::PulseSetup;
-use impactlab_study::{
-    DEFAULT_DURATION_S, ImpactRequest, Library, SimulateAnswer, SimulateReport, SimulateRequest,
-    VehicleChoice,
-};
+use impactlab_study::{ImpactRequest, Library, SimulateAnswer, SimulateReport, SimulateRequest};
 
 /// Version of the format in which the state is saved. A state of another version is not read.
-const SAVED_VERSION: u32 = 1;
+const SAVED_VERSION: u32 = 2;
 
 /// The whole state of the application.
 #[derive(Default)]
@@ -60,7 +52,7 @@ pub struct State {
 }
 
 /// The case, file or scenario that is shown and simulated.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Subject {
     /// A case of a data set.
     Case {
@@ -71,100 +63,23 @@ pub enum Subject {
     },
     /// A single file, by its path.
     File(PathBuf),
+    /// A start without any file, which only the command line makes.
+    Manoeuvre,
     /// The scenario in the scenario pane.
     Scenario,
 }
 
-/// Quantities that a single file does not state about the struck vehicle. For those that are left
-/// open, [`study`](impactlab_study) assumes a value and lists it in the report.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct FileStart {
-    /// Speed of the struck vehicle before the impact, m/s.
-    pub speed_m_s: Option<f64>,
-    /// Point of the struck vehicle at which the force acts, in its body axes.
-    pub contact: Option<ContactPoint>,
-    /// File of the steering over time, beside a file of another kind.
-    pub steer: Option<PathBuf>,
-    /// Angle of the steering wheel over that of the road wheels, for files of steering-wheel angles.
-    pub steering_ratio: Option<f64>,
-    /// File of the torques at the wheels, beside a file of another kind.
-    pub wheels: Option<PathBuf>,
-}
-
-/// What the user works on: the subject, the vehicles, and the settings of simulation, prediction
-/// and training.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Project {
-    /// The case, file or scenario that is shown and simulated; `None` if nothing is selected.
-    pub subject: Option<Subject>,
-    /// The struck vehicle (target).
-    pub vehicle: VehicleChoice,
-    /// The striking vehicle (bullet), for subjects in which it is simulated.
-    #[serde(rename = "bullet")]
-    pub striking: VehicleChoice,
-    /// The equations of motion; `None` takes those of the vehicle file.
-    pub equations: Option<Equations>,
-    /// The method that integrates the equations of motion.
-    pub integrator: Integrator,
-    /// Duration of simulations for which no motion is recorded, s.
-    pub duration_s: f64,
-    /// Whether these simulations end where the vehicle has come to rest.
-    pub until_rest: bool,
-    /// The filter of the force plot by its channel frequency class; `None` shows the force
-    /// unfiltered.
-    pub channel_class: Option<ChannelClass>,
-    /// A recording that is drawn over the motion.
-    pub recording: Option<OverlaidRecording>,
-    /// Whether pulses of classic shapes with the same impulse are drawn over the force.
-    pub show_pulses: bool,
-    /// The scenario in the scenario pane.
-    pub scenario: Scenario,
-    /// The ground of the scene, whose zones have their own friction.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub site: Option<SiteChoice>,
-    /// Shape and duration of the pulse that spreads the impulse of the scenario over time.
-    pub pulse: PulseSetup,
-    /// Speed, contact point and controls for single files, which do not state them.
-    pub file_start: FileStart,
-    /// What happens to the wheels of the struck vehicle after the impact of a case of a force data set
-    /// or of a single file; a scenario and a recorded motion say it themselves.
-    pub ending: Option<Ending>,
-    /// Angle of the steering wheel over that of the road wheels, where endings are given by the
-    /// steering wheel.
-    pub steering_ratio: Option<f64>,
-    /// Settings of the force network: the collision, the model and the training.
-    pub force: ForceProject,
-    /// Settings of the response network: the forecast, the model, the training and the comparison.
-    pub response: ResponseProject,
-    /// Evidence and settings of the reconstruction.
-    #[serde(skip_serializing_if = "ReconstructionProject::is_default")]
-    pub reconstruction: ReconstructionProject,
-}
-
-impl Default for Project {
-    fn default() -> Self {
-        Self {
-            subject: None,
-            vehicle: VehicleChoice::default(),
-            striking: VehicleChoice::default(),
-            equations: None,
-            integrator: Integrator::default(),
-            duration_s: DEFAULT_DURATION_S,
-            until_rest: false,
-            channel_class: None,
-            recording: None,
-            show_pulses: false,
-            scenario: Scenario::example(),
-            site: None,
-            pulse: PulseSetup::default(),
-            file_start: FileStart::default(),
-            ending: None,
-            steering_ratio: None,
-            force: ForceProject::default(),
-            response: ResponseProject::default(),
-            reconstruction: ReconstructionProject::default(),
+impl Subject {
+    /// Whether it leaves open what happens to the wheels after the impact.
+    pub(in crate::app) fn takes_ending(&self, sources: &[Source]) -> bool {
+        match self {
+            Self::Case { dataset, .. } => {
+                let source = sources.iter().find(|source| source.path == *dataset);
+                let kind = source.and_then(Source::dataset).map(|checked| checked.dataset.kind);
+                kind == Some(DatasetKind::Force)
+            }
+            Self::File(_) | Self::Manoeuvre => true,
+            Self::Scenario => false,
         }
     }
 }
@@ -412,6 +327,7 @@ impl State {
         }
         let mut saved: Saved = serde_json::from_str(text)?;
         saved.view.workspaces.complete();
+        saved.project.forget_held_models();
         let Saved { project, case, view, mut sources, .. } = saved;
         let state = Self { project, case, view, session: Session::default() };
         sources.dedup();

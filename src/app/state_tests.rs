@@ -2,23 +2,26 @@
 
 use std::path::PathBuf;
 
+use crate::app::force::collision_of;
 use crate::app::state::*;
 use crate::app::{Command, Pane, Source, Workspace, Workspaces};
 use impactlab_core::collision::ChannelClass;
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
+use impactlab_study::ModelChoice;
 
 #[test]
 fn project_and_view_survive_a_restart() {
     let mut state = State::default();
-    state.project.subject =
-        Some(Subject::Case { dataset: PathBuf::from("d"), case: "c001".to_owned() });
-    state.project.duration_s = 2.5;
-    state.project.channel_class = Some(ChannelClass::Cfc60);
+    state.select(Subject::Case { dataset: PathBuf::from("d"), case: "c001".to_owned() });
+    state.project.simulate.duration_s = 2.5;
+    state.project.beside.channel_class = Some(ChannelClass::Cfc60);
     state.view.units = UnitSystem::Us;
     state.view.filter = "spin=1".to_owned();
-    state.project.force.scenario.mass_kg[1] = 1234.0;
-    state.project.force.model = Some(PathBuf::from("mine.safetensors"));
+    let mut collision = collision_of(&state.project.predict_force, &[]).unwrap();
+    collision.numbers.mass_kg[1] = 1234.0;
+    collision.put_into(&mut state.project.predict_force);
+    state.project.predict_force.model = ModelChoice::file("mine.safetensors");
     state.view.force.bands[0] = false;
     state.session.sources.push(Source::failed(PathBuf::from("a.csv"), "gone".to_owned()));
     let (restored, sources) = State::restore(&state.save().unwrap()).unwrap();
@@ -44,9 +47,9 @@ fn a_damaged_or_foreign_save_is_not_read() {
     let text = State::default().save().unwrap();
     let error = |text: &str| State::restore(text).err().unwrap();
     assert!(matches!(error(&text[..text.len() / 2]), RestoreError::Damaged(_)));
-    let later = error(&text.replace("\"version\":1", "\"version\":99"));
+    let later = error(&text.replace("\"version\":2", "\"version\":99"));
     assert!(later.is_of_later_version(), "{later}");
-    let earlier = error(&text.replace("\"version\":1", "\"version\":0"));
+    let earlier = error(&text.replace("\"version\":2", "\"version\":0"));
     assert!(!earlier.is_of_later_version(), "{earlier}");
 }
 

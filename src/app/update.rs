@@ -30,6 +30,7 @@ impl State {
             dialog.update(self.view.units, tasks);
         }
         self.select_something();
+        self.keep_questions_in_step();
         let Session { cases, sources, replays, .. } = &mut self.session;
         cases.update(sources, replays, &self.view);
         self.update_ground();
@@ -130,7 +131,7 @@ impl State {
         if let Some(subject) = first {
             self.select(subject);
         }
-        if self.project.subject.is_none()
+        if self.project.subject().is_none()
             && let Some(subject) = first_subject(self.session.sources.iter())
         {
             self.select(subject);

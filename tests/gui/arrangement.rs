@@ -5,7 +5,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Group, Pane, Subject, VariantCommand, Workspace};
 use impactlab_core::vehicle::{DataSheet, LibraryVehicle, SheetQuantity};
-use impactlab_study::VehicleChoice;
+use impactlab_study::{MotionSource, VehicleChoice};
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 use crate::pictures::save;
@@ -30,7 +30,7 @@ fn a_newcomer_gets_to_a_forecast_by_each_of_the_three_doors() {
     harness.get_by_label("Set up a collision").click();
     harness.run_steps(3);
     step_until(&mut harness, "the forecast of the PIT", is_forecast);
-    assert_eq!(state(&harness).project.subject, Some(Subject::Scenario));
+    assert_eq!(state(&harness).project.subject(), Some(Subject::Scenario));
     assert_eq!(state(&harness).view.workspaces.shown, Workspace::Case);
     save(&mut harness, "workspace-case.png");
     harness.get_by_label("Motion forecast").click();
@@ -56,7 +56,7 @@ fn a_newcomer_gets_to_a_forecast_by_each_of_the_three_doors() {
     assert_eq!(state(&harness).view.workspaces.shown, Workspace::Data);
     apply(&mut harness, Command::Open(vec![FEA.into()]));
     step_until(&mut harness, "a case", |state| {
-        matches!(state.project.subject, Some(Subject::Case { .. })) && is_forecast(state)
+        matches!(state.project.subject(), Some(Subject::Case { .. })) && is_forecast(state)
     });
 }
 
@@ -90,7 +90,7 @@ fn the_contents_name_what_is_missing_and_lead_to_it() {
     harness.get_by_label_contains("Struck: left open").click();
     harness.run_steps(3);
     harness.get_by_label("Integration");
-    harness.state_mut().state_mut().project.subject = None;
+    harness.state_mut().state_mut().project.simulate.source = MotionSource::default();
     harness.run_steps(3);
     let contents = state(&harness).contents();
     let impact = contents.iter().find(|entry| entry.group == Group::Impact).unwrap();
@@ -102,7 +102,8 @@ fn variants_are_drawn_over_each_other_and_the_choice_is_kept() {
     let mut harness = open(&[SCENARIO]);
     step_until(&mut harness, "the forecast", is_forecast);
     apply(&mut harness, Command::Variant(VariantCommand::Duplicate));
-    harness.state_mut().state_mut().project.scenario.striking.vy_world_m_s *= 1.3;
+    let edited = harness.state_mut().state_mut().project.scenario_mut().expect("a scenario");
+    edited.striking.vy_world_m_s *= 1.3;
     harness.run_steps(2);
     step_until(&mut harness, "both variants", |state| {
         let variants = state.answered_variants();
@@ -133,13 +134,14 @@ fn a_vehicle_is_edited_in_a_form_and_the_answer_is_that_of_its_saved_file() {
     step_until(&mut harness, "the simulation", is_idle);
     apply(&mut harness, Command::Show(Pane::Vehicle));
     let id = LibraryVehicle::ALL[0].id();
-    harness.state_mut().state_mut().project.vehicle = VehicleChoice::Preset(id.to_owned());
+    harness.state_mut().state_mut().project.simulate.vehicle = VehicleChoice::Preset(id.to_owned());
     harness.run_steps(3);
     let buttons: Vec<_> = harness.query_all_by_label("Edit a copy").collect();
     buttons[0].click();
     drop(buttons);
     harness.run_steps(4);
-    let VehicleChoice::Sheet(sheet) = &mut harness.state_mut().state_mut().project.vehicle else {
+    let VehicleChoice::Sheet(sheet) = &mut harness.state_mut().state_mut().project.simulate.vehicle
+    else {
         panic!("a copy is in the form")
     };
     assert_eq!(
@@ -154,7 +156,7 @@ fn a_vehicle_is_edited_in_a_form_and_the_answer_is_that_of_its_saved_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("edited.toml");
     apply(&mut harness, Command::SaveVehicle(sheet, path.clone()));
-    harness.state_mut().state_mut().project.vehicle = VehicleChoice::File(path);
+    harness.state_mut().state_mut().project.simulate.vehicle = VehicleChoice::File(path);
     harness.run_steps(3);
     step_until(&mut harness, "the saved vehicle", is_idle);
     let of_file = state(&harness).analysis().unwrap().report.clone();
@@ -169,7 +171,7 @@ fn cars_are_dragged_in_the_plan() {
     step_until(&mut harness, "the simulation", is_idle);
     apply(&mut harness, Command::Show(Pane::Scenario));
     harness.run_steps(4);
-    let before = state(&harness).project.scenario.clone();
+    let before = state(&harness).project.impact.clone();
     // The target's CG is in the middle between its ends; the plan is the only plot of the pane.
     let plan = harness.get_by_label_contains("Drag a dot").rect();
     let centre = egui::pos2(plan.center().x, plan.min.y - 120.0);
@@ -177,8 +179,8 @@ fn cars_are_dragged_in_the_plan() {
     for dx in [-90.0_f32, -60.0, -30.0, 0.0, 30.0, 60.0, 90.0] {
         let from = centre + egui::vec2(dx, 0.0);
         drag(&mut harness, from, from + egui::vec2(14.0, 9.0));
-        n_changed += usize::from(state(&harness).project.scenario != before);
-        harness.state_mut().state_mut().project.scenario = before.clone();
+        n_changed += usize::from(state(&harness).project.impact != before);
+        harness.state_mut().state_mut().project.impact = before.clone();
         harness.run_steps(2);
     }
     assert!(n_changed > 0, "no handle was met");
@@ -216,11 +218,11 @@ fn a_recording_is_drawn_over_the_motion_with_an_offset_and_kept_with_the_case() 
     harness.run_steps(3);
     harness.get_by_label("FE_c001.csv").click();
     harness.run_steps(3);
-    let chosen = &mut harness.state_mut().state_mut().project.recording;
+    let chosen = &mut harness.state_mut().state_mut().project.beside.recording;
     chosen.as_mut().expect("the recording is chosen").offset_s = 0.5;
     harness.run_steps(3);
     save(&mut harness, "recording-overlaid.png");
-    let sources = state(&harness).forms().sources;
+    let sources = state(&harness).project.sources();
     assert!(sources.iter().any(|file| file.path.ends_with("FE_c001.csv")), "{sources:?}");
 }
 

@@ -7,10 +7,10 @@ use std::process::{Command as Program, Output};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{
-    App, Command, ComparisonCommand, ForceChoice, Latest, Network, Pane, QuestionJob,
-    ReconstructionCommand, State, Subject, TrainingCommand, TrainingMode,
+    App, Command, ComparisonCommand, Latest, Network, Pane, QuestionJob, ReconstructionCommand,
+    State, Subject, TrainingCommand, TrainingMode,
 };
-use impactlab_study::{Question, Request, SimulateAnswer};
+use impactlab_study::{ForceSource, ModelChoice, Question, Request, SimulateAnswer};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -269,9 +269,9 @@ fn a_data_set_is_simulated_alike() {
 
 /// Waits until the window has predicted the motion under a force, and compares the report with that
 /// of a command.
-fn compare_motion(harness: &mut Harness<'_, App>, force: ForceChoice, asks: CommandLine<'_>) {
-    harness.state_mut().state_mut().project.response.forecast.force = force;
-    let is_predicted = force == ForceChoice::Predicted;
+fn compare_motion(harness: &mut Harness<'_, App>, force: ForceSource, asks: CommandLine<'_>) {
+    let is_predicted = matches!(force, ForceSource::Predicted(_));
+    harness.state_mut().state_mut().project.predict_motion.force = force;
     step_until(harness, "the motion", |state| {
         let forecast = &state.session.response.forecast;
         let asked = forecast.asked.as_ref().map(|asked| &asked.request);
@@ -290,27 +290,31 @@ fn a_motion_is_predicted_alike() {
     let out = folder.path().display().to_string();
     let drawn = ["--draws", "3", "--seed", "7", "--out", &out, "--overwrite"];
     let few_draws = |harness: &mut Harness<'_, App>| {
-        let form = &mut harness.state_mut().state_mut().project.response.forecast;
-        (form.n_curves, form.seed) = (3, 7);
+        let form = &mut harness.state_mut().state_mut().project.predict_motion;
+        (form.draws, form.seed) = (3, 7);
     };
 
     let mut harness = open_on(FORCES);
     few_draws(&mut harness);
     select(&mut harness, FORCES, "c002");
     let of_case = [&["predict", "--dataset", FORCES, "--case", "c002"][..], &drawn].concat();
-    compare_motion(&mut harness, ForceChoice::Predicted, CommandLine::of(&of_case));
+    compare_motion(
+        &mut harness,
+        ForceSource::Predicted(ModelChoice::default()),
+        CommandLine::of(&of_case),
+    );
     let given = [&of_case[..], &["--given-force"]].concat();
-    compare_motion(&mut harness, ForceChoice::Given, CommandLine::of(&given));
+    compare_motion(&mut harness, ForceSource::Given, CommandLine::of(&given));
 
     // The window asks about a scenario in memory, the command line about a file.
     apply(&mut harness, Command::Open(vec![SCENARIO.into()]));
     step_until(&mut harness, "the scenario", is_idle);
     let of_scenario = [&["predict", "--scenario", SCENARIO][..], &drawn].concat();
     let predicted = CommandLine::of(&of_scenario).asks_differently(&["motion"]);
-    compare_motion(&mut harness, ForceChoice::Predicted, predicted);
+    compare_motion(&mut harness, ForceSource::Predicted(ModelChoice::default()), predicted);
     let given = [&of_scenario[..], &["--given-force"]].concat();
     let given = CommandLine::of(&given).asks_differently(&["motion"]);
-    compare_motion(&mut harness, ForceChoice::Given, given);
+    compare_motion(&mut harness, ForceSource::Given, given);
     let braked = {
         let pit = std::fs::read_to_string(SCENARIO).expect("the scenario");
         let ending = "\n[ending]\nbrake_start_s = 0.3\nbrake_share = 0.9\n";
@@ -318,7 +322,7 @@ fn a_motion_is_predicted_alike() {
     };
     apply(&mut harness, Command::Open(vec![braked.clone().into()]));
     let project = &mut harness.state_mut().state_mut().project;
-    (project.until_rest, project.duration_s) = (true, 30.0);
+    (project.simulate.until_rest, project.simulate.duration_s) = (true, 30.0);
     step_until(&mut harness, "the braked scenario", is_idle);
     let results = folder.path().join("results").display().to_string();
     let to_rest = [
@@ -327,7 +331,7 @@ fn a_motion_is_predicted_alike() {
     ]
     .concat();
     let predicted = CommandLine::of(&to_rest).asks_differently(&["motion"]);
-    compare_motion(&mut harness, ForceChoice::Predicted, predicted);
+    compare_motion(&mut harness, ForceSource::Predicted(ModelChoice::default()), predicted);
     let rest = state(&harness).motion_forecast().and_then(|of| of.answer.report.rest.clone());
     assert!(rest.is_some_and(|rest| rest.share_at_rest == 1.0));
 
@@ -336,7 +340,7 @@ fn a_motion_is_predicted_alike() {
     let mut harness = open_on(record);
     few_draws(&mut harness);
     let of_record = [&["predict", "--trajectory", record, "--given-force"][..], &drawn].concat();
-    compare_motion(&mut harness, ForceChoice::Given, CommandLine::of(&of_record));
+    compare_motion(&mut harness, ForceSource::Given, CommandLine::of(&of_record));
 }
 
 fn train(harness: &mut Harness<'_, App>, network: Network) {
@@ -354,7 +358,7 @@ fn a_force_network_is_trained_and_evaluated_alike() {
     let model = folder.path().join("force.safetensors").display().to_string();
     let mut harness = open_on(FORCES);
     {
-        let form = &mut harness.state_mut().state_mut().project.force.training;
+        let form = &mut harness.state_mut().state_mut().project.force_training;
         (form.config, form.epochs, form.seed) = (config.clone(), Some(2), 3);
     }
     train(&mut harness, Network::Force);
@@ -391,7 +395,7 @@ fn a_response_network_is_trained_fine_tuned_and_evaluated_alike() {
     let mut harness = open(&[FORCES, TRAJECTORIES]);
     step_until(&mut harness, "the data", is_idle);
     {
-        let form = &mut harness.state_mut().state_mut().project.response.training;
+        let form = &mut harness.state_mut().state_mut().project.response_training;
         (form.mode, form.dataset) = (TrainingMode::Pretrain, Some(FORCES.into()));
         (form.config, form.seed) = (config.clone(), 1);
     }
@@ -414,7 +418,7 @@ fn a_response_network_is_trained_fine_tuned_and_evaluated_alike() {
     apply(&mut harness, Command::Open(vec![PathBuf::from(&pretrained)]));
     step_until(&mut harness, "the pre-trained model", has_model(pretrained.clone()));
     {
-        let form = &mut harness.state_mut().state_mut().project.response.training;
+        let form = &mut harness.state_mut().state_mut().project.response_training;
         (form.mode, form.dataset) = (TrainingMode::FineTuneCurrent, None);
         (form.n_trajectories, form.choice) = (Some(3), Some(2));
     }
@@ -445,7 +449,7 @@ fn models_are_compared_alike() {
     let config = write(folder.path(), "tiny.toml", SMALL_RESPONSE);
     let mut harness = open_on(TRAJECTORIES);
     {
-        let form = &mut harness.state_mut().state_mut().project.response.comparison;
+        let form = &mut harness.state_mut().state_mut().project.comparison;
         (form.config, form.trajectories, form.n_choices) = (config.clone(), "3".to_owned(), 1);
     }
     apply(&mut harness, Command::Compare(ComparisonCommand::Start));
@@ -465,10 +469,10 @@ fn a_reconstruction() {
     for ground in [&[][..], &[site]] {
         let mut harness = open(&[&[path], ground].concat());
         step_until(&mut harness, "the evidence on its ground", |state| {
-            let form = &state.project.reconstruction;
-            form.evidence.is_some() && form.site.is_some() != ground.is_empty()
+            let form = state.project.reconstruct.as_ref();
+            form.is_some_and(|form| form.site.is_some() != ground.is_empty())
         });
-        let form = &mut harness.state_mut().state_mut().project.reconstruction;
+        let form = harness.state_mut().state_mut().project.reconstruct.as_mut().expect("evidence");
         (form.particles, form.seed) = (60, 3);
         apply(&mut harness, Command::Reconstruct(ReconstructionCommand::Run));
         step_until(&mut harness, "the speeds", |state| {

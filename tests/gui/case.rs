@@ -8,13 +8,14 @@ use std::time::Duration;
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, ForceChoice, Leaving, State, Subject, TaskKey, VariantCommand};
-use impactlab_core::data::Severity;
+use impactlab::app::{App, Command, Leaving, State, Subject, TaskKey, VariantCommand};
+use impactlab_core::collision::{ChannelClass, Scenario};
+use impactlab_core::data::{Existing, Severity};
 use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_core::vehicle::{Braking, Ending};
 use impactlab_study::case_file::{CaseFile, unpack};
-use impactlab_study::{Library, Report};
+use impactlab_study::{CheckRequest, ForceSource, Library, ModelChoice, Report, Request};
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 
@@ -22,6 +23,11 @@ const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
 
 fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
     harness.state().state()
+}
+
+/// The scenario in the form, to be edited.
+fn scenario<'a>(harness: &'a mut Harness<'_, App>) -> &'a mut Scenario {
+    harness.state_mut().state_mut().project.scenario_mut().expect("a scenario")
 }
 
 /// The window with the PIT, all forecasts answered.
@@ -67,7 +73,7 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("pit.impactlab");
     let mut harness = pit();
-    let speed = |state: &State| state.project.scenario.struck.vx_world_m_s;
+    let speed = |state: &State| state.project.scenario().expect("a scenario").struck.vx_world_m_s;
     let before = speed(state(&harness));
     let mut shown = Vec::new();
     for (name, factor) in [("base", 1.0), ("slower", 0.9), ("slow", 0.8)] {
@@ -75,7 +81,7 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
             variant(&mut harness, VariantCommand::Duplicate);
             variant(&mut harness, VariantCommand::Rename(name.to_owned()));
         }
-        harness.state_mut().state_mut().project.scenario.struck.vx_world_m_s = before * factor;
+        scenario(&mut harness).struck.vx_world_m_s = before * factor;
         harness.run_steps(2);
         step_until(&mut harness, "the forecast", is_answered);
         let answer = state(&harness).session.response.forecast.ok().expect("a forecast");
@@ -107,6 +113,132 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
     assert_eq!(asked(&elsewhere), answers);
 }
 
+/// The questions of the first variant of a case file.
+fn questions_in(path: &Path) -> Vec<Request> {
+    CaseFile::load(path).expect("a case").variants[0].questions.clone()
+}
+
+/// Opens a case, and saves it to another file as it is.
+fn saved_again(from: &Path, to: &Path) -> Harness<'static, App> {
+    let mut harness = open(&[from.to_str().expect("text")]);
+    step_until(&mut harness, "the forecast", is_answered);
+    assert!(!state(&harness).is_case_changed(), "the case is as it was opened");
+    apply(&mut harness, Command::SaveCaseAs(to.to_owned()));
+    step_until(&mut harness, "the case on disk", |state| state.case.path.as_deref() == Some(to));
+    harness
+}
+
+#[test]
+fn questions_that_were_edited_in_the_file_are_those_of_the_window() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [one, two] = ["one", "two"].map(|name| folder.path().join(format!("{name}.impactlab")));
+    save_as(&mut pit(), &one);
+    let mut text = fs::read_to_string(&one).expect("a case");
+    let before = questions_in(&one);
+    for (from, to) in [
+        ("\"restitution\": 0.15", "\"restitution\": 0.35"),
+        ("\"duration_s\": 4.0", "\"duration_s\": 3.0"),
+        ("\"draws\": 30", "\"draws\": 20"),
+    ] {
+        assert_eq!(text.matches(from).count(), 1, "{from} stands once in {text}");
+        text = text.replace(from, to);
+    }
+    fs::write(&one, &text).expect("edited");
+    let (edited, answers) = (questions_in(&one), asked(&one));
+    assert!(before.iter().zip(&edited).all(|(before, edited)| before != edited), "{edited:?}");
+
+    let mut harness = saved_again(&one, &two);
+    let project = &state(&harness).project;
+    assert_eq!(project.scenario().expect("a scenario").contact.restitution, 0.35);
+    assert_eq!((project.simulate.duration_s, project.predict_motion.draws), (3.0, 20));
+    assert_eq!(questions_in(&two), edited);
+    assert_eq!(asked(&two), answers);
+
+    // What is edited in the window is in every question that has it.
+    scenario(&mut harness).contact.restitution = 0.25;
+    harness.step();
+    apply(&mut harness, Command::SaveCase);
+    step_until(&mut harness, "the case on disk", |state| !state.is_case_changed());
+    let text = serde_json::to_string(&questions_in(&two)).expect("JSON");
+    assert_eq!(text.matches("\"restitution\":0.25").count(), 4, "{text}");
+}
+
+#[test]
+fn questions_for_which_there_is_no_form_stay_in_their_variant() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [one, two] = ["one", "two"].map(|name| folder.path().join(format!("{name}.impactlab")));
+    save_as(&mut pit(), &one);
+    let mut case = CaseFile::load(&one).expect("a case");
+    let check = CheckRequest { paths: vec![one.clone()], all: false, map: None };
+    let questions = &mut case.variants[0].questions;
+    // Two simulations that do not go together, and nothing about the force.
+    let mut longer = questions[1].clone();
+    if let Request::Simulate(longer) = &mut longer {
+        longer.duration_s = 6.0;
+    }
+    questions.remove(2);
+    questions.extend([longer, check.into()]);
+    let made = questions.clone();
+    case.save(&one, Existing::Replace).expect("written");
+    let mut harness = saved_again(&one, &two);
+    assert_eq!(questions_in(&two), made);
+    harness.state_mut().state_mut().project.simulate.duration_s = 3.0;
+    harness.step();
+    apply(&mut harness, Command::SaveCase);
+    step_until(&mut harness, "the case on disk", |state| !state.is_case_changed());
+    let kept = questions_in(&two);
+    assert!(made[3..].iter().all(|question| kept.contains(question)), "{kept:?}");
+}
+
+#[test]
+fn a_case_of_version_1_is_its_questions_and_what_only_its_forms_say() {
+    let old = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/cases/version-1.impactlab");
+    let folder = tempfile::tempdir().expect("a folder");
+    let new = folder.path().join("new.impactlab");
+    let harness = saved_again(&old, &new);
+    let project = &state(&harness).project;
+    // The questions were edited; the forms have 0.15.
+    assert_eq!(project.scenario().expect("a scenario").contact.restitution, 0.35);
+    assert_eq!(project.beside.channel_class, Some(ChannelClass::Cfc60));
+    assert_eq!(project.beside.start.speed_m_s, Some(12.5));
+    assert_eq!(project.force_training.seed, 7);
+    assert_eq!(questions_in(&new), questions_in(&old));
+    let text = fs::read_to_string(&new).expect("a case");
+    assert!(text.contains("\"version\": 2") && !text.contains("\"forms\""), "{text}");
+    assert_eq!(text.matches("\"restitution\"").count(), 1, "{text}");
+    assert_eq!(asked(&new), asked(&old));
+}
+
+#[test]
+fn what_is_entered_for_another_subject_is_kept_with_the_case() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [force, path] = ["force.csv", "one.impactlab"].map(|name| folder.path().join(name));
+    fs::copy("datasets/fea/forces/c001.csv", &force).expect("a force");
+    let mut harness = open(&[force.to_str().unwrap()]);
+    step_until(&mut harness, "the force", is_idle);
+    let brake = Some(Braking::new(0.7, 0.8, 0.2));
+    let project = &mut harness.state_mut().state_mut().project;
+    project.start_mut().speed_m_s = Some(12.5);
+    project.simulate.ending = Some(Ending { brake, ..Ending::default() });
+    apply(&mut harness, Command::Select(Subject::Scenario));
+    assert_eq!(state(&harness).project.simulate.ending, None, "a scenario says it itself");
+    let project = &mut harness.state_mut().state_mut().project;
+    project.pulse_mut().duration_s = 0.12;
+    project.scenario_mut().expect("a scenario").contact.restitution = 0.25;
+    apply(&mut harness, Command::Select(Subject::File(force.clone())));
+    step_until(&mut harness, "the force", is_idle);
+    save_as(&mut harness, &path);
+    let mut harness = open(&[path.to_str().unwrap()]);
+    step_until(&mut harness, "the force", is_idle);
+    let project = &state(&harness).project;
+    assert_eq!((project.start().speed_m_s, &project.beside.ending), (Some(12.5), &None));
+    assert!(project.simulate.ending.is_some());
+    assert_eq!(project.scenario().expect("a scenario").contact.restitution, 0.25);
+    apply(&mut harness, Command::Select(Subject::Scenario));
+    assert_eq!(harness.state_mut().state_mut().project.pulse_mut().duration_s, 0.12);
+    assert!(state(&harness).project.beside.ending.is_some());
+}
+
 #[test]
 fn a_case_that_is_saved_before_its_data_are_read_keeps_its_questions() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -131,18 +263,18 @@ fn a_case_that_is_saved_before_its_data_are_read_keeps_its_questions() {
 fn a_change_of_variant_cannot_be_undone_into_another() {
     let mut harness = pit();
     variant(&mut harness, VariantCommand::Duplicate);
-    harness.state_mut().state_mut().project.duration_s = 2.0;
+    harness.state_mut().state_mut().project.simulate.duration_s = 2.0;
     harness.run_steps(90); // the past takes a second to settle
-    harness.state_mut().state_mut().project.duration_s = 3.0;
+    harness.state_mut().state_mut().project.simulate.duration_s = 3.0;
     harness.run_steps(90);
     variant(&mut harness, VariantCommand::Show("base".to_owned()));
-    let base = state(&harness).project.duration_s;
+    let base = state(&harness).project.simulate.duration_s;
     harness.run_steps(90);
     harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Z);
     harness.run_steps(4);
-    assert_eq!(state(&harness).project.duration_s, base);
+    assert_eq!(state(&harness).project.simulate.duration_s, base);
     variant(&mut harness, VariantCommand::Show("base 2".to_owned()));
-    assert_eq!(state(&harness).project.duration_s, 3.0);
+    assert_eq!(state(&harness).project.simulate.duration_s, 3.0);
     // A name that another variant has is refused, and the last variant stays.
     variant(&mut harness, VariantCommand::Rename("base".to_owned()));
     assert_eq!(state(&harness).case.file.shown, "base 2");
@@ -158,14 +290,14 @@ fn a_case_that_is_not_saved_is_asked_about_before_it_is_left() {
     let mut harness = pit();
     save_as(&mut harness, &one);
     save_as(&mut harness, &two);
-    harness.state_mut().state_mut().project.duration_s = 2.0;
+    harness.state_mut().state_mut().project.simulate.duration_s = 2.0;
     harness.step();
     apply(&mut harness, Command::Open(vec![one.clone()]));
     harness.run_steps(3);
     harness.get_by_label("The case \"two\" has changes that are not in its file.");
     harness.get_by_label("Stay").click();
     harness.run_steps(3);
-    assert_eq!(state(&harness).project.duration_s, 2.0);
+    assert_eq!(state(&harness).project.simulate.duration_s, 2.0);
     assert_eq!(state(&harness).case.path.as_ref(), Some(&two));
 
     // Saved on the way, it is found as it was left.
@@ -173,12 +305,12 @@ fn a_case_that_is_not_saved_is_asked_about_before_it_is_left() {
     harness.run_steps(3);
     harness.get_by_label("Save the case").click();
     step_until(&mut harness, "the other case", |state| state.case.path.as_ref() == Some(&one));
-    assert_ne!(state(&harness).project.duration_s, 2.0);
+    assert_ne!(state(&harness).project.simulate.duration_s, 2.0);
     step_until(&mut harness, "nothing unsaved", |state| !state.is_case_changed());
     apply(&mut harness, Command::Open(vec![two.clone()]));
     step_until(&mut harness, "the saved case", |state| state.case.path.as_ref() == Some(&two));
-    assert_eq!(state(&harness).project.duration_s, 2.0);
-    assert_eq!(state(&harness).project.subject, Some(Subject::Scenario));
+    assert_eq!(state(&harness).project.simulate.duration_s, 2.0);
+    assert_eq!(state(&harness).project.subject(), Some(Subject::Scenario));
     assert_eq!(state(&harness).view.recent, [two, one]);
 }
 
@@ -188,7 +320,7 @@ fn a_file_that_somebody_else_has_changed_is_not_replaced_unasked() {
     let path = folder.path().join("pit.impactlab");
     let mut harness = pit();
     save_as(&mut harness, &path);
-    harness.state_mut().state_mut().project.duration_s = 2.0;
+    harness.state_mut().state_mut().project.simulate.duration_s = 2.0;
     fs::write(&path, "theirs").expect("written");
     apply(&mut harness, Command::SaveCase);
     harness.run_steps(3);
@@ -229,7 +361,7 @@ fn what_is_not_saved_is_there_again_after_a_restart() {
     step_until(&mut harness, "the forecast", is_answered);
     save_as(&mut harness, &path);
     variant(&mut harness, VariantCommand::Duplicate);
-    harness.state_mut().state_mut().project.duration_s = 2.0;
+    harness.state_mut().state_mut().project.simulate.duration_s = 2.0;
     step_until(&mut harness, "the stored state", |_| {
         fs::read_to_string(&store).is_ok_and(|text| text.contains("\"duration_s\":2.0"))
     });
@@ -238,7 +370,7 @@ fn what_is_not_saved_is_there_again_after_a_restart() {
     let copy = folder.path().join("state-2.json");
     fs::copy(&store, &copy).expect("a copy");
     let harness = open_with(&[], Some(copy));
-    assert_eq!(state(&harness).project.duration_s, 2.0);
+    assert_eq!(state(&harness).project.simulate.duration_s, 2.0);
     assert_eq!(state(&harness).case.file.shown, "base 2");
     assert_eq!(state(&harness).case.path, Some(path));
     assert!(state(&harness).is_case_changed());
@@ -277,13 +409,13 @@ fn example(harness: &mut Harness<'_, App>) {
     variant(harness, VariantCommand::Rename("driver brakes".to_owned()));
     let brake = Braking::new(0.7, 0.8, 0.2);
     let ending = Ending { brake: Some(brake), ..Ending::default() };
-    harness.state_mut().state_mut().project.scenario.ending = Some(ending);
+    scenario(harness).ending = Some(ending);
     answered(harness);
     variant(harness, VariantCommand::Show("coasts".to_owned()));
     answered(harness);
     variant(harness, VariantCommand::Duplicate);
     variant(harness, VariantCommand::Rename("target of 1500 kg".to_owned()));
-    let target = &mut harness.state_mut().state_mut().project.scenario.struck;
+    let target = &mut scenario(harness).struck;
     target.yaw_inertia_kg_m2 *= 1500.0 / target.mass_kg;
     target.mass_kg = 1500.0;
     answered(harness);
@@ -399,7 +531,7 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
 
     // The force network's impulse takes the place of the pulse once it drives the forecast.
     let project = &mut harness.state_mut().state_mut().project;
-    project.response.forecast.force = ForceChoice::Predicted;
+    project.predict_motion.force = ForceSource::Predicted(ModelChoice::default());
     harness.run_steps(2);
     step_until(&mut harness, "the forecast", is_answered);
     let force = &state(&harness).chain()[2];

@@ -86,13 +86,14 @@ fn copied(harness: &Harness<'_, App>) -> Option<String> {
 fn with_heavy_striking() -> Harness<'static, App> {
     let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
     step_until(&mut harness, "the first case", is_idle);
-    harness.state_mut().state_mut().project.scenario.striking.mass_kg = 3900.0;
+    harness.state_mut().state_mut().project.scenario_mut().expect("a scenario").striking.mass_kg =
+        3900.0;
     apply(&mut harness, Command::PredictScenario);
     apply(&mut harness, Command::Show(Pane::ForcePrediction));
     step_until(&mut harness, "the prediction", |state| {
         let forecast = &state.session.force.forecast;
         let name = forecast.ok().map(|answer| answer.report.scenario.as_str());
-        name == Some(state.project.scenario.name.as_str()) && !forecast.is_waiting()
+        name == Some(state.project.impact.scenario.name().as_str()) && !forecast.is_waiting()
     });
     harness
 }
@@ -159,7 +160,7 @@ fn what_is_not_of_what_is_asked_any_more_is_not_saved() {
     assert!(!path.exists() && !state(&harness).session.tasks.is_writing());
 
     // A question that is awaited makes the figures of the answer before outdated at once.
-    harness.state_mut().state_mut().project.duration_s += 1.0;
+    harness.state_mut().state_mut().project.simulate.duration_s += 1.0;
     harness.step();
     let session = &state(&harness).session;
     let report = &session.analysis.ok().expect("the old answer").report;

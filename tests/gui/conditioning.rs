@@ -109,21 +109,21 @@ fn a_log_narrows_the_bands_of_a_car_that_the_network_does_not_know() {
         state.session.sources.iter().all(impactlab::app::Source::is_settled)
     });
     let project = &mut harness.state_mut().state_mut().project;
-    project.vehicle = VehicleChoice::Preset(CAR.to_owned());
-    project.file_start.contact = Some(CONTACT);
+    project.simulate.vehicle = VehicleChoice::Preset(CAR.to_owned());
+    project.start_mut().contact = Some(CONTACT);
     apply(&mut harness, Command::Select(Subject::File(other)));
     step_until(&mut harness, "the forecast", is_forecast);
     let before = interval_m(&harness);
 
     apply(&mut harness, Command::ShowTraining(Network::Response));
-    let form = &mut harness.state_mut().state_mut().project.response.training;
+    let form = &mut harness.state_mut().state_mut().project.response_training;
     form.mode = TrainingMode::Condition;
     harness.run_steps(3);
     harness.get_by_label("Log").click();
     harness.run_steps(3);
     harness.get_by_label("drive.csv").click();
     harness.run_steps(3);
-    let form = &mut harness.state_mut().state_mut().project.response.training;
+    let form = &mut harness.state_mut().state_mut().project.response_training;
     assert_eq!(form.log.as_deref(), Some(log.as_path()));
     form.log_force = Some(log_force);
     harness.run_steps(3);

@@ -213,7 +213,7 @@ fn the_window_films_the_cars_of_a_reconstruction() {
     let evidence = evidence_in(folder.path());
     let mut harness = open(&[evidence.to_str().expect("a plain name")]);
     harness.run_steps(4);
-    harness.state_mut().state_mut().project.reconstruction.particles = 60;
+    harness.state_mut().state_mut().project.reconstruct.as_mut().expect("evidence").particles = 60;
     harness.state_mut().state_mut().view.reconstruction.shows_cars = true;
     harness.run_steps(4);
     // Nothing moves before the evidence has been reconstructed.

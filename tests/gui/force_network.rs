@@ -6,9 +6,11 @@ use std::sync::OnceLock;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Network, Pane, State, Subject, TrainingCommand};
+use impactlab::app::{
+    App, Command, NamedCollision, Network, Pane, State, Subject, TrainingCommand, collision_of,
+};
 use impactlab_core::data::{Dataset, Existing, Severity};
-use impactlab_networks::force::{ForceCase, ForceConfig, train};
+use impactlab_networks::force::{ForceCase, ForceConfig, ForceScenario, train};
 use impactlab_networks::learning::{ModelFile, TrainSettings, TrainingSet};
 use impactlab_study::ForceEvaluation;
 
@@ -65,6 +67,19 @@ fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
     harness.state().state()
 }
 
+/// The collision in the form of the force prediction.
+fn collision(harness: &Harness<'_, App>) -> NamedCollision {
+    let State { project, session, .. } = state(harness);
+    collision_of(&project.predict_force, &session.sources).expect("a collision")
+}
+
+/// Changes it as its form does.
+fn edit_collision(harness: &mut Harness<'_, App>, edit: impl FnOnce(&mut ForceScenario)) {
+    let mut edited = collision(harness);
+    edit(&mut edited.numbers);
+    edited.put_into(&mut harness.state_mut().state_mut().project.predict_force);
+}
+
 /// Opens the window on the shipped force data with the small model and selects a case.
 fn open_on(case: &str) -> Harness<'static, App> {
     let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
@@ -92,7 +107,7 @@ fn a_case_is_predicted_edited_and_left_open() {
     let mut harness = open_on("c002");
     let recorded = state(&harness).session.force.recorded.as_ref().expect("a recorded force");
     assert_eq!(recorded.case, "c002");
-    assert_eq!(state(&harness).project.force.scenario, recorded.scenario);
+    assert_eq!(collision(&harness).numbers, recorded.scenario);
     // With this seed the case belongs to the test part.
     harness.get_by_label("c002, as recorded; the model has not seen it");
     harness.get_by_label("Copy table").click();
@@ -101,18 +116,19 @@ fn a_case_is_predicted_edited_and_left_open() {
     // The prediction follows the selection in the case table.
     harness.key_press(egui::Key::ArrowDown);
     step_until(&mut harness, "the next case", |state| {
-        state.project.force.name == "c003" && is_forecast_current(state)
+        let asked = collision_of(&state.project.predict_force, &state.session.sources);
+        asked.is_some_and(|asked| asked.name == "c003") && is_forecast_current(state)
     });
     // A heavier bullet gives a larger impulse. A mass far above those of the training is reported.
     let sizes = [1600.0, 2400.0].map(|mass_kg| {
-        harness.state_mut().state_mut().project.force.scenario.mass_kg[1] = mass_kg;
+        edit_collision(&mut harness, |numbers| numbers.mass_kg[1] = mass_kg);
         step_until(&mut harness, "another forecast", is_forecast_current);
         let answer = state(&harness).force_forecast().expect("a forecast");
         answer.report.impulse_n_s.magnitude.median
     });
     assert!(sizes[1] > sizes[0], "{sizes:?}");
     assert!(harness.query_by_label_contains("outside the domain: bullet mass").is_none());
-    harness.state_mut().state_mut().project.force.scenario.mass_kg[1] = 9000.0;
+    edit_collision(&mut harness, |numbers| numbers.mass_kg[1] = 9000.0);
     step_until(&mut harness, "a forecast far off", is_forecast_current);
     harness.get_by_label_contains("outside the domain: bullet mass [kg] 9000");
 
@@ -137,11 +153,11 @@ fn a_case_is_predicted_edited_and_left_open() {
 #[test]
 fn the_forecast_stays_while_the_scenario_changes() {
     let mut harness = open_on("c002");
-    harness.state_mut().state_mut().view.force.n_curves = 20;
+    harness.state_mut().state_mut().project.predict_force.samples = 20;
     step_until(&mut harness, "drawn curves", is_forecast_current);
     for i in 0..60 {
-        let scenario = &mut harness.state_mut().state_mut().project.force.scenario;
-        scenario.striking_velocity_m_s[1] = 3.0 + 0.02 * f64::from(i);
+        let velocity_m_s = 3.0 + 0.02 * f64::from(i);
+        edit_collision(&mut harness, |numbers| numbers.striking_velocity_m_s[1] = velocity_m_s);
         harness.step();
         let curves = state(&harness).force_forecast().map(|answer| answer.forecast.curves.len());
         assert_eq!(curves, Some(20), "frame {i}");
@@ -153,16 +169,16 @@ fn the_forecast_stays_while_the_scenario_changes() {
 fn the_scenario_is_predicted_and_undone() {
     let mut harness = open_on("c001");
     harness.run_steps(90); // the past takes a second to settle
-    let before = state(&harness).project.force.scenario.clone();
+    let before = collision(&harness).numbers;
     harness.get_by_label("From the scenario").click();
     harness.run_steps(2);
     step_until(&mut harness, "the scenario", is_forecast_current);
-    assert_ne!(state(&harness).project.force.scenario, before);
+    assert_ne!(collision(&harness).numbers, before);
     harness.get_by_label_contains("edited or without a recording");
     harness.run_steps(90);
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(2);
-    assert_eq!(state(&harness).project.force.scenario, before);
+    assert_eq!(collision(&harness).numbers, before);
 }
 
 #[test]
@@ -176,7 +192,7 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Show(Pane::Training));
     {
-        let form = &mut harness.state_mut().state_mut().project.force.training;
+        let form = &mut harness.state_mut().state_mut().project.force_training;
         (form.epochs, form.config) = (Some(100_000), small().config().display().to_string());
     }
     harness.run_steps(2);
@@ -216,7 +232,7 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
     let path = folder.path().join("mine.safetensors");
     apply(&mut harness, Command::SaveModel(Network::Force, path.clone()));
     step_until(&mut harness, "the file", |state| !state.session.force.model.is_saving());
-    assert_eq!(state(&harness).project.force.model.as_ref(), Some(&path));
+    assert_eq!(state(&harness).project.predict_force.model.path(), Some(path.as_path()));
     harness.run_steps(90);
     step_until(&mut harness, "the saved state", |_| state_file.exists());
     drop(harness);
@@ -238,7 +254,7 @@ fn a_bad_model_and_bad_settings_say_what_is_wrong() {
             .iter()
             .any(|m| m.severity == Severity::Error && m.text.contains("no/such.safetensors"))
     });
-    harness.state_mut().state_mut().project.force.training.config = "Cargo.toml".to_owned();
+    harness.state_mut().state_mut().project.force_training.config = "Cargo.toml".to_owned();
     apply(&mut harness, Command::Train(Network::Force, TrainingCommand::Start));
     step_until(&mut harness, "the problem", |state| !state.session.force.training.run.is_running());
     let problem = state(&harness).session.force.training.problem.clone().expect("a problem");
@@ -280,16 +296,23 @@ fn the_collision_follows_the_scenario_until_it_is_edited() {
     step_until(&mut harness, "the scenario", is_idle);
     apply(&mut harness, Command::PredictScenario);
     harness.run_steps(2);
-    let mass_kg =
-        |harness: &Harness<'_, App>| harness.state().state().project.force.scenario.mass_kg[0];
+    let mass_kg = |harness: &Harness<'_, App>| collision(harness).numbers.mass_kg[0];
     for of_struck in [1500.0, 1800.0] {
-        harness.state_mut().state_mut().project.scenario.struck.mass_kg = of_struck;
+        harness
+            .state_mut()
+            .state_mut()
+            .project
+            .scenario_mut()
+            .expect("a scenario")
+            .struck
+            .mass_kg = of_struck;
         harness.run_steps(2);
         assert_eq!(mass_kg(&harness), of_struck, "the mass of the scenario");
     }
-    harness.state_mut().state_mut().project.force.scenario.mass_kg[0] = 1234.0;
+    edit_collision(&mut harness, |numbers| numbers.mass_kg[0] = 1234.0);
     harness.run_steps(2);
-    harness.state_mut().state_mut().project.scenario.struck.mass_kg = 2000.0;
+    harness.state_mut().state_mut().project.scenario_mut().expect("a scenario").struck.mass_kg =
+        2000.0;
     harness.run_steps(2);
     assert_eq!(mass_kg(&harness), 1234.0, "what was edited stays");
 }

@@ -174,7 +174,7 @@ fn an_orthophoto_alone_is_scaled_by_two_points_undone_and_saved() {
     harness.run_steps(4);
     let (scaled_m, is_placed) = width_m(&harness);
     assert!((scaled_m - 50.0).abs() < 0.5 && is_placed, "{scaled_m} m");
-    let map = harness.state().state().project.site.as_ref().and_then(|site| site.map);
+    let map = harness.state().state().project.beside.orthophoto;
     let first = map.expect("kept in the project").pixel([-6.0, 2.0]);
     assert!((first[0] - 80.0).abs() < 2.0, "the first point stays: {first:?}");
 
@@ -209,14 +209,14 @@ fn a_reconstruction_stands_on_the_zones_of_the_ground() {
     let mut harness = open(&[path.to_str().expect("a plain name")]);
     harness.run_steps(4);
     let asked = |harness: &Harness<'_, App>| {
-        harness.state().state().project.reconstruction.request().expect("a question").site
+        harness.state().state().project.reconstruct.clone().expect("a question").site
     };
     assert_eq!(asked(&harness), None);
     let n_priors = |harness: &Harness<'_, App>| {
         harness.state().state().session.reconstruction.preview.as_ref().map(|of| of.priors.len())
     };
     let without = n_priors(&harness).expect("a prior");
-    harness.state_mut().state_mut().project.reconstruction.particles = 60;
+    harness.state_mut().state_mut().project.reconstruct.as_mut().expect("evidence").particles = 60;
     apply(&mut harness, Command::Reconstruct(ReconstructionCommand::Run));
     let is_answered = |state: &State| {
         let of = &state.session.reconstruction;
@@ -225,12 +225,14 @@ fn a_reconstruction_stands_on_the_zones_of_the_ground() {
     step_until(&mut harness, "the speeds", is_answered);
     let is_outdated = |harness: &Harness<'_, App>| {
         let State { project, session, .. } = harness.state().state();
-        session.reconstruction.is_outdated(&project.reconstruction)
+        session.reconstruction.is_outdated(project.reconstruct.as_ref())
     };
     assert!(!is_outdated(&harness));
 
     apply(&mut harness, Command::Open(vec![SITE.into()]));
-    step_until(&mut harness, "the zones", |state| state.project.reconstruction.site.is_some());
+    step_until(&mut harness, "the zones", |state| {
+        state.project.reconstruct.as_ref().is_some_and(|of| of.site.is_some())
+    });
     apply(&mut harness, Command::Show(Pane::Evidence));
     harness.run_steps(4);
     assert_eq!(asked(&harness).as_deref(), Some(Path::new(SITE)));
@@ -247,7 +249,9 @@ fn a_reconstruction_stands_on_the_zones_of_the_ground() {
     assert_eq!(asked(&harness), None);
 
     apply(&mut harness, Command::Open(vec![SITE.into()]));
-    step_until(&mut harness, "the zones", |state| state.project.reconstruction.site.is_some());
+    step_until(&mut harness, "the zones", |state| {
+        state.project.reconstruct.as_ref().is_some_and(|of| of.site.is_some())
+    });
     apply(&mut harness, Command::Ground(GroundCommand::Remove));
     harness.run_steps(4);
     assert_eq!(asked(&harness), None);
@@ -265,5 +269,5 @@ fn an_orthophoto_leaves_the_reconstruction_as_it_is() {
     apply(&mut harness, Command::Open(vec![picture]));
     step_until(&mut harness, "the ground", |state| state.session.ground.shown().is_some());
     harness.run_steps(2);
-    assert_eq!(harness.state().state().project.reconstruction.site, None);
+    assert_eq!(harness.state().state().project.reconstruct.as_ref().expect("evidence").site, None);
 }

@@ -211,14 +211,14 @@ fn keys_stay_in_the_dialog() {
     let mut harness = open(&["datasets/trajectories-fea", &path]);
     settle(&mut harness);
     step_until(&mut harness, "the first case", is_idle);
-    let selected = state(&harness).project.subject.clone();
+    let selected = state(&harness).project.subject();
     for key in [egui::Key::Space, egui::Key::ArrowDown, egui::Key::ArrowRight] {
         harness.key_press(key);
         harness.run_steps(3);
     }
     let state = state(&harness);
     assert!(!state.session.playing && state.session.time_s == 0.0);
-    assert_eq!(state.project.subject, selected);
+    assert_eq!(state.project.subject(), selected);
 }
 
 #[test]
@@ -248,7 +248,7 @@ fn the_vehicle_of_a_file_is_asked_for_beside_its_curve() {
     harness.run_steps(2);
     settle(&mut harness);
     choose(&mut harness, ("Struck vehicle", 0), "target-2000");
-    let chosen = &state(&harness).project.vehicle;
+    let chosen = &state(&harness).project.simulate.vehicle;
     assert_eq!(*chosen, impactlab_study::VehicleChoice::Preset("target-2000".to_owned()));
     harness.get_by_label("Open with these columns").click();
     step_until(&mut harness, "the force", |state| state.analysis().is_some() && is_idle(state));

@@ -2,7 +2,8 @@
 
 use egui::{Rect, Shape};
 use egui_kittest::Harness;
-use impactlab::app::{App, Command, ForceChoice, Pane, State, Subject, Workspace};
+use impactlab::app::{App, Command, Pane, State, Subject, Workspace};
+use impactlab_study::{ForceSource, ModelChoice};
 
 use crate::harness::{apply, is_idle, open_at, step_until};
 use crate::pictures::save;
@@ -71,7 +72,8 @@ fn every_view_is_readable(name: &str, size: ([f32; 2], f32)) {
     step_until(&mut harness, "case", is_idle);
     apply(&mut harness, Command::Select(Subject::Scenario));
     apply(&mut harness, Command::PredictScenario);
-    harness.state_mut().state_mut().project.response.forecast.force = ForceChoice::Predicted;
+    harness.state_mut().state_mut().project.predict_motion.force =
+        ForceSource::Predicted(ModelChoice::default());
     let views = [
         (Workspace::Case, Pane::Scene),
         (Workspace::Case, Pane::MotionForecast),

@@ -62,7 +62,7 @@ impl Desk {
     /// Opens the window on the force data, with the training form filled in.
     fn open_to_train(&self, epochs: usize) -> Harness<'static, App> {
         let mut harness = self.open(&[FORCES]);
-        let form = &mut harness.state_mut().state_mut().project.force.training;
+        let form = &mut harness.state_mut().state_mut().project.force_training;
         (form.epochs, form.config) = (Some(epochs), self.path("force.toml").display().to_string());
         harness
     }
@@ -120,7 +120,8 @@ fn a_finished_training_is_kept_named_and_used_after_a_restart() {
     let entry = entry.clone();
     assert_eq!((entry.kind, entry.is_cancelled), (KeptKind::ForceModel, false));
     assert_eq!(entry.data, "fea");
-    let path = state(&harness).project.force.model.clone().expect("the kept model");
+    let path =
+        state(&harness).project.predict_force.model.path().expect("the kept model").to_owned();
     assert_eq!(path, desk.path("models").join(format!("{}.safetensors", entry.sha256)));
     let (choice, name) = in_use(&harness);
     assert_eq!((choice, name.as_str()), (ModelChoice::file(&path), entry.name.as_str()));
@@ -298,7 +299,7 @@ fn comparisons_and_evaluations_are_opened_again_after_a_restart() {
     let mut harness = desk.open(&[MOTIONS, FORCES]);
     step_until(&mut harness, "the data", is_idle);
     {
-        let form = &mut harness.state_mut().state_mut().project.response.comparison;
+        let form = &mut harness.state_mut().state_mut().project.comparison;
         form.config = desk.path("response.toml").display().to_string();
         (form.trajectories, form.n_choices) = ("3".to_owned(), 1);
     }
@@ -351,7 +352,7 @@ fn a_damaged_kept_file_is_named_and_the_others_are_there() {
     let desk = Desk::new();
     let mut harness = desk.open_to_train(2);
     train(&mut harness);
-    harness.state_mut().state_mut().project.force.training.seed = 1;
+    harness.state_mut().state_mut().project.force_training.seed = 1;
     train(&mut harness);
     apply(&mut harness, Command::UseModel(Network::Force, None));
     desk.store(&mut harness);
@@ -382,7 +383,7 @@ fn the_pane_shows_what_is_in_use_running_and_finished() {
     let mut harness = desk.open_to_train(3);
     train(&mut harness);
     {
-        let form = &mut harness.state_mut().state_mut().project.response.training;
+        let form = &mut harness.state_mut().state_mut().project.response_training;
         (form.mode, form.n_trajectories) = (TrainingMode::FromScratch, Some(3));
         form.config = desk.path("response.toml").display().to_string();
     }
@@ -392,7 +393,7 @@ fn the_pane_shows_what_is_in_use_running_and_finished() {
     step_until(&mut harness, "the response model", |state| {
         state.session.kept.list.entries.len() == 2
     });
-    let form = &mut harness.state_mut().state_mut().project.force.training;
+    let form = &mut harness.state_mut().state_mut().project.force_training;
     form.epochs = Some(100_000);
     apply(&mut harness, Command::Train(Network::Force, TrainingCommand::Start));
     step_until(&mut harness, "epochs", |state| state.session.force.training.history.len() > 2);
@@ -425,14 +426,14 @@ fn a_form_says_what_its_work_will_take_and_measures_again_when_it_changes() {
     step_until(&mut harness, "a measurement", |state| n_of(state, place, "epochs") == Some(50.0));
     harness.get_by_label_contains("Training: at most about");
     assert!(!state(&harness).session.force.training.run.is_running());
-    let form = &mut harness.state_mut().state_mut().project.force.training;
+    let form = &mut harness.state_mut().state_mut().project.force_training;
     form.epochs = Some(5000);
     harness.run_steps(2);
     assert!(state(&harness).session.costs.of(place).is_none(), "it is of other settings");
     step_until(&mut harness, "a measurement", |state| n_of(state, place, "epochs") == Some(5000.0));
     save(&mut harness, "training-cost.png");
     // Settings that cannot be read are said instead.
-    let form = &mut harness.state_mut().state_mut().project.force.training;
+    let form = &mut harness.state_mut().state_mut().project.force_training;
     form.config = "no/such.toml".to_owned();
     step_until(&mut harness, "the problem", |state| {
         state.session.costs.of(place).is_some_and(Result::is_err)
@@ -447,12 +448,13 @@ fn the_forms_of_the_response_network_say_what_their_work_will_take() {
     let mut harness = desk.open(&[MOTIONS]);
     step_until(&mut harness, "the data", is_idle);
     {
-        let response = &mut harness.state_mut().state_mut().project.response;
-        response.training.n_trajectories = Some(3);
-        response.training.mode = TrainingMode::FromScratch;
-        response.training.config = desk.path("response.toml").display().to_string();
-        response.comparison.config = response.training.config.clone();
-        (response.comparison.trajectories, response.comparison.n_choices) = ("3, 6".to_owned(), 2);
+        let project = &mut harness.state_mut().state_mut().project;
+        let (training, comparison) = (&mut project.response_training, &mut project.comparison);
+        training.n_trajectories = Some(3);
+        training.mode = TrainingMode::FromScratch;
+        training.config = desk.path("response.toml").display().to_string();
+        comparison.config = training.config.clone();
+        (comparison.trajectories, comparison.n_choices) = ("3, 6".to_owned(), 2);
     }
     apply(&mut harness, Command::ShowTraining(Network::Response));
     let part = "epochs of rollouts of 5 steps";

@@ -77,15 +77,15 @@ fn the_mapping_dialog_and_the_vehicle_pane() {
     harness.run_steps(4);
     save(&mut harness, "mapping.png");
     apply(&mut harness, Command::CloseDialog);
-    harness.state_mut().state_mut().project.vehicle =
+    harness.state_mut().state_mut().project.simulate.vehicle =
         impactlab_study::VehicleChoice::Preset("scaled-target-100".to_owned());
     apply(&mut harness, Command::Show(Pane::Vehicle));
     harness.run_steps(4);
     save(&mut harness, "vehicle.png");
     let state = harness.state_mut().state_mut();
     state.view.dark = true;
-    state.project.file_start.speed_m_s = Some(15.0);
-    state.project.file_start.contact = Some(impactlab_study::ASSUMED_CONTACT);
+    state.project.start_mut().speed_m_s = Some(15.0);
+    state.project.start_mut().contact = Some(impactlab_study::ASSUMED_CONTACT);
     harness.run_steps(4);
     save(&mut harness, "vehicle-dark.png");
 }

@@ -53,14 +53,15 @@ fn evidence(harness: &Harness<'_, App>) -> Evidence {
 
 fn is_outdated(harness: &Harness<'_, App>) -> bool {
     let State { project, session, .. } = state(harness);
-    session.reconstruction.is_outdated(&project.reconstruction)
+    session.reconstruction.is_outdated(project.reconstruct.as_ref())
 }
 
 /// Opens a window of a size on a file with evidence and few particles.
 fn opened(path: &Path, size: [f32; 2], particles: usize) -> Harness<'static, App> {
     let mut harness = open_at((size, 1.0), &[path.to_str().expect("a plain name")], None);
     harness.run_steps(4);
-    harness.state_mut().state_mut().project.reconstruction.particles = particles;
+    harness.state_mut().state_mut().project.reconstruct.as_mut().expect("evidence").particles =
+        particles;
     harness.run_steps(2);
     harness
 }
@@ -86,7 +87,7 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
     let path = evidence_in(folder.path());
     let mut harness = opened(&path, [1280.0, 720.0], 60);
     assert_eq!(state(&harness).view.workspaces.shown, Workspace::Reconstruct);
-    let choice = state(&harness).project.reconstruction.evidence.clone();
+    let choice = state(&harness).project.reconstruct.as_ref().map(|of| of.evidence.clone());
     assert_eq!(choice, Some(EvidenceChoice::File(path)));
     assert!(!state(&harness).session.playing);
 
@@ -135,7 +136,8 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
     let mut moved = evidence(&harness);
     moved.rest.as_mut().expect("a place of rest").x_m = 35.0;
     let project = &mut harness.state_mut().state_mut().project;
-    project.reconstruction.evidence = Some(EvidenceChoice::Inline(Box::new(moved.clone())));
+    project.reconstruct.as_mut().expect("evidence").evidence =
+        EvidenceChoice::Inline(Box::new(moved.clone()));
     harness.run_steps(120); // The history takes up what has stood for a second.
     assert_eq!(evidence(&harness), moved);
     assert!(is_outdated(&harness));
@@ -143,7 +145,7 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
     assert!(harness.query_all_by_label_contains("were changed since the last run").count() > 0);
     apply(&mut harness, Command::Undo);
     harness.run_steps(2);
-    assert_eq!(state(&harness).project.reconstruction.evidence, choice);
+    assert_eq!(state(&harness).project.reconstruct.as_ref().map(|of| of.evidence.clone()), choice);
     assert!(!is_outdated(&harness));
 }
 
@@ -169,7 +171,7 @@ fn a_finished_run_is_back_after_a_restart_and_a_damaged_one_is_sampled_again() {
     let (store, runs) = (folder.path().join("state.json"), folder.path().join("reconstructions"));
     let mut harness = open_with(&[evidence.to_str().expect("a plain name")], Some(store.clone()));
     harness.run_steps(4);
-    harness.state_mut().state_mut().project.reconstruction.particles = 60;
+    harness.state_mut().state_mut().project.reconstruct.as_mut().expect("evidence").particles = 60;
     harness.run_steps(2);
     let particles = |harness: &Harness<'_, App>| {
         let answer = state(harness).session.reconstruction.answer().expect("an answer");
@@ -218,7 +220,8 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
     assert!(harness.get_by_label("Save as…").accesskit_node().is_disabled());
     edited.rest.as_mut().expect("a place of rest").y_m = -4.0;
     let project = &mut harness.state_mut().state_mut().project;
-    project.reconstruction.evidence = Some(EvidenceChoice::Inline(Box::new(edited)));
+    project.reconstruct.as_mut().expect("evidence").evidence =
+        EvidenceChoice::Inline(Box::new(edited));
     harness.run_steps(4);
     assert!(!harness.get_by_label("Run").accesskit_node().is_disabled());
     harness.get_by_label("Add evidence").click();
@@ -279,7 +282,8 @@ fn a_data_sheet_stands_in_for_what_the_evidence_does_not_say() {
     };
     let any = wheelbase_m(&harness);
     let choose = |harness: &mut Harness<'static, App>, choice: VehicleChoice| {
-        harness.state_mut().state_mut().project.reconstruction.vehicle = choice;
+        harness.state_mut().state_mut().project.reconstruct.as_mut().expect("evidence").vehicle =
+            choice;
         harness.run_steps(4);
     };
     let id = "ford-f-150-2004";
@@ -303,7 +307,7 @@ fn the_example_in_both_themes() {
     apply(&mut harness, Command::Reconstruct(ReconstructionCommand::Example));
     let state = harness.state_mut().state_mut();
     state.session.messages.clear();
-    state.project.reconstruction.particles = 60;
+    state.project.reconstruct.as_mut().expect("evidence").particles = 60;
     harness.run_steps(4);
     run(&mut harness);
     save(&mut harness, "reconstruct-live.png");

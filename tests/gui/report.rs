@@ -9,8 +9,8 @@ use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{
     Language, ReportFormat, ReportSettings, SectionKind, report_case,
 };
-use impactlab_study::Library;
 use impactlab_study::case_file::CaseFile;
+use impactlab_study::{Library, MotionSource};
 use tempfile::TempDir;
 
 use crate::harness::{apply, open_at, step_until};
@@ -120,12 +120,12 @@ fn a_report_is_saved_as_its_ending_says_unless_the_case_has_changed() {
     assert!(harness.query_by_label("Save…").is_some());
     let is_outdated = |harness: &Harness<'_, App>| state(harness).session.report.is_outdated;
     assert!(!is_outdated(&harness));
-    harness.state_mut().state_mut().project.duration_s += 1.0;
+    harness.state_mut().state_mut().project.simulate.duration_s += 1.0;
     harness.run_steps(3);
     assert!(is_outdated(&harness));
     assert!(harness.query_by_label_contains("make it again to save it").is_some());
     save(&mut harness, "report-outdated.png");
-    harness.state_mut().state_mut().project.duration_s -= 1.0;
+    harness.state_mut().state_mut().project.simulate.duration_s -= 1.0;
     harness.run_steps(3);
     assert!(!is_outdated(&harness));
     harness.state_mut().state_mut().view.report.date = "tomorrow".to_owned();
@@ -145,7 +145,7 @@ fn a_report_is_cancelled_and_none_is_made_of_nothing() {
 
     apply(&mut harness, Command::NewCase);
     apply(&mut harness, Command::ShowWorkspace(Workspace::Report));
-    harness.state_mut().state_mut().project.subject = None;
+    harness.state_mut().state_mut().project.simulate.source = MotionSource::default();
     harness.run_steps(3);
     assert!(state(&harness).session.report.asks_nothing);
     assert!(harness.query_by_label_contains("asks nothing yet").is_some());

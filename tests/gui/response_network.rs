@@ -4,9 +4,9 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{
-    App, Command, ComparisonCommand, DensityChoice, ForceChoice, Network, Pane, State, Subject,
-    TrainingMode,
+    App, Command, ComparisonCommand, DensityChoice, Network, Pane, State, Subject, TrainingMode,
 };
+use impactlab_study::{ForceSource, ModelChoice};
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 use crate::pictures::save;
@@ -98,7 +98,8 @@ fn a_predicted_force_spreads_the_forecast_and_playing_moves_it() {
     harness.run_steps(90);
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(2);
-    assert_eq!(state(&harness).project.response.forecast.force, ForceChoice::Predicted);
+    let force = &state(&harness).project.predict_motion.force;
+    assert!(matches!(force, ForceSource::Predicted(_)), "{force:?}");
 }
 
 /// The time that such frames take is measured by `benches/window.rs`.
@@ -128,7 +129,7 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::ShowTraining(Network::Response));
     {
-        let form = &mut harness.state_mut().state_mut().project.response.training;
+        let form = &mut harness.state_mut().state_mut().project.response_training;
         (form.mode, form.n_trajectories) = (TrainingMode::FromScratch, Some(3));
         form.config = config.display().to_string();
     }
@@ -165,12 +166,12 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     let path = folder.path().join("mine.safetensors");
     apply(&mut harness, Command::SaveModel(Network::Response, path.clone()));
     step_until(&mut harness, "the file", |state| !state.session.response.model.is_saving());
-    assert_eq!(state(&harness).project.response.model.as_ref(), Some(&path));
+    assert_eq!(state(&harness).project.predict_motion.response_model.path(), Some(path.as_path()));
     // A model file is used for the network that its header names.
     apply(&mut harness, Command::UseModel(Network::Response, None));
     apply(&mut harness, Command::Open(vec![path.clone()]));
-    assert_eq!(state(&harness).project.response.model.as_ref(), Some(&path));
-    assert_eq!(state(&harness).project.force.model, None);
+    assert_eq!(state(&harness).project.predict_motion.response_model.path(), Some(path.as_path()));
+    assert_eq!(state(&harness).project.predict_force.model, ModelChoice::default());
 }
 
 #[test]
@@ -182,7 +183,7 @@ fn models_are_compared_saved_and_opened_again() {
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Show(Pane::ModelComparison));
     {
-        let form = &mut harness.state_mut().state_mut().project.response.comparison;
+        let form = &mut harness.state_mut().state_mut().project.comparison;
         form.config = config.display().to_string();
         (form.trajectories, form.n_choices) = ("three".to_owned(), 1);
     }
@@ -192,7 +193,7 @@ fn models_are_compared_saved_and_opened_again() {
     harness.run_steps(2);
     step_until(&mut harness, "the refusal", is_over);
     harness.get_by_label_contains("\"three\" is no number of trajectories");
-    harness.state_mut().state_mut().project.response.comparison.trajectories = "3, 6".to_owned();
+    harness.state_mut().state_mut().project.comparison.trajectories = "3, 6".to_owned();
     harness.get_by_label("Compare").click();
     harness.run_steps(2);
     step_until(&mut harness, "the comparison", is_over);

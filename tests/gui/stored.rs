@@ -128,9 +128,9 @@ fn a_second_window_says_that_it_stores_nothing_and_stores_nothing() {
     let who = format!("process {} is writing it", std::process::id());
     assert!(text.contains("what is changed in this window will not be kept"), "{text}");
     assert!(text.contains(&who) && text.contains("state.json"), "{text}");
-    assert_eq!(state(&second).project.subject, Some(Subject::Scenario), "the state is restored");
+    assert_eq!(state(&second).project.subject(), Some(Subject::Scenario), "the state is restored");
     assert!(state(&second).session.unfinished.folder().is_none(), "nor does it share trainings");
-    second.state_mut().state_mut().project.duration_s = 1.25;
+    second.state_mut().state_mut().project.simulate.duration_s = 1.25;
     second.run_steps(180);
     drop(second);
     assert_eq!(fs::read_to_string(&state_file).expect("a state"), stored);
@@ -140,7 +140,7 @@ fn a_second_window_says_that_it_stores_nothing_and_stores_nothing() {
     assert_eq!(names(folder.path()), ["state.json"]);
     let mut third = open_and_store(&state_file);
     assert_eq!(messages(&third), "");
-    third.state_mut().state_mut().project.duration_s = 1.25;
+    third.state_mut().state_mut().project.simulate.duration_s = 1.25;
     third.run_steps(90);
     step_until(&mut third, "the change", move |_| {
         fs::read_to_string(&state_file).expect("a state").contains("\"duration_s\":1.25")

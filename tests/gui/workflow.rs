@@ -142,7 +142,7 @@ fn a_bad_file_says_where_and_offers_the_mapping() {
     apply(&mut harness, Command::Show(impactlab::app::Pane::Vehicle));
     harness.run_steps(2);
     assert_eq!(harness.query_all_by_label("Set").count(), 2);
-    harness.state_mut().state_mut().project.file_start.speed_m_s = Some(15.0);
+    harness.state_mut().state_mut().project.start_mut().speed_m_s = Some(15.0);
     step_until(&mut harness, "the file at another speed", |state| {
         let answer = state.analysis().filter(|_| is_idle(state));
         answer.is_some_and(|answer| answer.report.caveats.assumptions().count() == 2)

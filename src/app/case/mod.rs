@@ -6,13 +6,15 @@ mod leaving;
 
 mod update;
 
+mod version_1;
+
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::state::Project;
+use crate::app::project::Project;
 use impactlab_core::data::write::sha256_hex;
-use impactlab_study::SeriesFile;
+use impactlab_study::ForceQuestion;
 use impactlab_study::case_file::{CaseFile, Variant};
 
 pub use bar::case_bar_ui;
@@ -26,8 +28,8 @@ const FIRST_VARIANT: &str = "base";
 /// The case that is open.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OpenCase {
-    /// What stands in its file. The variant that is shown is in the forms of the window, and is written
-    /// here when another is shown and when the case is saved.
+    /// What stands in its file. The variant that is shown is in the project, and is written here when
+    /// another is shown and when the case is saved.
     pub file: CaseFile,
     /// Its file; `None` before it is saved for the first time.
     pub path: Option<PathBuf>,
@@ -35,16 +37,6 @@ pub struct OpenCase {
     pub on_disk: Option<String>,
     /// What the case held then, by [`OpenCase::fingerprint`].
     pub saved: Option<String>,
-}
-
-/// The forms of the window for a variant.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Forms {
-    /// Vehicles, subject and settings.
-    pub project: Project,
-    /// The data that the subject needs, with the columns that the user has assigned.
-    pub sources: Vec<SeriesFile>,
 }
 
 /// An action on the variants of the case.
@@ -68,34 +60,71 @@ impl Default for OpenCase {
 }
 
 impl OpenCase {
-    /// What the case holds, by its content: name, notes, and the forms of all variants.
+    /// A case that was read, with what was wrong with the forms of its variants, if it is of version 1.
     ///
-    /// - `shown`: the forms of the window.
-    pub fn fingerprint(&self, shown: &Forms) -> String {
-        let live = serde_json::to_value(shown).unwrap_or_default();
-        let forms = |variant: &Variant| {
-            let is_shown = variant.name == self.file.shown;
-            let forms = if is_shown { &live } else { &variant.forms };
-            format!("{}\n{forms}\n", variant.name)
-        };
-        let variants: String = self.file.variants.iter().map(forms).collect();
-        sha256_hex(format!("{}\n{}\n{variants}", self.file.name, self.file.notes).as_bytes())
+    /// - `project`: takes the settings of trainings that the variant that is shown has in its forms.
+    fn of_file(mut file: CaseFile, project: &mut Project) -> (Self, Vec<String>) {
+        let mut problems = Vec::new();
+        for variant in &mut file.variants {
+            let mut of_variant = project.clone();
+            match version_1::take_forms(variant, &mut of_variant) {
+                Ok(()) if variant.name == file.shown => *project = of_variant,
+                Ok(()) => {}
+                Err(error) => {
+                    let name = &variant.name;
+                    problems.push(format!("the forms of variant {name:?} are not used: {error}"));
+                }
+            }
+        }
+        (Self { file, path: None, on_disk: None, saved: None }, problems)
+    }
+
+    /// The file with the project in the variant that is shown. Questions that are still those of the file
+    /// stay as they stand there, and so does a variant that cannot be shown.
+    pub fn with_shown(&self, project: &Project) -> CaseFile {
+        let mut file = self.file.clone();
+        let name = file.shown.clone();
+        if let Some(variant) = file.variant_mut(&name) {
+            let Ok(in_file) = project.with_variant(variant) else { return file };
+            let now = project.to_variant(&name);
+            let is_same = in_file.to_variant(&name).questions == now.questions;
+            let before = std::mem::take(variant);
+            let questions = if is_same { before.questions } else { now.questions };
+            *variant = Variant { questions, forms: before.forms, ..now };
+        }
+        file
+    }
+
+    /// What the case holds, by its content: name, notes and variants.
+    ///
+    /// - `shown`: the project in the variant that is shown.
+    pub fn fingerprint(&self, shown: &Project) -> String {
+        fingerprint_of(&self.with_shown(shown))
     }
 
     /// Whether there is something in the case that is not in its file. A case without a file holds
     /// something as soon as it is not what the program starts with; which data are looked at does not
     /// count for it.
-    pub fn is_changed(&self, shown: &Forms) -> bool {
-        match &self.saved {
-            Some(saved) => *saved != self.fingerprint(shown),
-            None => {
-                let blank = |forms: &Forms| Forms {
-                    project: Project { subject: None, ..forms.project.clone() },
-                    sources: Vec::new(),
-                };
-                let start = Self::default();
-                self.fingerprint(&blank(shown)) != start.fingerprint(&Forms::default())
-            }
+    pub fn is_changed(&self, shown: &Project) -> bool {
+        if let Some(saved) = &self.saved {
+            return *saved != self.fingerprint(shown);
         }
+        let start = Project::default();
+        let mut blank = shown.clone();
+        blank.simulate.source.clone_from(&start.simulate.source);
+        if matches!(blank.predict_force.collision, ForceQuestion::Case { .. }) {
+            let scenario = blank.impact.scenario.clone();
+            blank.predict_force.collision = ForceQuestion::Scenario(scenario);
+        }
+        blank.keep_in_step();
+        let is_blank = |variant: &Variant| *variant == start.to_variant(FIRST_VARIANT);
+        let CaseFile { name, notes, variants, .. } = &self.file;
+        let is_new = name == UNTITLED && notes.is_empty() && variants.len() == 1;
+        !(is_new && is_blank(&blank.to_variant(&self.file.shown)))
     }
+}
+
+fn fingerprint_of(file: &CaseFile) -> String {
+    let variants = serde_json::to_string(&file.variants).unwrap_or_default();
+    sha256_hex(format!("{}\n{}\n{variants}", file.name, file.notes).as_bytes())
 }

@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::case::{Forms, OpenCase, VariantCommand};
+use crate::app::case::{OpenCase, VariantCommand};
 use crate::app::command::Command;
 use crate::app::found::Found;
 use crate::app::panes::Pane;
+use crate::app::project::Project;
 use crate::app::source::Source;
-use crate::app::state::{Project, Session, State, Subject};
+use crate::app::state::{Session, State, Subject};
 use crate::app::tasks::TaskKey;
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::write::{ModelDigest, sha256_hex};
@@ -15,7 +16,7 @@ use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, Severity, read_utf8};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
 use impactlab_study::case_file::{CaseFile, UsedModel, pack};
-use impactlab_study::{Request, SeriesFile};
+use impactlab_study::{MotionSource, Request, SeriesFile};
 
 /// The finished example case.
 const EXAMPLE: &str = include_str!("../../../assets/examples/pit.impactlab");
@@ -33,87 +34,54 @@ pub struct SavedCase {
 }
 
 impl State {
-    /// The forms of the window, with the data that the subject needs.
-    pub fn forms(&self) -> Forms {
-        let project = self.project.clone();
-        let start = &project.file_start;
-        let subject = match &project.subject {
-            Some(Subject::Case { dataset, .. }) => Some(dataset),
-            Some(Subject::File(path)) => Some(path),
-            Some(Subject::Scenario) | None => None,
-        };
-        let of = |path: &PathBuf| {
-            let source = self.session.sources.iter().find(|source| source.path == *path);
-            let map = source.and_then(|source| source.map.clone());
-            SeriesFile { path: path.clone(), map }
-        };
-        let recording = project.recording.as_ref().map(|recording| &recording.path);
-        let paths = subject.into_iter().chain(&start.steer).chain(&start.wheels).chain(recording);
-        let sources = paths.map(of).collect();
-        Forms { project, sources }
-    }
-
     /// Whether the case has something that is not in its file.
     pub fn is_case_changed(&self) -> bool {
-        self.case.is_changed(&self.forms())
+        self.case.is_changed(&self.asked_project())
     }
 
-    /// The questions that the window asks about the variant that is shown.
-    fn questions(&self) -> Vec<Request> {
-        let is_scenario = matches!(self.project.subject, Some(Subject::Scenario));
-        let impact = is_scenario.then(|| Request::from(self.impact_request()));
-        let simulate = self.simulate_request().map(Request::from);
-        let force = self.force_request().filter(|_| is_scenario).map(Request::from);
-        let motion = self.motion_request().map(Request::from);
-        let reconstruct = self.project.reconstruction.request().map(Request::from);
-        [impact, simulate, force, motion, reconstruct].into_iter().flatten().collect()
+    /// What the case holds, by its content.
+    pub(in crate::app) fn case_fingerprint(&self) -> String {
+        self.case.fingerprint(&self.asked_project())
+    }
+
+    /// The project as it is asked: its questions in step, and no force predicted that cannot be.
+    fn asked_project(&self) -> Project {
+        let mut project = self.project.clone();
+        project.predict_motion.force = self.driving_force();
+        project.keep_in_step();
+        project
     }
 
     /// Whether no variant of the case asks anything.
     pub(in crate::app) fn asks_nothing(&self) -> bool {
-        let file = &self.case.file;
-        let others = file.variants.iter().filter(|variant| variant.name != file.shown);
-        self.questions().is_empty() && others.into_iter().all(|of| of.questions.is_empty())
+        let file = self.case.with_shown(&self.asked_project());
+        file.variants.iter().all(|variant| variant.questions.is_empty())
     }
 
     /// The files that the case rests on, with its own and with everything that is open.
     pub(in crate::app) fn files_in_use(&self) -> Vec<PathBuf> {
-        let mut file = self.case.file.clone();
-        let shown = file.shown.clone();
-        if let Some(variant) = file.variant_mut(&shown) {
-            variant.forms = serde_json::to_value(self.forms()).unwrap_or_default();
-            variant.questions = self.questions();
-        }
+        let file = self.case.with_shown(&self.asked_project());
         let sources = self.session.sources.iter().map(|source| source.path.clone());
         let own = self.case.path.iter().cloned();
         file.input_files().into_iter().chain(sources).chain(own).collect()
     }
 
-    /// The case with the forms of the window in the variant that is shown.
+    /// The case with the project in the variant that is shown.
     pub(in crate::app) fn captured_case(&mut self) -> CaseFile {
         self.capture();
         self.case.file.clone()
     }
 
-    /// Whether data or networks are still being read, so that not every question can be asked yet.
+    /// Whether data or networks are still being read, so that not every question can be answered yet.
     pub(in crate::app) fn is_loading(&self) -> bool {
         let Session { sources, force, response, .. } = &self.session;
         let is_settled = sources.iter().all(Source::is_settled);
         !is_settled || force.model.current.is_none() || response.model.current.is_none()
     }
 
-    /// Writes the forms of the window into the variant that is shown. While data are still being read, a
-    /// variant whose forms are those of its file keeps its questions.
+    /// Writes the project into the variant that is shown.
     fn capture(&mut self) {
-        let (forms, questions, is_loading) = (self.forms(), self.questions(), self.is_loading());
-        let forms = serde_json::to_value(forms).unwrap_or_default();
-        let shown = self.case.file.shown.clone();
-        if let Some(variant) = self.case.file.variant_mut(&shown) {
-            if !(is_loading && variant.forms == forms) {
-                variant.questions = questions;
-            }
-            variant.forms = forms;
-        }
+        self.case.file = self.case.with_shown(&self.asked_project());
         let models = self.models_in_use();
         if !models.is_empty() {
             self.case.file.models = models;
@@ -138,28 +106,25 @@ impl State {
         models
     }
 
-    /// Puts forms into the window and opens the data that they need. What was done before cannot be
-    /// undone after that.
-    fn show_forms(&mut self, forms: Forms) {
-        let Forms { project, sources } = forms;
-        let [force, response] =
-            [|p: &Project| p.force.model.clone(), |p: &Project| p.response.model.clone()];
-        let is_same = |of: fn(&Project) -> Option<PathBuf>| of(&project) == of(&self.project);
-        let [is_same_force, is_same_response] = [is_same(force), is_same(response)];
-        let is_other = project.reconstruction.evidence != self.project.reconstruction.evidence;
-        self.project = project;
-        if is_other {
+    /// Takes another project and opens the data that it needs. What was done before cannot be undone after
+    /// that.
+    fn show_project(&mut self, project: Project) {
+        let before = std::mem::replace(&mut self.project, project);
+        let (project, session) = (&self.project, &mut self.session);
+        if project.predict_force.model != before.predict_force.model {
+            session.force.model.reload();
+        }
+        if project.predict_motion.response_model != before.predict_motion.response_model {
+            session.response.model.reload();
+        }
+        let evidence =
+            |project: &Project| project.reconstruct.as_ref().map(|of| of.evidence.clone());
+        if evidence(project) != evidence(&before) {
             self.drop_reconstruction();
         }
         self.drop_answers();
         self.session.force.forecast.drop_answer();
-        if !is_same_force {
-            self.session.force.model.reload();
-        }
-        if !is_same_response {
-            self.session.response.model.reload();
-        }
-        for SeriesFile { path, map } in sources {
+        for SeriesFile { path, map } in self.project.sources() {
             let is_open = self.session.sources.iter().any(|source| source.path == path);
             if !is_open {
                 self.load(path, map);
@@ -167,10 +132,10 @@ impl State {
         }
         self.session.shows_doors = false;
         self.view.workspaces.shown = Workspace::Case;
-        if self.project.subject == Some(Subject::Scenario) {
+        if self.project.subject() == Some(Subject::Scenario) {
             self.view.workspaces.show_pane(Pane::Scenario);
         }
-        if self.project.reconstruction.evidence.is_some() {
+        if self.project.reconstruct.is_some() {
             self.view.workspaces.shown = Workspace::Reconstruct;
         }
         self.session.select_when_loaded = None;
@@ -224,14 +189,16 @@ impl State {
         self.show_variant();
     }
 
-    /// Puts the forms of the variant that is shown into the window.
+    /// Shows the variant of the case that is to be shown.
     fn show_variant(&mut self) {
         let file = &self.case.file;
-        let forms = file.variant(&file.shown).map(|variant| variant.forms.clone());
-        match serde_json::from_value::<Option<Forms>>(forms.unwrap_or_default()) {
-            Ok(forms) => self.show_forms(forms.unwrap_or_default()),
+        let Some(variant) = file.variant(&file.shown) else { return };
+        match self.project.with_variant(variant) {
+            Ok(project) => self.show_project(project),
             Err(error) => {
-                let why = format!("the forms of variant {:?} cannot be read: {error}", file.shown);
+                let name = &file.shown;
+                let why =
+                    format!("the variant {name:?} cannot be shown, and stays as it is: {error}");
                 self.say(Severity::Error, why);
             }
         }
@@ -240,11 +207,16 @@ impl State {
     /// Begins a case with nothing in it.
     pub(in crate::app) fn new_case(&mut self) {
         self.case = OpenCase::default();
-        let forms = Forms {
-            project: Project { subject: Some(Subject::Scenario), ..Project::default() },
-            sources: Vec::new(),
+        let mut project = Project {
+            force_training: self.project.force_training.clone(),
+            response_training: self.project.response_training.clone(),
+            comparison: self.project.comparison.clone(),
+            ..Project::default()
         };
-        self.show_forms(forms);
+        let (scenario, pulse) = (project.impact.scenario.clone(), project.beside.pulse);
+        project.simulate.source = MotionSource::Scenario { scenario, pulse };
+        project.keep_in_step();
+        self.show_project(project);
     }
 
     /// Begins a case with a PIT, and shows its scene.
@@ -258,13 +230,20 @@ impl State {
         let beside = std::env::current_dir().unwrap_or_default().join("example.impactlab");
         match CaseFile::parse(EXAMPLE, &beside) {
             Ok(file) => {
-                self.case = OpenCase { file, path: None, on_disk: None, saved: None };
+                self.take_file(file);
                 self.show_variant();
-                self.case.saved = Some(self.case.fingerprint(&self.stored_forms()));
+                self.case.saved = Some(self.case_fingerprint());
                 self.view.workspaces.show_pane(Pane::MotionForecast);
             }
             Err(error) => self.say(Severity::Error, error_chain(&error)),
         }
+    }
+
+    /// Puts a case that was read in the place of the one that is open.
+    fn take_file(&mut self, file: CaseFile) {
+        let (case, problems) = OpenCase::of_file(file, &mut self.project);
+        self.case = case;
+        problems.into_iter().for_each(|problem| self.say(Severity::Warning, problem));
     }
 
     /// Opens a case in the place of the one that is open.
@@ -282,20 +261,13 @@ impl State {
         for change in file.changes() {
             self.say(Severity::Warning, change.to_string());
         }
-        let on_disk = Some(sha256_hex(text.as_bytes()));
-        self.case = OpenCase { file, path: Some(path.clone()), on_disk, saved: None };
+        self.take_file(file);
+        self.case.path = Some(path.clone());
+        self.case.on_disk = Some(sha256_hex(text.as_bytes()));
         self.show_variant();
-        self.case.saved = Some(self.case.fingerprint(&self.stored_forms()));
+        self.case.saved = Some(self.case_fingerprint());
         self.case.file.note("opened");
         self.remember_case(path);
-    }
-
-    /// The forms of the variant that is shown as its file has them. Those of the window may differ while
-    /// data are still being read.
-    fn stored_forms(&self) -> Forms {
-        let file = &self.case.file;
-        let forms = file.variant(&file.shown).map(|variant| variant.forms.clone());
-        serde_json::from_value(forms.unwrap_or_default()).unwrap_or_default()
     }
 
     fn remember_case(&mut self, path: PathBuf) {
@@ -317,17 +289,11 @@ impl State {
     /// Starts to write the case to a file, which becomes its own.
     pub(in crate::app) fn save_case(&mut self, path: PathBuf, existing: Existing) {
         self.capture();
-        let fingerprint = self.case.fingerprint(&self.forms());
         let mut file = self.case.file.clone();
         if self.case.path.as_ref() != Some(&path) {
             file.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         }
-        let fingerprint = match file.name == self.case.file.name {
-            true => fingerprint,
-            false => {
-                OpenCase { file: file.clone(), ..self.case.clone() }.fingerprint(&self.forms())
-            }
-        };
+        let fingerprint = super::fingerprint_of(&file);
         file.note("saved");
         let write = move |_: &mut ProgressCallback<'_>| {
             file.record_files();

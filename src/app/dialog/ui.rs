@@ -45,7 +45,7 @@ fn dialog_ui(ui: &mut Ui, dialog: &mut Dialog, state: &mut State, commands: &mut
     match dialog {
         Dialog::Import(dialog) => {
             let project = &mut state.project;
-            dialog.ui(ui, (&mut project.file_start, &mut project.vehicle), commands);
+            dialog.ui(ui, project, commands);
         }
         Dialog::Licences => licences_ui(ui, commands),
         Dialog::Messages => messages_ui(ui, state, commands),

@@ -1,16 +1,16 @@
 //! The force network in the app: its settings, its model, its forecast, its training and its
 //! evaluation. The panes of these names show them.
 
+mod collision;
 mod edit;
-mod follow;
 mod settings;
 mod update;
 
+pub use collision::{NamedCollision, collision_of};
 pub use edit::{
     forget_contact, know_contact, set_contact_x, set_mass, set_side, set_striking_heading,
 };
-pub use follow::FollowedScenario;
-pub use settings::{ForceProject, ForceTrainingForm, ForceView, Statistic};
+pub use settings::{ForceTrainingForm, ForceView, Statistic};
 pub use update::RecordedCase;
 
 use crate::app::latest::Latest;
@@ -29,8 +29,6 @@ pub struct ForceSession {
     pub forecast: Latest<PredictForceRequest>,
     /// The selected case, if it has a recorded force with which the prediction can be compared.
     pub recorded: Option<RecordedCase>,
-    /// The collision of the scenario pane, which that of the prediction follows.
-    pub followed: Option<FollowedScenario>,
     /// The training, running or finished.
     pub training: TrainingStatus<ForceModel>,
     /// The evaluation on a data set, running or finished.

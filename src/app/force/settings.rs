@@ -4,25 +4,8 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use impactlab_core::collision::Scenario;
-use impactlab_core::data::StruckSide;
 use impactlab_document::figure::ForceComponent;
-use impactlab_networks::force::ForceScenario;
 use impactlab_study::{BadCases, EvaluatedCases};
-
-/// What the user works on with the force network.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct ForceProject {
-    /// The collision whose force is predicted.
-    pub scenario: ForceScenario,
-    /// Name of the case or scenario from which the collision was taken, for titles.
-    pub name: String,
-    /// File of the model; `None` is the shipped model.
-    pub model: Option<PathBuf>,
-    /// Settings of the training.
-    pub training: ForceTrainingForm,
-}
 
 /// Settings of a training of the force network.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -60,10 +43,6 @@ pub struct ForceView {
     pub pulses: bool,
     /// Whether selecting a case of a force data set predicts its force.
     pub follow_case: bool,
-    /// Number of force curves that are drawn at random from the predicted distribution.
-    pub n_curves: usize,
-    /// Seed of the random curves.
-    pub seed: u64,
     /// Names of the loss terms that are drawn, see
     /// [`LossTerms::named`](impactlab_networks::force::LossTerms::named).
     pub loss_terms: Vec<String>,
@@ -108,27 +87,6 @@ impl Statistic {
     }
 }
 
-impl Default for ForceProject {
-    fn default() -> Self {
-        let example = Scenario::example();
-        // In the example the vehicles do meet, which a test checks. The values below are never
-        // used.
-        let scenario = ForceScenario::from_scenario(&example).unwrap_or(ForceScenario {
-            mass_kg: [2000.0, 2000.0],
-            struck_velocity_m_s: [15.0, 0.0],
-            striking_velocity_m_s: [16.0, 3.0],
-            theta_b_rad: 0.3,
-            side: StruckSide::Right,
-            contact_m: None,
-            normal_rad: None,
-            striking_position_m: None,
-            striking_body: None,
-            yaw_inertia_kg_m2: [None; 2],
-        });
-        Self { scenario, name: example.name, model: None, training: ForceTrainingForm::default() }
-    }
-}
-
 impl Default for ForceView {
     fn default() -> Self {
         Self {
@@ -138,8 +96,6 @@ impl Default for ForceView {
             physics: false,
             pulses: false,
             follow_case: true,
-            n_curves: 0,
-            seed: 0,
             loss_terms: vec!["total".to_owned()],
             log_losses: true,
             evaluated: None,

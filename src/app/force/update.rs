@@ -15,7 +15,7 @@ use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::error_chain;
 use impactlab_core::uncertainty::ForceCurve;
 use impactlab_networks::force::{ForceCase, ForceScenario};
-use impactlab_study::{EvaluateForceRequest, PredictForceAnswer, Request};
+use impactlab_study::{EvaluateForceRequest, ForceQuestion, PredictForceAnswer, Request};
 
 /// The selected case with its recorded force.
 pub struct RecordedCase {
@@ -36,8 +36,7 @@ impl State {
     /// for a new forecast if the question has changed.
     pub(in crate::app) fn update_force(&mut self, context: &Context) {
         let Session { force, library, tasks, .. } = &mut self.session;
-        force.model.update(&self.project.force.model, library, tasks);
-        self.follow_scenario();
+        force.model.update(&self.project.predict_force.model, library, tasks);
         self.find_recorded_case();
         self.poll_training();
         if self.session.force.evaluation.poll() {
@@ -58,7 +57,8 @@ impl State {
                     format!("trained on {}, epoch {}", record.data, record.detail.best_epoch);
                 let of = format!("{name} of {}", record.history.len());
                 let draft = force.training.kept_note(&model, name.clone(), is_complete);
-                let taken = force.model.take_trained(model, name, (library, is_complete));
+                let used = is_complete.then_some(&mut self.project.predict_force.model);
+                let taken = force.model.take_trained(model, name, (library, used));
                 let draft = draft.map(|draft| KeptEntry { name: taken.1, ..draft });
                 let ForceSession { model: status, training, .. } = force;
                 keep_trained(status, training, taken.0, draft, kept.folder(), tasks);
@@ -95,7 +95,7 @@ impl State {
     /// Finds the recorded force of the selected case, if a case is selected and it is not the one
     /// found before.
     fn find_recorded_case(&mut self) {
-        let Some(Subject::Case { dataset, case }) = &self.project.subject else {
+        let Some(Subject::Case { dataset, case }) = &self.project.subject() else {
             self.session.force.recorded = None;
             return;
         };
@@ -111,21 +111,21 @@ impl State {
     pub(in crate::app) fn predict_case(&mut self) {
         self.find_recorded_case();
         if let Some(recorded) = &self.session.force.recorded {
-            self.project.force.scenario = recorded.scenario.clone();
-            self.project.force.name = recorded.case.clone();
+            let (dataset, case) = (recorded.dataset.clone(), recorded.case.clone());
+            self.project.predict_force.collision = ForceQuestion::Case { dataset, case };
             self.session.fit_plots = true;
         }
     }
 
     /// Takes the collision of the scenario pane into the force prediction.
     pub(in crate::app) fn predict_scenario(&mut self) {
-        match ForceScenario::from_scenario(&self.project.scenario) {
-            Ok(scenario) => {
-                self.project.force.scenario = scenario;
-                self.project.force.name = self.project.scenario.name.clone();
+        match self.project.scenario().map(ForceScenario::from_scenario) {
+            Some(Err(error)) => self.say(Severity::Error, error_chain(&error)),
+            Some(Ok(_)) | None => {
+                let scenario = self.project.impact.scenario.clone();
+                self.project.predict_force.collision = ForceQuestion::Scenario(scenario);
                 self.session.fit_plots = true;
             }
-            Err(error) => self.say(Severity::Error, error_chain(&error)),
         }
     }
 
@@ -142,7 +142,7 @@ impl State {
     /// Returns the question of the training form and the name of its data; `None` if no force data
     /// set is open.
     pub(in crate::app) fn force_training(&self) -> Option<(Request, String)> {
-        let form = &self.project.force.training;
+        let form = &self.project.force_training;
         let datasets = open_datasets(&self.session.sources, &[DatasetKind::Force]);
         let chosen = chosen_dataset(&datasets, form.dataset.as_deref())?;
         let is_extra = |of: &OpenDataset<'_>| form.use_others && of.path != chosen.path;

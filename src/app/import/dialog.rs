@@ -14,7 +14,7 @@ use crate::app::import::preview::Preview;
 use crate::app::looks;
 use crate::app::model::file_name;
 use crate::app::panels::{file_vehicle_ui, start_fields};
-use crate::app::state::FileStart;
+use crate::app::project::Project;
 use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::data::{
     Channel, ColumnMap, FileKind, HeaderLine, ReadSettings, Severity, Sheet, SheetRef, Table,
@@ -23,7 +23,6 @@ use impactlab_core::data::{
 use impactlab_core::error_chain;
 use impactlab_core::units::UnitSystem;
 use impactlab_draw::{FigureOptions, figure_ui, theme};
-use impactlab_study::VehicleChoice;
 
 /// Size of the dialog and of its parts, points.
 const WIDTH: f32 = 1060.0;
@@ -177,12 +176,7 @@ impl ImportDialog {
     ///
     /// - `asked`: what a file does not say: how the struck vehicle moves and where the force acts, and
     ///   which vehicle it is.
-    pub fn ui(
-        &mut self,
-        ui: &mut Ui,
-        asked: (&mut FileStart, &mut VehicleChoice),
-        commands: &mut Vec<Command>,
-    ) {
+    pub fn ui(&mut self, ui: &mut Ui, asked: &mut Project, commands: &mut Vec<Command>) {
         let window = ui.ctx().content_rect().size();
         let width = WIDTH.min(window.x - WINDOW_MARGIN);
         ui.set_width(width);
@@ -445,7 +439,7 @@ impl ImportDialog {
     }
 
     /// Draws what a force or a motion does not say about the struck vehicle.
-    fn asked_ui(&self, ui: &mut Ui, (start, vehicle): (&mut FileStart, &mut VehicleChoice)) {
+    fn asked_ui(&self, ui: &mut Ui, project: &mut Project) {
         let Some((_, Ok(preview))) = &self.preview else { return };
         let title = match preview.kind {
             FileKind::Force => "What a force does not say about the struck vehicle",
@@ -455,9 +449,9 @@ impl ImportDialog {
         ui.separator();
         ui.strong(title);
         Grid::new("import start").num_columns(2).show(ui, |ui| {
-            file_vehicle_ui(ui, vehicle);
+            file_vehicle_ui(ui, &mut project.simulate.vehicle);
             if preview.kind == FileKind::Force {
-                start_fields(ui, start, self.units);
+                start_fields(ui, project.start_mut(), self.units);
             }
         });
     }

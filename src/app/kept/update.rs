@@ -68,14 +68,15 @@ impl State {
     /// Takes what a task has made of a model of the force network.
     pub(in crate::app) fn take_force_model(&mut self, event: &ModelEvent<ForceModel>) {
         let Session { force, library, .. } = &mut self.session;
-        let news = force.model.take(event, library, &mut self.project.force.model);
+        let news = force.model.take(event, library, &mut self.project.predict_force.model);
         self.take_model_news(news);
     }
 
     /// Takes what a task has made of a model of the response network.
     pub(in crate::app) fn take_response_model(&mut self, event: &ModelEvent<ResponseModel>) {
         let Session { response, library, .. } = &mut self.session;
-        let news = response.model.take(event, library, &mut self.project.response.model);
+        let wanted = &mut self.project.predict_motion.response_model;
+        let news = response.model.take(event, library, wanted);
         self.take_model_news(news);
     }
 

@@ -37,7 +37,8 @@ pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         return;
     }
     ui.weak(format!("{} of {} cases", table.len(), table.checked.dataset.cases.len()));
-    let selected = match &project.subject {
+    let subject = project.subject();
+    let selected = match &subject {
         Some(Subject::Case { dataset, case }) if *dataset == path => Some(case.as_str()),
         _ => None,
     };

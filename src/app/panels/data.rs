@@ -7,9 +7,10 @@ use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::looks::{Icon, icon_button};
 use crate::app::panes::PaneContext;
+use crate::app::project::Project;
 use crate::app::shipped_datasets;
 use crate::app::source::{CheckedDataset, CheckedFile, Content, Source};
-use crate::app::state::{Project, Subject, View};
+use crate::app::state::{Subject, View};
 use impactlab_core::data::{DatasetKind, FileKind, Severity};
 use impactlab_core::error_chain;
 use impactlab_draw::theme;
@@ -54,7 +55,7 @@ pub fn data_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         for source in &session.sources {
             source_ui(ui, source, (project, view), commands);
         }
-        let selected = project.subject == Some(Subject::Scenario);
+        let selected = project.subject() == Some(Subject::Scenario);
         let hint = "Two vehicles of your own: see the Scenario pane";
         if ui.selectable_label(selected, "Scenario").on_hover_text(hint).clicked() {
             commands.push(Command::Select(Subject::Scenario));
@@ -80,7 +81,7 @@ fn source_ui(
         }
         Content::File(file) => {
             let subject = Subject::File(source.path.clone());
-            let selected = project.subject.as_ref() == Some(&subject);
+            let selected = project.subject().as_ref() == Some(&subject);
             file_ui(ui, source, (file, selected), commands);
         }
         Content::Failed(why) => {

@@ -10,40 +10,37 @@ use crate::app::dialog::Purpose;
 use crate::app::model::file_name;
 use crate::app::panels::ending::ending_form;
 use crate::app::panes::PaneContext;
+use crate::app::project::Project;
 use crate::app::source::{Content, Source};
-use crate::app::state::FileStart;
 use crate::app::widgets::{quantity_field, within_view};
 use impactlab_core::data::FileKind;
 use impactlab_core::ranges::{CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, SPEED, STEERING_RATIO};
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_core::vehicle::{ContactPoint, USUAL_STEERING_RATIO};
-use impactlab_study::{ASSUMED_CONTACT, ASSUMED_SPEED_M_S};
+use impactlab_study::{ASSUMED_CONTACT, ASSUMED_SPEED_M_S, Drive, SeriesFile};
 
 /// Draws speed, contact point, files of steering and torques, and what happens after the impact.
 pub(super) fn file_start_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
     ui.strong("For single files");
     Grid::new("file start").num_columns(2).show(ui, |ui| {
-        let start = &mut project.file_start;
+        let start = project.start_mut();
         start_fields(ui, start, view.units);
         let files = |kind| open_files(&session.sources, kind);
         file_ui(ui, "Steering", (&mut start.steer, &files(FileKind::Steer)), commands);
         ratio_ui(ui, start, view.units);
-        file_ui(
-            ui,
-            "Torques at the wheels",
-            (&mut start.wheels, &files(FileKind::Wheels)),
-            commands,
-        );
+        let wheels = (&mut start.wheels, &*files(FileKind::Wheels));
+        file_ui(ui, "Torques at the wheels", wheels, commands);
     });
-    let project = &mut **project;
     ui.strong("For single files and cases of a force");
-    let ending = (&mut project.ending, &mut project.steering_ratio);
-    ending_form(ui, "struck vehicle", ending, view.units);
+    let is_asked = project.subject().is_some_and(|of| of.takes_ending(&session.sources));
+    let Project { simulate, beside, .. } = &mut **project;
+    let ending = if is_asked { &mut simulate.ending } else { &mut beside.ending };
+    ending_form(ui, "struck vehicle", (ending, &mut beside.steering_ratio), view.units);
 }
 
 /// Draws rows of a two-column grid with the speed before the impact and the contact point.
-pub(in crate::app) fn start_fields(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
+pub(in crate::app) fn start_fields(ui: &mut Ui, start: &mut Drive, units: UnitSystem) {
     speed_ui(ui, start, units);
     contact_ui(ui, start, units);
 }
@@ -61,11 +58,16 @@ pub(super) fn open_files(sources: &[Source], kind: FileKind) -> Vec<PathBuf> {
 fn file_ui(
     ui: &mut Ui,
     label: &str,
-    chosen: (&mut Option<PathBuf>, &[PathBuf]),
+    (chosen, open): (&mut Option<SeriesFile>, &[PathBuf]),
     commands: &mut Vec<Command>,
 ) {
     let hint = "A file that goes with the one that is shown. Drop it on the window, or open it";
-    file_list_ui(ui, (label, "none", hint), chosen);
+    let before = chosen.as_ref().map(|file| file.path.clone());
+    let mut path = before.clone();
+    file_list_ui(ui, (label, "none", hint), (&mut path, open));
+    if path != before {
+        *chosen = path.map(SeriesFile::new);
+    }
     ui.end_row();
     ui.label("");
     if ui.small_button("Open…").clicked() {
@@ -96,7 +98,7 @@ pub(super) fn file_list_ui(
 }
 
 /// Draws the steering ratio for files that hold angles of the steering wheel.
-fn ratio_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
+fn ratio_ui(ui: &mut Ui, start: &mut Drive, units: UnitSystem) {
     let mut is_of_wheel = start.steering_ratio.is_some();
     ui.label("");
     let choice = ui.checkbox(&mut is_of_wheel, "Angles of the steering wheel");
@@ -110,7 +112,7 @@ fn ratio_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
 }
 
 /// Draws the speed before the impact if the user has set it, otherwise the value that is assumed.
-fn speed_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
+fn speed_ui(ui: &mut Ui, start: &mut Drive, units: UnitSystem) {
     let label = "Speed before impact";
     let Some(speed_m_s) = &mut start.speed_m_s else {
         let assumed = Quantity::Speed.shown(ASSUMED_SPEED_M_S, units);
@@ -127,7 +129,7 @@ fn speed_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
 
 /// Draws the contact point, at which the force acts, if the user has set it, otherwise the point
 /// that is assumed.
-fn contact_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
+fn contact_ui(ui: &mut Ui, start: &mut Drive, units: UnitSystem) {
     let Some(ContactPoint { x_body_m, y_body_m, height_m }) = &mut start.contact else {
         let ContactPoint { x_body_m, y_body_m, height_m } = ASSUMED_CONTACT;
         let [x, y, z] = [x_body_m, y_body_m, height_m].map(|m| Quantity::Length.shown(m, units));

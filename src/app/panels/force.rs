@@ -6,7 +6,7 @@ use egui::{ComboBox, Grid, Id, ScrollArea, Ui};
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::state::Project;
+use crate::app::project::Project;
 use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, time_figure, value_row};
 use impactlab_core::collision::{ChannelClass, Pulse, PulseShape};
@@ -32,10 +32,10 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     };
     settings_ui(ui, project);
     readouts_ui(ui, numbers, view.units);
-    let pulses = if project.show_pulses { pulses(force) } else { Vec::new() };
+    let pulses = if project.beside.show_pulses { pulses(force) } else { Vec::new() };
     let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
-    let figure =
-        analysis_force_figure((analysis, &caveats), project.channel_class, &pulses, view.units);
+    let class = project.beside.channel_class;
+    let figure = analysis_force_figure((analysis, &caveats), class, &pulses, view.units);
     let height = (ui.available_height() - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
     let mut figure = match figure {
         Ok(Some(figure)) => figure,
@@ -46,7 +46,6 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         }
     };
     for (i, (name, other)) in other_simulations(variants).enumerate() {
-        let class = project.channel_class;
         let shown = (&other.analysis, &other.report.caveats);
         if let Ok(Some(other)) = analysis_force_figure(shown, class, &[], view.units) {
             figure.overlay((name, i), &other);
@@ -72,18 +71,18 @@ fn settings_ui(ui: &mut Ui, project: &mut Project) {
     ui.horizontal_wrapped(|ui| {
         let name = ui.label("Filter");
         let label = |class: Option<ChannelClass>| class.map_or("none", ChannelClass::label);
-        let combo =
-            ComboBox::from_id_salt("channel class").selected_text(label(project.channel_class));
+        let combo = ComboBox::from_id_salt("channel class")
+            .selected_text(label(project.beside.channel_class));
         combo
             .show_ui(ui, |ui| {
                 for class in std::iter::once(None).chain(ChannelClass::ALL.map(Some)) {
-                    ui.selectable_value(&mut project.channel_class, class, label(class));
+                    ui.selectable_value(&mut project.beside.channel_class, class, label(class));
                 }
             })
             .response
             .labelled_by(name.id)
             .on_hover_text("SAE J211 channel frequency class");
-        ui.checkbox(&mut project.show_pulses, "Classic pulses").on_hover_text(
+        ui.checkbox(&mut project.beside.show_pulses, "Classic pulses").on_hover_text(
             "Half-sine, haversine, triangle and square of the same impulse and duration",
         );
     });

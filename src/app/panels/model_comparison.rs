@@ -27,7 +27,7 @@ use impactlab_study::{CompareReport, EvaluatedCases};
 pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        let has_data = form_ui(ui, &mut project.response.comparison, &session.sources);
+        let has_data = form_ui(ui, &mut project.comparison, &session.sources);
         let response = &mut session.response;
         let can_start = [has_data, has_data && response.model.current.is_some()];
         buttons_ui(ui, &mut response.comparison, can_start, commands);

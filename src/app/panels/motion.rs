@@ -25,10 +25,10 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     caveats_ui(ui, &report.caveats, commands);
     ui.horizontal_wrapped(|ui| {
         curves_menu_ui(ui, analysis, &mut view.motion_channels);
-        recording_menu_ui(ui, &mut project.recording, &session.sources);
+        recording_menu_ui(ui, &mut project.beside.recording, &session.sources);
         ui.weak("Shift + drag in a plot: numbers between two cursors");
     });
-    let recording = overlaid(project.recording.as_ref(), &session.sources);
+    let recording = overlaid(project.beside.recording.as_ref(), &session.sources);
     let two_columns = ui.available_width() > 560.0;
     let rows = if two_columns { 2.0 } else { 4.0 };
     let height = (ui.available_height() / rows - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);

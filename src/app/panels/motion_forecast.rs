@@ -9,14 +9,15 @@ use impactlab_core::uncertainty::Caveats;
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::looks;
+use crate::app::model::file_name;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
 use crate::app::panels::scene::clock_ui;
 use crate::app::panels::vehicle::until_rest_ui;
 use crate::app::panes::PaneContext;
+use crate::app::project::Project;
 use crate::app::response::{
-    DensityAnswer, DensityChoice, ForceChoice, MotionAnswer, ResponseProject, ResponseSession,
-    ResponseView,
+    DensityAnswer, DensityChoice, MotionAnswer, ResponseSession, ResponseView,
 };
 use crate::app::state::{Session, View};
 use crate::app::variants::{AnsweredVariant, are_others_awaited, other_forecasts};
@@ -31,8 +32,8 @@ use impactlab_document::figure::{
     forecast_scene_figure, forecast_surroundings,
 };
 use impactlab_draw::{FigureOptions, theme};
-use impactlab_study::PredictMotionAnswer;
 use impactlab_study::analysis::Analysis;
+use impactlab_study::{ForceSource, PredictMotionAnswer};
 
 /// What stands above a coarse forecast.
 const COARSE: &str =
@@ -64,7 +65,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             model_ui(ui, &session.response, commands);
             ui.separator();
-            force_ui(ui, &mut project.response, session, commands);
+            force_ui(ui, project, session, commands);
             until_rest_ui(ui, project);
             ui.separator();
             shown_ui(ui, &mut view.response, session, commands);
@@ -162,32 +163,32 @@ fn model_ui(ui: &mut Ui, response: &ResponseSession, commands: &mut Vec<Command>
 /// Draws the choice of the force that drives the forecast: the given one or one predicted by the
 /// force network. Warnings say why a force cannot be predicted, and which features of the collision
 /// lie outside the training of the force model.
-fn force_ui(
-    ui: &mut Ui,
-    project: &mut ResponseProject,
-    session: &Session,
-    commands: &mut Vec<Command>,
-) {
-    let form = &mut project.forecast;
+fn force_ui(ui: &mut Ui, project: &mut Project, session: &Session, commands: &mut Vec<Command>) {
+    let request = &mut project.predict_motion;
+    let predicted = ForceSource::Predicted(project.predict_force.model.clone());
     ui.horizontal_wrapped(|ui| {
         ui.strong("Force");
-        ui.radio_value(&mut form.force, ForceChoice::Given, "as given").on_hover_text(
+        if let ForceSource::File(path) = &request.force {
+            let name = format!("of {}", file_name(path));
+            ui.radio(true, name).on_hover_text(path.display().to_string());
+        }
+        ui.radio_value(&mut request.force, ForceSource::Given, "as given").on_hover_text(
             "That of the case or the file; of a scenario the classic pulse with the impulse of the momentum solution",
         );
-        ui.radio_value(&mut form.force, ForceChoice::Predicted, "as predicted").on_hover_text(
+        ui.radio_value(&mut request.force, predicted, "as predicted").on_hover_text(
             "By the force network, with all that is uncertain about it: needs a case of a force data set, or a scenario",
         );
     });
-    if form.force == ForceChoice::Given {
+    if !matches!(request.force, ForceSource::Predicted(_)) {
         return;
     }
     ui.horizontal(|ui| {
         let name = ui.label("Force curves");
-        count_field(ui, &mut form.n_curves, &DRAWS, 0.2)
+        count_field(ui, &mut request.draws, &DRAWS, 0.2)
             .labelled_by(name.id)
             .on_hover_text("Whole curves drawn from the predicted force, each as likely; each drives its own distribution of motions");
         let name = ui.label("Seed");
-        ui.add(DragValue::new(&mut form.seed).speed(0.2)).labelled_by(name.id);
+        ui.add(DragValue::new(&mut request.seed).speed(0.2)).labelled_by(name.id);
     });
     let answer = session.response.forecast.ok();
     if answer.is_some_and(|answer| !answer.is_predicted()) {

@@ -18,8 +18,8 @@ use impactlab_core::ranges::SAMPLES;
 use impactlab_document::figure::{ForceComponent, ForecastFigure, RecordedCurve, forecast_figure};
 use impactlab_draw::{FigureOptions, theme};
 use impactlab_networks::force::metrics::BAND_LEVELS;
-use impactlab_study::PredictForceAnswer;
 use impactlab_study::analysis::pulse_curves;
+use impactlab_study::{PredictForceAnswer, PredictForceRequest};
 
 /// Width of the form before the user resizes it, points.
 const FORM_WIDTH: f32 = 340.0;
@@ -37,7 +37,7 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     left.show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             model_ui(ui, &session.force, commands);
-            form_ui(ui, (project, view), &session.force, commands);
+            form_ui(ui, (project, view), session, commands);
             if let Some(answer) = session.force.forecast.ok() {
                 ui.separator();
                 let is_late = session.force.forecast.is_late();
@@ -58,7 +58,7 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 ui.colored_label(color, format!("Not predicted: {problem}"));
             }
             Some(Ok(answer)) => {
-                choices_ui(ui, view);
+                choices_ui(ui, view, &mut project.predict_force);
                 let shown = Shown { answer, session: &session.force, reset: session.fit_plots };
                 let is_late = session.force.forecast.is_late();
                 super::faded(ui, is_late, |ui| plots_ui(ui, shown, view, commands));
@@ -88,7 +88,7 @@ fn model_ui(ui: &mut Ui, force: &ForceSession, commands: &mut Vec<Command>) {
 
 /// Draws the choice of the components, bands and curves that are drawn, and the number and the seed
 /// of the curves that are sampled from the prediction.
-fn choices_ui(ui: &mut Ui, view: &mut View) {
+fn choices_ui(ui: &mut Ui, view: &mut View, request: &mut PredictForceRequest) {
     let view = &mut view.force;
     ui.horizontal_wrapped(|ui| {
         for (component, shown) in ForceComponent::ALL.iter().zip(&mut view.components) {
@@ -110,18 +110,18 @@ fn choices_ui(ui: &mut Ui, view: &mut View) {
     });
     ui.horizontal_wrapped(|ui| {
         let name = ui.label("Drawn curves");
-        count_field(ui, &mut view.n_curves, &SAMPLES, 0.2)
+        count_field(ui, &mut request.samples, &SAMPLES, 0.2)
             .labelled_by(name.id)
             .on_hover_text("Whole curves drawn from the prediction, as coherent as real ones");
         let name = ui.label("Seed");
-        ui.add(egui::DragValue::new(&mut view.seed).speed(0.2))
+        ui.add(egui::DragValue::new(&mut request.seed).speed(0.2))
             .labelled_by(name.id)
             .on_hover_text("Same seed, same curves; intervals of |P|, peak and PDOF are drawn too");
         if ui.button("Draw").on_hover_text("Draw other curves: the next seed").clicked() {
-            if view.n_curves == 0 {
-                view.n_curves = 10;
+            if request.samples == 0 {
+                request.samples = 10;
             } else {
-                view.seed = view.seed.wrapping_add(1);
+                request.seed = request.seed.wrapping_add(1);
             }
         }
     });

@@ -7,10 +7,11 @@ use egui::{ComboBox, Grid, Ui};
 
 use crate::app::command::Command;
 use crate::app::force::{
-    ForceSession, forget_contact, know_contact, set_contact_x, set_mass, set_side,
-    set_striking_heading,
+    ForceSession, NamedCollision, collision_of, forget_contact, know_contact, set_contact_x,
+    set_mass, set_side, set_striking_heading,
 };
-use crate::app::state::{Project, View};
+use crate::app::project::Project;
+use crate::app::state::{Session, View};
 use crate::app::widgets::{SliderRange, quantity_slider};
 use impactlab_core::data::StruckSide;
 use impactlab_core::ranges::{BODY_MASS, CONTACT_X, HEADING, SPEED};
@@ -20,23 +21,37 @@ use impactlab_networks::force::ForceScenario;
 /// Width of a slider without its number field, points.
 const SLIDER_WIDTH: f32 = 110.0;
 
+/// What stands in the place of the numbers of a collision that has none.
+const COLLISION_NOT_KNOWN: &str =
+    "The vehicles of the scenario do not meet, or the data set of the case is not open.";
+
 /// Draws the origin of the collision, its numbers, and which of them are open.
 pub fn form_ui(
     ui: &mut Ui,
     (project, view): (&mut Project, &mut View),
-    force: &ForceSession,
+    session: &Session,
     commands: &mut Vec<Command>,
 ) {
-    start_ui(ui, (project, view), force, commands);
+    let force = &session.force;
+    let collision = collision_of(&project.predict_force, &session.sources);
+    start_ui(ui, (collision.as_ref(), view), force, commands);
+    let Some(collision) = collision else {
+        ui.weak(COLLISION_NOT_KNOWN);
+        return;
+    };
     ui.spacing_mut().slider_width = SLIDER_WIDTH;
     let bodies = force.model.current.as_ref().map(|current| current.model.bodies());
+    let mut edited = collision.clone();
     Grid::new("force scenario").num_columns(2).show(ui, |ui| {
-        let scenario = &mut project.force.scenario;
-        motion_ui(ui, scenario, view.units);
-        side_ui(ui, scenario);
-        contact_ui(ui, scenario, view.units);
-        body_ui(ui, scenario, &bodies.unwrap_or_default());
+        let numbers = &mut edited.numbers;
+        motion_ui(ui, numbers, view.units);
+        side_ui(ui, numbers);
+        contact_ui(ui, numbers, view.units);
+        body_ui(ui, numbers, &bodies.unwrap_or_default());
     });
+    if edited != collision {
+        edited.put_into(&mut project.predict_force);
+    }
     if let Some(answer) = force.forecast.ok() {
         let report = &answer.report;
         let open = [
@@ -55,7 +70,7 @@ pub fn form_ui(
 /// whether the model was trained on the recorded case.
 fn start_ui(
     ui: &mut Ui,
-    (project, view): (&mut Project, &mut View),
+    (collision, view): (Option<&NamedCollision>, &mut View),
     force: &ForceSession,
     commands: &mut Vec<Command>,
 ) {
@@ -74,8 +89,8 @@ fn start_ui(
         ui.checkbox(&mut view.force.follow_case, "Follow")
             .on_hover_text("Predict every case of a force data set that is selected");
     });
-    let name = &project.force.name;
-    let recorded = force.recorded.as_ref().filter(|r| r.scenario == project.force.scenario);
+    let Some(NamedCollision { name, numbers }) = collision else { return };
+    let recorded = force.recorded.as_ref().filter(|recorded| recorded.scenario == *numbers);
     let model = force.model.current.as_ref();
     ui.weak(match recorded.zip(model) {
         None => format!("{name}, edited or without a recording"),

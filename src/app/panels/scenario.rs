@@ -7,7 +7,8 @@ use crate::app::dialog::Purpose;
 use crate::app::panels::ending::ending_form;
 use crate::app::panels::scenario_plan::scenario_plan_ui;
 use crate::app::panes::PaneContext;
-use crate::app::state::{Project, Subject};
+use crate::app::project::Project;
+use crate::app::state::Subject;
 use crate::app::widgets::{caveats_ui, facts_ui, quantity_field};
 use impactlab_core::collision::{
     ContactLocation, PulseShape, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle, Side,
@@ -20,6 +21,7 @@ use impactlab_core::ranges::{
 };
 use impactlab_core::units::UnitSystem;
 use impactlab_draw::theme;
+use impactlab_study::analysis::PulseSetup;
 
 /// Draws the plan view of the vehicles at first contact, the momentum solution, and the form that
 /// edits the scenario.
@@ -27,14 +29,14 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
-            ui.strong(&project.scenario.name);
+            ui.strong(project.impact.scenario.name());
             if ui.button("Open…").clicked() {
                 commands.push(Command::Ask(Purpose::Files));
             }
             if ui.button("Save…").clicked() {
                 commands.push(Command::Ask(Purpose::Scenario));
             }
-            let shown = project.subject == Some(Subject::Scenario);
+            let shown = project.subject() == Some(Subject::Scenario);
             let hint = "Spread the impulse over a pulse and simulate both vehicles";
             if !shown && ui.button("Simulate in the scene").on_hover_text(hint).clicked() {
                 commands.push(Command::Select(Subject::Scenario));
@@ -43,7 +45,9 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let answer = session.impact.answer.as_ref();
         let solved = answer.and_then(|answer| answer.as_deref().ok());
         let plan = (solved, view.units, session.fit_plots);
-        scenario_plan_ui(ui, &mut project.scenario, plan, commands);
+        if let Some(scenario) = project.scenario_mut() {
+            scenario_plan_ui(ui, scenario, plan, commands);
+        }
         match answer {
             Some(Ok(answer)) => {
                 let report = &answer.report;
@@ -57,17 +61,21 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             None => drop(ui.spinner()),
         }
         ui.separator();
-        contact_form(ui, project, view.units);
-        let Scenario { ending, striking_ending, .. } = &mut project.scenario;
+        let mut pulse = *project.pulse_mut();
+        let Project { impact, beside, .. } = &mut **project;
+        let Some(scenario) = impact.scenario.inline_mut() else { return };
+        contact_form(ui, (&mut scenario.contact, &mut pulse), view.units);
+        let Scenario { ending, striking_ending, .. } = scenario;
         for (vehicle, ending) in [("target", ending), ("bullet", striking_ending)] {
-            ending_form(ui, vehicle, (ending, &mut project.steering_ratio), view.units);
+            ending_form(ui, vehicle, (ending, &mut beside.steering_ratio), view.units);
         }
-        vehicles_form(ui, project, view.units);
+        vehicles_form(ui, scenario, view.units);
+        *project.pulse_mut() = pulse;
     });
 }
 
-fn vehicles_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
-    let Scenario { struck, striking, .. } = &mut project.scenario;
+fn vehicles_form(ui: &mut Ui, scenario: &mut Scenario, units: UnitSystem) {
+    let Scenario { struck, striking, .. } = scenario;
     for (title, vehicle) in [("Target (struck)", struck), ("Bullet (strikes)", striking)] {
         egui::CollapsingHeader::new(title).default_open(true).show(ui, |ui| {
             Grid::new(title).num_columns(2).show(ui, |ui| vehicle_form(ui, vehicle, units));
@@ -139,12 +147,15 @@ fn surface_form(ui: &mut Ui, contact: &mut ScenarioContact, units: UnitSystem) {
 
 /// Draws the fields of the contact location, restitution and friction, and of the pulse over which
 /// the impulse is spread in the simulation.
-fn contact_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
+fn contact_form(
+    ui: &mut Ui,
+    (contact, pulse): (&mut ScenarioContact, &mut PulseSetup),
+    units: UnitSystem,
+) {
     egui::CollapsingHeader::new("Contact").default_open(true).show(ui, |ui| {
         Grid::new("contact").num_columns(2).show(ui, |ui| {
-            location_form(ui, &mut project.scenario.contact.location, units);
-            surface_form(ui, &mut project.scenario.contact, units);
-            let pulse = &mut project.pulse;
+            location_form(ui, &mut contact.location, units);
+            surface_form(ui, contact, units);
             let fields = [
                 ("Pulse duration", &mut pulse.duration_s, PULSE_DURATION),
                 ("Height above ground", &mut pulse.contact_height_m, CONTACT_HEIGHT),

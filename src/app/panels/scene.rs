@@ -58,13 +58,14 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ui.label(format!("At rest after {:.2} s and {distance}, at {position}", rest.time_s));
     }
     let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
-    let recorded = overlaid(project.recording.as_ref(), &session.sources);
+    let recorded = overlaid(project.beside.recording.as_ref(), &session.sources);
     let n_recorded = recorded.as_ref().map_or(0, |(_, series, _)| series.n_samples());
     let source = SceneSource {
         forecast: State::shown_forecast(view, project, session),
         answer: Arc::clone(&answer),
         others: SceneSource::others(variants),
         recording: project
+            .beside
             .recording
             .clone()
             .filter(|_| recorded.is_some())
@@ -82,7 +83,9 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             let shown = (&other.analysis, &other.report.caveats);
             figure.overlay((name, i), &analysis_scene_figure(shown, time_s, view.units));
         }
-        if let Some((name, series, _)) = overlaid(project.recording.as_ref(), &session.sources) {
+        if let Some((name, series, _)) =
+            overlaid(project.beside.recording.as_ref(), &session.sources)
+        {
             figure.elements.extend(recording_path((&name, series), view.units));
         }
         figure

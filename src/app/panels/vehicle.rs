@@ -8,7 +8,7 @@ use crate::app::model::file_name;
 use crate::app::panels::file_start::file_start_ui;
 use crate::app::panels::vehicle_form::vehicle_form_ui;
 use crate::app::panes::PaneContext;
-use crate::app::state::Project;
+use crate::app::project::Project;
 use crate::app::widgets::{facts_ui, quantity_field, value_row, within_view};
 use impactlab_core::data::Severity;
 use impactlab_core::error_chain;
@@ -35,18 +35,30 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         Grid::new("vehicle choice").num_columns(2).show(ui, |ui| {
             choice_ui(ui, project, commands);
             let equations = [None, Some(Equations::Corrected), Some(Equations::Paper)];
-            list_ui(ui, "Equations", &mut project.equations, (&equations, equations_label));
+            list_ui(
+                ui,
+                "Equations",
+                &mut project.simulate.equations,
+                (&equations, equations_label),
+            );
             let integrators = [Integrator::Rk4, Integrator::Euler];
-            list_ui(ui, "Integration", &mut project.integrator, (&integrators, integrator_label));
+            list_ui(
+                ui,
+                "Integration",
+                &mut project.simulate.integrator,
+                (&integrators, integrator_label),
+            );
             let range = (&SIMULATED_DURATION, view.units);
-            let label = if project.until_rest { "At the latest after" } else { "Duration" };
-            quantity_field(ui, label, &mut project.duration_s, range);
+            let label =
+                if project.simulate.until_rest { "At the latest after" } else { "Duration" };
+            quantity_field(ui, label, &mut project.simulate.duration_s, range);
             until_rest_ui(ui, project);
             ui.end_row();
         });
-        for (title, choice) in
-            [("Struck vehicle", &mut project.vehicle), ("Striking vehicle", &mut project.striking)]
-        {
+        for (title, choice) in [
+            ("Struck vehicle", &mut project.simulate.vehicle),
+            ("Striking vehicle", &mut project.simulate.striking),
+        ] {
             if let VehicleChoice::Sheet(sheet) = choice {
                 ui.separator();
                 vehicle_form_ui(ui, (title, sheet), view.units, commands);
@@ -56,7 +68,7 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         file_start_ui(ui, pane);
         uncertainty_ui(ui, pane);
         let project = &pane.project;
-        if let VehicleChoice::Preset(id) = &project.vehicle
+        if let VehicleChoice::Preset(id) = &project.simulate.vehicle
             && let Some(vehicle) = built_in_vehicle(id)
         {
             ui.separator();
@@ -80,13 +92,13 @@ fn uncertainty_ui(ui: &mut Ui, pane: &PaneContext<'_>) {
 pub(super) fn until_rest_ui(ui: &mut Ui, project: &mut Project) {
     let hint = "Simulation and forecast end where the vehicle has come to rest, at the latest after \
                 the duration";
-    let choice = ui.checkbox(&mut project.until_rest, "Until rest").on_hover_text(hint);
-    let (before, after) = match project.until_rest {
+    let choice = ui.checkbox(&mut project.simulate.until_rest, "Until rest").on_hover_text(hint);
+    let (before, after) = match project.simulate.until_rest {
         true => (DEFAULT_DURATION_S, REST_LIMIT.high),
         false => (REST_LIMIT.high, DEFAULT_DURATION_S),
     };
-    if choice.changed() && project.duration_s == before {
-        project.duration_s = after;
+    if choice.changed() && project.simulate.duration_s == before {
+        project.simulate.duration_s = after;
     }
 }
 
@@ -98,7 +110,7 @@ fn choice_ui(ui: &mut Ui, project: &mut Project, commands: &mut Vec<Command>) {
     vehicle_choice_ui(
         ui,
         ("Struck vehicle", hint),
-        (&mut project.vehicle, &open, &default),
+        (&mut project.simulate.vehicle, &open, &default),
         commands,
     );
     let open = format!("not known, assumed to be {}", DEFAULT_STRIKING.id());
@@ -107,7 +119,7 @@ fn choice_ui(ui: &mut Ui, project: &mut Project, commands: &mut Vec<Command>) {
     vehicle_choice_ui(
         ui,
         ("Striking vehicle", hint),
-        (&mut project.striking, &open, &default),
+        (&mut project.simulate.striking, &open, &default),
         commands,
     );
 }

@@ -13,7 +13,7 @@ pub use cars::{CarsSource, ReconstructedCars, ShownPaths};
 pub use kept_runs::KeptRuns;
 pub use live::LiveParticles;
 pub use question::{PreparedReconstruction, ReconstructionQuestion};
-pub use settings::{ReconstructionProject, ReconstructionView};
+pub use settings::ReconstructionView;
 pub use update::EvidencePreview;
 
 use std::path::PathBuf;
@@ -22,7 +22,7 @@ use std::sync::mpsc::Receiver;
 use crate::app::question_job::QuestionJob;
 use impactlab_core::vehicle::{Path, TireMark};
 use impactlab_reconstruct::evidence::Evidence;
-use impactlab_study::ReconstructedPaths;
+use impactlab_study::{ReconstructRequest, ReconstructedPaths};
 
 /// A path that is followed in the scene.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -93,12 +93,10 @@ impl ReconstructionSession {
         self.run.ok().map(std::sync::Arc::as_ref)
     }
 
-    /// Whether the answer is not of what the project asks now.
-    pub fn is_outdated(&self, project: &ReconstructionProject) -> bool {
-        self.run
-            .latest
-            .as_ref()
-            .is_some_and(|latest| Some(&latest.question.request) != project.request().as_ref())
+    /// Whether the answer is not of what is asked now.
+    pub fn is_outdated(&self, request: Option<&ReconstructRequest>) -> bool {
+        let latest = self.run.latest.as_ref();
+        latest.is_some_and(|latest| Some(&latest.question.request) != request)
     }
 
     /// The path that is followed, with its name.

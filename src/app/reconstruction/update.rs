@@ -7,18 +7,19 @@ use egui::Context;
 
 use crate::app::command::wake;
 use crate::app::panes::Pane;
+use crate::app::project::Project;
 use crate::app::reconstruction::live::watch;
 use crate::app::reconstruction::stand_ins::{empty_evidence, missing};
 use crate::app::reconstruction::{
-    FollowedParticle, ReadEvidence, ReconstructionCommand, ReconstructionProject,
-    ReconstructionQuestion, ReconstructionSession,
+    FollowedParticle, ReadEvidence, ReconstructionCommand, ReconstructionQuestion,
+    ReconstructionSession,
 };
 use crate::app::state::State;
 use impactlab_core::data::{Severity, TomlFile};
 use impactlab_core::error_chain;
 use impactlab_reconstruct::evidence::Evidence;
 use impactlab_reconstruct::{Cars, Prior, PriorComponent};
-use impactlab_study::{EvidenceChoice, VehicleChoice};
+use impactlab_study::{EvidenceChoice, ReconstructRequest, VehicleChoice};
 
 /// The evidence of the shipped example.
 const EXAMPLE: &str = include_str!("../../../assets/examples/reconstruction.toml");
@@ -40,9 +41,9 @@ pub struct EvidencePreview {
 }
 
 impl EvidencePreview {
-    fn of(evidence: &Evidence, project: &ReconstructionProject) -> Self {
-        let chosen = [&project.vehicle, &project.striking].map(VehicleChoice::clone);
-        let site = project.site.clone();
+    fn of(evidence: &Evidence, request: &ReconstructRequest) -> Self {
+        let chosen = [&request.vehicle, &request.striking].map(VehicleChoice::clone);
+        let site = request.site.clone();
         let mut problem = None;
         let [struck, striking] = chosen.each_ref().map(|choice| {
             choice.chosen().unwrap_or_else(|error| {
@@ -58,15 +59,15 @@ impl EvidencePreview {
     }
 
     /// Whether it is of these vehicles and of this ground.
-    fn is_of(&self, project: &ReconstructionProject) -> bool {
-        self.chosen.each_ref() == [&project.vehicle, &project.striking] && self.site == project.site
+    fn is_of(&self, request: &ReconstructRequest) -> bool {
+        self.chosen.each_ref() == [&request.vehicle, &request.striking] && self.site == request.site
     }
 }
 
 impl State {
     /// The evidence of the project; `None` if there is none or its file cannot be read.
     pub fn evidence(&self) -> Option<&Evidence> {
-        match self.project.reconstruction.evidence.as_ref()? {
+        match &self.project.reconstruct.as_ref()?.evidence {
             EvidenceChoice::Inline(evidence) => Some(evidence),
             EvidenceChoice::File(path) => {
                 let file = self.session.reconstruction.file.as_ref()?;
@@ -94,25 +95,32 @@ impl State {
         if !session.run.is_running() {
             (session.live, session.news) = (None, None);
         }
-        if let Some(EvidenceChoice::File(path)) = &self.project.reconstruction.evidence
+        let request = self.project.reconstruct.as_ref();
+        if let Some(EvidenceChoice::File(path)) = request.map(|request| &request.evidence)
             && session.file.as_ref().is_none_or(|file| file.path != *path)
         {
             let evidence = Evidence::load(path).map_err(|error| error_chain(&error));
             session.file = Some(ReadEvidence { path: path.clone(), evidence });
         }
-        let evidence = self.evidence();
-        let project = &self.project.reconstruction;
+        let evidence = self.project.reconstruct.as_ref().zip(self.evidence());
         let known = self.session.reconstruction.preview.as_ref();
-        if evidence != known.filter(|of| of.is_of(project)).map(|of| &of.evidence) {
-            let preview = evidence.map(|evidence| EvidencePreview::of(evidence, project));
+        let is_known = match evidence {
+            Some((request, evidence)) => {
+                known.is_some_and(|of| of.is_of(request) && of.evidence == *evidence)
+            }
+            None => known.is_none(),
+        };
+        if !is_known {
+            let preview =
+                evidence.map(|(request, evidence)| EvidencePreview::of(evidence, request));
             let n_marks = preview.as_ref().map_or(0, |of| of.evidence.marks.len());
             let session = &mut self.session.reconstruction;
             session.preview = preview;
             session.adds_to = session.adds_to.filter(|idx| *idx < n_marks);
             let is_first = !session.run.is_running() && session.run.latest.is_none();
-            let request = self.project.reconstruction.request();
+            let request = self.project.reconstruct.as_ref();
             let runs = session.kept_runs.as_ref().filter(|_| is_first);
-            if request.is_some_and(|request| runs.is_some_and(|runs| runs.holds(&request))) {
+            if request.is_some_and(|request| runs.is_some_and(|runs| runs.holds(request))) {
                 self.run_reconstruction(context);
             }
         }
@@ -121,21 +129,20 @@ impl State {
     /// Lets the wheels of the reconstruction stand on the friction zones of the ground that is shown. A
     /// ground without zones changes no answer.
     fn stand_on_ground(&mut self) {
-        let site = match (&self.project.site, self.session.ground.shown()) {
+        let Project { simulate, reconstruct: Some(request), .. } = &mut self.project else {
+            return;
+        };
+        let site = match (&simulate.site, self.session.ground.shown()) {
             // The same file may be read again; the zones of another one are no longer those of the scene.
-            (Some(choice), None) => {
-                self.project.reconstruction.site.clone().filter(|site| *site == choice.file)
-            }
-            (Some(choice), Some(ground)) => {
+            (Some(file), None) => request.site.clone().filter(|site| site == file),
+            (Some(file), Some(ground)) => {
                 let has_zones = !ground.site.friction_zones.is_empty();
-                has_zones.then(|| choice.file.clone())
+                has_zones.then(|| file.clone())
             }
             (None, _) => None,
         };
-        let project = &mut self.project.reconstruction;
-        let site = site.filter(|_| project.evidence.is_some());
-        if project.site != site {
-            project.site = site;
+        if request.site != site {
+            request.site = site;
         }
     }
 
@@ -148,7 +155,10 @@ impl State {
 
     /// Puts other evidence into the form, and shows it. An answer about the last one is not about it.
     fn take_evidence(&mut self, evidence: EvidenceChoice) {
-        self.project.reconstruction.evidence = Some(evidence);
+        match &mut self.project.reconstruct {
+            Some(request) => request.evidence = evidence,
+            none => *none = Some(ReconstructRequest::new(evidence)),
+        }
         self.drop_reconstruction();
         self.session.shows_doors = false;
         self.session.fit_plots = true;
@@ -198,7 +208,7 @@ impl State {
 
     fn run_reconstruction(&mut self, context: &Context) {
         let refused = self.evidence().map(missing);
-        let request = self.project.reconstruction.request();
+        let request = self.project.reconstruct.clone();
         let request = match (request, refused) {
             (Some(request), Some(None)) => request,
             (_, Some(Some(why))) => return self.say(Severity::Warning, why),

@@ -23,7 +23,7 @@ impl State {
             false => Vec::new(),
         };
         Ok(ReportOrigin {
-            fingerprint: self.case.fingerprint(&self.forms()),
+            fingerprint: self.case_fingerprint(),
             variants,
             settings: view.settings(self.view.units)?,
         })

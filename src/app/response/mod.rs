@@ -9,8 +9,7 @@ mod update;
 pub use comparison::ComparisonStatus;
 pub use motion::{DensityAnswer, DensityQuestion, MotionAnswer, MotionQuestion};
 pub use settings::{
-    ComparisonForm, DensityChoice, ForceChoice, ResponseProject, ResponseTrainingForm,
-    ResponseView, TrainingMode,
+    ComparisonForm, DensityChoice, ResponseTrainingForm, ResponseView, TrainingMode,
 };
 
 use std::sync::Arc;

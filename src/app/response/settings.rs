@@ -5,50 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use impactlab_core::data::DatasetKind;
-use impactlab_study::{BadCases, CompareRequest, DEFAULT_DRAWS, EvaluatedCases};
-
-/// What the user works on with the response network.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct ResponseProject {
-    /// File of the model; `None` is the shipped model.
-    pub model: Option<PathBuf>,
-    /// Settings of the forecast.
-    pub forecast: ForecastForm,
-    /// Settings of the training.
-    pub training: ResponseTrainingForm,
-    /// Settings of the comparison.
-    pub comparison: ComparisonForm,
-}
-
-/// The force that drives a predicted motion.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum ForceChoice {
-    /// The recorded force of the case or file; for a scenario, the classic pulse with the impulse
-    /// of the momentum solution.
-    #[default]
-    Given,
-    /// The force that the force network predicts for the collision.
-    Predicted,
-}
-
-/// Settings of a predicted motion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct ForecastForm {
-    /// The force that drives the motion.
-    pub force: ForceChoice,
-    /// Number of force curves that are drawn at random from a predicted force.
-    pub n_curves: usize,
-    /// Seed of all random draws.
-    pub seed: u64,
-}
-
-impl Default for ForecastForm {
-    fn default() -> Self {
-        Self { force: ForceChoice::default(), n_curves: DEFAULT_DRAWS, seed: 0 }
-    }
-}
+use impactlab_study::{BadCases, CompareRequest, EvaluatedCases};
 
 /// The initial weights and the data of a training of the response network.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]

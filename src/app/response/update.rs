@@ -27,7 +27,7 @@ impl State {
     /// for a new forecast and a new density if their questions have changed.
     pub(in crate::app) fn update_response(&mut self, context: &Context) {
         let Session { response, library, tasks, .. } = &mut self.session;
-        response.model.update(&self.project.response.model, library, tasks);
+        response.model.update(&self.project.predict_motion.response_model, library, tasks);
         response.comparison.poll();
         if let Some((question, answer)) = response.comparison.take_finished() {
             self.keep_comparison(question, &answer);
@@ -51,8 +51,8 @@ impl State {
                     n => format!("trained on {n} trajectories of {}", record.data),
                 };
                 let draft = response.training.kept_note(&model, name.clone(), is_complete);
-                let taken =
-                    response.model.take_trained(model, name.clone(), (library, is_complete));
+                let used = is_complete.then_some(&mut self.project.predict_motion.response_model);
+                let taken = response.model.take_trained(model, name.clone(), (library, used));
                 let draft = draft.map(|draft| KeptEntry { name: taken.1, ..draft });
                 let ResponseSession { model: status, training, .. } = response;
                 keep_trained(status, training, taken.0, draft, kept.folder(), tasks);
@@ -112,7 +112,7 @@ impl State {
     /// # Errors
     /// What is missing, as a message for the user.
     pub(in crate::app) fn response_training(&self) -> Result<(Request, String), &'static str> {
-        let form = &self.project.response.training;
+        let form = &self.project.response_training;
         if let Some(logs) = self.log_to_learn_from() {
             let name = logs.logs.first().map(|path| file_name(path)).unwrap_or_default();
             let question = self.fine_tune_request((Vec::new(), Some(logs)));
@@ -204,7 +204,7 @@ impl State {
 
     /// Returns the folder of the data set in the comparison form, if one is open.
     pub(in crate::app) fn data_to_compare(&self) -> Option<PathBuf> {
-        let wanted = self.project.response.comparison.dataset.as_deref();
+        let wanted = self.project.comparison.dataset.as_deref();
         self.chosen_data(wanted, &[DatasetKind::Trajectory]).map(|(path, _)| path)
     }
 

@@ -11,7 +11,7 @@ use crate::app::kept::{
 use crate::app::network::Network;
 use crate::app::panels::models::facts_ui;
 use crate::app::panes::PaneContext;
-use crate::app::state::Project;
+use crate::app::project::Project;
 use impactlab_core::data::Severity;
 use impactlab_draw::theme;
 
@@ -86,11 +86,11 @@ fn entry_ui(
 ) {
     let path = folder.path_of(entry);
     let wanted = match entry.kind.network() {
-        Some(Network::Force) => project.force.model.as_ref(),
-        Some(Network::Response) => project.response.model.as_ref(),
+        Some(Network::Force) => project.predict_force.model.path(),
+        Some(Network::Response) => project.predict_motion.response_model.path(),
         None => None,
     };
-    let is_in_use = wanted == Some(&path);
+    let is_in_use = wanted == Some(path.as_path());
     let dark = ui.visuals().dark_mode;
     ui.horizontal_wrapped(|ui| {
         ui.strong(&entry.name);

@@ -9,14 +9,13 @@ use crate::app::network::TrainedModel;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
 use crate::app::panels::models::facts_ui;
 use crate::app::panes::PaneContext;
-use crate::app::response::ForceChoice;
 use impactlab_networks::shipped::ModelSource;
-use impactlab_study::ModelChoice;
+use impactlab_study::{ForceSource, ModelChoice};
 
 /// Draws both networks beside each other.
 pub fn in_use_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, session, commands, .. } = pane;
-    let is_chained = project.response.forecast.force == ForceChoice::Predicted;
+    let is_chained = matches!(project.predict_motion.force, ForceSource::Predicted(_));
     let (force, response, kept) = (&session.force.model, &session.response.model, &session.kept);
     ui.columns(2, |columns| {
         let [left, right] = columns else { return };

@@ -10,41 +10,40 @@ use crate::app::panels::reconstruction::notice_ui;
 use crate::app::panels::reconstruction::priors::{prior_ranges_ui, priors_ui};
 use crate::app::panes::PaneContext;
 use crate::app::reconstruction::stand_ins::missing;
-use crate::app::reconstruction::{
-    EvidencePreview, ReconstructionCommand, ReconstructionProject, ReconstructionSession,
-};
+use crate::app::reconstruction::{EvidencePreview, ReconstructionCommand, ReconstructionSession};
 use crate::app::widgets::{count_field, duration_text};
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_reconstruct::evidence::Evidence;
-use impactlab_study::{EvidenceChoice, VehicleChoice};
+use impactlab_study::{EvidenceChoice, ReconstructRequest, VehicleChoice};
 
 /// Draws the run, the cards of the evidence, and the ranges before and after it.
 pub fn evidence_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
     let is_own =
         |of: &&VehicleChoice| matches!(of, VehicleChoice::File(_) | VehicleChoice::Sheet(_));
+    let simulate = &project.simulate;
     let own: Vec<VehicleChoice> =
-        [&project.vehicle, &project.striking].into_iter().filter(is_own).cloned().collect();
-    let (project, session) = (&mut project.reconstruction, &session.reconstruction);
+        [&simulate.vehicle, &simulate.striking].into_iter().filter(is_own).cloned().collect();
+    let (request, session) = (&mut project.reconstruct, &session.reconstruction);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        let Some(preview) = &session.preview else {
-            return start_ui(ui, (project, session), commands);
+        let (Some(preview), Some(request)) = (&session.preview, &mut *request) else {
+            return start_ui(ui, (request.as_ref(), session), commands);
         };
         let mut evidence = preview.evidence.clone();
-        case_ui(ui, (&mut evidence, project), commands);
-        run_ui(ui, (project, session, preview), commands);
+        case_ui(ui, (&mut evidence, request), commands);
+        run_ui(ui, (request, session, preview), commands);
         ui.separator();
-        let chosen = [&mut project.vehicle, &mut project.striking];
+        let chosen = [&mut request.vehicle, &mut request.striking];
         let sheets = SheetChoices { chosen, own: &own };
         let shown = (session.adds_to, view.units);
         let asked = cards_ui(ui, (&mut evidence, sheets), shown);
         commands.extend(asked.map(Command::Reconstruct));
         ui.add_space(looks::PART);
         prior_ranges_ui(ui, &mut evidence.prior, view.units);
-        priors_ui(ui, (preview, project, session), view.units);
+        priors_ui(ui, (preview, request, session), view.units);
         if evidence != preview.evidence {
-            project.evidence = Some(EvidenceChoice::Inline(Box::new(evidence)));
+            request.evidence = EvidenceChoice::Inline(Box::new(evidence));
         }
     });
 }
@@ -52,10 +51,11 @@ pub fn evidence_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 /// Says what can be done without evidence, or what is wrong with its file.
 fn start_ui(
     ui: &mut Ui,
-    (project, session): (&ReconstructionProject, &ReconstructionSession),
+    (request, session): (Option<&ReconstructRequest>, &ReconstructionSession),
     commands: &mut Vec<Command>,
 ) {
-    if let (Some(EvidenceChoice::File(path)), Some(file)) = (&project.evidence, &session.file)
+    let evidence = request.map(|request| &request.evidence);
+    if let (Some(EvidenceChoice::File(path)), Some(file)) = (evidence, &session.file)
         && let Err(problem) = &file.evidence
     {
         let text = format!("{} cannot be read: {problem}", path.display());
@@ -96,7 +96,7 @@ fn start_ui(
 /// Draws the name of the case, where its evidence comes from, and the way to other evidence.
 fn case_ui(
     ui: &mut Ui,
-    (evidence, project): (&mut Evidence, &ReconstructionProject),
+    (evidence, request): (&mut Evidence, &ReconstructRequest),
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal_wrapped(|ui| {
@@ -114,11 +114,11 @@ fn case_ui(
             commands.push(Command::Ask(Purpose::Evidence(Box::new(evidence.clone()))));
         }
     });
-    if let Some(EvidenceChoice::File(path)) = &project.evidence {
+    if let EvidenceChoice::File(path) = &request.evidence {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         ui.weak(format!("as in {name}")).on_hover_text(path.display().to_string());
     }
-    if let Some(site) = &project.site {
+    if let Some(site) = &request.site {
         let name = site.file_name().unwrap_or_default().to_string_lossy();
         let text = format!("The wheels stand on the friction zones of {name}");
         ui.add(egui::Label::new(egui::RichText::new(text).weak()).wrap()).on_hover_text(
@@ -130,8 +130,8 @@ fn case_ui(
 /// Draws the settings of the run, the button that starts it, and its progress.
 fn run_ui(
     ui: &mut Ui,
-    (project, session, preview): (
-        &mut ReconstructionProject,
+    (request, session, preview): (
+        &mut ReconstructRequest,
         &ReconstructionSession,
         &EvidencePreview,
     ),
@@ -141,11 +141,11 @@ fn run_ui(
     let lacks = preview.problem.clone().or_else(|| missing(&preview.evidence));
     ui.horizontal_wrapped(|ui| {
         let name = ui.label("Particles");
-        count_field(ui, &mut project.particles, &RECONSTRUCTION_PARTICLES, 10.0)
+        count_field(ui, &mut request.particles, &RECONSTRUCTION_PARTICLES, 10.0)
             .labelled_by(name.id)
             .on_hover_text("More particles are more sure of the intervals and take longer");
         let name = ui.label("Seed");
-        ui.add(DragValue::new(&mut project.seed).speed(0.2)).labelled_by(name.id);
+        ui.add(DragValue::new(&mut request.seed).speed(0.2)).labelled_by(name.id);
         let button = icon_button(Icon::Play, "Run");
         let can_run = lacks.is_none() && !session.run.is_running();
         let run = ui.add_enabled(can_run, button).on_hover_text("From the evidence to the speeds");

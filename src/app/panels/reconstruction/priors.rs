@@ -4,7 +4,7 @@
 use egui::{CollapsingHeader, Grid, Sense, Ui, vec2};
 
 use crate::app::panels::reconstruction::fields::{N_COLUMNS, interval_row};
-use crate::app::reconstruction::{EvidencePreview, ReconstructionProject, ReconstructionSession};
+use crate::app::reconstruction::{EvidencePreview, ReconstructionSession};
 use impactlab_core::ranges::{
     BRAKE_SHARE, CONTROL_TIME, EVIDENCE_HEADING, EVIDENCE_SPEED, FRICTION_LIMIT, HEADING,
     RESTITUTION,
@@ -14,6 +14,7 @@ use impactlab_document::figure::Role;
 use impactlab_draw::theme;
 use impactlab_reconstruct::PriorComponent;
 use impactlab_reconstruct::evidence::PriorRanges;
+use impactlab_study::ReconstructRequest;
 
 /// Standard normal variable below which 95 % lie.
 const Z_95: f64 = 1.645;
@@ -50,10 +51,10 @@ pub fn prior_ranges_ui(ui: &mut Ui, ranges: &mut PriorRanges, units: UnitSystem)
 /// an answer.
 pub fn priors_ui(
     ui: &mut Ui,
-    (preview, project, session): (&EvidencePreview, &ReconstructionProject, &ReconstructionSession),
+    (preview, request, session): (&EvidencePreview, &ReconstructRequest, &ReconstructionSession),
     units: UnitSystem,
 ) {
-    let answer = session.answer().filter(|_| !session.is_outdated(project));
+    let answer = session.answer().filter(|_| !session.is_outdated(Some(request)));
     let title = match answer {
         Some(_) => "Before and after the evidence",
         None => "Before the evidence",

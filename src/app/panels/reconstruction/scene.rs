@@ -44,7 +44,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         return;
     };
     kind_ui(ui, &mut view.reconstruction.shows_cars);
-    let is_outdated = of.is_outdated(&project.reconstruction);
+    let is_outdated = of.is_outdated(project.reconstruct.as_ref());
     // Paths that go with other evidence are not drawn over this.
     let (live, answer) = (of.live.as_ref(), of.answer().filter(|_| !is_outdated));
     if let Some(live) = live {
@@ -78,8 +78,9 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
     };
     if !view.reconstruction.shows_cars {
         let seen = (preview, of.adds_to, session.fit_plots);
-        if let Some(evidence) = plan_ui(ui, seen, figure, commands) {
-            project.reconstruction.evidence = Some(EvidenceChoice::Inline(Box::new(evidence)));
+        let moved = plan_ui(ui, seen, figure, commands);
+        if let (Some(evidence), Some(request)) = (moved, &mut project.reconstruct) {
+            request.evidence = EvidenceChoice::Inline(Box::new(evidence));
         }
         return;
     }

@@ -28,7 +28,7 @@ const PAIR_HEIGHT: f32 = 230.0;
 pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
     let of = &session.reconstruction;
-    let is_outdated = of.is_outdated(&project.reconstruction);
+    let is_outdated = of.is_outdated(project.reconstruct.as_ref());
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let Some(answer) = of.answer() else {
             ui.weak(match of.run.is_running() {
