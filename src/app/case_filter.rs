@@ -5,7 +5,7 @@
 //! Upper and lower case are not distinguished in texts. A column that does not exist, and a comparison
 //! that makes no sense, are errors: a list that is empty for a misspelt word would look like an answer.
 
-use crate::app::case_table::{AVERAGE_ERROR, CaseRow};
+use crate::app::case_row::{AVERAGE_ERROR, CaseRow};
 use impactlab_core::data::{Case, Value};
 
 /// A filter that was understood.

@@ -1,18 +1,18 @@
-//! The commands of the user interface and [`State::apply`], the one function that carries them out.
+//! The commands of the user interface, which
+//! [`State::apply`](crate::app::state::State::apply) carries out.
 //!
 //! A pane edits its own settings directly. For everything else, menus, keys and panes put a
 //! [`Command`] into a list, which is applied after the frame has been drawn.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::Context;
 
 use crate::app::case::{Leaving, SavedCase, VariantCommand};
 use crate::app::cost::CostPlace;
-use crate::app::dialog::{Dialog, PathDialog, Purpose, ask_for_path};
-use crate::app::export::{self, SceneExport};
-use crate::app::film::FilmForm;
+use crate::app::dialog::Purpose;
+use crate::app::export::SceneExport;
 use crate::app::found::Found;
 use crate::app::ground::GroundCommand;
 use crate::app::import::ImportAnswer;
@@ -23,11 +23,9 @@ use crate::app::panes::Pane;
 use crate::app::reconstruction::ReconstructionCommand;
 use crate::app::report::ReportCommand;
 use crate::app::source::OpenedPath;
-use crate::app::state::{Session, State, Subject};
-use crate::app::tasks::TaskKey;
-use crate::app::widgets::OUTDATED;
+use crate::app::state::Subject;
 use crate::app::workspaces::Workspace;
-use impactlab_core::data::{ColumnMap, Existing, Outcome, Severity, contact_interval};
+use impactlab_core::data::{ColumnMap, Outcome, Severity};
 use impactlab_core::vehicle::DataSheet;
 use impactlab_document::figure::Figure;
 use impactlab_document::report::ReportDocument;
@@ -37,7 +35,7 @@ use impactlab_networks::force::ForceModel;
 use impactlab_networks::response::ResponseModel;
 use impactlab_networks::response::evaluate::Comparison;
 use impactlab_reconstruct::evidence::Evidence;
-use impactlab_study::{Cost, Request, SimulateAnswer};
+use impactlab_study::{Cost, Request};
 
 /// Time step of the left and right arrow keys in the scene, s.
 pub(in crate::app) const TIME_STEP_S: f64 = 0.05;
@@ -245,7 +243,7 @@ pub enum ComparisonCommand {
 
 impl Command {
     /// Whether it saves or copies a figure that is not of what is asked any more.
-    fn exports_outdated(&self) -> bool {
+    pub(in crate::app) fn exports_outdated(&self) -> bool {
         match self {
             Self::Ask(Purpose::Picture(figure) | Purpose::Numbers(figure))
             | Self::Export(figure, _)
@@ -258,237 +256,6 @@ impl Command {
             }
             _ => false,
         }
-    }
-}
-
-impl State {
-    /// Carries out a command.
-    ///
-    /// [`Command::Undo`] and [`Command::Redo`] do nothing here: [`App`](crate::app::App) carries
-    /// them out, because it keeps the history of the project.
-    pub fn apply(&mut self, command: Command, context: &Context) {
-        match command {
-            Command::Open(paths) => self.open(paths, context),
-            Command::Close(path) => self.close(&path),
-            command if command.exports_outdated() => self.say(Severity::Warning, OUTDATED),
-            Command::Ask(purpose) => self.ask(purpose),
-            Command::Select(subject) => self.select(subject),
-            Command::SelectNeighbour(step) => self.select_neighbour(step),
-            Command::List(path) => self.view.listed = Some(path),
-            Command::AskMapping(path) => self.ask_mapping(path),
-            Command::OpenMapped(path, map) => {
-                self.end_mapping();
-                self.load(path, Some(map));
-            }
-            Command::CloseDialog => self.close_dialog(),
-            Command::ReplayDataset(path) => self.replay(path, context),
-            Command::CancelReplay(path) => self.cancel_replay(&path),
-            Command::NewCase => self.leave(Leaving::New, context),
-            Command::SaveCase => match self.case.path.clone() {
-                None => self.ask(Purpose::SaveCase),
-                Some(path) if self.is_case_file_foreign() => {
-                    self.session.dialogs.open(Dialog::Replace(Box::new(Command::SaveCaseAs(path))));
-                }
-                Some(path) => self.save_case(path, Existing::Replace),
-            },
-            Command::Variant(command) => self.change_variant(command),
-            Command::Leave { to, ask: true } => self.leave(to, context),
-            Command::Leave { to, ask: false } => self.go(to, context),
-            Command::SaveAndLeave => self.save_and_leave(context),
-            Command::AskPath(purpose) => self.ask_path(purpose),
-            Command::Export(..)
-            | Command::ExportScene(..)
-            | Command::ExportExchange(..)
-            | Command::SaveFilm(..)
-            | Command::SaveScenario(_)
-            | Command::SaveVehicle(..)
-            | Command::SaveEvidence(..)
-            | Command::SaveSite(_)
-            | Command::SaveModel(..)
-            | Command::SaveKept(..)
-            | Command::SaveCaseAs(_)
-            | Command::PackCase(_)
-            | Command::SaveReport(..) => {
-                self.write(command, Existing::Refuse, context);
-            }
-            Command::Replace(command) => self.write(*command, Existing::Replace, context),
-            Command::CopyNumbers(figure) => match export::numbers(&figure) {
-                Ok(text) => context.copy_text(text),
-                Err(error) => self.say(Severity::Error, error),
-            },
-            Command::AskFilm(picture) => {
-                let form = FilmForm::new(*picture, self.view.dark);
-                self.session.dialogs.open(Dialog::Film(Box::new(form)));
-            }
-            Command::CancelFilm => {
-                if let Some(path) = self.session.tasks.film() {
-                    self.session.tasks.cancel(&TaskKey::Film(path.to_owned()));
-                }
-            }
-            Command::Opened(path, result) => self.take_opened(&path, result),
-            Command::Written(result) => self.say_of_file(result),
-            Command::FilmEnded(path, result) => self.say_of_film(&path, result),
-            Command::CaseSaved(result) => self.take_saved_case(result),
-            Command::ImportRead(path, result) => {
-                let dialog = self.session.dialogs.import_mut();
-                if let Some(dialog) = dialog.filter(|dialog| dialog.path() == path) {
-                    dialog.receive(result.map(Found::take));
-                }
-            }
-            Command::Measured(place, question, result) => {
-                self.session.costs.take(place, *question, result);
-            }
-            Command::ForceModel(event) => self.take_force_model(&event),
-            Command::ResponseModel(event) => self.take_response_model(&event),
-            Command::Kept(event) => self.take_kept_event(event.take(), context),
-            Command::PredictCase => self.predict_case(),
-            Command::PredictScenario => self.predict_scenario(),
-            Command::UseModel(network, path) => self.use_model(network, path),
-            Command::UseTrained(network) => self.use_trained(network),
-            Command::Train(Network::Force, command) => self.train_force(command, context),
-            Command::Train(Network::Response, command) => self.train_response(command, context),
-            Command::Compare(command) => self.compare(command, context),
-            Command::Models(command) => self.change_models(command, context),
-            Command::Evaluate => self.evaluate(context),
-            Command::CancelEvaluation => self.session.force.evaluation.cancel(),
-            Command::Ground(command) => self.change_ground(command),
-            Command::Reconstruct(command) => self.reconstruct(command, context),
-            Command::Report(command) => self.report(command),
-            command => self.apply_to_view(command),
-        }
-    }
-
-    /// Carries out a command that changes what is shown and nothing else. Undo and redo are the app's.
-    fn apply_to_view(&mut self, command: Command) {
-        match command {
-            Command::ShowLicences => self.session.dialogs.open(Dialog::Licences),
-            Command::SetTime(time_s) => self.session.time_s = time_s,
-            Command::SetSpeed(speed) => self.view.playback_speed = speed,
-            Command::StepTime(steps) => self.step_time(steps),
-            Command::ToContactEnd => self.show_contact_end(),
-            Command::TogglePlay => self.toggle_play(),
-            Command::FitPlots => self.session.fit_plots = true,
-            Command::ShowTraining(network) => {
-                self.view.trained = network;
-                self.view.workspaces.show_pane(Pane::Training);
-            }
-            Command::ShowDoors => self.session.shows_doors = true,
-            Command::Show(pane) => self.view.workspaces.show_pane(pane),
-            Command::ResetLayout => self.view.workspaces.reset_shown(),
-            Command::ShowWorkspace(workspace) => self.show_workspace(workspace),
-            Command::Say(severity, text) => self.say(severity, text),
-            Command::DismissMessage => drop(self.session.messages.pop()),
-            Command::ShowMessages => self.session.dialogs.open(Dialog::Messages),
-            _ => {}
-        }
-    }
-
-    fn show_workspace(&mut self, workspace: Workspace) {
-        self.view.workspaces.shown = workspace;
-        self.session.shows_doors = false;
-    }
-
-    fn ask_path(&mut self, purpose: Purpose) {
-        self.session.dialogs.open(Dialog::Path(PathDialog::new(purpose)));
-    }
-
-    fn ask(&mut self, purpose: Purpose) {
-        ask_for_path(purpose, &mut self.session.tasks);
-    }
-
-    /// Selects a subject and shows it from time zero. Selecting the current subject again changes
-    /// nothing but the listed data set. The force of the case is predicted if the view follows the
-    /// selected case.
-    pub(super) fn select(&mut self, subject: Subject) {
-        if let Subject::Case { dataset, .. } = &subject {
-            self.view.listed = Some(dataset.clone());
-        }
-        let before = self.project.subject();
-        if before.as_ref() != Some(&subject) {
-            self.project.put_aside(self.takes_ending(before.as_ref()));
-            let takes_ending = self.takes_ending(Some(&subject));
-            self.project.take_up(self.source_of(subject), takes_ending);
-            self.drop_answers();
-            self.session.time_s = 0.0;
-            self.session.fit_plots = true;
-            if self.view.force.follow_case {
-                self.predict_case();
-            }
-        }
-    }
-
-    fn select_neighbour(&mut self, step: isize) {
-        let Session { cases, sources, replays, .. } = &self.session;
-        let Some(table) = cases.table(sources, replays, &self.view) else { return };
-        let current = match &self.project.subject() {
-            Some(Subject::Case { case, .. }) => table.position(case),
-            _ => None,
-        };
-        let next = match current {
-            Some(index) => index.checked_add_signed(step),
-            None => Some(0),
-        };
-        let row = next.and_then(|index| table.row(index));
-        if let (Some(row), Some(dataset)) = (row, &self.view.listed) {
-            let subject = Subject::Case { dataset: dataset.clone(), case: row.name.to_owned() };
-            self.select(subject);
-        }
-    }
-
-    fn replay(&mut self, path: PathBuf, context: &Context) {
-        let question = self.replay_request(path.clone());
-        let replay = self.session.replays.entry(path).or_default();
-        if let Err(error) = replay.start(question, &self.session.library, wake(context)) {
-            self.say(Severity::Error, error.to_string());
-        }
-    }
-
-    fn cancel_replay(&self, path: &Path) {
-        if let Some(replay) = self.session.replays.get(path) {
-            replay.cancel();
-        }
-    }
-
-    fn step_time(&mut self, steps: f64) {
-        let end = self.end_time_s();
-        self.session.playing = false;
-        self.session.time_s = (self.session.time_s + steps * TIME_STEP_S).clamp(0.0, end);
-    }
-
-    fn show_contact_end(&mut self) {
-        // The motions of a reconstruction begin with an impact of no duration.
-        if self.view.workspaces.shown == Workspace::Reconstruct {
-            return;
-        }
-        let force = self.analysis().and_then(|answer| answer.analysis.force.as_ref());
-        if let Some((_, end_s)) = force.and_then(contact_interval) {
-            let end = self.end_time_s();
-            self.session.playing = false;
-            self.session.time_s = end_s.clamp(0.0, end);
-        }
-    }
-
-    fn toggle_play(&mut self) {
-        let at_end = self.session.time_s >= self.end_time_s();
-        self.session.playing = !self.session.playing;
-        if self.session.playing && at_end {
-            self.session.time_s = 0.0;
-        }
-    }
-
-    /// Returns the last time of the simulation of the subject, or of its recorded motion if it is
-    /// not simulated, in seconds; in the workspace of the reconstruction, that of the path that is
-    /// followed; 0 without any.
-    pub fn end_time_s(&self) -> f64 {
-        if self.view.workspaces.shown == Workspace::Reconstruct {
-            return self.session.reconstruction.end_time_s();
-        }
-        let last = |SimulateAnswer { analysis, .. }: &SimulateAnswer| {
-            let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
-            let series = simulation.or(analysis.reference.as_ref())?;
-            series.time_s().last().copied()
-        };
-        self.analysis().and_then(last).unwrap_or(0.0)
     }
 }
 

@@ -3,8 +3,10 @@
 //! It edits settings, makes questions of them and shows the answers. The questions are answered by
 //! [`study`](impactlab_study), on threads that [`jobs`](impactlab_core::jobs) starts.
 
+mod apply;
 mod case;
 mod case_filter;
+mod case_row;
 mod case_table;
 mod chain;
 mod command;
@@ -28,6 +30,7 @@ mod menu;
 mod model;
 mod network;
 mod open;
+mod pane;
 mod panels;
 mod panes;
 mod project;
@@ -83,7 +86,7 @@ pub use kept::{KeptEntry, KeptKind, KeptStatus, ModelsDialog, Removal};
 pub use latest::Latest;
 pub use measure::{Measure, Measurement, Measuring};
 pub use network::Network;
-pub use panes::Pane;
+pub use pane::Pane;
 pub use project::{Beside, Project};
 pub use question_job::{Answered, QuestionJob};
 pub use reconstruction::{FollowedParticle, ReconstructionCommand, ReconstructionSession};

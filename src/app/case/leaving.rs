@@ -1,29 +1,13 @@
 //! What is asked before the window closes, or another case takes the place of the one that is open.
 
-use std::path::PathBuf;
-
 use egui::{Context, Ui, ViewportCommand};
 
+use crate::app::case::Leaving;
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::state::{Session, State};
 use crate::app::tasks::TaskKey;
 use impactlab_core::data::Existing;
-
-/// Where the user goes.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Leaving {
-    /// The window closes.
-    Quit,
-    /// A new case.
-    New,
-    /// A new case with a PIT, ready to play.
-    Pit,
-    /// The finished example case that comes with the program.
-    Example,
-    /// Another case.
-    Open(PathBuf),
-}
 
 impl Leaving {
     /// What the button says that goes there without saving.

@@ -1,12 +1,14 @@
 //! The case that is open in the window: its variants, its file, and what is asked before it is left.
 
 mod bar;
-
+mod command;
 mod leaving;
-
 mod update;
-
 mod version_1;
+
+pub use bar::case_bar_ui;
+pub use command::{Leaving, SavedCase, VariantCommand};
+pub use leaving::leaving_ui;
 
 use std::path::PathBuf;
 
@@ -17,12 +19,9 @@ use impactlab_core::data::write::sha256_hex;
 use impactlab_study::ForceQuestion;
 use impactlab_study::case_file::{CaseFile, Variant};
 
-pub use bar::case_bar_ui;
-pub use leaving::{Leaving, leaving_ui};
-pub use update::SavedCase;
-
 /// Name of a case that has no file yet, and of the first variant of a case.
 const UNTITLED: &str = "untitled";
+
 const FIRST_VARIANT: &str = "base";
 
 /// The case that is open.
@@ -37,19 +36,6 @@ pub struct OpenCase {
     pub on_disk: Option<String>,
     /// What the case held then, by [`OpenCase::fingerprint`].
     pub saved: Option<String>,
-}
-
-/// An action on the variants of the case.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum VariantCommand {
-    /// Show another variant.
-    Show(String),
-    /// Make a copy of the variant that is shown, and show it.
-    Duplicate,
-    /// Give the variant that is shown another name.
-    Rename(String),
-    /// Remove the variant that is shown.
-    Remove,
 }
 
 impl Default for OpenCase {

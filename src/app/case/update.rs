@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::case::{OpenCase, VariantCommand};
+use crate::app::case::{OpenCase, SavedCase, VariantCommand};
 use crate::app::command::Command;
 use crate::app::found::Found;
 use crate::app::panes::Pane;
@@ -23,15 +23,6 @@ const EXAMPLE: &str = include_str!("../../../assets/examples/pit.impactlab");
 
 /// The largest number of recent cases that are offered.
 const MAX_RECENT: usize = 10;
-
-/// A case that was written.
-#[derive(Debug, Clone)]
-pub struct SavedCase {
-    file: CaseFile,
-    path: PathBuf,
-    on_disk: String,
-    fingerprint: String,
-}
 
 impl State {
     /// Whether the case has something that is not in its file.

@@ -3,6 +3,7 @@
 
 mod collision;
 mod edit;
+mod recorded;
 mod settings;
 mod update;
 
@@ -10,8 +11,8 @@ pub use collision::{NamedCollision, collision_of};
 pub use edit::{
     forget_contact, know_contact, set_contact_x, set_mass, set_side, set_striking_heading,
 };
+pub use recorded::RecordedCase;
 pub use settings::{ForceTrainingForm, ForceView, Statistic};
-pub use update::RecordedCase;
 
 use crate::app::latest::Latest;
 use crate::app::model::ModelStatus;

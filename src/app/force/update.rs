@@ -1,35 +1,21 @@
 //! Background work and commands of the force network.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use egui::Context;
 
 use crate::app::command::{TrainingCommand, wake};
 use crate::app::force::ForceSession;
+use crate::app::force::recorded::RecordedCase;
 use crate::app::kept::{KeptEntry, keep_trained};
 use crate::app::network::Network;
 use crate::app::source::{OpenDataset, Source, chosen_dataset, open_datasets};
 use crate::app::state::{Session, State, Subject};
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::error_chain;
-use impactlab_core::uncertainty::ForceCurve;
 use impactlab_networks::force::{ForceCase, ForceScenario};
 use impactlab_study::{EvaluateForceRequest, ForceQuestion, PredictForceAnswer, Request};
-
-/// The selected case with its recorded force.
-pub struct RecordedCase {
-    /// Folder of the data set.
-    pub dataset: PathBuf,
-    /// Name of the case.
-    pub case: String,
-    /// The collision of the case as it was before the impact.
-    pub scenario: ForceScenario,
-    /// The recorded force over time, in the axes of the case.
-    pub curve: ForceCurve,
-    /// The case in the canonical form in which the models see it.
-    pub canonical: ForceCase,
-}
 
 impl State {
     /// Receives the results of the loader, the training, the evaluation and the forecast, and asks

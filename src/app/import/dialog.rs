@@ -1,66 +1,36 @@
-//! The import dialog: first lines, header and units, a channel and a unit for each column, clock and
-//! axes on the left; the curve as it will be read on the right.
+//! The choices of the import dialog, and what was read with them.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use egui::{ComboBox, Grid, RichText, ScrollArea, Ui};
-
 use crate::app::command::Command;
 use crate::app::found::Found;
+use crate::app::import::answer::ImportAnswer;
 use crate::app::import::choices::Choices;
-use crate::app::import::column_row::column_ui;
 use crate::app::import::preview::Preview;
-use crate::app::looks;
-use crate::app::model::file_name;
-use crate::app::panels::{file_vehicle_ui, start_fields};
-use crate::app::project::Project;
 use crate::app::tasks::{TaskKey, Tasks};
-use impactlab_core::data::{
-    Channel, ColumnMap, FileKind, HeaderLine, ReadSettings, Severity, Sheet, SheetRef, Table,
-    VelocityAxes, VelocityFit, proposals,
-};
+use impactlab_core::data::{ColumnMap, ReadSettings, Table, VelocityAxes, VelocityFit, proposals};
 use impactlab_core::error_chain;
 use impactlab_core::units::UnitSystem;
-use impactlab_draw::{FigureOptions, figure_ui, theme};
-
-/// Size of the dialog and of its parts, points.
-const WIDTH: f32 = 1060.0;
-const BODY_HEIGHT: f32 = 560.0;
-const WINDOW_MARGIN: f32 = 48.0;
-const LEFT_SHARE: f32 = 0.58;
-const GAP: f32 = 4.0 * looks::GRID;
-const LINES_HEIGHT: f32 = 110.0;
-const COLUMNS_HEIGHT: f32 = 220.0;
-const CURVE_HEIGHT: f32 = 260.0;
-
-/// What the dialog reads in the background.
-#[derive(Clone)]
-pub enum ImportAnswer {
-    /// The table, with the lines of header and units that were chosen.
-    Table(ReadSettings, Result<Arc<Table>, String>),
-    /// The curve with the choices of a map.
-    Preview(ColumnMap, Result<Arc<Preview>, String>),
-}
 
 /// The dialog in which the user says how a file is read.
 pub struct ImportDialog {
-    path: PathBuf,
+    pub(super) path: PathBuf,
     /// The map with which the file was opened before, until its table is read.
     first_map: Option<ColumnMap>,
-    settings: ReadSettings,
+    pub(super) settings: ReadSettings,
     /// The table, and the settings with which it was read.
-    table: Option<(ReadSettings, Result<Arc<Table>, String>)>,
+    pub(super) table: Option<(ReadSettings, Result<Arc<Table>, String>)>,
     /// The first lines of the last table that could be read.
-    beginning: Vec<(u64, String)>,
-    choices: Choices,
+    pub(super) beginning: Vec<(u64, String)>,
+    pub(super) choices: Choices,
     /// The curve, and the map with which it was read.
-    preview: Option<(ColumnMap, Result<Arc<Preview>, String>)>,
+    pub(super) preview: Option<(ColumnMap, Result<Arc<Preview>, String>)>,
     is_reading: bool,
     /// Whether the user has said in which axes the velocities are.
-    says_velocities: bool,
+    pub(super) says_velocities: bool,
     /// System of units of the curve.
-    units: UnitSystem,
+    pub(super) units: UnitSystem,
 }
 
 impl ImportDialog {
@@ -170,306 +140,5 @@ impl ImportDialog {
                 self.preview = Some((map, preview));
             }
         }
-    }
-
-    /// Draws the dialog and adds a command when the user confirms or cancels.
-    ///
-    /// - `asked`: what a file does not say: how the struck vehicle moves and where the force acts, and
-    ///   which vehicle it is.
-    pub fn ui(&mut self, ui: &mut Ui, asked: &mut Project, commands: &mut Vec<Command>) {
-        let window = ui.ctx().content_rect().size();
-        let width = WIDTH.min(window.x - WINDOW_MARGIN);
-        ui.set_width(width);
-        ui.horizontal(|ui| {
-            ui.heading("Which column is which?");
-            ui.label(RichText::new(file_name(&self.path)).strong())
-                .on_hover_text(self.path.display().to_string());
-        });
-        ui.separator();
-        let height = BODY_HEIGHT.min(window.y - 3.0 * WINDOW_MARGIN);
-        let body = ScrollArea::vertical().id_salt("import").max_height(height);
-        body.auto_shrink([false, false]).show(ui, |ui| {
-            ui.horizontal_top(|ui| {
-                ui.vertical(|ui| {
-                    ui.set_width(LEFT_SHARE * width);
-                    self.lines_ui(ui);
-                    self.columns_ui(ui);
-                    self.settings_ui(ui);
-                });
-                ui.add_space(GAP);
-                ui.vertical(|ui| {
-                    self.preview_ui(ui);
-                    self.asked_ui(ui, asked);
-                });
-            });
-        });
-        ui.separator();
-        self.buttons_ui(ui, commands);
-    }
-
-    /// Draws the first lines of the file, and the choice of the lines of header and units.
-    fn lines_ui(&mut self, ui: &mut Ui) {
-        let table = match &self.table {
-            Some((_, Ok(table))) => Some(Arc::clone(table)),
-            Some((_, Err(problem))) => {
-                let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-                ui.colored_label(color, problem);
-                None
-            }
-            None => {
-                ui.horizontal(|ui| (ui.spinner(), ui.label("reading the file")));
-                return;
-            }
-        };
-        let read = table.as_ref().map(|table| (table.has_header(), table.header_line()));
-        let header = self.settings.header.or(read.map(|(has_header, line)| match has_header {
-            true => HeaderLine::Line(line),
-            false => HeaderLine::None,
-        }));
-        let units =
-            self.settings.units_line.or(table.as_ref().and_then(|table| table.units_line()));
-        ui.horizontal(|ui| {
-            if let Some(sheet) = table.as_ref().and_then(|table| table.sheet()) {
-                self.sheet_ui(ui, sheet);
-            }
-            self.header_ui(ui, header);
-            self.units_line_ui(ui, units);
-        });
-        let lines = ScrollArea::both().id_salt("lines").max_height(LINES_HEIGHT);
-        lines.auto_shrink([false, true]).show(ui, |ui| {
-            for (number, text) in &self.beginning {
-                let is_header = header == Some(HeaderLine::Line(*number));
-                let mut line = RichText::new(format!("{number:4}  {text}")).monospace();
-                if is_header || units == Some(*number) {
-                    line = line.strong().underline();
-                }
-                ui.add(egui::Label::new(line).extend());
-            }
-        });
-        ui.separator();
-    }
-
-    fn sheet_ui(&mut self, ui: &mut Ui, shown: &Sheet) {
-        let name = ui.label("Sheet");
-        let combo = ComboBox::from_id_salt("sheet").selected_text(&shown.name);
-        let list = combo.show_ui(ui, |ui| {
-            for (idx, sheet) in shown.all.iter().enumerate() {
-                if ui.selectable_label(*sheet == shown.name, sheet).clicked() {
-                    // Lines that were chosen are those of the other sheet.
-                    let sheet = Some(SheetRef::Number(idx + 1));
-                    self.settings = ReadSettings { sheet, ..ReadSettings::default() };
-                }
-            }
-        });
-        list.response.labelled_by(name.id);
-    }
-
-    fn header_ui(&mut self, ui: &mut Ui, shown: Option<HeaderLine>) {
-        let name = ui.label("Header");
-        let text = |header| match header {
-            Some(HeaderLine::Line(line)) => format!("line {line}"),
-            Some(HeaderLine::None) => "none".to_owned(),
-            None => "?".to_owned(),
-        };
-        let combo = ComboBox::from_id_salt("header").selected_text(text(shown)).width(90.0);
-        let lines = self.beginning.iter().map(|(number, _)| HeaderLine::Line(*number));
-        let options: Vec<HeaderLine> = lines.chain([HeaderLine::None]).collect();
-        let shown = combo.show_ui(ui, |ui| {
-            for option in options {
-                let is_chosen = shown == Some(option);
-                if ui.selectable_label(is_chosen, text(Some(option))).clicked() {
-                    self.settings.header = Some(option);
-                }
-            }
-        });
-        shown.response.labelled_by(name.id);
-    }
-
-    fn units_line_ui(&mut self, ui: &mut Ui, shown: Option<u64>) {
-        let name = ui.label("Units");
-        let text =
-            |line: Option<u64>| line.map_or("none".to_owned(), |line| format!("line {line}"));
-        let combo = ComboBox::from_id_salt("units line").selected_text(text(shown)).width(90.0);
-        let lines: Vec<u64> = self.beginning.iter().map(|(number, _)| *number).collect();
-        let shown = combo.show_ui(ui, |ui| {
-            if ui.selectable_label(self.settings.units_line.is_none(), "as found").clicked() {
-                self.settings.units_line = None;
-            }
-            for line in lines {
-                if ui.selectable_label(shown == Some(line), text(Some(line))).clicked() {
-                    self.settings.units_line = Some(line);
-                }
-            }
-        });
-        shown.response.labelled_by(name.id);
-    }
-
-    /// Draws a row for each column with its channel and its unit.
-    fn columns_ui(&mut self, ui: &mut Ui) {
-        let columns = ScrollArea::both().id_salt("columns").max_height(COLUMNS_HEIGHT);
-        columns.auto_shrink([false, true]).show(ui, |ui| {
-            Grid::new("mapping").striped(true).show(ui, |ui| {
-                for title in ["Column", "First values", "holds", "in"] {
-                    ui.strong(title);
-                }
-                ui.end_row();
-                for column in &mut self.choices.columns {
-                    column_ui(ui, column);
-                    ui.end_row();
-                }
-            });
-        });
-        if let Some(channel) = self.choices.missing_force() {
-            let label = format!("{} is zero throughout", channel.label());
-            ui.checkbox(&mut self.choices.other_force_is_zero, label);
-        }
-        let n_of =
-            |channel| self.choices.columns.iter().filter(|of| of.channel == Some(channel)).count();
-        for channel in [Channel::Fx, Channel::Fy, Channel::FxBody, Channel::FyBody, Channel::Mz] {
-            if n_of(channel) > 1 {
-                let text = format!("{}: {} columns are added up", channel.label(), n_of(channel));
-                ui.weak(text);
-            }
-        }
-    }
-
-    /// Draws clock, direction of y, and the axes of the velocities.
-    fn settings_ui(&mut self, ui: &mut Ui) {
-        ui.separator();
-        Grid::new("settings").num_columns(2).show(ui, |ui| {
-            let name = ui.label("Add to the time");
-            let mut shift_ms = self.settings.time_shift_s.unwrap_or(0.0) * 1e3;
-            let field = egui::DragValue::new(&mut shift_ms).speed(0.1).suffix(" ms");
-            let field = ui.add(field).labelled_by(name.id);
-            if field.on_hover_text("So that the contact begins at 0").changed() {
-                self.settings.time_shift_s = (shift_ms != 0.0).then_some(shift_ms / 1e3);
-            }
-            ui.end_row();
-            let name = ui.label("y points to the");
-            let text = |right| if right { "right (SAE J670)" } else { "left (ISO 8855)" };
-            let combo = ComboBox::from_id_salt("y axis");
-            let is_right = &mut self.settings.y_to_right;
-            let shown = combo.selected_text(text(*is_right)).show_ui(ui, |ui| {
-                for right in [false, true] {
-                    ui.selectable_value(is_right, right, text(right));
-                }
-            });
-            shown.response.labelled_by(name.id);
-            ui.end_row();
-            self.velocities_ui(ui);
-        });
-    }
-
-    fn velocities_ui(&mut self, ui: &mut Ui) {
-        let has = |channel| self.choices.columns.iter().any(|of| of.channel == Some(channel));
-        if !(has(Channel::Vx) && has(Channel::Vy)) {
-            return;
-        }
-        let name = ui.label("v_x, v_y are in");
-        let text = |axes| match axes {
-            VelocityAxes::Body => "body axes",
-            VelocityAxes::World => "world axes",
-        };
-        let mut chosen = self.settings.velocities.unwrap_or(VelocityAxes::Body);
-        ui.horizontal(|ui| {
-            let combo = ComboBox::from_id_salt("velocities").selected_text(text(chosen));
-            let shown = combo.show_ui(ui, |ui| {
-                [VelocityAxes::Body, VelocityAxes::World]
-                    .into_iter()
-                    .any(|axes| ui.selectable_value(&mut chosen, axes, text(axes)).clicked())
-            });
-            if shown.inner == Some(true) {
-                (self.settings.velocities, self.says_velocities) = (Some(chosen), true);
-            }
-            shown.response.labelled_by(name.id);
-            let fit = self.preview.as_ref().and_then(|(_, preview)| preview.as_ref().ok()?.fit);
-            ui.weak(match fit {
-                Some(VelocityFit::Body) => "the path says: body axes",
-                Some(VelocityFit::World) => "the path says: world axes",
-                Some(VelocityFit::Both) => "the path fits both alike",
-                Some(VelocityFit::Neither(_)) => "the path fits neither",
-                None => "not checked: that takes x, y and yaw",
-            });
-        });
-        ui.end_row();
-    }
-
-    /// Draws the curve as it will be read, with its numbers and what is doubtful about them.
-    fn preview_ui(&mut self, ui: &mut Ui) {
-        let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-        let questions = self.choices.open_questions();
-        if !questions.is_empty() && matches!(self.table, Some((_, Ok(_)))) {
-            ui.strong("To be said before the file can be opened");
-            for question in questions {
-                ui.colored_label(warning, format!("• {question}"));
-            }
-            return;
-        }
-        match &self.preview {
-            None => drop(ui.weak("the curve as it will be read")),
-            Some((_, Err(problem))) => {
-                let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-                ui.colored_label(color, problem);
-            }
-            Some((_, Ok(preview))) => {
-                ui.strong(match preview.kind {
-                    FileKind::Force => "A force, as it will be read",
-                    FileKind::Trajectory => "A trajectory, as it will be read",
-                    FileKind::Steer => "Steering, as it will be read",
-                    FileKind::Wheels => "Torques at the wheels, as they will be read",
-                });
-                let options = FigureOptions {
-                    id: "import".to_owned(),
-                    height: Some(CURVE_HEIGHT),
-                    ..FigureOptions::default()
-                };
-                figure_ui(ui, &preview.figure, &options);
-                Grid::new("import numbers").num_columns(2).striped(true).show(ui, |ui| {
-                    for (name, text) in &preview.numbers {
-                        ui.label(*name);
-                        ui.strong(text);
-                        ui.end_row();
-                    }
-                });
-                for doubt in &preview.doubts {
-                    ui.colored_label(warning, format!("• {doubt}"));
-                }
-            }
-        }
-    }
-
-    /// Draws what a force or a motion does not say about the struck vehicle.
-    fn asked_ui(&self, ui: &mut Ui, project: &mut Project) {
-        let Some((_, Ok(preview))) = &self.preview else { return };
-        let title = match preview.kind {
-            FileKind::Force => "What a force does not say about the struck vehicle",
-            FileKind::Trajectory => "What a motion does not say about the vehicle",
-            FileKind::Steer | FileKind::Wheels => return,
-        };
-        ui.separator();
-        ui.strong(title);
-        Grid::new("import start").num_columns(2).show(ui, |ui| {
-            file_vehicle_ui(ui, &mut project.simulate.vehicle);
-            if preview.kind == FileKind::Force {
-                start_fields(ui, project.start_mut(), self.units);
-            }
-        });
-    }
-
-    fn buttons_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        // The curve that is shown must be that of what is opened.
-        let is_shown = |(map, preview): &(ColumnMap, Result<_, _>)| {
-            preview.is_ok() && *map == self.map() && self.choices.open_questions().is_empty()
-        };
-        let is_ready = self.is_settled() && self.preview.as_ref().is_some_and(is_shown);
-        ui.horizontal(|ui| {
-            let open = egui::Button::new("Open with these columns");
-            if ui.add_enabled(is_ready, open).clicked() {
-                commands.push(Command::OpenMapped(self.path.clone(), self.map()));
-            }
-            if ui.button("Cancel").clicked() {
-                commands.push(Command::CloseDialog);
-            }
-        });
     }
 }

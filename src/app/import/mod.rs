@@ -1,12 +1,15 @@
 //! The dialog in which the user says how a file is read, with the curve as it will be read, and the
 //! choices of earlier files.
 
+mod answer;
 mod choices;
 mod column_row;
 mod dialog;
+mod dialog_ui;
 mod preview;
 mod remembered;
 
-pub use dialog::{ImportAnswer, ImportDialog};
+pub use answer::ImportAnswer;
+pub use dialog::ImportDialog;
 pub use remembered::ColumnMaps;
 pub(in crate::app) use remembered::fingerprint;

@@ -14,6 +14,7 @@
 mod described;
 mod entry;
 mod error;
+mod event;
 mod folder;
 mod status;
 mod update;
@@ -22,6 +23,7 @@ pub use described::{differences, how_it_was_made};
 pub(in crate::app) use entry::moment_text;
 pub use entry::{Fact, KeptEntry, KeptKind};
 pub use error::KeptError;
+pub use event::{KeptEvent, ModelsDialog, OpenedResult, Removal};
 pub use folder::{KeptFolder, KeptList, KeptProblem, NOTE_ENDING, name_of};
-pub use status::{KeptEvent, KeptStatus, ModelsDialog, OpenedResult, Removal};
+pub use status::KeptStatus;
 pub(in crate::app) use update::{LIMIT_BYTES, bytes_text, keep_trained};

@@ -4,70 +4,21 @@ use std::path::{Path, PathBuf};
 
 use crate::app::command::Command;
 use crate::app::found::Found;
+use crate::app::kept::event::{KeptEvent, OpenedResult, Removal};
 use crate::app::kept::{KeptEntry, KeptError, KeptFolder, KeptList};
 use crate::app::model::file_name;
 use crate::app::tasks::{TaskKey, Tasks};
-use crate::app::unfinished::UnfinishedList;
 use impactlab_core::data::write::sha256_hex;
 use impactlab_core::data::{Existing, write_atomically};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
 use impactlab_networks::shipped::ModelSource;
-use impactlab_study::{CompareReport, EvaluateForceReport, ModelChoice, Request};
-
-/// Files that are to be removed together, after a question.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Removal {
-    /// What the user knows it by.
-    pub name: String,
-    /// What it is and what goes with it, one sentence.
-    pub what: String,
-    /// The files.
-    pub files: Vec<PathBuf>,
-}
-
-/// A question of the Models pane that the user has to answer.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ModelsDialog {
-    /// What an entry is to be called.
-    Rename {
-        /// The entry.
-        entry: Box<KeptEntry>,
-        /// The name as typed so far.
-        name: String,
-    },
-    /// Whether files are to be removed.
-    Remove(Removal),
-}
-
-/// What a task has done with what is kept.
-#[derive(Clone)]
-pub enum KeptEvent {
-    /// The list was read.
-    Listed(Result<KeptList, String>),
-    /// An entry was written, anew or with another name.
-    Put(Result<KeptEntry, String>),
-    /// Files were removed.
-    Removed(Result<Removal, String>),
-    /// A comparison or an evaluation was read.
-    Opened(Result<OpenedResult, String>),
-    /// The list of trainings that have not ended was read.
-    Trainings(Result<UnfinishedList, String>),
-}
+use impactlab_study::{ModelChoice, Request};
 
 impl From<KeptEvent> for Command {
     fn from(event: KeptEvent) -> Self {
         Self::Kept(Found::new(event))
     }
-}
-
-/// A comparison or an evaluation that is shown again.
-#[derive(Clone)]
-pub enum OpenedResult {
-    /// A comparison of response models, or the evaluation of one.
-    Comparison(Box<CompareReport>),
-    /// An evaluation of a force model, with its question.
-    ForceEvaluation(Box<(Request, EvaluateForceReport)>),
 }
 
 /// What is kept, and the work on it.

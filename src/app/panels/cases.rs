@@ -3,7 +3,8 @@
 use egui::{RichText, Sense, Ui};
 use egui_extras::{Column, TableBuilder, TableRow};
 
-use crate::app::case_table::{CaseColumn, CaseRow, CaseTable, listed_in};
+use crate::app::case_row::{CaseColumn, CaseRow};
+use crate::app::case_table::{CaseTable, listed_in};
 use crate::app::command::Command;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Subject, View};

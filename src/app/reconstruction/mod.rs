@@ -4,6 +4,7 @@
 mod cars;
 mod kept_runs;
 mod live;
+mod preview;
 mod question;
 mod settings;
 pub(in crate::app) mod stand_ins;
@@ -12,9 +13,9 @@ mod update;
 pub use cars::{CarsSource, ReconstructedCars, ShownPaths};
 pub use kept_runs::KeptRuns;
 pub use live::LiveParticles;
+pub use preview::EvidencePreview;
 pub use question::{PreparedReconstruction, ReconstructionQuestion};
 pub use settings::ReconstructionView;
-pub use update::EvidencePreview;
 
 use std::path::PathBuf;
 use std::sync::mpsc::Receiver;

@@ -9,6 +9,7 @@ use crate::app::command::wake;
 use crate::app::panes::Pane;
 use crate::app::project::Project;
 use crate::app::reconstruction::live::watch;
+use crate::app::reconstruction::preview::EvidencePreview;
 use crate::app::reconstruction::stand_ins::{empty_evidence, missing};
 use crate::app::reconstruction::{
     FollowedParticle, ReadEvidence, ReconstructionCommand, ReconstructionQuestion,
@@ -18,51 +19,10 @@ use crate::app::state::State;
 use impactlab_core::data::{Severity, TomlFile};
 use impactlab_core::error_chain;
 use impactlab_reconstruct::evidence::Evidence;
-use impactlab_reconstruct::{Cars, Prior, PriorComponent};
-use impactlab_study::{EvidenceChoice, ReconstructRequest, VehicleChoice};
+use impactlab_study::{EvidenceChoice, ReconstructRequest};
 
 /// The evidence of the shipped example.
 const EXAMPLE: &str = include_str!("../../../assets/examples/reconstruction.toml");
-
-/// What follows from the evidence before anything is sampled.
-pub struct EvidencePreview {
-    /// The evidence.
-    pub evidence: Evidence,
-    /// The choice of the struck and of the striking car.
-    chosen: [VehicleChoice; 2],
-    /// The site on whose friction zones the wheels stand.
-    site: Option<PathBuf>,
-    /// Why a chosen vehicle cannot be used.
-    pub problem: Option<String>,
-    /// The vehicles.
-    pub cars: Cars,
-    /// What is taken to be likely before the motion is looked at.
-    pub priors: Vec<PriorComponent>,
-}
-
-impl EvidencePreview {
-    fn of(evidence: &Evidence, request: &ReconstructRequest) -> Self {
-        let chosen = [&request.vehicle, &request.striking].map(VehicleChoice::clone);
-        let site = request.site.clone();
-        let mut problem = None;
-        let [struck, striking] = chosen.each_ref().map(|choice| {
-            choice.chosen().unwrap_or_else(|error| {
-                problem = Some(error_chain(&error));
-                None
-            })
-        });
-        let cars = Cars::new(evidence, struck.as_ref(), striking.as_ref());
-        let prior = Prior::new(evidence, &cars);
-        let prior = if site.is_some() { prior.with_zones() } else { prior };
-        let priors = prior.components().to_vec();
-        Self { evidence: evidence.clone(), chosen, site, problem, cars, priors }
-    }
-
-    /// Whether it is of these vehicles and of this ground.
-    fn is_of(&self, request: &ReconstructRequest) -> bool {
-        self.chosen.each_ref() == [&request.vehicle, &request.striking] && self.site == request.site
-    }
-}
 
 impl State {
     /// The evidence of the project; `None` if there is none or its file cannot be read.

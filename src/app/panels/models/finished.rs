@@ -9,7 +9,7 @@ use crate::app::kept::{
     bytes_text, how_it_was_made,
 };
 use crate::app::network::Network;
-use crate::app::panels::models::facts_ui;
+use crate::app::panels::models::parts::facts_ui;
 use crate::app::panes::PaneContext;
 use crate::app::project::Project;
 use impactlab_core::data::Severity;

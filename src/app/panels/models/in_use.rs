@@ -7,7 +7,7 @@ use crate::app::kept::{Fact, KeptStatus, how_it_was_made};
 use crate::app::model::{CurrentModel, ModelStatus};
 use crate::app::network::TrainedModel;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
-use crate::app::panels::models::facts_ui;
+use crate::app::panels::models::parts::facts_ui;
 use crate::app::panes::PaneContext;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{ForceSource, ModelChoice};

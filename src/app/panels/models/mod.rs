@@ -4,6 +4,7 @@
 mod dialog;
 mod finished;
 mod in_use;
+mod parts;
 mod running;
 mod unfinished;
 
@@ -12,13 +13,9 @@ pub use unfinished::interrupted_ui;
 
 use egui::{RichText, ScrollArea, Ui};
 
-use crate::app::kept::Fact;
 use crate::app::looks;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::value_row;
 
-/// Characters of a value that are shown without hovering over it.
-const MAX_CHARS: usize = 40;
 /// Space between two parts of the pane, points.
 const BETWEEN_PARTS: f32 = 3.0 * looks::GRID;
 
@@ -42,28 +39,4 @@ fn heading_ui(ui: &mut Ui, title: &str) {
     ui.add_space(BETWEEN_PARTS);
     ui.label(RichText::new(title).heading());
     ui.separator();
-}
-
-/// The beginning of a text that is too long for a column, with “…”.
-fn shortened(text: &str) -> String {
-    match text.char_indices().nth(MAX_CHARS) {
-        None => text.to_owned(),
-        Some((end, _)) => format!("{}…", &text[..end]),
-    }
-}
-
-/// Draws figures or settings in a two-column grid.
-fn facts_ui(ui: &mut Ui, id: impl egui::AsIdSalt, facts: &[Fact]) {
-    egui::Grid::new(id).num_columns(2).show(ui, |ui| {
-        for fact in facts {
-            let shown = shortened(&fact.text);
-            if shown == fact.text {
-                value_row(ui, &fact.label, &fact.text);
-            } else {
-                ui.label(&fact.label);
-                ui.monospace(shown).on_hover_text(&fact.text);
-                ui.end_row();
-            }
-        }
-    });
 }

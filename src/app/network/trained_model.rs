@@ -1,17 +1,16 @@
-//! The two networks behind one interface, for the parts of the app that treat them alike.
+//! What the models of both networks have in common in the window.
 
 use std::path::Path;
 use std::sync::Arc;
-
-use impactlab_core::uncertainty::Caveats;
-use serde::{Deserialize, Serialize};
 
 use crate::app::command::Command;
 use crate::app::found::Found;
 use crate::app::kept::{Fact, differences};
 use crate::app::model::ModelEvent;
+use crate::app::network::kind::Network;
 use impactlab_core::data::Existing;
 use impactlab_core::error_chain;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::significant;
 use impactlab_networks::force::{ForceConfig, ForceModel};
 use impactlab_networks::learning::{EpochRecord, EpochSummary, ModelFile};
@@ -20,45 +19,6 @@ use impactlab_study::{
     Library, ModelChoice, ResponseTrainingAnswer, ResponseTrainingReport, StudyError,
     TrainForceAnswer, TrainForceReport,
 };
-
-/// One of the two networks.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Network {
-    /// The force network, which predicts the impact force from the collision.
-    #[default]
-    Force,
-    /// The response network, which predicts the motion of the struck vehicle from the impact force.
-    Response,
-}
-
-impl Network {
-    /// Both networks.
-    pub const ALL: [Self; 2] = [Self::Force, Self::Response];
-
-    /// Returns the name of a model of this network for use in a sentence, such as “force model”.
-    pub fn model(self) -> &'static str {
-        match self {
-            Self::Force => "force model",
-            Self::Response => "response model",
-        }
-    }
-
-    /// Returns the name of the network for headings and lists.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Force => "Force network",
-            Self::Response => "Response network",
-        }
-    }
-
-    /// Returns the file name that is proposed when a model of this network is saved.
-    pub fn file_name(self) -> &'static str {
-        match self {
-            Self::Force => "force.safetensors",
-            Self::Response => "response.safetensors",
-        }
-    }
-}
 
 /// A trained model of either network, which can be stored in a file, held in a library and come out
 /// of a training.

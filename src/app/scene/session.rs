@@ -1,39 +1,21 @@
-//! The scene of the simulation that is shown, with the variants and the recording beside it.
+//! The scene that is shown, which is built anew when what it is made of changes.
 
 use std::sync::Arc;
 
-use egui::Context;
-use impactlab_core::uncertainty::Caveats;
-use serde::{Deserialize, Serialize};
-
-use crate::app::command::wake;
 use crate::app::latest::Latest;
 use crate::app::measure::Measuring;
-use crate::app::project::Project;
 use crate::app::recording::{OverlaidRecording, overlaid};
 use crate::app::response::{DensityAnswer, DensityQuestion, MotionAnswer};
 use crate::app::source::Source;
-use crate::app::state::{Session, State, View};
 use crate::app::variants::AnsweredVariant;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::{
     ForecastScene, OtherMotion, Scene, SceneGround, SceneRole, SimulationScene, add_forecast,
     simulation_scene,
 };
-use impactlab_draw::scene::{Camera, Follow, SceneView};
+use impactlab_draw::scene::SceneView;
 use impactlab_study::{PredictMotionAnswer, SimulateAnswer};
-
-/// From where the scene is seen, which is saved.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct SceneSettings {
-    /// Kind of view and directions; the place follows the scene.
-    pub camera: Camera,
-    /// Which car stays in the middle.
-    pub follow: Follow,
-    /// Whether the forecast is shown: draws of it as ghosts, and where it ends.
-    pub shows_forecast: bool,
-}
 
 /// Draws of the forecast that are shown as ghosts.
 const N_GHOSTS: usize = 30;
@@ -158,40 +140,6 @@ impl SceneSource {
             forecast.add_to(&mut scene);
         }
         Scene { ground: self.ground.clone(), ..scene }
-    }
-}
-
-impl State {
-    /// Asks for the density at the end of the forecast while the scene shows that.
-    pub(in crate::app) fn update_scene(&mut self, context: &Context) {
-        let Session { scene, response, library, .. } = &mut self.session;
-        scene.end_density.poll();
-        let motion = response.forecast.ok().filter(|_| self.view.scene.shows_forecast).cloned();
-        match motion {
-            Some(motion) => {
-                let (window_s, gpu) = ([motion.end_s(); 2], response.gpu.clone());
-                let question = DensityQuestion { motion, window_s, gpu };
-                scene.end_density.ask(question, library, wake(context));
-            }
-            None => scene.end_density.forget(),
-        }
-    }
-
-    /// The forecast in the scene: the one that is of what is asked now, if it is to be shown.
-    pub(in crate::app) fn shown_forecast(
-        view: &View,
-        project: &Project,
-        session: &Session,
-    ) -> Option<ShownForecast> {
-        let forecast = &session.response.forecast;
-        let is_shown = view.scene.shows_forecast && !session.is_motion_late();
-        let motion = forecast.ok().filter(|_| is_shown)?;
-        let density = session.scene.end_density.ok().cloned();
-        Some(ShownForecast {
-            motion: Arc::clone(motion),
-            seed: project.predict_motion.seed,
-            density: density.filter(|density| Arc::ptr_eq(&density.motion, motion)),
-        })
     }
 }
 

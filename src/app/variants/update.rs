@@ -1,53 +1,13 @@
-//! The answers of the variants that are not in the forms, so that all variants are shown side by side.
-
-use std::collections::BTreeMap;
-use std::sync::Arc;
+//! Asks the questions of the variants that are not in the forms.
 
 use egui::Context;
 
 use crate::app::command::wake;
-use crate::app::latest::Latest;
-use crate::app::response::{MotionAnswer, MotionQuestion};
+use crate::app::response::MotionQuestion;
 use crate::app::state::{Session, State};
+use crate::app::variants::answers::{AnsweredVariant, VariantAnswers};
 use impactlab_study::case_file::Variant;
-use impactlab_study::{PredictMotionRequest, Request, SimulateAnswer, SimulateRequest};
-
-/// The answers of one variant.
-#[derive(Default)]
-pub struct VariantAnswers {
-    /// The simulation of its subject.
-    pub simulation: Latest<SimulateRequest>,
-    /// The forecast of the motion.
-    pub forecast: Latest<MotionQuestion>,
-}
-
-/// The answers of the variants that are not in the forms, by their names.
-pub type OtherVariants = BTreeMap<String, VariantAnswers>;
-
-/// Simulation and forecast of a variant.
-type Answers<'a> = (&'a Latest<SimulateRequest>, &'a Latest<MotionQuestion>);
-
-/// A variant with the answers that there are.
-pub struct AnsweredVariant {
-    /// What it is called.
-    pub name: String,
-    /// Whether it is the one in the forms.
-    pub is_shown: bool,
-    /// The simulation of its subject.
-    pub simulation: Option<Arc<SimulateAnswer>>,
-    /// The forecast of the motion.
-    pub forecast: Option<Arc<MotionAnswer>>,
-    /// Why there is none of these.
-    pub problem: Option<String>,
-    /// Whether an answer is awaited.
-    pub is_waiting: bool,
-}
-
-impl VariantAnswers {
-    fn is_waiting(&self) -> bool {
-        self.simulation.is_waiting() || self.forecast.is_waiting()
-    }
-}
+use impactlab_study::{PredictMotionRequest, Request, SimulateRequest};
 
 impl State {
     /// Receives the answers of the variants that are not in the forms and asks for the next one. They
@@ -106,48 +66,6 @@ impl State {
         };
         self.case.file.variants.iter().map(answered).collect()
     }
-}
-
-impl AnsweredVariant {
-    fn new(
-        name: String,
-        is_shown: bool,
-        (answers, is_waiting): (Option<Answers<'_>>, bool),
-    ) -> Self {
-        let problem = answers.and_then(|(simulation, forecast)| {
-            simulation.problem().or(forecast.problem()).map(str::to_owned)
-        });
-        Self {
-            name,
-            is_shown,
-            simulation: answers.and_then(|(simulation, _)| simulation.ok().cloned()),
-            forecast: answers.and_then(|(_, forecast)| forecast.ok().cloned()),
-            problem,
-            is_waiting,
-        }
-    }
-}
-
-/// Whether an answer about a variant that is not in the forms is awaited, so that figures over which
-/// these are drawn are not complete.
-pub fn are_others_awaited(variants: &[AnsweredVariant]) -> bool {
-    variants.iter().any(|variant| !variant.is_shown && variant.is_waiting)
-}
-
-/// The simulations of the variants that are not in the forms, by the names of these.
-pub fn other_simulations(
-    variants: &[AnsweredVariant],
-) -> impl Iterator<Item = (&str, &SimulateAnswer)> {
-    let others = variants.iter().filter(|variant| !variant.is_shown);
-    others.filter_map(|variant| Some((variant.name.as_str(), &**variant.simulation.as_ref()?)))
-}
-
-/// The forecasts of the variants that are not in the forms, by the names of these.
-pub fn other_forecasts(
-    variants: &[AnsweredVariant],
-) -> impl Iterator<Item = (&str, &MotionAnswer)> {
-    let others = variants.iter().filter(|variant| !variant.is_shown);
-    others.filter_map(|variant| Some((variant.name.as_str(), &**variant.forecast.as_ref()?)))
 }
 
 /// The questions of a variant that are shown beside those of another.

@@ -1,58 +1,17 @@
-//! The model that answers the questions of one network. It is loaded and saved in the background,
-//! or it comes from a training.
+//! The state of the model of one network.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::app::kept::{KeptEntry, KeptError, KeptFolder, NOTE_ENDING, name_of};
+use crate::app::model::current::{CurrentModel, ModelEvent, ModelNews};
+use crate::app::model::name::file_name;
 use crate::app::network::TrainedModel;
 use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::data::Existing;
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
 use impactlab_study::{Library, ModelChoice};
-
-/// A model in use or ready for use, and its origin.
-pub struct CurrentModel<M> {
-    /// The reference to the model in questions.
-    pub choice: ModelChoice,
-    /// The model.
-    pub model: Arc<M>,
-    /// The name that is shown: the name of the file, “shipped”, or a description of the training.
-    pub name: String,
-    /// Whether the model is stored in a file or is the shipped one.
-    pub is_saved: bool,
-}
-
-impl<M> Clone for CurrentModel<M> {
-    fn clone(&self) -> Self {
-        let Self { choice, model, name, is_saved } = self;
-        let (choice, model, name) = (choice.clone(), Arc::clone(model), name.clone());
-        Self { choice, model, name, is_saved: *is_saved }
-    }
-}
-
-/// What a task has made of a model, which need not be the one in use any more.
-pub enum ModelEvent<M> {
-    /// The model that the project requests was read, or why it could not be.
-    Loaded(Result<CurrentModel<M>, String>),
-    /// The model is in this file of the user now, or why it is not.
-    Saved(Arc<M>, Result<PathBuf, String>),
-    /// The model is kept in this file of the user's data folder now, or why it is not, with its name.
-    Kept(Arc<M>, Result<(KeptEntry, PathBuf), String>),
-}
-
-/// What the user has to know of it.
-pub enum ModelNews {
-    /// Nothing.
-    Nothing,
-    /// A model could not be read.
-    Problem(String),
-    /// A model was written, or could not be.
-    Saved(Result<PathBuf, String>),
-    /// A model is kept, or could not be.
-    Kept(Result<KeptEntry, String>),
-}
 
 /// The state of the model of one network: the model in use, the one that is being loaded or saved,
 /// and the one that a cancelled training has left.
@@ -321,11 +280,6 @@ fn load<M: TrainedModel>(
         Ok(model) => Ok(CurrentModel { choice, model, name, is_saved: true }),
         Err(error) => Err(format!("{choice}: {}", error_chain(&error))),
     }
-}
-
-/// Returns the last component of a path, as text.
-pub fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
 #[cfg(test)]

@@ -1,0 +1,46 @@
+//! Actions on the case, and what is saved of it.
+
+use std::path::PathBuf;
+
+use impactlab_study::case_file::CaseFile;
+
+/// An action on the variants of the case.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum VariantCommand {
+    /// Show another variant.
+    Show(String),
+    /// Make a copy of the variant that is shown, and show it.
+    Duplicate,
+    /// Give the variant that is shown another name.
+    Rename(String),
+    /// Remove the variant that is shown.
+    Remove,
+}
+
+/// Where the user goes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Leaving {
+    /// The window closes.
+    Quit,
+    /// A new case.
+    New,
+    /// A new case with a PIT, ready to play.
+    Pit,
+    /// The finished example case that comes with the program.
+    Example,
+    /// Another case.
+    Open(PathBuf),
+}
+
+/// A case that was written.
+#[derive(Debug, Clone)]
+pub struct SavedCase {
+    /// The case as it is in its file.
+    pub(super) file: CaseFile,
+    /// Its file.
+    pub(super) path: PathBuf,
+    /// SHA-256 of the text of the file.
+    pub(super) on_disk: String,
+    /// What the case holds.
+    pub(super) fingerprint: String,
+}

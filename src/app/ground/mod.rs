@@ -1,0 +1,8 @@
+//! The ground of the scene: the site that was opened, and where its orthophoto was put.
+
+mod command;
+mod session;
+mod update;
+
+pub use command::GroundCommand;
+pub use session::GroundSession;

@@ -1,0 +1,15 @@
+//! What the import dialog reads in the background.
+
+use std::sync::Arc;
+
+use crate::app::import::preview::Preview;
+use impactlab_core::data::{ColumnMap, ReadSettings, Table};
+
+/// What the dialog reads in the background.
+#[derive(Clone)]
+pub enum ImportAnswer {
+    /// The table, with the lines of header and units that were chosen.
+    Table(ReadSettings, Result<Arc<Table>, String>),
+    /// The curve with the choices of a map.
+    Preview(ColumnMap, Result<Arc<Preview>, String>),
+}

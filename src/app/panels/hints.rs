@@ -1,0 +1,63 @@
+//! What panes show in the place of an answer, or over one that is late.
+
+use egui::{RichText, Ui};
+
+use crate::app::state::Session;
+use impactlab_draw::theme;
+use impactlab_study::SimulateAnswer;
+
+/// Share of its colour that an answer keeps which is not of what is asked any more.
+const FADED: f32 = 0.35;
+
+/// Draws an answer, greyed if it is not of what is asked any more.
+pub(super) fn faded_if<R>(ui: &mut Ui, is_late: bool, draw: impl FnOnce(&mut Ui) -> R) -> R {
+    let drawn = ui.scope(|ui| {
+        if is_late {
+            ui.multiply_opacity(FADED);
+        }
+        draw(ui)
+    });
+    drawn.inner
+}
+
+/// Draws an answer, greyed and marked as being computed if it is not of what is asked any more.
+pub fn faded<R>(ui: &mut Ui, is_late: bool, draw: impl FnOnce(&mut Ui) -> R) -> R {
+    let area = ui.available_rect_before_wrap();
+    let drawn = faded_if(ui, is_late, draw);
+    if is_late {
+        let corner = area.right_top() + egui::vec2(-6.0, 4.0);
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let color = ui.visuals().strong_text_color();
+        let text = ui.painter().layout_no_wrap("computing…".to_owned(), font, color);
+        let place = egui::Align2::RIGHT_TOP.anchor_size(corner, text.size());
+        ui.painter().rect_filled(place.expand(4.0), 3.0, ui.visuals().extreme_bg_color);
+        ui.painter().galley(place.min, text, color);
+    }
+    drawn
+}
+
+/// Returns the simulation of the selected subject. If there is none, it draws the reason (an error,
+/// a simulation that is still running, or no selection) and returns `None`.
+pub(super) fn analysis_or_hint<'a>(
+    ui: &mut Ui,
+    session: &'a Session,
+) -> Option<&'a SimulateAnswer> {
+    match &session.analysis.answer {
+        Some(Ok(answer)) => return Some(answer),
+        Some(Err(error)) => {
+            let dark = ui.visuals().dark_mode;
+            let color = theme::severity_color(impactlab_core::data::Severity::Error, dark);
+            ui.colored_label(color, format!("Not computed: {error}"));
+        }
+        None if session.analysis.is_waiting()
+            || session.sources.iter().any(|s| !s.is_settled()) =>
+        {
+            ui.horizontal(|ui| (ui.spinner(), ui.label("Working…")));
+        }
+        None => {
+            ui.label(RichText::new("Nothing selected").strong());
+            ui.label("Open a data set (File, or drop a folder here) and pick a case, or set up a scenario.");
+        }
+    }
+    None
+}

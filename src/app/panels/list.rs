@@ -1,0 +1,91 @@
+//! The list of the panels: what each pane of the window is called and how it is drawn.
+
+use egui::{Ui, WidgetText};
+use egui_tiles::{Behavior, SimplificationOptions, TileId, Tiles, UiResponse};
+
+use crate::app::looks::{self, Icon};
+use crate::app::panels;
+use crate::app::panes::{Pane, PaneContext};
+
+/// Number of pane titles that the tab of a container shows before it ends in “…”.
+const MAX_TITLES: usize = 2;
+
+/// What a pane of the window shows.
+pub struct Panel {
+    /// The title of the pane.
+    pub title: &'static str,
+    /// The icon beside the title.
+    pub icon: Icon,
+    /// Draws the pane.
+    ui: fn(&mut Ui, &mut PaneContext<'_>),
+}
+
+/// The panel of a pane.
+pub fn panel(pane: Pane) -> Panel {
+    let (title, icon, ui): (_, _, fn(&mut Ui, &mut PaneContext<'_>)) = match pane {
+        Pane::Case => ("Contents", Icon::ListTree, panels::contents_ui),
+        Pane::Data => ("Data", Icon::Database, panels::data_ui),
+        Pane::Cases => ("Cases", Icon::Table2, panels::cases_ui),
+        Pane::Vehicle => ("Vehicle", Icon::Car, panels::vehicle_ui),
+        Pane::Scenario => ("Scenario", Icon::Zap, panels::scenario_ui),
+        Pane::Scene => ("Scene", Icon::Map, panels::scene_ui),
+        Pane::Motion => ("Motion", Icon::ChartLine, panels::motion_ui),
+        Pane::Force => ("Force", Icon::Activity, panels::force_ui),
+        Pane::Comparison => ("Comparison", Icon::GitCompare, panels::comparison_ui),
+        Pane::ForcePrediction => ("Force prediction", Icon::ChartSpline, panels::prediction_ui),
+        Pane::MotionForecast => ("Motion forecast", Icon::Route, panels::motion_forecast_ui),
+        Pane::Evidence => ("Evidence", Icon::ClipboardList, panels::evidence_ui),
+        Pane::ReconstructedScene => {
+            ("Reconstructed scene", Icon::MapPin, panels::reconstructed_scene_ui)
+        }
+        Pane::Speeds => ("Speeds", Icon::Sigma, panels::speeds_ui),
+        Pane::Variants => ("Variants", Icon::Layers, panels::variants_ui),
+        Pane::Models => ("Models", Icon::BrainCircuit, panels::models_ui),
+        Pane::Training => ("Training", Icon::GraduationCap, panels::training_ui),
+        Pane::Evaluation => ("Force evaluation", Icon::Gauge, panels::evaluation_ui),
+        Pane::ModelComparison => ("Compare models", Icon::ChartBar, panels::model_comparison_ui),
+        Pane::Report => ("Report", Icon::FileText, panels::report_ui),
+        Pane::ReportPages => ("Report text", Icon::BookOpen, panels::report_pages_ui),
+    };
+    Panel { title, icon, ui }
+}
+
+impl Behavior<Pane> for PaneContext<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, pane: &mut Pane) -> UiResponse {
+        let frame = egui::Frame::new().inner_margin(looks::MARGIN);
+        let is_late = pane.is_answer() && self.session.is_simulation_late();
+        frame.show(ui, |ui| panels::faded(ui, is_late, |ui| (panel(*pane).ui)(ui, self)));
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
+        panel(*pane).title.into()
+    }
+
+    /// Returns the title of a tab: that of its pane or, for a container, the titles of the first
+    /// panes in it.
+    fn tab_title_for_tile(&mut self, tiles: &Tiles<Pane>, tile_id: TileId) -> WidgetText {
+        let mut names = Vec::new();
+        collect_titles(tiles, tile_id, &mut names);
+        let more = if names.len() > MAX_TITLES { ", …" } else { "" };
+        names.truncate(MAX_TITLES);
+        format!("{}{more}", names.join(", ")).into()
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+    }
+}
+
+/// Collects the titles of the panes in a tile, in their order.
+fn collect_titles(tiles: &Tiles<Pane>, tile_id: TileId, titles: &mut Vec<&'static str>) {
+    match tiles.get(tile_id) {
+        Some(egui_tiles::Tile::Pane(pane)) => titles.push(panel(*pane).title),
+        Some(egui_tiles::Tile::Container(container)) => {
+            for child in container.children() {
+                collect_titles(tiles, *child, titles);
+            }
+        }
+        None => {}
+    }
+}

@@ -1,0 +1,137 @@
+//! The part of the state that is not saved: what is loaded, computed and under way.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::app::case_table::CaseList;
+use crate::app::cost::Costs;
+use crate::app::dialog::Dialogs;
+use crate::app::force::ForceSession;
+use crate::app::frame_times::FrameTimes;
+use crate::app::ground::GroundSession;
+use crate::app::kept::KeptStatus;
+use crate::app::latest::Latest;
+use crate::app::reconstruction::ReconstructionSession;
+use crate::app::replay::Replays;
+use crate::app::report::ReportSession;
+use crate::app::response::{DensityChoice, ResponseSession};
+use crate::app::scene::SceneSession;
+use crate::app::source::Source;
+use crate::app::tasks::Tasks;
+use crate::app::unfinished::UnfinishedTrainings;
+use crate::app::variants::OtherVariants;
+use crate::app::widgets::BetweenCursors;
+use impactlab_core::data::Severity;
+use impactlab_core::uncertainty::Caveats;
+use impactlab_study::{ImpactRequest, Library, SimulateReport, SimulateRequest};
+
+/// Loaded data, answers and running work, which are not saved.
+#[derive(Default)]
+pub struct Session {
+    /// The work on other threads that ends by itself.
+    pub tasks: Tasks,
+    /// The data and models in memory to which questions refer.
+    pub library: Arc<Library>,
+    /// The sources that are open, in the order of opening.
+    pub sources: Vec<Source>,
+    /// The simulation of the subject.
+    pub analysis: Latest<SimulateRequest>,
+    /// The impulse solution of the scenario in the scenario pane.
+    pub impact: Latest<ImpactRequest>,
+    /// The answers of the variants that are not in the forms.
+    pub other_variants: OtherVariants,
+    /// The simulations of whole data sets.
+    pub replays: Replays,
+    /// Model, forecast, training and evaluation of the force network.
+    pub force: ForceSession,
+    /// Model, forecast, training and comparison of the response network.
+    pub response: ResponseSession,
+    /// Evidence, run and answer of the reconstruction.
+    pub reconstruction: ReconstructionSession,
+    /// The report of the case.
+    pub report: ReportSession,
+    /// Models, comparisons and evaluations that are kept in the user's data folder.
+    pub kept: KeptStatus,
+    /// Trainings that have not ended and can go on.
+    pub unfinished: UnfinishedTrainings,
+    /// What the work of the forms will cost.
+    pub costs: Costs,
+    /// The cases that the case table lists, in their order.
+    pub cases: CaseList,
+    /// The ground of the scene.
+    pub ground: GroundSession,
+    /// The scene that is shown, and its picture.
+    pub scene: SceneSession,
+    /// The time that is shown in the scene, s.
+    pub time_s: f64,
+    /// The two cursors of the figures over time.
+    pub between: BetweenCursors,
+    /// Whether the playback is running.
+    pub playing: bool,
+    /// Messages for the user that were not dismissed, the newest last.
+    pub messages: Vec<Message>,
+    /// All messages since the program was started, each with the time of day in UTC, the newest last.
+    pub log: Vec<(String, Message)>,
+    /// The dialogs that are open in the window.
+    pub dialogs: Dialogs,
+    /// Whether the window may close without a question.
+    pub may_close: bool,
+    /// Whether what was done before cannot be undone any more: the project is of another variant.
+    pub history_ends: bool,
+    /// Whether the three ways to begin are shown in the place of the panes.
+    pub shows_doors: bool,
+    /// The path that the user opened last. Its first case or file is selected once it is loaded.
+    pub select_when_loaded: Option<PathBuf>,
+    /// The path in the text field of the data pane, as the user has typed it so far.
+    pub typed_path: String,
+    /// How long the window takes to draw itself.
+    pub frame_times: FrameTimes,
+    /// Whether that is shown.
+    pub shows_frame_times: bool,
+    /// Whether the plots fit their axes to their data in this frame.
+    pub fit_plots: bool,
+}
+
+impl Session {
+    /// Whether an answer is awaited.
+    pub fn is_waiting(&self) -> bool {
+        self.analysis.is_waiting()
+            || self.impact.is_waiting()
+            || self.force.forecast.is_waiting()
+            || self.response.forecast.is_waiting()
+    }
+
+    /// Whether the simulation that is shown is not of what is asked any more.
+    pub fn is_simulation_late(&self) -> bool {
+        self.analysis.is_late() || self.impact.is_late()
+    }
+
+    /// What restricts the simulation that is shown.
+    pub fn simulation_caveats(&self, report: &SimulateReport) -> Caveats {
+        let caveats = report.caveats.clone();
+        caveats.outdated_if(self.analysis.is_waiting())
+    }
+
+    /// Whether the forecast of the motion, or its density over a window of time, is awaited.
+    pub fn is_motion_awaited(&self, density: DensityChoice) -> bool {
+        let response = &self.response;
+        self.analysis.is_waiting()
+            || response.forecast.is_waiting()
+            || (density == DensityChoice::Window && response.density.is_waiting())
+    }
+
+    /// Whether the forecast of the motion that is shown is not of what is asked any more. It is asked
+    /// once the simulation is there.
+    pub fn is_motion_late(&self) -> bool {
+        self.analysis.is_late() || self.response.forecast.is_late()
+    }
+}
+
+/// A message for the user.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Message {
+    /// Severity of the message, which gives its colour.
+    pub severity: Severity,
+    /// Text of the message.
+    pub text: String,
+}
