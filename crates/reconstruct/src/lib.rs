@@ -6,6 +6,7 @@
 //!
 //! - [`evidence`]: what was found, from a file;
 //! - `cars`: the two vehicles, from data sheets and evidence;
+//! - [`domain`]: vehicles, roads and damage that a reconstruction is not made for;
 //! - `latent`: the quantities that the motion depends on;
 //! - `prior`: every quantity that the motion depends on, as a transformation of one component of z;
 //! - `forward`: from z to the motion of both cars;
@@ -15,6 +16,7 @@
 //! - [`evaluate`]: how well all of these do on staged collisions, of which the truth is known.
 
 pub mod baseline;
+pub mod domain;
 pub mod evaluate;
 pub mod evidence;
 pub mod sampler;

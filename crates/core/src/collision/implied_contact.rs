@@ -1,7 +1,7 @@
 //! Restitution and impulse ratio that a known impulse implies: the inverse of the planar impact.
 
-use crate::collision::Impact;
 use crate::collision::impact::{dot, multiply, perpendicular};
+use crate::collision::{Impact, contact_work_j};
 
 /// Coefficient of restitution and impulse ratio that a known impulse implies; see
 /// [`Impact::implied_contact`].
@@ -14,7 +14,36 @@ pub struct ImpliedContact {
     pub impulse_ratio: f64,
 }
 
+/// What many impulses imply that may each have acted, such as draws of a predicted force; see
+/// [`Impact::implied_contacts`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImpliedContacts {
+    /// Of each impulse that implies one.
+    pub contacts: Vec<ImpliedContact>,
+    /// Share of the impulses with a restitution between 0 and 1.
+    pub p_rigid: f64,
+    /// Share of the impulses that would add kinetic energy to the two vehicles.
+    pub p_energy_gain: f64,
+}
+
 impl Impact<f64> {
+    /// What each of many impulses implies, and how many of them no contact of two bodies brings about.
+    ///
+    /// - `impulses_world_n_s`: impulses on the struck vehicle in world axes, N s.
+    pub fn implied_contacts(&self, impulses_world_n_s: &[[f64; 2]]) -> ImpliedContacts {
+        let implied = |impulse: &[f64; 2]| self.implied_contact(*impulse);
+        let contacts: Vec<ImpliedContact> = impulses_world_n_s.iter().filter_map(implied).collect();
+        let (v, k) = (self.relative_velocity_m_s(), self.inverse_mass_1_kg());
+        let gains = |impulse: &&[f64; 2]| contact_work_j(v, k, **impulse) < 0.0;
+        let rigid = contacts.iter().filter(|of| (0.0..=1.0).contains(&of.restitution));
+        let share = |n: usize| n as f64 / impulses_world_n_s.len() as f64;
+        ImpliedContacts {
+            p_rigid: share(rigid.count()),
+            p_energy_gain: share(impulses_world_n_s.iter().filter(gains).count()),
+            contacts,
+        }
+    }
+
     /// Computes the coefficient of restitution and the impulse ratio that a known impulse implies,
     /// for instance a measured one. This is the inverse of [`Impact::solve`].
     ///

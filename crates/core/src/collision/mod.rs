@@ -63,7 +63,7 @@ pub use impact::{
     Regime, RestitutionForm, contact_work_j,
 };
 pub use impact_case::ImpactCase;
-pub use implied_contact::ImpliedContact;
+pub use implied_contact::{ImpliedContact, ImpliedContacts};
 pub use impulse_clusters::{ImpulseClusters, ImpulseFeatures};
 pub use outline_contact::{
     Contact, MAX_APPROACH_TIME_S, MovingFootprint, StruckSurface, TOUCH_TOLERANCE_M, find_contact,

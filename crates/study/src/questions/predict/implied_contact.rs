@@ -3,9 +3,8 @@
 use serde::Serialize;
 
 use crate::analysis::bands_of_draws;
-use impactlab_core::collision::{Impact, ImpliedContact, Regime, RestitutionForm, contact_work_j};
+use impactlab_core::collision::{Impact, ImpliedContact, ImpliedContacts, Regime, RestitutionForm};
 use impactlab_core::numerics::random_stream;
-use impactlab_core::uncertainty::ForceCurve;
 use impactlab_core::units::Estimate;
 use impactlab_core::units::percent;
 use impactlab_networks::force::ForcePrediction;
@@ -91,23 +90,15 @@ impl ImpliedContactReport {
     ) -> Option<Self> {
         let mut rng = random_stream(seed, "implied contact", 0);
         let curves = prediction.mixture.sample(N_DRAWS, &mut rng);
-        let implied: Vec<ImpliedContact> = curves
-            .iter()
-            .filter_map(|curve| impact.implied_contact(turned(curve.impulse_n_s(), heading_rad)))
-            .collect();
-        if implied.is_empty() {
+        let impulses_world_n_s: Vec<[f64; 2]> =
+            curves.iter().map(|curve| turned(curve.impulse_n_s(), heading_rad)).collect();
+        let ImpliedContacts { contacts, p_rigid, p_energy_gain } =
+            impact.implied_contacts(&impulses_world_n_s);
+        if contacts.is_empty() {
             return None;
         }
         let estimate =
-            |of: fn(&ImpliedContact) -> f64| bands_of_draws(implied.iter().map(of).collect());
-        let share = |n: usize| n as f64 / curves.len() as f64;
-        let rigid = implied.iter().filter(|of| (0.0..=1.0).contains(&of.restitution));
-        let p_rigid = share(rigid.count());
-        let (v, k) = (impact.relative_velocity_m_s(), impact.inverse_mass_1_kg());
-        let gains = |curve: &&ForceCurve| {
-            contact_work_j(v, k, turned(curve.impulse_n_s(), heading_rad)) < 0.0
-        };
-        let p_energy_gain = share(curves.iter().filter(gains).count());
+            |of: fn(&ImpliedContact) -> f64| bands_of_draws(contacts.iter().map(of).collect());
         Some(Self {
             restitution: estimate(|of| of.restitution),
             impulse_ratio: estimate(|of| of.impulse_ratio),

@@ -1,5 +1,4 @@
 //! From the evidence to the speeds before the collision.
 
-pub(crate) mod domain;
 pub(crate) mod paths;
 pub(crate) mod request;

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
-use crate::questions::reconstruct::domain::{check_damage, of_road, of_vehicles, of_zones};
 use crate::{
     Event, FrictionZoneReport, Library, Observer, Provenance, Question, Sampling, StudyError,
     VehicleChoice,
@@ -18,6 +17,7 @@ use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_core::site::Site;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
 use impactlab_core::vehicle::FrictionZone;
+use impactlab_reconstruct::domain::{check_damage, outside_domain};
 use impactlab_reconstruct::evidence::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Evidence};
 use impactlab_reconstruct::sampler::{
     Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, sample,
@@ -256,9 +256,7 @@ impl Question for ReconstructRequest {
             vehicle: "the struck car".to_owned(),
             source,
         })?;
-        let mut outside = of_vehicles(cars);
-        outside.extend(of_road(evidence.friction));
-        outside.extend(of_zones(model.zones()));
+        let outside = outside_domain(&evidence, cars, model.zones());
         let checkpoint = self.checkpoint(&evidence, &model)?;
         let friction_zones = model.zones().iter().map(FrictionZoneReport::of).collect();
         let target = ReconstructionTarget::new(evidence, model, Discrepancy::default());

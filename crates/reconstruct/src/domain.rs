@@ -1,11 +1,11 @@
 //! Vehicles, roads and damage that a reconstruction is not made for.
 
+use crate::evidence::{Damage, Evidence, Measured};
+use crate::{Car, Cars};
 use impactlab_core::collision::{Footprint, OffOutline, Side};
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{STANDARD_GRAVITY_M_S2, significant};
 use impactlab_core::vehicle::{FrictionZone, VehicleParameters};
-use impactlab_reconstruct::evidence::{Damage, Measured};
-use impactlab_reconstruct::{Car, Cars};
 
 /// A quantity of a vehicle with the range over which the rules of the data sheet were fitted and the
 /// 4DOF model was tried: the vehicles of
@@ -56,8 +56,16 @@ fn rear_load_kg(car: &VehicleParameters) -> f64 {
     (left + right) / STANDARD_GRAVITY_M_S2
 }
 
+/// What of a case lies outside of what rules, priors and model are known to hold for.
+///
+/// - `zones`: parts of the ground with their own friction.
+pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) -> Vec<Caveat> {
+    let road = of_road(evidence.friction);
+    of_vehicles(cars).into_iter().chain(road).chain(of_zones(zones)).collect()
+}
+
 /// What of both vehicles lies outside of what rules and model are known to hold for.
-pub(crate) fn of_vehicles(cars: &Cars) -> Vec<Caveat> {
+fn of_vehicles(cars: &Cars) -> Vec<Caveat> {
     let both = [("struck car", &cars.struck), ("striking car", &cars.striking)];
     both.into_iter().flat_map(|(which, car)| of_vehicle(which, car)).collect()
 }
@@ -81,7 +89,7 @@ fn of_vehicle<'a>(which: &'a str, car: &'a Car) -> impl Iterator<Item = Caveat> 
 }
 
 /// A road whose measured friction is beyond those on which the model was tried.
-pub(crate) fn of_road(friction: Option<Measured>) -> Option<Caveat> {
+fn of_road(friction: Option<Measured>) -> Option<Caveat> {
     let Measured { value, sigma } = friction?;
     let [low, high] = ROAD_FRICTION;
     let reach = FRICTION_REACH * sigma;
@@ -96,7 +104,7 @@ pub(crate) fn of_road(friction: Option<Measured>) -> Option<Caveat> {
 }
 
 /// Zones of the ground whose friction is beyond that of the roads on which the model was tried.
-pub(crate) fn of_zones(zones: &[FrictionZone]) -> impl Iterator<Item = Caveat> {
+fn of_zones(zones: &[FrictionZone]) -> impl Iterator<Item = Caveat> {
     let [low, high] = ROAD_FRICTION;
     let outside = zones.iter().filter(move |zone| !(low..=high).contains(&zone.friction));
     outside.map(move |zone| {
@@ -114,7 +122,7 @@ pub(crate) fn of_zones(zones: &[FrictionZone]) -> impl Iterator<Item = Caveat> {
 ///
 /// # Errors
 /// [`OffOutline`] with the distance.
-pub(crate) fn check_damage(damage: &Damage, cars: &Cars) -> Result<(), OffOutline> {
+pub fn check_damage(damage: &Damage, cars: &Cars) -> Result<(), OffOutline> {
     let footprint = Footprint::from(&cars.struck.parameters.geometry);
     let Measured { value, sigma } = damage.along_m;
     let across_m = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.side));
@@ -133,9 +141,9 @@ pub(crate) fn check_damage(damage: &Damage, cars: &Cars) -> Result<(), OffOutlin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::examples::spin;
+    use crate::evidence::CarEvidence;
+    use crate::evidence::examples::{SPIN, read};
     use impactlab_core::vehicle::LibraryVehicle;
-    use impactlab_reconstruct::evidence::{CarEvidence, Evidence};
 
     fn said(evidence: &Evidence) -> Vec<(String, f64)> {
         let caveats = of_vehicles(&Cars::new(evidence, None, None));
@@ -144,7 +152,7 @@ mod tests {
 
     #[test]
     fn a_lorry_is_named_with_what_is_too_heavy_and_a_toy_with_what_is_too_short() {
-        let mut evidence = spin();
+        let mut evidence = read(SPIN);
         assert_eq!(said(&evidence), []);
         evidence.struck_car.mass_kg = Some(Measured { value: 20_170.0, sigma: 100.0 });
         let lorry = said(&evidence);
@@ -177,7 +185,7 @@ mod tests {
 
     #[test]
     fn no_vehicle_of_the_library_lies_outside() {
-        let evidence = Evidence { striking_car: CarEvidence::default(), ..spin() };
+        let evidence = Evidence { striking_car: CarEvidence::default(), ..read(SPIN) };
         for vehicle in LibraryVehicle::ALL {
             let cars = Cars::new(&evidence, None, Some(&vehicle.parameters()));
             assert_eq!(of_vehicles(&cars), [], "{}", vehicle.id());
@@ -186,7 +194,7 @@ mod tests {
 
     #[test]
     fn damage_lies_at_the_car_within_its_errors() {
-        let mut evidence = spin();
+        let mut evidence = read(SPIN);
         let check = |evidence: &Evidence| {
             check_damage(&evidence.damage, &Cars::new(evidence, None, None))
                 .map_err(|off| off.x_body_m)
