@@ -8,8 +8,9 @@ use std::path::PathBuf;
 use crate::app::case_filter::{CaseFilter, FilterError};
 use crate::app::case_row::CaseRow;
 use crate::app::replay::{ReplayStatus, Replays};
-use crate::app::source::{CheckedDataset, Source};
+use crate::app::source::Source;
 use crate::app::state::View;
+use impactlab_study::CheckedDataset;
 
 /// The cases that are listed and their order.
 ///

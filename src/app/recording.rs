@@ -3,8 +3,9 @@
 use egui::{DragValue, Ui};
 use serde::{Deserialize, Serialize};
 
-use crate::app::source::{CheckedFile, Content, Source};
+use crate::app::source::{Content, Source};
 use impactlab_core::data::{Channel, TimeSeries};
+use impactlab_study::CheckedFile;
 use impactlab_study::SeriesFile;
 
 /// The recording that is drawn over the motion.

@@ -8,13 +8,12 @@ use std::sync::Arc;
 use crate::app::import::{ColumnMaps, fingerprint};
 use crate::app::model::file_name;
 use crate::app::question_job::Answered;
-use impactlab_core::data::{ColumnMap, Dataset, DatasetKind, Flag, Loaded, Note, Outcome};
+use impactlab_core::data::{ColumnMap, DatasetKind, Note, Outcome};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
-use impactlab_core::vehicle::VehicleParameters;
 use impactlab_study::{
-    CheckAnswer, CheckRequest, CheckedContent, CheckedItem, Event, Library, Observer, PathProblem,
-    Question, SeriesFile,
+    CheckAnswer, CheckRequest, CheckedContent, CheckedDataset, CheckedFile, CheckedItem, Event,
+    Library, Observer, PathProblem, Question, SeriesFile,
 };
 
 /// A data set or a file that the user has opened.
@@ -43,17 +42,6 @@ pub enum Content {
     File(Arc<CheckedFile>),
     /// The data could not be read, for the given reason.
     Failed(String),
-}
-
-/// A data set with the results of its check.
-pub struct CheckedDataset {
-    /// The data.
-    pub dataset: Arc<Dataset>,
-    /// Flags of each case, in the order of the cases.
-    pub flags: Vec<Vec<Flag>>,
-    /// Name of the vehicle in the `vehicle.toml` of the data set, or the reason why the file cannot
-    /// be read; `None` if the data set has no such file.
-    pub vehicle: Option<Result<String, String>>,
 }
 
 /// A data set that is open, and its path.
@@ -85,14 +73,6 @@ pub fn chosen_dataset<'a>(
 ) -> Option<OpenDataset<'a>> {
     let chosen = datasets.iter().find(|of| Some(of.path) == wanted);
     chosen.or(datasets.first()).copied()
-}
-
-/// A single file with the results of its check.
-pub struct CheckedFile {
-    /// The data.
-    pub loaded: Arc<Loaded>,
-    /// Flags that the check raised for the file.
-    pub flags: Vec<Flag>,
 }
 
 /// The result of opening a path.
@@ -201,8 +181,8 @@ impl OpenedPath {
         let contents = contents.collect();
         let failure = problems.first().filter(|_| answer.items.is_empty()).cloned();
         let is_doubtful = |item: &CheckedItem| match &item.content {
-            CheckedContent::File(loaded, _) => loaded.notes.iter().any(Note::is_doubt),
-            CheckedContent::Dataset(..) => false,
+            CheckedContent::File(file) => file.loaded.notes.iter().any(Note::is_doubt),
+            CheckedContent::Dataset(_) => false,
         };
         let is_doubtful = question.map.is_none() && answer.items.iter().any(is_doubtful);
         let check = Arc::new(Answered { question, answer: Ok(Arc::new(answer)) });
@@ -260,25 +240,11 @@ pub fn read_source(
     }
 }
 
-/// Returns the path and the content of a checked item; for a data set, the name of its vehicle is
-/// read.
+/// Returns the path and the content of a checked item.
 fn content(item: &CheckedItem) -> (PathBuf, Content) {
     let content = match &item.content {
-        CheckedContent::Dataset(dataset, flags) => {
-            let name = |path: &PathBuf| match VehicleParameters::load(path) {
-                Ok(vehicle) => Ok(vehicle.name),
-                Err(error) => Err(error_chain(&error)),
-            };
-            Content::Dataset(Arc::new(CheckedDataset {
-                dataset: Arc::clone(dataset),
-                flags: flags.clone(),
-                vehicle: dataset.vehicle_file.as_ref().map(name),
-            }))
-        }
-        CheckedContent::File(loaded, flags) => Content::File(Arc::new(CheckedFile {
-            loaded: Arc::clone(loaded),
-            flags: flags.clone(),
-        })),
+        CheckedContent::Dataset(dataset) => Content::Dataset(Arc::clone(dataset)),
+        CheckedContent::File(file) => Content::File(Arc::clone(file)),
     };
     (item.path.clone(), content)
 }

@@ -49,7 +49,7 @@ pub use questions::check::report::{
     ProposedColumn, RecordedForceReport,
 };
 pub use questions::check::request::{
-    CheckAnswer, CheckRequest, CheckedContent, CheckedItem, check_path,
+    CheckAnswer, CheckRequest, CheckedContent, CheckedDataset, CheckedFile, CheckedItem, check_path,
 };
 pub use questions::evaluate::compare::{
     CompareAnswer, CompareReport, CompareRequest, DEFAULT_CHOICES,

@@ -9,11 +9,12 @@ use crate::app::looks::{Icon, icon_button};
 use crate::app::panes::PaneContext;
 use crate::app::project::Project;
 use crate::app::shipped_datasets;
-use crate::app::source::{CheckedDataset, CheckedFile, Content, Source};
+use crate::app::source::{Content, Source};
 use crate::app::state::{Subject, View};
 use impactlab_core::data::{DatasetKind, FileKind, Severity};
 use impactlab_core::error_chain;
 use impactlab_draw::theme;
+use impactlab_study::{CheckedDataset, CheckedFile};
 
 /// Largest number of problems of one data set that are listed; of further ones the number is shown.
 const SHOWN_PROBLEMS: usize = 50;

@@ -94,18 +94,6 @@ pub(super) const MARK_KINDS: [(&str, MarkKind); 2] =
     [("side-slip", MarkKind::SideSlip), ("locked", MarkKind::Locked)];
 
 impl Evidence {
-    /// Whether a TOML file is meant as evidence: it has a table of the struck or the striking car, which
-    /// neither a vehicle nor a scenario has.
-    pub fn is_meant_by(path: &Path) -> bool {
-        let Ok(text) = TomlFile::read(path) else { return false };
-        let file = TomlFile { path, text: &text };
-        let Ok(root) = file.parse() else { return false };
-        let mut top = TomlTable::root(file, &root);
-        ["struck_car", "striking_car"]
-            .iter()
-            .any(|key| matches!(top.optional_table(key), Ok(Some(_))))
-    }
-
     /// Reads an evidence file.
     ///
     /// # Errors

@@ -15,6 +15,8 @@ use impactlab_core::data::{
     ColumnMap, DataError, Dataset, Flag, Loaded, Opened, Outcome, check_case, check_file, open,
     propose_columns, read_any_series,
 };
+use impactlab_core::error_chain;
+use impactlab_core::vehicle::VehicleParameters;
 
 /// Asks what is in files and data sets, in which units, and what is wrong with them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -47,13 +49,34 @@ pub struct CheckedItem {
     pub content: CheckedContent,
 }
 
-/// Data with the flags that were raised on them.
+/// Data with what was found in them.
 #[derive(Debug, Clone)]
 pub enum CheckedContent {
-    /// A data set and the flags of each of its cases.
-    Dataset(Arc<Dataset>, Vec<Vec<Flag>>),
-    /// A file of time series and its flags.
-    File(Arc<Loaded>, Vec<Flag>),
+    /// A data set.
+    Dataset(Arc<CheckedDataset>),
+    /// A file of time series.
+    File(Arc<CheckedFile>),
+}
+
+/// A data set with the results of its check.
+#[derive(Debug)]
+pub struct CheckedDataset {
+    /// The data.
+    pub dataset: Arc<Dataset>,
+    /// Flags of each case, in the order of the cases.
+    pub flags: Vec<Vec<Flag>>,
+    /// Name of the vehicle in the `vehicle.toml` of the data set, or the reason why the file cannot
+    /// be read; `None` if the data set has no such file.
+    pub vehicle: Option<Result<String, String>>,
+}
+
+/// A single file with the results of its check.
+#[derive(Debug)]
+pub struct CheckedFile {
+    /// The data.
+    pub loaded: Arc<Loaded>,
+    /// Flags that the check raised for the file.
+    pub flags: Vec<Flag>,
 }
 
 impl Question for CheckRequest {
@@ -127,24 +150,30 @@ pub fn check_path(
 
 fn checked_dataset(dataset: Dataset) -> CheckedItem {
     let flags = dataset.cases.par_iter().map(check_case).collect();
+    let name = |path: &PathBuf| match VehicleParameters::load(path) {
+        Ok(vehicle) => Ok(vehicle.name),
+        Err(error) => Err(error_chain(&error)),
+    };
+    let vehicle = dataset.vehicle_file.as_ref().map(name);
     let path = dataset.root.clone();
-    CheckedItem { path, content: CheckedContent::Dataset(Arc::new(dataset), flags) }
+    let checked = CheckedDataset { dataset: Arc::new(dataset), flags, vehicle };
+    CheckedItem { path, content: CheckedContent::Dataset(Arc::new(checked)) }
 }
 
 fn checked_file(path: &Path, loaded: Loaded) -> CheckedItem {
-    let flags = check_file(&loaded);
-    CheckedItem { path: path.to_owned(), content: CheckedContent::File(Arc::new(loaded), flags) }
+    let checked = CheckedFile { flags: check_file(&loaded), loaded: Arc::new(loaded) };
+    CheckedItem { path: path.to_owned(), content: CheckedContent::File(Arc::new(checked)) }
 }
 
 impl CheckReport {
     fn add(&mut self, items: &[CheckedItem], all: bool) {
         for item in items {
             match &item.content {
-                CheckedContent::Dataset(dataset, flags) => {
-                    self.datasets.push(DatasetReport::new(dataset, flags, all));
+                CheckedContent::Dataset(checked) => {
+                    self.datasets.push(DatasetReport::new(&checked.dataset, &checked.flags, all));
                 }
-                CheckedContent::File(loaded, flags) => {
-                    self.files.push(FileReport::new(&item.path, loaded, flags));
+                CheckedContent::File(checked) => {
+                    self.files.push(FileReport::new(&item.path, &checked.loaded, &checked.flags));
                 }
             }
         }
