@@ -133,8 +133,9 @@ impl DensityGpu {
         let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         // The shader computes indices with 32 bits.
         let most = most.min(u32::MAX.into());
-        let of = |n: usize, len: usize| (n as u64).saturating_mul((len * size_of::<f32>()) as u64);
-        let bytes = [of(n_kernels, KERNEL_LEN), of(n_points, 1)];
+        let n_bytes =
+            |n: usize, len: usize| (n as u64).saturating_mul((len * size_of::<f32>()) as u64);
+        let bytes = [n_bytes(n_kernels, KERNEL_LEN), n_bytes(n_points, 1)];
         check_limit("the size of the parts in bytes", bytes[0], most)?;
         check_limit("the size of the grid in bytes", bytes[1], most)?;
         Ok(bytes)

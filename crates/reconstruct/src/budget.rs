@@ -64,8 +64,9 @@ impl Narrowing {
             // An outcome so far from every particle that all weights vanish says nothing.
             then.extend(Spread::from_sorted(&sorted, &weights));
         }
-        let mean =
-            |of: &dyn Fn(&Spread) -> f64| then.iter().map(of).sum::<f64>() / then.len() as f64;
+        let mean = |value: &dyn Fn(&Spread) -> f64| {
+            then.iter().map(value).sum::<f64>() / then.len() as f64
+        };
         let mut sizes: Vec<f64> = then.iter().map(|spread| spread.effective).collect();
         sizes.sort_by(f64::total_cmp);
         Some(Self {

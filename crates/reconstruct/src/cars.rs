@@ -132,7 +132,7 @@ impl Car {
     pub fn mass_scatter(&self) -> Option<f64> {
         let own = self.scatter(SheetQuantity::Mass)?;
         let size = [SheetQuantity::Length, SheetQuantity::Width];
-        let size: f64 = size.into_iter().filter_map(|of| self.scatter(of)).sum();
+        let size: f64 = size.into_iter().filter_map(|quantity| self.scatter(quantity)).sum();
         Some(own.hypot(size))
     }
 

@@ -34,12 +34,12 @@ impl CollisionMotion {
         let Ok(motion) = self.vehicle.simulate(&self.manoeuvre, Integrator::Rk4) else {
             return Vec::new();
         };
-        let of = ControlledVehicle {
+        let vehicle = ControlledVehicle {
             vehicle: &self.vehicle,
             controls: &self.manoeuvre.controls,
             friction_zones: &self.manoeuvre.friction_zones,
         };
-        tire_marks(&motion.series, of)
+        tire_marks(&motion.series, vehicle)
     }
 }
 
@@ -132,15 +132,18 @@ mod tests {
         let near = computed(Wheel::RearLeft, &[[-1.0, 0.0], [4.0, 1.0]]);
         let other = computed(Wheel::RearRight, &[[0.0, 0.0], [4.0, 0.0]]);
         let found = [found];
-        let [of] = &MarkComparison::all(&found, &[far, near, other.clone()])[..] else {
+        let [comparison] = &MarkComparison::all(&found, &[far, near, other.clone()])[..] else {
             panic!("one mark was found");
         };
         let slope = 1.0 / 26.0_f64.sqrt();
-        assert_eq!((of.wheel, of.found_length_m), (Wheel::RearLeft, 4.0));
-        assert!((of.computed_length_m - 26.0_f64.sqrt()).abs() < 1e-12);
+        assert_eq!((comparison.wheel, comparison.found_length_m), (Wheel::RearLeft, 4.0));
+        assert!((comparison.computed_length_m - 26.0_f64.sqrt()).abs() < 1e-12);
         // From 1 m to 5 m beyond where the computed mark begins; the last place has its foot on it.
-        assert!((of.mean_distance_m.unwrap() - 3.0 * slope).abs() < 1e-9, "{of:?}");
-        assert!((of.largest_distance_m.unwrap() - 5.0 * slope).abs() < 1e-9, "{of:?}");
+        assert!((comparison.mean_distance_m.unwrap() - 3.0 * slope).abs() < 1e-9, "{comparison:?}");
+        assert!(
+            (comparison.largest_distance_m.unwrap() - 5.0 * slope).abs() < 1e-9,
+            "{comparison:?}"
+        );
         let none = MarkComparison::all(&found, &[other]);
         assert_eq!((none[0].computed_length_m, none[0].mean_distance_m), (0.0, None));
     }

@@ -85,14 +85,14 @@ impl ForwardModel {
     pub fn new(evidence: &Evidence, cars: Cars) -> Self {
         let prior = Prior::new(evidence, &cars);
         let side = evidence.damage.side;
-        let of = |pose: &Option<_>| {
+        let distance_m = |pose: &Option<_>| {
             pose.as_ref().map(|pose: &crate::evidence::RestPose| pose.x_m.hypot(pose.y_m))
         };
         let marks = evidence.marks.iter().flat_map(|mark| &mark.points_m);
         let farthest_m = marks
             .map(|[x, y]| x.hypot(*y))
-            .chain(of(&evidence.rest))
-            .chain(of(&evidence.striking_rest))
+            .chain(distance_m(&evidence.rest))
+            .chain(distance_m(&evidence.striking_rest))
             .chain(evidence.positions.iter().map(|at| at.x_m.hypot(at.y_m)))
             .fold(0.0, f64::max);
         // Without anything that says where the cars were, they are followed to rest.
@@ -145,21 +145,21 @@ impl ForwardModel {
             z.par_iter().map(|z| self.prepared(self.prior.values(z))).collect();
         let runs: Vec<SimulationRun<'_>> = prepared
             .iter()
-            .map(|of| SimulationRun { vehicle: &of.vehicle, manoeuvre: &of.manoeuvre })
+            .map(|motion| SimulationRun { vehicle: &motion.vehicle, manoeuvre: &motion.manoeuvre })
             .collect();
         let striking_vehicles: Vec<SimulationRun<'_>> = prepared
             .iter()
-            .filter_map(|of| of.striking.as_ref())
+            .filter_map(|motion| motion.striking.as_ref())
             .map(|(vehicle, manoeuvre)| SimulationRun { vehicle, manoeuvre })
             .collect();
         let striking_paths = simulate_paths(&striking_vehicles, self.limit, |_, path| path);
         simulate_paths(&runs, self.limit, |idx, path| {
-            let of = &prepared[idx];
+            let motion = &prepared[idx];
             told(CollisionMotion {
-                values: of.values,
-                impact: of.impact,
-                vehicle: of.vehicle.clone(),
-                manoeuvre: of.manoeuvre.clone(),
+                values: motion.values,
+                impact: motion.impact,
+                vehicle: motion.vehicle.clone(),
+                manoeuvre: motion.manoeuvre.clone(),
                 path,
                 striking_path: striking_paths.get(idx).cloned(),
             })

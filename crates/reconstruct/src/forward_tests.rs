@@ -61,10 +61,13 @@ fn a_motion_is_compared_with_marks_by_those_that_it_leaves() {
     assert_eq!(longest.kind(), TireMarkKind::Locked);
     let points_m: Vec<[f64; 2]> = longest.points.iter().map(|point| point.place_m).collect();
     let found = Mark { wheel: Wheel::RearRight, kind: None, points_m, sigma_m: 0.1 };
-    let of = MarkComparison::all(&[found], &computed).remove(0);
-    assert!((of.found_length_m - of.computed_length_m).abs() < 1e-9, "{of:?}");
-    assert!(of.largest_distance_m.unwrap() < 1e-9, "{of:?}");
-    assert!(of.found_length_m > 5.0, "{of:?}");
+    let comparison = MarkComparison::all(&[found], &computed).remove(0);
+    assert!(
+        (comparison.found_length_m - comparison.computed_length_m).abs() < 1e-9,
+        "{comparison:?}"
+    );
+    assert!(comparison.largest_distance_m.unwrap() < 1e-9, "{comparison:?}");
+    assert!(comparison.found_length_m > 5.0, "{comparison:?}");
 }
 
 #[test]
@@ -93,7 +96,7 @@ fn one_scale_that_weighed_both_cars_errs_for_both_alike() {
     weighed.shared_scale_sigma = Some(0.01);
     let target = target(&weighed);
     let prior = target.model().prior();
-    let is_scale = |of: &PriorComponent| of.latent == Latent::MassScaleFactor;
+    let is_scale = |component: &PriorComponent| component.latent == Latent::MassScaleFactor;
     let scale = prior.components().iter().position(is_scale).unwrap();
     let mut z = particles(target.dim()).swap_remove(0);
     let masses = |z: &[f64]| {
@@ -112,8 +115,8 @@ fn one_scale_that_weighed_both_cars_errs_for_both_alike() {
 fn every_distribution_says_who_gave_it() {
     let source_of = |evidence: &Evidence, vehicle: Option<&VehicleParameters>, latent: Latent| {
         let prior = Prior::new(evidence, &Cars::new(evidence, vehicle, vehicle));
-        let of_latent = prior.components().iter().find(|of| of.latent == latent);
-        of_latent.map(|of| of.source)
+        let of_latent = prior.components().iter().find(|component| component.latent == latent);
+        of_latent.map(|component| component.source)
     };
     let found = evidence();
     let mut ranged = found.clone();
@@ -155,7 +158,7 @@ fn a_mirror_scene_has_the_mirror_likelihood() {
     let (scene, mirror) = (target(&evidence()), target(&evidence().mirrored()));
     let z = particles(scene.dim());
     let steer = scene.model().prior().components();
-    let steer = steer.iter().position(|of| of.latent == Latent::SteerAngle).unwrap();
+    let steer = steer.iter().position(|component| component.latent == Latent::SteerAngle).unwrap();
     let mirrored: Vec<Vec<f64>> = z
         .iter()
         .map(|z| {

@@ -82,7 +82,7 @@ fn friction_on_the_way(road: Measured, rest_m: [f64; 2], zones: &[FrictionZone])
     }
     let at = |i: usize| {
         let share = (i as f64 + 0.5) / N_ON_THE_WAY as f64;
-        friction_at(zones, rest_m.map(|of| share * of), road.value)
+        friction_at(zones, rest_m.map(|coordinate| share * coordinate), road.value)
     };
     let mean = (0..N_ON_THE_WAY).map(at).sum::<f64>() / N_ON_THE_WAY as f64;
     Measured { value: mean, sigma: road.sigma * mean / road.value }
@@ -103,7 +103,7 @@ fn drag_share(evidence: &Evidence, distance_m: f64, friction: f64) -> (f64, f64)
 
 /// Two measurements of one number, each with the weight of its precision.
 fn combined(a: Measured, b: Measured) -> Measured {
-    let [wa, wb] = [a, b].map(|of| of.sigma.powi(-2));
+    let [wa, wb] = [a, b].map(|measured| measured.sigma.powi(-2));
     Measured { value: (a.value * wa + b.value * wb) / (wa + wb), sigma: (wa + wb).sqrt().recip() }
 }
 

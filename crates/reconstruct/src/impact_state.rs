@@ -73,8 +73,8 @@ impl ForwardModel {
         let to_heading_rad = wrap_angle_rad(heading_rad - side_rad);
         let normal_rad = side_rad + values.get(Latent::NormalTilt) * to_heading_rad.signum();
         let arm_m = self.striking_arm_m(heading_rad, side_rad);
-        let inertia = |mass_kg: f64, of: &VehicleParameters| {
-            of.mass.yaw_inertia_kg_m2 * mass_kg / of.mass.mass_kg
+        let inertia = |mass_kg: f64, vehicle: &VehicleParameters| {
+            vehicle.mass.yaw_inertia_kg_m2 * mass_kg / vehicle.mass.mass_kg
         };
         let [struck_kg, striking_kg] =
             [values.get(Latent::StruckMass), values.get(Latent::StrikingMass)];

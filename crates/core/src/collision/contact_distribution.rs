@@ -45,8 +45,8 @@ impl ContactDistribution {
     /// because their impulse ratio is only a lower bound of μ_c. Returns `None` if there are no
     /// samples.
     pub fn fit(samples: &[ImpliedContact]) -> Option<Self> {
-        let middle = |of: fn(&ImpliedContact) -> f64| {
-            let mut values: Vec<f64> = samples.iter().map(of).collect();
+        let middle = |value: fn(&ImpliedContact) -> f64| {
+            let mut values: Vec<f64> = samples.iter().map(value).collect();
             values.sort_by(f64::total_cmp);
             let last = values.len().checked_sub(1)? as f64;
             let at = |u: f64| {

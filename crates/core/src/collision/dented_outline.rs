@@ -166,7 +166,8 @@ mod tests {
             assert!(overlap_m2 > 0.01, "{struck:?}: overlap of {overlap_m2} m²");
             assert!((area_m2(&none.outlines_m[0]) - car_m2).abs() < 1e-2, "{struck:?}");
             assert!((area_m2(&none.outlines_m[1]) - car_m2 + overlap_m2).abs() < 2e-2);
-            let lost: Vec<f64> = half.outlines_m.iter().map(|of| car_m2 - area_m2(of)).collect();
+            let lost: Vec<f64> =
+                half.outlines_m.iter().map(|outline| car_m2 - area_m2(outline)).collect();
             assert!((lost[0] + lost[1] - overlap_m2).abs() < 2e-2, "{lost:?} of {overlap_m2} m²");
             assert!(lost.iter().all(|lost| *lost > 0.0), "{lost:?}");
             for outline in &half.outlines_m {

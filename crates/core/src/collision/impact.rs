@@ -214,10 +214,10 @@ pub struct ImpactSolution<T = f64> {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ImpactError {
     /// An input is out of range or not finite.
-    #[error("{of}: {name} is {value}, expected {expected}")]
+    #[error("{part}: {name} is {value}, expected {expected}")]
     Range {
         /// The part of the impact to which the input belongs: target, bullet or contact.
-        of: &'static str,
+        part: &'static str,
         /// Name of the input.
         name: &'static str,
         /// Value of the input, in the unit that ends its name.
@@ -369,23 +369,23 @@ impl Impact<f64> {
     /// [`ImpactError::Range`] names the first input that is out of range; [`ImpactError::Jammed`]
     /// if [`FrictionModel::Paper`] has no solution.
     pub fn solve(&self) -> Result<ImpactSolution, ImpactError> {
-        for (body, of) in [(&self.struck, "target"), (&self.striking, "bullet")] {
+        for (body, part) in [(&self.struck, "target"), (&self.striking, "bullet")] {
             let [vx, vy] = body.velocity_world_m_s;
             let [rx, ry] = body.contact_arm_world_m;
             let inertia = body.yaw_inertia_kg_m2;
-            check(of, "mass_kg", body.mass_kg, Expected::Positive)?;
-            check(of, "yaw_inertia_kg_m2", inertia, Expected::Positive)?;
-            check(of, "heading_rad", body.heading_rad, Expected::Finite)?;
-            check(of, "velocity_m_s[0]", vx, Expected::Finite)?;
-            check(of, "velocity_m_s[1]", vy, Expected::Finite)?;
-            check(of, "yaw_rate_rad_s", body.yaw_rate_rad_s, Expected::Finite)?;
-            check(of, "contact_arm_m[0]", rx, Expected::Finite)?;
-            check(of, "contact_arm_m[1]", ry, Expected::Finite)?;
+            check(part, "mass_kg", body.mass_kg, Expected::Positive)?;
+            check(part, "yaw_inertia_kg_m2", inertia, Expected::Positive)?;
+            check(part, "heading_rad", body.heading_rad, Expected::Finite)?;
+            check(part, "velocity_m_s[0]", vx, Expected::Finite)?;
+            check(part, "velocity_m_s[1]", vy, Expected::Finite)?;
+            check(part, "yaw_rate_rad_s", body.yaw_rate_rad_s, Expected::Finite)?;
+            check(part, "contact_arm_m[0]", rx, Expected::Finite)?;
+            check(part, "contact_arm_m[1]", ry, Expected::Finite)?;
         }
-        let (s, of) = (&self.surface, "contact");
-        check(of, "normal_angle_rad", s.normal_angle_world_rad, Expected::Finite)?;
-        check(of, "restitution", s.restitution, Expected::Share)?;
-        check(of, "friction_limit", s.friction_limit, Expected::NotNegative)?;
+        let (s, part) = (&self.surface, "contact");
+        check(part, "normal_angle_rad", s.normal_angle_world_rad, Expected::Finite)?;
+        check(part, "restitution", s.restitution, Expected::Share)?;
+        check(part, "friction_limit", s.friction_limit, Expected::NotNegative)?;
         self.solve_unchecked()
     }
 }
@@ -463,7 +463,7 @@ enum Expected {
 }
 
 fn check(
-    of: &'static str,
+    part: &'static str,
     name: &'static str,
     value: f64,
     expected: Expected,
@@ -477,7 +477,7 @@ fn check(
     if value.is_finite() && in_range {
         return Ok(());
     }
-    Err(ImpactError::Range { of, name, value, expected })
+    Err(ImpactError::Range { part, name, value, expected })
 }
 
 /// The vector turned by 90° counter-clockwise.

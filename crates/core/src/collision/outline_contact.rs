@@ -127,7 +127,10 @@ struct Candidate {
 /// Overlap of two outlines along the axis on which it is smallest, m; negative for a gap. Outlines
 /// overlap if and only if it is positive.
 pub fn overlap_m(struck: &MovingFootprint, striking: &MovingFootprint) -> f64 {
-    candidates(struck, striking).map(|of| of.depth_m).into_iter().fold(f64::INFINITY, f64::min)
+    candidates(struck, striking)
+        .map(|candidate| candidate.depth_m)
+        .into_iter()
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// Centroid of the overlap of two outlines in world axes, m; `None` if they do not overlap.
@@ -248,9 +251,11 @@ fn first_touch<'a>(
     shallowest: Candidate,
     approach_m_s: [f64; 2],
 ) -> Result<Candidate, FootprintError> {
-    let time_s = |of: &Candidate| of.depth_m / dot(approach_m_s, of.normal_world);
-    let closing =
-        candidates.iter().filter(|of| dot(approach_m_s, of.normal_world) > MIN_CLOSING_M_S);
+    let time_s =
+        |candidate: &Candidate| candidate.depth_m / dot(approach_m_s, candidate.normal_world);
+    let closing = candidates
+        .iter()
+        .filter(|candidate| dot(approach_m_s, candidate.normal_world) > MIN_CLOSING_M_S);
     // As for the smallest overlap, a side of the target stays where two are equal.
     let earlier = |best: &'a Candidate, other: &'a Candidate| {
         if time_s(other) < time_s(best) - 1e-9 { other } else { best }

@@ -207,10 +207,10 @@ pub enum ScenarioError {
         normal_deg: f64,
     },
     /// The contact point that the user gave does not lie at one of the vehicles.
-    #[error("the vehicles do not touch there: {of}")]
+    #[error("the vehicles do not touch there: {which}")]
     ContactOffOutline {
         /// The vehicle: target or bullet.
-        of: &'static str,
+        which: &'static str,
         /// How far the point lies off.
         source: OffOutline,
     },
@@ -361,12 +361,12 @@ impl Scenario {
                 }
                 let contact_point_world_m = struck.world_from_body([x_body_m, y_body_m]);
                 let striking = striking_at(striking_x_world_m, striking_y_world_m);
-                for (of, outline, pose) in
+                for (which, outline, pose) in
                     [("target", outlines[0], &struck), ("bullet", outlines[1], &striking)]
                 {
                     outline
                         .check_contact(pose.body_from_world(contact_point_world_m))
-                        .map_err(|source| ScenarioError::ContactOffOutline { of, source })?;
+                        .map_err(|source| ScenarioError::ContactOffOutline { which, source })?;
                 }
                 return Ok(ScenarioGeometry {
                     struck,

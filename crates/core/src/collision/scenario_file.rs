@@ -127,18 +127,28 @@ fn position(section: &mut TomlTable<'_>, base: &str) -> Result<Option<f64>, Toml
 
 fn read_vehicle(
     mut section: TomlTable<'_>,
-    of: Option<VehicleParameters>,
+    vehicle: Option<VehicleParameters>,
 ) -> Result<ScenarioVehicle, TomlError> {
     let s = &mut section;
-    let mass_kg = number_or(s, ("mass", &BODY_MASS), of.as_ref().map(|of| of.mass.mass_kg))?;
+    let mass_kg =
+        number_or(s, ("mass", &BODY_MASS), vehicle.as_ref().map(|vehicle| vehicle.mass.mass_kg))?;
     // What was estimated from the mass follows the mass of the scenario.
-    let of = of.map(|of| of.with_mass(mass_kg, None));
-    let of = |value: fn(&VehicleParameters) -> f64| of.as_ref().map(value);
-    let inertia = of(|of| of.mass.yaw_inertia_kg_m2);
+    let vehicle = vehicle.map(|vehicle| vehicle.with_mass(mass_kg, None));
+    let from_vehicle = |value: fn(&VehicleParameters) -> f64| vehicle.as_ref().map(value);
+    let inertia = from_vehicle(|vehicle| vehicle.mass.yaw_inertia_kg_m2);
     let yaw_inertia_kg_m2 = number_or(s, ("yaw_inertia", &BODY_YAW_INERTIA), inertia)?;
-    let length_m = number_or(s, ("length", &BODY_LENGTH), of(|of| of.geometry.outer_length_m))?;
-    let width_m = number_or(s, ("width", &BODY_WIDTH), of(|of| of.geometry.outer_width_m))?;
-    let cg_from_front = of(|of| of.geometry.cg_to_front_end_m).map(|m| m.min(length_m));
+    let length_m = number_or(
+        s,
+        ("length", &BODY_LENGTH),
+        from_vehicle(|vehicle| vehicle.geometry.outer_length_m),
+    )?;
+    let width_m = number_or(
+        s,
+        ("width", &BODY_WIDTH),
+        from_vehicle(|vehicle| vehicle.geometry.outer_width_m),
+    )?;
+    let cg_from_front =
+        from_vehicle(|vehicle| vehicle.geometry.cg_to_front_end_m).map(|m| m.min(length_m));
     let cg_range = BODY_CG.at_most(length_m);
     let cg_from_front_m = number_or(s, ("cg_from_front", &cg_range), cg_from_front)?;
     let heading = s.number("heading", &HEADING)?;

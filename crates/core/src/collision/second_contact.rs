@@ -96,9 +96,9 @@ mod tests {
     fn motion(x_m: impl Fn(f64) -> f64, y_m: impl Fn(f64) -> f64) -> TimeSeries {
         let time_s: Vec<f64> = (0..=400).map(|i| f64::from(i) * 0.01).collect();
         let mut series = TimeSeries::new(time_s.clone()).unwrap();
-        let of = |f: &dyn Fn(f64) -> f64| time_s.iter().map(|&t| f(t)).collect();
-        series.insert(Channel::X, of(&x_m)).unwrap();
-        series.insert(Channel::Y, of(&y_m)).unwrap();
+        let sampled = |f: &dyn Fn(f64) -> f64| time_s.iter().map(|&t| f(t)).collect();
+        series.insert(Channel::X, sampled(&x_m)).unwrap();
+        series.insert(Channel::Y, sampled(&y_m)).unwrap();
         series.insert(Channel::Yaw, vec![0.0; time_s.len()]).unwrap();
         series
     }

@@ -274,11 +274,12 @@ impl ErrorSummary {
     ) -> Option<Self> {
         let replays: Vec<&Replay> = replays.into_iter().filter(|replay| choose(replay)).collect();
         let errors = || replays.iter().map(|replay| &replay.error);
-        let of = |figure: &dyn Fn(&MotionError) -> f64| Summary::from_values(errors().map(figure));
+        let summary =
+            |figure: &dyn Fn(&MotionError) -> f64| Summary::from_values(errors().map(figure));
         let known = |figure: fn(&MotionError) -> Option<f64>| {
             Summary::from_values(errors().filter_map(figure))
         };
-        let average_error_m = of(&|error| error.average_error_m)?;
+        let average_error_m = summary(&|error| error.average_error_m)?;
         let horizon = |index: usize| {
             let reached = errors().map(|error| error.horizon_error_m[index]);
             Summary::from_values(reached.filter(|distance_m| !distance_m.is_nan()))
@@ -286,11 +287,11 @@ impl ErrorSummary {
         Some(Self {
             average_error_m,
             score_1_m: 1.0 / average_error_m.mean,
-            final_error_m: of(&|error| error.final_error_m)?,
-            final_heading_error_rad: of(&|error| error.final_heading_error_rad.abs())?,
+            final_error_m: summary(&|error| error.final_error_m)?,
+            final_heading_error_rad: summary(&|error| error.final_heading_error_rad.abs())?,
             horizon_error_m: std::array::from_fn(horizon),
-            rmse_x_m: of(&|error| error.rmse_x_m)?,
-            rmse_y_m: of(&|error| error.rmse_y_m)?,
+            rmse_x_m: summary(&|error| error.rmse_x_m)?,
+            rmse_y_m: summary(&|error| error.rmse_y_m)?,
             rmse_vx_body_m_s: known(|error| error.rmse_vx_body_m_s),
             rmse_vy_body_m_s: known(|error| error.rmse_vy_body_m_s),
             rmse_yaw_rate_rad_s: known(|error| error.rmse_yaw_rate_rad_s),

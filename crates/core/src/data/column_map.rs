@@ -182,7 +182,7 @@ fn choice(name: &str, column: &str) -> Result<(Channel, ColumnSource), MapError>
     let column = match (column.parse(), signed_columns(column)) {
         (Ok(0), _) => return Err(MapError::ColumnZero { channel }),
         (Ok(number), _) => ColumnRef::Number(number),
-        (Err(_), Some(columns)) if columns.iter().any(|of| of.number == 0) => {
+        (Err(_), Some(columns)) if columns.iter().any(|column| column.number == 0) => {
             return Err(MapError::ColumnZero { channel });
         }
         (Err(_), Some(columns)) => ColumnRef::Sum(columns),

@@ -315,7 +315,7 @@ impl Columns {
     ) -> DataError {
         let (path, line) = (table.path().to_owned(), table.header_line());
         let wrong = self.notes.iter().find_map(|note| match note {
-            Note::WrongUnit { channel: of, number, name, unit } if *of == channel => {
+            Note::WrongUnit { channel: wrong, number, name, unit } if *wrong == channel => {
                 Some((*number, name.clone(), unit.clone()))
             }
             _ => None,

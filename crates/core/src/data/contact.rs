@@ -109,8 +109,8 @@ impl ContactSignal {
     fn from_force(force: &ForceHistory) -> Option<Self> {
         let (peak_n, _) = force.peak().filter(|(peak_n, _)| *peak_n > 0.0)?;
         let zero_n = CONTACT_SHARE_OF_PEAK * peak_n;
-        let of = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x.hypot(*y)).collect();
-        let magnitude_n: Vec<f64> = of(&force.fx_n, &force.fy_n);
+        let magnitudes = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x.hypot(*y)).collect();
+        let magnitude_n: Vec<f64> = magnitudes(&force.fx_n, &force.fy_n);
         let axes = [&force.fx_n, &force.fy_n];
         let at_end = |end| axes.map(|axis| noise_n(axis, &end)).into_iter().fold(0.0, f64::max);
         let [first_n, last_n] = ends(&magnitude_n, peak_n).map(at_end);
@@ -122,7 +122,7 @@ impl ContactSignal {
         let [x, y] = axes.map(|axis| moving_mean(axis, window));
         let left_n = NOISE_FACTOR * noise_n / (window as f64).sqrt();
         let zero_n = zero_n.max(left_n);
-        Some(Self { magnitude_n: of(&x, &y), zero_n, least_pulse_n: LEAST_PULSE * zero_n })
+        Some(Self { magnitude_n: magnitudes(&x, &y), zero_n, least_pulse_n: LEAST_PULSE * zero_n })
     }
 }
 
@@ -143,7 +143,7 @@ fn ends(magnitude_n: &[f64], peak_n: f64) -> [Range<usize>; 2] {
 fn noise_n(axis: &[f64], end: &Range<usize>) -> f64 {
     let part = axis.get(end.clone()).unwrap_or_default();
     let mut sizes: Vec<f64> =
-        part.windows(3).map(|of| (of[0] - 2.0 * of[1] + of[2]).abs()).collect();
+        part.windows(3).map(|window| (window[0] - 2.0 * window[1] + window[2]).abs()).collect();
     if sizes.len() < MIN_DIFFERENCES {
         return 0.0;
     }

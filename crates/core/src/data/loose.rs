@@ -275,7 +275,7 @@ fn load_columns(
     let fit = velocity_fit(&series).filter(|fit| !fit.allows(read_as));
     if read_as == VelocityAxes::World {
         let needed = [Channel::Yaw, Channel::Vx, Channel::Vy];
-        if let Some(channel) = needed.into_iter().find(|of| series.get(*of).is_none()) {
+        if let Some(channel) = needed.into_iter().find(|channel| series.get(*channel).is_none()) {
             let needed = "velocities in world axes: vx, vy and yaw";
             return Err(columns.missing(table, channel, needed));
         }

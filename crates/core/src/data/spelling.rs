@@ -150,16 +150,16 @@ fn unit_of_key(quantity: Quantity, key: &str) -> Option<Unit> {
         (Quantity::Moment, "ftlb" | "ftlbs" | "lbft" | "lbsft" | "ftlbf") => "lbfft",
         (_, key) => key,
     };
-    let mut units = UNITS.iter().filter(|(of, ..)| *of == quantity);
-    units.find(|(_, of, _)| !key.is_empty() && of == key).map(|(.., unit)| *unit)
+    let mut units = UNITS.iter().filter(|(measured, ..)| *measured == quantity);
+    units.find(|(_, spelling, _)| !key.is_empty() && spelling == key).map(|(.., unit)| *unit)
 }
 
 /// All units with their keys.
 static UNITS: LazyLock<Vec<(Quantity, String, Unit)>> = LazyLock::new(|| {
-    let of = |quantity: Quantity| {
+    let units = |quantity: Quantity| {
         quantity.units().iter().map(move |unit| (quantity, unit_key(unit.symbol), *unit))
     };
-    Quantity::ALL.into_iter().flat_map(of).collect()
+    Quantity::ALL.into_iter().flat_map(units).collect()
 });
 
 /// The unit at the end of a header whose name need not be that of a channel, such as `Kraft X

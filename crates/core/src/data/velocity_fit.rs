@@ -147,14 +147,15 @@ mod tests {
     /// A circle of 20 m radius at 10 m/s, with the velocities in body axes times `scale`.
     fn circle(scale: f64, heading_rad: f64) -> TimeSeries {
         let time_s: Vec<f64> = (0..200).map(|i| f64::from(i) * 0.02).collect();
-        let of = |f: &dyn Fn(f64) -> f64| time_s.iter().map(|t| f(0.5 * t)).collect::<Vec<f64>>();
+        let sampled =
+            |f: &dyn Fn(f64) -> f64| time_s.iter().map(|t| f(0.5 * t)).collect::<Vec<f64>>();
         let mut series = TimeSeries::new(time_s.clone()).unwrap();
         for (channel, values) in [
-            (Channel::X, of(&|angle| 20.0 * (angle + heading_rad).sin())),
-            (Channel::Y, of(&|angle| -20.0 * (angle + heading_rad).cos())),
-            (Channel::Yaw, of(&|angle| angle + heading_rad)),
-            (Channel::Vx, of(&|_| 10.0 * scale)),
-            (Channel::Vy, of(&|_| 0.0)),
+            (Channel::X, sampled(&|angle| 20.0 * (angle + heading_rad).sin())),
+            (Channel::Y, sampled(&|angle| -20.0 * (angle + heading_rad).cos())),
+            (Channel::Yaw, sampled(&|angle| angle + heading_rad)),
+            (Channel::Vx, sampled(&|_| 10.0 * scale)),
+            (Channel::Vy, sampled(&|_| 0.0)),
         ] {
             series.insert(channel, values).unwrap();
         }

@@ -145,9 +145,9 @@ impl Clusters {
         }
         let column = |j: usize| Summary::from_values(rows.iter().map(|row| row[j]));
         let columns: Vec<Summary> = (0..expected).filter_map(column).collect();
-        let inverse = |of: &Summary| if of.std > 0.0 { of.std.recip() } else { 0.0 };
+        let inverse = |summary: &Summary| if summary.std > 0.0 { summary.std.recip() } else { 0.0 };
         Ok(Self {
-            mean: columns.iter().map(|of| of.mean).collect(),
+            mean: columns.iter().map(|summary| summary.mean).collect(),
             inverse_std: columns.iter().map(inverse).collect(),
             centroids: Vec::new(),
             members: Vec::new(),

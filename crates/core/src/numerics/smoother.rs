@@ -260,11 +260,11 @@ mod tests {
         let noise: Vec<f64> =
             (0..200).map(|_| 0.05 * rng.sample::<f64, _>(StandardNormal)).collect();
         let likelihood = |std: f64| {
-            let of = |(i, noise): (usize, &f64)| {
+            let sample = |(i, noise): (usize, &f64)| {
                 let time_s = 0.01 * i as f64;
                 TrackSample { time_s, order: 0, value: 3.0 * time_s + noise, std }
             };
-            let samples: Vec<TrackSample> = noise.iter().enumerate().map(of).collect();
+            let samples: Vec<TrackSample> = noise.iter().enumerate().map(sample).collect();
             track(&samples, &|_, _| 1.0).log_likelihood()
         };
         assert!(likelihood(0.05) > likelihood(0.03) && likelihood(0.05) > likelihood(0.08));

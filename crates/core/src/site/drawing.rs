@@ -84,8 +84,8 @@ pub struct DrawnLine {
 ///
 /// # Errors
 /// [`SiteError`] with what is wrong.
-pub fn read_drawing(of: &DrawingFile, origin: &SiteOrigin) -> Result<Drawing, SiteError> {
-    let path = of.file.as_path();
+pub fn read_drawing(file: &DrawingFile, origin: &SiteOrigin) -> Result<Drawing, SiteError> {
+    let path = file.file.as_path();
     let wrong = |message: String| SiteError::Drawing { path: path.to_owned(), message };
     let bytes = read_bytes(path, MAX_DRAWING_BYTES)?;
     // The reader may panic where a file is damaged.
@@ -94,11 +94,11 @@ pub fn read_drawing(of: &DrawingFile, origin: &SiteOrigin) -> Result<Drawing, Si
         Ok(loaded) => loaded.map_err(|error| wrong(error.to_string()))?,
         Err(_) => return Err(wrong("it is damaged".to_owned())),
     };
-    let chosen = of.unit.map(|unit| (unit.word(), unit.length_m()));
+    let chosen = file.unit.map(|unit| (unit.word(), unit.length_m()));
     let unit = chosen.or_else(|| stated_unit(drawing.header.default_drawing_units));
     let (unit, unit_m) = unit.ok_or_else(|| SiteError::NoUnit { path: path.to_owned() })?;
     let frozen = frozen_layers(&bytes);
-    let mut reader = Reader::new(&drawing, of.layers.as_deref());
+    let mut reader = Reader::new(&drawing, file.layers.as_deref());
     reader.hide(&drawing, frozen.as_deref().unwrap_or_default());
     reader.chord_error = CHORD_ERROR_M / unit_m;
     let whole = Placed { along: [1.0, 0.0], across: [0.0, 1.0], at: [0.0; 2] };
@@ -107,13 +107,13 @@ pub fn read_drawing(of: &DrawingFile, origin: &SiteOrigin) -> Result<Drawing, Si
         return Err(SiteError::TooManyPoints { path: path.to_owned(), limit: MAX_DRAWING_POINTS });
     }
     let known = &reader.seen_layers;
-    let missing = of.layers.iter().flatten().find(|layer| !known.contains(layer.as_str()));
+    let missing = file.layers.iter().flatten().find(|layer| !known.contains(layer.as_str()));
     if let Some(layer) = missing {
         let known = known.iter().take(40).map(|name| (*name).to_owned()).collect();
         return Err(SiteError::NoLayer { path: path.to_owned(), layer: layer.clone(), known });
     }
     let (lines, left_out) = (reader.lines, reader.left_out);
-    let has_unknown_frozen = frozen.is_none() && of.layers.is_none();
+    let has_unknown_frozen = frozen.is_none() && file.layers.is_none();
     let mut found = Drawing { lines, left_out, unit, has_unknown_frozen };
     for point in found.lines.iter_mut().flat_map(|line| &mut line.points_m) {
         let survey_m = point.map(|value| value * unit_m);
@@ -128,16 +128,16 @@ pub fn read_drawing(of: &DrawingFile, origin: &SiteOrigin) -> Result<Drawing, Si
 /// Name and length of the unit that a drawing states, m; `None` if it states none, or one that no drawing
 /// of a road has.
 fn stated_unit(unit: Units) -> Option<(&'static str, f64)> {
-    let of = |unit: LengthUnit| Some((unit.word(), unit.length_m()));
+    let named = |unit: LengthUnit| Some((unit.word(), unit.length_m()));
     match unit {
-        Units::Meters => of(LengthUnit::Metre),
+        Units::Meters => named(LengthUnit::Metre),
         Units::Decimeters => Some(("dm", 0.1)),
-        Units::Centimeters => of(LengthUnit::Centimetre),
-        Units::Millimeters => of(LengthUnit::Millimetre),
+        Units::Centimeters => named(LengthUnit::Centimetre),
+        Units::Millimeters => named(LengthUnit::Millimetre),
         Units::Kilometers => Some(("km", 1000.0)),
-        Units::Feet => of(LengthUnit::Foot),
-        Units::USSurveyFeet => of(LengthUnit::SurveyFoot),
-        Units::Inches => of(LengthUnit::Inch),
+        Units::Feet => named(LengthUnit::Foot),
+        Units::USSurveyFeet => named(LengthUnit::SurveyFoot),
+        Units::Inches => named(LengthUnit::Inch),
         Units::Yards => Some(("yd", 0.9144)),
         _ => None,
     }
@@ -303,7 +303,7 @@ fn points_of(entity: &EntityType, error: f64) -> Option<Vec<[f64; 2]>> {
     let points = match entity {
         EntityType::Line(line) => vec![flat(&line.p1), flat(&line.p2)],
         EntityType::LwPolyline(line) => {
-            let vertices = line.vertices.iter().map(|of| ([of.x, of.y], of.bulge));
+            let vertices = line.vertices.iter().map(|vertex| ([vertex.x, vertex.y], vertex.bulge));
             let points = polyline(vertices.collect(), line.is_closed(), error);
             mirrored(points, &line.extrusion_direction)?
         }
@@ -311,29 +311,35 @@ fn points_of(entity: &EntityType, error: f64) -> Option<Vec<[f64; 2]>> {
             if line.is_3d_polygon_mesh() || line.is_polyface_mesh() {
                 return None;
             }
-            let vertices = line.vertices().map(|of| (flat(&of.location), of.bulge));
+            let vertices = line.vertices().map(|vertex| (flat(&vertex.location), vertex.bulge));
             mirrored(polyline(vertices.collect(), line.is_closed(), error), &line.normal)?
         }
-        EntityType::Circle(of) => {
-            let axes = [[of.radius, 0.0], [0.0, of.radius]];
-            let points = arc(flat(&of.center), axes, [0.0, std::f64::consts::TAU], error);
-            mirrored(points, &of.normal)?
+        EntityType::Circle(circle) => {
+            let axes = [[circle.radius, 0.0], [0.0, circle.radius]];
+            let points = arc(flat(&circle.center), axes, [0.0, std::f64::consts::TAU], error);
+            mirrored(points, &circle.normal)?
         }
-        EntityType::Arc(of) => {
-            let axes = [[of.radius, 0.0], [0.0, of.radius]];
-            let ends = [of.start_angle, of.end_angle].map(f64::to_radians);
-            mirrored(arc(flat(&of.center), axes, ends, error), &of.normal)?
+        EntityType::Arc(part) => {
+            let axes = [[part.radius, 0.0], [0.0, part.radius]];
+            let ends = [part.start_angle, part.end_angle].map(f64::to_radians);
+            mirrored(arc(flat(&part.center), axes, ends, error), &part.normal)?
         }
-        EntityType::Ellipse(of) => {
-            let mirror = mirror(&of.normal)?;
-            let ([x, y], ratio) = ([of.major_axis.x, of.major_axis.y], of.minor_axis_ratio);
+        EntityType::Ellipse(ellipse) => {
+            let mirror = mirror(&ellipse.normal)?;
+            let ([x, y], ratio) =
+                ([ellipse.major_axis.x, ellipse.major_axis.y], ellipse.minor_axis_ratio);
             let axes = [[x, y], [-mirror * ratio * y, mirror * ratio * x]];
-            arc(flat(&of.center), axes, [of.start_parameter, of.end_parameter], error)
+            arc(
+                flat(&ellipse.center),
+                axes,
+                [ellipse.start_parameter, ellipse.end_parameter],
+                error,
+            )
         }
-        EntityType::Spline(of) => {
-            let control: Vec<[f64; 2]> = of.control_points.iter().map(flat).collect();
-            let knots = (of.knot_values.as_slice(), of.weight_values.as_slice());
-            spline(usize::try_from(of.degree_of_curve).ok()?, knots, &control)?
+        EntityType::Spline(curve) => {
+            let control: Vec<[f64; 2]> = curve.control_points.iter().map(flat).collect();
+            let knots = (curve.knot_values.as_slice(), curve.weight_values.as_slice());
+            spline(usize::try_from(curve.degree_of_curve).ok()?, knots, &control)?
         }
         _ => return None,
     };

@@ -42,9 +42,9 @@ fn lines_come_back_in_metres_and_in_the_axes_of_the_site() {
     closed.set_is_closed(true);
     drawing.add_entity(on("ROAD", EntityType::LwPolyline(closed)));
     drawing.add_entity(on("ROAD", EntityType::Text(Text::default())));
-    let (_folder, mut of) = saved(&drawing);
+    let (_folder, mut file) = saved(&drawing);
     let origin = SiteOrigin { survey_m: [3.5e6, 5.4e6], ..SiteOrigin::default() };
-    let read = read_drawing(&of, &origin).unwrap();
+    let read = read_drawing(&file, &origin).unwrap();
     assert_eq!(read.lines.len(), 2);
     let [from, to] = [read.lines[0].points_m[0], read.lines[0].points_m[1]];
     assert!(from[0].hypot(from[1]) < 1e-6 && (to[0] - 10.0).hypot(to[1]) < 1e-6, "{to:?}");
@@ -53,10 +53,10 @@ fn lines_come_back_in_metres_and_in_the_axes_of_the_site() {
     let widest = outline.iter().map(|point| point[0]).fold(0.0, f64::max);
     assert!((widest - 4.0).abs() < 1e-6, "the arc reaches 2 m beyond its chord: {widest}");
     assert_eq!(read.left_out.get("Text"), Some(&1));
-    of.layers = Some(vec!["KERB".to_owned()]);
-    assert_eq!(read_drawing(&of, &origin).unwrap().lines.len(), 1);
-    of.layers = Some(vec!["WALL".to_owned()]);
-    let error = read_drawing(&of, &origin).unwrap_err().to_string();
+    file.layers = Some(vec!["KERB".to_owned()]);
+    assert_eq!(read_drawing(&file, &origin).unwrap().lines.len(), 1);
+    file.layers = Some(vec!["WALL".to_owned()]);
+    let error = read_drawing(&file, &origin).unwrap_err().to_string();
     assert!(error.ends_with("has no layer \"WALL\", expected one of KERB, ROAD"), "{error}");
 }
 
@@ -65,15 +65,15 @@ fn the_unit_has_to_be_known_and_the_coordinates_possible() {
     let mut drawing = dxf::Drawing::new();
     drawing.header.version = AcadVersion::R2010;
     drawing.add_entity(on("0", line([0.0, 0.0], [3.0e7, 1.0])));
-    let (_folder, mut of) = saved(&drawing);
+    let (_folder, mut file) = saved(&drawing);
     let origin = SiteOrigin::default();
-    let error = read_drawing(&of, &origin).unwrap_err().to_string();
+    let error = read_drawing(&file, &origin).unwrap_err().to_string();
     assert!(error.contains("does not say in which unit it is drawn"), "{error}");
-    of.unit = Some(LengthUnit::Metre);
-    let error = read_drawing(&of, &origin).unwrap_err().to_string();
+    file.unit = Some(LengthUnit::Metre);
+    let error = read_drawing(&file, &origin).unwrap_err().to_string();
     assert!(error.contains("is the unit right?"), "{error}");
-    of.unit = Some(LengthUnit::Foot);
-    let read = read_drawing(&of, &origin).unwrap();
+    file.unit = Some(LengthUnit::Foot);
+    let read = read_drawing(&file, &origin).unwrap();
     assert!((read.lines[0].points_m[1][0] - 9.144e6).abs() < 1e-6);
 }
 
@@ -97,8 +97,8 @@ fn blocks_are_turned_scaled_and_placed() {
         ..Insert::default()
     };
     drawing.add_entity(on("SIGNS", EntityType::Insert(insert)));
-    let (_folder, of) = saved(&drawing);
-    let read = read_drawing(&of, &SiteOrigin::default()).unwrap();
+    let (_folder, file) = saved(&drawing);
+    let read = read_drawing(&file, &SiteOrigin::default()).unwrap();
     assert_eq!(read.lines.len(), 2);
     assert!(read.lines.iter().all(|line| line.layer == "SIGNS"));
     let [from, to] = [read.lines[0].points_m[0], read.lines[0].points_m[1]];
@@ -130,17 +130,17 @@ fn what_is_off_frozen_or_invisible_is_neither_drawn_nor_counted() {
         let insert = Insert { name: "SIGN".to_owned(), ..Insert::default() };
         drawing.add_entity(on(layer, EntityType::Insert(insert)));
     }
-    let (_folder, mut of) = saved(&drawing);
-    let text = std::fs::read_to_string(&of.file).unwrap();
+    let (_folder, mut file) = saved(&drawing);
+    let text = std::fs::read_to_string(&file.file).unwrap();
     let (head, tail) = text.split_once("\r\nFROZEN\r\n").unwrap();
     let frozen = tail.replacen("\r\n     0\r\n", "\r\n     1\r\n", 1);
-    std::fs::write(&of.file, format!("{head}\r\nFROZEN\r\n{frozen}")).unwrap();
-    let read = read_drawing(&of, &SiteOrigin::default()).unwrap();
+    std::fs::write(&file.file, format!("{head}\r\nFROZEN\r\n{frozen}")).unwrap();
+    let read = read_drawing(&file, &SiteOrigin::default()).unwrap();
     let ends: Vec<[f64; 2]> = read.lines.iter().map(|line| line.points_m[1]).collect();
     assert_eq!(ends, [[3.0, 1.0], [5.0, 0.0]], "{:?}", read.lines);
     assert_eq!(read.left_out.get("Text"), Some(&1), "{:?}", read.left_out);
-    of.layers = Some(vec!["FROZEN".to_owned()]);
-    let asked = read_drawing(&of, &SiteOrigin::default()).unwrap();
+    file.layers = Some(vec!["FROZEN".to_owned()]);
+    let asked = read_drawing(&file, &SiteOrigin::default()).unwrap();
     assert_eq!(asked.lines.len(), 1, "a layer that is asked for is drawn");
 }
 
@@ -151,8 +151,8 @@ fn a_large_arc_in_millimetres_is_within_5_mm_of_its_chords() {
     drawing.header.default_drawing_units = Units::Millimeters;
     let circle = Circle::new(Point::new(0.0, 0.0, 0.0), 1e6);
     drawing.add_entity(on("KERB", EntityType::Circle(circle)));
-    let (_folder, of) = saved(&drawing);
-    let read = read_drawing(&of, &SiteOrigin::default()).unwrap();
+    let (_folder, file) = saved(&drawing);
+    let read = read_drawing(&file, &SiteOrigin::default()).unwrap();
     assert_eq!(
         read.summary().contents(),
         " in mm, 1 line, X -1000.0 to 1000.0 m, Y -1000.0 to 1000.0 m"
@@ -171,8 +171,8 @@ fn a_damaged_drawing_is_an_error() {
     for text in ["", "not a drawing", "0\nSECTION\n2\nENTITIES\n0\nLINE\n10\nabc\n"] {
         std::fs::write(&file, text).unwrap();
         let unit = Some(LengthUnit::Metre);
-        let of = DrawingFile { file: file.clone(), unit, layers: None };
-        match read_drawing(&of, &SiteOrigin::default()) {
+        let drawing_file = DrawingFile { file: file.clone(), unit, layers: None };
+        match read_drawing(&drawing_file, &SiteOrigin::default()) {
             Ok(read) => assert!(read.lines.is_empty(), "{text:?}"),
             Err(error) => {
                 assert!(error.to_string().contains("bad.dxf: cannot be read"), "{error}")

@@ -139,7 +139,7 @@ impl LengthUnit {
 
     /// Its word.
     pub fn word(self) -> &'static str {
-        let idx = Self::ALL.iter().position(|of| *of == self).unwrap_or_default();
+        let idx = Self::ALL.iter().position(|unit| *unit == self).unwrap_or_default();
         Self::WORDS[idx]
     }
 
@@ -215,25 +215,25 @@ impl Site {
             1 => Some(format!("1 {what}")),
             n => Some(format!("{n} {what}s")),
         };
-        let orthophoto = self.orthophoto.as_ref().map(|of| {
-            let [width, height] = of.size_px;
-            let [pixel_m, _] = of.map.pixel_size_m();
-            let place = match (of.is_placed, &of.world_file) {
+        let orthophoto = self.orthophoto.as_ref().map(|orthophoto| {
+            let [width, height] = orthophoto.size_px;
+            let [pixel_m, _] = orthophoto.map.pixel_size_m();
+            let place = match (orthophoto.is_placed, &orthophoto.world_file) {
                 (false, _) => ", place and scale not known".to_owned(),
-                (true, None) => extent_text(of.extent_m()),
+                (true, None) => extent_text(orthophoto.extent_m()),
                 (true, Some(_)) => {
                     format!(
                         "{}, world file in {}",
-                        extent_text(of.extent_m()),
-                        of.world_unit.word()
+                        extent_text(orthophoto.extent_m()),
+                        orthophoto.world_unit.word()
                     )
                 }
             };
             format!("orthophoto of {width} x {height} pixels of {pixel_m:.4} m{place}")
         });
-        let drawing = self.drawing.as_ref().map(|of| {
-            let said = drawing.map(|of| of.contents()).unwrap_or_default();
-            format!("drawing {}{said}", file_name(&of.file))
+        let drawing = self.drawing.as_ref().map(|file| {
+            let said = drawing.map(|summary| summary.contents()).unwrap_or_default();
+            format!("drawing {}{said}", file_name(&file.file))
         });
         let zones = counted(self.friction_zones.len(), "friction zone");
         let counts = [counted(self.lanes.len(), "lane"), counted(self.kerbs.len(), "kerb"), zones];

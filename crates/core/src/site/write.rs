@@ -57,20 +57,20 @@ impl Site {
     }
 }
 
-fn orthophoto_table(of: &Orthophoto, folder: &Path) -> Result<Table, NotBelow> {
+fn orthophoto_table(orthophoto: &Orthophoto, folder: &Path) -> Result<Table, NotBelow> {
     let mut table = Table::new();
-    set(&mut table, "file", name_below(&of.file, folder)?);
-    match &of.world_file {
+    set(&mut table, "file", name_below(&orthophoto.file, folder)?);
+    match &orthophoto.world_file {
         Some(world) => {
             set(&mut table, "world_file", name_below(world, folder)?);
-            if of.world_unit != LengthUnit::Metre {
-                set(&mut table, "unit", of.world_unit.word());
+            if orthophoto.world_unit != LengthUnit::Metre {
+                set(&mut table, "unit", orthophoto.world_unit.word());
             }
         }
         None => {
-            set(&mut table, "corner_m", pair(of.map.corner_m));
-            set(&mut table, "per_column_m", pair(of.map.per_column_m));
-            set(&mut table, "per_row_m", pair(of.map.per_row_m));
+            set(&mut table, "corner_m", pair(orthophoto.map.corner_m));
+            set(&mut table, "per_column_m", pair(orthophoto.map.per_column_m));
+            set(&mut table, "per_row_m", pair(orthophoto.map.per_row_m));
         }
     }
     Ok(table)
@@ -82,7 +82,7 @@ fn lane_table(lane: &Lane) -> Table {
     set(&mut table, "left_edge_m", pairs(&lane.left_m));
     set(&mut table, "right_edge_m", pairs(&lane.right_m));
     let word = |edge| {
-        let idx = EdgeLine::ALL.iter().position(|of| *of == edge).unwrap_or_default();
+        let idx = EdgeLine::ALL.iter().position(|line| *line == edge).unwrap_or_default();
         EdgeLine::WORDS[idx]
     };
     set(&mut table, "left", word(lane.edges[0]));

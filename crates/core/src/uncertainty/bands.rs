@@ -88,9 +88,9 @@ impl Marginals {
             row.truncate(2 * n);
             row
         };
-        let covariance = |of: &CurveComponent| {
+        let covariance = |component: &CurveComponent| {
             let mut sum = vec![0.0; n];
-            for column in of.factors.column_iter() {
+            for column in component.factors.column_iter() {
                 let (x, y) = (column.iter(), column.iter().skip(n));
                 for (sum, (x, y)) in sum.iter_mut().zip(x.zip(y)) {
                     *sum += x * y;
@@ -98,12 +98,13 @@ impl Marginals {
             }
             sum
         };
-        let std =
-            |of: &CurveComponent| forces(of.total_variance().into_iter().map(f64::sqrt).collect());
+        let std = |component: &CurveComponent| {
+            forces(component.total_variance().into_iter().map(f64::sqrt).collect())
+        };
         Self {
             n_instants: n,
-            weights: components.iter().map(|of| of.weight).collect(),
-            means: components.iter().map(|of| forces(of.mean.clone())).collect(),
+            weights: components.iter().map(|component| component.weight).collect(),
+            means: components.iter().map(|component| forces(component.mean.clone())).collect(),
             stds: components.iter().map(std).collect(),
             covariances: components.iter().map(covariance).collect(),
         }

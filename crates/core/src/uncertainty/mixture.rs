@@ -289,10 +289,11 @@ pub(crate) mod tests {
     pub(crate) fn example(n_components: usize, n_instants: usize) -> CurveMixture {
         let component = |k: usize| {
             let (k, n) = (k as f64, n_instants as f64);
-            let row = |of: &dyn Fn(f64) -> [f64; 3]| -> Vec<f64> {
-                let values: Vec<[f64; 3]> = (0..n_instants).map(|i| of(i as f64 / n)).collect();
+            let row = |values_at: &dyn Fn(f64) -> [f64; 3]| -> Vec<f64> {
+                let values: Vec<[f64; 3]> =
+                    (0..n_instants).map(|i| values_at(i as f64 / n)).collect();
                 let axis = |axis: usize| values.iter().map(move |value| value[axis]);
-                axis(0).chain(axis(1)).chain([of(0.0)[2]]).collect()
+                axis(0).chain(axis(1)).chain([values_at(0.0)[2]]).collect()
             };
             let bump = |u: f64| (std::f64::consts::PI * u).sin();
             let mean = row(&|u| [(4.0 + k) * 1e3 * bump(u), (20.0 - 3.0 * k) * 1e3 * bump(u), 0.1]);

@@ -143,8 +143,8 @@ impl NormalMixture {
     }
 
     /// Weighted sum of a quantity over the parts.
-    fn sum(&self, of: impl Fn(&NormalPart) -> f64) -> f64 {
-        self.parts.iter().map(|part| part.weight * of(part)).sum()
+    fn sum(&self, term: impl Fn(&NormalPart) -> f64) -> f64 {
+        self.parts.iter().map(|part| part.weight * term(part)).sum()
     }
 }
 

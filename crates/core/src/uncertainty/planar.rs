@@ -126,7 +126,7 @@ impl PlanarMixture {
     /// The smallest rectangle `[low, high]` that holds all parts out to `reach` standard deviations
     /// along each axis, m; `None` for a mixture without parts.
     pub fn bounds(&self, reach: f64) -> Option<[[f64; 2]; 2]> {
-        let of = |part: &PlanarPart| {
+        let second_moment = |part: &PlanarPart| {
             let [xx, _, yy] = part.covariance;
             let half = [reach * xx.sqrt(), reach * yy.sqrt()];
             [
@@ -134,7 +134,7 @@ impl PlanarMixture {
                 [part.mean[0] + half[0], part.mean[1] + half[1]],
             ]
         };
-        self.parts.iter().map(of).reduce(|[low, high], [l, h]| {
+        self.parts.iter().map(second_moment).reduce(|[low, high], [l, h]| {
             [[low[0].min(l[0]), low[1].min(l[1])], [high[0].max(h[0]), high[1].max(h[1])]]
         })
     }

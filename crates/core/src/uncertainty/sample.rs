@@ -135,8 +135,8 @@ mod tests {
         };
         let mixture = CurveMixture::new(vec![component]).unwrap();
         let drawn = mixture.sample(500, &mut ChaCha8Rng::seed_from_u64(1));
-        let mean = |of: &dyn Fn(&ForceCurve, usize) -> f64| {
-            let pairs = drawn.iter().flat_map(|curve| (1..n).map(move |i| of(curve, i)));
+        let mean = |value: &dyn Fn(&ForceCurve, usize) -> f64| {
+            let pairs = drawn.iter().flat_map(|curve| (1..n).map(move |i| value(curve, i)));
             pairs.sum::<f64>() / (500 * (n - 1)) as f64
         };
         let variance = mean(&|curve, i| curve.fy_n[i].powi(2));

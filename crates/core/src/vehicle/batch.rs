@@ -35,8 +35,8 @@ pub fn simulate_batch(runs: &[SimulationRun<'_>]) -> Vec<Result<Motion, Simulati
     let mut started: Vec<Numbered<Run<'_>>> = Vec::new();
     for (idx, run) in runs.iter().enumerate() {
         match Run::new(run.vehicle, run.manoeuvre, Integrator::Rk4) {
-            Ok(of) => started.push(Numbered { idx, of }),
-            Err(error) => motions.push(Numbered { idx, of: Err(error) }),
+            Ok(run) => started.push(Numbered { idx, item: run }),
+            Err(error) => motions.push(Numbered { idx, item: Err(error) }),
         }
     }
     for runs in alike(started) {
@@ -52,28 +52,28 @@ pub fn simulate_batch(runs: &[SimulationRun<'_>]) -> Vec<Result<Motion, Simulati
         motions.par_extend(ended.flatten_iter());
     }
     motions.sort_by_key(|motion| motion.idx);
-    motions.into_iter().map(|motion| motion.of).collect()
+    motions.into_iter().map(|motion| motion.item).collect()
 }
 
 /// Something that belongs to the motion of a number.
 struct Numbered<T> {
     idx: usize,
-    of: T,
+    item: T,
 }
 
 /// Runs that can go side by side: they have the same number of steps, the same form of the equations,
 /// and the same kind of force.
 fn alike(mut runs: Vec<Numbered<Run<'_>>>) -> Vec<Vec<Numbered<Run<'_>>>> {
     let kind = |run: &Numbered<Run<'_>>| {
-        let is_printed = run.of.constants.equations == Equations::Paper;
-        (run.of.steps_per_output, is_printed, run.of.kind_of_force())
+        let is_printed = run.item.constants.equations == Equations::Paper;
+        (run.item.steps_per_output, is_printed, run.item.kind_of_force())
     };
     runs.sort_by_key(kind);
     let mut groups: Vec<Vec<Numbered<Run<'_>>>> = Vec::new();
     for run in runs {
         match groups
             .last_mut()
-            .filter(|group| group.first().is_some_and(|of| kind(of) == kind(&run)))
+            .filter(|group| group.first().is_some_and(|first| kind(first) == kind(&run)))
         {
             Some(group) => group.push(run),
             None => groups.push(vec![run]),
@@ -104,7 +104,7 @@ impl WithSimd for Batch<'_> {
             if batch.running.len() > n_running {
                 constants = None;
             }
-            let of_lane = |lane: usize| &batch.running[lane.min(last)].of.constants;
+            let of_lane = |lane: usize| &batch.running[lane.min(last)].item.constants;
             let of_all = constants.unwrap_or_else(|| VehicleConstants::packed(simd, of_lane));
             advance(simd, &of_all, &mut batch.running);
             let forces = forces(simd, &of_all, &batch.running);
@@ -124,7 +124,7 @@ impl<'a> Lanes<'a> {
     fn fill(&mut self, waiting: &mut impl Iterator<Item = Numbered<Run<'a>>>, n_lanes: usize) {
         while self.running.len() < n_lanes {
             let Some(mut run) = waiting.next() else { return };
-            let goes_on = run.of.goes_on();
+            let goes_on = run.item.goes_on();
             self.settle(goes_on, run);
         }
     }
@@ -133,19 +133,19 @@ impl<'a> Lanes<'a> {
     fn record(&mut self, forces: &Forces<[f64; MAX_LANES]>) -> bool {
         let n_running = self.running.len();
         for (lane, mut run) in std::mem::take(&mut self.running).into_iter().enumerate() {
-            let coming = run.of.coming();
-            let goes_on = run.of.record(&coming, &forces.map(|values| values[lane]));
+            let coming = run.item.coming();
+            let goes_on = run.item.record(&coming, &forces.map(|values| values[lane]));
             self.settle(goes_on, run);
         }
         self.running.len() < n_running
     }
 
     fn settle(&mut self, goes_on: Result<bool, SimulationError>, run: Numbered<Run<'a>>) {
-        let Numbered { idx, of } = run;
+        let Numbered { idx, item: run } = run;
         match goes_on {
-            Ok(true) => self.running.push(Numbered { idx, of }),
-            Ok(false) => self.ended.push(Numbered { idx, of: of.finish() }),
-            Err(error) => self.ended.push(Numbered { idx, of: Err(error) }),
+            Ok(true) => self.running.push(Numbered { idx, item: run }),
+            Ok(false) => self.ended.push(Numbered { idx, item: run.finish() }),
+            Err(error) => self.ended.push(Numbered { idx, item: Err(error) }),
         }
     }
 }
@@ -157,10 +157,10 @@ fn advance<S: Simd>(
     constants: &VehicleConstants<Packed<S>>,
     running: &mut [Numbered<Run<'_>>],
 ) {
-    let Some(Numbered { of: first, .. }) = running.first() else { return };
+    let Some(Numbered { item: first, .. }) = running.first() else { return };
     let (step_s, n_steps) = (first.step_s, first.steps_per_output);
-    let is_acted_on = running.iter().any(|run| run.of.is_acted_on());
-    let has_zones = running.iter().any(|run| run.of.has_zones());
+    let is_acted_on = running.iter().any(|run| run.item.is_acted_on());
+    let has_zones = running.iter().any(|run| run.item.has_zones());
     let mut of_lanes = [const { StepInputs::RELEASED }; MAX_LANES];
     let mut inputs = steps_side_by_side(simd, &of_lanes);
     let mut x = states(simd, running);
@@ -171,7 +171,7 @@ fn advance<S: Simd>(
                 false => [[0.0; MAX_LANES]; N_STATE],
             };
             for (lane, (of_lane, run)) in of_lanes.iter_mut().zip(running.iter()).enumerate() {
-                *of_lane = run.of.inputs_of(step, &now.map(|values| values[lane]));
+                *of_lane = run.item.inputs_of(step, &now.map(|values| values[lane]));
             }
             inputs = steps_side_by_side(simd, &of_lanes);
         }
@@ -183,7 +183,7 @@ fn advance<S: Simd>(
         *values = x.to_array();
     }
     for (lane, run) in running.iter_mut().enumerate() {
-        run.of.advanced_to(values.map(|values| values[lane]));
+        run.item.advanced_to(values.map(|values| values[lane]));
     }
 }
 
@@ -196,7 +196,7 @@ fn forces<S: Simd>(
 ) -> Forces<[f64; MAX_LANES]> {
     let mut of_lanes = [const { VehicleInput::RELEASED }; MAX_LANES];
     for (of_lane, run) in of_lanes.iter_mut().zip(running) {
-        *of_lane = run.of.coming();
+        *of_lane = run.item.coming();
     }
     let x = VehicleState::from_array(states(simd, running));
     let now = constants.evaluate(&x, &side_by_side(simd, |lane| &of_lanes[lane]));
@@ -210,7 +210,7 @@ fn states<S: Simd>(simd: S, running: &[Numbered<Run<'_>>]) -> [Packed<S>; N_STAT
     for (i, x) in x.iter_mut().enumerate() {
         let mut values = [0.0; MAX_LANES];
         for (value, run) in values.iter_mut().zip(running) {
-            *value = run.of.state[i];
+            *value = run.item.state[i];
         }
         *x = Packed::new(simd, &values);
     }
@@ -237,12 +237,12 @@ pub(super) fn steps_side_by_side<S: Simd>(
 #[inline(always)]
 fn side_by_side<'a, S: Simd>(
     simd: S,
-    of: impl Fn(usize) -> &'a VehicleInput<f64> + Copy,
+    input: impl Fn(usize) -> &'a VehicleInput<f64> + Copy,
 ) -> VehicleInput<Packed<S>> {
-    let pack = Pack { simd, of };
-    let is_braked = (0..MAX_LANES).any(|lane| of(lane).wheels.is_some());
-    let is_on_zones = (0..MAX_LANES).any(|lane| of(lane).friction_share.is_some());
-    let struck = (0..MAX_LANES).find_map(|lane| of(lane).collision);
+    let pack = Pack { simd, input };
+    let is_braked = (0..MAX_LANES).any(|lane| input(lane).wheels.is_some());
+    let is_on_zones = (0..MAX_LANES).any(|lane| input(lane).friction_share.is_some());
+    let struck = (0..MAX_LANES).find_map(|lane| input(lane).collision);
     VehicleInput {
         steer_rad: pack.number(|u| u.steer_rad),
         wheels: match is_braked {
@@ -264,7 +264,7 @@ fn side_by_side<'a, S: Simd>(
 #[derive(Clone, Copy)]
 struct Pack<S, F> {
     simd: S,
-    of: F,
+    input: F,
 }
 
 impl<'a, S: Simd, F: Fn(usize) -> &'a VehicleInput<f64>> Pack<S, F> {
@@ -272,7 +272,7 @@ impl<'a, S: Simd, F: Fn(usize) -> &'a VehicleInput<f64>> Pack<S, F> {
     fn number(&self, number: impl Fn(&VehicleInput<f64>) -> f64) -> Packed<S> {
         let mut values = [0.0; MAX_LANES];
         for (lane, value) in values[..Packed::<S>::N].iter_mut().enumerate() {
-            *value = number((self.of)(lane));
+            *value = number((self.input)(lane));
         }
         Packed::new(self.simd, &values)
     }

@@ -19,16 +19,16 @@ macro_rules! constants {
         }
 
         impl $name<f64> {
-            /// - `of`: the constants of a lane.
+            /// - `constants`: of a lane.
             fn packed<'a, S: Simd>(
                 simd: S,
-                of: &impl Fn(usize) -> &'a Self,
+                constants: &impl Fn(usize) -> &'a Self,
             ) -> $name<Packed<S>> {
                 let pack = |field: fn(&Self) -> f64| -> Packed<S> {
-                    let values: [f64; MAX_LANES] = std::array::from_fn(|lane| field(of(lane)));
+                    let values: [f64; MAX_LANES] = std::array::from_fn(|lane| field(constants(lane)));
                     Packed::new(simd, &values)
                 };
-                $name { $($field: pack(|of| of.$field)),+ }
+                $name { $($field: pack(|constants| constants.$field)),+ }
             }
         }
 
@@ -40,10 +40,10 @@ macro_rules! constants {
             #[allow(dead_code, reason = "not all constants are converted")]
             pub(super) fn along<T: Lanes + LanesOver<P>, U>(
                 &self,
-                of: T,
+                number: T,
                 convert: impl Fn(T) -> U,
             ) -> $name<U> {
-                let zero = of.constant(0.0);
+                let zero = number.constant(0.0);
                 $name { $($field: convert(zero + self.$field)),+ }
             }
         }
@@ -249,16 +249,16 @@ impl VehicleParameters {
 impl VehicleConstants<f64> {
     /// Several vehicles side by side, one in each lane. All have the same form of the equations.
     ///
-    /// - `of`: the vehicle of a lane, for lanes from 0 to [`MAX_LANES`] − 1.
+    /// - `vehicle`: the constants of a lane, for lanes from 0 to [`MAX_LANES`] − 1.
     pub fn packed<'a, S: Simd>(
         simd: S,
-        of: impl Fn(usize) -> &'a Self,
+        vehicle: impl Fn(usize) -> &'a Self,
     ) -> VehicleConstants<Packed<S>> {
         VehicleConstants {
-            equations: of(0).equations,
-            body: BodyConstants::packed(simd, &|lane| &of(lane).body),
-            tires: TireConstants::packed(simd, &|lane| &of(lane).tires),
-            printed: PrintedConstants::packed(simd, &|lane| &of(lane).printed),
+            equations: vehicle(0).equations,
+            body: BodyConstants::packed(simd, &|lane| &vehicle(lane).body),
+            tires: TireConstants::packed(simd, &|lane| &vehicle(lane).tires),
+            printed: PrintedConstants::packed(simd, &|lane| &vehicle(lane).printed),
         }
     }
 }

@@ -51,8 +51,8 @@ impl Controls {
 
     /// Whether a wheel is driven.
     pub fn is_driven(&self) -> bool {
-        let of = self.wheels.iter().flat_map(|history| history.wheels.iter().flatten());
-        of.into_iter().any(|wheel| wheel.drive_n != 0.0)
+        let efforts = self.wheels.iter().flat_map(|history| history.wheels.iter().flatten());
+        efforts.into_iter().any(|wheel| wheel.drive_n != 0.0)
     }
 
     /// Whether a wheel is locked at a time, by damage or by a brake that asks for more than the road can
@@ -101,8 +101,8 @@ impl WheelHistory {
             false => 0.0,
         };
         let between = |i: usize| {
-            let mix = |of: fn(&WheelEffort<f64>) -> f64| {
-                of(&from[i]) + (of(&to[i]) - of(&from[i])) * share
+            let mix = |value: fn(&WheelEffort<f64>) -> f64| {
+                value(&from[i]) + (value(&to[i]) - value(&from[i])) * share
             };
             WheelEffort {
                 drive_n: mix(|wheel| wheel.drive_n),

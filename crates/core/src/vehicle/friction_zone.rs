@@ -150,10 +150,10 @@ pub fn friction_at(zones: &[FrictionZone], place_m: [f64; 2], elsewhere: f64) ->
 }
 
 /// Calls a function for each side of a polygon, with its two ends.
-fn for_each_side(polygon: &[[f64; 2]], mut of: impl FnMut([f64; 2], [f64; 2])) {
+fn for_each_side(polygon: &[[f64; 2]], mut visit: impl FnMut([f64; 2], [f64; 2])) {
     let Some(mut before) = polygon.last().copied() else { return };
     for &corner in polygon {
-        of(before, corner);
+        visit(before, corner);
         before = corner;
     }
 }

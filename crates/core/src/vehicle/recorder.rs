@@ -38,12 +38,12 @@ impl<T> Forces<T> {
 
 impl<T> From<VehicleEvaluation<T>> for Forces<T> {
     #[inline(always)]
-    fn from(of: VehicleEvaluation<T>) -> Self {
+    fn from(evaluation: VehicleEvaluation<T>) -> Self {
         Self {
-            acceleration_body_m_s2: of.acceleration_body_m_s2,
-            vertical_loads_n: of.vertical_loads_n,
-            collision_force_body_n: of.collision_force_body_n,
-            collision_yaw_moment_n_m: of.collision_yaw_moment_n_m,
+            acceleration_body_m_s2: evaluation.acceleration_body_m_s2,
+            vertical_loads_n: evaluation.vertical_loads_n,
+            collision_force_body_n: evaluation.collision_force_body_n,
+            collision_yaw_moment_n_m: evaluation.collision_yaw_moment_n_m,
         }
     }
 }

@@ -124,9 +124,9 @@ pub fn leaves_mark([u, w]: [f64; 2], is_locked: bool) -> bool {
 /// - `series`: the motion, with at least X, Y and yaw. Velocities that it lacks follow from these, and
 ///   loads that it lacks are those at rest; front wheels whose steer angle it lacks are straight.
 /// - returns no marks without X, Y or yaw.
-pub fn tire_marks(series: &TimeSeries, of: ControlledVehicle<'_>) -> Vec<TireMark> {
+pub fn tire_marks(series: &TimeSeries, vehicle: ControlledVehicle<'_>) -> Vec<TireMark> {
     let Some(track) = Track::from_series(series) else { return Vec::new() };
-    Wheel::ALL.into_iter().flat_map(|wheel| marks_of_wheel(&track, of, wheel)).collect()
+    Wheel::ALL.into_iter().flat_map(|wheel| marks_of_wheel(&track, vehicle, wheel)).collect()
 }
 
 fn piece_m(pair: &[TireMarkPoint]) -> f64 {
@@ -134,7 +134,11 @@ fn piece_m(pair: &[TireMarkPoint]) -> f64 {
     (x1 - x0).hypot(y1 - y0)
 }
 
-fn marks_of_wheel(track: &Track<'_>, of: ControlledVehicle<'_>, wheel: Wheel) -> Vec<TireMark> {
+fn marks_of_wheel(
+    track: &Track<'_>,
+    vehicle: ControlledVehicle<'_>,
+    wheel: Wheel,
+) -> Vec<TireMark> {
     let mut marks: Vec<TireMark> = Vec::new();
     let mut points: Vec<TireMarkPoint> = Vec::new();
     // Points since the last one that is marked, which belong to the mark only if it goes on.
@@ -147,7 +151,7 @@ fn marks_of_wheel(track: &Track<'_>, of: ControlledVehicle<'_>, wheel: Wheel) ->
         }
     };
     for idx in 0..track.time_s.len() {
-        let Some(point) = track.point(idx, of, wheel) else { break };
+        let Some(point) = track.point(idx, vehicle, wheel) else { break };
         if point.darkness > 0.0 {
             points.append(&mut gap);
             points.push(point);
@@ -213,11 +217,16 @@ impl<'a> Track<'a> {
     }
 
     /// The point of the ground under a wheel at a sample, with a darkness of 0 where it leaves no mark.
-    fn point(&self, idx: usize, of: ControlledVehicle<'_>, wheel: Wheel) -> Option<TireMarkPoint> {
+    fn point(
+        &self,
+        idx: usize,
+        vehicle: ControlledVehicle<'_>,
+        wheel: Wheel,
+    ) -> Option<TireMarkPoint> {
         let (time_s, [x_m, y_m, yaw_rad]) = (*self.time_s.get(idx)?, self.pose(idx)?);
         let [vx, vy, yaw_rate] = self.rates(idx)?;
         let value = |column: Option<&[f64]>| column.and_then(|values| values.get(idx)).copied();
-        let [x, y] = of.vehicle.geometry.wheel_place_m(wheel);
+        let [x, y] = vehicle.vehicle.geometry.wheel_place_m(wheel);
         let (sin, cos) = yaw_rad.sin_cos();
         let place_m = [x_m + x * cos - y * sin, y_m + x * sin + y * cos];
         let steer_rad = match wheel {
@@ -226,9 +235,9 @@ impl<'a> Track<'a> {
             Wheel::RearLeft | Wheel::RearRight => 0.0,
         };
         let velocity = body_from_world(steer_rad, [vx - yaw_rate * y, vy + yaw_rate * x]);
-        let static_n = of.vehicle.static_loads_n()[wheel.index()];
+        let static_n = vehicle.vehicle.static_loads_n()[wheel.index()];
         let load_n = value(self.loads_n[wheel.index()]).unwrap_or(static_n);
-        let is_locked = of.is_locked(time_s, wheel, place_m, (velocity, load_n));
+        let is_locked = vehicle.is_locked(time_s, wheel, place_m, (velocity, load_n));
         let load_share = load_n / static_n;
         let is_marked = leaves_mark(velocity, is_locked) && load_share > LEAST_LOAD_SHARE;
         let [along, across] = {
@@ -236,9 +245,9 @@ impl<'a> Track<'a> {
             velocity.map(|part| part.abs() / speed)
         };
         let slip_share = if is_locked { 1.0 } else { across };
-        let friction = of.tires_at(place_m).friction;
+        let friction = vehicle.tires_at(place_m).friction;
         let darkness = 0.5 * load_share * slip_share * friction / DARK_FRICTION;
-        let tires = &of.vehicle.tires;
+        let tires = &vehicle.vehicle.tires;
         let patch_m = PATCH_LENGTH_RATIO * tires.rolling_radius_m;
         let of_tread = if is_locked { 1.0 } else { (1.0 + across) / 2.0 };
         Some(TireMarkPoint {

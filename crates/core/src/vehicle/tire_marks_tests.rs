@@ -20,8 +20,9 @@ fn driven(
         ..Manoeuvre::default()
     };
     let motion = vehicle.simulate(&manoeuvre, Integrator::Rk4).unwrap().series;
-    let of = ControlledVehicle { vehicle: &vehicle, controls: &controls, friction_zones };
-    (tire_marks(&motion, of), motion)
+    let vehicle_on_ground =
+        ControlledVehicle { vehicle: &vehicle, controls: &controls, friction_zones };
+    (tire_marks(&motion, vehicle_on_ground), motion)
 }
 
 fn braked(share: f64) -> Ending {
@@ -98,11 +99,12 @@ fn marks_follow_from_poses_alone() {
         poses.insert(channel, motion.require(channel).unwrap().to_vec()).unwrap();
     }
     let (vehicle, controls) = (Preset::Reference.parameters(), crate::vehicle::Controls::default());
-    let of = ControlledVehicle { vehicle: &vehicle, controls: &controls, friction_zones: &[] };
-    let got = tire_marks(&poses, of);
+    let controlled =
+        ControlledVehicle { vehicle: &vehicle, controls: &controls, friction_zones: &[] };
+    let got = tire_marks(&poses, controlled);
     let length = |marks: &[TireMark]| marks.iter().map(TireMark::length_m).sum::<f64>();
     assert!((length(&got) / length(&expected) - 1.0).abs() < 0.05);
-    assert_eq!(tire_marks(&TimeSeries::new(vec![0.0, 1.0]).unwrap(), of), []);
+    assert_eq!(tire_marks(&TimeSeries::new(vec![0.0, 1.0]).unwrap(), controlled), []);
 }
 
 #[test]

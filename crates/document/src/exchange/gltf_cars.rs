@@ -61,7 +61,7 @@ pub fn add_car(
     let is_ghost = car.look == CarLook::Ghost;
     let of_body = if is_ghost { &shape.coarse } else { &shape.mesh };
     let body = car_mesh(builder, (car, &format!("{name} body")), of_body);
-    let wheel = car_mesh(builder, (car, &format!("{name} wheel")), &shape.wheel);
+    let wheel_mesh = car_mesh(builder, (car, &format!("{name} wheel")), &shape.wheel);
     let first = states.first().copied().unwrap_or_default();
     let body = builder.root.push(Node {
         mesh: Some(body),
@@ -71,12 +71,12 @@ pub fn add_car(
     });
     let mut children = vec![body];
     let mut tracks = vec![(body, rotations(&states, |state| about_x(state.roll_rad)))];
-    for of in Wheel::ALL {
-        let turned = |state: &CarState| wheel_rotation(state, of);
+    for wheel in Wheel::ALL {
+        let turned = |state: &CarState| wheel_rotation(state, wheel);
         let node = builder.root.push(Node {
-            mesh: Some(wheel),
-            name: Some(format!("{name} wheel {of:?}")),
-            translation: Some(shape.body.wheel_m(of).map(|value| value as f32)),
+            mesh: Some(wheel_mesh),
+            name: Some(format!("{name} wheel {wheel:?}")),
+            translation: Some(shape.body.wheel_m(wheel).map(|value| value as f32)),
             rotation: Some(UnitQuaternion(turned(&first))),
             ..Node::default()
         });
@@ -138,15 +138,16 @@ fn car_mesh(
     let mut parts = Vec::new();
     let opacity = if car.look == CarLook::Ghost { GHOST_OPACITY } else { 1.0 };
     for surface in SURFACES {
-        let of_surface = shape.triangles.iter().filter(|of| of.surface == surface);
-        let corners: Vec<[[f64; 3]; 3]> = of_surface.filter_map(|of| shape.corners_m(of)).collect();
+        let of_surface = shape.triangles.iter().filter(|triangle| triangle.surface == surface);
+        let corners: Vec<[[f64; 3]; 3]> =
+            of_surface.filter_map(|triangle| shape.corners_m(triangle)).collect();
         if corners.is_empty() {
             continue;
         }
         let single = |point: [f64; 3]| point.map(|value| value as f32);
         let positions: Vec<[f32; 3]> = corners.iter().flatten().map(|at| single(*at)).collect();
         let normals: Vec<[f32; 3]> =
-            corners.iter().flat_map(|of| [single(triangle_normal(*of)); 3]).collect();
+            corners.iter().flat_map(|triangle| [single(triangle_normal(*triangle)); 3]).collect();
         let rgb = surface.rgb(role_rgb(car.role));
         let title = format!("{} {surface:?}", role_name(car.role));
         let of_material = material(builder, title, (rgb, opacity));
@@ -183,10 +184,10 @@ fn wheel_rotation(state: &CarState, wheel: Wheel) -> Quaternion {
 }
 
 /// Rotations of states, each on the same side as the one before, so that the shorter way lies between.
-fn rotations(states: &[CarState], of: impl Fn(&CarState) -> Quaternion) -> Vec<Quaternion> {
+fn rotations(states: &[CarState], rotation: impl Fn(&CarState) -> Quaternion) -> Vec<Quaternion> {
     let mut before: Option<Quaternion> = None;
     let continued = |state: &CarState| {
-        let next = of(state);
+        let next = rotation(state);
         let along = before.map_or(1.0, |from| (0..4).map(|i| from[i] * next[i]).sum());
         let next = if along < 0.0 { next.map(|value: f32| -value) } else { next };
         before = Some(next);

@@ -24,9 +24,9 @@ pub fn add_lines(builder: &mut GltfBuilder, scene: &Scene, frame: &GltfFrame) ->
         let places = path.motion.states().iter().map(|state| [state.pose.x_m, state.pose.y_m]);
         nodes.extend(line((builder, frame), (&path.name, path.role), places));
     }
-    for of in &scene.lines {
-        let places = of.points_m.iter().copied();
-        nodes.extend(line((builder, frame), (&of.name, of.role), places));
+    for scene_line in &scene.lines {
+        let places = scene_line.points_m.iter().copied();
+        nodes.extend(line((builder, frame), (&scene_line.name, scene_line.role), places));
     }
     for mark in &scene.marks {
         for piece in mark.pieces() {

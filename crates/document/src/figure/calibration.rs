@@ -155,11 +155,11 @@ mod tests {
             is_clean: observed > 2000.0,
         };
         let points = [point(1000.0, 2000.0), point(3000.0, 2500.0)];
-        let of = (Quantity::Impulse, UnitSystem::Si);
-        let figure = parity_figure(("t", "|P|", "90 % interval"), &points, of);
+        let shown_as = (Quantity::Impulse, UnitSystem::Si);
+        let figure = parity_figure(("t", "|P|", "90 % interval"), &points, shown_as);
         let FigureElement::Line(diagonal) = &figure.elements[0] else { unreachable!() };
         assert_eq!(diagonal.points, [[1.0, 1.0], [3.0, 3.0]]);
         assert_eq!(figure.elements.len(), 5);
-        assert!(parity_figure(("t", "|P|", ""), &[], of).elements.is_empty());
+        assert!(parity_figure(("t", "|P|", ""), &[], shown_as).elements.is_empty());
     }
 }

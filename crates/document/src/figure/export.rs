@@ -72,7 +72,8 @@ impl<W: Write> FigureTable<W> {
     /// Writes the header.
     fn new(figure: &Figure, writer: W) -> Result<Self, csv::Error> {
         let mut csv = csv::Writer::from_writer(writer);
-        let has_paths = figure.elements.iter().any(|of| matches!(of, FigureElement::Path(_)));
+        let has_paths =
+            figure.elements.iter().any(|element| matches!(element, FigureElement::Path(_)));
         let path_axes = has_paths.then(|| {
             [("Time", Quantity::Time), ("Heading", Quantity::Angle)]
                 .map(|(label, quantity)| Axis::shown(label, quantity, UnitSystem::Si))

@@ -59,12 +59,12 @@ fn vertical(name: &str, role: Role, x: f64, (row, half): (f64, f64)) -> FigureEl
 pub fn ranking_figure(
     comparison: &Comparison,
     (title, label, unit): (&str, &str, Unit),
-    of: impl Fn(&ComparedModel) -> MeanStd,
+    statistic: impl Fn(&ComparedModel) -> MeanStd,
 ) -> Figure {
     let mut models: Vec<&ComparedModel> = comparison.models.iter().collect();
-    models.sort_by(|a, b| of(a).mean.total_cmp(&of(b).mean));
+    models.sort_by(|a, b| statistic(a).mean.total_cmp(&statistic(b).mean));
     let elements = |model: &ComparedModel, row: f64| {
-        let MeanStd { mean, std, median } = of(model);
+        let MeanStd { mean, std, median } = statistic(model);
         if !(mean.is_finite() && std.is_finite()) {
             return Vec::new();
         }
@@ -165,7 +165,7 @@ pub fn compared_case_figure(
     let case = comparison.test.iter().find(|case| case.name == name)?;
     let x = Axis::shown("X, along the road", Quantity::Length, units);
     let y = Axis::shown("Y, to the left", Quantity::Length, units);
-    let of = |name: &str, role, style, path: &[[f64; 3]]| -> Vec<FigureElement> {
+    let curve = |name: &str, role, style, path: &[[f64; 3]]| -> Vec<FigureElement> {
         let points = path.iter().map(|[px, py, _]| [x.unit.from_si(*px), x.unit.from_si(*py)]);
         let line = Series { name: name.to_owned(), role, style, points: points.collect() };
         let end = path.last().map(|&[x_m, y_m, yaw_rad]| Pose { x_m, y_m, yaw_rad });
@@ -181,9 +181,9 @@ pub fn compared_case_figure(
         }
         let style = style(comparison, model.trajectories);
         let name = model_name(&model.model, model.trajectories);
-        elements.extend(of(&name, role(model.kind), style, &model.path));
+        elements.extend(curve(&name, role(model.kind), style, &model.path));
     }
-    elements.extend(of("recorded", Role::Reference, LineStyle::Solid, &case.path));
+    elements.extend(curve("recorded", Role::Reference, LineStyle::Solid, &case.path));
     let title = format!("{name}, {}", if case.spins { "spins" } else { "does not spin" });
     Some(Figure::new(title, [x, y], elements).plan())
 }

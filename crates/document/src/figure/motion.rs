@@ -40,7 +40,7 @@ pub fn recording_line(
     channel: Channel,
     units: UnitSystem,
 ) -> Option<FigureElement> {
-    let [x, y] = [Quantity::Time, channel.quantity()].map(|of| of.display_unit(units));
+    let [x, y] = [Quantity::Time, channel.quantity()].map(|quantity| quantity.display_unit(units));
     let samples = series.time_s().iter().zip(series.get(channel)?);
     let points = samples.map(|(t, v)| [x.from_si(t + offset_s), y.from_si(*v)]).collect();
     let (role, style) = (Role::Reference, LineStyle::Dotted);

@@ -29,7 +29,8 @@ pub fn curve_statistics(figure: &Figure, span: [f64; 2]) -> Vec<CurveStatistics>
 }
 
 fn line_statistics(series: &Series, [from, to]: [f64; 2]) -> Option<CurveStatistics> {
-    let [x, y] = [0, 1].map(|axis| series.points.iter().map(|of| of[axis]).collect::<Vec<f64>>());
+    let [x, y] =
+        [0, 1].map(|axis| series.points.iter().map(|point| point[axis]).collect::<Vec<f64>>());
     let is_covered =
         x.first().is_some_and(|first| *first <= from) && x.last().is_some_and(|last| *last >= to);
     if !is_covered || to <= from || x.windows(2).any(|pair| pair[1] < pair[0]) {

@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn the_class_of_the_sheet_decides_and_else_the_size() {
-        let of = |class, name: &str, length_m, cg_height_m| {
+        let body_class = |class, name: &str, length_m, cg_height_m| {
             let sheet = DataSheet::new(name, class)
                 .with(SheetQuantity::Length, length_m)
                 .with(SheetQuantity::CgHeight, cg_height_m);
@@ -124,7 +124,11 @@ mod tests {
             (VehicleClass::Any, "a", 5.6, 0.70, BodyClass::Pickup),
             (VehicleClass::Any, "a", 4.9, 0.85, BodyClass::Van),
         ] {
-            assert_eq!(of(class, name, length_m, cg_height_m), expected, "{class:?} {name}");
+            assert_eq!(
+                body_class(class, name, length_m, cg_height_m),
+                expected,
+                "{class:?} {name}"
+            );
         }
         let mut vehicle = Preset::Reference.parameters();
         vehicle.sheet = Some(Arc::new(DataSheet::new("x", VehicleClass::Van)));

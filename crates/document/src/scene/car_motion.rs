@@ -73,10 +73,10 @@ impl CarMotion {
             channels.get(wheel.index()).and_then(|channel| value(*channel, idx))
         };
         motion.turn_wheels(body, |(idx, pose), time_s, wheel, velocity| {
-            let of = controls?;
-            let load_n = load(idx, wheel).unwrap_or_else(|| static_load_n(of.vehicle, wheel));
-            let place_m = pose.world_from_body(of.vehicle.geometry.wheel_place_m(wheel));
-            of.is_locked(time_s, wheel, place_m, (velocity, load_n)).then_some(())
+            let vehicle = controls?;
+            let load_n = load(idx, wheel).unwrap_or_else(|| static_load_n(vehicle.vehicle, wheel));
+            let place_m = pose.world_from_body(vehicle.vehicle.geometry.wheel_place_m(wheel));
+            vehicle.is_locked(time_s, wheel, place_m, (velocity, load_n)).then_some(())
         });
         (n > 0).then_some(motion)
     }
@@ -238,7 +238,7 @@ mod tests {
         };
         let motion = vehicle.simulate(&manoeuvre, Integrator::Rk4).unwrap();
         let body = CarBody::new(&vehicle, &Footprint::from(&vehicle.geometry));
-        let of = CarMotion::from_series(
+        let motion = CarMotion::from_series(
             &motion.series,
             &body,
             Some(ControlledVehicle {
@@ -247,7 +247,7 @@ mod tests {
                 friction_zones: zones,
             }),
         );
-        (of.unwrap(), body)
+        (motion.unwrap(), body)
     }
 
     #[test]

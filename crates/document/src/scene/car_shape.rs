@@ -94,9 +94,13 @@ mod tests {
         for body in bodies() {
             let shape = CarShape::new(body);
             let mean_x = |surface: Surface| {
-                let of = shape.mesh.triangles.iter().filter(|of| of.surface == surface);
-                let corners: Vec<f64> =
-                    of.filter_map(|of| shape.mesh.corners_m(of)).flatten().map(|v| v[0]).collect();
+                let triangles =
+                    shape.mesh.triangles.iter().filter(|triangle| triangle.surface == surface);
+                let corners: Vec<f64> = triangles
+                    .filter_map(|triangle| shape.mesh.corners_m(triangle))
+                    .flatten()
+                    .map(|v| v[0])
+                    .collect();
                 corners.iter().sum::<f64>() / corners.len() as f64
             };
             let [lamp, screen, tail] =

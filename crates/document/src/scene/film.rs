@@ -296,9 +296,9 @@ mod tests {
             let step_s = pair[1].time_s - pair[0].time_s;
             assert!(step_s > 0.0 && step_s < 0.1 + 1e-9, "{pair:?}");
         }
-        let inside: Vec<_> = instants.iter().filter(|of| of.speed == 0.1).collect();
+        let inside: Vec<_> = instants.iter().filter(|instant| instant.speed == 0.1).collect();
         assert_eq!(inside.len(), 40);
-        assert!(inside.iter().all(|of| (0.2 - 1e-9..=0.6 + 1e-9).contains(&of.time_s)));
+        assert!(inside.iter().all(|instant| (0.2 - 1e-9..=0.6 + 1e-9).contains(&instant.time_s)));
     }
 
     #[test]
@@ -337,7 +337,7 @@ mod tests {
             let is_known = moved || to_s <= 3.99;
             assert_eq!(film.instants(&whole).is_ok(), is_known, "{to_s} s, {frames_per_s}");
             if moved {
-                let last = film.instants(&whole).unwrap().pop().map(|of| of.time_s);
+                let last = film.instants(&whole).unwrap().pop().map(|instant| instant.time_s);
                 assert_eq!(last, Some(3.99));
             }
         }

@@ -53,9 +53,9 @@ impl PictureLevel {
     /// Its tiles: the left top pixel of each, and [`TILE`] rows of as many pixels
     /// `[red, green, blue, opacity]`, of which those beyond the edge mean nothing.
     pub fn tiles(&self) -> impl Iterator<Item = ([usize; 2], &[[u8; 4]])> {
-        let of = |idx: usize| [idx % self.tiles_across, idx / self.tiles_across];
+        let place = |idx: usize| [idx % self.tiles_across, idx / self.tiles_across];
         let tiles = self.pixels.chunks_exact(TILE * TILE).enumerate();
-        tiles.map(move |(idx, pixels)| (of(idx).map(|place| place * TILE), pixels))
+        tiles.map(move |(idx, pixels)| (place(idx).map(|place| place * TILE), pixels))
     }
 
     fn index(&self, x: usize, y: usize) -> usize {
@@ -127,11 +127,11 @@ fn mean(four: [[u8; 4]; 4]) -> [u8; 4] {
     if opacity == 0 {
         return [0; 4];
     }
-    let of = |k: usize| {
+    let mean = |k: usize| {
         let sum: u32 = four.iter().map(|pixel| u32::from(pixel[k]) * u32::from(pixel[3])).sum();
         ((sum + opacity / 2) / opacity) as u8
     };
-    [of(0), of(1), of(2), ((opacity + 2) / 4) as u8]
+    [mean(0), mean(1), mean(2), ((opacity + 2) / 4) as u8]
 }
 
 impl GroundPicture {
@@ -145,7 +145,7 @@ impl GroundPicture {
             first.set(x as usize, y as usize, pixel.0);
         }
         let mut levels = vec![first];
-        while let Some(half) = levels.last().filter(|of| of.size[0].max(of.size[1]) > 1)
+        while let Some(half) = levels.last().filter(|level| level.size[0].max(level.size[1]) > 1)
             && levels.len() < MAX_LEVELS
         {
             let half = half.halved();

@@ -31,39 +31,41 @@ impl LoadedGround {
     /// [`SiteError`] with the file and the place in it.
     pub fn load(path: &Path) -> Result<Self, SiteError> {
         let site = Site::load(path)?;
-        let picture = site.orthophoto.as_ref().map(|of| {
-            let picture = read_picture(&of.file)?;
-            Ok::<_, SiteError>(Arc::new(GroundPicture::new(&picture, of.map)))
+        let picture = site.orthophoto.as_ref().map(|orthophoto| {
+            let picture = read_picture(&orthophoto.file)?;
+            Ok::<_, SiteError>(Arc::new(GroundPicture::new(&picture, orthophoto.map)))
         });
         let drawing = site.drawing.as_ref();
-        let drawing = drawing.map(|of| read_drawing(of, &site.origin.unwrap_or_default()));
+        let drawing = drawing.map(|file| read_drawing(file, &site.origin.unwrap_or_default()));
         let (picture, drawing) = (picture.transpose()?, drawing.transpose()?);
         let mut notes = Vec::new();
-        if let Some(of) = site.orthophoto.as_ref().filter(|of| !of.is_placed) {
+        if let Some(orthophoto) =
+            site.orthophoto.as_ref().filter(|orthophoto| !orthophoto.is_placed)
+        {
             notes.push(format!(
                 "{}: nothing says where its pixels lie and how large they are; it is shown with 0.05 m \
                  per pixel about the origin",
-                of.file.display()
+                orthophoto.file.display()
             ));
         }
-        if let (Some(drawing), Some(of)) = (&drawing, &site.drawing)
+        if let (Some(drawing), Some(file)) = (&drawing, &site.drawing)
             && !drawing.left_out.is_empty()
         {
             let counts: Vec<String> =
                 drawing.left_out.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
-            notes.push(format!("{}: not drawn: {}", of.file.display(), counts.join(", ")));
+            notes.push(format!("{}: not drawn: {}", file.file.display(), counts.join(", ")));
         }
-        if let (Some(Drawing { has_unknown_frozen: true, .. }), Some(of)) =
+        if let (Some(Drawing { has_unknown_frozen: true, .. }), Some(file)) =
             (&drawing, &site.drawing)
         {
             notes.push(format!(
                 "{}: which layers of a binary drawing are frozen is not read; they are drawn, too, unless \
                  [dxf] names the layers",
-                of.file.display()
+                file.file.display()
             ));
         }
         let ground = Arc::new(SceneGround::new(&site, picture, drawing.as_ref()));
-        let drawing = drawing.map(|of| of.summary());
+        let drawing = drawing.map(|drawing| drawing.summary());
         Ok(Self { site, ground, drawing, notes })
     }
 
@@ -77,18 +79,17 @@ impl LoadedGround {
     ///
     /// - `scene_m`: smallest and largest `[X, Y]` of the scene, m.
     pub fn far_notes(&self, scene_m: [[f64; 2]; 2]) -> Vec<String> {
-        let photo = self.site.orthophoto.as_ref().map(|of| {
+        let photo = self.site.orthophoto.as_ref().map(|orthophoto| {
             let remedy = "[origin] of the site file, or unit of its world file";
-            (&of.file, gap_m(of.extent_m(), scene_m), remedy)
+            (&orthophoto.file, gap_m(orthophoto.extent_m(), scene_m), remedy)
         });
         let lines = self.ground.lines.iter().filter(|line| line.kind == GroundLineKind::Drawing);
         let sides = lines.flat_map(|line| line.points_m.windows(2));
         let gaps = sides.filter_map(|side| Some(gap_m(extent_of(side.iter().copied())?, scene_m)));
         let nearest_m = gaps.reduce(f64::min);
-        let drawing =
-            self.site.drawing.as_ref().zip(nearest_m).map(|(of, gap_m)| {
-                (&of.file, gap_m, "[origin] of the site file, or unit in [dxf]")
-            });
+        let drawing = self.site.drawing.as_ref().zip(nearest_m).map(|(file, gap_m)| {
+            (&file.file, gap_m, "[origin] of the site file, or unit in [dxf]")
+        });
         let far = photo.into_iter().chain(drawing).filter(|(_, gap_m, _)| *gap_m > FAR_M);
         far.map(|(file, gap_m, remedy)| {
             format!(
@@ -104,8 +105,8 @@ impl LoadedGround {
     #[must_use]
     pub fn placed(&self, map: PixelMap) -> Self {
         let mut moved = self.clone();
-        let Some(of) = &mut moved.site.orthophoto else { return moved };
-        (of.map, of.world_file, of.is_placed) = (map, None, true);
+        let Some(orthophoto) = &mut moved.site.orthophoto else { return moved };
+        (orthophoto.map, orthophoto.world_file, orthophoto.is_placed) = (map, None, true);
         let picture = self.ground.picture.as_ref().map(|picture| Arc::new(picture.placed(map)));
         moved.ground = Arc::new(SceneGround { picture, ..(*self.ground).clone() });
         moved.notes.retain(|note| !note.contains("nothing says where its pixels lie"));

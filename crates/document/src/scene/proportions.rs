@@ -26,7 +26,7 @@ const TAPER_WIDTHS: [f64; 8] = [0.70, 0.86, 0.955, 1.0, 1.0, 0.965, 0.90, 0.80];
 
 impl Proportions {
     pub fn from_class(class: BodyClass) -> Self {
-        let of = |nose, [cowl, deck, tail]: [f64; 3], cabin, roof_width| Self {
+        let proportions = |nose, [cowl, deck, tail]: [f64; 3], cabin, roof_width| Self {
             nose,
             cowl,
             sill: 0.15,
@@ -36,12 +36,22 @@ impl Proportions {
             roof_width,
         };
         match class {
-            BodyClass::Hatch => of(0.47, [0.66, 0.66, 0.60], [0.24, 0.42, 0.86, 0.965], 0.72),
-            BodyClass::Saloon => of(0.46, [0.65, 0.70, 0.65], [0.26, 0.43, 0.68, 0.84], 0.70),
-            BodyClass::Estate => of(0.46, [0.65, 0.66, 0.60], [0.26, 0.42, 0.90, 0.98], 0.71),
-            BodyClass::Suv => of(0.50, [0.64, 0.63, 0.57], [0.24, 0.38, 0.89, 0.975], 0.76),
-            BodyClass::Van => of(0.40, [0.55, 0.56, 0.50], [0.13, 0.29, 0.95, 0.99], 0.82),
-            BodyClass::Pickup => of(0.51, [0.63, 0.61, 0.60], [0.25, 0.36, 0.54, 0.58], 0.76),
+            BodyClass::Hatch => {
+                proportions(0.47, [0.66, 0.66, 0.60], [0.24, 0.42, 0.86, 0.965], 0.72)
+            }
+            BodyClass::Saloon => {
+                proportions(0.46, [0.65, 0.70, 0.65], [0.26, 0.43, 0.68, 0.84], 0.70)
+            }
+            BodyClass::Estate => {
+                proportions(0.46, [0.65, 0.66, 0.60], [0.26, 0.42, 0.90, 0.98], 0.71)
+            }
+            BodyClass::Suv => {
+                proportions(0.50, [0.64, 0.63, 0.57], [0.24, 0.38, 0.89, 0.975], 0.76)
+            }
+            BodyClass::Van => proportions(0.40, [0.55, 0.56, 0.50], [0.13, 0.29, 0.95, 0.99], 0.82),
+            BodyClass::Pickup => {
+                proportions(0.51, [0.63, 0.61, 0.60], [0.25, 0.36, 0.54, 0.58], 0.76)
+            }
         }
     }
 

@@ -49,15 +49,15 @@ impl SceneStill {
     /// Names of what can be seen: cars, paths, marks and everything else that has a name.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         let scene = &*self.scene;
-        let cars = scene.cars.iter().map(|of| &of.name);
-        let paths = scene.paths.iter().map(|of| &of.name);
-        let lines = scene.lines.iter().map(|of| &of.name);
-        let marks = scene.marks.iter().map(|of| &of.name);
-        let crushes = scene.crushes.iter().map(|of| &of.name);
-        let points = scene.points.iter().map(|of| &of.name);
-        let arrows = scene.arrows.iter().map(|of| &of.name);
-        let crosses = scene.crosses.iter().map(|of| &of.name);
-        let density = scene.density.iter().map(|of| &of.name);
+        let cars = scene.cars.iter().map(|car| &car.name);
+        let paths = scene.paths.iter().map(|path| &path.name);
+        let lines = scene.lines.iter().map(|line| &line.name);
+        let marks = scene.marks.iter().map(|mark| &mark.name);
+        let crushes = scene.crushes.iter().map(|crush| &crush.name);
+        let points = scene.points.iter().map(|point| &point.name);
+        let arrows = scene.arrows.iter().map(|arrow| &arrow.name);
+        let crosses = scene.crosses.iter().map(|cross| &cross.name);
+        let density = scene.density.iter().map(|density| &density.name);
         let moving = cars.chain(paths).chain(lines).chain(marks).chain(crushes);
         moving.chain(points).chain(arrows).chain(crosses).chain(density).map(String::as_str)
     }

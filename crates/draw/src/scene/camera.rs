@@ -380,8 +380,8 @@ mod tests {
                 let off = (px - pixel[0]).hypot(py - pixel[1]);
                 assert!(off < 1e-5, "{camera:?} {pixel:?}: {px}, {py}");
                 let map = projection.ground_map();
-                let of = |row: [f64; 3]| row[0] + row[1] * pixel[0] + row[2] * pixel[1];
-                let [mx, my, d] = map.map(of);
+                let at_pixel = |row: [f64; 3]| row[0] + row[1] * pixel[0] + row[2] * pixel[1];
+                let [mx, my, d] = map.map(at_pixel);
                 let again = [camera.target_m[0] + mx / d, camera.target_m[1] + my / d];
                 let off = (again[0] - x).hypot(again[1] - y);
                 assert!(off < 1e-6 * camera.distance_m, "{camera:?} {pixel:?}: {again:?}");

@@ -57,7 +57,7 @@ pub fn seen_cars<'a>(ground: &Ground<'a>, time_s: f64) -> Vec<SeenCar<'a>> {
     let mut seen: Vec<SeenCar<'a>> =
         cars.filter_map(|car| SeenCar::new(ground, car, time_s)).collect();
     seen.sort_by(|a, b| {
-        let is_ghost = |of: &SeenCar<'_>| of.opacity < 1.0;
+        let is_ghost = |car: &SeenCar<'_>| car.opacity < 1.0;
         is_ghost(a).cmp(&is_ghost(b)).then(a.nearness.total_cmp(&b.nearness))
     });
     seen

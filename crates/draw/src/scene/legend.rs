@@ -85,16 +85,22 @@ fn entries(scene: &Scene, dark: bool) -> Vec<(&str, Color32, Entry)> {
         (car.name.as_str(), car.role, kind)
     });
     let lined = |is_dashed| if is_dashed { Entry::Dashed } else { Entry::Line };
-    let paths = scene.paths.iter().map(|of| (of.name.as_str(), of.role, lined(of.is_dashed)));
-    let lines = scene.lines.iter().map(|of| (of.name.as_str(), of.role, lined(of.is_dashed)));
-    let marks = scene.marks.iter().map(|of| (of.name.as_str(), SceneRole::TireMark, Entry::Solid));
-    let crushes = scene.crushes.iter().map(|of| (of.name.as_str(), SceneRole::Crush, Entry::Line));
-    let points = scene.points.iter().map(|of| (of.name.as_str(), of.role, Entry::Point));
-    let arrows = scene.arrows.iter().map(|of| ("impulse", of.role, Entry::Line));
+    let paths =
+        scene.paths.iter().map(|path| (path.name.as_str(), path.role, lined(path.is_dashed)));
+    let lines =
+        scene.lines.iter().map(|line| (line.name.as_str(), line.role, lined(line.is_dashed)));
+    let marks =
+        scene.marks.iter().map(|mark| (mark.name.as_str(), SceneRole::TireMark, Entry::Solid));
+    let crushes =
+        scene.crushes.iter().map(|crush| (crush.name.as_str(), SceneRole::Crush, Entry::Line));
+    let points = scene.points.iter().map(|point| (point.name.as_str(), point.role, Entry::Point));
+    let arrows = scene.arrows.iter().map(|arrow| ("impulse", arrow.role, Entry::Line));
     let crosses =
-        scene.crosses.iter().map(|of| (of.name.as_str(), SceneRole::Evidence, Entry::Cross));
-    let density =
-        scene.density.iter().map(|of| (of.name.as_str(), SceneRole::Forecast, Entry::Ghost));
+        scene.crosses.iter().map(|cross| (cross.name.as_str(), SceneRole::Evidence, Entry::Cross));
+    let density = scene
+        .density
+        .iter()
+        .map(|density| (density.name.as_str(), SceneRole::Forecast, Entry::Ghost));
     let all = cars
         .chain(paths)
         .chain(marks)

@@ -157,18 +157,19 @@ impl Tile {
 }
 
 fn mean(samples: [Color32; SAMPLES * SAMPLES]) -> Color32 {
-    let of = |channel: fn(&Color32) -> u8| {
+    let mean = |channel: fn(&Color32) -> u8| {
         let sum: u32 = samples.iter().map(|sample| u32::from(channel(sample))).sum();
         ((sum + 2) / 4) as u8
     };
-    Color32::from_rgb(of(Color32::r), of(Color32::g), of(Color32::b))
+    Color32::from_rgb(mean(Color32::r), mean(Color32::g), mean(Color32::b))
 }
 
 /// Draws a triangle where it is nearer than what is there. A sample is covered if its middle is.
 fn fill((colors, depths): (&mut [Color32], &mut [f32]), triangle: &ScreenTriangle, at: [usize; 2]) {
     let to_samples = |[x, y, depth]: [f32; 3]| {
-        let of = |value: f32, origin: usize| (value - origin as f32) * SAMPLES as f32 - 0.5;
-        [of(x, at[0]), of(y, at[1]), depth]
+        let sample_place =
+            |value: f32, origin: usize| (value - origin as f32) * SAMPLES as f32 - 0.5;
+        [sample_place(x, at[0]), sample_place(y, at[1]), depth]
     };
     let [a, b, c] = triangle.corners.map(to_samples);
     let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);

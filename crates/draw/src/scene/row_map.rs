@@ -19,7 +19,7 @@ impl RowMap {
     /// - `map`: that of [`Projection::ground_map`](crate::scene::Projection::ground_map);
     /// - `py`: the middle of the row, pixels.
     pub fn new(map: [[f32; 3]; 3], py: f32) -> Self {
-        Self { start: map.map(|of| of[0] + of[2] * py), map }
+        Self { start: map.map(|row| row[0] + row[2] * py), map }
     }
 
     /// The place under the middle of a pixel; `None` above the horizon.
@@ -36,8 +36,8 @@ impl RowMap {
 
     /// By how much a coordinate changes from a pixel to the one at its right, and to the one below, m.
     pub fn changes(&self, spot: &Spot, axis: usize) -> [f32; 2] {
-        let (of, md, at) = (&self.map[axis], &self.map[2], spot.place[axis]);
-        [(of[1] - at * md[1]) * spot.per, (of[2] - at * md[2]) * spot.per]
+        let (row, md, at) = (&self.map[axis], &self.map[2], spot.place[axis]);
+        [(row[1] - at * md[1]) * spot.per, (row[2] - at * md[2]) * spot.per]
     }
 
     /// By how much a coordinate changes over a pixel, m, more than 0.

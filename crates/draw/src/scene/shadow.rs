@@ -74,7 +74,7 @@ pub fn draw_shadow(rows: &mut Rows<'_>, shadow: &Shadow, (projection, dark): (&P
     for row in from..to {
         for column in columns.clone() {
             let (px, py) = (column as f64 + 0.5, row as f64 + 0.5);
-            let [x, y, d] = map.map(|of| of[0] + of[1] * px + of[2] * py);
+            let [x, y, d] = map.map(|row| row[0] + row[1] * px + row[2] * py);
             if d <= 0.0 {
                 continue;
             }

@@ -12,7 +12,7 @@ const SIZE: [usize; 2] = [240, 160];
 /// A picture of 120 x 80 pixels of 0.25 m, of which no two parts look alike, with its left top corner at
 /// a place of a survey.
 fn picture([easting_m, northing_m]: [f64; 2], origin: &SiteOrigin) -> GroundPicture {
-    let of = RgbaImage::from_fn(120, 80, |x, y| {
+    let image = RgbaImage::from_fn(120, 80, |x, y| {
         let check = if (x / 4 + y / 4) % 2 == 0 { 60 } else { 200 };
         Rgba([(2 * x) as u8, (3 * y) as u8, check, 255])
     });
@@ -21,7 +21,7 @@ fn picture([easting_m, northing_m]: [f64; 2], origin: &SiteOrigin) -> GroundPict
         per_row_m: [0.0, -0.25],
         first_pixel_m: [easting_m + 0.125, northing_m - 0.125],
     };
-    GroundPicture::new(&of, PixelMap::from_world_file(&world, origin))
+    GroundPicture::new(&image, PixelMap::from_world_file(&world, origin))
 }
 
 fn scene(ground: SceneGround) -> Arc<Scene> {
@@ -96,13 +96,13 @@ fn a_scene_that_lies_at_large_coordinates_itself_does_not_jitter() {
 
 #[test]
 fn a_pixel_of_the_picture_is_drawn_where_it_lies() {
-    let of = RgbaImage::from_fn(40, 30, |x, y| match (x, y) {
+    let image = RgbaImage::from_fn(40, 30, |x, y| match (x, y) {
         (30, 6) => Rgba([255, 0, 0, 255]),
         _ => Rgba([0, 0, 0, 255]),
     });
     let map =
         PixelMap { corner_m: [-20.0, 15.0], per_column_m: [1.0, 0.0], per_row_m: [0.0, -1.0] };
-    let picture = Some(Arc::new(GroundPicture::new(&of, map)));
+    let picture = Some(Arc::new(GroundPicture::new(&image, map)));
     let scene = scene(SceneGround { picture, ..SceneGround::default() });
     for kind in [ViewKind::Above, ViewKind::Perspective] {
         let camera = Camera { kind, distance_m: 60.0, ..Camera::default() };

@@ -56,7 +56,7 @@ impl CaseScore {
 
     /// A quantity by its name; `None` if the method does not know it.
     pub fn quantity(&self, name: &str) -> Option<&ScoredQuantity> {
-        self.quantities.iter().find(|of| of.estimate.name == name)
+        self.quantities.iter().find(|scored| scored.estimate.name == name)
     }
 }
 

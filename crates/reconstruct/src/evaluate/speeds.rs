@@ -128,7 +128,7 @@ impl SpeedEstimates {
 
     /// The speeds by hand; none where the rest position is not known.
     pub fn by_hand(hand: Option<&HandCalculation>, seconds: f64) -> Self {
-        let of = |hand: &HandCalculation| {
+        let estimates = |hand: &HandCalculation| {
             let speed = |quantity, measured| EstimatedSpeed {
                 quantity,
                 distribution: SpeedDistribution::Normal(measured),
@@ -144,7 +144,7 @@ impl SpeedEstimates {
             seconds,
             ess: None,
             n_simulations: 0,
-            speeds: hand.map(of).unwrap_or_default(),
+            speeds: hand.map(estimates).unwrap_or_default(),
         }
     }
 
@@ -159,21 +159,21 @@ impl SpeedEstimates {
         seconds: f64,
     ) -> Self {
         let drawn = found.and_then(|found| found.draws(n_draws, seed));
-        let of = |z: Vec<Vec<f64>>| speeds(&Posterior::from_points(struck.model(), &z));
+        let speeds_at = |z: Vec<Vec<f64>>| speeds(&Posterior::from_points(struck.model(), &z));
         Self {
             method: ReconstructionMethod::Swarm,
             seconds,
             ess: None,
             n_simulations: found.map_or(0, |found| found.n_evaluations),
-            speeds: drawn.map(of).unwrap_or_default(),
+            speeds: drawn.map(speeds_at).unwrap_or_default(),
         }
     }
 }
 
 fn speeds(posterior: &Posterior) -> Vec<EstimatedSpeed> {
-    let of = |quantity: ReconstructedQuantity| EstimatedSpeed {
+    let estimate = |quantity: ReconstructedQuantity| EstimatedSpeed {
         quantity,
         distribution: SpeedDistribution::from_draws(posterior.values(quantity)),
     };
-    SPEEDS.map(of).into()
+    SPEEDS.map(estimate).into()
 }

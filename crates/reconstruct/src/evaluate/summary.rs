@@ -67,14 +67,14 @@ impl MethodSummary {
         scores: &[CaseScore],
         (known, method): (KnownEvidence, ReconstructionMethod),
     ) -> Option<Self> {
-        let is_of = |of: &&CaseScore| of.known == known && of.method == method;
+        let is_of = |score: &&CaseScore| score.known == known && score.method == method;
         let scores: Vec<&CaseScore> = scores.iter().filter(is_of).collect();
-        let seconds = sorted(scores.iter().map(|of| of.seconds));
-        let ess: Vec<f64> = scores.iter().filter_map(|of| of.ess).collect();
+        let seconds = sorted(scores.iter().map(|score| score.seconds));
+        let ess: Vec<f64> = scores.iter().filter_map(|score| score.ess).collect();
         let n_sufficient = ess.iter().filter(|ess| **ess >= SUFFICIENT_ESS).count();
         let quantities = SPEEDS.iter().filter_map(|speed| {
             let scored: Vec<&ScoredQuantity> =
-                scores.iter().filter_map(|of| of.quantity(speed.key())).collect();
+                scores.iter().filter_map(|score| score.quantity(speed.key())).collect();
             QuantitySummary::new(&scored)
         });
         Some(Self {
@@ -95,14 +95,14 @@ impl QuantitySummary {
         let first = scored.first()?;
         let n = scored.len();
         let share = |level: f64| {
-            let holds = |of: &&&ScoredQuantity| {
-                let interval = of.estimate.estimate.interval(level);
-                interval.is_some_and(|[low, high]| (low..=high).contains(&of.truth))
+            let holds = |quantity: &&&ScoredQuantity| {
+                let interval = quantity.estimate.estimate.interval(level);
+                interval.is_some_and(|[low, high]| (low..=high).contains(&quantity.truth))
             };
             scored.iter().filter(holds).count() as f64 / n as f64
         };
         let median = |value: fn(&ScoredQuantity) -> f64| {
-            quantile_of_sorted(&sorted(scored.iter().map(|of| value(of))), 0.5)
+            quantile_of_sorted(&sorted(scored.iter().map(|quantity| value(quantity))), 0.5)
         };
         Some(Self {
             name: first.estimate.name,
@@ -112,10 +112,10 @@ impl QuantitySummary {
             coverage_80: share(0.8),
             coverage_90: share(0.9),
             coverage_95: share(0.95),
-            median_absolute_error: median(|of| of.error().abs())?,
+            median_absolute_error: median(|quantity| quantity.error().abs())?,
             median_error: median(ScoredQuantity::error)?,
             median_width_90: median(ScoredQuantity::width_90)?,
-            mean_crps: scored.iter().map(|of| of.crps).sum::<f64>() / n as f64,
+            mean_crps: scored.iter().map(|quantity| quantity.crps).sum::<f64>() / n as f64,
         })
     }
 }

@@ -139,12 +139,18 @@ impl Part {
     /// Whether all numbers are finite and belong to as many variables.
     fn is_of(&self, dim: usize) -> bool {
         let is_column = |(j, column): (usize, &Vec<f64>)| {
-            column.len() == dim - j && column[0] > 0.0 && column.iter().all(|of| of.is_finite())
+            column.len() == dim - j
+                && column[0] > 0.0
+                && column.iter().all(|number| number.is_finite())
         };
         self.mean.len() == dim
             && self.factor.len() == dim
             && self.factor.iter().enumerate().all(is_column)
-            && self.mean.iter().chain([&self.ln_weight, &self.ln_scale]).all(|of| of.is_finite())
+            && self
+                .mean
+                .iter()
+                .chain([&self.ln_weight, &self.ln_scale])
+                .all(|number| number.is_finite())
     }
 }
 
@@ -233,10 +239,10 @@ impl Mixture {
             common += &moments.covariance * moments.weight;
         }
         let n: f64 = moments.iter().map(|moments| moments.n).sum();
-        let part = |of: Moments| {
-            let share = of.weight / (of.weight + shared);
-            let covariance = of.covariance * share + &common * (1.0 - share);
-            Part::new(of.weight, of.mean, covariance, n)
+        let part = |moments: Moments| {
+            let share = moments.weight / (moments.weight + shared);
+            let covariance = moments.covariance * share + &common * (1.0 - share);
+            Part::new(moments.weight, moments.mean, covariance, n)
         };
         Self { parts: moments.into_iter().map(part).collect() }
     }

@@ -84,7 +84,7 @@ impl Weights {
 impl Population {
     /// Number of draws until now, forgotten ones included.
     pub fn n_draws(&self) -> usize {
-        self.n_prior + self.proposals.iter().map(|of| of.n_draws).sum::<usize>()
+        self.n_prior + self.proposals.iter().map(|proposal| proposal.n_draws).sum::<usize>()
     }
 
     /// Number of draws from the prior.
@@ -123,7 +123,7 @@ impl Population {
         of_each.for_each(|(z, sum)| *sum = ln_sum_exp(&[*sum, proposal.ln_share(z)]));
         let (n_prior, proposals) = (self.n_prior as f64, std::mem::take(&mut self.proposals));
         self.push(z, log_likelihood, |z| {
-            let of_mixtures = proposals.iter().map(|of| of.ln_share(z));
+            let of_mixtures = proposals.iter().map(|proposal| proposal.ln_share(z));
             ln_sum_exp(&std::iter::once(n_prior.ln()).chain(of_mixtures).collect::<Vec<f64>>())
         });
         self.proposals = proposals;
@@ -213,9 +213,11 @@ impl Population {
         if !values.into_iter().all(|value| value.is_finite()) {
             return Err("a likelihood or a density is no number");
         }
-        let is_good = |of: &Proposal| of.n_draws > 0 && of.mixture.is_of(dim);
-        let n_draws =
-            self.proposals.iter().try_fold(self.n_prior, |n, of| n.checked_add(of.n_draws));
+        let is_good = |proposal: &Proposal| proposal.n_draws > 0 && proposal.mixture.is_of(dim);
+        let n_draws = self
+            .proposals
+            .iter()
+            .try_fold(self.n_prior, |n, proposal| n.checked_add(proposal.n_draws));
         match self.proposals.iter().all(is_good) && n_draws.is_some_and(|n_draws| n_draws >= n) {
             true => Ok(()),
             false => Err("a distribution that particles were drawn from is none"),

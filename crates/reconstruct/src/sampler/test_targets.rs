@@ -66,12 +66,12 @@ impl Target for LinearGaussian {
     }
 
     fn log_likelihoods(&self, z: &[Vec<f64>]) -> Vec<f64> {
-        let of = |z: &Vec<f64>| {
+        let log_likelihood = |z: &Vec<f64>| {
             let found = &self.a * DVector::from_column_slice(z);
             let terms = found.iter().zip(self.y.iter()).zip(self.noise.iter());
             terms.map(|((found, y), noise)| normal(*found, *y, *noise)).sum()
         };
-        z.iter().map(of).collect()
+        z.iter().map(log_likelihood).collect()
     }
 }
 

@@ -88,9 +88,9 @@ fn two_separate_modes_have_their_weights() {
 #[test]
 fn a_threshold_divides_the_posterior_as_the_evidence_says() {
     let density = |x: f64, variance: f64| (-x * x / (2.0 * variance)).exp();
-    let of = |prior: f64, a: f64, b: f64| prior * density(a, 1.0025) * density(b, 1.0925);
-    let locked = of(1.0 - normal_cdf(0.5), -1.2, -0.5);
-    let free = of(normal_cdf(0.5), 0.3, 0.3);
+    let evidence = |prior: f64, a: f64, b: f64| prior * density(a, 1.0025) * density(b, 1.0925);
+    let locked = evidence(1.0 - normal_cdf(0.5), -1.2, -0.5);
+    let free = evidence(normal_cdf(0.5), 0.3, 0.3);
     for n in 1..=3 {
         let particles = run(&discontinuous(), seed(n));
         let found = mean(&particles, |z| f64::from(u8::from(z[0] > 0.5)));

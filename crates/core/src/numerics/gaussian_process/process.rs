@@ -204,7 +204,7 @@ impl GaussianProcess {
         let mean = self.coefficients.tr_mul(&k);
         let scaling = &self.output_scaling;
         let outputs = mean.iter().zip(scaling.mean.iter().zip(&scaling.std));
-        let spread = |of: f64| scaling.std.iter().map(|std| of * std).collect();
+        let spread = |factor: f64| scaling.std.iter().map(|std| factor * std).collect();
         Ok(GaussianPrediction {
             mean: outputs.map(|(value, (mean, std))| mean + std * value).collect(),
             std: spread(usual),
@@ -424,8 +424,8 @@ mod tests {
         let inputs = grid(12);
         let outputs: Vec<Vec<f64>> = inputs.iter().map(|x| vec![x[0].sin(), x[1]]).collect();
         let unusual: Vec<bool> = (0..12).map(|i| i == 5).collect();
-        let of = GaussianProcessData { unusual: &unusual, ..data(&inputs, &outputs) };
-        let process = GaussianProcess::fit(&of).unwrap();
+        let unusual_data = GaussianProcessData { unusual: &unusual, ..data(&inputs, &outputs) };
+        let process = GaussianProcess::fit(&unusual_data).unwrap();
         let text = serde_json::to_string(&process).unwrap();
         let back: GaussianProcess = serde_json::from_str(&text).unwrap();
         let at = [1.1, 4.0, 5.0];

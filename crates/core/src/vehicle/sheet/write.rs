@@ -43,7 +43,7 @@ impl DataSheet {
         let mut sheet = toml::Table::new();
         sheet.insert("class".to_owned(), self.class.word().into());
         if let Some(drive) = self.drive {
-            let word = Drive::ALL.iter().position(|of| *of == drive).map(|i| Drive::WORDS[i]);
+            let word = Drive::ALL.iter().position(|known| *known == drive).map(|i| Drive::WORDS[i]);
             sheet.extend(word.map(|word| ("drive".to_owned(), word.into())));
         }
         sheet.extend(

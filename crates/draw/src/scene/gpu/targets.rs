@@ -53,7 +53,8 @@ impl Targets {
         let fine = size.map(|side| side * SAMPLES);
         let samples = texture("samples", fine, COLORS, drawn | read);
         let depths = texture("depths", fine, DEPTHS, drawn);
-        let view = |of: &wgpu::Texture| of.create_view(&wgpu::TextureViewDescriptor::default());
+        let view =
+            |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let (picture_view, sample_view) = (view(&picture), view(&samples));
         Self {
             size,
