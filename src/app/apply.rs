@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::Context;
 
 use crate::app::case::Leaving;
-use crate::app::command::{Command, TIME_STEP_S, wake};
+use crate::app::command::{Command, wake};
 use crate::app::dialog::{Dialog, PathDialog, Purpose, ask_for_path};
 use crate::app::export;
 use crate::app::film::FilmForm;
@@ -120,11 +120,17 @@ impl State {
     fn apply_to_view(&mut self, command: Command) {
         match command {
             Command::ShowLicences => self.session.dialogs.open(Dialog::Licences),
-            Command::SetTime(time_s) => self.session.time_s = time_s,
+            Command::SetTime(time_s) => self.session.playback.time_s = time_s,
             Command::SetSpeed(speed) => self.view.playback_speed = speed,
-            Command::StepTime(steps) => self.step_time(steps),
+            Command::StepTime(steps) => {
+                let end_s = self.end_time_s();
+                self.session.playback.step(steps, end_s);
+            }
             Command::ToContactEnd => self.show_contact_end(),
-            Command::TogglePlay => self.toggle_play(),
+            Command::TogglePlay => {
+                let end_s = self.end_time_s();
+                self.session.playback.toggle(end_s);
+            }
             Command::FitPlots => self.session.fit_plots = true,
             Command::ShowTraining(network) => {
                 self.view.trained = network;
@@ -167,7 +173,7 @@ impl State {
             let takes_ending = self.takes_ending(Some(&subject));
             self.project.take_up(self.source_of(subject), takes_ending);
             self.drop_answers();
-            self.session.time_s = 0.0;
+            self.session.playback.time_s = 0.0;
             self.session.fit_plots = true;
             if self.view.force.follow_case {
                 self.predict_case();
@@ -207,12 +213,6 @@ impl State {
         }
     }
 
-    fn step_time(&mut self, steps: f64) {
-        let end = self.end_time_s();
-        self.session.playing = false;
-        self.session.time_s = (self.session.time_s + steps * TIME_STEP_S).clamp(0.0, end);
-    }
-
     fn show_contact_end(&mut self) {
         // The motions of a reconstruction begin with an impact of no duration.
         if self.view.workspaces.shown == Workspace::Reconstruct {
@@ -220,17 +220,8 @@ impl State {
         }
         let force = self.analysis().and_then(|answer| answer.analysis.force.as_ref());
         if let Some((_, end_s)) = force.and_then(contact_interval) {
-            let end = self.end_time_s();
-            self.session.playing = false;
-            self.session.time_s = end_s.clamp(0.0, end);
-        }
-    }
-
-    fn toggle_play(&mut self) {
-        let at_end = self.session.time_s >= self.end_time_s();
-        self.session.playing = !self.session.playing;
-        if self.session.playing && at_end {
-            self.session.time_s = 0.0;
+            let motion_end_s = self.end_time_s();
+            self.session.playback.stop_at(end_s, motion_end_s);
         }
     }
 

@@ -8,13 +8,15 @@ const WINDOW_S: f32 = 2.0;
 
 /// The frames of the last seconds.
 pub struct FrameTimes {
+    /// Whether they are shown.
+    pub is_shown: bool,
     /// Time of the processor for each frame, s.
     processor_s: History<f32>,
 }
 
 impl Default for FrameTimes {
     fn default() -> Self {
-        Self { processor_s: History::new(0..N_FRAMES, WINDOW_S) }
+        Self { is_shown: false, processor_s: History::new(0..N_FRAMES, WINDOW_S) }
     }
 }
 

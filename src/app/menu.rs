@@ -165,7 +165,7 @@ fn view_menu_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
         commands.push(Command::ResetLayout);
     }
     ui.checkbox(&mut state.view.dark, "Dark theme");
-    let shown = &mut state.session.shows_frame_times;
+    let shown = &mut state.session.frame_times.is_shown;
     ui.checkbox(shown, "Frames a second")
         .on_hover_text("While something moves, in the status line");
 }
@@ -261,7 +261,7 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
             progress_ui(ui, &format!("Making {name}"), progress, Command::CancelFilm, commands);
         }
-        if state.session.shows_frame_times {
+        if state.session.frame_times.is_shown {
             ui.weak(state.session.frame_times.text());
         }
         panels::interrupted_ui(ui, &state.session, commands);

@@ -33,6 +33,7 @@ mod open;
 mod pane;
 mod panels;
 mod panes;
+mod playback;
 mod project;
 mod question_job;
 mod reconstruction;

@@ -158,16 +158,12 @@ impl State {
     }
 
     fn advance_time(&mut self, context: &Context) {
-        if !self.session.playing {
+        if !self.session.playback.is_playing {
             return;
         }
-        let end = self.end_time_s();
+        let end_s = self.end_time_s();
         let passed_s = f64::from(context.input(|input| input.unstable_dt.min(0.5)));
-        self.session.time_s += passed_s * self.view.playback_speed;
-        if self.session.time_s >= end {
-            self.session.time_s = end;
-            self.session.playing = false;
-        }
+        self.session.playback.advance(passed_s * self.view.playback_speed, end_s);
         context.request_repaint();
     }
 }

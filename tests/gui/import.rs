@@ -217,7 +217,7 @@ fn keys_stay_in_the_dialog() {
         harness.run_steps(3);
     }
     let state = state(&harness);
-    assert!(!state.session.playing && state.session.time_s == 0.0);
+    assert!(!state.session.playback.is_playing && state.session.playback.time_s == 0.0);
     assert_eq!(state.project.subject(), selected);
 }
 

@@ -89,7 +89,7 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
     assert_eq!(state(&harness).view.workspaces.shown, Workspace::Reconstruct);
     let choice = state(&harness).project.reconstruct.as_ref().map(|of| of.evidence.clone());
     assert_eq!(choice, Some(EvidenceChoice::File(path)));
-    assert!(!state(&harness).session.playing);
+    assert!(!state(&harness).session.playback.is_playing);
 
     run(&mut harness);
     step_until(&mut harness, "the speeds", is_answered);
@@ -112,8 +112,8 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
     harness.run_steps(4);
     let session = &state(&harness).session;
     assert_eq!(session.reconstruction.followed, FollowedParticle::Draw(0));
-    assert!(session.playing && session.time_s > 0.0);
-    assert!(session.time_s <= state(&harness).end_time_s());
+    assert!(session.playback.is_playing && session.playback.time_s > 0.0);
+    assert!(session.playback.time_s <= state(&harness).end_time_s());
 
     // The same with the cars as bodies, from above and in perspective.
     harness.get_by_label("Cars").click();

@@ -84,9 +84,13 @@ fn a_predicted_force_spreads_the_forecast_and_playing_moves_it() {
     apply(&mut harness, Command::SetTime(1.0));
     apply(&mut harness, Command::TogglePlay);
     harness.run_steps(20);
-    assert!(state(&harness).session.time_s > 1.2, "{}", state(&harness).session.time_s);
+    assert!(
+        state(&harness).session.playback.time_s > 1.2,
+        "{}",
+        state(&harness).session.playback.time_s
+    );
     apply(&mut harness, Command::TogglePlay);
-    let time_s = state(&harness).session.time_s;
+    let time_s = state(&harness).session.playback.time_s;
     step_until(&mut harness, "the density", |state| is_density_current(state, [time_s; 2]));
     harness.run_steps(4);
     save(&mut harness, "motion-forecast-predicted.png");

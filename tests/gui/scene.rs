@@ -69,7 +69,7 @@ fn the_view_is_switched_by_its_label_and_moved_by_the_mouse() {
 #[test]
 fn the_time_line_goes_to_start_and_end_of_the_contact() {
     let mut harness = scene();
-    let time_s = |harness: &Harness<'_, App>| harness.state().state().session.time_s;
+    let time_s = |harness: &Harness<'_, App>| harness.state().state().session.playback.time_s;
     harness.key_press(egui::Key::End);
     harness.run_steps(2);
     let answer = harness.state().state().analysis().expect("a simulation");

@@ -71,17 +71,21 @@ fn open_pick_simulate_scrub() {
     // The time is moved by keys, and playback is started and stopped.
     harness.key_press(Key::ArrowRight);
     harness.step();
-    assert!((state(&harness).session.time_s - 0.05).abs() < 1e-9);
+    assert!((state(&harness).session.playback.time_s - 0.05).abs() < 1e-9);
     harness.key_press(Key::Space);
     harness.run_steps(8);
-    assert!(state(&harness).session.playing);
-    assert!(state(&harness).session.time_s > 0.1, "{}", state(&harness).session.time_s);
+    assert!(state(&harness).session.playback.is_playing);
+    assert!(
+        state(&harness).session.playback.time_s > 0.1,
+        "{}",
+        state(&harness).session.playback.time_s
+    );
     harness.get_by_label("Pause").click();
     harness.run_steps(2);
-    assert!(!state(&harness).session.playing);
+    assert!(!state(&harness).session.playback.is_playing);
     harness.key_press(Key::Home);
     harness.step();
-    assert_eq!(state(&harness).session.time_s, 0.0);
+    assert_eq!(state(&harness).session.playback.time_s, 0.0);
 }
 
 #[test]

@@ -131,7 +131,7 @@ impl State {
         }
         self.session.select_when_loaded = None;
         self.session.history_ends = true;
-        self.session.time_s = 0.0;
+        self.session.playback.time_s = 0.0;
         self.session.fit_plots = true;
     }
 

@@ -54,7 +54,7 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let options = FigureOptions {
         id: "force".to_owned(),
         link: Some(Id::unique("force")),
-        cursor_x: Some(figure.x.unit.from_si(session.time_s)),
+        cursor_x: Some(figure.x.unit.from_si(session.playback.time_s)),
         height: Some(height),
         reset: session.fit_plots,
         ..FigureOptions::default()

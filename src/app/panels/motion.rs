@@ -47,13 +47,13 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let options = FigureOptions {
             id: channel.label().to_owned(),
             link: Some(Id::unique("motion")),
-            cursor_x: Some(session.time_s),
+            cursor_x: Some(session.playback.time_s),
             height: Some(height),
             reset: session.fit_plots,
             legend: Some(&channel) == view.motion_channels.first(),
             ..FigureOptions::default()
         };
-        let heading = analysis_readout(analysis, channel, (session.time_s, view.units));
+        let heading = analysis_readout(analysis, channel, (session.playback.time_s, view.units));
         let response = time_figure(ui, (&heading, &figure), options, between, commands);
         if let Some(time_s) = response.picked_x {
             let last = figure_end(&figure);

@@ -261,7 +261,7 @@ fn figures_ui(
         .caveats
         .clone()
         .outdated_if(session.is_motion_awaited(choice.density) || are_others_awaited(variants));
-    let time_s = session.time_s.min(answer.end_s());
+    let time_s = session.playback.time_s.min(answer.end_s());
     let is_shown = |density: &&Arc<DensityAnswer>| {
         // That of an earlier forecast is not drawn over the paths of this one.
         let is_of_this = Arc::ptr_eq(&density.motion, answer);
@@ -286,7 +286,7 @@ fn figures_ui(
             (name, bare_figure(shown, (time_s, view.units)))
         })
         .collect();
-    let playback = (session.playing, view.playback_speed);
+    let playback = (session.playback.is_playing, view.playback_speed);
     clock_ui(ui, (time_s, answer.end_s()), playback, commands);
     let all = ui.available_height();
     let mut scene = forecast_scene_figure(&input);

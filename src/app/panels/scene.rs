@@ -50,7 +50,12 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         return;
     };
     let end_s = series.time_s().last().copied().unwrap_or(0.0);
-    clock_ui(ui, (session.time_s, end_s), (session.playing, view.playback_speed), commands);
+    clock_ui(
+        ui,
+        (session.playback.time_s, end_s),
+        (session.playback.is_playing, view.playback_speed),
+        commands,
+    );
     restrictions_ui(ui, &report.caveats);
     if let Some(rest) = &report.rest {
         let distance = Quantity::Length.shown(rest.distance_m, view.units);
@@ -76,7 +81,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     };
     forecast_choice_ui(ui, &mut view.scene.shows_forecast, session);
     let scene = session.scene.scene(source, &session.sources);
-    let time_s = session.time_s;
+    let time_s = session.playback.time_s;
     let numbers = || {
         let mut figure = analysis_scene_figure((analysis, &caveats), time_s, view.units);
         for (i, (name, other)) in other_simulations(variants).enumerate() {

@@ -160,7 +160,7 @@ impl State {
             }
             ReconstructionCommand::Play(followed) => {
                 self.session.reconstruction.followed = followed;
-                (self.session.time_s, self.session.playing) = (0.0, true);
+                (self.session.playback.time_s, self.session.playback.is_playing) = (0.0, true);
             }
             ReconstructionCommand::AddPoints(mark) => self.session.reconstruction.adds_to = mark,
         }

@@ -85,7 +85,7 @@ impl State {
         let view = &self.view.response;
         let window_s = match view.density {
             DensityChoice::Hidden => return,
-            DensityChoice::Moment => [self.session.time_s; 2],
+            DensityChoice::Moment => [self.session.playback.time_s; 2],
             DensityChoice::Window => view.window_s,
         };
         let (response, library) = (&mut self.session.response, &self.session.library);

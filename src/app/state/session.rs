@@ -11,6 +11,7 @@ use crate::app::frame_times::FrameTimes;
 use crate::app::ground::GroundSession;
 use crate::app::kept::KeptStatus;
 use crate::app::latest::Latest;
+use crate::app::playback::Playback;
 use crate::app::reconstruction::ReconstructionSession;
 use crate::app::replay::Replays;
 use crate::app::report::ReportSession;
@@ -62,12 +63,10 @@ pub struct Session {
     pub ground: GroundSession,
     /// The scene that is shown, and its picture.
     pub scene: SceneSession,
-    /// The time that is shown in the scene, s.
-    pub time_s: f64,
     /// The two cursors of the figures over time.
     pub between: BetweenCursors,
-    /// Whether the playback is running.
-    pub playing: bool,
+    /// The time that is shown.
+    pub playback: Playback,
     /// Messages for the user that were not dismissed, the newest last.
     pub messages: Vec<Message>,
     /// All messages since the program was started, each with the time of day in UTC, the newest last.
@@ -86,8 +85,6 @@ pub struct Session {
     pub typed_path: String,
     /// How long the window takes to draw itself.
     pub frame_times: FrameTimes,
-    /// Whether that is shown.
-    pub shows_frame_times: bool,
     /// Whether the plots fit their axes to their data in this frame.
     pub fit_plots: bool,
 }

@@ -51,8 +51,8 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         live_ui(ui, live, view.units);
     } else if let Some(answer) = answer {
         play_ui(ui, (answer, of.mode, of.followed), commands);
-        let clock = (session.time_s, of.end_time_s());
-        clock_ui(ui, clock, (session.playing, view.playback_speed), commands);
+        let clock = (session.playback.time_s, of.end_time_s());
+        clock_ui(ui, clock, (session.playback.is_playing, view.playback_speed), commands);
         restrictions_ui(ui, &answer.answer.report.caveats);
     } else if is_outdated {
         notice_ui(ui, Severity::Warning, OUTDATED);
@@ -70,8 +70,11 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
     let marks = of.followed_marks().filter(|_| followed.is_some()).unwrap_or_default();
     let figure = {
         let followed = followed.as_ref();
-        let followed =
-            followed.map(|(name, path)| FollowedPath { name, path, time_s: session.time_s });
+        let followed = followed.map(|(name, path)| FollowedPath {
+            name,
+            path,
+            time_s: session.playback.time_s,
+        });
         let (evidence, cars) = (&preview.evidence, &preview.cars);
         let scene = ReconstructionScene { evidence, cars, drawn, followed, marks };
         reconstruction_scene_figure(&scene, &caveats, view.units)
@@ -110,7 +113,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         cars.view.fit();
     }
     let settings = &mut view.reconstruction.scene;
-    cars_ui(ui, (&scene, session.time_s, figure), (&mut cars.view, settings), commands);
+    cars_ui(ui, (&scene, session.playback.time_s, figure), (&mut cars.view, settings), commands);
 }
 
 /// Draws the choice between the plan and the cars.
