@@ -245,10 +245,10 @@ fn forecast(simulate: &SimulateRequest, shown: &FormsProject) -> PredictMotionRe
     };
     PredictMotionRequest {
         motion: SimulateRequest { vehicle_draws: DEFAULT_DRAWS, ..simulate.clone() },
-        force,
         response_model: model_of(model),
         draws: forecast.n_curves.unwrap_or(DEFAULT_DRAWS),
         seed: forecast.seed,
+        ..PredictMotionRequest::new(simulate.source.clone(), force)
     }
 }
 
