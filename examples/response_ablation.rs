@@ -227,7 +227,7 @@ impl Pretrained {
             Some(idx) => idx,
             None => {
                 let started = Instant::now();
-                let model = pretrain(("folds", records), &settings(config, seed), &mut go_on)?;
+                let model = pretrain("folds", records, &settings(config, seed), &mut go_on)?;
                 self.0.push((key, model, started.elapsed().as_secs_f64()));
                 self.0.len() - 1
             }

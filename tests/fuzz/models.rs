@@ -110,7 +110,7 @@ fn trained_response() -> &'static Trained {
         let [checkpoint, path] = ["training", "model"].map(|name| folder.path().join(name));
         let mut go_on = |_: &TrainingReport| ControlFlow::Continue(());
         let settings = response_settings(&checkpoint);
-        let model = pretrain(("impacts", records()), &settings, &mut go_on);
+        let model = pretrain("impacts", records(), &settings, &mut go_on);
         model.and_then(|model| model.save(&path, Existing::Replace)).expect("a model");
         let read = |path| fs::read(path).expect("a file of the training");
         Trained { model: read(path), checkpoint: read(checkpoint) }
@@ -192,7 +192,7 @@ fn checkpoints_of_response_trainings() {
     records();
     format("response-checkpoint", 300, vec![trained_response().checkpoint.clone()], &|path| {
         let mut stop = |_: &TrainingReport| ControlFlow::Break(());
-        match pretrain(("impacts", records()), &response_settings(path), &mut stop) {
+        match pretrain("impacts", records(), &response_settings(path), &mut stop) {
             Ok(model) => Answer::accepted(model.latents()),
             Err(error) => Answer::refused(&error),
         }

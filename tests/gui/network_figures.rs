@@ -137,11 +137,11 @@ fn learning_and_calibration() {
         train: falling(from, 0.03),
         validation: falling(1.3 * from, 0.1),
     };
-    let figure = loss_figure("Losses", &[curve("total", 30.0)], (1, Some(88)), true);
+    let figure = loss_figure("Losses", &[curve("total", 30.0)], 1, Some(88), true);
     save(&figure, "losses");
     let both = [curve("total", 30.0), curve("impulse", 0.3)];
-    save(&loss_figure("Losses", &both, (1, None), true), "losses-two");
-    save(&loss_figure("Losses", &both, (1, None), false), "losses-linear");
+    save(&loss_figure("Losses", &both, 1, None, true), "losses-two");
+    save(&loss_figure("Losses", &both, 1, None, false), "losses-linear");
     let points: Vec<ParityPoint> = cases()
         .iter()
         .take(30)

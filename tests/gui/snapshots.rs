@@ -185,6 +185,6 @@ fn what_was_measured_is_in_the_picture() {
 fn impact() {
     let scenario = Scenario::example();
     let solution = scenario.solve().expect("the example is solved");
-    let figure = impact_figure((&scenario, &solution), &Caveats::default(), UnitSystem::Si);
+    let figure = impact_figure(&scenario, &solution, &Caveats::default(), UnitSystem::Si);
     check(&figure.expect("they touch"), false, "impact");
 }

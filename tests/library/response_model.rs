@@ -138,7 +138,7 @@ fn pre_training_comes_before_and_the_plain_network_learns_without_the_4dof_model
     let records: Vec<ImpactRecord> = train.train.iter().filter_map(ResponseCase::impact).collect();
     for config in [small(), small().plain()] {
         let settings = settings(config);
-        let pretrained = pretrain(("made", &records), &settings, &mut go_on).expect("a model");
+        let pretrained = pretrain("made", &records, &settings, &mut go_on).expect("a model");
         assert_eq!(pretrained.record().detail.n_simulated, 6);
         assert!(pretrained.record().train.is_empty());
         let model = fine_tune(Some(&pretrained), &train, &settings, &mut go_on).expect("a model");
@@ -157,7 +157,7 @@ fn nothing_is_learned_from_nothing() {
     let nothing = ResponseTrainingSet::default();
     let fitted = fine_tune(None, &nothing, &settings(small()), &mut go_on);
     assert!(matches!(fitted, Err(LearningError::TooFewCases { .. })));
-    let fitted = pretrain(("none", &[]), &settings(small()), &mut go_on);
+    let fitted = pretrain("none", &[], &settings(small()), &mut go_on);
     assert!(matches!(fitted, Err(LearningError::TooFewCases { .. })));
 }
 
@@ -177,7 +177,7 @@ fn the_shipped_model_keeps_its_word() {
         assert!(test.iter().all(|case| !model.is_trained_on(case)));
         let copy = Box::new(model.copied().unwrap());
         let compared =
-            evaluate_motion_model((data, &test), &MotionModel::Network(copy), (150, 0)).unwrap();
+            evaluate_motion_model(data, &test, &MotionModel::Network(copy), 150, 0).unwrap();
         let metrics = &compared.models[0].metrics;
         assert!(metrics.average_error_m.mean < most_m, "{data}: {:?}", metrics.average_error_m);
         assert_eq!(metrics.violations, 0);

@@ -182,7 +182,7 @@ pub fn browser_ui(
     let mut clicked = None;
     ui.columns(2, |columns| {
         clicked = cases_ui(&mut columns[0], comparison, (case, choice, units));
-        if let Some(figure) = compared_case_figure(comparison, (&case.name, choice), units) {
+        if let Some(figure) = compared_case_figure(comparison, &case.name, choice, units) {
             let figure = figure.with_caveats(&report.caveats);
             let options = FigureOptions {
                 id: "compared case".to_owned(),

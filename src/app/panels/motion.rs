@@ -41,7 +41,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             figure.overlay((name, i), &other);
         }
         if let Some((name, series, offset_s)) = &recording {
-            let line = recording_line((name, series, *offset_s), channel, view.units);
+            let line = recording_line(name, series, *offset_s, channel, view.units);
             figure.elements.extend(line);
         }
         let options = FigureOptions {
@@ -53,7 +53,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             legend: Some(&channel) == view.motion_channels.first(),
             ..FigureOptions::default()
         };
-        let heading = analysis_readout(analysis, channel, (session.playback.time_s, view.units));
+        let heading = analysis_readout(analysis, channel, session.playback.time_s, view.units);
         let response = time_figure(ui, (&heading, &figure), options, between, commands);
         if let Some(time_s) = response.picked_x {
             let last = figure_end(&figure);

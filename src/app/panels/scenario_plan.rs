@@ -56,7 +56,7 @@ pub fn scenario_plan_ui(
     let solved = solved.filter(|answer| answer.scenario == *scenario);
     let figure = solved
         .and_then(|ImpactAnswer { scenario, solution, report }| {
-            impact_figure((scenario, solution), &report.caveats, units).ok()
+            impact_figure(scenario, solution, &report.caveats, units).ok()
         })
         .unwrap_or_else(|| outlines_figure(scenario, units));
     let figure = with_handles(figure, scenario);

@@ -91,7 +91,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         if let Some((name, series, _)) =
             overlaid(project.beside.recording.as_ref(), &session.sources)
         {
-            figure.elements.extend(recording_path((&name, series), view.units));
+            figure.elements.extend(recording_path(&name, series, view.units));
         }
         figure
     };
@@ -119,8 +119,9 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     measure_bar_ui(ui, &mut session.scene.measuring, view.units, commands);
     session.scene.view.takes_clicks = session.scene.measuring.measure.is_some();
     let SceneSettings { camera, follow, .. } = &mut view.scene;
-    let seen = (camera, *follow, ui.available_height());
-    let response = scene_view_ui(ui, (&scene, time_s), &mut session.scene.view, seen);
+    let height = ui.available_height();
+    let response =
+        scene_view_ui(ui, &scene, time_s, &mut session.scene.view, camera, *follow, height);
     let SceneSession { view: drawn, measuring, .. } = &mut session.scene;
     measured_ui(ui, (&response, drawn), measuring, view.units);
 }

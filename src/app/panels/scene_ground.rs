@@ -173,14 +173,14 @@ impl Drawn<'_> {
         seen.points_m.extend(next);
         let places: Vec<Pos2> =
             seen.points_m.iter().filter_map(|at| self.view.on_screen(*at)).collect();
-        draw_measure(&self.painter, (&places, of.measure == Measure::Area), self.dark);
+        draw_measure(&self.painter, &places, of.measure == Measure::Area, self.dark);
         let Some(shown) = seen.in_scene(self.units) else { return };
         let at = match next.and(pointer) {
             Some(pointer) => Some(pointer + vec2(14.0, 12.0)),
             None => measure_text_place(&places, shown.text_at),
         };
         if let Some(at) = at {
-            draw_measure_text(&self.painter, (shown.text, at), self.dark);
+            draw_measure_text(&self.painter, shown.text, at, self.dark);
         }
     }
 }

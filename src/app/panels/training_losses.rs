@@ -45,7 +45,8 @@ pub fn losses_ui(
     let losses = loss_figure(
         title,
         &curves(history, &names, view.terms),
-        (first.epoch, best_epoch),
+        first.epoch,
+        best_epoch,
         *view.log,
     );
     if *view.log && !losses.log_y {

@@ -139,7 +139,7 @@ fn write(args: &ExportArgs, (format, built): (FormatArg, &BuiltScene)) -> Result
             let simulated = analysis.simulation.as_ref().map(|motion| &motion.series);
             let unknown = || ExchangeError::Unknown { name: analysis.name.clone(), what: "motion" };
             let series = simulated.or(analysis.reference.as_ref()).ok_or_else(unknown)?;
-            return Ok(write_restricted_series_csv(path, existing, (series, said.as_deref()))?);
+            return Ok(write_restricted_series_csv(path, existing, series, said.as_deref())?);
         }
     }
     write_atomically(path, existing, |out: &mut dyn Write| -> io::Result<()> {

@@ -79,7 +79,7 @@ pub(super) fn impact(
 ) -> Result<Noted, CliError> {
     let answer = console.answer(request)?;
     let name = answer.report.name.clone();
-    let figure = impact_figure((&answer.scenario, &answer.solution), &answer.report.caveats, units)
+    let figure = impact_figure(&answer.scenario, &answer.solution, &answer.report.caveats, units)
         .map_err(|source| StudyError::Scenario { name, source })?;
     Ok((figure, noted(&answer.report.caveats)))
 }

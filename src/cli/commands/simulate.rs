@@ -238,7 +238,7 @@ fn simulate_one(
     let (report, out) = (&answer.report, args.out.as_deref());
     if let (Some(path), Some(motion)) = (out, &answer.analysis.simulation) {
         let said = report.caveats.text();
-        write_restricted_series_csv(path, existing, (&motion.series, said.as_deref()))?;
+        write_restricted_series_csv(path, existing, &motion.series, said.as_deref())?;
     }
     let printed = PrintedSimulation { report, out };
     console.print(&printed, |text| {
@@ -266,8 +266,12 @@ fn simulate_dataset(
         for case in &answer.replay.cases {
             let path = output.staging().join(format!("{}.csv", case.case));
             let said = answer.report.caveats_of(&case.case).text();
-            let restricted = (&case.motion.series, said.as_deref());
-            write_restricted_series_csv(&path, Existing::Refuse, restricted)?;
+            write_restricted_series_csv(
+                &path,
+                Existing::Refuse,
+                &case.motion.series,
+                said.as_deref(),
+            )?;
         }
         Ok(answer.report.provenance.clone())
     })?;

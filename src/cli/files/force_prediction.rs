@@ -25,7 +25,7 @@ pub(in crate::cli) fn write_force_prediction(
         let path = path.join(name);
         let unwritable = |source| StudyError::Series { path: path.clone(), source };
         let series = curve.to_history().to_series().map_err(unwritable)?;
-        Ok(write_restricted_series_csv(&path, Existing::Refuse, (&series, said))?)
+        Ok(write_restricted_series_csv(&path, Existing::Refuse, &series, said)?)
     };
     write_curve("mean.csv".to_owned(), &forecast.mean)?;
     for (i, sample) in forecast.curves.iter().enumerate() {
@@ -67,5 +67,5 @@ fn write_bands(
         }
         row
     });
-    Ok(write_restricted_table(path, Existing::Refuse, (&header, rows), restrictions)?)
+    Ok(write_restricted_table(path, Existing::Refuse, &header, rows, restrictions)?)
 }

@@ -102,7 +102,7 @@ fn write_trajectory(
         }
         row
     });
-    Ok(write_restricted_table(path, Existing::Refuse, (&header, rows), restrictions)?)
+    Ok(write_restricted_table(path, Existing::Refuse, &header, rows, restrictions)?)
 }
 
 fn write_density(
@@ -117,5 +117,5 @@ fn write_density(
         let y = map.grid.low_m[1] + (i / width) as f64 * map.grid.step_m[1];
         vec![format!("{x:.4}"), format!("{y:.4}"), format!("{value:.6e}")]
     });
-    Ok(write_restricted_table(path, Existing::Refuse, (&header, rows), restrictions)?)
+    Ok(write_restricted_table(path, Existing::Refuse, &header, rows, restrictions)?)
 }

@@ -41,7 +41,7 @@ pub(in crate::cli) fn write_reconstruction(
             .collect()
     });
     let table = path.join("particles.csv");
-    write_restricted_table(&table, Existing::Refuse, (&header, rows), restrictions.as_deref())?;
+    write_restricted_table(&table, Existing::Refuse, &header, rows, restrictions.as_deref())?;
     write_atomically(&path.join("reconstruction.json"), Existing::Refuse, |out| {
         serde_json::to_writer_pretty(&mut *out, report)?;
         writeln!(out)

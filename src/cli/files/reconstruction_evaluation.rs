@@ -33,7 +33,7 @@ pub(in crate::cli) fn write_reconstruction_evaluation(
     let header: Vec<String> = own.into_iter().chain(of_speed).collect();
     let table = path.join("evaluation.csv");
     let rows = report.cases.iter().map(row);
-    write_restricted_table(&table, Existing::Refuse, (&header, rows), restrictions.as_deref())?;
+    write_restricted_table(&table, Existing::Refuse, &header, rows, restrictions.as_deref())?;
     write_json(&path.join("evaluation.json"), report)
 }
 

@@ -289,9 +289,12 @@ fn first_touch<'a>(
 /// [`FootprintError::Apart`] if the offset lies so far beyond the end of the side that the outlines
 /// do not touch; [`FootprintError::Range`] if an outline or a pose is out of range.
 pub fn place_touching(
-    (struck, struck_pose): (&Footprint, &Pose),
-    (side, offset_m): (Side, f64),
-    (striking, heading_rad): (&Footprint, f64),
+    struck: &Footprint,
+    struck_pose: &Pose,
+    side: Side,
+    offset_m: f64,
+    striking: &Footprint,
+    heading_rad: f64,
 ) -> Result<Pose, FootprintError> {
     struck.check()?;
     striking.check()?;

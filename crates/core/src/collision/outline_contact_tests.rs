@@ -27,8 +27,7 @@ fn a_pit_touches_at_the_striking_vehicles_corner_with_the_normal_across_the_stru
     for (side, theta_deg, normal_deg) in [(Side::Right, 12.0, 90.0), (Side::Left, -12.0, -90.0)] {
         let struck = pose(3.0, -2.0, 30.0);
         let heading_rad = (30.0_f64 + theta_deg).to_radians();
-        let place = (side, -1.2);
-        let striking = place_touching((&CAR, &struck), place, (&CAR, heading_rad)).unwrap();
+        let striking = place_touching(&CAR, &struck, side, -1.2, &CAR, heading_rad).unwrap();
         let contact = still(struck, striking).unwrap();
         assert_eq!(contact.surface, StruckSurface::Target(side));
         let normal = contact.normal_angle_world_rad.to_degrees();
@@ -53,7 +52,7 @@ fn placing_touches_for_every_side_and_heading() {
     for side in Side::ALL {
         for heading_deg in (0..360).step_by(5) {
             let heading_rad = f64::from(heading_deg).to_radians();
-            let striking = place_touching((&CAR, &struck), (side, 0.3), (&CAR, heading_rad));
+            let striking = place_touching(&CAR, &struck, side, 0.3, &CAR, heading_rad);
             let contact = still(struck, striking.unwrap()).unwrap();
             assert!(contact.depth_m.abs() < 1e-9, "{side:?} {heading_deg}: {contact:?}");
             let normal = direction(contact.normal_angle_world_rad);
@@ -68,7 +67,7 @@ fn vehicles_apart_are_refused() {
     let here = pose(0.0, 0.0, 0.0);
     let error = still(here, pose(0.0, 2.3, 0.0)).unwrap_err();
     assert_eq!(error.to_string(), "the vehicles are 0.500 m apart");
-    assert!(place_touching((&CAR, &here), (Side::Rear, 2.0), (&CAR, 0.3)).is_err());
+    assert!(place_touching(&CAR, &here, Side::Rear, 2.0, &CAR, 0.3).is_err());
     assert!(still(here, pose(f64::NAN, 2.3, 0.0)).is_err());
 }
 

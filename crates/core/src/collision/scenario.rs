@@ -344,8 +344,7 @@ impl Scenario {
                 striking_at(striking_x_world_m, striking_y_world_m)
             }
             ContactLocation::Side { side, offset_m } => {
-                let place = (side, offset_m);
-                place_touching((&outlines[0], &struck), place, (&outlines[1], heading_rad))?
+                place_touching(&outlines[0], &struck, side, offset_m, &outlines[1], heading_rad)?
             }
             ContactLocation::Point {
                 x_body_m,

@@ -112,7 +112,8 @@ fn named_vehicle(
 /// A number that the scenario gives, else that of the vehicle that it names.
 fn number_or(
     section: &mut TomlTable<'_>,
-    (key, range): (&str, &Range),
+    key: &str,
+    range: &Range,
     of_vehicle: Option<f64>,
 ) -> Result<f64, TomlError> {
     match (section.number(key, range)?, of_vehicle) {
@@ -131,26 +132,24 @@ fn read_vehicle(
 ) -> Result<ScenarioVehicle, TomlError> {
     let s = &mut section;
     let mass_kg =
-        number_or(s, ("mass", &BODY_MASS), vehicle.as_ref().map(|vehicle| vehicle.mass.mass_kg))?;
+        number_or(s, "mass", &BODY_MASS, vehicle.as_ref().map(|vehicle| vehicle.mass.mass_kg))?;
     // What was estimated from the mass follows the mass of the scenario.
     let vehicle = vehicle.map(|vehicle| vehicle.with_mass(mass_kg, None));
     let from_vehicle = |value: fn(&VehicleParameters) -> f64| vehicle.as_ref().map(value);
     let inertia = from_vehicle(|vehicle| vehicle.mass.yaw_inertia_kg_m2);
-    let yaw_inertia_kg_m2 = number_or(s, ("yaw_inertia", &BODY_YAW_INERTIA), inertia)?;
+    let yaw_inertia_kg_m2 = number_or(s, "yaw_inertia", &BODY_YAW_INERTIA, inertia)?;
     let length_m = number_or(
         s,
-        ("length", &BODY_LENGTH),
+        "length",
+        &BODY_LENGTH,
         from_vehicle(|vehicle| vehicle.geometry.outer_length_m),
     )?;
-    let width_m = number_or(
-        s,
-        ("width", &BODY_WIDTH),
-        from_vehicle(|vehicle| vehicle.geometry.outer_width_m),
-    )?;
+    let width_m =
+        number_or(s, "width", &BODY_WIDTH, from_vehicle(|vehicle| vehicle.geometry.outer_width_m))?;
     let cg_from_front =
         from_vehicle(|vehicle| vehicle.geometry.cg_to_front_end_m).map(|m| m.min(length_m));
     let cg_range = BODY_CG.at_most(length_m);
-    let cg_from_front_m = number_or(s, ("cg_from_front", &cg_range), cg_from_front)?;
+    let cg_from_front_m = number_or(s, "cg_from_front", &cg_range, cg_from_front)?;
     let heading = s.number("heading", &HEADING)?;
     let heading_rad = heading.unwrap_or(0.0);
     let yaw_rate_rad_s = s.number("yaw_rate", &YAW_RATE)?.unwrap_or(0.0);

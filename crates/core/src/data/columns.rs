@@ -170,7 +170,7 @@ impl ColumnProposal {
     /// # Errors
     /// The text of a unit that does not measure `quantity`.
     pub fn stated_unit(&self, quantity: Quantity) -> Result<Option<Unit>, String> {
-        stated_unit((&self.name, self.units_cell.as_deref()), quantity)
+        stated_unit(&self.name, self.units_cell.as_deref(), quantity)
     }
 
     /// The channel that is worth a proposal in a dialog: the guess, or what words in the header
@@ -387,7 +387,7 @@ fn mapped_column(
     };
     let mut used: Option<ColumnUse> = None;
     for SignedColumn { number, is_negated } in columns {
-        let (name, stated) = unit_of_mapped(table, channel, (source, number))?;
+        let (name, stated) = unit_of_mapped(table, channel, source, number)?;
         let unit = stated.unwrap_or_else(|| channel.quantity().si_unit());
         let term = Term { number, sign: if is_negated { -1.0 } else { 1.0 }, unit };
         let sign = if is_negated { "−" } else { "+" };
@@ -421,7 +421,8 @@ fn no_such_column(table: &Table, channel: Channel, source: &ColumnSource) -> Dat
 fn unit_of_mapped(
     table: &Table,
     channel: Channel,
-    (source, number): (&ColumnSource, usize),
+    source: &ColumnSource,
+    number: usize,
 ) -> Result<(String, Option<Unit>), DataError> {
     let idx = number.checked_sub(1);
     let found = idx.and_then(|idx| Some((idx, table.header().get(idx)?.clone())));
@@ -429,7 +430,7 @@ fn unit_of_mapped(
     if source.unit.is_some() {
         return Ok((name, source.unit));
     }
-    match stated_unit((&name, table.unit_text(idx)), channel.quantity()) {
+    match stated_unit(&name, table.unit_text(idx), channel.quantity()) {
         Ok(unit) => Ok((name, unit)),
         Err(unit) => Err(DataError::UnknownUnit {
             path: table.path().to_owned(),
@@ -446,7 +447,8 @@ fn unit_of_mapped(
 /// The unit that the file states for a column, in the row of units or in the header. The error is
 /// the text of a unit that does not measure `quantity`.
 fn stated_unit(
-    (name, units_cell): (&str, Option<&str>),
+    name: &str,
+    units_cell: Option<&str>,
     quantity: Quantity,
 ) -> Result<Option<Unit>, String> {
     if let Some(text) = units_cell {

@@ -186,7 +186,7 @@ pub(super) fn find_header<'a>(
     };
     Ok(match names {
         Some(names) => below_names(&split, names, units),
-        None => without_names(&split, width, (first_number, units)),
+        None => without_names(&split, width, first_number, units),
     })
 }
 
@@ -194,7 +194,8 @@ pub(super) fn find_header<'a>(
 fn without_names<'a>(
     split: &[SplitLine<'a>],
     width: usize,
-    (first_number, units): (Option<usize>, Option<&SplitLine<'a>>),
+    first_number: Option<usize>,
+    units: Option<&SplitLine<'a>>,
 ) -> (Header, Option<Line<'a>>) {
     let mut plain = split.iter().filter(|line| !line.line.is_comment);
     let first_number = first_number.and_then(|at| split.get(at));

@@ -108,9 +108,9 @@ impl Site {
         let folder = file.path.parent().unwrap_or(Path::new(""));
         let name = top.string("name")?;
         let origin = top.optional_table("origin")?.map(read_origin).transpose()?;
-        let place = (folder, origin.unwrap_or_default());
+        let known_origin = origin.unwrap_or_default();
         let orthophoto = match top.optional_table("orthophoto")? {
-            Some(table) => Some(read_orthophoto(table, place, file.path)?),
+            Some(table) => Some(read_orthophoto(table, folder, known_origin, file.path)?),
             None => None,
         };
         let lanes = top.tables("lane")?.into_iter().map(read_lane).collect::<Result<_, _>>()?;
@@ -180,7 +180,8 @@ fn required_file(
 
 fn read_orthophoto(
     mut table: TomlTable<'_>,
-    (folder, origin): (&Path, SiteOrigin),
+    folder: &Path,
+    origin: SiteOrigin,
     site: &Path,
 ) -> Result<Orthophoto, SiteError> {
     let file = required_file(&mut table, "file", folder)?;
@@ -190,7 +191,7 @@ fn read_orthophoto(
     let size_px = picture_size_px(&file)?;
     let map = match read_map(&mut table)? {
         Some(map) => Some(map),
-        None => read_points(&mut table, (size_px, &file), site)?,
+        None => read_points(&mut table, size_px, &file, site)?,
     };
     let world_file = match map {
         Some(_) => None,
@@ -232,7 +233,8 @@ fn read_map(table: &mut TomlTable<'_>) -> Result<Option<PixelMap>, TomlError> {
 /// The place of a picture by two of its points; `None` if the file has none.
 fn read_points(
     table: &mut TomlTable<'_>,
-    (size_px, picture): ([u32; 2], &Path),
+    size_px: [u32; 2],
+    picture: &Path,
     site: &Path,
 ) -> Result<Option<PixelMap>, SiteError> {
     let Some(points) = table.points("points_px", &PIXEL_COORDINATE)? else { return Ok(None) };

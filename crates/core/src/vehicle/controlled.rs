@@ -35,9 +35,10 @@ impl ControlledVehicle<'_> {
         time_s: f64,
         wheel: Wheel,
         place_m: [f64; 2],
-        (velocity_m_s, load_n): ([f64; 2], f64),
+        velocity_m_s: [f64; 2],
+        load_n: f64,
     ) -> bool {
         let tires = self.tires_at(place_m);
-        self.controls.is_locked(time_s, wheel, (velocity_m_s, load_n), &tires)
+        self.controls.is_locked(time_s, wheel, velocity_m_s, load_n, &tires)
     }
 }

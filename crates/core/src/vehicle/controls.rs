@@ -64,7 +64,8 @@ impl Controls {
         &self,
         time_s: f64,
         wheel: Wheel,
-        (velocity_m_s, load_n): ([f64; 2], f64),
+        velocity_m_s: [f64; 2],
+        load_n: f64,
         tires: &TireParameters,
     ) -> bool {
         let Some(wheels) = self.wheels.as_ref().and_then(|wheels| wheels.at(time_s)) else {

@@ -70,12 +70,13 @@ pub fn fishhook_amplitude_rad(angle_rad: f64) -> f64 {
 /// # Errors
 /// [`SimulationError`] if the motion of the vehicle cannot be simulated.
 pub fn fishhook(
-    (vehicle, initial): (&VehicleParameters, &VehicleState<f64>),
+    vehicle: &VehicleParameters,
+    initial: &VehicleState<f64>,
     amplitude_rad: f64,
     steering_ratio: f64,
 ) -> Result<SteerHistory, SimulationError> {
     let ramp_s = amplitude_rad * steering_ratio / STEERING_WHEEL_RATE_RAD_S;
-    let dwell_s = dwell_s((vehicle, initial), amplitude_rad, ramp_s)?;
+    let dwell_s = dwell_s(vehicle, initial, amplitude_rad, ramp_s)?;
     let mut time_s = 0.0;
     let mut after = |duration_s: f64| {
         time_s += duration_s;
@@ -90,7 +91,8 @@ pub fn fishhook(
 /// Time for which the first angle is held until the vehicle has rolled to its side, s; the longest if it
 /// swings on.
 fn dwell_s(
-    (vehicle, initial): (&VehicleParameters, &VehicleState<f64>),
+    vehicle: &VehicleParameters,
+    initial: &VehicleState<f64>,
     amplitude_rad: f64,
     ramp_s: f64,
 ) -> Result<f64, SimulationError> {
@@ -142,7 +144,7 @@ mod tests {
         let vehicle = Preset::Reference.parameters();
         let initial = VehicleState::driving_straight(45.0 * MILE_PER_HOUR_M_S);
         let amplitude_rad = fishhook_amplitude_rad(angle_at_third_g_rad(&vehicle));
-        let history = fishhook((&vehicle, &initial), amplitude_rad, 16.0).unwrap();
+        let history = fishhook(&vehicle, &initial, amplitude_rad, 16.0).unwrap();
         let steps: Vec<f64> = history.time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let ramp_s = amplitude_rad * 16.0 / 720_f64.to_radians();
         for (at, expected) in [(0, ramp_s), (2, 2.0 * ramp_s), (3, 3.0), (4, 2.0)] {

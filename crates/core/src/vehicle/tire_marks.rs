@@ -237,7 +237,7 @@ impl<'a> Track<'a> {
         let velocity = body_from_world(steer_rad, [vx - yaw_rate * y, vy + yaw_rate * x]);
         let static_n = vehicle.vehicle.static_loads_n()[wheel.index()];
         let load_n = value(self.loads_n[wheel.index()]).unwrap_or(static_n);
-        let is_locked = vehicle.is_locked(time_s, wheel, place_m, (velocity, load_n));
+        let is_locked = vehicle.is_locked(time_s, wheel, place_m, velocity, load_n);
         let load_share = load_n / static_n;
         let is_marked = leaves_mark(velocity, is_locked) && load_share > LEAST_LOAD_SHARE;
         let [along, across] = {

@@ -53,15 +53,16 @@ pub struct Keys<'a> {
 pub fn add_car(
     builder: &mut GltfBuilder,
     animation: &mut Animation,
-    (car, name): (&SceneCar, &str),
+    car: &SceneCar,
+    name: &str,
     keys: &Keys<'_>,
 ) -> Index<Node> {
     let states: Vec<CarState> = keys.time_s.iter().map(|time_s| car.at(*time_s)).collect();
     let shape = &car.shape;
     let is_ghost = car.look == CarLook::Ghost;
     let of_body = if is_ghost { &shape.coarse } else { &shape.mesh };
-    let body = car_mesh(builder, (car, &format!("{name} body")), of_body);
-    let wheel_mesh = car_mesh(builder, (car, &format!("{name} wheel")), &shape.wheel);
+    let body = car_mesh(builder, car, &format!("{name} body"), of_body);
+    let wheel_mesh = car_mesh(builder, car, &format!("{name} wheel"), &shape.wheel);
     let first = states.first().copied().unwrap_or_default();
     let body = builder.root.push(Node {
         mesh: Some(body),
@@ -130,11 +131,7 @@ fn add_channel(
 }
 
 /// A mesh with one part for each of its materials, flat faces.
-fn car_mesh(
-    builder: &mut GltfBuilder,
-    (car, name): (&SceneCar, &str),
-    shape: &CarMesh,
-) -> Index<Mesh> {
+fn car_mesh(builder: &mut GltfBuilder, car: &SceneCar, name: &str, shape: &CarMesh) -> Index<Mesh> {
     let mut parts = Vec::new();
     let opacity = if car.look == CarLook::Ghost { GHOST_OPACITY } else { 1.0 };
     for surface in SURFACES {

@@ -51,7 +51,7 @@ pub fn glb(scene: &Scene, out: &mut dyn Write) -> Result<(), ExchangeError> {
     let mut children = add_lines(&mut builder, scene, &frame);
     let keys = Keys { time_s: &time_s, times, frame };
     for (car, name) in cars.iter().zip(unique_names(&cars)) {
-        children.push(add_car(&mut builder, &mut animation, (car, &name), &keys));
+        children.push(add_car(&mut builder, &mut animation, car, &name, &keys));
     }
     if !animation.channels.is_empty() {
         builder.root.push(animation);

@@ -50,14 +50,19 @@ pub fn analysis_motion_figure(
     channel: Channel,
     units: UnitSystem,
 ) -> Figure {
-    motion_figure((&analysis.name, channel), motions(analysis), units).with_caveats(caveats)
+    motion_figure(&analysis.name, channel, motions(analysis), units).with_caveats(caveats)
 }
 
 /// One line of text with the values of a channel in the simulated and in the recorded motion.
 ///
-/// - `at`: time, s, and units of the values.
-pub fn analysis_readout(analysis: &Analysis, channel: Channel, at: (f64, UnitSystem)) -> String {
-    motion_readout(channel, motions(analysis), at)
+/// - `time_s`: the instant, s.
+pub fn analysis_readout(
+    analysis: &Analysis,
+    channel: Channel,
+    time_s: f64,
+    units: UnitSystem,
+) -> String {
+    motion_readout(channel, motions(analysis), time_s, units)
 }
 
 /// The simulated and the recorded motion.

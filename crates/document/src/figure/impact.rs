@@ -15,7 +15,8 @@ const ARROW_LENGTH_M: f64 = 3.0;
 /// # Errors
 /// [`ScenarioError`] if the vehicles make no contact.
 pub fn impact_figure(
-    (scenario, solution): (&Scenario, &ImpactSolution),
+    scenario: &Scenario,
+    solution: &ImpactSolution,
     caveats: &Caveats,
     units: UnitSystem,
 ) -> Result<Figure, ScenarioError> {

@@ -159,7 +159,8 @@ fn style(comparison: &Comparison, trajectories: usize) -> LineStyle {
 /// - `choice`: seed of the choice of fine-tuning trajectories whose models are shown.
 pub fn compared_case_figure(
     comparison: &Comparison,
-    (name, choice): (&str, u64),
+    name: &str,
+    choice: u64,
     units: UnitSystem,
 ) -> Option<Figure> {
     let case = comparison.test.iter().find(|case| case.name == name)?;

@@ -12,7 +12,8 @@ pub const MOTION_CHANNELS: [Channel; 4] =
 /// One channel over time: the simulation as a solid, the reference as a dashed line. A motion
 /// without the channel is left out.
 pub fn motion_figure(
-    (name, channel): (&str, Channel),
+    name: &str,
+    channel: Channel,
     [simulation, reference]: [Option<&TimeSeries>; 2],
     units: UnitSystem,
 ) -> Figure {
@@ -36,7 +37,9 @@ pub fn motion_figure(
 ///
 /// - `offset_s`: time of the figure at which the recording has its time zero, s.
 pub fn recording_line(
-    (name, series, offset_s): (&str, &TimeSeries, f64),
+    name: &str,
+    series: &TimeSeries,
+    offset_s: f64,
     channel: Channel,
     units: UnitSystem,
 ) -> Option<FigureElement> {
@@ -48,10 +51,7 @@ pub fn recording_line(
 }
 
 /// The path of a recording, to be drawn over a scene; `None` without a position.
-pub fn recording_path(
-    (name, series): (&str, &TimeSeries),
-    units: UnitSystem,
-) -> Option<FigureElement> {
+pub fn recording_path(name: &str, series: &TimeSeries, units: UnitSystem) -> Option<FigureElement> {
     let unit = Quantity::Length.display_unit(units);
     let positions = series.get(Channel::X)?.iter().zip(series.get(Channel::Y)?);
     let points = positions.map(|(x, y)| [unit.from_si(*x), unit.from_si(*y)]).collect();
@@ -66,7 +66,8 @@ pub fn recording_path(
 pub fn motion_readout(
     channel: Channel,
     [simulation, reference]: [Option<&TimeSeries>; 2],
-    (time_s, units): (f64, UnitSystem),
+    time_s: f64,
+    units: UnitSystem,
 ) -> String {
     let unit = channel.quantity().display_unit(units);
     let at = |series: Option<&TimeSeries>| {

@@ -28,7 +28,8 @@ pub struct LossCurve {
 pub fn loss_figure(
     title: &str,
     curves: &[LossCurve],
-    (first_epoch, best_epoch): (usize, Option<usize>),
+    first_epoch: usize,
+    best_epoch: Option<usize>,
     log: bool,
 ) -> Figure {
     let x = Axis::shown("Epoch", Quantity::Ratio, UnitSystem::Si);
@@ -94,7 +95,7 @@ mod tests {
             validation: train.clone(),
             train,
         };
-        let figure = |train| loss_figure("t", &[curve(train)], (1, Some(2)), true);
+        let figure = |train| loss_figure("t", &[curve(train)], 1, Some(2), true);
         assert!(figure(vec![3.0, 0.1]).log_y);
         assert!(!figure(vec![3.0, -0.1]).log_y);
         assert!(!figure(vec![3.0, 0.0]).log_y);

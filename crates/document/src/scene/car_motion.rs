@@ -76,7 +76,7 @@ impl CarMotion {
             let vehicle = controls?;
             let load_n = load(idx, wheel).unwrap_or_else(|| static_load_n(vehicle.vehicle, wheel));
             let place_m = pose.world_from_body(vehicle.vehicle.geometry.wheel_place_m(wheel));
-            vehicle.is_locked(time_s, wheel, place_m, (velocity, load_n)).then_some(())
+            vehicle.is_locked(time_s, wheel, place_m, velocity, load_n).then_some(())
         });
         (n > 0).then_some(motion)
     }

@@ -82,8 +82,16 @@ impl FrameRenderer {
                     if places_camera {
                         view.place(picture);
                     }
-                    let (mut camera, shown) = (picture.camera, (&picture.scene, picture.time_s));
-                    scene_view_ui(ui, shown, view, (&mut camera, picture.follow, height));
+                    let mut camera = picture.camera;
+                    scene_view_ui(
+                        ui,
+                        &picture.scene,
+                        picture.time_s,
+                        view,
+                        &mut camera,
+                        picture.follow,
+                        height,
+                    );
                 });
             });
         });

@@ -121,7 +121,7 @@ impl SceneCanvas {
             let mut rows = Rows { pixels: &mut *pixels, width, first };
             draw_strokes(&mut rows, marks);
             for shadow in shadows {
-                draw_shadow(&mut rows, shadow, (&projection, look.dark));
+                draw_shadow(&mut rows, shadow, &projection, look.dark);
             }
             draw_strokes(&mut rows, below);
             for left in (0..width).step_by(TILE) {

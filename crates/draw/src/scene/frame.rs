@@ -40,8 +40,14 @@ impl Frame {
         object.clear();
         object.opacity = seen.opacity;
         for part in seen.parts() {
-            let target = (&mut object, ground.projection);
-            add_mesh(target, seen.mesh(part.kind), &part.placed, (seen.paint, part.is_locked));
+            add_mesh(
+                &mut object,
+                ground.projection,
+                seen.mesh(part.kind),
+                &part.placed,
+                seen.paint,
+                part.is_locked,
+            );
         }
         self.shadows.extend(Shadow::new(seen, ground.projection));
         self.objects.push(object);
@@ -50,10 +56,12 @@ impl Frame {
 
 /// Adds the triangles of a mesh that face the camera.
 fn add_mesh(
-    (object, projection): (&mut Object, &Projection),
+    object: &mut Object,
+    projection: &Projection,
     mesh: &Mesh,
     placed: &Placed,
-    (paint, is_locked): (Rgb, bool),
+    paint: Rgb,
+    is_locked: bool,
 ) {
     for triangle in &mesh.triangles {
         let Some(corners) = mesh.corners_m(triangle) else { continue };

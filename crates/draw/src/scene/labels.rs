@@ -59,7 +59,7 @@ impl Labels<'_> {
     pub fn draw(&self, painter: &Painter, scene: &Scene, time_s: f64) {
         let mut taken = vec![self.scale_bar(painter, scene), self.axes(painter)];
         taken.extend(self.north(painter, scene));
-        self.stamp(painter, (scene, time_s), &mut taken);
+        self.stamp(painter, scene, time_s, &mut taken);
         self.names(painter, (scene, time_s), &mut taken);
         self.arrows(painter, scene, &mut taken);
         self.zones(painter, scene, &mut taken);
@@ -74,9 +74,9 @@ impl Labels<'_> {
         for measure in &scene.measures {
             let on_screen = |[x, y]: &[f64; 2]| self.on_screen([*x, *y, 0.0]);
             let places: Vec<Pos2> = measure.points_m.iter().filter_map(on_screen).collect();
-            draw_measure(painter, (&places, measure.is_closed), self.dark);
+            draw_measure(painter, &places, measure.is_closed, self.dark);
             if let Some(at) = measure_text_place(&places, measure.text_at) {
-                draw_measure_text(painter, (measure.text.clone(), at), self.dark);
+                draw_measure_text(painter, measure.text.clone(), at, self.dark);
             }
         }
     }
@@ -381,7 +381,7 @@ impl Labels<'_> {
     }
 
     /// The time at the left top, with what restricts the scene.
-    fn stamp(&self, painter: &Painter, (scene, time_s): (&Scene, f64), taken: &mut Vec<Rect>) {
+    fn stamp(&self, painter: &Painter, scene: &Scene, time_s: f64, taken: &mut Vec<Rect>) {
         let at = self.rect.left_top() + vec2(EDGE + 2.0, EDGE);
         let speed = self.speed.filter(|speed| *speed != 1.0);
         let speed = speed.map_or(String::new(), |speed| format!("  × {speed}"));

@@ -20,7 +20,7 @@ pub fn legend_ui(ui: &mut Ui, scene: &Scene) {
             let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, name));
             let place = egui::Align2::LEFT_CENTER.anchor_size(rect.left_center(), sample);
-            draw_sample(ui.painter(), place, (color, kind));
+            draw_sample(ui.painter(), place, color, kind);
             let at = rect.right_center() - Vec2::new(galley.size().x, galley.size().y / 2.0);
             ui.painter().galley(at, galley, text_color);
         }
@@ -28,7 +28,7 @@ pub fn legend_ui(ui: &mut Ui, scene: &Scene) {
 }
 
 /// Draws the sample beside a name.
-fn draw_sample(painter: &Painter, rect: Rect, (color, kind): (Color32, Entry)) {
+fn draw_sample(painter: &Painter, rect: Rect, color: Color32, kind: Entry) {
     let (from, to, stroke) = (rect.left_center(), rect.right_center(), Stroke::new(2.0, color));
     let inside = rect.shrink2(Vec2::new(1.0, 2.0));
     match kind {

@@ -10,7 +10,7 @@ const TEXT_POINTS: f32 = 12.0;
 const TEXT_OFF: Vec2 = vec2(10.0, 8.0);
 
 /// Draws a line with its places, joined to a border if it is closed.
-pub fn draw_measure(painter: &Painter, (places, is_closed): (&[Pos2], bool), dark: bool) {
+pub fn draw_measure(painter: &Painter, places: &[Pos2], is_closed: bool, dark: bool) {
     let (line, edge) = colors(dark);
     let mut path = places.to_vec();
     if is_closed && places.len() > 2 {
@@ -26,7 +26,7 @@ pub fn draw_measure(painter: &Painter, (places, is_closed): (&[Pos2], bool), dar
 }
 
 /// Draws a value, moved so far that it is within the picture.
-pub fn draw_measure_text(painter: &Painter, (text, at): (String, Pos2), dark: bool) {
+pub fn draw_measure_text(painter: &Painter, text: String, at: Pos2, dark: bool) {
     let (line, edge) = colors(dark);
     let galley = painter.layout_no_wrap(text, FontId::proportional(TEXT_POINTS), line);
     let place = Align2::LEFT_TOP.anchor_size(at, galley.size());

@@ -60,7 +60,7 @@ impl Shadow {
 }
 
 /// Darkens the ground under a car.
-pub fn draw_shadow(rows: &mut Rows<'_>, shadow: &Shadow, (projection, dark): (&Projection, bool)) {
+pub fn draw_shadow(rows: &mut Rows<'_>, shadow: &Shadow, projection: &Projection, dark: bool) {
     let (map, target) = (projection.ground_map(), projection.target_m());
     let [low, high] = shadow.bounds;
     let last = (rows.first + rows.n_rows()) as f64;

@@ -163,9 +163,12 @@ impl SceneView {
 ///   scene until the user moves it.
 pub fn scene_view_ui(
     ui: &mut Ui,
-    (scene, time_s): (&Arc<Scene>, f64),
+    scene: &Arc<Scene>,
+    time_s: f64,
     view: &mut SceneView,
-    (usual, follow, height): (&mut Camera, Follow, f32),
+    usual: &mut Camera,
+    follow: Follow,
+    height: f32,
 ) -> Response {
     let top = ui.cursor().top();
     legend_ui(ui, scene);
@@ -185,10 +188,10 @@ pub fn scene_view_ui(
     let size = size_px.map(|side| side as f64);
     let mut camera = match view.camera {
         Some(camera) if camera.kind == usual.kind => camera,
-        _ => fitted_clear(*usual, scene, (rect, points)),
+        _ => fitted_clear(*usual, scene, rect, points),
     };
     if response.double_clicked() && !view.takes_clicks {
-        camera = fitted_clear(*usual, scene, (rect, points));
+        camera = fitted_clear(*usual, scene, rect, points);
     }
     camera = keyed(ui, &response, moved(ui, &response, (camera, rect), size), size);
     if let Some(target_m) = follow.target_m(scene, time_s) {
@@ -214,8 +217,9 @@ pub fn scene_view_ui(
 /// The camera from which everything is seen, as far back that nothing lies under the text and the symbols
 /// at the edge; as near as it can be where the picture is too small for that.
 ///
-/// - `(rect, points)`: the picture, and its pixels per point.
-fn fitted_clear(usual: Camera, scene: &Scene, (rect, points): (Rect, f32)) -> Camera {
+/// - `rect`: the picture;
+/// - `points`: its pixels per point.
+fn fitted_clear(usual: Camera, scene: &Scene, rect: Rect, points: f32) -> Camera {
     let size = [rect.width(), rect.height()].map(|side| f64::from(side * points));
     let (places_m, covered) = (scene.places_m(), covered(rect, scene));
     let nearest = usual.fitted(&places_m, size);
@@ -254,13 +258,15 @@ fn paint(
             }
         }
     }
-    paint_from_cpu(ui, (rect, view), (scene, time_s), look);
+    paint_from_cpu(ui, rect, view, scene, time_s, look);
 }
 
 fn paint_from_cpu(
     ui: &Ui,
-    (rect, view): (Rect, &mut SceneView),
-    (scene, time_s): (&Arc<Scene>, f64),
+    rect: Rect,
+    view: &mut SceneView,
+    scene: &Arc<Scene>,
+    time_s: f64,
     look: &SceneLook,
 ) {
     let has_changed = view.canvas.draw(scene, look, time_s);

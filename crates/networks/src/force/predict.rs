@@ -133,8 +133,8 @@ impl ForceModel {
             self.standardisation.apply(&features(canonical, centre, known))
         };
         let rows = centres.iter().zip(variants).map(row).collect();
-        let number_type = (&self.config.network, DType::F32);
-        let input = network_input((&centres, &self.residuals), rows, number_type)?;
+        let input =
+            network_input(&centres, &self.residuals, rows, &self.config.network, DType::F32)?;
         let output = self.network.forward_frozen(&input)?;
         let components = output.components(&centres)?.into_iter().zip(variants);
         let components: Vec<CurveComponent> = components

@@ -91,7 +91,7 @@ impl ToRest<'_> {
         let force = self.forces.get(part % self.forces.len())?;
         let predictor = self.predictors.get(part % self.predictors.len())?;
         let inputs = self.struck.inputs(force, self.limit_s);
-        let motion = (&self.struck.initial, &inputs[..]);
+        let initial = &self.struck.initial;
         let search = RestSearch {
             seed: self.seed,
             resistance_scatter: match self.has_drawn_vehicles {
@@ -101,8 +101,8 @@ impl ToRest<'_> {
         };
         let numbers: Vec<usize> = (part..N_DRAWS.max(n_parts)).step_by(n_parts).collect();
         Some(Part {
-            path: mean_path(&predictor.settled_paths(motion)),
-            draws: predictor.settled(motion, &numbers, &search),
+            path: mean_path(&predictor.settled_paths(initial, &inputs)),
+            draws: predictor.settled(initial, &inputs, &numbers, &search),
             applicability: predictor.applicability(&self.struck.initial, &inputs),
         })
     }

@@ -177,8 +177,8 @@ fn cars_ui(
     };
     scene_heading_ui(ui, (scene, time_s), (settings, None), exported, commands);
     let SceneSettings { camera, follow, .. } = settings;
-    let seen = (camera, *follow, ui.available_height());
-    scene_view_ui(ui, (scene, time_s), shown, seen);
+    let height = ui.available_height();
+    scene_view_ui(ui, scene, time_s, shown, camera, *follow, height);
 }
 
 /// Says that the particles are not the answer yet, and how far they are.

@@ -24,7 +24,7 @@ pub fn write_series_csv(
     existing: Existing,
     series: &TimeSeries,
 ) -> Result<(), DataError> {
-    write_restricted_series_csv(path, existing, (series, None))
+    write_restricted_series_csv(path, existing, series, None)
 }
 
 /// As [`write_series_csv`], with a last column that says what restricts the series.
@@ -34,7 +34,8 @@ pub fn write_series_csv(
 pub fn write_restricted_series_csv(
     path: &Path,
     existing: Existing,
-    (series, restrictions): (&TimeSeries, Option<&str>),
+    series: &TimeSeries,
+    restrictions: Option<&str>,
 ) -> Result<(), DataError> {
     let channels: Vec<Channel> = series.channels().collect();
     let columns: Vec<&[f64]> = channels.iter().filter_map(|&channel| series.get(channel)).collect();
@@ -45,7 +46,7 @@ pub fn write_restricted_series_csv(
         let values = columns.iter().filter_map(|column| column.get(i));
         std::iter::once(time).chain(values).map(ToString::to_string).collect()
     });
-    write_restricted_table(path, existing, (&header, rows), restrictions)
+    write_restricted_table(path, existing, &header, rows, restrictions)
 }
 
 /// Writes a table as CSV.
@@ -58,7 +59,8 @@ pub fn write_restricted_series_csv(
 pub fn write_restricted_table(
     path: &Path,
     existing: Existing,
-    (header, rows): (&[String], impl Iterator<Item = Vec<String>>),
+    header: &[String],
+    rows: impl Iterator<Item = Vec<String>>,
     restrictions: Option<&str>,
 ) -> Result<(), DataError> {
     write_atomically(path, existing, |out| {
@@ -89,7 +91,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("force.csv");
         let said = "warning: outside the domain: mass, \"bullet\" | note: assumed: 1, 2";
-        write_restricted_series_csv(&path, Existing::Refuse, (&series, Some(said))).unwrap();
+        write_restricted_series_csv(&path, Existing::Refuse, &series, Some(said)).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(text.starts_with("time_s,fx_n,fy_n,restrictions\n0,0,0,\"warning: "), "{text}");
         let loaded = read_force_file(&path, None).unwrap();

@@ -17,7 +17,7 @@ pub(super) fn part(answer: &ImpactAnswer, context: Context<'_>) -> Part {
     blocks.extend(report.facts().iter().map(|table| facts_table(table, context)));
     blocks.push(Block::paragraph(words.no_intervals));
     let caveats = &report.caveats;
-    let figure = impact_figure((&answer.scenario, &answer.solution), caveats, wording.units).ok();
+    let figure = impact_figure(&answer.scenario, &answer.solution, caveats, wording.units).ok();
     let caption = || fill(words.impact_picture, &[("name", &report.name)]);
     let picture = figure.map(|figure| PartPicture::figure(caption(), figure));
     Part {

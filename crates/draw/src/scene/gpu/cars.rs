@@ -158,7 +158,7 @@ impl CarParts {
                 let Some(range) = meshes.range_of(&car.car.shape, part.kind) else { continue };
                 draws.push((range, instances.len() as u32));
                 let is_locked = f32::from(u8::from(part.is_locked));
-                instances.push(part_instance(car, (&part.placed, is_locked), projection, depth));
+                instances.push(part_instance(car, &part.placed, is_locked, projection, depth));
             }
             match car.opacity < 1.0 {
                 true => self.ghosts.push(draws),
@@ -214,7 +214,8 @@ fn depth_map([low, high]: [f64; 2], [least, largest]: [f64; 2]) -> [f32; 2] {
 
 fn part_instance(
     car: &SeenCar<'_>,
-    (placed, is_locked): (&Placed, f32),
+    placed: &Placed,
+    is_locked: f32,
     projection: &Projection,
     depth: [f32; 2],
 ) -> PartInstance {

@@ -58,8 +58,8 @@ impl GroundResources {
         pipelines: &Pipelines,
         ground: &Ground<'_>,
     ) -> Result<(), GpuError> {
-        self.update_density((device, queue), ground.scene)?;
-        self.update_picture((device, queue), ground.scene)?;
+        self.update_density(device, queue, ground.scene)?;
+        self.update_picture(device, queue, ground.scene)?;
         self.update_areas((device, queue), ground);
         if let (Some(corners), None) = (self.corners.buffer(), &self.group) {
             let views = [&self.density.1, &self.picture.1];
@@ -75,7 +75,8 @@ impl GroundResources {
 
     fn update_density(
         &mut self,
-        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
         scene: &Scene,
     ) -> Result<(), GpuError> {
         let map = scene.density.as_ref().map(|density| &density.map);
@@ -102,7 +103,8 @@ impl GroundResources {
 
     fn update_picture(
         &mut self,
-        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
         scene: &Scene,
     ) -> Result<(), GpuError> {
         let picture = scene.ground.as_ref().and_then(|site| site.picture.as_ref());
@@ -125,7 +127,7 @@ impl GroundResources {
         check_side(device, size)?;
         let made = texture(device, size.map(|n| n as u32), levels.len() as u32, PICTURE);
         for (number, level) in (0_u32..).zip(levels) {
-            write_level(queue, (&made, number), level);
+            write_level(queue, &made, number, level);
         }
         self.picture = (Some(Arc::clone(picture)), made.create_view(&Default::default()));
         self.group = None;
@@ -202,11 +204,7 @@ fn rows(width: u32) -> wgpu::TexelCopyBufferLayout {
 }
 
 /// Sends a copy of the picture tile by tile.
-fn write_level(
-    queue: &wgpu::Queue,
-    (texture, mip_level): (&wgpu::Texture, u32),
-    level: &PictureLevel,
-) {
+fn write_level(queue: &wgpu::Queue, texture: &wgpu::Texture, mip_level: u32, level: &PictureLevel) {
     let size = level.size();
     for ([x, y], pixels) in level.tiles() {
         let [width, height] = [size[0] - x, size[1] - y].map(|left| left.min(TILE) as u32);

@@ -192,9 +192,9 @@ impl GpuCanvas {
         let mut encoder =
             on.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if !is_kept {
-            self.draw_ground(&mut encoder, (&ground, look), &targets)?;
+            self.draw_ground(&mut encoder, &ground, look, &targets)?;
         }
-        self.update_frame((&ground, look.size_px), time_s);
+        self.update_frame(&ground, look.size_px, time_s);
         self.draw_frame(&mut encoder, &targets, time_s);
         on.queue.submit([encoder.finish()]);
         self.targets = Some(targets);
@@ -217,7 +217,8 @@ impl GpuCanvas {
     fn draw_ground(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        (ground, look): (&Ground<'_>, &SceneLook),
+        ground: &Ground<'_>,
+        look: &SceneLook,
         targets: &Targets,
     ) -> Result<(), GpuError> {
         let (on, size) = (Arc::clone(&self.on), look.size_px);
@@ -265,7 +266,7 @@ impl GpuCanvas {
     }
 
     /// Sends what changes with time.
-    fn update_frame(&mut self, (ground, size): (&Ground<'_>, [usize; 2]), time_s: f64) {
+    fn update_frame(&mut self, ground: &Ground<'_>, size: [usize; 2], time_s: f64) {
         let (on, projection) = (self.on.parts(), ground.projection);
         let seen = seen_cars(ground, time_s);
         self.cars.update(on, &self.meshes, (&seen, projection));

@@ -87,7 +87,7 @@ pub fn evaluate(
     }
     let mut problems = Vec::new();
     let mut score = |name: &str, predict: &PredictOne<'_>| {
-        let predictions = predict_all(test, (name, predict), &mut problems);
+        let predictions = predict_all(test, name, predict, &mut problems);
         Scored::new(test, &predictions, settings.probabilistic)
     };
     let pulse = score("pulse", &|scenario| baselines.pulse.predict(scenario))?;
@@ -148,7 +148,8 @@ type PredictOne<'a> = dyn Fn(&ForceScenario) -> Result<CurvePrediction, CurveFit
 
 fn predict_all(
     test: &[&ForceCase],
-    (name, predict): (&str, &PredictOne<'_>),
+    name: &str,
+    predict: &PredictOne<'_>,
     problems: &mut Vec<String>,
 ) -> Vec<CurvePrediction> {
     let predictions: Vec<_> = test.par_iter().map(|case| predict(&case.scenario)).collect();

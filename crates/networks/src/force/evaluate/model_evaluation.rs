@@ -132,7 +132,8 @@ fn known(scenario: &ForceScenario, columns: ColumnSet) -> ForceScenario {
 pub fn cross_validate(
     cases: &[ForceCase],
     config: &ForceConfig,
-    (n_folds, settings): (usize, &EvaluationSettings),
+    n_folds: usize,
+    settings: &EvaluationSettings,
     report: &mut ProgressCallback<'_>,
 ) -> Result<Outcome<CrossValidation>, EvaluateError> {
     let folds = folds(cases, n_folds, settings.seed);

@@ -27,9 +27,11 @@ pub(crate) struct CaseTensors {
 /// # Errors
 /// [`ForceError::Learning`] if a tensor operation fails.
 pub(crate) fn network_input(
-    (centres, residuals): (&[CentreCurve], &ResidualModel),
+    centres: &[CentreCurve],
+    residuals: &ResidualModel,
     features: Vec<Vec<f32>>,
-    (config, number_type): (&NetworkConfig, DType),
+    config: &NetworkConfig,
+    number_type: DType,
 ) -> Result<NetworkInput, ForceError> {
     let n = centres.len();
     let (k, q, n_values) = (config.components, config.factors, 2 * CURVE_N_INSTANTS + 1);
@@ -104,7 +106,7 @@ impl CaseTensors {
             closing: tensor(closing.collect(), &[n, 2])?,
             inverse_mass: tensor(inverse_mass.collect(), &[n, 2, 2])?,
         };
-        let input = network_input((centres, residuals), features, (config, number_type))?;
+        let input = network_input(centres, residuals, features, config, number_type)?;
         Ok(Self { input, targets })
     }
 

@@ -37,7 +37,8 @@ pub struct ComparisonSettings {
 /// # Errors
 /// [`LearningError`].
 pub fn compare_models(
-    (name, cases): (&str, &[ResponseCase]),
+    name: &str,
+    cases: &[ResponseCase],
     start: Option<&ResponseModel>,
     settings: &ComparisonSettings,
     report: &mut ProgressCallback<'_>,
@@ -73,9 +74,11 @@ pub fn compare_models(
 /// # Errors
 /// [`LearningError`].
 pub fn evaluate_motion_model(
-    (name, cases): (&str, &[&ResponseCase]),
+    name: &str,
+    cases: &[&ResponseCase],
     model: &MotionModel,
-    (trajectories, seed): (usize, u64),
+    trajectories: usize,
+    seed: u64,
 ) -> Result<Comparison, LearningError> {
     let clusters = clusters(cases, seed);
     let rows = answers((model, trajectories, seed), cases, &clusters)?;
@@ -177,7 +180,7 @@ impl<'a, 'b> Work<'a, 'b> {
                 Some(start) => start.copied()?,
                 None => {
                     let settings = TrainSettings::unsaved(config, self.settings.seed);
-                    pretrain((&set.name, &records), &settings, &mut |told| {
+                    pretrain(&set.name, &records, &settings, &mut |told| {
                         self.tell(share_done(told), message)
                     })?
                 }

@@ -37,7 +37,7 @@ pub(super) fn estimated_load(
     let (mut impulse_n_s, mut angular_n_m_s) = ([0.0; 2], 0.0);
     let recorded = world_rates(after);
     for _ in 0..N_ROUNDS {
-        let load = load(vehicle, (impulse_n_s, angular_n_m_s), duration_s)?;
+        let load = load(vehicle, impulse_n_s, angular_n_m_s, duration_s)?;
         let manoeuvre = Manoeuvre {
             initial: *initial,
             contact_load: Some(load),
@@ -52,7 +52,7 @@ pub(super) fn estimated_load(
         impulse_n_s[1] += mass * (recorded[1] - vy);
         angular_n_m_s += yaw_inertia * (recorded[2] - yaw_rate);
     }
-    load(vehicle, (impulse_n_s, angular_n_m_s), duration_s).map(Some)
+    load(vehicle, impulse_n_s, angular_n_m_s, duration_s).map(Some)
 }
 
 fn world_rates(state: &VehicleState<f64>) -> [f64; 3] {
@@ -62,7 +62,8 @@ fn world_rates(state: &VehicleState<f64>) -> [f64; 3] {
 
 fn load(
     vehicle: &VehicleParameters,
-    (impulse_n_s, angular_n_m_s): ([f64; 2], f64),
+    impulse_n_s: [f64; 2],
+    angular_n_m_s: f64,
     duration_s: f64,
 ) -> Result<ContactLoad, PulseError> {
     let history =
@@ -85,7 +86,7 @@ mod tests {
         let initial = VehicleState { yaw_rad: 0.4, ..VehicleState::driving_straight(6.0) };
         for (impulse, angular) in [([20.0, 150.0], -60.0), ([-40.0, -90.0], 35.0), ([0.0; 2], 0.0)]
         {
-            let known = load(&vehicle, (impulse, angular), 0.1).unwrap();
+            let known = load(&vehicle, impulse, angular, 0.1).unwrap();
             let manoeuvre = Manoeuvre {
                 initial,
                 contact_load: Some(known),

@@ -57,7 +57,8 @@ impl Predictor {
     /// - `draws`: numbers of the draws, which decide on what is drawn.
     pub fn settled(
         &self,
-        (initial, inputs): (&VehicleState<f64>, &[VehicleInput<f64>]),
+        initial: &VehicleState<f64>,
+        inputs: &[VehicleInput<f64>],
         draws: &[usize],
         search: &RestSearch,
     ) -> Vec<SettledMotion> {
@@ -89,7 +90,8 @@ impl Predictor {
     /// probability.
     pub fn settled_paths(
         &self,
-        (initial, inputs): (&VehicleState<f64>, &[VehicleInput<f64>]),
+        initial: &VehicleState<f64>,
+        inputs: &[VehicleInput<f64>],
     ) -> Vec<SettledMotion> {
         let of = self.fitted_to(initial, inputs);
         let dynamics = of.dynamics();

@@ -32,7 +32,8 @@ pub type ResponseTrainSettings = TrainSettings<ResponseConfig>;
 /// # Errors
 /// [`LearningError`].
 pub fn pretrain(
-    (name, records): (&str, &[ImpactRecord]),
+    name: &str,
+    records: &[ImpactRecord],
     settings: &ResponseTrainSettings,
     report: &mut TrainingProgress<'_>,
 ) -> Result<ResponseModel, LearningError> {

@@ -84,7 +84,7 @@ fn pretraining_cost(
 ) -> Result<Option<(Cost, ResponseModel)>, StudyError> {
     let settings = ResponseTrainSettings::unsaved(measured(config), seed);
     let (mut stages, watch) = (Stages::default(), Watch::start());
-    let model = pretrain((name, records), &settings, &mut |told| stages.take(told, observer))?;
+    let model = pretrain(name, records, &settings, &mut |told| stages.take(told, observer))?;
     if stages.is_broken {
         return Ok(None);
     }
@@ -182,8 +182,8 @@ impl EvaluateResponseRequest {
         let n = rayon::current_num_threads().min(cases.len());
         let chosen: Vec<&ResponseCase> = cases.iter().take(n).collect();
         let (watch, mut cost) = (Watch::start(), Cost::default());
-        let settings = (model.record().train.len(), self.seed);
-        evaluate_motion_model(("", &chosen), &Self::motion_model(&model)?, settings)?;
+        let n_trained = model.record().train.len();
+        evaluate_motion_model("", &chosen, &Self::motion_model(&model)?, n_trained, self.seed)?;
         cost.add("trajectories", cases.len() as f64, watch.seconds() / n.max(1) as f64);
         Ok(Outcome::Complete(cost))
     }

@@ -215,7 +215,7 @@ impl Question for CompareRequest {
                 compare_on_unseen_cars(&set, start, &settings, &mut report)?
             }
             false => {
-                compare_models((&name, &usable.cases), start.as_deref(), &settings, &mut report)?
+                compare_models(&name, &usable.cases, start.as_deref(), &settings, &mut report)?
             }
         };
         Ok(match compared {

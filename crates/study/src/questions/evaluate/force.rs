@@ -212,9 +212,8 @@ impl Question for EvaluateForceRequest {
             if n_folds > cases.len() {
                 return Err(StudyError::TooManyFolds { n_folds, n_cases: cases.len() });
             }
-            let folds = (n_folds, &settings);
             let mut report = progress_of(observer);
-            let validated = cross_validate(cases, model.config(), folds, &mut report)?;
+            let validated = cross_validate(cases, model.config(), n_folds, &settings, &mut report)?;
             return Ok(validated.map(|validation| {
                 let what = format!("data set {}", self.data.display());
                 let reason = "a cross-validation uses the training cases that the model holds";

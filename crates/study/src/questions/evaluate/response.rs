@@ -99,8 +99,7 @@ impl Question for EvaluateResponseRequest {
         let trajectories = model.record().train.len();
         let compared = Self::motion_model(&model)?;
         let name = data_name(&self.data);
-        let comparison =
-            evaluate_motion_model((&name, &chosen), &compared, (trajectories, self.seed))?;
+        let comparison = evaluate_motion_model(&name, &chosen, &compared, trajectories, self.seed)?;
         let answer = CompareAnswer::new(comparison, (left_out, caveats), [digest]);
         Ok(Outcome::Complete(answer))
     }

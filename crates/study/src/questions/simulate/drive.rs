@@ -141,7 +141,7 @@ impl Drive {
             name: self.name(),
             source: Box::new(AnalysisError::Simulation(source)),
         };
-        fishhook((vehicle, initial), amplitude_rad, ratio).map(Some).map_err(failed)
+        fishhook(vehicle, initial, amplitude_rad, ratio).map(Some).map_err(failed)
     }
 }
 

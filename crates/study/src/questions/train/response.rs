@@ -194,7 +194,7 @@ impl Question for TrainResponseRequest {
         let Outcome::Complete(records) = records else { return Ok(Outcome::Cancelled) };
         let (started, name) = (Instant::now(), data_name(&self.data));
         let model =
-            pretrain((&name, &records), &settings, &mut |told| observer(Event::Training(told)))?;
+            pretrain(&name, &records, &settings, &mut |told| observer(Event::Training(told)))?;
         let answer = ResponseTrainingAnswer::of(model, started.elapsed().as_secs_f64(), notes)?;
         Ok(Outcome::Complete(answer))
     }
