@@ -24,6 +24,8 @@ fn project_and_view_survive_a_restart() {
     state.project.predict_force.model = ModelChoice::file("mine.safetensors");
     state.view.force.bands[0] = false;
     state.session.sources.push(Source::failed(PathBuf::from("a.csv"), "gone".to_owned()));
+    // As before every frame: a stored project comes back with its questions in step.
+    state.project.keep_in_step();
     let (restored, sources) = State::restore(&state.save().unwrap()).unwrap();
     assert_eq!(restored.project, state.project);
     assert_eq!(restored.view, state.view);
