@@ -24,7 +24,7 @@ use std::path::Path;
 
 use impactlab_core::site::Site;
 use impactlab_core::vehicle::FrictionZone;
-use impactlab_reconstruct::evidence::{Evidence, Measured, RestPose, VideoPosition};
+use impactlab_reconstruct::evidence::{Edr, Evidence, Measured, RestPose, VideoPosition};
 use impactlab_reconstruct::sampler::{SamplerSettings, sample};
 use impactlab_reconstruct::{
     Cars, Discrepancy, ForwardModel, RankedQuantity, Ranks, ReconstructedQuantity,
@@ -50,12 +50,16 @@ const MAX_DRAWS: usize = 100;
 /// The items that a collision of an index leaves, with their accuracies; the values come later.
 fn kinds_of_evidence(case: &Evidence, idx: usize) -> Evidence {
     let mut evidence = case.without_edr().rest_only();
-    let heading_rad = Some(Measured { value: 0.0, sigma: 0.035 });
-    evidence.rest = Some(RestPose { x_m: 0.0, y_m: 0.0, position_sigma_m: 0.15, heading_rad });
+    let (x_m, y_m) = (Some(0.0), Some(0.0));
+    let heading_rad = Some(Measured { value: 0.0, sigma: 0.035 }.into());
+    evidence.rest = Some(RestPose { x_m, y_m, position_sigma_m: Some(0.15), heading_rad });
     match idx % 2 {
-        0 => evidence.edr.speed_before_m_s = Some(Measured { value: 0.0, sigma: 1.0 }),
+        0 => {
+            let speed_before_m_s = Some(Measured { value: 0.0, sigma: 1.0 }.into());
+            evidence.edr = Some(Edr { speed_before_m_s, ..Edr::default() });
+        }
         _ => {
-            let at = |time_s| VideoPosition { time_s, x_m: 0.0, y_m: 0.0, sigma_m: 0.3 };
+            let at = |time_s| VideoPosition { time_s: Some(time_s), x_m, y_m, sigma_m: Some(0.3) };
             evidence.positions = [0.5, 1.0, 1.5].map(at).to_vec();
         }
     }

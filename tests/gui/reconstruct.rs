@@ -7,7 +7,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{App, Command, FollowedParticle, ReconstructionCommand, State, Workspace};
 use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::vehicle::built_in_vehicle;
-use impactlab_reconstruct::evidence::Evidence;
+use impactlab_reconstruct::evidence::{Edr, Evidence, RestPose, Stated};
 use impactlab_study::{EvidenceChoice, VehicleChoice};
 
 use crate::harness::{apply, open_at, open_with, step_until};
@@ -134,7 +134,7 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
 
     // The struck car was found elsewhere: the answer is of other evidence until that is undone.
     let mut moved = evidence(&harness);
-    moved.rest.as_mut().expect("a place of rest").x_m = 35.0;
+    moved.rest.as_mut().expect("a place of rest").x_m = Some(35.0);
     let project = &mut harness.state_mut().state_mut().project;
     project.reconstruct.as_mut().expect("evidence").evidence =
         EvidenceChoice::Inline(Box::new(moved.clone()));
@@ -218,7 +218,11 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
     assert!(harness.query_by_label_contains("car at rest has not been placed").is_some());
     assert!(harness.get_by_label("Run").accesskit_node().is_disabled());
     assert!(harness.get_by_label("Save as…").accesskit_node().is_disabled());
-    edited.rest.as_mut().expect("a place of rest").y_m = -4.0;
+    // What a form starts with is no number.
+    let empty = edited.rest.expect("a card");
+    assert_eq!((empty.place_m(), edited.damage.along()), (None, None));
+    edited.rest = Some(RestPose { x_m: Some(30.0), y_m: Some(0.0), ..empty });
+    edited.damage.along_m = Some(Stated { value: Some(-1.5), sigma: None });
     let project = &mut harness.state_mut().state_mut().project;
     project.reconstruct.as_mut().expect("evidence").evidence =
         EvidenceChoice::Inline(Box::new(edited));
@@ -270,6 +274,45 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
     assert_eq!(state(&harness).view.workspaces.shown, Workspace::Reconstruct);
     let text = std::fs::read_to_string(case).expect("the case file");
     assert!(text.contains(r#""question": "reconstruct""#));
+}
+
+/// A speed of 15 m/s, 54 km/h, is one like any other, from a file and typed.
+#[test]
+fn what_is_recorded_is_run_and_saved_whatever_its_number() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = evidence_in(folder.path());
+    let text = EVIDENCE.replace("speed_before_m_s = 17", "speed_before_m_s = 15");
+    std::fs::write(&path, text.replace("y_m = -6", "y_m = 0")).expect("a file");
+    let mut harness = opened(&path, [1280.0, 1700.0], 60);
+    let can = |harness: &Harness<'_, App>| {
+        ["Run", "Save as…"].map(|label| !harness.get_by_label(label).accesskit_node().is_disabled())
+    };
+    assert_eq!(can(&harness), [true, true]);
+
+    // A card in which nothing was entered waits; the number that is typed into it is taken.
+    let mut edited = evidence(&harness);
+    edited.edr = Some(Edr::default());
+    let project = &mut harness.state_mut().state_mut().project;
+    project.reconstruct.as_mut().expect("evidence").evidence =
+        EvidenceChoice::Inline(Box::new(edited));
+    harness.run_steps(4);
+    assert_eq!(can(&harness), [false, false]);
+    assert!(harness.query_by_label_contains("event data recorder: nothing has been").is_some());
+    for (typed, value) in [("54", Some(15.0)), ("0", Some(0.0)), ("", None), ("54", Some(15.0))] {
+        harness.get_by_label("Speed before the impact").focus();
+        harness.run_steps(2);
+        harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+        harness.key_press(egui::Key::Delete);
+        harness.run_steps(2);
+        harness.event(egui::Event::Text(typed.to_owned()));
+        harness.run_steps(2);
+        harness.key_press(egui::Key::Enter);
+        harness.run_steps(4);
+        let speed = evidence(&harness).recorder().speed_before_m_s.and_then(|of| of.value);
+        let is_same = speed.zip(value).is_some_and(|(a, b)| (a - b).abs() < 1e-9);
+        assert!(is_same || speed == value, "{typed:?}: {speed:?}");
+    }
+    assert_eq!(can(&harness), [true, true]);
 }
 
 #[test]

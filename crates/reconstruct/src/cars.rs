@@ -51,7 +51,7 @@ impl Cars {
         let damage = &evidence.damage;
         let is_flank = matches!(damage.side, Side::Left | Side::Right);
         let wheelbase_m = self.struck.parameters.geometry.wheelbase_m();
-        is_flank && damage.along_m.value < -PIT_SHARE * wheelbase_m
+        is_flank && damage.along().is_some_and(|along| along.value < -PIT_SHARE * wheelbase_m)
     }
 
     /// Distance of a side of the struck car from its CG, m, as a coordinate.
@@ -98,7 +98,7 @@ impl Car {
 
     /// A vehicle of which every parameter is known, with what the evidence says otherwise.
     fn measured(evidence: &CarEvidence, vehicle: &VehicleParameters) -> Self {
-        let mass_kg = evidence.mass_kg.map_or(vehicle.mass.mass_kg, |mass| mass.value);
+        let mass_kg = evidence.mass().map_or(vehicle.mass.mass_kg, |mass| mass.value);
         let mut parameters =
             lean(vehicle.clone()).scaled_to_mass(mass_kg, evidence.yaw_inertia_kg_m2);
         let geometry = &mut parameters.geometry;
@@ -151,7 +151,7 @@ fn completed(mut sheet: DataSheet, evidence: &CarEvidence) -> DataSheet {
         sheet.set(Q::FrontShare, rear_m / (front_m + rear_m));
     }
     for (quantity, value) in [
-        (Q::Mass, evidence.mass_kg.map(|mass| mass.value)),
+        (Q::Mass, evidence.mass().map(|mass| mass.value)),
         (Q::Track, evidence.track_m),
         (Q::CgHeight, evidence.cg_height_m),
         (Q::Length, evidence.length_m),
@@ -183,7 +183,7 @@ mod tests {
     fn the_mass_of_a_car_is_known_by_scale_by_size_or_hardly() {
         let scatter = |evidence: &CarEvidence| Car::new(evidence, None).mass_scatter();
         let weighed = crate::evidence::Measured { value: 1500.0, sigma: 30.0 };
-        let weighed = CarEvidence { mass_kg: Some(weighed), ..CarEvidence::default() };
+        let weighed = CarEvidence { mass_kg: Some(weighed.into()), ..CarEvidence::default() };
         assert_eq!(scatter(&weighed), None);
         let measured =
             CarEvidence { length_m: Some(4.4), width_m: Some(1.8), ..Default::default() };

@@ -126,7 +126,7 @@ mod tests {
             wheel: Wheel::RearLeft,
             kind: None,
             points_m: vec![[0.0, 0.0], [4.0, 0.0]],
-            sigma_m: 0.1,
+            sigma_m: None,
         };
         let far = computed(Wheel::RearLeft, &[[0.0, 9.0], [4.0, 9.0]]);
         let near = computed(Wheel::RearLeft, &[[-1.0, 0.0], [4.0, 1.0]]);

@@ -60,7 +60,7 @@ fn rear_load_kg(car: &VehicleParameters) -> f64 {
 ///
 /// - `zones`: parts of the ground with their own friction.
 pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) -> Vec<Caveat> {
-    let road = of_road(evidence.friction);
+    let road = of_road(evidence.road_friction());
     of_vehicles(cars).into_iter().chain(road).chain(of_zones(zones)).collect()
 }
 
@@ -124,7 +124,7 @@ fn of_zones(zones: &[FrictionZone]) -> impl Iterator<Item = Caveat> {
 /// [`OffOutline`] with the distance.
 pub fn check_damage(damage: &Damage, cars: &Cars) -> Result<(), OffOutline> {
     let footprint = Footprint::from(&cars.struck.parameters.geometry);
-    let Measured { value, sigma } = damage.along_m;
+    let Some(Measured { value, sigma }) = damage.along() else { return Ok(()) };
     let across_m = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.side));
     let reach_m = DAMAGE_REACH * sigma;
     let along_m = value - value.clamp(-reach_m, reach_m);
@@ -154,7 +154,7 @@ mod tests {
     fn a_lorry_is_named_with_what_is_too_heavy_and_a_toy_with_what_is_too_short() {
         let mut evidence = read(SPIN);
         assert_eq!(said(&evidence), []);
-        evidence.struck_car.mass_kg = Some(Measured { value: 20_170.0, sigma: 100.0 });
+        evidence.struck_car.mass_kg = Some(Measured { value: 20_170.0, sigma: 100.0 }.into());
         let lorry = said(&evidence);
         let names: Vec<&str> = lorry.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(
@@ -200,9 +200,9 @@ mod tests {
                 .map_err(|off| off.x_body_m)
         };
         assert_eq!(check(&evidence), Ok(()));
-        evidence.damage.along_m.value = -8.0;
+        evidence.damage.along_m = Some(Measured { value: -8.0, sigma: 0.1 }.into());
         assert_eq!(check(&evidence), Err(-8.0));
-        evidence.damage.along_m.sigma = 2.0;
+        evidence.damage.along_m = Some(Measured { value: -8.0, sigma: 2.0 }.into());
         assert_eq!(check(&evidence), Ok(()));
     }
 }

@@ -10,7 +10,7 @@
 
 use rayon::prelude::*;
 
-use crate::evidence::Evidence;
+use crate::evidence::{Evidence, ends};
 use crate::{Cars, ImpactState, Latent, LatentValues, Prior};
 use impactlab_core::collision::{Pulse, PulseShape, Side};
 use impactlab_core::data::{ForceAxes, ForceHistory, Sampling};
@@ -85,16 +85,9 @@ impl ForwardModel {
     pub fn new(evidence: &Evidence, cars: Cars) -> Self {
         let prior = Prior::new(evidence, &cars);
         let side = evidence.damage.side;
-        let distance_m = |pose: &Option<_>| {
-            pose.as_ref().map(|pose: &crate::evidence::RestPose| pose.x_m.hypot(pose.y_m))
-        };
-        let marks = evidence.marks.iter().flat_map(|mark| &mark.points_m);
-        let farthest_m = marks
-            .map(|[x, y]| x.hypot(*y))
-            .chain(distance_m(&evidence.rest))
-            .chain(distance_m(&evidence.striking_rest))
-            .chain(evidence.positions.iter().map(|at| at.x_m.hypot(at.y_m)))
-            .fold(0.0, f64::max);
+        let places = evidence.places();
+        let points = places.iter().flat_map(|place| &place.points_m);
+        let farthest_m = points.map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
         // Without anything that says where the cars were, they are followed to rest.
         let distance_m = if farthest_m > 0.0 { 1.5 * farthest_m + 20.0 } else { f64::INFINITY };
         Self {
@@ -102,7 +95,7 @@ impl ForwardModel {
             side,
             blocked: evidence.after.blocked_wheels.clone(),
             near: wheels_near(side, cars.is_hit_behind_cg(evidence)),
-            restitution: evidence.prior.restitution,
+            restitution: ends(evidence.prior.restitution),
             follows_striking: evidence.striking_rest.is_some(),
             zones: Vec::new(),
             limit: PathLimit { distance_m },

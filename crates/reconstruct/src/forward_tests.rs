@@ -1,6 +1,6 @@
 use super::*;
 use crate::evidence::examples::{SPIN, read};
-use crate::evidence::{Mark, Measured};
+use crate::evidence::{Mark, Measured, RestPose, Weighing};
 use crate::sampler::Target;
 use crate::{
     Discrepancy, EvidenceFit, MarkComparison, PriorComponent, PriorSource, ReconstructionTarget,
@@ -60,7 +60,7 @@ fn a_motion_is_compared_with_marks_by_those_that_it_leaves() {
     let longest = blocked.max_by(|a, b| a.length_m().total_cmp(&b.length_m())).unwrap();
     assert_eq!(longest.kind(), TireMarkKind::Locked);
     let points_m: Vec<[f64; 2]> = longest.points.iter().map(|point| point.place_m).collect();
-    let found = Mark { wheel: Wheel::RearRight, kind: None, points_m, sigma_m: 0.1 };
+    let found = Mark { wheel: Wheel::RearRight, kind: None, points_m, sigma_m: None };
     let comparison = MarkComparison::all(&[found], &computed).remove(0);
     assert!(
         (comparison.found_length_m - comparison.computed_length_m).abs() < 1e-9,
@@ -93,7 +93,7 @@ fn a_particle_moves_as_the_simulation_of_its_car() {
 #[test]
 fn one_scale_that_weighed_both_cars_errs_for_both_alike() {
     let mut weighed = evidence();
-    weighed.shared_scale_sigma = Some(0.01);
+    weighed.weighing = Some(Weighing { shared_scale_sigma: Some(0.01) });
     let target = target(&weighed);
     let prior = target.model().prior();
     let is_scale = |component: &PriorComponent| component.latent == Latent::MassScaleFactor;
@@ -120,13 +120,13 @@ fn every_distribution_says_who_gave_it() {
     };
     let found = evidence();
     let mut ranged = found.clone();
-    ranged.prior.struck_speed_m_s = Some([10.0, 30.0]);
-    ranged.prior.restitution = Some([0.1, 0.3]);
-    ranged.shared_scale_sigma = Some(0.01);
+    ranged.prior.struck_speed_m_s = Some([10.0, 30.0].map(Some));
+    ranged.prior.restitution = Some([0.1, 0.3].map(Some));
+    ranged.weighing = Some(Weighing { shared_scale_sigma: Some(0.01) });
     let mut unknown = found.clone();
     (unknown.friction, unknown.struck_car.mass_kg) = (None, None);
     let mut angled = found.clone();
-    angled.damage.angle_rad = Some(Measured { value: 0.3, sigma: 0.1 });
+    angled.damage.angle_rad = Some(Measured { value: 0.3, sigma: 0.1 }.into());
     let known = Preset::Reference.parameters();
     assert!(known.sheet.is_none(), "every parameter of it is known");
     let any = None;
@@ -174,17 +174,21 @@ fn a_mirror_scene_has_the_mirror_likelihood() {
     assert!(likelihoods[0].iter().any(|a| (a - likelihoods[0][0]).abs() > 1.0));
 }
 
+fn pose_of(evidence: &mut Evidence) -> &mut RestPose {
+    evidence.rest.as_mut().unwrap()
+}
+
 #[test]
 fn evidence_of_the_own_motion_is_explained_and_other_evidence_is_not() {
     let mut found = evidence();
     let before = target(&found);
     let z = vec![particles(before.dim())[3].clone()];
     let rest = before.model().motions(&z, |motion| *motion.path.points.last().unwrap());
-    let pose = found.rest.as_mut().unwrap();
-    (pose.x_m, pose.y_m) = (rest[0].x_m, rest[0].y_m);
-    pose.heading_rad.as_mut().unwrap().value = wrap_angle_rad(rest[0].yaw_rad);
+    let pose = pose_of(&mut found);
+    (pose.x_m, pose.y_m) = (Some(rest[0].x_m), Some(rest[0].y_m));
+    pose.heading_rad.as_mut().unwrap().value = Some(wrap_angle_rad(rest[0].yaw_rad));
     found.marks.clear();
-    found.edr.delta_v_y_m_s = None;
+    found.edr = None;
     let fit = |found: &Evidence| {
         let target = target(found);
         EvidenceFit::of(&target.model().motions(&z, |motion| target.terms(&motion)))
@@ -194,7 +198,7 @@ fn evidence_of_the_own_motion_is_explained_and_other_evidence_is_not() {
         fit.iter().filter(|item| item.evidence.starts_with("rest")).map(|item| item.p).collect()
     };
     assert!(of_rest(&own).iter().all(|p| *p > 0.5), "{own:?}");
-    found.rest.as_mut().unwrap().y_m += 60.0;
+    pose_of(&mut found).y_m = Some(rest[0].y_m + 60.0);
     let other = fit(&found);
     assert!(
         other.iter().any(|item| item.evidence == "rest y" && item.is_unexplained()),

@@ -50,12 +50,12 @@ impl HandCalculation {
     ///
     /// - `zones`: parts of the ground with their own friction.
     pub fn new(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) -> Option<Self> {
-        let rest = evidence.rest?;
-        let distance_m = rest.x_m.hypot(rest.y_m);
+        let [x_m, y_m] = evidence.rest?.place_m()?;
+        let distance_m = x_m.hypot(y_m);
         let road = evidence
-            .friction
+            .road_friction()
             .unwrap_or(Measured { value: DEFAULT_FRICTION, sigma: DEFAULT_FRICTION_SIGMA });
-        let friction = friction_on_the_way(road, [rest.x_m, rest.y_m], zones);
+        let friction = friction_on_the_way(road, [x_m, y_m], zones);
         let (drag_share, scatter) = drag_share(evidence, distance_m, friction.value);
         let drag = friction.value * drag_share;
         let after = (2.0 * STANDARD_GRAVITY_M_S2 * drag * distance_m).sqrt();
@@ -67,8 +67,8 @@ impl HandCalculation {
             .map(|share| share * share)
             .sum::<f64>()
             .sqrt();
-        let along = evidence.edr.delta_v_x_m_s.map_or(0.0, |[low, high]| (low + high) / 2.0);
-        let by_record = evidence.edr.speed_before_m_s;
+        let along = evidence.recorder().delta_v_x().map_or(0.0, |[low, high]| (low + high) / 2.0);
+        let by_record = evidence.recorder().speed_before();
         let own = Measured { value: (after - along).max(0.0), sigma: relative * after };
         let struck_speed_m_s = by_record.map_or(own, |record| combined(own, record));
         Some(Self { struck_speed_m_s, closing_speed_m_s: closing(evidence, cars) })
@@ -110,9 +110,10 @@ fn combined(a: Measured, b: Measured) -> Measured {
 /// Closing speed across the struck side, by momentum and restitution.
 fn closing(evidence: &Evidence, cars: &Cars) -> Measured {
     let damage = &evidence.damage;
+    let along_m = damage.along().map_or(0.0, |along| along.value);
     let recorded = match damage.side {
-        Side::Left | Side::Right => evidence.edr.delta_v_y_m_s,
-        Side::Front | Side::Rear => evidence.edr.delta_v_x_m_s,
+        Side::Left | Side::Right => evidence.recorder().delta_v_y(),
+        Side::Front | Side::Rear => evidence.recorder().delta_v_x(),
     };
     let of_record = |[low, high]: [f64; 2]| Measured {
         value: ((low + high) / 2.0).abs(),
@@ -123,7 +124,7 @@ fn closing(evidence: &Evidence, cars: &Cars) -> Measured {
     let arm = |arm_m: f64, inertia: f64| arm_m * arm_m / inertia;
     let inverse = 1.0 / struck.mass.mass_kg
         + 1.0 / striking.mass.mass_kg
-        + arm(damage.along_m.value, struck.mass.yaw_inertia_kg_m2)
+        + arm(along_m, struck.mass.yaw_inertia_kg_m2)
         + arm(striking.geometry.cg_to_front_end_m, striking.mass.yaw_inertia_kg_m2);
     let factor = struck.mass.mass_kg * inverse / (1.0 + RESTITUTION);
     // Restitution ± 0.15.
@@ -135,6 +136,7 @@ fn closing(evidence: &Evidence, cars: &Cars) -> Measured {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evidence::Edr;
     use impactlab_core::data::TomlFile;
 
     #[test]
@@ -159,12 +161,13 @@ mod tests {
         let expected = (2.0 * 9.806_65 * 0.7 * 0.8 * 30.0_f64).sqrt();
         assert!((hand.value - expected).abs() < 1e-6, "{hand:?}, expected {expected}");
         // A recorder that is as good moves it half way, and narrows it.
-        evidence.edr.speed_before_m_s = Some(Measured { value: expected + 1.0, ..hand });
+        let speed_before_m_s = Some(Measured { value: expected + 1.0, ..hand }.into());
+        evidence.edr = Some(Edr { speed_before_m_s, ..Edr::default() });
         let both = HandCalculation::new(&evidence, &cars, &[]).unwrap().struck_speed_m_s;
         assert!((both.value - expected - 0.5).abs() < 1e-6, "{both:?}");
         assert!((both.sigma * 2_f64.sqrt() / hand.sigma - 1.0).abs() < 1e-9, "{both:?}");
         // The second half of the way on ice takes the friction that both halves have on the average.
-        evidence.edr.speed_before_m_s = None;
+        evidence.edr = None;
         let border_m = vec![[15.0, -5.0], [40.0, -5.0], [40.0, 5.0], [15.0, 5.0]];
         let ice = FrictionZone { name: "ice".to_owned(), border_m, friction: 0.1 };
         let icy = HandCalculation::new(&evidence, &cars, &[ice]).unwrap().struck_speed_m_s;

@@ -27,7 +27,7 @@
 //! | front wheels turned by | normal, 0 ± 0.9° | toe, play, a hand on the wheel |
 //! | each wheel near the damage blocked | 1 of 5, if nobody looked | assumed |
 //! | mass of a car of which no mass is known | log-normal, by its length and width where they are known, else 1790 kg, factor 1.19 | vehicles of the library |
-//! | one scale that weighed both cars, over what it shows | log-normal, 1, as said | [`Evidence::shared_scale_sigma`] |
+//! | one scale that weighed both cars, over what it shows | log-normal, 1, as said | [`Weighing`](crate::evidence::Weighing) |
 //! | friction of the zones of a site over that which the site says, in all zones alike | log-normal, 1, factor 1.16 | assumed: grass, gravel and wet patches are known less well than the road |
 //! | yaw inertia, tire curves, sliding friction, rolling resistance | the rules of the data sheet with their scatter | [`DataSheet`](impactlab_core::vehicle::DataSheet) |
 
@@ -37,7 +37,8 @@ use serde::Serialize;
 
 use crate::cars::{Car, Cars};
 use crate::evidence::{
-    DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, DEFAULT_MASS_SHARE, DriverBraked, Evidence, Measured,
+    Bounds, DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, DEFAULT_MASS_SHARE, DriverBraked, Evidence,
+    Measured, ends,
 };
 use crate::{Distribution, Latent, LatentValues};
 use impactlab_core::collision::{ContactDistribution, Side};
@@ -154,11 +155,11 @@ impl Prior {
     fn open(
         &mut self,
         latent: Latent,
-        range: Option<[f64; 2]>,
+        range: Option<Bounds>,
         otherwise: (PriorSource, Distribution),
     ) {
-        let of_user =
-            range.map(|[low, high]| (PriorSource::Given, Distribution::Uniform { low, high }));
+        let of_user = ends(range)
+            .map(|[low, high]| (PriorSource::Given, Distribution::Uniform { low, high }));
         let (source, distribution) = of_user.unwrap_or(otherwise);
         self.add(latent, source, distribution);
     }
@@ -175,9 +176,9 @@ impl Prior {
             range => self.open(Latent::StrikingSpeed, range, any),
         }
         // Angles are turned towards the struck side, so that the mirror of a case is the same prior.
-        let turned = |[low, high]: [f64; 2]| match towards(evidence.damage.side) > 0.0 {
+        let turned = |[low, high]: Bounds| match towards(evidence.damage.side) > 0.0 {
             true => [low, high],
-            false => [-high, -low],
+            false => [high.map(|end| -end), low.map(|end| -end)],
         };
         let by_side = match evidence.damage.side {
             Side::Front => normal(PI, 0.5, PI - 1.6, PI + 1.6),
@@ -185,7 +186,7 @@ impl Prior {
             Side::Left | Side::Right if self.is_pit => normal(0.30, 0.25, -0.5, 1.6),
             Side::Left | Side::Right => Distribution::Uniform { low: 0.0, high: 1.92 },
         };
-        let by_damage = evidence.damage.angle_rad.map(|angle| {
+        let by_damage = evidence.damage.angle().map(|angle| {
             let mean = angle.value * towards(evidence.damage.side);
             (PriorSource::Measured, normal(mean, angle.sigma, mean - PI, mean + PI))
         });
@@ -200,9 +201,11 @@ impl Prior {
 
     fn add_contact(&mut self, evidence: &Evidence, cars: &Cars) {
         let damage = &evidence.damage;
-        let Measured { value, sigma } = damage.along_m;
-        let along = normal(value, sigma, value - 2.0, value + 2.0);
-        self.add(Latent::ContactAlong, PriorSource::Measured, along);
+        // What is not entered yet cannot be reconstructed from, but the rest of the prior can be shown.
+        if let Some(Measured { value, sigma }) = damage.along() {
+            let along = normal(value, sigma, value - 2.0, value + 2.0);
+            self.add(Latent::ContactAlong, PriorSource::Measured, along);
+        }
         let across = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.side));
         self.fixed.set(Latent::ContactAcross, across);
         // Its bounds are a range of the user, or those of the program.
@@ -222,7 +225,7 @@ impl Prior {
 
     fn add_cars(&mut self, evidence: &Evidence, cars: &Cars) {
         let usual = Measured { value: DEFAULT_FRICTION, sigma: DEFAULT_FRICTION_SIGMA };
-        let (source, friction) = match evidence.friction {
+        let (source, friction) = match evidence.road_friction() {
             Some(measured) => (PriorSource::Measured, measured),
             None => (PriorSource::Assumed, usual),
         };
@@ -236,13 +239,13 @@ impl Prior {
             log_normal(LONGITUDINAL_FRICTION_RATIO, LONGITUDINAL_FRICTION_SCATTER, 0.8, 1.5),
         );
         for (latent, measured, vehicle) in [
-            (Latent::StruckMass, evidence.struck_car.mass_kg, &cars.struck),
-            (Latent::StrikingMass, evidence.striking_car.mass_kg, &cars.striking),
+            (Latent::StruckMass, evidence.struck_car.mass(), &cars.struck),
+            (Latent::StrikingMass, evidence.striking_car.mass(), &cars.striking),
         ] {
             let (source, distribution) = mass_of(measured, vehicle);
             self.add(latent, source, distribution);
         }
-        if let Some(sigma) = evidence.shared_scale_sigma {
+        if let Some(sigma) = evidence.weighing.and_then(|scale| scale.shared_scale_sigma) {
             let reach = (4.0 * sigma).exp();
             let scale = log_normal(1.0, sigma, 1.0 / reach, reach);
             self.add(Latent::MassScaleFactor, PriorSource::Given, scale);

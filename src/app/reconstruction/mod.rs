@@ -7,7 +7,6 @@ mod live;
 mod preview;
 mod question;
 mod settings;
-pub(in crate::app) mod stand_ins;
 mod update;
 
 pub use cars::{CarsSource, ReconstructedCars, ShownPaths};

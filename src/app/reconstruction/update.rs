@@ -10,7 +10,6 @@ use crate::app::panes::Pane;
 use crate::app::project::Project;
 use crate::app::reconstruction::live::watch;
 use crate::app::reconstruction::preview::EvidencePreview;
-use crate::app::reconstruction::stand_ins::{empty_evidence, missing};
 use crate::app::reconstruction::{
     FollowedParticle, ReadEvidence, ReconstructionCommand, ReconstructionQuestion,
     ReconstructionSession,
@@ -143,7 +142,7 @@ impl State {
     ) {
         match command {
             ReconstructionCommand::New => {
-                self.take_evidence(EvidenceChoice::Inline(Box::new(empty_evidence())));
+                self.take_evidence(EvidenceChoice::Inline(Box::new(Evidence::empty())));
             }
             ReconstructionCommand::Example => {
                 let path = Path::new("example");
@@ -167,7 +166,7 @@ impl State {
     }
 
     fn run_reconstruction(&mut self, context: &Context) {
-        let refused = self.evidence().map(missing);
+        let refused = self.evidence().map(Evidence::missing);
         let request = self.project.reconstruct.clone();
         let request = match (request, refused) {
             (Some(request), Some(None)) => request,

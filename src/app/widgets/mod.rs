@@ -18,7 +18,7 @@ pub use dataset_choice::{dataset_choice, no_dataset_ui};
 pub use facts::facts_ui;
 pub use figure_frame::{MIN_PLOT_HEIGHT, OUTDATED, TITLE_HEIGHT, figure_frame};
 pub use quantity::{
-    SliderRange, count_field, duration_text, quantity_field, quantity_slider, quantity_value,
-    value_row, value_ui, within_view,
+    EmptyField, SliderRange, count_field, duration_text, optional_quantity, quantity_field,
+    quantity_slider, quantity_value, value_row, value_ui, within_view,
 };
 pub use time_figure::{BetweenCursors, time_figure};

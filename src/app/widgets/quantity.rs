@@ -2,6 +2,7 @@
 //!
 //! The values that they edit are in SI units; they are converted only for display.
 
+use std::cell::Cell;
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
@@ -49,8 +50,9 @@ pub fn quantity_value(
     let unit = range.quantity.display_unit(units);
     let limits = [range.low, range.high].map(|limit| unit.from_si(limit));
     let expected = range.expected(&unit);
+    let value = unit.from_si(*value_si);
     let (response, taken) =
-        bounded(ui, unit.from_si(*value_si), (limits, &expected), |ui, shown| {
+        bounded(ui, value, &significant(value), (limits, &expected), |ui, shown| {
             let field = DragValue::new(shown)
                 .update_while_editing(false)
                 .speed(drag_speed(range, &unit))
@@ -66,6 +68,70 @@ pub fn quantity_value(
     (response, taken.is_some())
 }
 
+/// What a field shows while it has no value.
+#[derive(Debug, Clone, Copy)]
+pub struct EmptyField<'a> {
+    /// What it says.
+    pub text: &'a str,
+    /// From where it is dragged, SI units.
+    pub start_si: f64,
+}
+
+/// Draws a number field as [`quantity_value`] does, for a number that may not be known: who empties the field
+/// says so.
+pub fn optional_quantity(
+    ui: &mut Ui,
+    value_si: &mut Option<f64>,
+    empty: EmptyField<'_>,
+    (range, units): (&Range, UnitSystem),
+) -> Response {
+    let unit = range.quantity.display_unit(units);
+    let limits = [range.low, range.high].map(|limit| unit.from_si(limit));
+    let expected = range.expected(&unit);
+    let start = unit.from_si(value_si.unwrap_or(empty.start_si.clamp(range.low, range.high)));
+    let is_empty = value_si.is_none();
+    let stays = if is_empty { empty.text.to_owned() } else { significant(start) };
+    let is_cleared = Cell::new(false);
+    let (response, taken) = bounded(ui, start, &stays, (limits, &expected), |ui, shown| {
+        let mut is_entered = false;
+        let get_set = |entered: Option<f64>| {
+            if let Some(entered) = entered {
+                (*shown, is_entered) = (entered, true);
+            }
+            *shown
+        };
+        let format = |value: f64, decimals: RangeInclusive<usize>| match is_empty && value == start
+        {
+            true => empty.text.to_owned(),
+            false => egui::emath::format_with_decimals_in_range(value, decimals),
+        };
+        let parse = |text: &str| {
+            is_cleared.set(text.trim().is_empty());
+            text.trim().replace('−', "-").parse().ok()
+        };
+        let field = DragValue::from_get_set(get_set)
+            .update_while_editing(false)
+            .speed(drag_speed(range, &unit))
+            .max_decimals(3)
+            .suffix(if is_empty { String::new() } else { suffix(&unit) })
+            .custom_formatter(format)
+            .custom_parser(parse);
+        let mut response = ui.add(field);
+        // A value that is typed is a value, also where it is that from which the field is dragged.
+        if is_entered {
+            response.mark_changed();
+        }
+        response
+    });
+    if let Some(shown) = taken {
+        *value_si = Some(unit.to_si(shown).clamp(range.low, range.high));
+    } else if is_cleared.get() {
+        *value_si = None;
+    }
+    let hint = format!("{}. Empty: {}", hint(range, &unit), empty.text);
+    response.on_hover_text(hint)
+}
+
 /// A number that was typed and is not possible, and the value that stays in its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Refused {
@@ -75,12 +141,13 @@ struct Refused {
 
 /// Draws a control for a number, which keeps what was typed where that is not possible, and says so.
 ///
-/// - `value`: the value that stays unless another is taken;
+/// - `value`: the value that stays unless another is taken; `stays`: the same in words;
 /// - `limits`: smallest and largest that are taken; `expected`: the same in words;
 /// - returns the response of the control and the number that the user has changed it to in this frame.
 fn bounded(
     ui: &mut Ui,
     value: f64,
+    stays: &str,
     ([low, high], expected): ([f64; 2], &str),
     control: impl FnOnce(&mut Ui, &mut f64) -> Response,
 ) -> (Response, Option<f64>) {
@@ -97,7 +164,7 @@ fn bounded(
             control(ui, &mut shown)
         });
         if refused.is_some() {
-            let why = format!("not possible, {} stays; expected {expected}", significant(value));
+            let why = format!("not possible, {stays} stays; expected {expected}");
             ui.label(RichText::new(why).color(color).small());
         }
         response.inner
@@ -145,10 +212,16 @@ fn hint(range: &Range, unit: &Unit) -> String {
 pub fn count_field<N: Numeric>(ui: &mut Ui, value: &mut N, range: &Range, speed: f64) -> Response {
     let unit = range.quantity.display_unit(UnitSystem::Si);
     let (limits, expected) = ([range.low, range.high], range.expected(&unit));
-    let (response, taken) = bounded(ui, value.to_f64(), (limits, &expected), |ui, shown| {
-        let field = DragValue::new(shown).update_while_editing(false).speed(speed);
-        ui.add(field.fixed_decimals(0))
-    });
+    let (response, taken) = bounded(
+        ui,
+        value.to_f64(),
+        &significant(value.to_f64()),
+        (limits, &expected),
+        |ui, shown| {
+            let field = DragValue::new(shown).update_while_editing(false).speed(speed);
+            ui.add(field.fixed_decimals(0))
+        },
+    );
     if let Some(taken) = taken {
         *value = N::from_f64(taken.round());
     }
@@ -197,7 +270,8 @@ pub fn quantity_slider(
     let limits = [range.possible.low, range.possible.high];
     let expected = range.possible.expected(&unit);
     let possible = (limits.map(|limit| unit.from_si(limit)), expected.as_str());
-    let (response, taken) = bounded(ui, unit.from_si(value_si), possible, |ui, shown| {
+    let value = unit.from_si(value_si);
+    let (response, taken) = bounded(ui, value, &significant(value), possible, |ui, shown| {
         let slider = Slider::new(shown, low..=high)
             .clamping(SliderClamping::Never)
             .max_decimals(if high - low > 200.0 { 0 } else { 2 })

@@ -1,7 +1,5 @@
 //! The scene of a reconstruction from above: what was found, and the paths of particles over it.
 
-use std::f64::consts::TAU;
-
 use crate::figure::scene::vehicle_outline;
 use crate::figure::{Axis, Figure, FigureElement, LineStyle, Path, Role, Series};
 use impactlab_core::collision::{Footprint, Pose, Side};
@@ -10,13 +8,8 @@ use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_core::vehicle::{Path as VehiclePath, PathPoint, TireMark};
 use impactlab_reconstruct::Cars;
-use impactlab_reconstruct::evidence::{Evidence, RestPose};
+use impactlab_reconstruct::evidence::{Evidence, Measured};
 use impactlab_study::{ReconstructAnswer, ReconstructedPaths};
-
-/// Points of an ellipse.
-const N_ELLIPSE: usize = 48;
-/// Half axis of an ellipse that holds 90 % of a plane normal distribution, standard deviations.
-const NINETY: f64 = 2.1460;
 
 /// Name of the struck car at rest in the legend.
 pub const STRUCK_AT_REST: &str = "struck car at rest, 90 % ellipse";
@@ -134,12 +127,14 @@ fn contact_elements(
         Side::Left | Side::Right => shown([along_m, depth_m]),
         Side::Front | Side::Rear => shown([depth_m, along_m]),
     };
-    let (along_m, reach_m) = (damage.along_m.value, 1.645 * damage.along_m.sigma);
-    let ends = vec![at(along_m - reach_m), at(along_m + reach_m)];
-    let name = "contact by the damage, 90 %";
     let mut elements = Vec::from(vehicle_outline(named, (&footprint, &pose), unit));
-    elements.push(FigureElement::line(name, Role::Pulse, ends));
-    elements.push(FigureElement::points(name, Role::Pulse, vec![at(along_m)]));
+    if let Some(Measured { value: along_m, sigma }) = damage.along() {
+        let reach_m = 1.645 * sigma;
+        let ends = vec![at(along_m - reach_m), at(along_m + reach_m)];
+        let name = "contact by the damage, 90 %";
+        elements.push(FigureElement::line(name, Role::Pulse, ends));
+        elements.push(FigureElement::points(name, Role::Pulse, vec![at(along_m)]));
+    }
     elements
 }
 
@@ -151,29 +146,22 @@ fn evidence_elements(
 ) -> Vec<FigureElement> {
     let ReconstructionScene { evidence, cars, .. } = scene;
     let mut elements = Vec::new();
-    for mark in &evidence.marks {
-        let name = format!("mark, {}", mark.wheel.label());
-        let points: Vec<[f64; 2]> = mark.points_m.iter().map(|at| shown(*at)).collect();
-        elements.push(FigureElement::dashed(&name, Role::Striking, points.clone()));
-        elements.push(FigureElement::points(&name, Role::Striking, points));
-    }
-    let positions: Vec<[f64; 2]> =
-        evidence.positions.iter().map(|at| shown([at.x_m, at.y_m])).collect();
-    if !positions.is_empty() {
-        elements.push(FigureElement::points("video", Role::Pulse, positions));
+    for place in evidence.places().into_iter().filter(|place| !place.is_rest()) {
+        let points: Vec<[f64; 2]> = place.points_m.iter().map(|at| shown(*at)).collect();
+        let role = if place.is_line { Role::Striking } else { Role::Pulse };
+        if place.is_line {
+            elements.push(FigureElement::dashed(&place.name, role, points.clone()));
+        }
+        elements.push(FigureElement::points(&place.name, role, points));
     }
     for (rest, car, name) in [
         (&evidence.striking_rest, &cars.striking, STRIKING_AT_REST),
         (&evidence.rest, &cars.struck, STRUCK_AT_REST),
     ] {
         let Some(rest) = rest else { continue };
-        let ellipse = (0..=N_ELLIPSE).map(|i| {
-            let (sin, cos) = (TAU * i as f64 / N_ELLIPSE as f64).sin_cos();
-            let radius = NINETY * rest.position_sigma_m;
-            shown([rest.x_m + radius * cos, rest.y_m + radius * sin])
-        });
-        elements.push(FigureElement::line(name, Role::Reference, ellipse.collect()));
-        if let Some(pose) = pose_of(rest) {
+        let ellipse = rest.ellipse_90_m().into_iter().map(shown).collect();
+        elements.push(FigureElement::line(name, Role::Reference, ellipse));
+        if let Some(pose) = rest.pose() {
             let unit = Quantity::Length.display_unit(units);
             let named = (name, Role::Reference, LineStyle::Dashed);
             let footprint = Footprint::from(&car.parameters.geometry);
@@ -181,10 +169,4 @@ fn evidence_elements(
         }
     }
     elements
-}
-
-/// The pose at rest, where the heading is known.
-fn pose_of(rest: &RestPose) -> Option<Pose> {
-    let heading = rest.heading_rad?;
-    Some(Pose { x_m: rest.x_m, y_m: rest.y_m, yaw_rad: heading.value })
 }

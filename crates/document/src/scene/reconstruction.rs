@@ -1,6 +1,5 @@
 //! The scene of a reconstruction: paths of particles over what was found.
 
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use crate::scene::simulation::{add, add_marks, outline_m};
@@ -17,10 +16,6 @@ use impactlab_reconstruct::Cars;
 use impactlab_reconstruct::evidence::{Evidence, RestPose};
 use impactlab_study::{ReconstructAnswer, ReconstructedPaths};
 
-/// Points of an ellipse.
-const N_ELLIPSE: usize = 48;
-/// Half axis of an ellipse that holds 90 % of a plane normal distribution, standard deviations.
-const NINETY: f64 = 2.1460;
 /// Longest interval at which the motion along a path is kept, s.
 const STEP_S: f64 = 0.05;
 
@@ -131,31 +126,23 @@ fn motion_of(path: &Path, body: &CarBody) -> Option<CarMotion> {
     Some(CarMotion::from_poses(&poses?, step_s, body)?.later_by(start_s))
 }
 
-/// Marks of tires, and positions in a video.
+/// What was found, but for the cars at rest.
 fn add_found(scene: &mut Scene, evidence: &Evidence) {
-    for mark in &evidence.marks {
-        scene.lines.push(SceneLine {
-            name: format!("mark, {}", mark.wheel.label()),
-            role: SceneRole::Evidence,
-            is_dashed: true,
-            is_above_cars: false,
-            points_m: mark.points_m.clone(),
-        });
+    let role = SceneRole::Evidence;
+    for place in evidence.places().into_iter().filter(|place| !place.is_rest()) {
+        let (name, points_m) = (place.name, place.points_m);
+        if place.is_line {
+            let (is_dashed, is_above_cars) = (true, false);
+            scene.lines.push(SceneLine { name, role, is_dashed, is_above_cars, points_m });
+        } else {
+            let point = |at_m| ScenePoint { name: name.clone(), role, at_m };
+            scene.points.extend(points_m.into_iter().map(point));
+        }
     }
-    scene.points.extend(evidence.positions.iter().map(|at| ScenePoint {
-        name: "video".to_owned(),
-        role: SceneRole::Evidence,
-        at_m: [at.x_m, at.y_m],
-    }));
 }
 
 /// A car as it was found at rest, with the ellipse that holds its place with 90 %.
 fn add_rest(scene: &mut Scene, (rest, shape): (&RestPose, &Arc<CarShape>), [name, tag]: [&str; 2]) {
-    let ellipse = (0..=N_ELLIPSE).map(|i| {
-        let (sin, cos) = (TAU * i as f64 / N_ELLIPSE as f64).sin_cos();
-        let radius = NINETY * rest.position_sigma_m;
-        [rest.x_m + radius * cos, rest.y_m + radius * sin]
-    });
     let line = |name: &str, is_dashed, points_m| SceneLine {
         name: name.to_owned(),
         role: SceneRole::Evidence,
@@ -163,9 +150,8 @@ fn add_rest(scene: &mut Scene, (rest, shape): (&RestPose, &Arc<CarShape>), [name
         is_above_cars: false,
         points_m,
     };
-    scene.lines.push(line(name, false, ellipse.collect()));
-    let Some(heading) = rest.heading_rad else { return };
-    let pose = Pose { x_m: rest.x_m, y_m: rest.y_m, yaw_rad: heading.value };
+    scene.lines.push(line(name, false, rest.ellipse_90_m()));
+    let Some(pose) = rest.pose() else { return };
     scene.lines.push(line("", true, outline_m(&shape.body, &pose)));
     scene.cars.push(SceneCar {
         name: name.to_owned(),

@@ -1,18 +1,40 @@
 //! What is found after a collision, and how well each item of it is known.
+//!
+//! An item is one file: its fields with key, range, default and mirror image, and what it says of a motion.
+//! [`Evidence::items`] lists the items. Files, forms, reports and pictures are visitors of the fields.
 
-mod defaults;
+mod after;
+mod car;
+mod complete;
+mod damage;
 #[cfg(test)]
 pub(crate) mod examples;
-mod file;
+mod field;
 mod items;
+mod mark;
+mod mirror;
+mod places;
+mod position;
+mod prior_ranges;
+mod read;
+mod recorder;
+mod rest;
+mod road;
+mod visit;
+mod weighing;
 mod write;
 
-pub use defaults::{
-    DEFAULT_ANGLE_SIGMA_RAD, DEFAULT_DAMAGE_SIGMA_M, DEFAULT_EDR_SPEED_SHARE, DEFAULT_FRICTION,
-    DEFAULT_FRICTION_SIGMA, DEFAULT_HEADING_SIGMA_RAD, DEFAULT_MARK_SIGMA_M, DEFAULT_MASS_SHARE,
-    DEFAULT_REST_SIGMA_M, DEFAULT_VIDEO_SIGMA_M, default_edr_speed_sigma,
-};
-pub use items::{
-    After, CarEvidence, Damage, DriverBraked, Edr, Evidence, Mark, MarkKind, Measured, PriorRanges,
-    RestPose, VideoPosition,
-};
+pub use after::{After, DriverBraked};
+pub use car::{CarEvidence, DEFAULT_MASS_SHARE, STRIKING as STRIKING_CAR, STRUCK as STRUCK_CAR};
+pub use damage::Damage;
+pub use field::{Bounds, Choice, Field, Measured, Sigma, Stated, Word, ends};
+pub use items::Evidence;
+pub use mark::{Mark, MarkKind};
+pub use places::FoundPlace;
+pub use position::VideoPosition;
+pub use prior_ranges::PriorRanges;
+pub use recorder::Edr;
+pub use rest::RestPose;
+pub use road::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Road};
+pub use visit::{Fields, Group, Item, Items, PlaceMut, PointsMut, Section};
+pub use weighing::Weighing;

@@ -2,197 +2,129 @@
 
 use toml::{Table, Value};
 
-use crate::evidence::file::{MARK_KINDS, SIDES, WHEELS};
 use crate::evidence::{
-    After, CarEvidence, Damage, DriverBraked, Edr, Evidence, Mark, Measured, PriorRanges, RestPose,
-    VideoPosition,
+    Bounds, Choice, Evidence, Field, Fields, Item, Items, PointsMut, Section, Sigma, Word, ends,
 };
-use impactlab_core::collision::Side;
-use impactlab_core::vehicle::Wheel;
 
 impl Evidence {
     /// Returns the text of a file from which [`Evidence::from_toml`] reads the same evidence. Numbers
-    /// are in SI units with all their digits. What such a file cannot say, as a mark of a single
-    /// point, is written too, but the file is then refused on reading.
+    /// are in SI units with all their digits; what nobody stated, such as a standard deviation, is not
+    /// written. What such a file cannot say, as a mark of a single point, is written too, but the file is
+    /// then refused on reading.
     pub fn to_toml(&self) -> String {
-        let mut top = Table::new();
-        set(&mut top, "case", Some(self.case.as_str()));
-        let mut road = Table::new();
-        measured(&mut road, "friction", "", self.friction);
-        let scale = self.shared_scale_sigma;
-        let weighing =
-            scale.map(|sigma| Table::from_iter([("shared_scale_sigma".to_owned(), sigma.into())]));
-        for (name, table) in [
-            ("road", Some(road).filter(|road| !road.is_empty())),
-            ("struck_car", Some(car_table(&self.struck_car))),
-            ("striking_car", Some(car_table(&self.striking_car))),
-            ("weighing", weighing),
-            ("damage", Some(damage_table(&self.damage))),
-            ("rest", self.rest.as_ref().map(rest_table)),
-            ("striking_rest", self.striking_rest.as_ref().map(rest_table)),
-            ("after", Some(after_table(&self.after))),
-            ("edr", (self.edr != Edr::default()).then(|| edr_table(&self.edr))),
-            ("prior", (self.prior != PriorRanges::default()).then(|| prior_table(&self.prior))),
-        ] {
-            set(&mut top, name, table);
+        let mut top = Writer(Table::new());
+        top.set("case", Some(self.case.as_str()));
+        self.clone().items(&mut top);
+        top.0.to_string()
+    }
+}
+
+/// A table that is being written.
+struct Writer(Table);
+
+impl Writer {
+    fn set(&mut self, key: &str, value: Option<impl Into<Value>>) {
+        if let Some(value) = value {
+            self.0.insert(key.to_owned(), value.into());
         }
-        for (name, tables) in [
-            ("mark", self.marks.iter().map(mark_table).collect::<Vec<_>>()),
-            ("position", self.positions.iter().map(position_table).collect()),
-        ] {
-            set(&mut top, name, Some(tables).filter(|tables| !tables.is_empty()));
-        }
-        top.to_string()
+    }
+
+    fn table_of(item: &mut impl Item) -> Table {
+        let mut table = Self(Table::new());
+        item.fields(&mut table);
+        table.0
     }
 }
 
-fn set(table: &mut Table, key: &str, value: Option<impl Into<Value>>) {
-    if let Some(value) = value {
-        table.insert(key.to_owned(), value.into());
+impl Items for Writer {
+    fn item(&mut self, section: &'static Section, _: Option<usize>, item: &mut impl Item) {
+        let table = Self::table_of(item);
+        self.set(section.key, Some(table).filter(|of| section.is_required || !of.is_empty()));
+    }
+
+    fn many<T: Item>(&mut self, section: &'static Section, items: &mut Vec<T>) {
+        let tables: Vec<Table> = items.iter_mut().map(Self::table_of).collect();
+        self.set(section.key, Some(tables).filter(|tables| !tables.is_empty()));
     }
 }
 
-/// A number with its standard deviation.
-///
-/// - `unit`: with its underscore; empty for a pure number.
-fn measured(table: &mut Table, base: &str, unit: &str, of: Option<Measured>) {
-    set(table, &format!("{base}{unit}"), of.map(|of| of.value));
-    set(table, &format!("{base}_sigma{unit}"), of.map(|of| of.sigma));
-}
-
-fn car_table(car: &CarEvidence) -> Table {
-    let mut table = Table::new();
-    measured(&mut table, "mass", "_kg", car.mass_kg);
-    for (key, value) in [
-        ("cg_to_front_axle_m", car.cg_to_front_axle_m),
-        ("cg_to_rear_axle_m", car.cg_to_rear_axle_m),
-        ("track_m", car.track_m),
-        ("cg_height_m", car.cg_height_m),
-        ("length_m", car.length_m),
-        ("width_m", car.width_m),
-        ("yaw_inertia_kg_m2", car.yaw_inertia_kg_m2),
-    ] {
-        set(&mut table, key, value);
+impl Fields for Writer {
+    fn number(&mut self, field: &Field, value: &mut Option<f64>) {
+        self.set(&field.si_key(), *value);
     }
-    table
-}
 
-fn damage_table(damage: &Damage) -> Table {
-    let mut table = Table::new();
-    let side = SIDES.iter().find(|(_, side)| *side == damage.side).map(|(word, _)| *word);
-    set(&mut table, "side", side);
-    let (along, across) = match damage.side {
-        Side::Left | Side::Right => ("x", "y_m"),
-        Side::Front | Side::Rear => ("y", "x_m"),
-    };
-    measured(&mut table, along, "_m", Some(damage.along_m));
-    set(&mut table, across, damage.depth_m);
-    measured(&mut table, "angle", "_rad", damage.angle_rad);
-    table
-}
-
-fn rest_table(rest: &RestPose) -> Table {
-    let mut table = Table::new();
-    set(&mut table, "x_m", Some(rest.x_m));
-    set(&mut table, "y_m", Some(rest.y_m));
-    set(&mut table, "position_sigma_m", Some(rest.position_sigma_m));
-    measured(&mut table, "heading", "_rad", rest.heading_rad);
-    table
-}
-
-fn after_table(after: &After) -> Table {
-    let mut table = Table::new();
-    let name = |wheel: &Wheel| WHEELS[wheel.index()];
-    let blocked = after.blocked_wheels.as_ref();
-    set(
-        &mut table,
-        "blocked_wheels",
-        blocked.map(|wheels| wheels.iter().map(name).collect::<Vec<_>>()),
-    );
-    let braked = match after.driver_braked {
-        DriverBraked::Yes => "yes",
-        DriverBraked::No => "no",
-        DriverBraked::Unknown => "unknown",
-    };
-    set(&mut table, "driver_braked", Some(braked));
-    table
-}
-
-fn mark_table(mark: &Mark) -> Table {
-    let mut table = Table::new();
-    set(&mut table, "wheel", Some(WHEELS[mark.wheel.index()]));
-    let kind = MARK_KINDS.iter().find(|(_, kind)| Some(*kind) == mark.kind).map(|(word, _)| *word);
-    set(&mut table, "kind", kind);
-    let points = mark.points_m.iter().map(|point| Value::from(point.to_vec()));
-    set(&mut table, "points_m", Some(points.collect::<Vec<_>>()));
-    set(&mut table, "sigma_m", Some(mark.sigma_m));
-    table
-}
-
-fn edr_table(edr: &Edr) -> Table {
-    let mut table = Table::new();
-    for (base, bounds) in [("delta_v_x", edr.delta_v_x_m_s), ("delta_v_y", edr.delta_v_y_m_s)] {
-        set(&mut table, &format!("{base}_min_m_s"), bounds.map(|[low, _]| low));
-        set(&mut table, &format!("{base}_max_m_s"), bounds.map(|[_, high]| high));
+    fn points(&mut self, field: &Field, sigma: &Sigma, points: PointsMut<'_>) {
+        let values = points.points_m.iter().map(|point| Value::from(point.to_vec()));
+        self.set(&field.si_key(), Some(values.collect::<Vec<_>>()));
+        self.number(&sigma.field, points.sigma_m);
     }
-    measured(&mut table, "speed_before", "_m_s", edr.speed_before_m_s);
-    let [x_m, y_m] = edr.sensor_m;
-    set(&mut table, "sensor_x_m", Some(x_m));
-    set(&mut table, "sensor_y_m", Some(y_m));
-    set(&mut table, "ends_s", edr.ends_s);
-    table
-}
 
-fn position_table(at: &VideoPosition) -> Table {
-    let mut table = Table::new();
-    for (key, value) in
-        [("time_s", at.time_s), ("x_m", at.x_m), ("y_m", at.y_m), ("sigma_m", at.sigma_m)]
-    {
-        set(&mut table, key, Some(value));
+    fn bounds(&mut self, field: &Field, bounds: &mut Option<Bounds>) {
+        let [low, high] = bounds.unwrap_or_default();
+        self.set(&field.si_key_with("_min"), low);
+        self.set(&field.si_key_with("_max"), high);
     }
-    table
-}
 
-fn prior_table(prior: &PriorRanges) -> Table {
-    let mut table = Table::new();
-    for (key, range) in [
-        ("target_speed_m_s", prior.struck_speed_m_s),
-        ("bullet_speed_m_s", prior.striking_speed_m_s),
-        ("heading_difference_rad", prior.heading_difference_rad),
-        ("bullet_sideslip_rad", prior.striking_sideslip_rad),
-        ("restitution", prior.restitution),
-        ("contact_friction", prior.contact_friction),
-        ("brake_start_s", prior.brake_start_s),
-        ("brake_share", prior.brake_share),
-    ] {
-        set(&mut table, key, range.map(Vec::from));
+    fn interval(&mut self, field: &Field, interval: &mut Option<Bounds>) {
+        self.set(&field.si_key(), ends(*interval).map(Vec::from));
     }
-    table
+
+    fn choice<W: Word>(&mut self, choice: &Choice, word: &mut W) {
+        self.set(choice.key, Some(word.word()));
+    }
+
+    fn optional_choice<W: Word>(&mut self, choice: &Choice, word: &mut Option<W>) {
+        self.set(choice.key, word.map(W::word));
+    }
+
+    fn choices<W: Word>(&mut self, choice: &Choice, words: &mut Option<Vec<W>>) {
+        let words = words.as_ref().map(|words| words.iter().map(|word| word.word()));
+        self.set(choice.key, words.map(Iterator::collect::<Vec<_>>));
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
+    use std::path::{Path, PathBuf};
 
     use super::*;
     use crate::evidence::examples::read;
 
+    fn shipped() -> Vec<PathBuf> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let folder = std::fs::read_dir(root.join("datasets/staged/evidence")).unwrap();
+        let staged = folder.map(|entry| entry.unwrap().path());
+        let others = [
+            "docs/guide/examples/position_alone.toml",
+            "docs/guide/examples/contradictory.toml",
+            "assets/examples/reconstruction.toml",
+            "tests/data/evidence/spin.toml",
+        ];
+        staged.chain(others.map(|file| root.join(file))).collect()
+    }
+
     #[test]
     fn what_is_written_is_read_as_the_same() {
-        let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-            .join("datasets/staged/evidence");
-        let mut files: Vec<_> =
-            std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-        let guide =
-            Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("docs/guide/examples");
-        files.extend(["position_alone.toml", "contradictory.toml"].map(|name| guide.join(name)));
-        for path in files {
+        for path in shipped() {
             let evidence = Evidence::load(&path).unwrap();
+            assert_eq!(evidence.missing(), None, "{}", path.display());
             let text = evidence.to_toml();
             assert_eq!(read(&text), evidence, "{}\n{text}", path.display());
             let mirror = evidence.mirrored();
             assert_eq!(read(&mirror.to_toml()), mirror, "{}", path.display());
+            let json = serde_json::to_string(&evidence).unwrap();
+            assert_eq!(serde_json::from_str::<Evidence>(&json).unwrap(), evidence, "{json}");
         }
+    }
+
+    #[test]
+    fn a_standard_deviation_that_nobody_stated_is_not_written() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let evidence = Evidence::load(&root.join("tests/data/evidence/spin.toml")).unwrap();
+        let text = evidence.to_toml();
+        let sigmas: Vec<&str> = text.lines().filter(|line| line.contains("sigma")).collect();
+        assert_eq!(sigmas, ["speed_before_sigma_m_s = 0.8"], "{text}");
+        assert!(!text.contains("sensor"), "{text}");
     }
 
     #[test]

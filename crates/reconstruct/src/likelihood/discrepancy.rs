@@ -70,7 +70,7 @@ impl Default for Discrepancy {
 
 /// One observed coordinate of the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PathResidual {
+pub(crate) struct PathResidual {
     /// Distance travelled by the CG, m.
     pub travelled_m: f64,
     /// Angle turned, rad, 0 or more.
@@ -95,7 +95,7 @@ impl Discrepancy {
     }
 
     /// Standard deviation of the place where a wheel begins or ceases to slide, m.
-    pub(super) fn onset_sigma_m(&self, travelled_m: f64) -> f64 {
+    pub(crate) fn onset_sigma_m(&self, travelled_m: f64) -> f64 {
         self.onset_m + self.onset_share * travelled_m
     }
 
@@ -109,7 +109,7 @@ impl Discrepancy {
     }
 
     /// Variance of a residual by itself.
-    pub(super) fn variance(&self, at: &PathResidual) -> f64 {
+    pub(crate) fn variance(&self, at: &PathResidual) -> f64 {
         let [x, y] = at.direction;
         let own = self.own_share * self.displacement_m(at) * x.hypot(y);
         self.covariance(at, at, 1.0) + at.sigma * at.sigma + own * own
@@ -126,7 +126,7 @@ impl Discrepancy {
     }
 
     /// Errors L ξ of independent standard normal variables ξ; `None` where C has no factor.
-    pub(super) fn correlated(
+    pub(crate) fn correlated(
         &self,
         all: &[PathResidual],
         whole_m: f64,
@@ -140,7 +140,7 @@ impl Discrepancy {
     /// −∞ where they are not finite.
     ///
     /// - `whole_m`: distance that the car travels in all, m.
-    pub(super) fn log_density(&self, all: &[PathResidual], whole_m: f64) -> f64 {
+    pub(crate) fn log_density(&self, all: &[PathResidual], whole_m: f64) -> f64 {
         let n = all.len();
         if n == 0 {
             return 0.0;
@@ -157,7 +157,7 @@ impl Discrepancy {
 }
 
 /// Logarithm of a Student density with a squared distance in n dimensions, up to a constant.
-pub(super) fn student(distance: f64, n: f64, degrees_of_freedom: f64) -> f64 {
+pub(crate) fn student(distance: f64, n: f64, degrees_of_freedom: f64) -> f64 {
     -(degrees_of_freedom + n) / 2.0 * (distance / degrees_of_freedom).ln_1p()
 }
 

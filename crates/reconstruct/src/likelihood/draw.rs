@@ -4,9 +4,8 @@ use rand::Rng;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 
 use crate::CollisionMotion;
-use crate::evidence::{Evidence, RestPose};
+use crate::evidence::{Evidence, Measured};
 use crate::likelihood::ReconstructionTarget;
-use crate::likelihood::terms::path_residuals;
 
 impl ReconstructionTarget {
     /// Evidence of the kind and the accuracy of that of this case, of another motion: rest pose and
@@ -24,25 +23,26 @@ impl ReconstructionTarget {
         let mut evidence = self.evidence().clone();
         evidence.marks.clear();
         let discrepancy = self.discrepancy();
-        let (residuals, whole_m) = path_residuals((&evidence, discrepancy), motion)?;
+        let (residuals, whole_m) = evidence.path_residuals(discrepancy, motion)?;
         let noise: Vec<f64> = residuals.iter().map(|_| StandardNormal.sample(rng)).collect();
         let freedom = discrepancy.degrees_of_freedom;
         let scale = (freedom / ChiSquared::new(freedom).ok()?.sample(rng)).sqrt();
         let errors = discrepancy.correlated(&residuals, whole_m, &noise)?;
         let mut moves = residuals.iter().zip(errors).map(|(at, error)| scale * error - at.residual);
         let mut add = |value: &mut f64| *value += moves.next().unwrap_or(f64::NAN);
-        if let Some(RestPose { x_m, y_m, heading_rad, .. }) = &mut evidence.rest {
-            add(x_m);
-            add(y_m);
-            heading_rad.iter_mut().for_each(|heading| add(&mut heading.value));
+        if let Some(rest) = &mut evidence.rest {
+            let heading = rest.heading_rad.iter_mut().flat_map(|heading| &mut heading.value);
+            rest.x_m.iter_mut().chain(&mut rest.y_m).chain(heading).for_each(&mut add);
         }
         for found in &mut evidence.positions {
-            add(&mut found.x_m);
-            add(&mut found.y_m);
+            found.x_m.iter_mut().chain(&mut found.y_m).for_each(&mut add);
         }
-        if let Some(speed) = &mut evidence.edr.speed_before_m_s {
+        if let Some(edr) = &mut evidence.edr
+            && let Some(Measured { sigma, .. }) = edr.speed_before()
+        {
             let error: f64 = StandardNormal.sample(rng);
-            speed.value = motion.impact.struck_speed_m_s + speed.sigma * error;
+            let value = motion.impact.struck_speed_m_s + sigma * error;
+            edr.speed_before_m_s = Some(Measured { value, sigma }.into());
         }
         Some(evidence)
     }
@@ -61,24 +61,29 @@ mod tests {
     #[test]
     fn what_is_drawn_errs_as_the_likelihood_says() {
         let mut evidence = read(SPIN);
-        let at = |time_s| VideoPosition { time_s, x_m: 0.0, y_m: 0.0, sigma_m: 0.3 };
+        let at = |time_s| VideoPosition {
+            time_s: Some(time_s),
+            x_m: Some(0.0),
+            y_m: Some(0.0),
+            sigma_m: None,
+        };
         evidence.positions = vec![at(0.5), at(0.6)];
         let model = ForwardModel::new(&evidence, Cars::new(&evidence, None, None));
         let z = vec![0.0; model.prior().components().len()];
         let motion = model.motions(&[z], |motion| motion).pop().unwrap();
         let discrepancy = Discrepancy::default();
         let target = ReconstructionTarget::new(evidence.clone(), model, discrepancy);
-        let (expected, _) = path_residuals((&evidence, &discrepancy), &motion).unwrap();
+        let (expected, _) = evidence.path_residuals(&discrepancy, &motion).unwrap();
 
         let mut rng = ChaCha8Rng::seed_from_u64(3);
         let n = 4000;
         let (mut squares, mut both, mut speeds) = (vec![0.0; expected.len()], 0.0, 0.0);
         for _ in 0..n {
             let drawn = target.drawn(&motion, &mut rng).unwrap();
-            let (found, _) = path_residuals((&drawn, &discrepancy), &motion).unwrap();
+            let (found, _) = drawn.path_residuals(&discrepancy, &motion).unwrap();
             squares.iter_mut().zip(&found).for_each(|(sum, at)| *sum += at.residual.powi(2));
             both += found[3].residual * found[5].residual;
-            let speed = drawn.edr.speed_before_m_s.unwrap().value;
+            let speed = drawn.recorder().speed_before().unwrap().value;
             speeds += ((speed - motion.impact.struck_speed_m_s) / 0.8_f64).powi(2);
         }
         // The variance of a Student distribution of ν degrees of freedom is ν/(ν − 2) of its scale.

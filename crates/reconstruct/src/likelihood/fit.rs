@@ -30,7 +30,7 @@ impl EvidenceFit {
     /// The fit of each item.
     ///
     /// ```text
-    /// p = mean over the particles of P(χ²_n > D)
+    /// p = mean over the particles of P(χ²₁ > D)
     /// ```
     ///
     /// Source: [`GelmanMengStern1996`](impactlab_core::bibliography::GelmanMengStern1996), realized
@@ -46,7 +46,7 @@ impl EvidenceFit {
             .map(|(idx, item)| {
                 let all: Vec<&EvidenceTerm> =
                     of_motions.iter().filter_map(|terms| terms.get(idx)).collect();
-                let tail = |term: &&EvidenceTerm| survival(term.distance, term.n);
+                let tail = |term: &&EvidenceTerm| survival(term.distance);
                 let p = all.iter().map(tail).sum::<f64>() / all.len() as f64;
                 Self {
                     evidence: item.name.clone(),
@@ -73,8 +73,8 @@ fn around(value: f64, item: &EvidenceTerm) -> f64 {
     }
 }
 
-fn survival(distance: f64, n: usize) -> f64 {
-    ChiSquared::new(n as f64).map_or(0.0, |chi| chi.sf(distance.min(1e6)))
+fn survival(distance: f64) -> f64 {
+    ChiSquared::new(1.0).map_or(0.0, |chi| chi.sf(distance.min(1e6)))
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
@@ -94,7 +94,6 @@ mod tests {
             expected: 1.0,
             found: 2.0,
             distance,
-            n: 1,
         };
         let particles = vec![vec![term("near", 0.5), term("far", 16.0)]; 3];
         let fit = EvidenceFit::of(&particles);

@@ -1,14 +1,20 @@
-//! How well a motion goes with the evidence.
+//! How well a motion goes with the evidence. What an item says of a motion stands with the item
+//! ([`evidence`](crate::evidence)).
 
+mod comparison;
 mod discrepancy;
 mod draw;
 mod fit;
 mod onset;
 mod target;
-mod terms;
 mod track;
 
+pub use comparison::EvidenceTerm;
 pub use discrepancy::Discrepancy;
 pub use fit::EvidenceFit;
 pub use target::ReconstructionTarget;
-pub use terms::EvidenceTerm;
+
+pub(crate) use comparison::{Comparison, SINGLE_DEGREES_OF_FREEDOM};
+pub(crate) use discrepancy::{PathResidual, student};
+pub(crate) use onset::Onset;
+pub(crate) use track::{Nearest, Track};

@@ -13,7 +13,7 @@ const NEVER_M: f64 = 30.0;
 
 /// Where one wheel leaves a mark along its path.
 #[derive(Debug, Clone)]
-pub(super) struct Onset {
+pub(crate) struct Onset {
     is_marking: Vec<bool>,
     is_locked: Vec<bool>,
 }

@@ -1,7 +1,6 @@
 //! The posterior of a case, for the sampler.
 
 use crate::evidence::Evidence;
-use crate::likelihood::terms::compared;
 use crate::likelihood::{Discrepancy, EvidenceTerm};
 use crate::sampler::Target;
 use crate::{CollisionMotion, ForwardModel};
@@ -41,12 +40,12 @@ impl ReconstructionTarget {
         if !motion.impact.is_collision() {
             return f64::NEG_INFINITY;
         }
-        compared((&self.evidence, &self.discrepancy), motion, false).0
+        self.evidence.compared(&self.discrepancy, motion, false).0
     }
 
     /// The evidence item by item against a motion; none where the motion could not be computed.
     pub fn terms(&self, motion: &CollisionMotion) -> Vec<EvidenceTerm> {
-        compared((&self.evidence, &self.discrepancy), motion, true).1
+        self.evidence.compared(&self.discrepancy, motion, true).1
     }
 }
 

@@ -11,7 +11,7 @@ const CONTINUED_DECELERATION_M_S2: f64 = 4.0;
 
 /// A path with distances and angles along it.
 #[derive(Debug, Clone)]
-pub(super) struct Track {
+pub(crate) struct Track {
     pub points: Vec<PathPoint>,
     /// Distance travelled by the CG up to each point, m.
     pub travelled_m: Vec<f64>,
@@ -23,7 +23,7 @@ pub(super) struct Track {
 
 /// Path of one wheel.
 #[derive(Debug, Clone)]
-pub(super) struct WheelTrack {
+pub(crate) struct WheelTrack {
     /// Its centre at each point, m.
     pub at_m: Vec<[f64; 2]>,
     /// Its velocity in the axes of the car, m/s.
@@ -34,7 +34,7 @@ pub(super) struct WheelTrack {
 
 /// The place on a wheel's path that is nearest to a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Nearest {
+pub(crate) struct Nearest {
     /// Point of the path before it.
     pub idx: usize,
     /// From the foot to the point, m.

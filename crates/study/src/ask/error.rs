@@ -224,6 +224,14 @@ pub enum StudyError {
         /// The presets.
         presets: Vec<&'static str>,
     },
+    /// Evidence of a form that has not been filled in.
+    #[error("{name}: the evidence is not complete: {missing}")]
+    IncompleteEvidence {
+        /// The evidence.
+        name: String,
+        /// What is missing.
+        missing: String,
+    },
     /// No motion goes with the evidence.
     #[error("{name}: cannot be reconstructed")]
     Reconstruction {

@@ -9,7 +9,6 @@ use crate::app::panels::reconstruction::cards::{SheetChoices, cards_ui};
 use crate::app::panels::reconstruction::notice_ui;
 use crate::app::panels::reconstruction::priors::{prior_ranges_ui, priors_ui};
 use crate::app::panes::PaneContext;
-use crate::app::reconstruction::stand_ins::missing;
 use crate::app::reconstruction::{EvidencePreview, ReconstructionCommand, ReconstructionSession};
 use crate::app::widgets::{count_field, duration_text};
 use impactlab_core::data::Severity;
@@ -109,7 +108,7 @@ fn case_ui(
             commands.push(Command::Reconstruct(ReconstructionCommand::New));
         }
         let hint = "A file for impactlab reconstruct, and for this window";
-        let save = ui.add_enabled(missing(evidence).is_none(), egui::Button::new("Save as…"));
+        let save = ui.add_enabled(evidence.missing().is_none(), egui::Button::new("Save as…"));
         if save.on_hover_text(hint).clicked() {
             commands.push(Command::Ask(Purpose::Evidence(Box::new(evidence.clone()))));
         }
@@ -138,7 +137,7 @@ fn run_ui(
     commands: &mut Vec<Command>,
 ) {
     let mut command = |command| commands.push(Command::Reconstruct(command));
-    let lacks = preview.problem.clone().or_else(|| missing(&preview.evidence));
+    let lacks = preview.problem.clone().or_else(|| preview.evidence.missing());
     ui.horizontal_wrapped(|ui| {
         let name = ui.label("Particles");
         count_field(ui, &mut request.particles, &RECONSTRUCTION_PARTICLES, 10.0)

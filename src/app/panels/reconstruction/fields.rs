@@ -1,107 +1,197 @@
-//! Fields of evidence: numbers with their standard deviations, numbers that may be unknown, and ranges.
-//!
-//! Each draws a row of a grid of four columns.
+//! The rows of a card of the evidence: one for each field, in a grid of four columns. A field that is empty
+//! is not known.
 
-use egui::{Response, Ui};
+use egui::{ComboBox, Response, Ui};
 
-use crate::app::widgets::quantity_value;
+use crate::app::reconstruction::ReconstructionCommand;
+use crate::app::widgets::{EmptyField, optional_quantity};
 use impactlab_core::ranges::Range;
 use impactlab_core::units::UnitSystem;
-use impactlab_reconstruct::evidence::Measured;
+use impactlab_reconstruct::evidence::{
+    Bounds, Choice, Field, Fields, PlaceMut, PointsMut, Sigma, Stated, Word,
+};
 
 /// Number of columns of the grid.
 pub const N_COLUMNS: usize = 4;
+/// Width of a list of words, points.
+const LIST_WIDTH: f32 = 84.0;
+/// What an empty field says.
+const NOT_KNOWN: &str = "not known";
 
-/// A number with its standard deviation.
-pub fn measured_row(
-    ui: &mut Ui,
-    label: &str,
-    measured: &mut Measured,
-    (ranges, units): ([&Range; 2], UnitSystem),
-) {
-    let name = ui.label(label);
-    measured_fields(ui, &name, measured, (ranges, units));
+/// Which fields of an item are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ShownFields {
+    /// All of them.
+    All,
+    /// Those with a standard deviation.
+    Measured,
+    /// The numbers without one.
+    Plain,
 }
 
-/// The same for a number that may be unknown, behind a box to check.
-///
-/// - `usual`: what stands there once the box is checked.
-pub fn optional_measured_row(
-    ui: &mut Ui,
-    label: &str,
-    (measured, usual): (&mut Option<Measured>, Measured),
-    (ranges, units): ([&Range; 2], UnitSystem),
-) {
-    let name = switch(ui, label, measured, usual);
-    match measured {
-        Some(measured) => measured_fields(ui, &name, measured, (ranges, units)),
-        None => unknown(ui),
+/// Draws the fields of an item.
+pub struct FieldRows<'u> {
+    /// Where they are drawn.
+    pub ui: &'u mut Ui,
+    /// The units of the numbers.
+    pub units: UnitSystem,
+    /// Tells the item apart from others: its table and its number.
+    pub item: (&'static str, Option<usize>),
+    /// Which are drawn.
+    pub shown: ShownFields,
+    /// The item to which clicks in the scene add points.
+    pub adds_to: Option<usize>,
+    /// What the user asks for beside the edits.
+    pub asked: Option<ReconstructionCommand>,
+}
+
+/// A label as the beginning of a row.
+pub fn sentence_case(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().map_or(String::new(), |first| first.to_uppercase().chain(chars).collect())
+}
+
+impl<'u> FieldRows<'u> {
+    /// All fields of an item.
+    pub fn new(ui: &'u mut Ui, units: UnitSystem, item: (&'static str, Option<usize>)) -> Self {
+        Self { ui, units, item, shown: ShownFields::All, adds_to: None, asked: None }
+    }
+
+    fn quantity(
+        &mut self,
+        value: &mut Option<f64>,
+        empty: EmptyField<'_>,
+        range: &Range,
+    ) -> Response {
+        optional_quantity(self.ui, value, empty, (range, self.units))
+    }
+
+    /// A standard deviation: an empty field has that of the program in parentheses.
+    fn sigma(&mut self, sigma: &Sigma, value: Option<f64>, stated: &mut Option<f64>) -> Response {
+        let start_si = sigma.default_at(value.unwrap_or(0.0));
+        let text = format!("({})", sigma.field.range.quantity.shown(start_si, self.units));
+        let empty = EmptyField { text: &text, start_si };
+        let response = self.quantity(stated, empty, &sigma.field.range);
+        let source = format!("One standard deviation. Where the field is empty: {}", sigma.source);
+        response.on_hover_text(source)
+    }
+
+    fn list(&mut self, choice: &Choice, shown: &str, draw: impl FnOnce(&mut Ui)) {
+        let name = self.ui.label(sentence_case(choice.label));
+        ComboBox::from_id_salt((choice.key, self.item))
+            .selected_text(shown)
+            .width(LIST_WIDTH)
+            .show_ui(self.ui, draw)
+            .response
+            .labelled_by(name.id);
+        self.ui.end_row();
     }
 }
 
-/// A number that may be unknown, without a standard deviation.
-pub fn optional_row(
-    ui: &mut Ui,
-    label: &str,
-    (value, usual): (&mut Option<f64>, f64),
-    (range, units): (&Range, UnitSystem),
-) {
-    let name = switch(ui, label, value, usual);
-    match value {
-        Some(value) => {
-            quantity_value(ui, value, (range, units)).0.labelled_by(name.id);
-            ui.end_row();
+impl Fields for FieldRows<'_> {
+    fn number(&mut self, field: &Field, value: &mut Option<f64>) {
+        if self.shown == ShownFields::Measured {
+            return;
         }
-        None => unknown(ui),
+        let name = self.ui.label(sentence_case(field.label));
+        let text = if field.default.is_empty() { NOT_KNOWN } else { field.default };
+        let empty = EmptyField { text, start_si: 0.0 };
+        self.quantity(value, empty, &field.range).labelled_by(name.id);
+        self.ui.end_row();
     }
-}
 
-/// A range that may not be given. Neither end goes beyond the other.
-pub fn interval_row(
-    ui: &mut Ui,
-    label: &str,
-    (interval, usual): (&mut Option<[f64; 2]>, [f64; 2]),
-    (range, units): (&Range, UnitSystem),
-) {
-    let name = switch(ui, label, interval, usual);
-    let Some([low, high]) = interval else { return unknown(ui) };
-    let up_to = range.within([range.low, *high]);
-    quantity_value(ui, low, (&up_to, units)).0.labelled_by(name.id);
-    ui.label("to");
-    let from = range.within([*low, range.high]);
-    quantity_value(ui, high, (&from, units)).0.labelled_by(name.id);
-    ui.end_row();
-}
-
-/// A number without a standard deviation that is always there.
-pub fn value_row(ui: &mut Ui, label: &str, value: &mut f64, (range, units): (&Range, UnitSystem)) {
-    let name = ui.label(label);
-    quantity_value(ui, value, (range, units)).0.labelled_by(name.id);
-    ui.end_row();
-}
-
-fn measured_fields(
-    ui: &mut Ui,
-    name: &Response,
-    Measured { value, sigma }: &mut Measured,
-    ([range, of_sigma], units): ([&Range; 2], UnitSystem),
-) {
-    quantity_value(ui, value, (range, units)).0.labelled_by(name.id);
-    let sign = ui.label("±").on_hover_text("One standard deviation");
-    quantity_value(ui, sigma, (of_sigma, units)).0.labelled_by(sign.id);
-    ui.end_row();
-}
-
-fn switch<T>(ui: &mut Ui, label: &str, part: &mut Option<T>, usual: T) -> Response {
-    let mut is_known = part.is_some();
-    let response = ui.checkbox(&mut is_known, label);
-    if response.changed() {
-        *part = is_known.then_some(usual);
+    fn measured(&mut self, field: &Field, sigma: &Sigma, stated: &mut Option<Stated>) {
+        if self.shown == ShownFields::Plain {
+            return;
+        }
+        let mut parts = stated.unwrap_or_default();
+        let name = self.ui.label(sentence_case(field.label));
+        let empty = EmptyField { text: NOT_KNOWN, start_si: 0.0 };
+        self.quantity(&mut parts.value, empty, &field.range).labelled_by(name.id);
+        let sign = self.ui.label("±");
+        self.sigma(sigma, parts.value, &mut parts.sigma).labelled_by(sign.id);
+        self.ui.end_row();
+        *stated = (parts != Stated::default()).then_some(parts);
     }
-    response
-}
 
-fn unknown(ui: &mut Ui) {
-    ui.weak("not known");
-    ui.end_row();
+    fn place(&mut self, [x, y]: [&Field; 2], sigma: &Sigma, place: PlaceMut<'_>) {
+        self.number(x, place.x_m);
+        self.number(y, place.y_m);
+        let name = self.ui.label(sigma.field.label);
+        self.sigma(sigma, None, place.sigma_m).labelled_by(name.id);
+        self.ui.end_row();
+    }
+
+    fn points(&mut self, _: &Field, sigma: &Sigma, PointsMut { points_m, sigma_m }: PointsMut<'_>) {
+        let name = self.ui.label(sigma.field.label);
+        self.sigma(sigma, None, sigma_m).labelled_by(name.id);
+        self.ui.end_row();
+        let (_, idx) = self.item;
+        self.ui.label(format!("{} points", points_m.len()));
+        let is_adding = idx.is_some() && self.adds_to == idx;
+        let hint = "Then click along the mark in the scene, from where it starts";
+        let adds = self.ui.selectable_label(is_adding, "Add points").on_hover_text(hint);
+        self.ui.label("");
+        let last = egui::Button::new("Undo last").small();
+        if self.ui.add_enabled(!points_m.is_empty(), last).clicked() {
+            points_m.pop();
+        }
+        self.ui.end_row();
+        if adds.clicked() {
+            self.asked = Some(ReconstructionCommand::AddPoints(idx.filter(|_| !is_adding)));
+        }
+    }
+
+    fn bounds(&mut self, field: &Field, bounds: &mut Option<Bounds>) {
+        let [mut low, mut high] = bounds.unwrap_or_default();
+        let name = self.ui.label(sentence_case(field.label));
+        let empty = EmptyField { text: NOT_KNOWN, start_si: 0.0 };
+        let up_to = field.range.at_most(high.unwrap_or(field.range.high));
+        self.quantity(&mut low, empty, &up_to).labelled_by(name.id);
+        self.ui.label("to");
+        let from = field.range.within([low.unwrap_or(field.range.low), field.range.high]);
+        self.quantity(&mut high, empty, &from).labelled_by(name.id);
+        self.ui.end_row();
+        *bounds = (low.is_some() || high.is_some()).then_some([low, high]);
+    }
+
+    fn choice<W: Word>(&mut self, choice: &Choice, word: &mut W) {
+        let shown = word.label();
+        self.list(choice, shown, |ui| {
+            for other in W::ALL {
+                ui.selectable_value(word, *other, other.label());
+            }
+        });
+    }
+
+    fn optional_choice<W: Word>(&mut self, choice: &Choice, word: &mut Option<W>) {
+        let shown = word.map_or(choice.none, W::label);
+        self.list(choice, shown, |ui| {
+            ui.selectable_value(word, None, choice.none);
+            for other in W::ALL {
+                ui.selectable_value(word, Some(*other), other.label());
+            }
+        });
+    }
+
+    fn choices<W: Word>(&mut self, choice: &Choice, words: &mut Option<Vec<W>>) {
+        let mut is_known = words.is_some();
+        let hint = format!("Not checked: {}", choice.none);
+        let known = self.ui.checkbox(&mut is_known, sentence_case(choice.label));
+        if known.on_hover_text(hint).changed() {
+            *words = is_known.then(Vec::new);
+        }
+        if let Some(words) = words {
+            self.ui.vertical(|ui| {
+                for word in W::ALL {
+                    let mut is_chosen = words.contains(word);
+                    if ui.checkbox(&mut is_chosen, word.label()).changed() {
+                        words.retain(|other| other != word);
+                        words.extend(is_chosen.then_some(*word));
+                    }
+                }
+            });
+        }
+        self.ui.end_row();
+    }
 }

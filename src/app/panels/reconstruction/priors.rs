@@ -3,17 +3,13 @@
 
 use egui::{CollapsingHeader, Grid, Sense, Ui, vec2};
 
-use crate::app::panels::reconstruction::fields::{N_COLUMNS, interval_row};
+use crate::app::panels::reconstruction::fields::{FieldRows, N_COLUMNS};
 use crate::app::reconstruction::{EvidencePreview, ReconstructionSession};
-use impactlab_core::ranges::{
-    BRAKE_SHARE, CONTROL_TIME, EVIDENCE_HEADING, EVIDENCE_SPEED, FRICTION_LIMIT, HEADING,
-    RESTITUTION,
-};
 use impactlab_core::units::{UnitSystem, significant};
 use impactlab_document::figure::Role;
 use impactlab_draw::theme;
 use impactlab_reconstruct::PriorComponent;
-use impactlab_reconstruct::evidence::PriorRanges;
+use impactlab_reconstruct::evidence::{Item, PriorRanges};
 use impactlab_study::ReconstructRequest;
 
 /// Standard normal variable below which 95 % lie.
@@ -24,25 +20,9 @@ const BAR: [f32; 2] = [110.0, 14.0];
 /// Draws the ranges that the user gives instead of the defaults.
 pub fn prior_ranges_ui(ui: &mut Ui, ranges: &mut PriorRanges, units: UnitSystem) {
     CollapsingHeader::new("Ranges beforehand").show(ui, |ui| {
-        ui.weak("Each value inside is equally likely; what is not checked has a default.");
+        ui.weak("Each value inside is equally likely; what is empty has a default.");
         Grid::new("prior ranges").num_columns(N_COLUMNS).min_col_width(10.0).show(ui, |ui| {
-            for (label, range, usual, possible) in [
-                ("Speed, struck", &mut ranges.struck_speed_m_s, [0.0, 40.0], EVIDENCE_SPEED),
-                ("Speed, striking", &mut ranges.striking_speed_m_s, [0.0, 40.0], EVIDENCE_SPEED),
-                ("Angle of the cars", &mut ranges.heading_difference_rad, [-0.5, 0.5], HEADING),
-                (
-                    "Striking sideslip",
-                    &mut ranges.striking_sideslip_rad,
-                    [-0.2, 0.2],
-                    EVIDENCE_HEADING,
-                ),
-                ("Restitution", &mut ranges.restitution, [0.1, 0.4], RESTITUTION),
-                ("Contact friction", &mut ranges.contact_friction, [0.1, 0.6], FRICTION_LIMIT),
-                ("Braking from", &mut ranges.brake_start_s, [0.3, 2.0], CONTROL_TIME),
-                ("Share of braking", &mut ranges.brake_share, [0.3, 1.0], BRAKE_SHARE),
-            ] {
-                interval_row(ui, label, (range, usual), (&possible, units));
-            }
+            ranges.fields(&mut FieldRows::new(ui, units, ("prior", None)));
         });
     });
 }

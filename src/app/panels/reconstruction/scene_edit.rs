@@ -2,7 +2,7 @@
 
 use egui::{Id, TextStyle, Ui};
 
-use impactlab_core::collision::{Footprint, Pose};
+use impactlab_core::collision::Footprint;
 use impactlab_core::ranges::{EVIDENCE_HEADING, EVIDENCE_POSITION};
 use impactlab_core::units::Unit;
 use impactlab_document::figure::{FigureElement, Role, STRIKING_AT_REST, STRUCK_AT_REST};
@@ -12,6 +12,11 @@ use impactlab_reconstruct::evidence::{Evidence, RestPose};
 
 /// Distance from the pointer at which a handle is taken, points.
 const REACH: f64 = 14.0;
+
+/// Where the dot of the struck car waits to be dragged, m.
+const WAITING_STRUCK_M: [f64; 2] = [30.0, 0.0];
+/// Where that of the striking car does, m.
+const WAITING_STRIKING_M: [f64; 2] = [30.0, 5.0];
 
 /// What is dragged of a car at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,11 +140,10 @@ impl SceneEdit {
         let [struck_m, striking_m] = self.front_m;
         let of = |(is_struck, rest, front_m): (bool, &Option<RestPose>, f64)| {
             let Some(rest) = rest else { return Vec::new() };
-            let front = rest.heading_rad.map(|heading| {
-                let pose = Pose { x_m: rest.x_m, y_m: rest.y_m, yaw_rad: heading.value };
-                (is_struck, Handle::Heading, pose.world_from_body([front_m, 0.0]))
-            });
-            let middle = (is_struck, Handle::Position, [rest.x_m, rest.y_m]);
+            let front = rest
+                .pose()
+                .map(|pose| (is_struck, Handle::Heading, pose.world_from_body([front_m, 0.0])));
+            let middle = (is_struck, Handle::Position, place_of(rest, is_struck));
             std::iter::once(middle).chain(front).collect()
         };
         [(true, &evidence.rest, struck_m), (false, &evidence.striking_rest, striking_m)]
@@ -167,21 +171,29 @@ impl Drag {
         let before = &self.before;
         match self.handle {
             Handle::Position => {
-                let place = [before.x_m + to[0] - from[0], before.y_m + to[1] - from[1]];
+                let [x_m, y_m] = place_of(before, self.is_struck);
+                let place = [x_m + to[0] - from[0], y_m + to[1] - from[1]];
                 if place.iter().all(|value| EVIDENCE_POSITION.contains(*value)) {
-                    [rest.x_m, rest.y_m] = place.map(|value| rounded(value, 0.01));
+                    [rest.x_m, rest.y_m] = place.map(|value| Some(rounded(value, 0.01)));
                 }
             }
             Handle::Heading => {
-                let heading = rounded((to[1] - rest.y_m).atan2(to[0] - rest.x_m), 0.001);
-                if let Some(measured) = &mut rest.heading_rad
+                let [x_m, y_m] = place_of(rest, self.is_struck);
+                let heading = rounded((to[1] - y_m).atan2(to[0] - x_m), 0.001);
+                if let Some(stated) = &mut rest.heading_rad
                     && EVIDENCE_HEADING.contains(heading)
                 {
-                    measured.value = heading;
+                    stated.value = Some(heading);
                 }
             }
         }
     }
+}
+
+/// Where the dot of a car at rest is. That of a car that has not been placed is no place: it only waits to be
+/// dragged.
+fn place_of(rest: &RestPose, is_struck: bool) -> [f64; 2] {
+    rest.place_m().unwrap_or(if is_struck { WAITING_STRUCK_M } else { WAITING_STRIKING_M })
 }
 
 /// Adds a point at the end of a mark.
@@ -233,7 +245,15 @@ mod tests {
 
     /// The evidence after frames in each of which the figure said something, in the unit of its axes.
     fn edited(adds_to: Option<usize>, frames: &[FigureResponse]) -> Evidence {
-        let (context, mut evidence) = (Context::default(), evidence());
+        edited_from(evidence(), adds_to, frames)
+    }
+
+    fn edited_from(
+        mut evidence: Evidence,
+        adds_to: Option<usize>,
+        frames: &[FigureResponse],
+    ) -> Evidence {
+        let context = Context::default();
         let cars = Cars::new(&evidence, None, None);
         for shown in frames {
             let _ = context.run_ui(RawInput::default(), |ui| {
@@ -256,17 +276,27 @@ mod tests {
         let from = [30.1, -5.1];
         let drag = [shown([from, from]), shown([from, [32.1, -2.1]]), FigureResponse::default()];
         let moved = edited(None, &drag).rest.unwrap();
-        assert!((moved.x_m - 32.0).abs() < 0.011 && (moved.y_m + 2.0).abs() < 0.011, "{moved:?}");
+        let [x_m, y_m] = moved.place_m().unwrap();
+        assert!((x_m - 32.0).abs() < 0.011 && (y_m + 2.0).abs() < 0.011, "{moved:?}");
         assert_eq!(moved.heading_rad, evidence().rest.unwrap().heading_rad);
 
         let cars = Cars::new(&evidence(), None, None);
         let front =
             [30.0 + Footprint::from(&cars.struck.parameters.geometry).cg_from_front_m, -5.0];
         let turned = edited(None, &[shown([front, [30.0, -3.0]])]).rest.unwrap();
-        assert!((turned.heading_rad.unwrap().value - 1.571).abs() < 1e-9, "{turned:?}");
-        assert_eq!((turned.x_m, turned.y_m), (30.0, -5.0));
+        assert!((turned.heading().unwrap().value - 1.571).abs() < 1e-9, "{turned:?}");
+        assert_eq!(turned.place_m(), Some([30.0, -5.0]));
         // Beside the handles, the view is moved.
         assert_eq!(edited(None, &[shown([[10.0, 0.0], [20.0, 0.0]])]), evidence());
+    }
+
+    #[test]
+    fn a_car_that_has_not_been_placed_is_dragged_from_where_its_dot_waits() {
+        let mut waiting = evidence();
+        waiting.rest = Some(RestPose::default());
+        let drag = [shown([WAITING_STRUCK_M, [41.0, -3.0]]), FigureResponse::default()];
+        let [x_m, y_m] = edited_from(waiting, None, &drag).rest.unwrap().place_m().unwrap();
+        assert!((x_m - 41.0).abs() < 0.011 && (y_m + 3.0).abs() < 0.011, "{x_m} {y_m}");
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! What was found after a collision, as rows of the table of inputs.
+//! What was found after a collision, as rows of the table of inputs: every field of every item, with who
+//! stated it.
 
 use crate::report::InputClass;
 use crate::report::answer::evidence::measured;
@@ -9,17 +10,13 @@ use crate::report::parts::InputRow;
 use impactlab_core::units::Quantity;
 use impactlab_core::vehicle::sheet::SheetQuantity;
 use impactlab_reconstruct::evidence::{
-    CarEvidence, DriverBraked, Evidence, Mark, Measured, RestPose,
-};
-use impactlab_reconstruct::evidence::{
-    DEFAULT_ANGLE_SIGMA_RAD, DEFAULT_DAMAGE_SIGMA_M, DEFAULT_FRICTION_SIGMA,
-    DEFAULT_HEADING_SIGMA_RAD, DEFAULT_MARK_SIGMA_M, DEFAULT_MASS_SHARE, DEFAULT_REST_SIGMA_M,
-    DEFAULT_VIDEO_SIGMA_M, default_edr_speed_sigma,
+    Bounds, Choice, Evidence, Field, Fields, Item, Items, Measured, PlaceMut, PointsMut, Section,
+    Sigma, Stated, Word, ends,
 };
 use impactlab_reconstruct::{
     BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Car, Distribution, Latent, PriorComponent, PriorSource,
 };
-use impactlab_study::{ReconstructAnswer, ReconstructRequest, word};
+use impactlab_study::{ReconstructAnswer, ReconstructRequest};
 
 /// Evidence, estimates of both cars, and the prior.
 pub(super) fn evidence_rows(
@@ -29,17 +26,8 @@ pub(super) fn evidence_rows(
 ) -> Vec<InputRow> {
     let words = wording.words;
     let evidence = answer.target.evidence();
-    let mut rows = Rows { wording, rows: Vec::new() };
-    let friction = (evidence.friction, DEFAULT_FRICTION_SIGMA);
-    rows.measured(words.road, (words.road_friction, Quantity::Ratio), friction);
-    rows.rows.extend(zone_rows(answer.target.model().zones(), wording));
-    rows.car(words.struck_vehicle, &evidence.struck_car);
-    rows.car(words.striking_vehicle, &evidence.striking_car);
-    rows.scene(evidence);
-    rows.recorder(evidence);
-    for mark in &evidence.marks {
-        rows.mark(mark);
-    }
+    let mut rows = stated_rows(evidence, wording);
+    rows.extend(zone_rows(answer.target.model().zones(), wording));
     for (found, choice, group) in [
         (&evidence.struck_car, &request.vehicle, words.struck_vehicle),
         (&evidence.striking_car, &request.striking, words.striking_vehicle),
@@ -48,170 +36,144 @@ pub(super) fn evidence_rows(
         let chosen = choice.chosen().ok().flatten();
         let estimates = Car::estimates_of(found, chosen.as_ref());
         // The friction of the road is what was measured, or that of the prior.
-        let estimates = estimates.iter().filter(|of| of.quantity != SheetQuantity::Friction);
-        rows.rows.extend(estimates.map(|of| estimate_row(of, group, wording)));
+        let estimates =
+            estimates.iter().filter(|estimate| estimate.quantity != SheetQuantity::Friction);
+        rows.extend(estimates.map(|estimate| estimate_row(estimate, group, wording)));
     }
-    let priors = answer.report.priors.iter().map(|prior| prior_row(prior, wording));
-    rows.rows.extend(priors);
+    rows.extend(answer.report.priors.iter().map(|prior| prior_row(prior, wording)));
+    rows
+}
+
+/// What the evidence states, and what the program takes where it states nothing.
+fn stated_rows(evidence: &Evidence, wording: &Wording) -> Vec<InputRow> {
+    let (group, number) = (String::new(), String::new());
+    let mut rows = Rows { wording, group, number, rows: Vec::new() };
+    evidence.clone().items(&mut rows);
     rows.rows
 }
 
 struct Rows<'a> {
     wording: &'a Wording,
+    /// What the item is called.
+    group: String,
+    /// Its number among those of its kind, as the beginning of a label.
+    number: String,
     rows: Vec<InputRow>,
 }
 
 impl Rows<'_> {
-    fn push(&mut self, group: &str, label: &str, value: String, class: InputClass) {
+    fn push(&mut self, label: &str, value: String, class: InputClass, source: &str) {
+        let label = format!("{}{}", self.number, self.wording.term(label));
+        let (group, source) = (self.group.clone(), source.to_owned());
+        self.rows.push(InputRow { group, label, value, class, source });
+    }
+
+    fn given(&mut self, label: &str, value: String) {
+        self.push(label, value, InputClass::Given, self.wording.words.source_evidence);
+    }
+
+    /// - `is_stated`: whether the evidence states the standard deviation.
+    fn with_sigma(&mut self, label: &str, value: String, is_stated: bool) {
         let words = self.wording.words;
-        let source = match class {
-            InputClass::Measured => words.source_evidence_sigma,
-            _ => words.source_evidence,
+        let source = match is_stated {
+            true => words.source_evidence_sigma,
+            false => words.source_default_sigma,
         };
-        self.rows.push(InputRow {
-            group: group.to_owned(),
-            label: label.to_owned(),
-            value,
-            class,
-            source: source.to_owned(),
-        });
+        self.push(label, value, InputClass::Measured, source);
     }
 
-    /// A value with its standard deviation.
-    ///
-    /// - `default`: the standard deviation that stands in where the evidence says none.
-    fn measured(
-        &mut self,
-        group: &str,
-        (label, quantity): (&str, Quantity),
-        (of, default): (Option<Measured>, f64),
-    ) {
-        if let Some(Measured { value, sigma }) = of {
-            let text = measured(quantity, [value, sigma], self.wording);
-            self.push_measured(group, label, text, sigma == default);
-        }
+    fn range(&self, field: &Field, [low, high]: [f64; 2]) -> String {
+        let [low, high] = [low, high].map(|end| self.wording.given(field.range.quantity, end));
+        format!("{low} {} {high}", self.wording.words.to)
     }
+}
 
-    /// - `is_default`: whether the standard deviation is the one that stands in where the evidence says
-    ///   none.
-    fn push_measured(&mut self, group: &str, label: &str, value: String, is_default: bool) {
-        self.push(group, label, value, InputClass::Measured);
-        if let (Some(row), true) = (self.rows.last_mut(), is_default) {
-            row.source = self.wording.words.source_default_sigma.to_owned();
-        }
+impl Items for Rows<'_> {
+    fn item(&mut self, section: &'static Section, idx: Option<usize>, item: &mut impl Item) {
+        self.group = self.wording.term(section.title);
+        self.number = idx.map_or(String::new(), |idx| format!("{}: ", idx + 1));
+        item.fields(self);
     }
+}
 
-    fn given(&mut self, group: &str, (label, quantity): (&str, Quantity), of: Option<f64>) {
-        if let Some(value) = of {
-            let text = self.wording.given(quantity, value);
-            self.push(group, label, text, InputClass::Given);
-        }
-    }
-
-    fn car(&mut self, group: &str, car: &CarEvidence) {
-        let words = self.wording.words;
-        let default = car.mass_kg.map_or(0.0, |mass| DEFAULT_MASS_SHARE * mass.value);
-        self.measured(group, (words.mass, Quantity::Mass), (car.mass_kg, default));
-        for (key, quantity, value) in [
-            ("cg to front axle", Quantity::Length, car.cg_to_front_axle_m),
-            ("cg to rear axle", Quantity::Length, car.cg_to_rear_axle_m),
-            ("track width", Quantity::Length, car.track_m),
-            ("height of the CG", Quantity::Length, car.cg_height_m),
-            ("outer length", Quantity::Length, car.length_m),
-            ("outer width", Quantity::Length, car.width_m),
-            ("yaw inertia", Quantity::MomentOfInertia, car.yaw_inertia_kg_m2),
-        ] {
-            let label = self.wording.term(key);
-            self.given(group, (&label, quantity), value);
-        }
-    }
-
-    fn scene(&mut self, evidence: &Evidence) {
-        let words = self.wording.words;
-        let damage = &evidence.damage;
-        let side = self.wording.term(&word(&damage.side));
-        self.push(words.damage, words.struck_side, side, InputClass::Given);
-        let along = (words.contact_along, Quantity::Length);
-        self.measured(words.damage, along, (Some(damage.along_m), DEFAULT_DAMAGE_SIGMA_M));
-        self.given(words.damage, (words.contact_depth, Quantity::Length), damage.depth_m);
-        let angle = (damage.angle_rad, DEFAULT_ANGLE_SIGMA_RAD);
-        self.measured(words.damage, (words.damage_angle, Quantity::Angle), angle);
-        self.rest(words.struck_at_rest, evidence.rest.as_ref());
-        self.rest(words.striking_at_rest, evidence.striking_rest.as_ref());
-        let braked = match evidence.after.driver_braked {
-            DriverBraked::Yes => words.yes,
-            DriverBraked::No => words.no,
-            DriverBraked::Unknown => words.unknown,
-        };
-        self.push(words.after_impact, words.driver_braked, braked.to_owned(), InputClass::Given);
-        let blocked = match &evidence.after.blocked_wheels {
-            None => words.nobody_looked.to_owned(),
-            Some(wheels) if wheels.is_empty() => words.none.to_owned(),
-            Some(wheels) => {
-                let wheels: Vec<String> =
-                    wheels.iter().map(|wheel| self.wording.term(&word(wheel))).collect();
-                wheels.join(", ")
+impl Fields for Rows<'_> {
+    fn number(&mut self, field: &Field, value: &mut Option<f64>) {
+        match *value {
+            Some(value) => {
+                self.given(field.label, self.wording.given(field.range.quantity, value));
             }
-        };
-        self.push(words.after_impact, words.blocked_wheels, blocked, InputClass::Given);
-    }
-
-    fn rest(&mut self, group: &str, pose: Option<&RestPose>) {
-        let Some(pose) = pose else { return };
-        let sigma = pose.position_sigma_m;
-        for (label, value) in [("X", pose.x_m), ("Y", pose.y_m)] {
-            let measured = (Some(Measured { value, sigma }), DEFAULT_REST_SIGMA_M);
-            self.measured(group, (label, Quantity::Length), measured);
-        }
-        let heading = (pose.heading_rad, DEFAULT_HEADING_SIGMA_RAD);
-        self.measured(group, (self.wording.words.heading, Quantity::Angle), heading);
-    }
-
-    fn recorder(&mut self, evidence: &Evidence) {
-        let words = self.wording.words;
-        let edr = &evidence.edr;
-        let speed = (words.speed_before, Quantity::Speed);
-        let default = edr.speed_before_m_s.map_or(0.0, |of| default_edr_speed_sigma(of.value));
-        self.measured(words.recorder, speed, (edr.speed_before_m_s, default));
-        for (axis, bounds) in [("x", edr.delta_v_x_m_s), ("y", edr.delta_v_y_m_s)] {
-            if let Some([low, high]) = bounds {
-                let [low, high] = [low, high].map(|of| self.wording.given(Quantity::Speed, of));
-                let label = format!("{} {axis}", words.delta_v);
-                let text = format!("{low} {} {high}", words.to);
-                self.push(words.recorder, &label, text, InputClass::Measured);
-            }
-        }
-        for position in &evidence.positions {
-            let time = self.wording.given(Quantity::Time, position.time_s);
-            for (axis, value) in [("X", position.x_m), ("Y", position.y_m)] {
-                let text = measured(Quantity::Length, [value, position.sigma_m], self.wording);
-                let label = format!("{axis}, {time}");
-                let is_default = position.sigma_m == DEFAULT_VIDEO_SIGMA_M;
-                self.push_measured(words.video, &label, text, is_default);
+            None if field.default.is_empty() => {}
+            None => {
+                let default = self.wording.term(field.default);
+                let source = self.wording.words.source_program;
+                self.push(field.label, default, InputClass::Assumed, source);
             }
         }
     }
 
-    fn mark(&mut self, mark: &Mark) {
-        let words = self.wording.words;
-        let ends = [mark.points_m.first(), mark.points_m.last()];
+    fn measured(&mut self, field: &Field, sigma: &Sigma, stated: &mut Option<Stated>) {
+        let Some(Measured { value, sigma }) = sigma.resolve(*stated) else { return };
+        let text = measured(field.range.quantity, [value, sigma], self.wording);
+        self.with_sigma(field.label, text, stated.is_some_and(|stated| stated.sigma.is_some()));
+    }
+
+    fn place(&mut self, fields: [&Field; 2], sigma: &Sigma, place: PlaceMut<'_>) {
+        let PlaceMut { x_m, y_m, sigma_m } = place;
+        for (field, value) in fields.into_iter().zip([*x_m, *y_m]) {
+            let stated = Stated { value, sigma: *sigma_m };
+            self.measured(field, sigma, &mut Some(stated));
+        }
+    }
+
+    fn points(&mut self, field: &Field, sigma: &Sigma, points: PointsMut<'_>) {
+        let PointsMut { points_m, sigma_m } = points;
+        let ends = [points_m.first(), points_m.last()];
         let [Some(first), Some(last)] = ends else { return };
-        let point = |[x, y]: &[f64; 2]| {
-            let [x, y] = [*x, *y].map(|of| self.wording.given(Quantity::Length, of));
-            format!("({x}; {y})")
-        };
+        let length = |value: f64| self.wording.given(Quantity::Length, value);
+        let point = |[x, y]: &[f64; 2]| format!("({}; {})", length(*x), length(*y));
         let values = [
-            ("n", mark.points_m.len().to_string()),
+            ("n", points_m.len().to_string()),
             ("first", point(first)),
             ("last", point(last)),
-            ("sigma", self.wording.given(Quantity::Length, mark.sigma_m)),
+            ("sigma", length(sigma_m.unwrap_or(sigma.default_at(0.0)))),
         ];
         let values = values.each_ref().map(|(name, value)| (*name, value.as_str()));
-        let text = fill(words.mark_value, &values);
-        let kind = mark.kind.map(|kind| self.wording.term(&word(&kind)));
-        let wheel = self.wording.term(&word(&mark.wheel));
-        let label = kind.map_or(wheel.clone(), |kind| format!("{wheel}, {kind}"));
-        self.push_measured(words.tire_mark, &label, text, mark.sigma_m == DEFAULT_MARK_SIGMA_M);
+        let text = fill(self.wording.words.mark_value, &values);
+        self.with_sigma(field.label, text, sigma_m.is_some());
+    }
+
+    fn bounds(&mut self, field: &Field, bounds: &mut Option<Bounds>) {
+        if let Some(ends) = ends(*bounds) {
+            let source = self.wording.words.source_evidence;
+            self.push(field.label, self.range(field, ends), InputClass::Measured, source);
+        }
+    }
+
+    fn interval(&mut self, field: &Field, interval: &mut Option<Bounds>) {
+        if let Some(ends) = ends(*interval) {
+            self.given(field.label, self.range(field, ends));
+        }
+    }
+
+    fn choice<W: Word>(&mut self, choice: &Choice, word: &mut W) {
+        self.given(choice.label, self.wording.term(word.label()));
+    }
+
+    fn optional_choice<W: Word>(&mut self, choice: &Choice, word: &mut Option<W>) {
+        let label = word.map_or(choice.none, W::label);
+        self.given(choice.label, self.wording.term(label));
+    }
+
+    fn choices<W: Word>(&mut self, choice: &Choice, words: &mut Option<Vec<W>>) {
+        let value = match words.as_deref() {
+            None => self.wording.term(choice.none),
+            Some([]) => self.wording.words.none.to_owned(),
+            Some(words) => {
+                let words = words.iter().map(|word| self.wording.term(word.label()));
+                words.collect::<Vec<_>>().join(", ")
+            }
+        };
+        self.given(choice.label, value);
     }
 }
 
@@ -264,5 +226,110 @@ fn prior_row(prior: &PriorComponent, wording: &Wording) -> InputRow {
         value: text,
         class,
         source: source.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::report::{Language, Paper, ReportDate, ReportSettings};
+    use impactlab_core::data::TomlFile;
+    use impactlab_core::units::UnitSystem;
+
+    const EVIDENCE: &str = r#"
+        case = "all"
+        road = { friction = 0.71, friction_sigma = 0.13 }
+        struck_car = { mass_kg = 1500, mass_sigma_kg = 45, track_m = 1.51 }
+        striking_car = { mass_kg = 1900 }
+        weighing = { shared_scale_sigma = 0.0123 }
+        damage = { side = "left", x_m = -1.7, x_sigma_m = 0.1, y_m = 0.91, angle_rad = 0.3 }
+        rest = { x_m = 30, y_m = -4, position_sigma_m = 0.15, heading_rad = 1, heading_sigma_rad = 0.035 }
+        striking_rest = { x_m = 60, y_m = 2 }
+        after = { blocked_wheels = ["RL"] }
+        [edr]
+        delta_v_x_min_m_s = 1
+        delta_v_x_max_m_s = 2
+        sensor_x_m = 0.37
+        [[mark]]
+        wheel = "FL"
+        points_m = [[1, 2], [3, 4]]
+        sigma_m = 0.1
+        [[position]]
+        time_s = 1.23
+        x_m = 20
+        y_m = 0
+        [prior]
+        restitution = [0.11, 0.29]
+    "#;
+
+    fn rows(language: Language) -> Vec<InputRow> {
+        let file = TomlFile { path: Path::new("case.toml"), text: EVIDENCE };
+        let date = ReportDate::new(2026, 1, 2).unwrap();
+        let (units, paper) = (UnitSystem::Si, Paper::A4);
+        let wording = Wording::new(&ReportSettings { language, units, paper, date });
+        stated_rows(&Evidence::from_toml(file).unwrap(), &wording)
+    }
+
+    /// A standard deviation that is stated is said to be stated, also where it is that of the program.
+    #[test]
+    fn the_source_of_a_standard_deviation_is_who_stated_it() {
+        let rows = rows(Language::En);
+        let stated = |group: &str, label: &str| {
+            let of_label = |row: &&InputRow| row.group == group && row.label == label;
+            let row = rows.iter().find(of_label).unwrap_or_else(|| panic!("{group}: {label}"));
+            assert_eq!(row.class, InputClass::Measured, "{row:?}");
+            row.source == "evidence"
+        };
+        for (group, label) in [
+            ("friction of the road", "peak friction"),
+            ("struck car", "mass"),
+            ("struck car at rest", "X of the CG"),
+            ("struck car at rest", "heading"),
+            ("damage of the struck car", "contact ahead of the CG"),
+            ("tire mark", "1: points"),
+        ] {
+            assert!(stated(group, label), "{group}: {label}");
+        }
+        for (group, label) in [
+            ("striking car", "mass"),
+            ("striking car at rest", "X of the CG"),
+            ("damage of the struck car", "angle of the cars"),
+            ("position in a video", "1: Y of the CG"),
+        ] {
+            assert!(!stated(group, label), "{group}: {label}");
+        }
+    }
+
+    #[test]
+    fn every_input_of_the_likelihood_is_told() {
+        let rows = rows(Language::En);
+        for (group, label, value) in [
+            ("one scale for both cars", "error of the scale, as a share", "0.0123"),
+            ("event data recorder", "Δv ahead", "3.6 km/h to 7.2 km/h"),
+            ("event data recorder", "sensor ahead of the CG", "0.37 m"),
+            ("event data recorder", "sensor to the left of the CG", "at the CG"),
+            ("event data recorder", "end of the record", "the end of the contact"),
+            ("struck car", "track width", "1.51 m"),
+            ("damage of the struck car", "contact to the left of the CG", "0.91 m"),
+            ("position in a video", "1: time", "1.23 s"),
+            ("after the impact", "blocked wheels", "rear left"),
+            ("after the impact", "driver braked", "not known"),
+            ("ranges beforehand", "restitution", "0.11 to 0.29"),
+        ] {
+            let is_told =
+                |row: &InputRow| row.group == group && row.label == label && row.value == value;
+            assert!(rows.iter().any(is_told), "{group}: {label} = {value} in {rows:#?}");
+        }
+    }
+
+    #[test]
+    fn every_row_is_told_in_german() {
+        for row in rows(Language::De) {
+            for text in [&row.group, &row.label, &row.value] {
+                assert!(!text.contains("(engl.)"), "{row:?}");
+            }
+        }
     }
 }

@@ -205,11 +205,15 @@ impl EvidenceChoice {
     /// The evidence.
     ///
     /// # Errors
-    /// [`StudyError::TomlFile`], with line and column.
+    /// [`StudyError::TomlFile`], with line and column; [`StudyError::IncompleteEvidence`] for a form that
+    /// has not been filled in.
     pub fn load(&self) -> Result<Evidence, StudyError> {
         match self {
             Self::File(path) => Ok(Evidence::load(path)?),
-            Self::Inline(evidence) => Ok(evidence.as_ref().clone()),
+            Self::Inline(evidence) => match evidence.missing() {
+                None => Ok(evidence.as_ref().clone()),
+                Some(missing) => Err(StudyError::IncompleteEvidence { name: self.name(), missing }),
+            },
         }
     }
 

@@ -4,7 +4,7 @@ use super::*;
 use crate::examples::spin;
 use impactlab_core::uncertainty::{CaveatKind, CaveatSubject};
 use impactlab_reconstruct::Latent;
-use impactlab_reconstruct::evidence::Measured;
+use impactlab_reconstruct::evidence::{Edr, Measured};
 
 fn request(particles: usize) -> ReconstructRequest {
     let evidence = EvidenceChoice::Inline(Box::new(spin()));
@@ -51,8 +51,9 @@ fn evidence_that_contradicts_itself_is_said() {
     let mut request = request(60);
     let EvidenceChoice::Inline(evidence) = &mut request.evidence else { unreachable!() };
     // The recorder says 5 m/s, and the car came 150 m far on a dry road.
-    evidence.edr.speed_before_m_s = Some(Measured { value: 5.0, sigma: 0.2 });
-    evidence.rest.as_mut().unwrap().x_m = 150.0;
+    let speed_before_m_s = Some(Measured { value: 5.0, sigma: 0.2 }.into());
+    evidence.edr = Some(Edr { speed_before_m_s, ..Edr::default() });
+    evidence.rest.as_mut().unwrap().x_m = Some(150.0);
     let report = answer(&request).report;
     let said = report.caveats.has(CaveatKind::EvidenceUnexplained);
     assert!(said, "{:?} {:?}", report.caveats, report.fit);
@@ -106,7 +107,7 @@ fn a_way_over_ice_is_no_sign_of_a_high_speed() {
                border_m = [[20, -60], [300, -60], [300, 60], [20, 60]]\n";
     std::fs::write(&site, ice).unwrap();
     let mut evidence = spin();
-    evidence.edr.speed_before_m_s = None;
+    evidence.edr = None;
     let inline = |evidence: &Evidence| EvidenceChoice::Inline(Box::new(evidence.clone()));
     let asked = ReconstructRequest { site: Some(site), ..request(100) };
 
@@ -117,8 +118,8 @@ fn a_way_over_ice_is_no_sign_of_a_high_speed() {
     let [truth] = &model.motions(&[z], |motion| motion)[..] else { panic!("one motion") };
     let end = truth.path.points.last().unwrap();
     let rest = evidence.rest.as_mut().unwrap();
-    (rest.x_m, rest.y_m) = (end.x_m, end.y_m);
-    rest.heading_rad.as_mut().unwrap().value = end.yaw_rad;
+    (rest.x_m, rest.y_m) = (Some(end.x_m), Some(end.y_m));
+    rest.heading_rad.as_mut().unwrap().value = Some(end.yaw_rad);
     assert!(end.x_m > 30.0, "it rests on the ice: {end:?}");
 
     let speed = |request: &ReconstructRequest| {
@@ -151,4 +152,13 @@ fn a_friction_that_the_evidence_leaves_open_is_that_of_the_road() {
     let told = assumptions(&evidence, &model);
     let friction = told.iter().find(|of| of.to_string().contains("[road] friction")).unwrap();
     assert!(friction.to_string().starts_with("assumed road friction: 0."), "{friction}");
+}
+
+#[test]
+fn a_form_that_has_not_been_filled_in_is_not_reconstructed_from() {
+    let mut evidence = spin();
+    evidence.rest.as_mut().unwrap().y_m = None;
+    let evidence = EvidenceChoice::Inline(Box::new(evidence));
+    let error = evidence.load().unwrap_err().to_string();
+    assert!(error.contains("struck car at rest has not been placed"), "{error}");
 }

@@ -1,4 +1,7 @@
+use impactlab_core::vehicle::Wheel;
+
 use super::*;
+use crate::evidence::{DEFAULT_FRICTION_SIGMA, ends};
 
 const CASE: &str = r#"case = "B 27"
 
@@ -59,19 +62,22 @@ fn read(text: &str) -> Result<Evidence, String> {
 #[test]
 fn a_file_is_read_with_units_and_defaults() {
     let evidence = read(CASE).unwrap();
-    assert_eq!(evidence.friction.unwrap().sigma, DEFAULT_FRICTION_SIGMA);
-    assert!((evidence.striking_car.mass_kg.unwrap().value - 1814.4).abs() < 0.1);
+    assert_eq!(evidence.road_friction().unwrap().sigma, DEFAULT_FRICTION_SIGMA);
+    assert!((evidence.striking_car.mass().unwrap().value - 1814.4).abs() < 0.1);
     let rest = evidence.rest.unwrap();
-    assert!((rest.y_m + 6.096).abs() < 1e-9 && rest.position_sigma_m == DEFAULT_REST_SIGMA_M);
-    assert!((rest.heading_rad.unwrap().value - 170_f64.to_radians()).abs() < 1e-9);
+    assert!((rest.y_m.unwrap() + 6.096).abs() < 1e-9);
+    assert_eq!((rest.position_sigma_m, rest.position_sigma_m()), (None, 0.15));
+    assert!((rest.heading().unwrap().value - 170_f64.to_radians()).abs() < 1e-9);
     assert_eq!(evidence.after.blocked_wheels, Some(vec![Wheel::RearRight]));
     assert_eq!(evidence.marks[0].points_m, [[1.0, -0.7], [6.0, -0.8]]);
-    assert_eq!(evidence.marks[0].sigma_m, DEFAULT_MARK_SIGMA_M);
-    assert_eq!(evidence.edr.delta_v_y_m_s, Some([1.0, 1.3]));
-    assert!((evidence.edr.speed_before_m_s.unwrap().value - 20.0).abs() < 1e-9);
-    assert_eq!(evidence.edr.sensor_m, [0.2, 0.0]);
-    assert_eq!(evidence.positions[0].sigma_m, DEFAULT_VIDEO_SIGMA_M);
-    let [low, high] = evidence.prior.struck_speed_m_s.unwrap();
+    assert_eq!((evidence.marks[0].sigma_m, evidence.marks[0].sigma_m()), (None, 0.1));
+    let edr = evidence.recorder();
+    assert_eq!(edr.delta_v_y(), Some([1.0, 1.3]));
+    let speed = edr.speed_before().unwrap();
+    assert!((speed.value - 20.0).abs() < 1e-9 && speed.sigma == 0.04 * speed.value);
+    assert_eq!(edr.sensor_m, [Some(0.2), None]);
+    assert_eq!(evidence.positions[0].sigma_m, None);
+    let [low, high] = ends(evidence.prior.struck_speed_m_s).unwrap();
     assert!((low - 5.0).abs() < 1e-9 && (high - 50.0).abs() < 1e-9);
     assert_eq!(evidence.mirrored().mirrored(), evidence);
     assert_ne!(evidence.mirrored(), evidence);
@@ -119,4 +125,41 @@ fn an_error_names_file_line_key_and_what_is_expected() {
         let is_there = error.starts_with(&format!("case.toml:{line}:")) && error.contains(said);
         assert!(is_there, "{error}\n{expected}");
     }
+}
+
+/// A standard deviation of the size of the program's is one that was stated.
+#[test]
+fn what_is_stated_is_told_apart_from_what_the_program_takes() {
+    let stated = CASE
+        .replace("y_ft = -20", "y_ft = -20\nposition_sigma_m = 0.15")
+        .replace("kind = \"locked\"", "kind = \"locked\"\nsigma_m = 0.10");
+    let evidence = read(&stated).unwrap();
+    assert_eq!(evidence.rest.unwrap().position_sigma_m, Some(0.15));
+    assert_eq!(evidence.marks[0].sigma_m, Some(0.1));
+    assert_eq!(evidence.damage.along_m.unwrap().sigma, None);
+}
+
+#[test]
+fn evidence_in_json_of_an_earlier_version_is_read() {
+    let evidence = read(CASE).unwrap();
+    let mut json = serde_json::to_value(&evidence).unwrap();
+    json["rest"]["position_sigma_m"] = 0.15.into();
+    json["edr"] = serde_json::json!({
+        "delta_v_x_m_s": null,
+        "delta_v_y_m_s": [1.0, 1.3],
+        "speed_before_m_s": { "value": 20.0, "sigma": 0.8 },
+        "sensor_m": [0.0, 0.0],
+        "ends_s": null,
+    });
+    let found: Evidence = serde_json::from_value(json.clone()).unwrap();
+    assert_eq!(found.recorder().speed_before().unwrap().sigma, 0.8);
+    json["edr"] = serde_json::json!({
+        "delta_v_x_m_s": null,
+        "delta_v_y_m_s": null,
+        "speed_before_m_s": null,
+        "sensor_m": [0.0, 0.0],
+        "ends_s": null,
+    });
+    let found: Evidence = serde_json::from_value(json).unwrap();
+    assert_eq!(found.edr, None);
 }

@@ -1,0 +1,164 @@
+//! What the evidence lacks: what a form or a file has left open although nothing can stand in for it.
+
+use crate::evidence::{
+    Bounds, Choice, Evidence, Field, Fields, Item, Items, PointsMut, Section, Sigma, Word,
+};
+
+impl Evidence {
+    /// What lacks although nothing can stand in for it, and what to do; `None` if the evidence is complete.
+    pub fn missing(&self) -> Option<String> {
+        let mut search = Search(None);
+        self.clone().items(&mut search);
+        search.0
+    }
+}
+
+/// A field that an item lacks.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Lack {
+    /// Its key in a file, with the SI unit.
+    pub key: String,
+    /// What a person calls it.
+    pub label: &'static str,
+}
+
+/// The first field that an item lacks.
+pub(super) fn lack_of(item: &impl Item) -> Option<Lack> {
+    let mut lacking = Lacking(None);
+    item.clone().fields(&mut lacking);
+    lacking.0
+}
+
+struct Search(Option<String>);
+
+impl Search {
+    fn find(&mut self, section: &Section, idx: Option<usize>, lack: Option<Lack>) {
+        let number = idx.map_or(String::new(), |idx| format!(" {}", idx + 1));
+        let title = format!("{}{number}", section.title);
+        self.0 = self.0.take().or(match (section.missing, lack) {
+            ("", None) => Some(format!(
+                "{title}: nothing has been entered: type what was found, or remove the card"
+            )),
+            ("", Some(lack)) => {
+                Some(format!("{title}: {} has not been entered: type it", lack.label))
+            }
+            (missing, _) => Some(format!("{title} {missing}")),
+        });
+    }
+}
+
+impl Items for Search {
+    fn item(&mut self, section: &'static Section, idx: Option<usize>, item: &mut impl Item) {
+        let lack = lack_of(item);
+        if lack.is_some() {
+            self.find(section, idx, lack);
+        }
+    }
+
+    fn optional<T: Item>(&mut self, section: &'static Section, item: &mut Option<T>) {
+        let Some(item) = item else { return };
+        match item.is_empty() {
+            true => self.find(section, None, None),
+            false => self.item(section, None, item),
+        }
+    }
+}
+
+struct Lacking(Option<Lack>);
+
+impl Lacking {
+    fn note(&mut self, is_lacking: bool, key: &str, label: &'static str) {
+        if is_lacking && self.0.is_none() {
+            self.0 = Some(Lack { key: key.to_owned(), label });
+        }
+    }
+}
+
+impl Fields for Lacking {
+    fn number(&mut self, field: &Field, value: &mut Option<f64>) {
+        self.note(field.is_required && value.is_none(), &field.si_key(), field.label);
+    }
+
+    fn points(&mut self, field: &Field, _: &Sigma, PointsMut { points_m, .. }: PointsMut<'_>) {
+        let is_still = points_m.windows(2).all(|pair| pair[0] == pair[1]);
+        self.note(is_still, &field.si_key(), field.label);
+    }
+
+    fn bounds(&mut self, field: &Field, bounds: &mut Option<Bounds>) {
+        let Some([low, high]) = bounds else { return };
+        self.note(low.is_none(), &field.si_key_with("_min"), field.label);
+        self.note(high.is_none(), &field.si_key_with("_max"), field.label);
+    }
+
+    fn choice<W: Word>(&mut self, _: &Choice, _: &mut W) {}
+
+    fn optional_choice<W: Word>(&mut self, choice: &Choice, word: &mut Option<W>) {
+        self.note(choice.is_required && word.is_none(), choice.key, choice.label);
+    }
+
+    fn choices<W: Word>(&mut self, _: &Choice, _: &mut Option<Vec<W>>) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evidence::{Edr, Mark, RestPose, Stated, VideoPosition};
+
+    #[test]
+    fn nothing_is_run_from_a_form_that_nobody_has_filled_in() {
+        let mut evidence = Evidence::empty();
+        let mut missing = |change: fn(&mut Evidence)| {
+            change(&mut evidence);
+            evidence.missing().unwrap_or_default()
+        };
+        assert!(missing(|_| {}).contains("struck car at rest has not been placed"));
+        assert!(missing(|of| of.rest.as_mut().unwrap().x_m = Some(30.0)).contains("at rest"));
+        let text = missing(|of| of.rest.as_mut().unwrap().y_m = Some(0.0));
+        assert!(text.contains("damage of the struck car"), "{text}");
+        let along = move |of: &mut Evidence| {
+            of.damage.along_m = Some(Stated { value: Some(-1.5), sigma: None })
+        };
+        assert_eq!(missing(along), "");
+        let text = missing(|of| of.striking_rest = Some(RestPose::default()));
+        assert!(text.contains("striking car at rest has not been placed"), "{text}");
+        assert_eq!(missing(|of| of.striking_rest = None), "");
+        assert!(missing(|of| of.marks.push(Mark::default())).contains("at least two points"));
+        assert_eq!(missing(|of| of.marks[0].points_m = vec![[1.0, 0.0], [9.0, 1.0]]), "");
+        assert!(missing(|of| of.edr = Some(Edr::default())).contains("event data recorder"));
+        let text = missing(|of| of.edr.as_mut().unwrap().delta_v_y_m_s = Some([Some(-1.0), None]));
+        assert!(text.contains("Δv to the left has not been entered"), "{text}");
+        let text = missing(|of| {
+            let sigma = Some(0.5);
+            of.edr = Some(Edr {
+                speed_before_m_s: Some(Stated { value: None, sigma }),
+                ..Edr::default()
+            });
+        });
+        assert!(text.contains("speed before the impact has not been entered"), "{text}");
+        assert_eq!(missing(|of| of.edr = None), "");
+        let text = missing(|of| of.positions.push(VideoPosition::default()));
+        assert!(text.contains("position in a video 1 has not been entered"), "{text}");
+        assert_eq!(missing(|of| of.positions.clear()), "");
+        let text = missing(|of| of.struck_car.cg_to_front_axle_m = Some(1.2));
+        assert!(text.contains("CG to rear axle has not been entered"), "{text}");
+    }
+
+    #[test]
+    fn every_value_that_is_entered_is_a_value() {
+        let mut evidence = Evidence::empty();
+        let stated = |value: f64| Some(Stated { value: Some(value), sigma: None });
+        evidence.damage.along_m = stated(-1.5);
+        evidence.rest = Some(RestPose { x_m: Some(30.0), y_m: Some(0.0), ..RestPose::default() });
+        evidence.edr = Some(Edr {
+            speed_before_m_s: stated(15.0),
+            delta_v_x_m_s: Some([Some(-1.0), Some(1.0)]),
+            delta_v_y_m_s: Some([Some(-1.0), Some(1.0)]),
+            ..Edr::default()
+        });
+        let at = |value| Some(value);
+        let position =
+            VideoPosition { time_s: at(1.0), x_m: at(15.0), y_m: at(0.0), sigma_m: None };
+        evidence.positions = vec![position];
+        assert_eq!(evidence.missing(), None);
+    }
+}

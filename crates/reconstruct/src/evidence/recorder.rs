@@ -1,0 +1,120 @@
+//! Record of an event data recorder in the struck car.
+
+use impactlab_core::ranges::{CONTACT_X, CONTACT_Y, EVIDENCE_SPEED, PULSE_END, SPEED, SPEED_SIGMA};
+use serde::{Deserialize, Serialize};
+
+use crate::Latent;
+use crate::evidence::{Bounds, Field, Fields, Group, Item, Measured, Section, Sigma, Stated, ends};
+use crate::likelihood::{Comparison, SINGLE_DEGREES_OF_FREEDOM, student};
+
+/// Standard deviation of a change of velocity that is small, m/s: the rounding of the record.
+const LEAST_DELTA_V_SIGMA_M_S: f64 = 0.03;
+
+/// The recorder in a file, a form and a report.
+pub const SECTION: Section = Section {
+    key: "edr",
+    title: "event data recorder",
+    group: Group::Scene,
+    is_required: false,
+    missing: "",
+};
+
+const SPEED_BEFORE: Field = Field::new("speed_before", "speed before the impact", EVIDENCE_SPEED);
+const SPEED_BEFORE_SIGMA: Sigma = Sigma::share(
+    ("speed_before_sigma", "±"),
+    SPEED_SIGMA,
+    [0.04, 0.3],
+    "4 %, the accuracy that 49 CFR 563 asks for, and at least the rounding of the record",
+);
+const DELTA_V_X: Field = Field::new("delta_v_x", "Δv ahead", SPEED);
+const DELTA_V_Y: Field = Field::new("delta_v_y", "Δv to the left", SPEED).turned();
+const SENSOR_X: Field =
+    Field::new("sensor_x", "sensor ahead of the CG", CONTACT_X).with_default("at the CG");
+const SENSOR_Y: Field = Field::new("sensor_y", "sensor to the left of the CG", CONTACT_Y)
+    .turned()
+    .with_default("at the CG");
+const ENDS: Field =
+    Field::new("ends", "end of the record", PULSE_END).with_default("the end of the contact");
+
+/// Record of an event data recorder in the struck car.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Edr {
+    /// Bounds of the change of velocity along the x axis of the car, m/s.
+    pub delta_v_x_m_s: Option<Bounds>,
+    /// Bounds of the change of velocity along the y axis of the car, m/s.
+    pub delta_v_y_m_s: Option<Bounds>,
+    /// Speed before the impact, m/s.
+    pub speed_before_m_s: Option<Stated>,
+    /// Place of the sensor from the CG, x forward and y left, m; at the CG where nobody states it.
+    pub sensor_m: [Option<f64>; 2],
+    /// When the record of the change of velocity ends, s after the first contact; the end of the
+    /// contact if `None`.
+    pub ends_s: Option<f64>,
+}
+
+impl Item for Edr {
+    fn fields(&mut self, visitor: &mut impl Fields) {
+        let Self { delta_v_x_m_s, delta_v_y_m_s, speed_before_m_s, sensor_m, ends_s } = self;
+        let [sensor_x_m, sensor_y_m] = sensor_m;
+        visitor.measured(&SPEED_BEFORE, &SPEED_BEFORE_SIGMA, speed_before_m_s);
+        visitor.bounds(&DELTA_V_X, delta_v_x_m_s);
+        visitor.bounds(&DELTA_V_Y, delta_v_y_m_s);
+        visitor.number(&SENSOR_X, sensor_x_m);
+        visitor.number(&SENSOR_Y, sensor_y_m);
+        visitor.number(&ENDS, ends_s);
+    }
+
+    /// A sensor without a record says nothing.
+    fn is_empty(&self) -> bool {
+        self.delta_v_x_m_s.is_none()
+            && self.delta_v_y_m_s.is_none()
+            && self.speed_before_m_s.is_none()
+    }
+}
+
+impl Edr {
+    /// Speed before the impact, m/s.
+    pub fn speed_before(&self) -> Option<Measured> {
+        SPEED_BEFORE_SIGMA.resolve(self.speed_before_m_s)
+    }
+
+    /// Bounds of the change of velocity along the x axis of the car, m/s.
+    pub fn delta_v_x(&self) -> Option<[f64; 2]> {
+        ends(self.delta_v_x_m_s)
+    }
+
+    /// Bounds of the change of velocity along the y axis of the car, m/s.
+    pub fn delta_v_y(&self) -> Option<[f64; 2]> {
+        ends(self.delta_v_y_m_s)
+    }
+
+    pub(super) fn compare(&self, comparison: &mut Comparison<'_>) {
+        if let Some(Measured { value, sigma }) = self.speed_before() {
+            let expected = comparison.motion.impact.struck_speed_m_s;
+            let distance = ((value - expected) / sigma).powi(2);
+            comparison.log_likelihood -= distance / 2.0;
+            comparison.tell("EDR speed before the impact", "m/s", [expected, value], distance);
+        }
+        if self.delta_v_x().is_none() && self.delta_v_y().is_none() {
+            return;
+        }
+        let end_s = self.ends_s.unwrap_or(comparison.value(Latent::PulseDuration));
+        let sensor_m = self.sensor_m.map(Option::unwrap_or_default);
+        let Some(recorded) = comparison.track.recorded_delta_v_m_s(sensor_m, end_s) else {
+            return;
+        };
+        let size = recorded[0].hypot(recorded[1]);
+        let sigma = comparison.discrepancy.delta_v_share * size + LEAST_DELTA_V_SIGMA_M_S;
+        for (name, bounds, expected) in [
+            ("EDR delta-v along x", self.delta_v_x(), recorded[0]),
+            ("EDR delta-v along y", self.delta_v_y(), recorded[1]),
+        ] {
+            let Some([low, high]) = bounds else { continue };
+            let beyond = (low - expected).max(expected - high).max(0.0) / sigma;
+            let distance = beyond * beyond;
+            comparison.log_likelihood += student(distance, 1.0, SINGLE_DEGREES_OF_FREEDOM);
+            comparison.tell(name, "m/s", [expected, (low + high) / 2.0], distance);
+        }
+    }
+}
