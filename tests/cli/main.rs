@@ -15,6 +15,7 @@ mod film;
 mod force;
 mod ground;
 mod guide;
+mod help;
 mod inputs;
 mod log;
 mod program;

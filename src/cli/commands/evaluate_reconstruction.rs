@@ -81,7 +81,7 @@ curvature at its optimum.
 JSON: summary [{known, method, n_cases, median_seconds, p90_seconds, n_sufficient_ess, quantities [{name,
   unit, n, coverage_50, coverage_80, coverage_90, coverage_95, median_absolute_error, median_error,
   median_width_90, mean_crps}]}]; cases [{case, known, method, seconds, ess, n_simulations, quantities
-  [{name, unit, median, interval_50, interval_80, interval_90, interval_95, truth, crps}]}]; data, split,
+  [{name, unit, median, intervals, truth, crps}]}]; data, split,
   n_cases, n_particles, stopped, left_out, assumptions, badges, seed";
 
 /// Evaluates.

@@ -32,7 +32,7 @@ Examples:
   impactlab vehicles ford-explorer-2004 --estimates
 
 JSON: {\"vehicles\": [{id, kind, name, source, mass_kg, n_estimates}]}; with ID all parameters, and
-  data_sheet_estimates [{quantity, unit, median, ninety, rule, source}]";
+  data_sheet_estimates [{quantity, unit, median, intervals, rule, source}]";
 
 #[derive(Debug, Serialize)]
 struct Listed {

@@ -63,19 +63,8 @@ impl ReconstructReport {
 
     /// Each item of the evidence: found, expected, and whether anything explains it.
     pub fn fit_table(&self) -> FactTable {
-        let row = |item: &EvidenceFit| {
-            let is_warning = item.is_unexplained();
-            let verdict = if is_warning { Term::Unexplained } else { Term::Explained };
-            let values = vec![
-                in_unit(item.found, item.unit),
-                in_unit(item.expected, item.unit),
-                Value::Probability(item.p),
-                Value::Term(verdict),
-            ];
-            Fact { is_warning, ..Fact::row(Value::Phrase(item.evidence.clone()), values) }
-        };
         let columns = [Term::Found, Term::Expected, Term::TailProbability, Term::Verdict];
-        FactTable::new(Term::Fit, self.fit.iter().map(row).collect()).with_columns(&columns)
+        FactTable::new(Term::Fit, self.fit.iter().map(fit_fact).collect()).with_columns(&columns)
     }
 
     /// The marks that were found beside those of a particle of median speed; none if none was found.
@@ -125,10 +114,54 @@ fn quantity_fact(of: &QuantityEstimate) -> Fact {
     Fact::row(Value::Phrase(of.label().to_owned()), vec![value])
 }
 
+fn fit_fact(item: &EvidenceFit) -> Fact {
+    let is_warning = item.is_unexplained();
+    let verdict = if is_warning { Term::Unexplained } else { Term::Explained };
+    let values = vec![
+        in_unit(item.found, item.unit),
+        in_unit(item.expected, item.unit),
+        Value::Probability(item.p),
+        Value::Term(verdict),
+    ];
+    Fact { is_warning, ..Fact::row(Value::Phrase(item.evidence.clone()), values) }
+}
+
 /// A number of an item of the evidence, whose unit is that of SI.
 fn in_unit(value: f64, unit: &str) -> Value {
     match Quantity::from_si_symbol(unit) {
         Some(quantity) => Value::Number(quantity, value),
         None => Value::Fixed(value, 3),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::facts::FactWriter;
+    use impactlab_core::units::UnitSystem;
+
+    /// The fit was in SI units, whatever units were chosen.
+    #[test]
+    fn the_fit_of_the_evidence_is_in_the_chosen_units() {
+        let item = |evidence: &str, unit, found| EvidenceFit {
+            evidence: evidence.to_owned(),
+            unit,
+            expected: 2.0 * found,
+            found,
+            p: 1e-5,
+        };
+        let items = [item("rest x", "m", 0.3048), item("EDR speed", "m/s", 0.447_04)];
+        let facts = items.iter().map(fit_fact).collect();
+        let columns = [Term::Found, Term::Expected, Term::TailProbability, Term::Verdict];
+        let table = FactTable::new(Term::Fit, facts).with_columns(&columns);
+        let text = table.to_text(&FactWriter::english(UnitSystem::Us));
+        let cells: Vec<&str> =
+            text.rows.iter().flat_map(|row| &row.cells).map(String::as_str).collect();
+        let expected = [
+            ["rest x", "1.000 ft", "2.000 ft", "< 0.001", "not explained"],
+            ["EDR speed", "1.000 mph", "2.000 mph", "< 0.001", "not explained"],
+        ];
+        assert_eq!(cells, expected.concat());
+        assert!(text.rows.iter().all(|row| row.is_warning));
     }
 }

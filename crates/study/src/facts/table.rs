@@ -325,3 +325,39 @@ impl FactWriter<'_> {
         self.format.with_unit(&format!("{area:.1}"), &format!("{}²", unit.symbol))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_has_a_cell_for_each_title_whether_it_has_intervals_or_not() {
+        let estimate = Estimate::new(32.209, [30.11, 34.52], [26.789, 37.193]);
+        let facts = vec![
+            Fact::estimate(Term::EndX, Quantity::Length, &estimate),
+            Fact::new(Term::Region90, Value::Area(90.7)),
+        ];
+        let table = FactTable::new(Term::Forecast, facts).with_levels(PREDICTED);
+        let text = table.to_text(&FactWriter::english(UnitSystem::Si));
+        assert_eq!(text.header, ["quantity", "median", "50 %", "90 %"]);
+        assert_eq!(text.rows[0].cells, ["X at the end", "32 m", "30 to 35 m", "27 to 37 m"]);
+        assert_eq!(text.rows[1].cells[1..], ["90.7 m²", "", ""]);
+        assert_eq!(text.rows[0].hint, Some("Of the CG, along the road from the impact"));
+    }
+
+    #[test]
+    fn german_has_its_names_and_feet_are_squared() {
+        let facts = vec![
+            Fact::new(Term::Region90, Value::Area(0.3048 * 0.3048 * 2.5)),
+            Fact::new(Term::ShareAtRest, Value::ShareOfDraws(0.5, 30)),
+        ];
+        let table = FactTable::new(Term::Forecast, facts);
+        let units = FactWriter::english(UnitSystem::Us);
+        let format = NumberFormat { language: Language::De, ..units.format };
+        let text = table.to_text(&FactWriter { format, ..units });
+        assert!(text.is_list());
+        assert_eq!(text.title, "Vorhergesagte Bewegung");
+        assert_eq!(text.rows[0].cells[1], "2,5 ft²");
+        assert_eq!(text.rows[1].cells[1], "50,0 % von 30 Ziehungen");
+    }
+}

@@ -205,9 +205,10 @@ terms! {
     MeanDistance: "mean distance", "mittlerer Abstand";
     LargestDistance: "largest distance", "größter Abstand";
     NoMark: "no mark", "keine Spur";
-    Budget: "Half the width of the 90 % interval of the struck car’s speed, if it were measured as well",
-        "Halbe Breite des 90-%-Intervalls der Geschwindigkeit des gestoßenen Fahrzeugs, wenn \
-         zusätzlich gemessen würde";
+    Budget: "Half the width of the 90 % interval of the struck car’s speed, now and with a further \
+        measurement",
+        "Halbe Breite des 90-%-Intervalls der Geschwindigkeit des gestoßenen Fahrzeugs, jetzt und mit \
+         einer weiteren Messung";
     Now: "now, ±", "jetzt, ±";
     Then: "then, ±", "dann, ±";
     NotBelievable: "too few particles to say", "zu wenige Partikel für eine Aussage";
