@@ -32,6 +32,7 @@ text of each licence follows once, below the list. The list is that of a program
 /// What `cargo metadata` says of the packages and how they depend on each other.
 #[derive(Deserialize)]
 struct Metadata {
+    workspace_members: Vec<String>,
     packages: Vec<Package>,
     resolve: Resolve,
 }
@@ -107,8 +108,9 @@ impl Metadata {
             let dependencies = nodes[id].deps.iter().filter(linked);
             open.extend(dependencies.map(|dependency| dependency.pkg.as_str()));
         }
-        seen.remove(self.resolve.root.as_str());
         let mut linked: Vec<&Package> = seen.into_iter().map(|id| packages[id]).collect();
+        // Not the crates of this workspace, whose licence is that of the program.
+        linked.retain(|package| !self.workspace_members.contains(&package.id));
         linked.sort_by_key(|package| (&package.name, &package.version));
         linked
     }

@@ -34,7 +34,7 @@ pub struct MultibodyRecord {
     geometry: GeometryRecord,
     wheel: WheelRecord,
     suspension: SuspensionRecord,
-    #[serde(rename = "tire")]
+    #[serde(rename = "tyre")]
     tire: TireRecord,
     aero: AeroRecord,
     equivalent: EquivalentRecord,
