@@ -120,7 +120,7 @@ pub(super) struct VehicleArgs {
     #[arg(long, value_name = "V.toml|PRESET")]
     vehicle: Option<VehicleArg>,
     /// The striking vehicle, where a force data set records it; mass and inertia are the case's
-    #[arg(long = "bullet", value_name = "V.toml|PRESET")]
+    #[arg(id = "bullet", long = "bullet", value_name = "V.toml|PRESET")]
     striking: Option<VehicleArg>,
     /// For a single force file: forward speed at the start, as in simulate
     #[arg(long, value_parser = number(SPEED), allow_hyphen_values = true)]

@@ -52,7 +52,7 @@ pub(in crate::cli) struct SimulateArgs {
     #[arg(long, value_name = "V.toml|PRESET")]
     vehicle: Option<VehicleArg>,
     /// The striking vehicle, where it is simulated; mass and inertia are those of the case
-    #[arg(long = "bullet", value_name = "V.toml|PRESET")]
+    #[arg(id = "bullet", long = "bullet", value_name = "V.toml|PRESET")]
     striking: Option<VehicleArg>,
     /// How the equations of motion are integrated
     #[arg(long, value_enum, default_value_t)]
