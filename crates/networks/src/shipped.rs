@@ -155,7 +155,12 @@ mod tests {
 
     #[test]
     fn every_shipped_model_is_the_one_of_its_file() {
-        let file = |name: &str| source(&format!("assets/models/{name}.safetensors"));
+        let file = |name: &str| {
+            source(&format!(
+                "{}/../../assets/models/{name}.safetensors",
+                env!("CARGO_MANIFEST_DIR")
+            ))
+        };
         let of_file = file("force").force_model().unwrap();
         let embedded = ModelSource::Shipped.force_model().unwrap();
         assert_eq!(embedded.record().data_digest, of_file.record().data_digest);

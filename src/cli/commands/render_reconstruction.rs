@@ -41,8 +41,10 @@ enum PlotArg {
     /// The same in perspective
     CarsPerspective,
     /// The speed of the struck car before and after the evidence
+    #[value(name = "target-speed")]
     StruckSpeed,
     /// The speed of the striking car
+    #[value(name = "bullet-speed")]
     StrikingSpeed,
     /// The closing speed
     ClosingSpeed,

@@ -44,7 +44,8 @@ mod tests {
     #[test]
     fn every_preset_is_the_scenario_of_its_file() {
         for (name, _) in SCENARIO_PRESETS {
-            let file = Path::new("assets/scenarios").join(name.replace('-', "_"));
+            let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenarios"))
+                .join(name.replace('-', "_"));
             let of_file = Scenario::load(&file.with_extension("toml")).unwrap();
             assert_eq!(Scenario::preset_or_file(Path::new(name)).unwrap(), of_file, "{name}");
         }

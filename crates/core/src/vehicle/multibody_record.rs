@@ -231,7 +231,9 @@ mod tests {
     #[test]
     fn the_reference_preset_is_what_the_dataset_says() {
         for dataset in ["trajectories-fea", "trajectories-pulse"] {
-            let path = Path::new("datasets").join(dataset).join("vehicle.toml");
+            let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../datasets"))
+                .join(dataset)
+                .join("vehicle.toml");
             let derived = VehicleParameters::load(&path).unwrap();
             let shipped = Preset::Reference.parameters();
             assert_eq!(derived.name, shipped.name);

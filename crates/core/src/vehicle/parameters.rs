@@ -363,7 +363,10 @@ mod tests {
 
     #[test]
     fn a_wrong_value_of_a_multibody_record_is_found_in_the_record() {
-        let path = Path::new("datasets/trajectories-fea/vehicle.toml");
+        let path = Path::new(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../datasets/trajectories-fea/vehicle.toml"
+        ));
         let text = TomlFile::read(path).unwrap();
         let line_of = |key: &str| text.lines().position(|line| line.starts_with(key)).unwrap() + 1;
         for (key, value, parameter) in [

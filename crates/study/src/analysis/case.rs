@@ -144,7 +144,13 @@ mod tests {
 
     fn load(name: &str) -> Dataset {
         let mut report = |_| ControlFlow::Continue(());
-        Dataset::load(&Path::new("datasets").join(name), &mut report).unwrap().complete().unwrap()
+        Dataset::load(
+            &Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../datasets")).join(name),
+            &mut report,
+        )
+        .unwrap()
+        .complete()
+        .unwrap()
     }
 
     #[test]

@@ -151,7 +151,11 @@ mod tests {
 
     #[test]
     fn a_pit_turns_the_struck_and_both_go_on() {
-        let scenario = Scenario::load(Path::new("assets/scenarios/pit_right_rear.toml")).unwrap();
+        let scenario = Scenario::load(Path::new(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../assets/scenarios/pit_right_rear.toml"
+        )))
+        .unwrap();
         let settings = Settings {
             struck: Preset::Target.parameters(),
             striking: Preset::Bullet2000.parameters(),

@@ -285,7 +285,11 @@ mod tests {
 
     /// Share of the values that lie in the 90 % range of a rule, and their number.
     fn held(column: impl Fn(&[&str], &DataSheet) -> (Q, f64)) -> (f64, usize) {
-        let text = std::fs::read_to_string("tests/data/vehicles/ncap-2004.csv").unwrap();
+        let text = std::fs::read_to_string(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../tests/data/vehicles/ncap-2004.csv"
+        ))
+        .unwrap();
         let rows: Vec<Vec<&str>> = text
             .lines()
             .filter(|line| !line.starts_with('#'))

@@ -96,7 +96,12 @@ mod tests {
 
     #[test]
     fn every_file_of_the_library_is_listed_and_read() {
-        let files = std::fs::read_dir("assets/vehicles/library").unwrap().count();
+        let files = std::fs::read_dir(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../assets/vehicles/library"
+        ))
+        .unwrap()
+        .count();
         assert_eq!(files, LibraryVehicle::ALL.len());
         for vehicle in LibraryVehicle::ALL {
             assert_eq!(LibraryVehicle::from_id(vehicle.id()), Some(*vehicle));

@@ -248,7 +248,8 @@ mod tests {
     #[test]
     fn the_shipped_trajectories_are_read_with_their_forces_and_frictions() {
         let go_on = &mut |_| std::ops::ControlFlow::Continue(());
-        let path = Path::new("datasets/trajectories-pulse");
+        let path =
+            Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../datasets/trajectories-pulse"));
         let Outcome::Complete(dataset) = Dataset::load(path, go_on).unwrap() else {
             panic!("nothing cancels");
         };

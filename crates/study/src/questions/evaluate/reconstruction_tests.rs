@@ -6,7 +6,10 @@ fn request() -> EvaluateReconstructionRequest {
         only: vec!["s07".to_owned()],
         particles: 50,
         swarm: false,
-        ..EvaluateReconstructionRequest::new("datasets/staged")
+        ..EvaluateReconstructionRequest::new(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../datasets/staged"
+        ))
     }
 }
 
