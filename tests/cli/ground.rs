@@ -122,5 +122,5 @@ fn scenes_and_reconstructions_are_drawn_on_their_ground() {
     let cars = ["render", "reconstruction", evidence, "--plot", "cars-above", "--particles", "60"];
     let output = program().args([&cars[..], &["--site", SITE], &target].concat()).output().unwrap();
     let printed = ok(output);
-    assert!(printed.contains("friction of the zones of the site, each ± 15 %"), "{printed}");
+    assert!(printed.contains("road friction: zones of the site, each ± 15 %"), "{printed}");
 }
