@@ -27,8 +27,8 @@ const fn column(key: &'static str, title: &'static str, quantity: Quantity) -> C
 pub(in crate::app) const FORCE_COLUMNS: &[CaseColumn] = &[
     column("bullet_body", "Body", Quantity::Ratio),
     column("side", "Side", Quantity::Ratio),
-    column("m_b_kg", "Bullet", Quantity::Mass),
-    column("v_tx_m_s", "v_x target", Quantity::Speed),
+    column("m_b_kg", "Striking mass", Quantity::Mass),
+    column("v_tx_m_s", "v_x struck", Quantity::Speed),
     column("theta_b_rad", "θ_b", Quantity::Angle),
     column("impulse_y_n_s", "P_y", Quantity::Impulse),
     column("peak_force_n", "Peak", Quantity::Force),

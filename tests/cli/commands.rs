@@ -377,7 +377,7 @@ fn figures_are_written_as_numbers() {
     for (args, header, series) in [
         (
             [&["force", "datasets/fea", "--case", "c001"][..], &["--cfc", "60"]].concat(),
-            "series,Time [ms],Force on the target [kN]",
+            "series,Time [ms],Force on the struck vehicle [kN]",
             "unfiltered,",
         ),
         (
@@ -393,7 +393,7 @@ fn figures_are_written_as_numbers() {
         (
             vec!["impact", SCENARIO],
             "series,\"X, along the road [m]\",\"Y, to the left [m]\"",
-            "impulse on the target,",
+            "impulse on the struck vehicle,",
         ),
     ] {
         let ran = impactlab(

@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use crate::answers::{refusal, scenario_with, write};
 use crate::program::{SCENARIO, answer, ok, program, text};
 
-/// The example scenario with the bullet at a position, by the outlines.
+/// The example scenario with the striking vehicle at a position, by the outlines.
 fn placed(folder: &TempDir, [x_m, y_m]: [f64; 2], striking_speed_km_h: f64) -> PathBuf {
     let scenario = std::fs::read_to_string(SCENARIO).unwrap();
     let position = format!("[bullet]\nx_m = {x_m}\ny_m = {y_m}");
@@ -26,8 +26,8 @@ fn placed(folder: &TempDir, [x_m, y_m]: [f64; 2], striking_speed_km_h: f64) -> P
     write(folder, "placed.toml", &scenario)
 }
 
-/// From an overlap of 0.66 m on the normal lay along the target, which the bullet does not approach:
-/// `impact` said a delta-v of 0.00 and nothing else.
+/// From an overlap of 0.66 m on the normal lay along the struck vehicle, which the striking vehicle
+/// does not approach: `impact` said a delta-v of 0.00 and nothing else.
 #[test]
 fn outlines_that_overlap_deeply_keep_the_normal_of_the_approach() {
     let folder = TempDir::new().unwrap();
@@ -44,7 +44,7 @@ fn outlines_that_overlap_deeply_keep_the_normal_of_the_approach() {
         let assumed = report["assumptions"].to_string();
         assert_eq!(assumed.contains("they first touched there"), overlap_m > 0.1, "{assumed}");
         let told = ok(program().arg("impact").arg(&scenario).output().unwrap());
-        assert!(told.contains("into the target's right side"), "{told}");
+        assert!(told.contains("into the struck vehicle's right side"), "{told}");
         assert!(told.contains("overlap of the outlines"), "{told}");
     }
     for (pair, step) in overlaps.windows(2).zip([0.2, 0.2, 0.2, 0.06, 0.14, 0.1]) {
@@ -55,12 +55,12 @@ fn outlines_that_overlap_deeply_keep_the_normal_of_the_approach() {
 #[test]
 fn outlines_that_cannot_have_met_like_this_are_refused() {
     let folder = TempDir::new().unwrap();
-    // The CG of the bullet lies beyond that of the target.
+    // The CG of the striking vehicle lies beyond that of the struck vehicle.
     let scenario = placed(&folder, [-2.0, 0.4], 56.0);
     for command in ["impact", "simulate"] {
         let args = if command == "impact" { vec![command] } else { vec![command, "--scenario"] };
         let line = refusal(&[&args[..], &[text(&scenario)]].concat());
-        assert!(line.contains("which side was struck cannot be told"), "{line}");
+        assert!(line.contains("which side was struck cannot be determined"), "{line}");
     }
 }
 
@@ -118,14 +118,15 @@ fn a_second_contact_is_flagged() {
     let rear = write(&folder, "rear.toml", &rear);
     let free = answer(&["simulate", "--scenario", text(&rear)]);
     assert_eq!(free["flags"].as_array().unwrap().len(), 0, "{free}");
-    // The driver of the bullet steers away: what follows is another motion of the bullet.
+    // The driver of the striking vehicle steers away: what follows is another motion of the
+    // striking vehicle.
     let away = std::fs::read_to_string(SCENARIO).unwrap()
         + "\n[bullet_ending]\nsteer_deg = -8\nsteer_rise_s = 0.2\n";
     let away = answer(&["simulate", "--scenario", text(&write(&folder, "away.toml", &away))]);
     let plain = answer(&["simulate", "--scenario", SCENARIO]);
     let closing = |report: &Value| report["flags"][0]["closing_speed_m_s"].as_f64().unwrap();
     assert!(closing(&away) < 0.8 * closing(&plain), "{away} {plain}");
-    assert_eq!(away["end"], plain["end"], "the target's motion does not know of the bullet's");
+    assert_eq!(away["end"], plain["end"], "the struck car's motion depends on the other's");
 }
 
 /// The momentum solution and the force network describe one contact: both are named.
@@ -154,11 +155,11 @@ fn a_predicted_impulse_is_told_as_restitution_and_impulse_ratio() {
     }
 }
 
-/// A force depends on the relative velocity alone: a standing target takes the same as a moving one.
-/// Struck by a fast bullet, which no training case has, the network's impulse would add energy: the
-/// physics answers.
+/// A force depends on the relative velocity alone: a standing struck vehicle takes the same as a
+/// moving one. Struck by a fast striking vehicle, which no training case has, the network's impulse
+/// would add energy: the physics answers.
 #[test]
-fn standing_and_slow_targets_have_the_force_of_a_contact() {
+fn standing_and_slow_cars_have_the_force_of_a_contact() {
     let folder = TempDir::new().unwrap();
     let struck = |struck_m_s: f64, striking_vx_m_s: f64| {
         let scenario = std::fs::read_to_string(SCENARIO).unwrap();

@@ -83,7 +83,9 @@ fn train_kill_resume_predict() {
     }
     let unknown = predict(&whole, &["--body", "Z"]);
     let error = String::from_utf8(unknown.stderr).unwrap();
-    assert_eq!(error, "error: bullet body \"Z\" is unknown to the model, expected one of A, B\n");
+    let expected = "error: body \"Z\" of the striking vehicle is unknown to the model, expected \
+                    one of A, B\n";
+    assert_eq!(error, expected);
 }
 
 fn files_of_a_prediction(model: &Path, folder: &Path) {

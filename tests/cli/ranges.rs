@@ -155,7 +155,7 @@ fn what_goes_wrong_together_is_an_error() {
     let point = "from = \"point\"\nx_m = -1.4\ny_m = -0.925\nnormal_deg = 90";
     let (code, error) = impact(&with(point, "x_m = 1e6\ny_m = 0"));
     assert!(
-        code == Some(1) && error.contains("do not touch there: bullet: the contact point ("),
+        code == Some(1) && error.contains("touch there: striking vehicle: the contact point ("),
         "{error}"
     );
     let (code, error) = impact(&with(point, "x_m = -3.6\ny_m = -2.3"));

@@ -10,13 +10,13 @@ use tempfile::TempDir;
 use crate::answers::scenario_with;
 use crate::program::{SCENARIO, ok, program, text};
 
-const SENTENCE: &str = "outside the domain: bullet mass [kg] is 3900";
+const SENTENCE: &str = "outside the domain: mass of the striking vehicle [kg] is 3900";
 
 fn run(args: &[&str]) -> String {
     ok(program().args(args).output().unwrap())
 }
 
-/// A collision with a bullet that is heavier than any that the force network knows.
+/// A collision with a striking vehicle that is heavier than any that the force network knows.
 fn heavy(folder: &TempDir) -> PathBuf {
     let from = "[bullet]\nmass_kg = 2000";
     scenario_with(folder, "heavy.toml", from, "[bullet]\nmass_kg = 3900")

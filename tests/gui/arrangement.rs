@@ -172,7 +172,8 @@ fn cars_are_dragged_in_the_plan() {
     apply(&mut harness, Command::Show(Pane::Scenario));
     harness.run_steps(4);
     let before = state(&harness).project.impact.clone();
-    // The target's CG is in the middle between its ends; the plan is the only plot of the pane.
+    // The struck vehicle's CG is in the middle between its ends; the plan is the only plot of the
+    // pane.
     let plan = harness.get_by_label_contains("Drag a dot").rect();
     let centre = egui::pos2(plan.center().x, plan.min.y - 120.0);
     let mut n_changed = 0;

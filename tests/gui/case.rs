@@ -414,10 +414,10 @@ fn example(harness: &mut Harness<'_, App>) {
     variant(harness, VariantCommand::Show("coasts".to_owned()));
     answered(harness);
     variant(harness, VariantCommand::Duplicate);
-    variant(harness, VariantCommand::Rename("target of 1500 kg".to_owned()));
-    let target = &mut scenario(harness).struck;
-    target.yaw_inertia_kg_m2 *= 1500.0 / target.mass_kg;
-    target.mass_kg = 1500.0;
+    variant(harness, VariantCommand::Rename("struck vehicle of 1500 kg".to_owned()));
+    let struck = &mut scenario(harness).struck;
+    struck.yaw_inertia_kg_m2 *= 1500.0 / struck.mass_kg;
+    struck.mass_kg = 1500.0;
     answered(harness);
     variant(harness, VariantCommand::Show("coasts".to_owned()));
     answered(harness);

@@ -15,7 +15,8 @@ use impactlab_draw::{Canvas, figure_image, picture_ui, theme};
 
 use crate::harness::{apply, is_idle, open, step_until};
 
-const SENTENCE: &str = "bullet mass [kg] is 3900, the force network has learned from 800 to 3000";
+const SENTENCE: &str =
+    "mass of the striking vehicle [kg] is 3900, the force network has learned from 800 to 3000";
 
 fn figure(caveats: &Caveats) -> Figure {
     let axis = |label| Axis::shown(label, Quantity::Ratio, UnitSystem::Si);
@@ -82,7 +83,8 @@ fn copied(harness: &Harness<'_, App>) -> Option<String> {
     })
 }
 
-/// The window on a collision with a bullet that is heavier than any that the force network knows.
+/// The window on a collision with a striking vehicle that is heavier than any that the force
+/// network knows.
 fn with_heavy_striking() -> Harness<'static, App> {
     let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
     step_until(&mut harness, "the first case", is_idle);

@@ -119,7 +119,8 @@ fn a_case_is_predicted_edited_and_left_open() {
         let asked = collision_of(&state.project.predict_force, &state.session.sources);
         asked.is_some_and(|asked| asked.name == "c003") && is_forecast_current(state)
     });
-    // A heavier bullet gives a larger impulse. A mass far above those of the training is reported.
+    // A heavier striking vehicle gives a larger impulse. A mass far above those of the training is
+    // reported.
     let sizes = [1600.0, 2400.0].map(|mass_kg| {
         edit_collision(&mut harness, |numbers| numbers.mass_kg[1] = mass_kg);
         step_until(&mut harness, "another forecast", is_forecast_current);
@@ -127,10 +128,14 @@ fn a_case_is_predicted_edited_and_left_open() {
         answer.report.impulse_n_s.magnitude.median
     });
     assert!(sizes[1] > sizes[0], "{sizes:?}");
-    assert!(harness.query_by_label_contains("outside the domain: bullet mass").is_none());
+    assert!(
+        harness
+            .query_by_label_contains("outside the domain: mass of the striking vehicle")
+            .is_none()
+    );
     edit_collision(&mut harness, |numbers| numbers.mass_kg[1] = 9000.0);
     step_until(&mut harness, "a forecast far off", is_forecast_current);
-    harness.get_by_label_contains("outside the domain: bullet mass [kg] 9000");
+    harness.get_by_label_contains("outside the domain: mass of the striking vehicle [kg] 9000");
 
     // An unknown contact point is averaged over, and random curves are drawn.
     apply(&mut harness, Command::PredictCase);

@@ -350,7 +350,7 @@ fn scenario(
         Side::Front | Side::Rear => scenario.struck.width_m / 2.0,
         Side::Left | Side::Right => scenario.struck.length_m / 2.0,
     };
-    // The bullet heads for the side, up to some angle off its normal.
+    // The striking vehicle heads for the side, up to some angle off its normal.
     let heading_rad = outwards_rad + PI + angle_rad;
     for (vehicle, mass_kg, speed_m_s, heading_rad) in [
         (&mut scenario.struck, struck_kg, struck_m_s, 0.0),

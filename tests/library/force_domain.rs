@@ -74,7 +74,7 @@ fn random_scenario(rng: &mut ChaCha8Rng) -> ForceScenario {
     let (struck, striking) = (between(0.0, 70.0), between(0.0, 70.0));
     let (length, width) = (between(3.5, 5.5), between(1.6, 2.0));
     let along = between(-0.5, 0.5);
-    // The struck side, the contact on it, and the normal into the target.
+    // The struck side, the contact on it, and the normal into the struck vehicle.
     let (contact_m, normal_rad) = match between(0.0, 4.0) as usize {
         0 => ([along * length, -width / 2.0], FRAC_PI_2),
         1 => ([along * length, width / 2.0], -FRAC_PI_2),
@@ -109,8 +109,8 @@ fn least_work(scenario: &ForceScenario, said: &ForcePrediction) -> Option<f64> {
     Some(work.fold(f64::INFINITY, f64::min) / kinetic)
 }
 
-/// At 288 km/h, with a target of 1200 kg, with a blow from behind the bands were as tight as in the
-/// training.
+/// At 288 km/h, with a struck vehicle of 1200 kg, with a blow from behind the bands were as tight
+/// as in the training.
 #[test]
 fn any_collision_is_finite_and_outside_of_the_training_as_uncertain_as_the_physics() {
     let (model, mut rng) = (model(), ChaCha8Rng::seed_from_u64(14));

@@ -274,7 +274,7 @@ fn wrong_questions_are_answered_with_what_is_wrong() {
     assert!(error.to_string().contains("expected one of A, B"), "{error}");
     let light = ForceScenario { mass_kg: [0.0, 1500.0], ..scenario() };
     let error = model().predict(&light).unwrap_err().to_string();
-    assert_eq!(error, "target mass [kg] is 0, expected 1 to 1e8");
+    assert_eq!(error, "mass of the struck vehicle [kg] is 0, expected 1 to 1e8");
     for nonsense in [f64::NAN, f64::INFINITY, 1e300] {
         let mut broken = scenario();
         broken.striking_velocity_m_s[1] = nonsense;

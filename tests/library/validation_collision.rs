@@ -84,9 +84,9 @@ fn carpenter_welcher_scenario_file() {
     assert_eq!(solution.regime, Regime::NoSlide);
 }
 
-/// A PIT manoeuvre turns the tail of the target away from the bullet. A push from the right at the
-/// rear turns the nose to the right, and the principal direction of force is from the right and
-/// behind.
+/// A PIT manoeuvre turns the tail of the struck vehicle away from the striking vehicle. A push from
+/// the right at the rear turns the nose to the right, and the principal direction of force is from
+/// the right and behind.
 #[test]
 fn a_pit_turns_the_struck_towards_the_striking() {
     let solution = solve_scenario("pit_right_rear.toml");
@@ -136,9 +136,9 @@ fn finite_element_cases() -> (csv::StringRecord, Vec<csv::StringRecord>) {
 const OUTLINE: Footprint = Footprint { length_m: 4.8, width_m: 1.85, cg_from_front_m: 2.3 };
 
 /// Momentum solution for the shipped finite-element runs with e = 0.3, μ_c = 0.4 and the normal
-/// across the target. The median errors over all 100 runs are 16.3 % for the impulse vector, 12.6 %
-/// for its magnitude and 10.4 % for its component across the target. The bounds are the next whole
-/// percent, because the solution is deterministic.
+/// across the struck vehicle. The median errors over all 100 runs are 16.3 % for the impulse
+/// vector, 12.6 % for its magnitude and 10.4 % for its component across the struck vehicle. The
+/// bounds are the next whole percent, because the solution is deterministic.
 #[test]
 fn finite_element_impulses() {
     let (headers, rows) = finite_element_cases();

@@ -17,7 +17,7 @@
 //! let request = ImpactRequest { scenario: ScenarioChoice::File(scenario), paper: false };
 //! let answer = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()))?;
 //! let report = answer.complete().expect("nobody cancelled").report;
-//! assert!(report.target.delta_v_magnitude_m_s > 1.0);
+//! assert!(report.struck.delta_v_magnitude_m_s > 1.0);
 //! # Ok::<(), crate::StudyError>(())
 //! ```
 

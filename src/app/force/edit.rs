@@ -5,8 +5,8 @@ use impactlab_core::collision::Scenario;
 use impactlab_core::data::StruckSide;
 use impactlab_networks::force::ForceScenario;
 
-/// Position of the first contact along the target, from its CG, that is proposed when the contact
-/// point becomes known, m. It is near the rear axle, where a PIT manoeuvre begins.
+/// Position of the first contact along the struck vehicle, from its CG, that is proposed when the
+/// contact point becomes known, m. It is near the rear axle, where a PIT manoeuvre begins.
 const USUAL_CONTACT_X_M: f64 = -1.5;
 
 /// Sets the mass of a vehicle.
@@ -14,22 +14,22 @@ const USUAL_CONTACT_X_M: f64 = -1.5;
 /// A known yaw inertia belonged to the old mass and is dropped; the model then assumes one that is
 /// proportional to the mass.
 ///
-/// - `vehicle`: 0 for the target, 1 for the bullet;
+/// - `vehicle`: 0 for the struck vehicle, 1 for the striking vehicle;
 /// - `mass_kg`: the new mass, kg.
 pub fn set_mass(scenario: &mut ForceScenario, vehicle: usize, mass_kg: f64) {
     scenario.mass_kg[vehicle] = mass_kg;
     scenario.yaw_inertia_kg_m2[vehicle] = None;
 }
 
-/// Sets the heading of the bullet relative to the target, rad. The position of its CG, which
-/// depends on it, is no longer known then.
+/// Sets the heading of the striking vehicle relative to the struck vehicle, rad. The position of
+/// its CG, which depends on it, is no longer known then.
 pub fn set_striking_heading(scenario: &mut ForceScenario, theta_b_rad: f64) {
     scenario.theta_b_rad = theta_b_rad;
     scenario.striking_position_m = None;
 }
 
-/// Moves the first contact to `x_m` along the target, from its CG, and moves the bullet by the same
-/// distance. Nothing changes if the contact point is unknown.
+/// Moves the first contact to `x_m` along the struck vehicle, from its CG, and moves the striking
+/// vehicle by the same distance. Nothing changes if the contact point is unknown.
 pub fn set_contact_x(scenario: &mut ForceScenario, x_m: f64) {
     if let Some([old_m, _]) = scenario.contact_m
         && let Some([striking_m, _]) = &mut scenario.striking_position_m
@@ -41,14 +41,14 @@ pub fn set_contact_x(scenario: &mut ForceScenario, x_m: f64) {
     }
 }
 
-/// Marks the contact point, its normal and the position of the bullet as unknown.
+/// Marks the contact point, its normal and the position of the striking vehicle as unknown.
 pub fn forget_contact(scenario: &mut ForceScenario) {
     (scenario.contact_m, scenario.striking_position_m) = (None, None);
     scenario.normal_rad = None;
 }
 
 /// Proposes a contact point on the struck side, 1.5 m behind the CG and at half the width of the
-/// example scenario's target.
+/// example scenario's struck vehicle.
 pub fn know_contact(scenario: &mut ForceScenario) {
     let half_width_m = Scenario::example().struck.width_m / 2.0;
     let y_m = if scenario.side == StruckSide::Left { half_width_m } else { -half_width_m };

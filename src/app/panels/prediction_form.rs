@@ -1,5 +1,5 @@
-//! The form with the collision whose force is predicted: masses, velocities, heading of the bullet,
-//! struck side, contact point and body of the bullet.
+//! The form with the collision whose force is predicted: masses, velocities, heading of the
+//! striking vehicle, struck side, contact point and body of the striking vehicle.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -56,7 +56,7 @@ pub fn form_ui(
         let report = &answer.report;
         let open = [
             (report.is_contact_open, "the contact point"),
-            (report.is_body_open, "the bullet's body"),
+            (report.is_body_open, "the striking vehicle's body"),
         ];
         let open: Vec<&str> =
             open.into_iter().filter_map(|(is_open, what)| is_open.then_some(what)).collect();
@@ -101,12 +101,12 @@ fn start_ui(
     });
 }
 
-/// Draws the masses, the velocities along and across the heading of the target, and the heading of
-/// the bullet relative to it.
+/// Draws the masses, the velocities along and across the heading of the struck vehicle, and the
+/// heading of the striking vehicle relative to it.
 fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
     for (vehicle, label, hint) in [
-        (0, "Target mass m_t", "Mass of the struck vehicle"),
-        (1, "Bullet mass m_b", "Mass of the striking vehicle"),
+        (0, "Struck mass m_t", "Mass of the struck vehicle"),
+        (1, "Striking mass m_b", "Mass of the striking vehicle"),
     ] {
         let range = SliderRange { label, hint, usual: 500.0..=5000.0, possible: BODY_MASS };
         if let Some(mass_kg) = quantity_slider(ui, &range, scenario.mass_kg[vehicle], units) {
@@ -116,10 +116,10 @@ fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
     let [v_tx, v_ty] = &mut scenario.struck_velocity_m_s;
     let [v_bx, v_by] = &mut scenario.striking_velocity_m_s;
     for (value, label, hint, most) in [
-        (v_tx, "Target v_tx", "Speed of the target along its heading", 50.0),
-        (v_ty, "Target v_ty", "Speed of the target to its left", 10.0),
-        (v_bx, "Bullet v_bx", "Speed of the bullet along the target's heading", 50.0),
-        (v_by, "Bullet v_by", "Speed of the bullet to the target's left", 10.0),
+        (v_tx, "Struck v_tx", "Speed of the struck vehicle along its heading", 50.0),
+        (v_ty, "Struck v_ty", "Speed of the struck vehicle to its left", 10.0),
+        (v_bx, "Striking v_bx", "Speed of the striking along the struck vehicle's heading", 50.0),
+        (v_by, "Striking v_by", "Speed of the striking to the struck vehicle's left", 10.0),
     ] {
         let usual = if most > 20.0 { 0.0..=most } else { -most..=most };
         let range = SliderRange { label, hint, usual, possible: SPEED };
@@ -128,8 +128,8 @@ fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
         }
     }
     let range = SliderRange {
-        label: "Bullet heading θ_b",
-        hint: "Heading of the bullet against the target's, to the left positive",
+        label: "Striking heading θ_b",
+        hint: "Heading of the striking against the struck vehicle's, to the left positive",
         usual: -FRAC_PI_2..=FRAC_PI_2,
         possible: HEADING,
     };
@@ -140,7 +140,7 @@ fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
 
 /// Draws the choice of the struck side. A change of the side mirrors the whole scenario.
 fn side_ui(ui: &mut Ui, scenario: &mut ForceScenario) {
-    let hint = "The side on which the target is struck; the other side is the mirror image";
+    let hint = "The side on which the vehicle is struck; the other side is the mirror image";
     let name = ui.label("Struck side").on_hover_text(hint);
     ui.horizontal(|ui| {
         let mut side = scenario.side;
@@ -158,7 +158,7 @@ fn contact_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
     if let Some([x_m, _]) = scenario.contact_m {
         let range = SliderRange {
             label: "First contact x",
-            hint: "Where they first touch, along the target from its CG; the rear is negative",
+            hint: "Where they first touch, along the struck vehicle from its CG; rear negative",
             usual: -3.0..=1.0,
             possible: CONTACT_X,
         };
@@ -179,14 +179,14 @@ fn contact_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
     ui.end_row();
 }
 
-/// Draws the choice of the body of the bullet among those that the model was trained on, or
-/// unknown.
+/// Draws the choice of the body of the striking vehicle among those that the model was trained on,
+/// or unknown.
 fn body_ui(ui: &mut Ui, scenario: &mut ForceScenario, bodies: &[String]) {
-    let hint = "Shape of the bullet's front, as the data set calls it";
-    let name = ui.label("Bullet body").on_hover_text(hint);
+    let hint = "Shape of the striking vehicle's front, as the data set calls it";
+    let name = ui.label("Striking body").on_hover_text(hint);
     let label = |body: &Option<String>| body.clone().unwrap_or_else(|| "unknown".to_owned());
     let known = bodies.iter().filter(|body| !body.is_empty());
-    ComboBox::from_id_salt("bullet body")
+    ComboBox::from_id_salt("striking body")
         .selected_text(label(&scenario.striking_body))
         .show_ui(ui, |ui| {
             for option in std::iter::once(None).chain(known.map(|body| Some(body.clone()))) {

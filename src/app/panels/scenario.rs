@@ -66,7 +66,8 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let Some(scenario) = impact.scenario.inline_mut() else { return };
         contact_form(ui, (&mut scenario.contact, &mut pulse), view.units);
         let Scenario { ending, striking_ending, .. } = scenario;
-        for (vehicle, ending) in [("target", ending), ("bullet", striking_ending)] {
+        for (vehicle, ending) in [("struck vehicle", ending), ("striking vehicle", striking_ending)]
+        {
             ending_form(ui, vehicle, (ending, &mut beside.steering_ratio), view.units);
         }
         vehicles_form(ui, scenario, view.units);
@@ -76,7 +77,7 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 fn vehicles_form(ui: &mut Ui, scenario: &mut Scenario, units: UnitSystem) {
     let Scenario { struck, striking, .. } = scenario;
-    for (title, vehicle) in [("Target (struck)", struck), ("Bullet (strikes)", striking)] {
+    for (title, vehicle) in [("Struck vehicle", struck), ("Striking vehicle", striking)] {
         egui::CollapsingHeader::new(title).default_open(true).show(ui, |ui| {
             Grid::new(title).num_columns(2).show(ui, |ui| vehicle_form(ui, vehicle, units));
         });
@@ -199,8 +200,8 @@ fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem)
             length(ui, "Offset from its middle", offset_m, &CONTACT_OFFSET);
         }
         ContactLocation::Footprints { striking_x_world_m, striking_y_world_m } => {
-            length(ui, "Bullet's CG, X", striking_x_world_m, &POSITION);
-            length(ui, "Bullet's CG, Y", striking_y_world_m, &POSITION);
+            length(ui, "Striking CG, X", striking_x_world_m, &POSITION);
+            length(ui, "Striking CG, Y", striking_y_world_m, &POSITION);
         }
         ContactLocation::Point {
             x_body_m,
@@ -212,8 +213,8 @@ fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem)
             length(ui, "Contact ahead of CG", x_body_m, &CONTACT_COORDINATE);
             length(ui, "Contact left of CG", y_body_m, &CONTACT_COORDINATE);
             quantity_field(ui, "Normal", normal_body_rad, (&HEADING, units));
-            length(ui, "Bullet's CG, X", striking_x_world_m, &POSITION);
-            length(ui, "Bullet's CG, Y", striking_y_world_m, &POSITION);
+            length(ui, "Striking CG, X", striking_x_world_m, &POSITION);
+            length(ui, "Striking CG, Y", striking_y_world_m, &POSITION);
         }
     }
 }

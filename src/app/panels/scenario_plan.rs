@@ -35,7 +35,7 @@ enum Handle {
 #[derive(Debug, Clone)]
 struct Drag {
     handle: Handle,
-    is_target: bool,
+    is_struck: bool,
     /// The scenario when the drag began.
     before: Scenario,
     /// The view, which stays while something is dragged.
@@ -79,8 +79,8 @@ pub fn scenario_plan_ui(
     };
     let drag = drag.or_else(|| {
         let reach_m = unit.to_si(response.x_per_point * REACH);
-        let (is_target, handle) = nearest_handle(scenario, from, reach_m)?;
-        Some(Drag { handle, is_target, before: scenario.clone(), view: response.view })
+        let (is_struck, handle) = nearest_handle(scenario, from, reach_m)?;
+        Some(Drag { handle, is_struck, before: scenario.clone(), view: response.view })
     });
     if let Some(drag) = drag {
         if from != to {
@@ -96,12 +96,12 @@ impl Drag {
         let moved = [to[0] - from[0], to[1] - from[1]];
         let before = &self.before;
         let [struck, striking] = poses(before);
-        let pose = if self.is_target { struck } else { striking };
+        let pose = if self.is_struck { struck } else { striking };
         let Some(pose) = pose else { return };
-        let vehicle = if self.is_target { &mut scenario.struck } else { &mut scenario.striking };
+        let vehicle = if self.is_struck { &mut scenario.struck } else { &mut scenario.striking };
         let (dx, dy) = (to[0] - pose.x_m, to[1] - pose.y_m);
         match self.handle {
-            Handle::Position if self.is_target => {
+            Handle::Position if self.is_struck => {
                 let place =
                     [before.struck_x_world_m + moved[0], before.struck_y_world_m + moved[1]];
                 if place.iter().all(|value| POSITION.contains(*value)) {
@@ -125,7 +125,7 @@ impl Drag {
     }
 }
 
-/// Moves the bullet, in the way in which the scenario places it.
+/// Moves the striking vehicle, in the way in which the scenario places it.
 fn move_striking(before: &Scenario, [dx, dy]: [f64; 2], location: &mut ContactLocation) {
     match (before.contact.location, location) {
         (
@@ -164,7 +164,8 @@ fn rounded(value: f64, step: f64) -> f64 {
     (value / step).round() * step
 }
 
-/// Poses of target and bullet. The bullet has none where it is placed so that it touches, and cannot.
+/// Poses of the struck and the striking vehicle. The striking vehicle has none where it is placed
+/// so that it touches, and cannot.
 fn poses(scenario: &Scenario) -> [Option<Pose>; 2] {
     if let Ok(geometry) = scenario.geometry() {
         return [Some(geometry.struck), Some(geometry.striking)];
@@ -198,13 +199,14 @@ fn handles(vehicle: &ScenarioVehicle, pose: &Pose) -> [(Handle, [f64; 2]); 3] {
     ]
 }
 
-/// The handle that is nearest to a point, if one is within reach: whether it is of the target, and which.
+/// The handle that is nearest to a point, if one is within reach: whether it is of the struck
+/// vehicle, and which.
 fn nearest_handle(scenario: &Scenario, [x, y]: [f64; 2], reach_m: f64) -> Option<(bool, Handle)> {
     let [struck, striking] = poses(scenario);
-    let of = |is_target: bool, vehicle: &ScenarioVehicle, pose: Option<Pose>| {
+    let of = |is_struck: bool, vehicle: &ScenarioVehicle, pose: Option<Pose>| {
         let places = pose.into_iter().flat_map(|pose| handles(vehicle, &pose));
         let apart =
-            places.map(move |(handle, [px, py])| ((px - x).hypot(py - y), (is_target, handle)));
+            places.map(move |(handle, [px, py])| ((px - x).hypot(py - y), (is_struck, handle)));
         apart.collect::<Vec<_>>()
     };
     let all =
@@ -218,8 +220,8 @@ fn outlines_figure(scenario: &Scenario, units: UnitSystem) -> Figure {
     let x = Axis::shown("X, along the road", Quantity::Length, units);
     let y = Axis::shown("Y, to the left", Quantity::Length, units);
     let vehicles = [
-        ("target", Role::Simulation, &scenario.struck),
-        ("bullet", Role::Striking, &scenario.striking),
+        ("struck vehicle", Role::Simulation, &scenario.struck),
+        ("striking vehicle", Role::Striking, &scenario.striking),
     ];
     let placed = vehicles.into_iter().zip(poses(scenario));
     let elements = placed.filter_map(|((name, role, vehicle), pose)| {
@@ -236,8 +238,8 @@ fn with_handles(mut figure: Figure, scenario: &Scenario) -> Figure {
     let unit = figure.x.unit;
     let shown = |point: [f64; 2]| point.map(|value| unit.from_si(value));
     let vehicles = [
-        ("target", Role::Simulation, &scenario.struck),
-        ("bullet", Role::Striking, &scenario.striking),
+        ("struck vehicle", Role::Simulation, &scenario.struck),
+        ("striking vehicle", Role::Striking, &scenario.striking),
     ];
     for ((name, role, vehicle), pose) in vehicles.into_iter().zip(poses(scenario)) {
         let Some(pose) = pose else { continue };
@@ -255,19 +257,19 @@ fn with_handles(mut figure: Figure, scenario: &Scenario) -> Figure {
 mod tests {
     use super::*;
 
-    fn dragged(handle: Handle, is_target: bool, to: [f64; 2]) -> Scenario {
+    fn dragged(handle: Handle, is_struck: bool, to: [f64; 2]) -> Scenario {
         let mut scenario = Scenario::example();
         let [struck, striking] = poses(&scenario).map(Option::unwrap);
-        let (vehicle, pose) = match is_target {
+        let (vehicle, pose) = match is_struck {
             true => (&scenario.struck, struck),
             false => (&scenario.striking, striking),
         };
         let places = handles(vehicle, &pose);
         let from = places.iter().find(|(of, _)| *of == handle).unwrap().1;
         let found = nearest_handle(&scenario, from, 0.1);
-        assert_eq!(found, Some((is_target, handle)));
+        assert_eq!(found, Some((is_struck, handle)));
         let view = [[0.0; 2]; 2];
-        let drag = Drag { handle, is_target, before: scenario.clone(), view };
+        let drag = Drag { handle, is_struck, before: scenario.clone(), view };
         drag.apply([from, [from[0] + to[0], from[1] + to[1]]], &mut scenario);
         scenario
     }
@@ -284,10 +286,10 @@ mod tests {
         let ContactLocation::Side { offset_m, .. } =
             dragged(Handle::Position, false, [0.2, 3.0]).contact.location
         else {
-            unreachable!("the example places the bullet at a side")
+            unreachable!("the example places the striking vehicle at a side")
         };
         let ContactLocation::Side { offset_m: start, .. } = before.contact.location else {
-            unreachable!("the example places the bullet at a side")
+            unreachable!("the example places the striking vehicle at a side")
         };
         assert!((offset_m - start - 0.2).abs() < 1e-3, "{start} to {offset_m}");
     }

@@ -17,7 +17,7 @@ use impactlab_study::{EvaluateForceRequest, ForceEvaluation};
 /// What is known of a scenario.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum ColumnsArg {
-    /// Masses, velocities, angle, contact point, bullet body
+    /// Masses, velocities, angle, contact point, body of the striking vehicle
     Full,
     /// Masses, velocities, angle: the rest is left open
     Theta,

@@ -29,8 +29,8 @@ const EXAMPLES: &str = "\
 Example:
   impactlab impact pit-right-rear --units us
 
-The impulse acts ON the target. World axes: X along the road, Y to the left; yaw to the left is
-positive. PDOF: clockwise from straight ahead, where the force comes from.
+The impulse acts ON the struck vehicle. World axes: X along the road, Y to the left; yaw to the
+left is positive. PDOF: clockwise from straight ahead, where the force comes from.
 
 JSON: name, restitution, restitution_form, friction_limit, friction_of_critical,
   critical_impulse_ratio, friction_model, regime, impulse_n_s [x, y], impulse_magnitude_n_s, impulse_normal_n_s,

@@ -29,7 +29,7 @@ pub(in crate::cli) struct PredictForceArgs {
     /// The case of the data set
     #[arg(long, value_name = "NAME", requires = "dataset")]
     case: Option<String>,
-    /// Kind of bullet body, as the training data name it; left open if not given
+    /// Kind of body of the striking vehicle, as the training data name it; left open if not given
     #[arg(long, value_name = "NAME")]
     body: Option<String>,
     /// Leave the contact point open: it is drawn from that of the training cases

@@ -51,11 +51,11 @@ pub enum FootprintError {
         /// Gap between the outlines along the axis on which they are furthest apart, m.
         gap_m: f64,
     },
-    /// The outlines overlap so deeply that the side that was struck cannot be told.
+    /// The outlines overlap so deeply that the side that was struck cannot be determined.
     #[error(
         "the outlines overlap by {depth_m:.3} m, {time_s:.2} s of their approach: which side was \
-         struck cannot be told; place the bullet where it first touches, or give contact point and \
-         normal"
+         struck cannot be determined; place the striking vehicle where it first touches, or give \
+         contact point and normal"
     )]
     TooDeep {
         /// Overlap along the normal of first contact, m.

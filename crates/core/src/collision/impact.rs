@@ -116,8 +116,8 @@ impl RestitutionForm {
 /// The contact surface between the two vehicles: its direction, restitution and friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSurface<T = f64> {
-    /// Angle Γ of the contact normal in world axes, rad. The normal points INTO the target, which
-    /// is the direction in which the bullet pushes.
+    /// Angle Γ of the contact normal in world axes, rad. The normal points INTO the struck vehicle,
+    /// which is the direction in which the striking vehicle pushes.
     pub normal_angle_world_rad: T,
     /// Coefficient of restitution e, 0 to 1.
     pub restitution: T,
@@ -189,7 +189,7 @@ pub struct BodyAfter<T = f64> {
 /// Solution of an impact: the impulse and the quantities that follow from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImpactSolution<T = f64> {
-    /// Impulse on the target in world axes, N s.
+    /// Impulse on the struck vehicle in world axes, N s.
     pub impulse_world_n_s: [T; 2],
     /// Component `P_n` of the impulse along the contact normal, N s, never negative.
     pub impulse_normal_n_s: T,
@@ -198,13 +198,13 @@ pub struct ImpactSolution<T = f64> {
     pub impulse_tangential_n_s: T,
     /// State of the contact at its end.
     pub regime: Regime,
-    /// Velocity of the contact point of the bullet relative to that of the target before the
-    /// impact, `[normal, tangential]`, m/s. The normal component is positive if the points approach
-    /// each other.
+    /// Velocity of the contact point of the striking vehicle relative to that of the struck vehicle
+    /// before the impact, `[normal, tangential]`, m/s. The normal component is positive if the
+    /// points approach each other.
     pub closing_velocity_m_s: [T; 2],
-    /// Motion of the target after the impact.
+    /// Motion of the struck vehicle after the impact.
     pub struck: BodyAfter<T>,
-    /// Motion of the bullet after the impact.
+    /// Motion of the striking vehicle after the impact.
     pub striking: BodyAfter<T>,
     /// Kinetic energy of both vehicles that the impact dissipates, J.
     pub dissipated_energy_j: T,
@@ -216,7 +216,8 @@ pub enum ImpactError {
     /// An input is out of range or not finite.
     #[error("{part}: {name} is {value}, expected {expected}")]
     Range {
-        /// The part of the impact to which the input belongs: target, bullet or contact.
+        /// The part of the impact to which the input belongs: struck vehicle, striking vehicle or
+        /// contact.
         part: &'static str,
         /// Name of the input.
         name: &'static str,
@@ -256,8 +257,8 @@ impl<T: Scalar> Impact<T> {
         k
     }
 
-    /// Velocity of the contact point of the bullet relative to that of the target before the
-    /// impact, in world axes, m/s.
+    /// Velocity of the contact point of the striking vehicle relative to that of the struck vehicle
+    /// before the impact, in world axes, m/s.
     pub fn relative_velocity_m_s(&self) -> [T; 2] {
         let [tx, ty] = self.struck.contact_velocity_m_s();
         let [bx, by] = self.striking.contact_velocity_m_s();
@@ -338,8 +339,8 @@ impl<T: Scalar> Impact<T> {
         (self.closing_velocity_m_s()[0].re() > 0.0 && p_n.re() > 0.0).then(|| (p_t / p_n).abs())
     }
 
-    /// The solution that follows from an impulse on the target with the components `[P_n, P_τ]`, N
-    /// s.
+    /// The solution that follows from an impulse on the struck vehicle with the components `[P_n,
+    /// P_τ]`, N s.
     fn apply(&self, [p_n, p_t]: [T; 2], closing: [T; 2], regime: Regime) -> ImpactSolution<T> {
         let normal = self.surface.normal();
         let tangent = perpendicular(normal);
@@ -401,10 +402,10 @@ impl Impact<f64> {
 /// v_rel(0) − K ∫₀ᵗ F dt` for rigid bodies. The paper's `½ m_eff V_rel² (1 − e²)`
 /// (`eq:physic_cons2`) is the special case of a central impact along the normal.
 ///
-/// - `relative_velocity_m_s`: velocity of the contact point of the bullet relative to that of the
-///   target before the impact, m/s;
+/// - `relative_velocity_m_s`: velocity of the contact point of the striking vehicle relative to
+///   that of the struck vehicle before the impact, m/s;
 /// - `inverse_mass_1_kg`: inverse mass matrix `[2, 2]` of [`Impact::inverse_mass_1_kg`], 1/kg;
-/// - `impulse_n_s`: impulse on the target, N s.
+/// - `impulse_n_s`: impulse on the struck vehicle, N s.
 ///
 /// All three arguments are in the same axes.
 pub fn contact_work_j<T: Scalar>(

@@ -8,33 +8,35 @@ use crate::collision::{
 };
 
 /// One row of a table of impacts, as in the shipped finite-element cases. The world axes are the
-/// body axes of the target at first contact.
+/// body axes of the struck vehicle at first contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImpactCase {
-    /// Mass of the target, kg.
+    /// Mass of the struck vehicle, kg.
     pub m_t_kg: f64,
-    /// Mass of the bullet, kg.
+    /// Mass of the striking vehicle, kg.
     pub m_b_kg: f64,
-    /// Velocity `[x, y]` of the CG of the target before the impact, m/s.
+    /// Velocity `[x, y]` of the CG of the struck vehicle before the impact, m/s.
     pub v_t_m_s: [f64; 2],
-    /// Velocity `[x, y]` of the CG of the bullet before the impact, m/s.
+    /// Velocity `[x, y]` of the CG of the striking vehicle before the impact, m/s.
     pub v_b_m_s: [f64; 2],
-    /// Heading of the bullet relative to that of the target, rad, counter-clockwise positive.
+    /// Heading of the striking vehicle relative to that of the struck vehicle, rad,
+    /// counter-clockwise positive.
     pub theta_b_rad: f64,
-    /// Yaw moment of inertia of the target about its CG, kg m².
+    /// Yaw moment of inertia of the struck vehicle about its CG, kg m².
     pub izz_t_kg_m2: f64,
-    /// Yaw moment of inertia of the bullet about its CG, kg m².
+    /// Yaw moment of inertia of the striking vehicle about its CG, kg m².
     pub izz_b_kg_m2: f64,
-    /// Position `[x, y]` of the contact point relative to the CG of the target, m.
+    /// Position `[x, y]` of the contact point relative to the CG of the struck vehicle, m.
     pub contact_m: [f64; 2],
-    /// Position `[x, y]` of the CG of the bullet relative to the CG of the target, m.
+    /// Position `[x, y]` of the CG of the striking vehicle relative to the CG of the struck
+    /// vehicle, m.
     pub striking_m: [f64; 2],
 }
 
 impl ImpactCase {
     /// The planar impact of the case. The contact normal is perpendicular to the longitudinal axis
-    /// of the target and points into it from the side of the contact point. The yaw rates before
-    /// the impact are zero.
+    /// of the struck vehicle and points into it from the side of the contact point. The yaw rates
+    /// before the impact are zero.
     ///
     /// - `restitution`: coefficient of restitution e, 0 to 1;
     /// - `friction_limit`: friction limit μ_c, 0 or more.

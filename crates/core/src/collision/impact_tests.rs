@@ -305,8 +305,8 @@ fn common_velocity_work_j(impact: &Impact) -> f64 {
     (d * x * x - 2.0 * b * x * y + a * y * y) / (2.0 * (a * d - b * b))
 }
 
-/// The same impact in dual numbers, for the derivative with respect to the velocity of the bullet
-/// along X.
+/// The same impact in dual numbers, for the derivative with respect to the velocity of the striking
+/// vehicle along X.
 fn dual(impact: &Impact) -> Impact<Dual64> {
     let body = |body: &ImpactBody| ImpactBody {
         mass_kg: body.mass_kg.into(),

@@ -53,7 +53,7 @@ impl Impact<f64> {
     ///
     /// Only the normal of the contact surface is used.
     ///
-    /// - `impulse_n_s`: impulse on the target in world axes, N s.
+    /// - `impulse_n_s`: impulse on the struck vehicle in world axes, N s.
     /// - returns `None` if the contact points do not approach each other before the impact, or if
     ///   the normal component of the impulse is not positive.
     pub fn implied_contact(&self, impulse_n_s: [f64; 2]) -> Option<ImpliedContact> {

@@ -17,7 +17,7 @@
 //! let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenarios/pit_right_rear.toml");
 //! let scenario = Scenario::load(file.as_ref())?;
 //! let solution = scenario.solve()?;
-//! assert!(solution.target.yaw_rate_rad_s < 0.0, "the tail goes left, the nose right");
+//! assert!(solution.struck.yaw_rate_rad_s < 0.0, "the tail goes left, the nose right");
 //!
 //! let pulse = Pulse::new(PulseShape::Haversine, solution.impulse_n_s, 0.0, 0.1)?;
 //! let force = pulse.to_history(0.001)?;

@@ -32,9 +32,10 @@ const MIN_CLOSING_M_S: f64 = 1e-6;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StruckSurface {
-    /// A side of the target, which is struck by a corner or a side of the bullet.
-    Target(Side),
-    /// A side of the bullet, into which a corner of the target penetrates.
+    /// A side of the struck vehicle, which is struck by a corner or a side of the striking vehicle.
+    #[serde(rename = "target")]
+    Struck(Side),
+    /// A side of the striking vehicle, into which a corner of the struck vehicle penetrates.
     #[serde(rename = "bullet")]
     Striking(Side),
 }
@@ -43,8 +44,8 @@ impl fmt::Display for StruckSurface {
     /// Where the normal points, for a person.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Target(side) => write!(f, "into the target's {}", side.label()),
-            Self::Striking(side) => write!(f, "out of the bullet's {}", side.label()),
+            Self::Struck(side) => write!(f, "into the struck vehicle's {}", side.label()),
+            Self::Striking(side) => write!(f, "out of the striking vehicle's {}", side.label()),
         }
     }
 }
@@ -54,7 +55,7 @@ impl fmt::Display for StruckSurface {
 pub struct Contact {
     /// Contact point in world axes, m.
     pub point_world_m: [f64; 2],
-    /// Angle Γ of the contact normal in world axes, rad. The normal points INTO the target.
+    /// Angle Γ of the contact normal in world axes, rad. The normal points INTO the struck vehicle.
     pub normal_angle_world_rad: f64,
     /// Overlap of the outlines along the normal, m. A negative value is the gap between them.
     pub depth_m: f64,
@@ -119,7 +120,7 @@ impl MovingFootprint {
 #[derive(Clone, Copy)]
 struct Candidate {
     depth_m: f64,
-    /// Into the target.
+    /// Into the struck vehicle.
     normal_world: [f64; 2],
     surface: StruckSurface,
 }
@@ -142,9 +143,9 @@ pub fn overlap_centre_m(struck: &MovingFootprint, striking: &MovingFootprint) ->
 ///
 /// Outlines that touch, with an overlap up to [`TOUCH_TOLERANCE_M`], have the normal of that side,
 /// of either vehicle, along whose normal the overlap is smallest; if two sides are equal, a side of
-/// the target is preferred. Outlines that overlap more are moved back along the relative velocity
-/// at the contact point to where they first touched: the normal is that of the side whose overlap
-/// divided by its closing speed is smallest,
+/// the struck vehicle is preferred. Outlines that overlap more are moved back along the relative
+/// velocity at the contact point to where they first touched: the normal is that of the side whose
+/// overlap divided by its closing speed is smallest,
 ///
 /// ```text
 /// min over sides with v_rel·n > 0 of depth / (v_rel·n)
@@ -182,7 +183,8 @@ pub fn find_contact(
     let pushed = striking.corners_m().map(|[x, y]| [x + push * normal[0], y + push * normal[1]]);
     let [x, y] = centroid(&clip(&struck.corners_m(), &pushed))
         .ok_or(FootprintError::Apart { gap_m: -depth_m })?;
-    // The bullet alone was pushed, but the contact point lies midway between the vehicles.
+    // The striking vehicle alone was pushed, but the contact point lies midway between the
+    // vehicles.
     let point_world_m = [x - push / 2.0 * normal[0], y - push / 2.0 * normal[1]];
     let touched = if depth_m > TOUCH_TOLERANCE_M {
         let ([tx, ty], [bx, by]) =
@@ -204,7 +206,7 @@ pub fn find_contact(
     })
 }
 
-/// The four sides of the target, then those of the bullet.
+/// The four sides of the struck vehicle, then those of the striking vehicle.
 fn candidates(struck: &MovingFootprint, striking: &MovingFootprint) -> [Candidate; 8] {
     let (struck_m, striking_m) = (struck.corners_m(), striking.corners_m());
     let [front, left, rear, right] = Side::ALL;
@@ -212,7 +214,7 @@ fn candidates(struck: &MovingFootprint, striking: &MovingFootprint) -> [Candidat
         let outward = direction(struck.pose.yaw_rad + side.outward_angle_rad());
         let inward = outward.map(|c| -c);
         let depth_m = reach(&struck_m, outward) + reach(&striking_m, inward);
-        Candidate { depth_m, normal_world: inward, surface: StruckSurface::Target(side) }
+        Candidate { depth_m, normal_world: inward, surface: StruckSurface::Struck(side) }
     };
     let of_striking = |side: Side| {
         let outward = direction(striking.pose.yaw_rad + side.outward_angle_rad());
@@ -232,7 +234,7 @@ fn candidates(struck: &MovingFootprint, striking: &MovingFootprint) -> [Candidat
 }
 
 /// The side with the smallest overlap. Sides of equal overlap up to rounding do not replace a side
-/// of the target.
+/// of the struck vehicle.
 fn shallowest_of(candidates: &[Candidate; 8]) -> Candidate {
     let [first, others @ ..] = candidates;
     others.iter().fold(
@@ -245,7 +247,8 @@ fn shallowest_of(candidates: &[Candidate; 8]) -> Candidate {
 
 /// The side at which outlines that overlap first touched.
 ///
-/// - `approach_m_s`: velocity of the bullet relative to the target at the contact point.
+/// - `approach_m_s`: velocity of the striking vehicle relative to the struck vehicle at the contact
+///   point.
 fn first_touch<'a>(
     candidates: &'a [Candidate; 8],
     shallowest: Candidate,
@@ -256,7 +259,7 @@ fn first_touch<'a>(
     let closing = candidates
         .iter()
         .filter(|candidate| dot(approach_m_s, candidate.normal_world) > MIN_CLOSING_M_S);
-    // As for the smallest overlap, a side of the target stays where two are equal.
+    // As for the smallest overlap, a side of the struck vehicle stays where two are equal.
     let earlier = |best: &'a Candidate, other: &'a Candidate| {
         if time_s(other) < time_s(best) - 1e-9 { other } else { best }
     };
@@ -272,18 +275,19 @@ fn first_touch<'a>(
     Ok(*first)
 }
 
-/// Computes the pose of a bullet of given heading that just touches a side of the target.
+/// Computes the pose of a striking vehicle of given heading that just touches a side of the struck
+/// vehicle.
 ///
-/// The point of the bullet that is furthest in the direction into the target lies on the struck
-/// side. It is a corner of the bullet, or the midpoint of a side of the bullet that is parallel to
-/// the struck side.
+/// The point of the striking vehicle that is furthest in the direction into the struck vehicle lies
+/// on the struck side. It is a corner of the striking vehicle, or the midpoint of a side of the
+/// striking vehicle that is parallel to the struck side.
 ///
-/// - `side`: struck side of the target.
+/// - `side`: side on which the struck vehicle is hit.
 /// - `offset_m`: position of the touching point relative to the midpoint of the struck side, m,
-///   positive along the x axis of the target for its left and right side and along its y axis for
-///   its front and rear. A bullet at the right rear quarter of the target has the side
-///   [`Side::Right`] and a negative offset.
-/// - `heading_rad`: heading of the bullet in world axes, rad.
+///   positive along the x axis of the struck vehicle for its left and right side and along its y
+///   axis for its front and rear. A striking vehicle at the right rear quarter of the struck
+///   vehicle has the side [`Side::Right`] and a negative offset.
+/// - `heading_rad`: heading of the striking vehicle in world axes, rad.
 ///
 /// # Errors
 /// [`FootprintError::Apart`] if the offset lies so far beyond the end of the side that the outlines

@@ -16,7 +16,7 @@ fn still(struck: Pose, striking: Pose) -> Result<Contact, FootprintError> {
 fn a_rear_end_hit_touches_in_the_middle_of_the_shared_width() {
     let (struck, striking) = (pose(0.0, 0.0, 0.0), pose(-4.8, 0.6, 0.0));
     let contact = still(struck, striking).unwrap();
-    assert_eq!(contact.surface, StruckSurface::Target(Side::Rear));
+    assert_eq!(contact.surface, StruckSurface::Struck(Side::Rear));
     assert!(contact.normal_angle_world_rad.abs() < 1e-12, "{contact:?}");
     assert!((contact.point_world_m[0] + 2.6).abs() < 1e-9, "{contact:?}");
     assert!((contact.point_world_m[1] - 0.3).abs() < 1e-9, "{contact:?}");
@@ -29,7 +29,7 @@ fn a_pit_touches_at_the_striking_vehicles_corner_with_the_normal_across_the_stru
         let heading_rad = (30.0_f64 + theta_deg).to_radians();
         let striking = place_touching(&CAR, &struck, side, -1.2, &CAR, heading_rad).unwrap();
         let contact = still(struck, striking).unwrap();
-        assert_eq!(contact.surface, StruckSurface::Target(side));
+        assert_eq!(contact.surface, StruckSurface::Struck(side));
         let normal = contact.normal_angle_world_rad.to_degrees();
         assert!((normal - 30.0 - normal_deg).abs() < 1e-9, "{contact:?}");
         assert!(contact.depth_m.abs() < 1e-9, "{contact:?}");
@@ -71,7 +71,8 @@ fn vehicles_apart_are_refused() {
     assert!(still(here, pose(f64::NAN, 2.3, 0.0)).is_err());
 }
 
-/// Two cars, of which the bullet approaches with `velocity_m_s` relative to the target.
+/// Two cars, of which the striking vehicle approaches with `velocity_m_s` relative to the struck
+/// vehicle.
 fn approaching(striking: Pose, velocity_world_m_s: [f64; 2]) -> Result<Contact, FootprintError> {
     let struck = MovingFootprint::at_rest(CAR, pose(0.0, 0.0, 0.0));
     let striking =
@@ -85,16 +86,17 @@ fn approaching(striking: Pose, velocity_world_m_s: [f64; 2]) -> Result<Contact, 
 fn a_growing_overlap_keeps_the_normal_of_the_approach() {
     for overlap_cm in 1..=115 {
         let overlap_m = f64::from(overlap_cm) / 100.0;
-        // A push at the right rear quarter, the bullet's front 0.6 m ahead of the target's rear.
+        // A push at the right rear quarter, the striking vehicle's front 0.6 m ahead of the struck
+        // vehicle's rear.
         let pit = approaching(pose(-4.2, -1.8 + overlap_m, 0.0), [0.5, 6.0]).unwrap();
-        assert_eq!(pit.surface, StruckSurface::Target(Side::Right), "{overlap_m}");
+        assert_eq!(pit.surface, StruckSurface::Struck(Side::Right), "{overlap_m}");
         assert!((pit.depth_m - overlap_m).abs() < 1e-9, "{pit:?}");
         // The same from behind, with little of the widths shared.
         let rear = approaching(pose(-4.8 + overlap_m, -1.2, 0.0), [8.0, 0.3]).unwrap();
-        assert_eq!(rear.surface, StruckSurface::Target(Side::Rear), "{overlap_m}");
-        // A bullet that comes from the right at a right angle into the front wing.
+        assert_eq!(rear.surface, StruckSurface::Struck(Side::Rear), "{overlap_m}");
+        // A striking vehicle that comes from the right at a right angle into the front wing.
         let cross = approaching(pose(2.0, -3.1 + overlap_m, 90.0), [-3.0, 10.0]).unwrap();
-        assert_eq!(cross.surface, StruckSurface::Target(Side::Right), "{overlap_m}");
+        assert_eq!(cross.surface, StruckSurface::Struck(Side::Right), "{overlap_m}");
     }
 }
 
@@ -105,7 +107,7 @@ fn an_overlap_that_no_contact_brings_about_is_refused() {
     let error = approaching(pose(-0.5, -1.3, 0.0), [5.0, 0.0]).unwrap_err();
     assert!(matches!(error, FootprintError::TooDeep { .. }), "{error}");
     assert!(error.to_string().starts_with("the outlines overlap by 4.300 m, 0.86 s"), "{error}");
-    // The bullet's CG has passed that of the target.
+    // The striking vehicle's CG has passed that of the struck vehicle.
     let error = approaching(pose(0.3, -0.2, 0.0), [40.0, 1.0]).unwrap_err();
     assert!(matches!(error, FootprintError::TooDeep { .. }), "{error}");
 }
@@ -114,11 +116,11 @@ fn an_overlap_that_no_contact_brings_about_is_refused() {
 fn the_approach_is_that_of_the_contact_points() {
     let struck = MovingFootprint::at_rest(CAR, pose(0.0, 0.0, 0.0));
     let at = MovingFootprint::at_rest(CAR, pose(-4.2, -1.1, 0.0));
-    // The bullet's front swings to the left with no velocity of its CG.
+    // The striking vehicle's front swings to the left with no velocity of its CG.
     let swinging = MovingFootprint { yaw_rate_rad_s: 3.0, ..at };
     let contact = find_contact(&struck, &swinging).unwrap();
-    assert_eq!(contact.surface, StruckSurface::Target(Side::Right));
-    assert_eq!(find_contact(&struck, &at).unwrap().surface, StruckSurface::Target(Side::Rear));
+    assert_eq!(contact.surface, StruckSurface::Struck(Side::Right));
+    assert_eq!(find_contact(&struck, &at).unwrap().surface, StruckSurface::Struck(Side::Rear));
 }
 
 proptest! {

@@ -98,7 +98,7 @@ impl PulseShape {
 impl Pulse {
     /// Creates a pulse that carries a given impulse.
     ///
-    /// - `impulse_n_s`: impulse on the target in world axes, N s, any finite numbers;
+    /// - `impulse_n_s`: impulse on the struck vehicle in world axes, N s, any finite numbers;
     /// - `start_s`: time of first contact, s, 0 or more;
     /// - `duration_s`: duration of the contact, s, more than 0.
     ///
@@ -124,7 +124,7 @@ impl Pulse {
         Ok(Self { shape, impulse_world_n_s, start_s, duration_s })
     }
 
-    /// Force on the target at a time, in world axes, N.
+    /// Force on the struck vehicle at a time, in world axes, N.
     ///
     /// ```text
     /// F(t) = P / Δt · density((t − start) / Δt)
@@ -134,8 +134,8 @@ impl Pulse {
         self.impulse_world_n_s.map(|p| p / self.duration_s * height)
     }
 
-    /// Impulse on the target from the start of the pulse up to a time, in closed form, in world
-    /// axes, N s.
+    /// Impulse on the struck vehicle from the start of the pulse up to a time, in closed form, in
+    /// world axes, N s.
     pub fn impulse_until_n_s(&self, time_s: f64) -> [f64; 2] {
         let area = self.shape.cumulative((time_s - self.start_s) / self.duration_s);
         self.impulse_world_n_s.map(|p| p * area)

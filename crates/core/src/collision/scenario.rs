@@ -61,46 +61,49 @@ pub struct ScenarioVehicle {
     pub yaw_rate_rad_s: f64,
 }
 
-/// The way in which a scenario specifies contact point, contact normal and position of the bullet.
+/// The way in which a scenario specifies contact point, contact normal and position of the striking
+/// vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "from", rename_all = "snake_case")]
 pub enum ContactLocation {
-    /// The position of the bullet is given. Contact point and normal follow from the outlines of
-    /// both vehicles ([`find_contact`]).
+    /// The position of the striking vehicle is given. Contact point and normal follow from the
+    /// outlines of both vehicles ([`find_contact`]).
     Footprints {
-        /// X coordinate of the CG of the bullet in world axes, m.
+        /// X coordinate of the CG of the striking vehicle in world axes, m.
         #[serde(rename = "bullet_x_m")]
         striking_x_world_m: f64,
-        /// Y coordinate of the CG of the bullet in world axes, m.
+        /// Y coordinate of the CG of the striking vehicle in world axes, m.
         #[serde(rename = "bullet_y_m")]
         striking_y_world_m: f64,
     },
-    /// The touching point on a side of the target is given. The bullet is placed so that it just
-    /// touches there ([`place_touching`]); contact point and normal follow from the outlines.
+    /// The touching point on a side of the struck vehicle is given. The striking vehicle is placed
+    /// so that it just touches there ([`place_touching`]); contact point and normal follow from the
+    /// outlines.
     Side {
-        /// Struck side of the target.
+        /// Side on which the struck vehicle is hit.
         side: Side,
         /// Position of the touching point relative to the midpoint of that side, m, positive along
-        /// the x axis of the target (left and right side) or along its y axis (front and rear).
+        /// the x axis of the struck vehicle (left and right side) or along its y axis (front and
+        /// rear).
         offset_m: f64,
     },
-    /// Contact point, normal and position of the bullet are all given by the user. The outlines are
-    /// not used.
+    /// Contact point, normal and position of the striking vehicle are all given by the user. The
+    /// outlines are not used.
     Point {
-        /// Coordinate x of the contact point in body axes of the target, from its CG, m.
+        /// Coordinate x of the contact point in body axes of the struck vehicle, from its CG, m.
         #[serde(rename = "x_m")]
         x_body_m: f64,
-        /// Coordinate y of the contact point in body axes of the target, from its CG, m.
+        /// Coordinate y of the contact point in body axes of the struck vehicle, from its CG, m.
         #[serde(rename = "y_m")]
         y_body_m: f64,
-        /// Angle of the contact normal in body axes of the target, rad. The normal points into the
-        /// target.
+        /// Angle of the contact normal in body axes of the struck vehicle, rad. The normal points
+        /// into the struck vehicle.
         #[serde(rename = "normal_rad")]
         normal_body_rad: f64,
-        /// X coordinate of the CG of the bullet in world axes, m.
+        /// X coordinate of the CG of the striking vehicle in world axes, m.
         #[serde(rename = "bullet_x_m")]
         striking_x_world_m: f64,
-        /// Y coordinate of the CG of the bullet in world axes, m.
+        /// Y coordinate of the CG of the striking vehicle in world axes, m.
         #[serde(rename = "bullet_y_m")]
         striking_y_world_m: f64,
     },
@@ -109,7 +112,7 @@ pub enum ContactLocation {
 /// The contact of a scenario: its location, restitution and friction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ScenarioContact {
-    /// Specification of contact point, contact normal and position of the bullet.
+    /// Specification of contact point, contact normal and position of the striking vehicle.
     #[serde(flatten)]
     pub location: ContactLocation,
     /// Coefficient of restitution e, 0 to 1.
@@ -136,10 +139,10 @@ pub struct Scenario {
     pub name: String,
     /// Origin of the data, as free text for the user; may be empty.
     pub notes: String,
-    /// X coordinate of the CG of the target in world axes, m.
+    /// X coordinate of the CG of the struck vehicle in world axes, m.
     #[serde(rename = "target_x_m")]
     pub struck_x_world_m: f64,
-    /// Y coordinate of the CG of the target in world axes, m.
+    /// Y coordinate of the CG of the struck vehicle in world axes, m.
     #[serde(rename = "target_y_m")]
     pub struck_y_world_m: f64,
     /// The vehicle that is struck.
@@ -150,11 +153,11 @@ pub struct Scenario {
     pub striking: ScenarioVehicle,
     /// The contact between the two vehicles.
     pub contact: ScenarioContact,
-    /// What happens to the wheels of the target after the first contact; `None` if the scenario does
-    /// not say it.
+    /// What happens to the wheels of the struck vehicle after the first contact; `None` if the
+    /// scenario does not say it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ending: Option<Ending>,
-    /// The same of the bullet.
+    /// The same of the striking vehicle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[serde(rename = "bullet_ending")]
     pub striking_ending: Option<Ending>,
@@ -171,13 +174,13 @@ pub struct Scenario {
 /// Poses and contact of the two vehicles of a scenario, in world axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScenarioGeometry {
-    /// Pose of the target.
+    /// Pose of the struck vehicle.
     pub struck: Pose,
-    /// Pose of the bullet.
+    /// Pose of the striking vehicle.
     pub striking: Pose,
     /// Contact point, m.
     pub contact_point_world_m: [f64; 2],
-    /// Angle Γ of the contact normal, rad. The normal points into the target.
+    /// Angle Γ of the contact normal, rad. The normal points into the struck vehicle.
     pub normal_angle_world_rad: f64,
     /// Overlap of the outlines along the normal, m; negative for a gap within the tolerance. `None`
     /// if the user gave the contact ([`ContactLocation::Point`]), since the outlines are not used
@@ -196,20 +199,21 @@ pub enum ScenarioError {
     /// The impact has an input out of range, or no solution.
     #[error("the impact cannot be solved")]
     Impact(#[from] ImpactError),
-    /// The contact normal given by the user points away from the CG of the target; most likely it
-    /// was given in the opposite direction.
+    /// The contact normal given by the user points away from the CG of the struck vehicle; most
+    /// likely it was given in the opposite direction.
     #[error(
-        "the contact normal at {normal_deg:.1} deg points out of the target; \
-         it is the way the bullet pushes, {:.1} deg would point inwards", normal_deg + 180.0
+        "the contact normal at {normal_deg:.1} deg points out of the struck vehicle; \
+         it is the way the striking vehicle pushes, {:.1} deg would point inwards",
+        normal_deg + 180.0
     )]
     NormalPointsOut {
-        /// Angle of the given normal in body axes of the target, deg.
+        /// Angle of the given normal in body axes of the struck vehicle, deg.
         normal_deg: f64,
     },
     /// The contact point that the user gave does not lie at one of the vehicles.
     #[error("the vehicles do not touch there: {which}")]
     ContactOffOutline {
-        /// The vehicle: target or bullet.
+        /// The vehicle: struck or striking.
         which: &'static str,
         /// How far the point lies off.
         source: OffOutline,
@@ -220,11 +224,11 @@ pub enum ScenarioError {
          the friction; give friction_limit instead"
     )]
     NoCriticalRatio,
-    /// The contact point of an [`ImpactCase`](crate::collision::ImpactCase) lies on neither side of the target, so that the
-    /// direction of the normal is undefined.
-    #[error("contact_y_m is {contact_y_m}, expected a side of the target")]
+    /// The contact point of an [`ImpactCase`](crate::collision::ImpactCase) lies on neither side of
+    /// the struck vehicle, so that the direction of the normal is undefined.
+    #[error("contact_y_m is {contact_y_m}, expected a side of the struck vehicle")]
     NoSide {
-        /// Coordinate y of the contact point in body axes of the target, m.
+        /// Coordinate y of the contact point in body axes of the struck vehicle, m.
         contact_y_m: f64,
     },
 }
@@ -329,7 +333,7 @@ impl Scenario {
     /// # Errors
     /// [`ScenarioError::Footprint`] if the outlines make no contact or are out of range,
     /// [`ScenarioError::NormalPointsOut`] if a normal that the user gave points away from the CG of
-    /// the target.
+    /// the struck vehicle.
     pub fn geometry(&self) -> Result<ScenarioGeometry, ScenarioError> {
         let struck = Pose {
             x_m: self.struck_x_world_m,
@@ -360,9 +364,10 @@ impl Scenario {
                 }
                 let contact_point_world_m = struck.world_from_body([x_body_m, y_body_m]);
                 let striking = striking_at(striking_x_world_m, striking_y_world_m);
-                for (which, outline, pose) in
-                    [("target", outlines[0], &struck), ("bullet", outlines[1], &striking)]
-                {
+                for (which, outline, pose) in [
+                    ("struck vehicle", outlines[0], &struck),
+                    ("striking vehicle", outlines[1], &striking),
+                ] {
                     outline
                         .check_contact(pose.body_from_world(contact_point_world_m))
                         .map_err(|source| ScenarioError::ContactOffOutline { which, source })?;

@@ -13,22 +13,22 @@
 //! speed_km_h = 54             # along the heading; or vx_… and vy_… in world axes; _m_s, _mph …
 //! heading_deg = 0             # optional; heading_rad
 //! yaw_rate_deg_s = 0          # optional; yaw_rate_rad_s
-//! x_m = 0                     # optional for the target, part of the contact for the bullet
+//! x_m = 0                     # optional here, part of the contact in [bullet]
 //! y_m = 0
 //!
 //! [contact]
-//! from = "side"               # side and offset: the bullet is placed so that it touches
+//! from = "side"               # side and offset: the striking vehicle is placed so that it touches
 //! side = "right"              # front, left, rear, right
 //! offset_m = -1.5             # from the middle of that side
-//! # from = "footprints"       # bullet.x_m and bullet.y_m say where the bullet is
-//! # from = "point"            # x_m, y_m, normal_deg in the target's axes; bullet.x_m, bullet.y_m
+//! # from = "footprints"       # bullet.x_m and bullet.y_m say where it is
+//! # from = "point"            # x_m, y_m, normal_deg in axes of the struck car; bullet.x_m, …
 //! restitution = 0.15          # optional
 //! restitution_form = "normal" # optional; or "common_velocity"
 //! friction_limit = 0.4        # optional; or friction_of_critical, friction_of_critical_percent
 //! friction_model = "limit"    # optional; or "paper"
 //!
-//! # [ending]                  # optional: what happens to the target's wheels; see Ending::read
-//! # [bullet_ending]           # optional: the same of the bullet
+//! # [ending]                  # optional: wheels of the struck vehicle; see Ending::read
+//! # [bullet_ending]           # optional: the same of the striking vehicle
 //! ```
 //!
 //! Each quantity is given once, in any unit of

@@ -27,8 +27,8 @@ impl Scenario {
         }
     }
 
-    /// The example scenario with which the window starts: a PIT manoeuvre in which the bullet
-    /// strikes the right rear quarter of the target.
+    /// The example scenario with which the window starts: a PIT manoeuvre in which the striking
+    /// vehicle hits the right rear quarter of the struck vehicle.
     pub fn example() -> Self {
         match Self::from_toml(PIT_RIGHT_REAR, Path::new("pit-right-rear")) {
             Ok(scenario) => scenario,

@@ -109,14 +109,15 @@ mod tests {
 
     #[test]
     fn a_struck_that_slows_down_is_struck_again() {
-        // Apart at 2 m/s after the impact, then the target stops in front of the bullet.
+        // Apart at 2 m/s after the impact, then the struck vehicle stops in front of the striking
+        // vehicle.
         let struck = motion(|t| if t < 1.0 { 12.0 * t } else { 12.0 }, |_| 0.0);
         let striking = motion(|t| -4.8 + 10.0 * t, |_| 0.5);
         let second = meet(&struck, &striking).unwrap();
         assert!((second.time_s - 1.2).abs() < 1e-9, "{second:?}");
         assert!((second.closing_speed_m_s - 10.0).abs() < 1e-9, "{second:?}");
         assert!(second.was_apart);
-        // The target's rear at 12 m − 2.6 m, the middle of the shared width.
+        // The struck vehicle's rear at 12 m − 2.6 m, the middle of the shared width.
         assert!((second.point_m[0] - 9.4).abs() < 0.11, "{second:?}");
         assert!((second.point_m[1] - 0.25).abs() < 1e-9, "{second:?}");
     }

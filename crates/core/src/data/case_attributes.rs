@@ -57,38 +57,39 @@ const FORCE_COLUMNS: &[AttributeColumn] = &[
 
 const TRAJECTORY_COLUMNS: &[AttributeColumn] = &[SPEED_BEFORE, MU, AT_X, AT_Y, HEIGHT];
 
-/// The side of the target that is struck, as seen by its driver.
+/// The side on which the struck vehicle is hit, as seen by its driver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum StruckSide {
-    /// The left side of the target, +y in its body axes.
+    /// The left side of the struck vehicle, +y in its body axes.
     Left,
-    /// The right side of the target, −y in its body axes.
+    /// The right side of the struck vehicle, −y in its body axes.
     Right,
 }
 
 /// The attributes of a case of a force data set: two vehicles at the instant of first contact. The
-/// X axis of the world points along the heading of the target, Y to its left.
+/// X axis of the world points along the heading of the struck vehicle, Y to its left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceAttributes {
-    /// Masses of the target and of the bullet, kg.
+    /// Masses of the struck vehicle and of the striking vehicle, kg.
     pub mass_kg: [f64; 2],
-    /// Yaw moments of inertia of the target and of the bullet, kg m²; `None` where the table does
-    /// not give one.
+    /// Yaw moments of inertia of the struck vehicle and of the striking vehicle, kg m²; `None`
+    /// where the table does not give one.
     pub yaw_inertia_kg_m2: [Option<f64>; 2],
-    /// Velocity `[x, y]` of the centre of gravity of the target, world axes, m/s.
+    /// Velocity `[x, y]` of the centre of gravity of the struck vehicle, world axes, m/s.
     pub struck_velocity_m_s: [f64; 2],
-    /// Velocity `[x, y]` of the centre of gravity of the bullet, world axes, m/s.
+    /// Velocity `[x, y]` of the centre of gravity of the striking vehicle, world axes, m/s.
     pub striking_velocity_m_s: [f64; 2],
-    /// Heading of the bullet relative to that of the target, rad, counter-clockwise positive.
+    /// Heading of the striking vehicle relative to that of the struck vehicle, rad,
+    /// counter-clockwise positive.
     pub theta_b_rad: f64,
-    /// Point of first contact `[x, y]` in the body axes of the target, from its centre of gravity,
-    /// m.
+    /// Point of first contact `[x, y]` in the body axes of the struck vehicle, from its centre of
+    /// gravity, m.
     pub contact_m: [f64; 2],
     /// Height of the point of first contact above the road, m.
     pub contact_height_m: Option<f64>,
-    /// The struck side of the target.
+    /// The side on which the struck vehicle is hit.
     pub side: Option<StruckSide>,
-    /// Whether a corner of the bullet stays hooked to the target.
+    /// Whether a corner of the striking vehicle stays hooked to the struck vehicle.
     pub hooked: Option<bool>,
     /// Whether the vehicles are separated at the end of the record.
     pub separated: Option<bool>,

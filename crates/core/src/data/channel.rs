@@ -10,11 +10,11 @@ macro_rules! channels {
     ($($(#[$doc:meta])* $variant:ident: $name:literal, $quantity:ident, $label:literal, [$($alias:literal),*];)+) => {
         /// A quantity that is recorded over time in one column of a file.
         ///
-        /// Force and moment act ON the target. World axes are X along the road and Y to its left.
-        /// Body axes are the heading axes at the centre of gravity (ISO 8855: x forward, y left);
-        /// they turn with the yaw angle. Forces are in world axes unless the name says `Body`.
-        /// Velocity and acceleration are in body axes unless the name says `Target` or `Striking`:
-        /// those are in world axes.
+        /// Force and moment act ON the struck vehicle. World axes are X along the road and Y to its
+        /// left. Body axes are the heading axes at the centre of gravity (ISO 8855: x forward, y
+        /// left); they turn with the yaw angle. Forces are in world axes unless the name says
+        /// `Body`. Velocity and acceleration are in body axes unless the name says `Struck` or
+        /// `Striking`: those are in world axes.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
         pub enum Channel {
             $($(#[$doc])* $variant,)+
@@ -94,13 +94,13 @@ channels! {
     Fx: "fx_n", Force, "F_x", ["fx", "forcex", "xforce", "contactforcex", "fxworld", "kraftx"];
     /// Contact force along the Y axis of the world.
     Fy: "fy_n", Force, "F_y", ["fy", "forcey", "yforce", "contactforcey", "fyworld", "krafty"];
-    /// Contact force along the heading of the target.
+    /// Contact force along the heading of the struck vehicle.
     FxBody: "fx_body_n", Force, "F_x body", ["fxbody", "fxheading", "fxlocal"];
-    /// Contact force to the left of the heading of the target.
+    /// Contact force to the left of the heading of the struck vehicle.
     FyBody: "fy_body_n", Force, "F_y body", ["fybody", "fyheading", "fylocal"];
-    /// Yaw moment of the contact force about the centre of gravity of the target.
+    /// Yaw moment of the contact force about the centre of gravity of the struck vehicle.
     Mz: "mz_nm", Moment, "M_z", ["mz", "yawmoment", "momentz", "zmoment", "giermoment"];
-    /// Roll moment of the contact force about the centre of gravity of the target.
+    /// Roll moment of the contact force about the centre of gravity of the struck vehicle.
     Mx: "mx_nm", Moment, "M_x", ["mx", "rollmoment", "momentx", "xmoment"];
     /// Road-wheel steer angle of the front axle.
     Steer: "steer_rad", Angle, "Steer δ", ["steer", "steerangle", "delta", "roadwheelangle", "lenkwinkel"];
@@ -134,22 +134,23 @@ channels! {
     FzRl: "fz_rl_n", Force, "F_z RL", ["fzrl"];
     /// Vertical load of the rear right wheel.
     FzRr: "fz_rr_n", Force, "F_z RR", ["fzrr"];
-    /// Velocity of the target along the X axis of the world.
-    StruckVx: "target_vx_m_s", Speed, "Target v_x", ["targetvx"];
-    /// Velocity of the target along the Y axis of the world.
-    StruckVy: "target_vy_m_s", Speed, "Target v_y", ["targetvy"];
-    /// Yaw rate of the target.
-    StruckYawRate: "target_yaw_rate_rad_s", AngularVelocity, "Target yaw rate", ["targetyawrate"];
-    /// Yaw angle of the target.
-    StruckYaw: "target_yaw_rad", Angle, "Target yaw", ["targetyaw"];
-    /// Velocity of the bullet along the X axis of the world.
-    StrikingVx: "bullet_vx_m_s", Speed, "Bullet v_x", ["bulletvx"];
-    /// Velocity of the bullet along the Y axis of the world.
-    StrikingVy: "bullet_vy_m_s", Speed, "Bullet v_y", ["bulletvy"];
-    /// Yaw rate of the bullet.
-    StrikingYawRate: "bullet_yaw_rate_rad_s", AngularVelocity, "Bullet yaw rate", ["bulletyawrate"];
-    /// Yaw angle of the bullet.
-    StrikingYaw: "bullet_yaw_rad", Angle, "Bullet yaw", ["bulletyaw"];
+    /// Velocity of the struck vehicle along the X axis of the world.
+    StruckVx: "target_vx_m_s", Speed, "Struck v_x", ["targetvx"];
+    /// Velocity of the struck vehicle along the Y axis of the world.
+    StruckVy: "target_vy_m_s", Speed, "Struck v_y", ["targetvy"];
+    /// Yaw rate of the struck vehicle.
+    StruckYawRate: "target_yaw_rate_rad_s", AngularVelocity, "Struck yaw rate", ["targetyawrate"];
+    /// Yaw angle of the struck vehicle.
+    StruckYaw: "target_yaw_rad", Angle, "Struck yaw", ["targetyaw"];
+    /// Velocity of the striking vehicle along the X axis of the world.
+    StrikingVx: "bullet_vx_m_s", Speed, "Striking v_x", ["bulletvx"];
+    /// Velocity of the striking vehicle along the Y axis of the world.
+    StrikingVy: "bullet_vy_m_s", Speed, "Striking v_y", ["bulletvy"];
+    /// Yaw rate of the striking vehicle.
+    StrikingYawRate:
+        "bullet_yaw_rate_rad_s", AngularVelocity, "Striking yaw rate", ["bulletyawrate"];
+    /// Yaw angle of the striking vehicle.
+    StrikingYaw: "bullet_yaw_rad", Angle, "Striking yaw", ["bulletyaw"];
 }
 
 #[cfg(test)]

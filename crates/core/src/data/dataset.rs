@@ -123,7 +123,7 @@ impl DatasetKind {
 }
 
 impl Case {
-    /// The contact force on the target.
+    /// The contact force on the struck vehicle.
     ///
     /// # Errors
     /// [`SeriesError::Missing`] if the file has no complete pair of force columns, which a

@@ -1,4 +1,4 @@
-//! The contact force on the target over time, and its impulse.
+//! The contact force on the struck vehicle over time, and its impulse.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ pub enum ForceAxes {
     /// World axes. The force is turned into body axes by the yaw angle at the instant of
     /// evaluation.
     World,
-    /// Heading axes of the target, x forward and y left, which turn with it.
+    /// Heading axes of the struck vehicle, x forward and y left, which turn with it.
     Body,
 }
 
@@ -28,7 +28,7 @@ pub enum Sampling {
     ComingMean,
 }
 
-/// A sampled history of the contact force ON the target.
+/// A sampled history of the contact force ON the struck vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceHistory {
     /// The axes of `fx_n` and `fy_n`.
@@ -41,8 +41,8 @@ pub struct ForceHistory {
     pub fx_n: Vec<f64>,
     /// Force along y, N.
     pub fy_n: Vec<f64>,
-    /// Yaw moment of the contact force about the centre of gravity of the target, N m; `None` if
-    /// the source has not recorded it.
+    /// Yaw moment of the contact force about the centre of gravity of the struck vehicle, N m;
+    /// `None` if the source has not recorded it.
     pub mz_n_m: Option<Vec<f64>>,
 }
 
@@ -160,8 +160,8 @@ pub struct CumulativeImpulse {
     pub px_n_s: Vec<f64>,
     /// Impulse along y up to each knot, N s.
     pub py_n_s: Vec<f64>,
-    /// Angular impulse about the centre of gravity of the target up to each knot, N m s; `None` if
-    /// the moment is not known.
+    /// Angular impulse about the centre of gravity of the struck vehicle up to each knot, N m s;
+    /// `None` if the moment is not known.
     pub angular_n_m_s: Option<Vec<f64>>,
 }
 

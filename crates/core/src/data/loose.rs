@@ -51,8 +51,8 @@ pub struct Loaded {
 
 impl Loaded {
     /// What a sample of the contact force in the file stands for. Files of the program's own
-    /// finite-element simulations, recognised by the velocity of the target, hold means over
-    /// centred intervals. A motion with a force in heading axes holds means over the coming
+    /// finite-element simulations, recognised by the velocity of the struck vehicle, hold means
+    /// over centred intervals. A motion with a force in heading axes holds means over the coming
     /// interval. In any other file the samples are values at an instant.
     pub fn force_sampling(&self) -> Sampling {
         if self.series.get(Channel::StruckVx).is_some() {
@@ -121,7 +121,7 @@ impl FileKind {
     }
 }
 
-/// Reads a contact force: time and the force ON the target, in world or body axes.
+/// Reads a contact force: time and the force ON the struck vehicle, in world or body axes.
 ///
 /// - `map`: columns that the user has chosen; the others are found by their headers.
 ///

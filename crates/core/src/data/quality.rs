@@ -86,7 +86,8 @@ pub enum FlagKind {
     /// The vehicles are still in contact at the end of the record. The value is the force at the
     /// end as a share of the peak, or 1 if only the table of cases states it.
     NotSeparated,
-    /// A corner of the bullet stays hooked to the target, as the table of cases states.
+    /// A corner of the striking vehicle stays hooked to the struck vehicle, as the table of cases
+    /// states.
     Hooked,
 }
 
@@ -140,9 +141,9 @@ pub struct Flag {
 /// Checks a case of a data set, with the attributes from its table.
 ///
 /// The momentum of a force case is compared with `m_t_kg` times the change of the velocity of the
-/// target in its file, in world axes. In a trajectory this change contains the impulse of the tires
-/// too; its force is compared with `impulse_x_n_s` and `impulse_y_n_s` of `cases.csv` instead, both
-/// in heading axes.
+/// struck vehicle in its file, in world axes. In a trajectory this change contains the impulse of
+/// the tires too; its force is compared with `impulse_x_n_s` and `impulse_y_n_s` of `cases.csv`
+/// instead, both in heading axes.
 ///
 /// - returns the findings; none if the case is without fault.
 pub fn check_case(case: &Case) -> Vec<Flag> {
@@ -280,7 +281,7 @@ impl fmt::Display for Flag {
             FlagKind::NotSeparated => {
                 write!(f, "still in contact at the end: the impulse is not complete")
             }
-            FlagKind::Hooked => write!(f, "the bullet's corner stays caught"),
+            FlagKind::Hooked => write!(f, "the striking vehicle's corner stays caught"),
         }?;
         match self.time_s {
             Some(time_s) => write!(f, " (at {time_s:.4} s)"),
@@ -395,7 +396,8 @@ fn deviation(samples: &[f64]) -> (f64, f64) {
     ((middle - (second + third) / 2.0).abs(), high - low)
 }
 
-/// The change of momentum `m ΔV` of the target from the first to the last sample, N s, world axes.
+/// The change of momentum `m ΔV` of the struck vehicle from the first to the last sample, N s,
+/// world axes.
 fn momentum_change_n_s(case: &Case) -> Option<(f64, f64)> {
     let mass_kg = case.attributes.number("m_t_kg")?;
     let change = |channel| {

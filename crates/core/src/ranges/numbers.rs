@@ -99,9 +99,9 @@ ranges! {
     CONTACT_OFFSET: "contact offset" = real(Quantity::Length, [-50.0, 50.0]),
         "touching point from the middle of the struck side";
     CONTACT_COORDINATE: "contact coordinate" = real(Quantity::Length, [-100.0, 100.0]),
-        "contact point of a scenario from the CG of the target, in its body axes";
-    STRIKING_OFFSET: "bullet position" = real(Quantity::Length, [-100.0, 100.0]),
-        "CG of the bullet from the CG of the target at first contact";
+        "contact point of a scenario from the CG of the struck vehicle, in its body axes";
+    STRIKING_OFFSET: "position of the striking vehicle" = real(Quantity::Length, [-100.0, 100.0]),
+        "CG of the striking vehicle from the CG of the struck vehicle at first contact";
     OFF_OUTLINE: "distance from the outline" = real(Quantity::Ratio, [0.0, 0.1]),
         "distance of a contact point outside a vehicle, as a share of the vehicle's length";
     RESTITUTION: "restitution" = real(Quantity::Ratio, [0.0, 1.0]),

@@ -99,7 +99,7 @@ pub struct Caveat {
     pub subject: Option<CaveatSubject>,
     /// A sentence for a person, without a full stop; of an assumption the value with its unit.
     pub text: String,
-    /// The quantity concerned with its unit, such as `bullet mass [kg]`.
+    /// The quantity concerned with its unit, such as `mass of the striking vehicle [kg]`.
     pub quantity: Option<String>,
     /// Value of the quantity, in that unit.
     pub value: Option<f64>,
@@ -201,7 +201,7 @@ impl Caveat {
 
     /// The same caveat about the value of a quantity. A value that is not finite is left out.
     ///
-    /// - `quantity`: name and unit, such as `bullet mass [kg]`.
+    /// - `quantity`: name and unit, such as `mass of the striking vehicle [kg]`.
     #[must_use]
     pub fn with_value(self, quantity: impl Into<String>, value: f64) -> Self {
         let value = value.is_finite().then_some(value);

@@ -242,7 +242,7 @@ mod tests {
             Caveat::new(CaveatKind::NotAtRest, "still moving")
                 .with_value("speed at the end [m/s]", 3.0)
                 .with_range([f64::NEG_INFINITY, 0.05]),
-            Caveat::new(CaveatKind::OutsideDomain, "bullet mass is 9000"),
+            Caveat::new(CaveatKind::OutsideDomain, "striking vehicle's mass is 9000"),
             Caveat::new(CaveatKind::Note, "sampled at 1 kHz"),
             Caveat::assumed(CaveatSubject::VehicleParameter, "mass 1500 kg", "by the rest"),
             Caveat::assumed(CaveatSubject::VehicleParameter, "track 1.5 m", "by the rest"),
@@ -253,7 +253,7 @@ mod tests {
 
     #[test]
     fn warnings_come_first_and_every_value_that_was_assumed_is_named() {
-        let expected = "warning: outside the domain: bullet mass is 9000 | \
+        let expected = "warning: outside the domain: striking vehicle's mass is 9000 | \
                         note: not at rest: still moving | \
                         note: assumed: parameter of the vehicle: mass 1500 kg | \
                         note: assumed: parameter of the vehicle: track 1.5 m | \

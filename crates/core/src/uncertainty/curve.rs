@@ -12,8 +12,8 @@ pub const CURVE_INTERVAL_S: f64 = 1e-3;
 /// the shipped runs.
 pub const CURVE_N_INSTANTS: usize = 250;
 
-/// Contact force on the target, as means over intervals of [`CURVE_INTERVAL_S`], and the duration
-/// of the contact. Interval i is centred at `(i + ½)` intervals after the first contact.
+/// Contact force on the struck vehicle, as means over intervals of [`CURVE_INTERVAL_S`], and the
+/// duration of the contact. Interval i is centred at `(i + ½)` intervals after the first contact.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ForceCurve {
     /// Force along x, N, one value for each interval.

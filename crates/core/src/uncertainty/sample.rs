@@ -10,7 +10,7 @@ use crate::uncertainty::{CurveMixture, ForceCurve};
 /// Impulse, peak and duration of drawn curves, one entry for each draw.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CurveQuantities {
-    /// Impulse `[P_x, P_y]` on the target, N s.
+    /// Impulse `[P_x, P_y]` on the struck vehicle, N s.
     pub impulse_n_s: Vec<[f64; 2]>,
     /// Largest `|F|`, N.
     pub peak_n: Vec<f64>,

@@ -1,7 +1,7 @@
 //! The section `[ending]` of a scenario file, whose key names contain the units.
 //!
 //! ```toml
-//! [ending]                        # without it, the target coasts
+//! [ending]                        # without it, the vehicle coasts
 //! brake_start_s = 0.7             # the driver brakes; times are after the first contact
 //! brake_share = 0.8               # of what the road can hold; more than 1 locks all wheels
 //! brake_rise_s = 0.3              # optional

@@ -36,17 +36,17 @@ macro_rules! presets {
 presets! {
     /// The car of the multibody model that simulated the trajectory data sets, 2000 kg.
     Reference: "reference-2000";
-    /// The target of the finite-element runs, 2000 kg.
+    /// The struck vehicle of the finite-element runs, 2000 kg.
     Target: "target-2000";
-    /// The lightest bullet of the finite-element runs, 1500 kg.
+    /// The lightest striking vehicle of the finite-element runs, 1500 kg.
     Bullet1500: "bullet-1500";
-    /// The bullet of medium mass of the finite-element runs, 2000 kg.
+    /// The striking vehicle of medium mass of the finite-element runs, 2000 kg.
     Bullet2000: "bullet-2000";
-    /// The heaviest bullet of the finite-element runs, 2500 kg.
+    /// The heaviest striking vehicle of the finite-element runs, 2500 kg.
     Bullet2500: "bullet-2500";
-    /// The bullet of the paper on a scale of 1:4, 290 kg.
+    /// The striking vehicle of the paper on a scale of 1:4, 290 kg.
     ScaledBullet: "scaled-bullet-290";
-    /// The target of the paper on a scale of 1:4, 100 kg.
+    /// The struck vehicle of the paper on a scale of 1:4, 100 kg.
     ScaledStruck: "scaled-target-100";
 }
 

@@ -13,8 +13,8 @@ use impactlab_study::analysis::Analysis;
 /// Half the width of the cross at a second contact, m.
 const CROSS_M: f64 = 0.6;
 
-/// Force on the target over time, with classic pulses for comparison. `None` if the case has no
-/// force.
+/// Force on the struck vehicle over time, with classic pulses for comparison. `None` if the case
+/// has no force.
 ///
 /// - `class`: channel frequency class with which the force is filtered; the raw force is then drawn
 ///   behind it.
@@ -79,7 +79,7 @@ pub fn analysis_scene_figure(
 ) -> Figure {
     let footprint = analysis.footprint;
     let striking = analysis.striking.as_ref().map(|track| SceneVehicle {
-        name: "bullet",
+        name: "striking vehicle",
         role: Role::Striking,
         style: LineStyle::Solid,
         motion: &track.motion,

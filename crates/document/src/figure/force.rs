@@ -1,4 +1,4 @@
-//! Figure of the contact force on the target over time.
+//! Figure of the contact force on the struck vehicle over time.
 
 use crate::figure::{Axis, Figure, FigureElement, Role};
 use impactlab_core::data::{ForceAxes, ForceHistory};
@@ -10,7 +10,7 @@ use impactlab_core::units::{Quantity, UnitSystem};
 pub struct ForceFigure<'a> {
     /// Name of the case.
     pub name: &'a str,
-    /// Force on the target, filtered if a channel class was chosen.
+    /// Force on the struck vehicle, filtered if a channel class was chosen.
     pub force: &'a ForceHistory,
     /// Force before filtering, drawn in the background.
     pub raw: Option<&'a ForceHistory>,
@@ -30,7 +30,7 @@ const AFTER_CONTACT: f64 = 0.3;
 /// F_x, F_y and |F| over time in ms, with markers where contact starts and ends.
 pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
     let x = Axis::new("Time", milliseconds());
-    let y = Axis::shown("Force on the target", Quantity::Force, input.units);
+    let y = Axis::shown("Force on the struck vehicle", Quantity::Force, input.units);
     let axes = match input.force.axes {
         ForceAxes::World => "world axes",
         ForceAxes::Body => "heading axes",
@@ -67,7 +67,7 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
             elements.push(FigureElement::VerticalLine { name, role: Role::Muted, x });
         }
     }
-    let title = format!("{}: contact force on the target, {axes}", input.name);
+    let title = format!("{}: contact force on the struck vehicle, {axes}", input.name);
     Figure::new(title, [x, y], elements).with_caveats(input.caveats)
 }
 

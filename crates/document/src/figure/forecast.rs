@@ -108,7 +108,7 @@ impl ForceComponent {
 /// One component of a predicted force over time in ms.
 pub fn forecast_figure(component: ForceComponent, input: &ForecastFigure<'_>) -> Figure {
     let x = Axis::new("Time", milliseconds());
-    let label = format!("{} on the target", component.label());
+    let label = format!("{} on the struck vehicle", component.label());
     let y = Axis::shown(label, Quantity::Force, input.units);
     let n_shown =
         (shown_until_s(input) / impactlab_core::uncertainty::CURVE_INTERVAL_S).round() as usize;
@@ -169,7 +169,7 @@ pub fn forecast_figure(component: ForceComponent, input: &ForecastFigure<'_>) ->
         };
         elements.push(FigureElement::line(name, Role::Reference, points));
     }
-    let title = format!("{}: predicted {} on the target", input.name, component.label());
+    let title = format!("{}: predicted {} on the struck vehicle", input.name, component.label());
     Figure::new(title, [x, y], elements).with_caveats(input.caveats)
 }
 

@@ -8,9 +8,9 @@ use impactlab_core::units::{Quantity, UnitSystem};
 /// Length of the longest velocity arrow and of the impulse arrow, m.
 const ARROW_LENGTH_M: f64 = 3.0;
 
-/// Both vehicles at first contact with the contact surface, the impulse on the target at the
-/// contact point, and the velocity change of each vehicle at its CG. Both velocity changes have the
-/// same scale.
+/// Both vehicles at first contact with the contact surface, the impulse on the struck vehicle at
+/// the contact point, and the velocity change of each vehicle at its CG. Both velocity changes have
+/// the same scale.
 ///
 /// # Errors
 /// [`ScenarioError`] if the vehicles make no contact.
@@ -32,9 +32,9 @@ pub fn impact_figure(
     let (sin, cos) = geometry.normal_angle_world_rad.sin_cos();
     let surface = [[cx - sin, cy + cos], [cx + sin, cy - cos]].map(shown).to_vec();
     let vehicles = [
-        ("target", Role::Simulation, scenario.struck.footprint(), geometry.struck, solution.struck),
+        ("struck", Role::Simulation, scenario.struck.footprint(), geometry.struck, solution.struck),
         (
-            "bullet",
+            "striking",
             Role::Striking,
             scenario.striking.footprint(),
             geometry.striking,
@@ -49,14 +49,15 @@ pub fn impact_figure(
     };
     let mut elements = vec![FigureElement::dashed("contact surface", Role::Muted, surface)];
     for (name, role, footprint, pose, after) in vehicles {
-        let appearance = (name, role, LineStyle::Solid);
+        let vehicle = format!("{name} vehicle");
+        let appearance = (vehicle.as_str(), role, LineStyle::Solid);
         elements.extend(vehicle_outline(appearance, (&footprint, &pose), x.unit));
         let delta_v = scaled(after.delta_v_world_m_s, longest);
         elements.push(arrow(&format!("Δv {name}"), role, [pose.x_m, pose.y_m], delta_v));
     }
     let [px, py] = solution.impulse_world_n_s;
     let impulse = scaled([px, py], px.hypot(py));
-    elements.push(arrow("impulse on the target", Role::Resultant, contact, impulse));
+    elements.push(arrow("impulse on the struck vehicle", Role::Resultant, contact, impulse));
     let title = format!("{}: impulse and Δv at first contact", scenario.name);
     Ok(Figure::new(title, [x, y], elements).plan().with_caveats(caveats))
 }

@@ -64,13 +64,24 @@ fn bare(key: &str) -> String {
     bare.replace('_', " ")
 }
 
+/// The words of a name with the two vehicles called struck and striking, where files call them
+/// target and bullet.
+fn in_words_of_the_field(words: &str) -> String {
+    let word = |word| match word {
+        "target" => "struck vehicle",
+        "bullet" => "striking vehicle",
+        other => other,
+    };
+    words.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
 impl Wording {
     /// A name in the language of the report. In other languages than English a name without a
     /// translation stays as it is, in quotation marks.
     pub fn key(&self, key: &str) -> String {
         let words = bare(key);
         match self.language {
-            Language::En => words,
+            Language::En => in_words_of_the_field(&words),
             Language::De => {
                 phrase_of(self.language, &words).unwrap_or_else(|| format!("„{words}“"))
             }
@@ -96,5 +107,6 @@ mod tests {
             assert_eq!(quantity_of_key(key), expected, "{key}");
         }
         assert_eq!(bare("cg_to_front_axle_m"), "cg to front axle");
+        assert_eq!(in_words_of_the_field(&bare("bullet_body")), "striking vehicle body");
     }
 }

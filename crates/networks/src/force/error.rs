@@ -15,8 +15,11 @@ pub enum ForceError {
         /// Number of cases, none of which has a contact force.
         n_cases: usize,
     },
-    /// The kind of the bullet body is unknown to the model.
-    #[error("bullet body {name:?} is unknown to the model, expected one of {}", known.join(", "))]
+    /// The kind of the body of the striking vehicle is unknown to the model.
+    #[error(
+        "body {name:?} of the striking vehicle is unknown to the model, expected one of {}",
+        known.join(", ")
+    )]
     UnknownBody {
         /// The kind that was asked for.
         name: String,

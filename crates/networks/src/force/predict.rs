@@ -47,7 +47,7 @@ pub struct ForcePrediction {
     pub caveats: Vec<Caveat>,
     /// Whether the contact point was left open and drawn from its distribution.
     pub is_contact_open: bool,
-    /// Whether the bullet's body was left open and drawn from its distribution.
+    /// Whether the striking vehicle's body was left open and drawn from its distribution.
     pub is_body_open: bool,
 }
 
@@ -172,7 +172,7 @@ impl ForceModel {
     }
 
     /// What is left without the network, and whether the vehicles approach each other. The kind of
-    /// the bullet's body plays no part in it.
+    /// the striking vehicle's body plays no part in it.
     fn said_by_physics(
         &self,
         canonical: &ForceScenario,
@@ -299,8 +299,8 @@ fn check(scenario: &ForceScenario) -> Result<(), ForceError> {
     let within = |value: f64, low: f64, high: f64| (low..=high).contains(&value);
     let [x, y] = scenario.contact_m.unwrap_or_default();
     let checks = [
-        ("target mass [kg]", struck, within(struck, 1.0, 1e8), "1 to 1e8"),
-        ("bullet mass [kg]", striking, within(striking, 1.0, 1e8), "1 to 1e8"),
+        ("mass of the struck vehicle [kg]", struck, within(struck, 1.0, 1e8), "1 to 1e8"),
+        ("mass of the striking vehicle [kg]", striking, within(striking, 1.0, 1e8), "1 to 1e8"),
         ("v_bx − v_tx [m/s]", vx, within(vx, -150.0, 150.0), "-150 to 150"),
         ("v_by − v_ty [m/s]", vy, within(vy, -150.0, 150.0), "-150 to 150"),
         (

@@ -57,7 +57,7 @@ fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis,
     })
 }
 
-/// Simulates the target of a force case from the origin, heading along X, with the case's
+/// Simulates the struck vehicle of a force case from the origin, heading along X, with the case's
 /// velocities and under the recorded force and yaw moment. The force acts at the height of the CG
 /// if the case gives no contact height.
 fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {

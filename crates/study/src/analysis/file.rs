@@ -95,7 +95,8 @@ pub fn analyse_recording(
     Ok(Analysis { simulation, reference, error, notes, ..analysis })
 }
 
-/// Simulates the target; a recorded yaw moment takes precedence over that of the contact point.
+/// Simulates the struck vehicle; a recorded yaw moment takes precedence over that of the contact
+/// point.
 fn simulate(
     (initial, duration_s): (VehicleState<f64>, f64),
     load: Option<&ActingForce>,

@@ -60,9 +60,9 @@ pub struct ForceForecast {
     pub peak_time_s: Estimate,
     /// Contact duration, s, from the exact distribution.
     pub duration_s: Estimate,
-    /// Principal direction of force on the target, rad clockwise from straight ahead, from draws.
-    /// The median lies in `[0, 2π)`; the ends of the intervals continue from it without a jump and
-    /// may lie outside of this range.
+    /// Principal direction of force on the struck vehicle, rad clockwise from straight ahead, from
+    /// draws. The median lies in `[0, 2π)`; the ends of the intervals continue from it without a
+    /// jump and may lie outside of this range.
     pub pdof_rad: Estimate,
     /// Components of the mixture, in descending order of probability.
     pub modes: Vec<Mode>,

@@ -43,22 +43,22 @@ pub use vehicle_draws::{Sensitivity, VehicleDraws};
 /// Vehicles and settings of the simulation of a case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
-    /// Parameters of the struck vehicle (target). A trajectory case replaces the friction
+    /// Parameters of the struck vehicle. A trajectory case replaces the friction
     /// coefficient by its own; a force case and a scenario replace mass and yaw inertia.
     pub struck: VehicleParameters,
-    /// Parameters of the striking vehicle (bullet), used where it is simulated. The case or
+    /// Parameters of the striking vehicle, used where it is simulated. The case or
     /// scenario replaces its mass and yaw inertia.
     pub striking: VehicleParameters,
-    /// What happens to the wheels of the target after the first contact. A trajectory case has its
-    /// own, and a steer angle that is recorded takes precedence.
+    /// What happens to the wheels of the struck vehicle after the first contact. A trajectory case
+    /// has its own, and a steer angle that is recorded takes precedence.
     pub ending: Ending,
     /// Integration method for the equations of motion.
     pub integrator: Integrator,
     /// Duration of the simulation, s. Trajectory cases and recorded motions are simulated over the
     /// recorded duration instead.
     pub duration_s: f64,
-    /// Whether the simulation ends before its duration where the target has come to rest. The
-    /// bullet is followed as long.
+    /// Whether the simulation ends before its duration where the struck vehicle has come to rest.
+    /// The striking vehicle is followed as long.
     pub ends_at_rest: bool,
     /// Parts of the ground with their own friction, in the axes in which the motions are simulated;
     /// elsewhere each vehicle has the friction of its tires. Both vehicles move over them.
@@ -85,7 +85,7 @@ pub struct Analysis {
     pub vehicle: VehicleParameters,
     /// Outline of the struck vehicle.
     pub footprint: Footprint,
-    /// Contact force on the target; `None` if no force acts or none is known.
+    /// Contact force on the struck vehicle; `None` if no force acts or none is known.
     pub force: Option<ForceHistory>,
     /// State of the struck vehicle at the start of the impact and the point where the force acts;
     /// `None` without a force.
@@ -94,10 +94,10 @@ pub struct Analysis {
     pub controls: Controls,
     /// Parts of the ground with their own friction, over which the vehicles were simulated.
     pub friction_zones: Vec<FrictionZone>,
-    /// Motion of the target simulated with the 4DOF model; `None` if it could not be simulated, for
-    /// the reason given in `notes`.
+    /// Motion of the struck vehicle simulated with the 4DOF model; `None` if it could not be
+    /// simulated, for the reason given in `notes`.
     pub simulation: Option<Motion>,
-    /// Recorded motion of the target; `None` if there is no recording.
+    /// Recorded motion of the struck vehicle; `None` if there is no recording.
     pub reference: Option<TimeSeries>,
     /// Outline and motion of the striking vehicle, if known.
     pub striking: Option<VehicleTrack>,

@@ -398,7 +398,7 @@ fn predictors(
     Ok(made?)
 }
 
-/// Rotates a curve from axes along the target's initial heading into world axes.
+/// Rotates a curve from axes along the struck vehicle's initial heading into world axes.
 fn in_world(curve: &ForceCurve, heading_rad: f64) -> ForceHistory {
     let mut history = curve.to_history();
     let (sin, cos) = heading_rad.sin_cos();

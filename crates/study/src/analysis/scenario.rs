@@ -170,14 +170,14 @@ mod tests {
         let motion = analysis.simulation.unwrap().series;
         let rate = motion.require(Channel::YawRate).unwrap();
         let expected = solution.struck.yaw_rate_rad_s;
-        assert!(expected < 0.0, "a push on the right rear turns the target to the right");
+        assert!(expected < 0.0, "a push on the right rear turns the car to the right");
         assert!(rate[10] < 0.5 * expected, "{} against {expected}", rate[10]);
         let striking = analysis.striking.unwrap().motion;
         assert_eq!(striking.n_samples(), motion.n_samples());
         assert!(analysis.struck.unwrap().contact.y_body_m < 0.0);
     }
 
-    /// A bullet that goes on pushing was drawn through the target without a word.
+    /// A striking vehicle that goes on pushing was drawn through the struck vehicle without a word.
     #[test]
     fn vehicles_that_meet_again_are_said_to() {
         let mut scenario = Scenario::example();
@@ -211,19 +211,20 @@ mod tests {
             let deepest = (60..=400).map(|i| overlap(f64::from(i) * 0.01)).fold(-1.0, f64::max);
             (analysis.second_contact, deepest)
         };
-        // The bullet pushes on along its heading, the target's tires hold against it.
+        // The striking vehicle pushes on along its heading, the struck vehicle's tires hold against
+        // it.
         let (second, deepest_m) = meets(&scenario);
         let second = second.unwrap();
         assert!(second.time_s > 0.1 && second.closing_speed_m_s > 0.0, "{second:?}");
         assert!(deepest_m > 0.2, "{second:?} {deepest_m}");
-        // A bullet that steers away is met later and more slowly.
+        // A striking vehicle that steers away is met later and more slowly.
         let steer = HeldSteer { start_s: 0.0, rise_s: 0.2, road_wheel_rad: -0.14 };
         scenario.striking_ending = Some(Ending { steer: Some(steer), ..Ending::default() });
         let away = meets(&scenario).0.unwrap();
         assert!(away.time_s > second.time_s, "{second:?} {away:?}");
         assert!(away.closing_speed_m_s < 0.8 * second.closing_speed_m_s, "{second:?} {away:?}");
         scenario.striking_ending = None;
-        // From behind, the bullet is braked by the impact and stays behind.
+        // From behind, the striking vehicle is braked by the impact and stays behind.
         scenario.contact.location = ContactLocation::Side { side: Side::Rear, offset_m: 0.2 };
         scenario.striking.heading_rad = 0.0;
         (scenario.struck.vx_world_m_s, scenario.striking.vx_world_m_s) = (5.0, 15.0);

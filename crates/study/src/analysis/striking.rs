@@ -15,10 +15,10 @@ struct Recorded {
     end: VehicleState<f64>,
 }
 
-/// Outline and motion of the bullet. During the recording its position is the integral of the
-/// recorded velocities from its initial position; after it the bullet coasts as a 4DOF vehicle
-/// without steering, drive or braking, until the duration of the settings. `None` if the case does
-/// not record the bullet.
+/// Outline and motion of the striking vehicle. During the recording its position is the integral of
+/// the recorded velocities from its initial position; after it the striking vehicle coasts as a
+/// 4DOF vehicle without steering, drive or braking, until the duration of the settings. `None` if
+/// the case does not record the striking vehicle.
 ///
 /// # Errors
 /// [`AnalysisError::Simulation`] if the simulation of the coasting diverges.
@@ -41,7 +41,7 @@ pub(super) fn striking_track(
     let motion = append_coasting(&case.series, yaw_rad, recorded, (&vehicle, settings))?;
     let yaw_rad = yaw_rad.first().copied().unwrap_or(attributes.theta_b_rad);
     let pose = Pose { x_m: x, y_m: y, yaw_rad };
-    // The target heads along X from the origin.
+    // The struck vehicle heads along X from the origin.
     let [x_body_m, y_body_m] = pose.body_from_world(attributes.contact_m);
     let [vx_body_m_s, vy_body_m_s] = body_from_world(yaw_rad, attributes.striking_velocity_m_s);
     let height_m = attributes.contact_height_m.unwrap_or(vehicle.geometry.cg_height_m);
@@ -63,7 +63,7 @@ pub(super) fn striking_track(
 }
 
 /// Integrates the recorded world velocities by the trapezoidal rule from a start [x, y], m. `None`
-/// if a channel of the bullet is missing.
+/// if a channel of the striking vehicle is missing.
 fn integrate(series: &TimeSeries, start_m: [f64; 2]) -> Option<Recorded> {
     let time_s = series.time_s();
     let (vx, vy) = (series.get(Channel::StrikingVx)?, series.get(Channel::StrikingVy)?);

@@ -22,7 +22,7 @@ pub struct ImpactRequest {
     pub paper: bool,
 }
 
-/// The solution of an impact in SI units. The impulse acts on the target; world axes.
+/// The solution of an impact in SI units. The impulse acts on the struck vehicle; world axes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ImpactReport {
     /// Name of the scenario.
@@ -57,8 +57,8 @@ pub struct ImpactReport {
     pub contact_point_m: [f64; 2],
     /// Direction of the normal, rad.
     pub normal_angle_rad: f64,
-    /// The side of target or bullet to which the normal is perpendicular, where the contact comes
-    /// from outlines.
+    /// The side of the struck or the striking vehicle to which the normal is perpendicular, where
+    /// the contact comes from outlines.
     pub struck_surface: Option<StruckSurface>,
     /// How far the outlines overlap, m, where the contact comes from outlines.
     pub overlap_m: Option<f64>,

@@ -17,9 +17,11 @@ const STEPS_PER_RESIDUAL: usize = 2;
 pub struct CrushSample {
     /// The two vehicles at first contact.
     pub scenario: CrushScenario,
-    /// Force on the target along x in the axes of the scenario, N: the mean over each time step.
+    /// Force on the struck vehicle along x in the axes of the scenario, N: the mean over each time
+    /// step.
     pub fx_n: Vec<f64>,
-    /// Force on the target along y in the axes of the scenario, N: the mean over each time step.
+    /// Force on the struck vehicle along y in the axes of the scenario, N: the mean over each time
+    /// step.
     pub fy_n: Vec<f64>,
     /// Weight w of the residuals of this sample, 0 or more; 1 is the usual weight.
     pub weight: f64,

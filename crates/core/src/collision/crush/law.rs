@@ -8,37 +8,40 @@ use super::outline::{N_OUTLINE_FACTORS, Nose};
 /// Limits of the ranges of crush depth in which the stiffness of the outer skins is constant, m.
 /// The last range has no upper limit.
 pub(super) const DEPTH_KNOTS_M: [f64; 8] = [0.0, 0.03, 0.06, 0.09, 0.105, 0.13, 0.17, 0.24];
-/// Positions along the side of the target, measured from its rear axle and positive forwards, m, at
-/// which the stiffness factor and the bulge of the skins are given. Values are linear in between
-/// and constant beyond the ends.
+/// Positions along the side of the struck vehicle, measured from its rear axle and positive
+/// forwards, m, at which the stiffness factor and the bulge of the skins are given. Values are
+/// linear in between and constant beyond the ends.
 pub(super) const SKIN_KNOTS_M: [f64; 8] = [-0.66, -0.36, -0.16, 0.0, 0.16, 0.34, 0.64, 1.04];
-/// Positions along the side of the target, measured from its rear axle and positive forwards, m, at
-/// which the depth of its stiff inner structure (wheel, edges of the wheel arch) is given. Values
-/// are linear in between and constant beyond the ends.
+/// Positions along the side of the struck vehicle, measured from its rear axle and positive
+/// forwards, m, at which the depth of its stiff inner structure (wheel, edges of the wheel arch) is
+/// given. Values are linear in between and constant beyond the ends.
 pub(super) const STRUCK_STRUCTURE_KNOTS_M: [f64; 12] =
     [-0.8, -0.6, -0.45, -0.32, -0.2, -0.1, 0.0, 0.1, 0.2, 0.32, 0.45, 0.6];
-/// Positions along the x axis of the bullet, measured from the start of its front corner and
-/// positive forwards, m, at which the depth of its stiff inner structure (wheel behind the corner,
-/// beam in front of it) is given. Values are linear in between and constant beyond the ends.
+/// Positions along the x axis of the striking vehicle, measured from the start of its front corner
+/// and positive forwards, m, at which the depth of its stiff inner structure (wheel behind the
+/// corner, beam in front of it) is given. Values are linear in between and constant beyond the
+/// ends.
 pub(super) const STRIKING_STRUCTURE_KNOTS_M: [f64; 10] =
     [-0.7, -0.45, -0.25, -0.1, 0.05, 0.2, 0.3, 0.38, 0.46, 0.54];
 
-/// Parameters of one kind of bullet body, which modify those that all bodies share ([`CrushLaw`]).
+/// Parameters of one kind of body of the striking vehicle, which modify those that all bodies share
+/// ([`CrushLaw`]).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyCrush {
     /// Name of the body in the data; empty if the data do not name the bodies.
     pub name: String,
-    /// Outline of the front of the bullet.
+    /// Outline of the front of the striking vehicle.
     pub nose: Nose,
     /// Logarithm of the factor on the stiffness of the skins in each range of crush depth.
     pub depth_log_factor: [f64; DEPTH_KNOTS_M.len()],
     /// Logarithm of the factor on the stiffness of the skins at marks along the outline of the
-    /// bullet: rear end of the side; start, middle and end of the corner; inner end of the front.
+    /// striking vehicle: rear end of the side; start, middle and end of the corner; inner end of
+    /// the front.
     pub outline_log_factor: [f64; N_OUTLINE_FACTORS],
     /// Logarithm of the factor on the stiffness k₂ of the inner structures.
     pub structure_log_factor: f64,
-    /// Amount that is added to the depth d_b of the inner structure of the bullet, m.
+    /// Amount that is added to the depth d_b of the inner structure of the striking vehicle, m.
     pub structure_depth_m: [f64; STRIKING_STRUCTURE_KNOTS_M.len()],
     /// Recovery q: ratio of the length over which the skins unload to the crush, at a crush of 0.1
     /// m.
@@ -47,11 +50,11 @@ pub struct BodyCrush {
     pub friction: f64,
 }
 
-/// The parameters of the crush model: those that all kinds of bullet bodies share, and those of
-/// each kind.
+/// The parameters of the crush model: those that all kinds of bodies of the striking vehicle share,
+/// and those of each kind.
 ///
 /// While the overlap d of an element of the outline grows, the force per metre of outline at the
-/// position s along the side of the target and σ along the bullet is
+/// position s along the side of the struck vehicle and σ along the striking vehicle is
 ///
 /// ```text
 /// p = p₁ + p₂
@@ -61,10 +64,10 @@ pub struct BodyCrush {
 ///
 /// The part p₁ is that of the outer skins of both vehicles. Their stiffness k per depth depends on
 /// the range of depth, f is a factor of position and body, and b is a bulge of the side of the
-/// target. The part p₂ is that of the stiff inner structures behind the skins: wheel and edges of
-/// the wheel arch of the target, wheel and beam of the bullet. The structures meet where the
-/// overlap exceeds the sum of their depths d_t and d_b below the skins. Softplus stands for a
-/// smooth transition, `w ln(1 + exp(x / w))` with the width w of
+/// struck vehicle. The part p₂ is that of the stiff inner structures behind the skins: wheel and
+/// edges of the wheel arch of the struck vehicle, wheel and beam of the striking vehicle. The
+/// structures meet where the overlap exceeds the sum of their depths d_t and d_b below the skins.
+/// Softplus stands for a smooth transition, `w ln(1 + exp(x / w))` with the width w of
 /// [`CrushLaw::structure_log_softness`].
 ///
 /// While the overlap is smaller than the largest overlap d_max so far, each part decreases over a
@@ -75,40 +78,41 @@ pub struct BodyCrush {
 /// p₂ = p₂,max · max(0, 1 − (d_max − d) / ℓ₂)^ν₂
 /// ```
 ///
-/// Both parts are multiplied by max(0, 1 + c v_y), where v_y is the velocity of the bullet relative
-/// to the target at the element along the y axis of the target. The normal force acts in a
-/// direction between the normals of target and bullet. The share of the inner structures in the
-/// force tilts it by −τ ∂d_t/∂s along the x axis of the target, because a structure that slides up
-/// an edge is held back by it. Friction acts perpendicular to this direction with the coefficient μ
-/// tanh(v_t / v₀), where v_t is the sliding velocity.
+/// Both parts are multiplied by max(0, 1 + c v_y), where v_y is the velocity of the striking
+/// vehicle relative to the struck vehicle at the element along the y axis of the struck vehicle.
+/// The normal force acts in a direction between the normals of the struck and the striking vehicle.
+/// The share of the inner structures in the force tilts it by −τ ∂d_t/∂s along the x axis of the
+/// struck vehicle, because a structure that slides up an edge is held back by it. Friction acts
+/// perpendicular to this direction with the coefficient μ tanh(v_t / v₀), where v_t is the sliding
+/// velocity.
 ///
-/// The friction coefficient μ and the share of the normal of the bullet vary linearly with the
-/// largest overlap of an element, as given by the fields.
+/// The friction coefficient μ and the share of the normal of the striking vehicle vary linearly
+/// with the largest overlap of an element, as given by the fields.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CrushLaw {
     /// ln k in each range of crush depth, with k in N/m² (force per metre of outline and per metre
     /// of depth).
     pub depth_log_stiffness: [f64; DEPTH_KNOTS_M.len()],
-    /// Logarithm of the factor on the stiffness of the skins along the side of the target.
+    /// Logarithm of the factor on the stiffness of the skins along the side of the struck vehicle.
     pub skin_log_factor: [f64; SKIN_KNOTS_M.len()],
-    /// Bulge b of the side of the target along the side, m. A positive bulge brings the skins into
-    /// contact earlier.
+    /// Bulge b of the side of the struck vehicle along the side, m. A positive bulge brings the
+    /// skins into contact earlier.
     pub skin_bulge_m: [f64; SKIN_KNOTS_M.len()],
     /// ln k₂, with the stiffness k₂ of the inner structures in N/m².
     pub structure_log_stiffness: f64,
-    /// Depth d_t of the inner structure of the target below its skin along the side, m.
+    /// Depth d_t of the inner structure of the struck vehicle below its skin along the side, m.
     #[serde(rename = "target_structure_depth_m")]
     pub struck_structure_depth_m: [f64; STRUCK_STRUCTURE_KNOTS_M.len()],
-    /// Depth d_b of the inner structure of the bullet below its skin along the x axis of the
-    /// bullet, m.
+    /// Depth d_b of the inner structure of the striking vehicle below its skin along the x axis of
+    /// the striking vehicle, m.
     #[serde(rename = "bullet_structure_depth_m")]
     pub striking_structure_depth_m: [f64; STRIKING_STRUCTURE_KNOTS_M.len()],
-    /// d_θ: increase of the depth of the structures with the heading angle θ_b of the bullet,
-    /// m/rad.
+    /// d_θ: increase of the depth of the structures with the heading angle θ_b of the striking
+    /// vehicle, m/rad.
     pub structure_depth_angle_m_rad: f64,
-    /// τ: factor by which the slope of the structure of the target tilts the direction of the
-    /// normal force.
+    /// τ: factor by which the slope of the structure of the struck vehicle tilts the direction of
+    /// the normal force.
     pub structure_tilt: f64,
     /// Amount that is added to the friction coefficient μ where the inner structures carry the
     /// whole force.
@@ -124,29 +128,30 @@ pub struct CrushLaw {
     pub recovery_exponent: f64,
     /// ν₁: exponent of the unloading curve of the skins.
     pub unloading_exponent: f64,
-    /// Friction coefficient μ at an overlap of 0.1 m and a bullet angle θ_b of 0.35 rad.
+    /// Friction coefficient μ at an overlap of 0.1 m and a heading θ_b of the striking vehicle of
+    /// 0.35 rad.
     pub friction: f64,
     /// Increase of μ with the largest overlap so far, 1/m.
     pub friction_depth_1_m: f64,
-    /// Increase of μ with the bullet angle θ_b, 1/rad.
+    /// Increase of μ with the heading θ_b of the striking vehicle, 1/rad.
     pub friction_angle_1_rad: f64,
     /// ln v₀, with the sliding velocity v₀ over which friction builds up in m/s.
     pub friction_log_speed: f64,
-    /// Share of the normal of the bullet in the direction of the normal force, at an overlap of 0.1
-    /// m and at the rear axle of the target. The remainder is the share of the normal of the
-    /// target.
+    /// Share of the normal of the striking vehicle in the direction of the normal force, at an
+    /// overlap of 0.1 m and at the rear axle of the struck vehicle. The remainder is the share of
+    /// the normal of the struck vehicle.
     pub normal_share: f64,
     /// Increase of that share with the largest overlap so far, 1/m.
     pub normal_share_depth_1_m: f64,
-    /// Increase of that share with the position along the side of the target, positive forwards,
-    /// 1/m.
+    /// Increase of that share with the position along the side of the struck vehicle, positive
+    /// forwards, 1/m.
     pub normal_share_place_1_m: f64,
     /// c: damping coefficient, s/m.
     pub damping_s_m: f64,
-    /// Position x of the rear axle of the target in its body axes, m, usually negative. Positions s
-    /// along the side are measured from it. It is not fitted.
+    /// Position x of the rear axle of the struck vehicle in its body axes, m, usually negative.
+    /// Positions s along the side are measured from it. It is not fitted.
     pub rear_axle_x_m: f64,
-    /// Parameters of each kind of bullet body.
+    /// Parameters of each kind of body of the striking vehicle.
     pub bodies: Vec<BodyCrush>,
 }
 
@@ -208,11 +213,11 @@ macro_rules! for_each_parameter {
 impl CrushLaw {
     /// Prior of the law before any data are used. The stiffness of the skins rises with the depth
     /// from 0.1 to 1.2 MN/m². The inner structures lie together 0.13 m below the skins over most of
-    /// the outlines, and less where the wheel of the bullet is. Half of a crush of 0.1 m is
-    /// recovered. The friction coefficient is 0.4.
+    /// the outlines, and less where the wheel of the striking vehicle is. Half of a crush of 0.1 m
+    /// is recovered. The friction coefficient is 0.4.
     ///
-    /// - `bodies`: kinds of bullet bodies, at least one.
-    /// - `rear_axle_x_m`: position x of the rear axle of the target in its body axes, m.
+    /// - `bodies`: kinds of bodies of the striking vehicle, at least one.
+    /// - `rear_axle_x_m`: position x of the rear axle of the struck vehicle in its body axes, m.
     pub fn prior(bodies: Vec<BodyCrush>, rear_axle_x_m: f64) -> Self {
         Self {
             depth_log_stiffness: [11.5, 11.8, 12.3, 13.0, 13.5, 13.5, 13.8, 14.0],

@@ -1,5 +1,5 @@
-//! The outline of the front of the bullet in plan view, and its division into the elements
-//! (springs) of the crush model.
+//! The outline of the front of the striking vehicle in plan view, and its division into the
+//! elements (springs) of the crush model.
 
 use serde::{Deserialize, Serialize};
 
@@ -49,9 +49,9 @@ impl Default for Nose {
 /// One element of the outline, which acts as one spring.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SkinElement {
-    /// Position of its middle in body axes of the bullet, m.
+    /// Position of its middle in body axes of the striking vehicle, m.
     pub position_body_m: [f64; 2],
-    /// Outward unit normal in body axes of the bullet.
+    /// Outward unit normal in body axes of the striking vehicle.
     pub normal_body: [f64; 2],
     /// Length of the element along the outline, m.
     pub length_m: f64,

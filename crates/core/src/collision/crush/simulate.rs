@@ -6,10 +6,10 @@ use super::law::{
 use super::outline::{N_ELEMENTS, SkinElement};
 
 /// Largest overlap of an element that counts as crush, m. An element with a larger overlap has
-/// passed to the other side of the target.
+/// passed to the other side of the struck vehicle.
 const MAX_DEPTH_M: f64 = 0.9;
-/// Position of the rear end of the target relative to its rear axle, m. There is no contact behind
-/// it.
+/// Position of the rear end of the struck vehicle relative to its rear axle, m. There is no contact
+/// behind it.
 const REAR_END_M: f64 = -0.96;
 /// Gap beyond which the simulation ends, m: vehicles that are this far apart do not meet again
 /// within a quarter of a second.
@@ -19,40 +19,42 @@ const PARTED_M: f64 = 0.1;
 const MIN_RECOVERY_M: f64 = 1e-4;
 /// Overlap to which the parameters of friction, normal direction and recovery refer, m.
 const REFERENCE_DEPTH_M: f64 = 0.1;
-/// Heading angle of the bullet to which the parameters of friction and structure depth refer, rad.
+/// Heading angle of the striking vehicle to which the parameters of friction and structure depth
+/// refer, rad.
 const REFERENCE_ANGLE_RAD: f64 = 0.35;
 
-/// Two vehicles at first contact. The heading of the target is along x and the bullet is on its
-/// right, so that its left front corner touches the right side of the target. The axes are fixed;
-/// they coincide with the body axes of the target at first contact. Neither vehicle has a yaw rate
-/// then.
+/// Two vehicles at first contact. The heading of the struck vehicle is along x and the striking
+/// vehicle is on its right, so that its left front corner touches the right side of the struck
+/// vehicle. The axes are fixed; they coincide with the body axes of the struck vehicle at first
+/// contact. Neither vehicle has a yaw rate then.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CrushScenario {
-    /// Masses of target and bullet, kg.
+    /// Masses of the struck and the striking vehicle, kg.
     pub mass_kg: [f64; 2],
-    /// Yaw moments of inertia of target and bullet about their CGs, kg m².
+    /// Yaw moments of inertia of the struck and the striking vehicle about their CGs, kg m².
     pub yaw_inertia_kg_m2: [f64; 2],
-    /// Velocity of the bullet relative to the target, `[x, y]`, m/s.
+    /// Velocity of the striking vehicle relative to the struck vehicle, `[x, y]`, m/s.
     pub relative_velocity_m_s: [f64; 2],
-    /// Heading of the bullet relative to that of the target, rad, counter-clockwise positive.
+    /// Heading of the striking vehicle relative to that of the struck vehicle, rad,
+    /// counter-clockwise positive.
     pub theta_b_rad: f64,
-    /// Point of first contact in body axes of the target, from its CG, m.
+    /// Point of first contact in body axes of the struck vehicle, from its CG, m.
     pub contact_m: [f64; 2],
-    /// Index of the kind of bullet body in [`CrushLaw::bodies`].
+    /// Index of the kind of body of the striking vehicle in [`CrushLaw::bodies`].
     pub body_idx: usize,
 }
 
 /// Result of a simulation: one value for each time step; zeros after the vehicles have separated.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CrushHistory {
-    /// Force on the target along x in the axes of the scenario, N.
+    /// Force on the struck vehicle along x in the axes of the scenario, N.
     pub fx_n: Vec<f64>,
-    /// Force on the target along y in the axes of the scenario, N.
+    /// Force on the struck vehicle along y in the axes of the scenario, N.
     pub fy_n: Vec<f64>,
     /// Largest overlap of the outlines, m; zero if they do not overlap.
     pub depth_m: Vec<f64>,
-    /// Sliding velocity of the bullet along the target, averaged over the elements with their
-    /// normal forces as weights, m/s.
+    /// Sliding velocity of the striking vehicle along the struck vehicle, averaged over the
+    /// elements with their normal forces as weights, m/s.
     pub slip_m_s: Vec<f64>,
 }
 
@@ -103,8 +105,8 @@ struct Springs<'a> {
     law: &'a CrushLaw,
     scenario: &'a CrushScenario,
     elements: [SkinElement; N_ELEMENTS],
-    /// Depth of the inner structure of the bullet at each element, with the influence of the
-    /// heading angle, m.
+    /// Depth of the inner structure of the striking vehicle at each element, with the influence of
+    /// the heading angle, m.
     structure_m: [f64; N_ELEMENTS],
     slope: [f64; DEPTH_KNOTS_M.len()],
     load_at_knot: [f64; DEPTH_KNOTS_M.len()],
@@ -195,8 +197,9 @@ impl<'a> Springs<'a> {
         })
     }
 
-    /// Target and bullet at first contact: the target at rest at the origin, and the bullet at the
-    /// position where its outline touches the point of contact, with the relative velocity.
+    /// The struck and the striking vehicle at first contact: the struck vehicle at rest at the
+    /// origin, and the striking vehicle at the position where its outline touches the point of
+    /// contact, with the relative velocity.
     fn at_first_contact(&self) -> [Body; 2] {
         let scenario = self.scenario;
         let body = &self.law.bodies[scenario.body_idx];
@@ -322,9 +325,9 @@ impl<'a> Springs<'a> {
         }
     }
 
-    /// Direction of the normal force in axes of the target: between the normal of the target (+y)
-    /// and that of the bullet, tilted where the depth of the inner structure of the target has a
-    /// slope.
+    /// Direction of the normal force in axes of the struck vehicle: between the normal of the
+    /// struck vehicle (+y) and that of the striking vehicle, tilted where the depth of the inner
+    /// structure of the struck vehicle has a slope.
     ///
     /// - `deepest_m`: largest overlap of the element so far, less the reference of 0.1 m.
     fn normal(

@@ -38,8 +38,8 @@ pub struct ForceCase {
     pub scenario: ForceScenario,
     /// Whether the recorded case is the mirror image of this one.
     pub mirrored: bool,
-    /// Force on the target over the time from the start of the record, mirrored like the scenario. Its
-    /// duration lasts from the first touch to the last separation.
+    /// Force on the struck vehicle over the time from the start of the record, mirrored like the
+    /// scenario. Its duration lasts from the first touch to the last separation.
     pub curve: ForceCurve,
     /// First touch, s from the start of the record.
     pub onset_s: f64,
@@ -49,7 +49,8 @@ pub struct ForceCase {
     pub peak_n: f64,
     /// Time of the peak, s.
     pub peak_time_s: f64,
-    /// Whether a corner of the bullet stays hooked to the target; `false` if the case does not state it.
+    /// Whether a corner of the striking vehicle stays hooked to the struck vehicle; `false` if the
+    /// case does not state it.
     pub hooked: bool,
     /// Whether the vehicles are separated at the end; `true` if the case does not state it.
     pub separated: bool,
@@ -72,7 +73,7 @@ pub enum ForceCaseError {
         /// What is wrong with the file.
         source: SeriesError,
     },
-    /// The force is given in axes that turn with the target by an unknown angle.
+    /// The force is given in axes that turn with the struck vehicle by an unknown angle.
     #[error("case {case}: the force is in body axes, expected world axes (fx_n, fy_n)")]
     BodyAxes {
         /// Name of the case.

@@ -12,35 +12,36 @@ use impactlab_core::ranges::{
     BODY_MASS, BODY_YAW_INERTIA, CONTACT_X, CONTACT_Y, HEADING, Range, SPEED, STRIKING_OFFSET,
 };
 
-/// Two vehicles at first contact, in world axes with X along the target's heading. Neither vehicle
-/// turns before the contact.
+/// Two vehicles at first contact, in world axes with X along the struck vehicle's heading. Neither
+/// vehicle turns before the contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ForceScenario {
-    /// Masses of target and bullet, kg.
+    /// Masses of the struck and the striking vehicle, kg.
     pub mass_kg: [f64; 2],
-    /// Velocity `[x, y]` of the target's CG, m/s.
+    /// Velocity `[x, y]` of the struck vehicle's CG, m/s.
     #[serde(rename = "target_velocity_m_s")]
     pub struck_velocity_m_s: [f64; 2],
-    /// Velocity `[x, y]` of the bullet's CG, m/s.
+    /// Velocity `[x, y]` of the striking vehicle's CG, m/s.
     #[serde(rename = "bullet_velocity_m_s")]
     pub striking_velocity_m_s: [f64; 2],
-    /// Heading of the bullet against the target's, rad, −π to π.
+    /// Heading of the striking vehicle against the struck vehicle's, rad, −π to π.
     pub theta_b_rad: f64,
-    /// The struck side of the target.
+    /// The side on which the struck vehicle is hit.
     pub side: StruckSide,
-    /// First contact `[x, y]` in the target's body axes from its CG, m, where it is known.
+    /// First contact `[x, y]` in the struck vehicle's body axes from its CG, m, where it is known.
     pub contact_m: Option<[f64; 2]>,
-    /// Direction of the contact normal, which points into the target, from the target's heading, rad,
-    /// −π to π, where it is known. The cases of a data set are blows against the side: π/2 on the right.
+    /// Direction of the contact normal, which points into the struck vehicle, from the struck
+    /// vehicle's heading, rad, −π to π, where it is known. The cases of a data set are blows
+    /// against the side: π/2 on the right.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub normal_rad: Option<f64>,
-    /// The bullet's CG `[x, y]` from the target's CG, m, where it is known.
+    /// The striking vehicle's CG `[x, y]` from the struck vehicle's CG, m, where it is known.
     #[serde(rename = "bullet_position_m")]
     pub striking_position_m: Option<[f64; 2]>,
-    /// Kind of bullet body, where it is known.
+    /// Kind of body of the striking vehicle, where it is known.
     #[serde(rename = "bullet_body")]
     pub striking_body: Option<String>,
-    /// Yaw inertias of target and bullet, kg m², where they are known.
+    /// Yaw inertias of the struck and the striking vehicle, kg m², where they are known.
     pub yaw_inertia_kg_m2: [Option<f64>; 2],
 }
 
@@ -61,8 +62,8 @@ impl ForceScenario {
         Ok(Self { striking_position_m, striking_body, ..Self::from_attributes(&attributes) })
     }
 
-    /// The scenario of a case's attributes, without position and body of the bullet, which they do not
-    /// contain.
+    /// The scenario of a case's attributes, without position and body of the striking vehicle,
+    /// which they do not contain.
     pub fn from_attributes(attributes: &ForceAttributes) -> Self {
         let [_, contact_y_m] = attributes.contact_m;
         let theta = attributes.theta_b_rad;
@@ -82,8 +83,8 @@ impl ForceScenario {
         }
     }
 
-    /// The scenario of an impact, turned so that the target heads along X. Yaw rates before the contact
-    /// are ignored, since no force model depends on them.
+    /// The scenario of an impact, turned so that the struck vehicle heads along X. Yaw rates before
+    /// the contact are ignored, since no force model depends on them.
     ///
     /// # Errors
     /// [`ScenarioError`] if the vehicles do not meet.
@@ -138,9 +139,9 @@ impl ForceScenario {
         numbers
     }
 
-    /// The planar impact of the collision, with the normal across the target; `None` if contact
-    /// point, position of the bullet or a yaw inertia is open, or if the contact lies on neither
-    /// side of the target.
+    /// The planar impact of the collision, with the normal across the struck vehicle; `None` if
+    /// contact point, position of the striking vehicle or a yaw inertia is open, or if the contact
+    /// lies on neither side of the struck vehicle.
     ///
     /// - `restitution`: coefficient of restitution e, 0 to 1;
     /// - `friction_limit`: friction limit μ_c, 0 or more.
@@ -160,7 +161,7 @@ impl ForceScenario {
         case.to_impact(restitution, friction_limit).ok()
     }
 
-    /// Velocity of the bullet relative to the target `v_b − v_t`, m/s.
+    /// Velocity of the striking vehicle relative to the struck vehicle `v_b − v_t`, m/s.
     pub fn relative_velocity_m_s(&self) -> [f64; 2] {
         [0, 1].map(|i| self.striking_velocity_m_s[i] - self.struck_velocity_m_s[i])
     }
@@ -184,9 +185,9 @@ impl ForceScenario {
         }
     }
 
-    /// The canonical form of this scenario, and whether it is mirrored. Of all equivalent scenarios it
-    /// is the one with the bullet on the right of the target, so that it mostly pushes along +y, and
-    /// with the target at rest.
+    /// The canonical form of this scenario, and whether it is mirrored. Of all equivalent scenarios
+    /// it is the one with the striking vehicle on the right of the struck vehicle, so that it
+    /// mostly pushes along +y, and with the struck vehicle at rest.
     #[must_use]
     pub fn canonical(&self) -> (Self, bool) {
         let mirrored = self.side == StruckSide::Left;
@@ -197,9 +198,10 @@ impl ForceScenario {
 }
 
 /// The struck side of a case that does not state it: the side of the contact point, else the side
-/// from which the bullet heads towards the target, else the side from which it moves.
+/// from which the striking vehicle heads towards the struck vehicle, else the side from which it
+/// moves.
 ///
-/// - `approach_m_s`: lateral velocity of the bullet relative to the target.
+/// - `approach_m_s`: lateral velocity of the striking vehicle relative to the struck vehicle.
 fn struck_side(contact_y_m: Option<f64>, theta_b_rad: f64, approach_m_s: f64) -> StruckSide {
     let signs = [contact_y_m.unwrap_or(0.0), -theta_b_rad, -approach_m_s];
     match signs.into_iter().find(|sign| *sign != 0.0) {

@@ -30,9 +30,9 @@ const SLACK: f64 = 1.0 / 3.0;
 /// share of the feature.
 const CONSTANT_SHARE: f64 = 0.05;
 /// Name of the direction of the normal among the features.
-const NORMAL_NAME: &str = "contact normal from across the target [rad]";
-/// Index of the bullet's heading, whose deviation is the unit of the normal as well: turning either
-/// turns the blow.
+const NORMAL_NAME: &str = "contact normal from across the struck vehicle [rad]";
+/// Index of the striking vehicle's heading, whose deviation is the unit of the normal as well:
+/// turning either turns the blow.
 const THETA_IDX: usize = 4;
 
 /// The training cases of a network as points in the space of the scenario's features.
@@ -132,7 +132,7 @@ fn tolerance(high: f64) -> f64 {
     1e-6 * (1.0 + high.abs())
 }
 
-/// Angle of the normal from across the target, rad; zero where the scenario leaves it open.
+/// Angle of the normal from across the struck vehicle, rad; zero where the scenario leaves it open.
 fn normal_turn_rad(scenario: &ForceScenario) -> f64 {
     scenario.normal_rad.map_or(0.0, |normal| wrap_angle_rad(normal - FRAC_PI_2))
 }
@@ -203,7 +203,8 @@ mod tests {
             assert!(now <= before, "{mass_kg}: {now} after {before}");
             let outside = domain.outside(&heavy);
             assert_eq!(outside.len(), usize::from(mass_kg > 2500.0), "{outside:?}");
-            assert!(outside.iter().all(|of| of.feature == "bullet mass [kg]"), "{outside:?}");
+            let expected = "mass of the striking vehicle [kg]";
+            assert!(outside.iter().all(|of| of.feature == expected), "{outside:?}");
             before = now;
         }
         assert_eq!(before, 0.0);
@@ -223,6 +224,6 @@ mod tests {
         let (domain, seen) = (domain(&cases), &cases[10].scenario);
         let light = ForceScenario { mass_kg: [1700.0, seen.mass_kg[1]], ..seen.clone() };
         assert_eq!(domain.applicability(&light, seen.contact_m.unwrap()), 0.0);
-        assert_eq!(domain.outside(&light)[0].feature, "target mass [kg]");
+        assert_eq!(domain.outside(&light)[0].feature, "mass of the struck vehicle [kg]");
     }
 }

@@ -10,8 +10,8 @@ use impactlab_core::units::significant;
 
 /// Names of the scenario's features as shown to the user, with units.
 pub(super) const SCENARIO_NAMES: [&str; N_SCENARIO] = [
-    "target mass [kg]",
-    "bullet mass [kg]",
+    "mass of the struck vehicle [kg]",
+    "mass of the striking vehicle [kg]",
     "v_bx − v_tx [m/s]",
     "v_by − v_ty [m/s]",
     "θ_b [rad]",
@@ -47,8 +47,8 @@ pub struct Standardisation {
 /// A feature of a scenario that lies outside the range of the training cases.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OutsideTraining {
-    /// Name and unit of the feature in the canonical scenario: bullet on the right, velocities relative
-    /// to the target.
+    /// Name and unit of the feature in the canonical scenario: striking vehicle on the right,
+    /// velocities relative to the struck vehicle.
     pub feature: &'static str,
     /// Its value.
     pub value: f64,
@@ -170,7 +170,7 @@ impl Standardisation {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OpenFeatures {
-    /// Contact points of equal probability, target body axes, canonical, m.
+    /// Contact points of equal probability, body axes of the struck vehicle, canonical, m.
     pub contact_m: Vec<[f64; 2]>,
     /// Probability of each body.
     pub body: Vec<f64>,

@@ -159,7 +159,7 @@ impl NetworkOutput {
 impl ForceNetwork {
     /// A network with random first weights.
     ///
-    /// - `n_bodies`: number of kinds of bullet bodies;
+    /// - `n_bodies`: number of kinds of bodies of the striking vehicle;
     /// - `parameters`: the list to which its parameters are added, empty.
     ///
     /// # Errors

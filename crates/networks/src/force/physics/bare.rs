@@ -10,10 +10,11 @@
 //! β and ζ_L are normal and correlated. This is what is left of a force network outside of what it has
 //! learned from.
 //!
-//! Measured by `examples/bare_force.rs` on the 200 shipped finite-element runs: for each of target mass, bullet mass, both
-//! components of the relative velocity, heading and contact point, the quarter of the runs with the
-//! smallest values and the quarter with the largest are left out in turn, and predicted with the
-//! duration and the shape of the others. Root mean squares over the 600 predictions:
+//! Measured by `examples/bare_force.rs` on the 200 shipped finite-element runs: for each of the
+//! masses of both vehicles, both components of the relative velocity, heading and contact point,
+//! the quarter of the runs with the smallest values and the quarter with the largest are left out
+//! in turn, and predicted with the duration and the shape of the others. Root mean squares over the
+//! 600 predictions:
 //!
 //! | | rms | within ±0.674 rms | within ±1.645 rms |
 //! | --- | --- | --- | --- |
@@ -43,8 +44,9 @@ pub(crate) const IMPULSE_LOG_STD: f64 = 0.26;
 pub(crate) const DIRECTION_STD_RAD: f64 = 0.21;
 /// Root mean square of ζ_L: that with which the errors of peak and duration come out as measured.
 pub(crate) const LENGTH_LOG_STD: f64 = 0.46;
-/// Correlations of ζ_P with β and with ζ_L: an impulse that is larger than expected is turned forward, as
-/// where the bullet's corner catches, and lasts longer. β is counted in canonical axes.
+/// Correlations of ζ_P with β and with ζ_L: an impulse that is larger than expected is turned
+/// forward, as where the striking vehicle's corner catches, and lasts longer. β is counted in
+/// canonical axes.
 const IMPULSE_DIRECTION_CORRELATION: f64 = -0.86;
 const IMPULSE_LENGTH_CORRELATION: f64 = 0.45;
 /// s, length of the haversine over the duration: the median of F_max Δt / |P| is 2.73, of a haversine
@@ -80,7 +82,8 @@ pub(crate) struct BareForce {
 impl BareForce {
     /// The momentum solution of a canonical scenario.
     ///
-    /// - `momentum`: stands in for what the scenario leaves open: arm of the bullet, yaw inertias;
+    /// - `momentum`: stands in for what the scenario leaves open: arm of the striking vehicle, yaw
+    ///   inertias;
     /// - `contact_m`: the contact point, which the scenario may leave open;
     /// - `duration_s`: mean duration of the training cases.
     ///

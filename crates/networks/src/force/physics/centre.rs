@@ -37,7 +37,7 @@ pub struct CentreCurve {
     /// Inverse mass matrix K at the contact point, 1/kg. With the closing velocity it gives the energy
     /// that an impulse absorbs.
     pub inverse_mass_1_kg: [[f64; 2]; 2],
-    /// Velocity of the bullet's contact point relative to the target's, m/s.
+    /// Velocity of the striking vehicle's contact point relative to the struck vehicle's, m/s.
     pub closing_velocity_m_s: [f64; 2],
 }
 
@@ -233,13 +233,15 @@ impl CentreModel {
         self.momentum.check("centre.momentum")
     }
 
-    /// The kinds of bullet bodies in the training cases, in the order of their index.
+    /// The kinds of bodies of the striking vehicle in the training cases, in the order of their
+    /// index.
     pub fn bodies(&self) -> Vec<String> {
         let bodies = self.laws.first().map(|law| law.bodies.as_slice()).unwrap_or_default();
         bodies.iter().map(|body| body.name.clone()).collect()
     }
 
-    /// Position of the target's rear axle in its body axes, m, from which contact offsets are measured.
+    /// Position of the struck vehicle's rear axle in its body axes, m, from which contact offsets
+    /// are measured.
     pub fn rear_axle_x_m(&self) -> f64 {
         self.laws.first().map_or(0.0, |law| law.rear_axle_x_m)
     }

@@ -76,7 +76,8 @@ fn prior_law(cases: &[ForceCase]) -> CrushLaw {
     CrushLaw::prior(bodies.collect(), middle)
 }
 
-/// Angle of the target's side against the bullet, and where the bullet touches it in its own axes.
+/// Angle of the struck vehicle's side against the striking vehicle, and where the striking vehicle
+/// touches it in its own axes.
 fn nose_contact(scenario: &ForceScenario) -> Option<(f64, [f64; 2])> {
     let ([x, y], [striking_x, striking_y]) = (scenario.contact_m?, scenario.striking_position_m?);
     let (sin, cos) = scenario.theta_b_rad.sin_cos();

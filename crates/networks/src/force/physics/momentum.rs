@@ -1,9 +1,10 @@
 //! The momentum solution of a force scenario: rigid bodies whose contact normal lies nearly across
-//! the target.
+//! the struck vehicle.
 //!
-//! What a scenario leaves open (the position of the bullet's CG, its yaw inertia, the contact point)
-//! is replaced by an average over the training cases. Restitution, friction limit and the angle of the
-//! normal are fitted to the impulses of these cases. All scenarios are canonical.
+//! What a scenario leaves open (the position of the striking vehicle's CG, its yaw inertia, the
+//! contact point) is replaced by an average over the training cases. Restitution, friction limit
+//! and the angle of the normal are fitted to the impulses of these cases. All scenarios are
+//! canonical.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -23,14 +24,15 @@ pub struct MomentumModel {
     pub restitution: f64,
     /// Friction limit μ_c.
     pub friction_limit: f64,
-    /// Angle of the contact normal from the target's +y axis, rad, counter-clockwise.
+    /// Angle of the contact normal from the struck vehicle's +y axis, rad, counter-clockwise.
     pub normal_turn_rad: f64,
-    /// Contact point from the target's CG, m, for scenarios that leave it open or if it must not be used.
+    /// Contact point from the struck vehicle's CG, m, for scenarios that leave it open or if it
+    /// must not be used.
     pub contact_m: [f64; 2],
-    /// From the bullet's CG to the contact point, in the bullet's own axes, m.
+    /// From the striking vehicle's CG to the contact point, in the striking vehicle's own axes, m.
     #[serde(rename = "bullet_arm_m")]
     pub striking_arm_m: [f64; 2],
-    /// Yaw inertia over mass of target and bullet, m².
+    /// Yaw inertia over mass of the struck and the striking vehicle, m².
     pub inertia_per_mass_m2: [f64; 2],
     /// Whether the contact point of a scenario is used.
     pub uses_contact: bool,
@@ -52,7 +54,8 @@ impl MomentumModel {
     }
 
     /// Values without any training case, for a push on the right rear wheel by a corner of the
-    /// bullet's front. They fit the shipped finite-element runs (`tests/library/validation_collision.rs`).
+    /// striking vehicle's front. They fit the shipped finite-element runs
+    /// (`tests/library/validation_collision.rs`).
     pub fn prior(uses_contact: bool) -> Self {
         Self {
             restitution: 0.3,
@@ -173,7 +176,8 @@ fn grid(centre: [f64; 3], half_width: [f64; 3]) -> impl Iterator<Item = [f64; 3]
     })
 }
 
-/// From the bullet's CG to the contact point in the bullet's axes, m, where both are known.
+/// From the striking vehicle's CG to the contact point in the striking vehicle's axes, m, where
+/// both are known.
 fn striking_arm_m(scenario: &ForceScenario) -> Option<[f64; 2]> {
     let ([cx, cy], [bx, by]) = (scenario.contact_m?, scenario.striking_position_m?);
     let (sin, cos) = scenario.theta_b_rad.sin_cos();

@@ -48,8 +48,8 @@ pub(crate) struct Targets {
     pub impulse: Tensor,
     /// 1 for a case with hooking and 0 for others, `[cases]`.
     pub hooked: Tensor,
-    /// Velocity of the bullet's contact point relative to the target's before the impact, m/s,
-    /// `[cases, 2]`.
+    /// Velocity of the striking vehicle's contact point relative to the struck vehicle's before the
+    /// impact, m/s, `[cases, 2]`.
     pub closing: Tensor,
     /// Inverse mass matrix K times the unit of the impulse, so that K P is in m/s, `[cases, 2, 2]`.
     pub inverse_mass: Tensor,
@@ -394,7 +394,8 @@ mod tests {
             output.impulse = tensor(&[0.0, py], &[1, 2]);
             energy(&output, &targets).unwrap().to_scalar::<f64>().unwrap()
         };
-        // W(P) = P − P²/2 in units of ½ is that of the target at P = 1 and negative for P > 2.
+        // W(P) = P − P²/2 in units of ½ is that of the struck vehicle at P = 1 and negative for P >
+        // 2.
         assert!(at(1.0).abs() < 1e-12);
         assert!(at(0.5) > 0.0 && at(3.0) > at(2.0) + 1.0);
     }

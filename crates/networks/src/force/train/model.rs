@@ -64,14 +64,14 @@ impl ForceModel {
         &self.cases
     }
 
-    /// The kinds of bullet bodies that the model knows; a single empty name if the training data
-    /// name none.
+    /// The kinds of bodies of the striking vehicle that the model knows; a single empty name if the
+    /// training data name none.
     pub fn bodies(&self) -> Vec<String> {
         self.centre.bodies()
     }
 
-    /// Position of the rear axle of the target in its body axes, m, from which contact offsets are
-    /// measured.
+    /// Position of the rear axle of the struck vehicle in its body axes, m, from which contact
+    /// offsets are measured.
     pub fn rear_axle_x_m(&self) -> f64 {
         self.centre.rear_axle_x_m()
     }

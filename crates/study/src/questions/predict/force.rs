@@ -29,7 +29,8 @@ pub struct PredictForceRequest {
     /// The force network.
     #[serde(default)]
     pub model: ModelChoice,
-    /// Kind of bullet body as the training data name it, where the collision leaves it open.
+    /// Kind of body of the striking vehicle as the training data name it, where the collision
+    /// leaves it open.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
     /// Whether the contact point is left open: it is drawn from that of the training cases.
@@ -65,14 +66,14 @@ pub enum ForceQuestion {
     },
 }
 
-/// The predicted force of a collision, SI units, axes along the heading of the target.
+/// The predicted force of a collision, SI units, axes along the heading of the struck vehicle.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PredictForceReport {
     /// What the collision is called.
     pub scenario: String,
     /// The force network.
     pub model: String,
-    /// Impulse on the target, N s.
+    /// Impulse on the struck vehicle, N s.
     pub impulse_n_s: ImpulseReport,
     /// Largest size of the force, N.
     pub peak_n: Estimate,
@@ -92,7 +93,7 @@ pub struct PredictForceReport {
     /// Restitution and impulse ratio with which a momentum solution would give the impulse, beside
     /// the one with the values of the collision; none where the contact is open.
     pub implied_contact: Option<ImpliedContactReport>,
-    /// Probability that the bullet's corner stays caught; none for a single component.
+    /// Probability that the striking vehicle's corner stays caught; none for a single component.
     pub hooking_probability: Option<f64>,
     /// The components of the mixture, the likeliest first.
     pub modes: Vec<Mode>,
@@ -103,7 +104,7 @@ pub struct PredictForceReport {
     pub outside_training: Vec<OutsideTraining>,
     /// Whether the contact point is open and drawn from that of the training cases.
     pub is_contact_open: bool,
-    /// Whether the bullet's body is open and drawn from that of the training cases.
+    /// Whether the striking vehicle's body is open and drawn from that of the training cases.
     pub is_body_open: bool,
     /// What restricts the answer and what it rests on.
     #[serde(flatten)]
@@ -118,7 +119,7 @@ pub struct PredictForceReport {
 pub struct ImpulseReport {
     /// Mean [x, y].
     pub mean: [f64; 2],
-    /// Component along the heading of the target.
+    /// Component along the heading of the struck vehicle.
     pub x: Estimate,
     /// Component to its left.
     pub y: Estimate,
@@ -143,7 +144,8 @@ pub struct PredictForceAnswer {
 struct AskedCollision {
     name: String,
     numbers: ForceScenario,
-    /// Its planar impact in world axes and the heading of the target, where the contact is known.
+    /// Its planar impact in world axes and the heading of the struck vehicle, where the contact is
+    /// known.
     impact: Option<(Impact, f64)>,
     /// What the network does not use of what the question says.
     unused: Vec<Caveat>,
@@ -241,7 +243,10 @@ impl Question for PredictForceRequest {
             collision.striking_body = Some(body.clone());
             if model.bodies().len() == 1 {
                 let reason = "the cases that the force network has learned from have one kind";
-                unused.push(Caveat::not_used(format!("kind of bullet body, {body}"), reason));
+                unused.push(Caveat::not_used(
+                    format!("body of the striking vehicle, {body}"),
+                    reason,
+                ));
             }
         }
         if self.open_contact {

@@ -33,7 +33,7 @@ pub struct MomentumReport {
     pub critical_impulse_ratio: Option<f64>,
     /// Whether the contact sticks or slides.
     pub regime: Regime,
-    /// Impulse on the target [x, y], N s; axes of the report.
+    /// Impulse on the struck vehicle [x, y], N s; axes of the report.
     pub impulse_n_s: [f64; 2],
 }
 
@@ -81,7 +81,7 @@ impl ImpliedContactReport {
     /// the vehicles together.
     ///
     /// - `impact`: the impact in world axes;
-    /// - `heading_rad`: heading of the target, along which x of the predicted force lies;
+    /// - `heading_rad`: heading of the struck vehicle, along which x of the predicted force lies;
     /// - `seed`: of the draws.
     pub(crate) fn of(
         prediction: &ForcePrediction,
@@ -137,8 +137,8 @@ mod tests {
     use impactlab_networks::force::ForceScenario;
     use impactlab_networks::shipped::ModelSource;
 
-    /// The medians, put into the solver, give the predicted impulse back, whichever way the target
-    /// heads.
+    /// The medians, put into the solver, give the predicted impulse back, whichever way the struck
+    /// vehicle heads.
     #[test]
     fn the_solver_with_the_implied_values_gives_the_predicted_impulse() {
         let model = ModelSource::Shipped.force_model().unwrap();

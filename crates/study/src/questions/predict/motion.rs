@@ -94,7 +94,7 @@ pub struct PredictMotionReport {
     /// Restitution and impulse ratio with which a momentum solution would give the predicted impulse,
     /// beside the one with the values of the scenario; none for another force.
     pub implied_contact: Option<ImpliedContactReport>,
-    /// Probability that the bullet's corner stays caught, of a predicted force.
+    /// Probability that the striking vehicle's corner stays caught, of a predicted force.
     pub hooking_probability: Option<f64>,
     /// A second contact of the vehicles in the 4DOF simulation of the same collision; the forecast
     /// does not know of it.

@@ -13,10 +13,11 @@ const LATERAL_SPEED_SCALE_M_S: f64 = 0.5;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ColumnSet {
-    /// θ alone: masses, velocities and heading of the bullet.
+    /// θ alone: masses, velocities and heading of the striking vehicle.
     #[default]
     Theta,
-    /// θ, the contact point along the target, and the kind of the bullet's body.
+    /// θ, the contact point along the struck vehicle, and the kind of the body of the striking
+    /// vehicle.
     ThetaContactAndBody,
 }
 
@@ -25,7 +26,7 @@ pub enum ColumnSet {
 #[serde(deny_unknown_fields)]
 pub struct FeatureMap {
     columns: ColumnSet,
-    /// Mean contact point along the target, m, which replaces an unknown one.
+    /// Mean contact point along the struck vehicle, m, which replaces an unknown one.
     contact_x_m: f64,
     /// Kinds of body, sorted. The first has no column of its own.
     bodies: Vec<String>,
@@ -56,11 +57,11 @@ impl FeatureMap {
         Self { columns, contact_x_m, bodies }
     }
 
-    /// The row of a scenario: relative velocity along X; relative lateral velocity on a scale that is
-    /// logarithmic for large values, since forces and impulses are powers of it; heading; logarithms of
-    /// the masses; and, with all columns, the contact point along the target and for each kind of body
-    /// but the first a 1 if the bullet is of this kind, else a 0. For an unknown kind all of them have
-    /// the same share.
+    /// The row of a scenario: relative velocity along X; relative lateral velocity on a scale that
+    /// is logarithmic for large values, since forces and impulses are powers of it; heading;
+    /// logarithms of the masses; and, with all columns, the contact point along the struck vehicle
+    /// and for each kind of body but the first a 1 if the striking vehicle is of this kind, else a
+    /// 0. For an unknown kind all of them have the same share.
     ///
     /// ```text
     /// [v_x, asinh(v_y / 0.5 m/s), θ_b, ln m_t, ln m_b (, x_c, body …)]
