@@ -59,7 +59,7 @@ pub struct CaseRow<'a> {
 
 impl CaseColumn {
     /// Returns the columns of the table for a kind of data set.
-    pub fn of(kind: DatasetKind) -> &'static [Self] {
+    pub fn for_kind(kind: DatasetKind) -> &'static [Self] {
         match kind {
             DatasetKind::Force => FORCE_COLUMNS,
             DatasetKind::Trajectory => TRAJECTORY_COLUMNS,

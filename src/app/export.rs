@@ -60,7 +60,7 @@ pub fn write_report(
     path: &Path,
     existing: Existing,
 ) -> Result<(), String> {
-    let format = ReportFormat::of(path).map_err(|error| error_chain(&error))?;
+    let format = ReportFormat::from_path(path).map_err(|error| error_chain(&error))?;
     let bytes = document.bytes(format, Some(&report_picture));
     let bytes = bytes.map_err(|error| error_chain(&error))?;
     write_atomically(path, existing, |out| out.write_all(&bytes))

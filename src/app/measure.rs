@@ -233,7 +233,7 @@ mod tests {
 
     use super::*;
 
-    fn of(measure: Measure, points_m: &[[f64; 2]]) -> Measurement {
+    fn measurement(measure: Measure, points_m: &[[f64; 2]]) -> Measurement {
         Measurement { measure, points_m: points_m.to_vec() }
     }
 
@@ -245,18 +245,22 @@ mod tests {
                 assert!((found.unwrap() - expected).abs() < 1e-6, "{found:?} {expected} {far:?}");
             };
             let corner = [at(3.0, 0.0), at(0.0, 0.0), at(0.0, 4.0)];
-            near(of(Measure::Length, &corner).value(), 7.0);
-            near(of(Measure::Angle, &corner).value(), FRAC_PI_2);
-            near(of(Measure::Area, &corner).value(), 6.0);
+            near(measurement(Measure::Length, &corner).value(), 7.0);
+            near(measurement(Measure::Angle, &corner).value(), FRAC_PI_2);
+            near(measurement(Measure::Area, &corner).value(), 6.0);
         }
-        assert_eq!(of(Measure::Area, &[[0.0; 2], [1.0, 0.0]]).value(), None);
-        assert_eq!(of(Measure::Angle, &[[1.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).value(), None);
+        assert_eq!(measurement(Measure::Area, &[[0.0; 2], [1.0, 0.0]]).value(), None);
+        assert_eq!(
+            measurement(Measure::Angle, &[[1.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).value(),
+            None
+        );
     }
 
     #[test]
     fn values_are_shown_in_the_units_of_the_user() {
         let square = [[0.0, 0.0], [3.048, 0.0], [3.048, 3.048], [0.0, 3.048]];
-        let text = |measure, points: &[[f64; 2]], units| of(measure, points).text(units).unwrap();
+        let text =
+            |measure, points: &[[f64; 2]], units| measurement(measure, points).text(units).unwrap();
         assert_eq!(text(Measure::Area, &square, UnitSystem::Si), "9.29 m²");
         assert_eq!(text(Measure::Area, &square, UnitSystem::Us), "100.00 ft²");
         assert_eq!(text(Measure::Length, &square[..2], UnitSystem::Us), "10.00 ft");

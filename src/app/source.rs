@@ -225,7 +225,7 @@ pub fn read_source(
         let fingerprint = fingerprint(path, &map);
         OpenedPath { map: Some(OpenedMap { map, fingerprint, is_remembered }), ..opened }
     };
-    let remembered = if chosen.is_none() { maps.of_path(path) } else { None };
+    let remembered = if chosen.is_none() { maps.find_by_path(path) } else { None };
     let is_remembered = remembered.is_some();
     if let Some(map) = chosen.or(remembered) {
         return Ok(ask(Some(&map))?.map(|opened| with_map(opened, map, is_remembered)));
@@ -234,7 +234,7 @@ pub fn read_source(
         Outcome::Complete(opened) if opened.needs_map() => opened,
         settled => return Ok(settled),
     };
-    match maps.of_header(path) {
+    match maps.find_by_header(path) {
         None => Ok(Outcome::Complete(opened)),
         Some(map) => Ok(ask(Some(&map))?.map(|opened| with_map(opened, map, true))),
     }

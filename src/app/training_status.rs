@@ -93,7 +93,7 @@ impl<M: TrainedModel> TrainingStatus<M> {
         let is_complete = matches!(end, TrainingEnd::Complete(_));
         match end {
             TrainingEnd::Complete(answer) | TrainingEnd::Cancelled(Some(answer)) => {
-                let (model, report) = M::of_answer(answer);
+                let (model, report) = M::from_answer(answer);
                 // The reports lack the epochs before a training was resumed; the model has all of
                 // them.
                 self.history = model.history();

@@ -127,7 +127,7 @@ struct Extent {
 
 impl Extent {
     /// As the environment says, else as the format says.
-    fn of(format: &Format<'_>) -> Self {
+    fn from_environment(format: &Format<'_>) -> Self {
         let number = |name: &str| {
             let text = env::var(name).ok()?;
             Some(text.parse().unwrap_or_else(|_| panic!("{name} is {text:?}, expected a number")))
@@ -164,7 +164,7 @@ struct Seen {
 /// # Panics
 /// If a file shows a fault, or if no file of the corpus is accepted.
 pub fn run(format: &Format<'_>) {
-    let extent = Extent::of(format);
+    let extent = Extent::from_environment(format);
     let corpus = [corpus(format.name), format.seeds.clone()].concat();
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
         .join(format!("fuzz/{}-{}", format.name, extent.seed));

@@ -24,7 +24,7 @@ struct Parts {
 
 impl Parts {
     /// `None` if the file is not a model, or no longer one.
-    fn of(bytes: &[u8]) -> Option<Self> {
+    fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let file = SafeTensors::deserialize(bytes).ok()?;
         let (_, header) = SafeTensors::read_metadata(bytes).ok()?;
         let mut header: Value =
@@ -68,7 +68,7 @@ impl Parts {
 
 /// Another model file, in most cases with a checksum that fits.
 pub fn mutated(mutator: &mut Mutator, input: &[u8], other: &[u8]) -> Vec<u8> {
-    let parts = if mutator.once_in(16) { None } else { Parts::of(input) };
+    let parts = if mutator.once_in(16) { None } else { Parts::from_bytes(input) };
     let Some(mut parts) = parts else { return mutator.text(input, other) };
     let mut header = None;
     for _ in 0..=mutator.below(3) {

@@ -72,7 +72,7 @@ fn without(request: Value, keys: &[&str]) -> Value {
 }
 
 impl<'a> CommandLine<'a> {
-    fn of(args: &'a [&'a str]) -> Self {
+    fn new(args: &'a [&'a str]) -> Self {
         Self { args, only_printed: &[], not_asked_alike: &[] }
     }
 
@@ -160,7 +160,7 @@ fn what_is_open_is_checked_alike() {
         });
         let check = state(&harness).session.sources[0].check.as_ref().expect("a check");
         let answer = check.answer.as_ref().expect("a report");
-        CommandLine::of(&["check", path]).compare(check.question.clone(), &answer.report);
+        CommandLine::new(&["check", path]).compare(check.question.clone(), &answer.report);
     }
 }
 
@@ -173,11 +173,11 @@ fn a_scenario_is_solved_simulated_and_predicted_alike() {
     });
     // The window asks about a scenario in memory, the command line about a file.
     let (request, answer) = latest(&state(&harness).session.impact);
-    CommandLine::of(&["impact", SCENARIO])
+    CommandLine::new(&["impact", SCENARIO])
         .asks_differently(&["scenario"])
         .compare(request, &answer.report);
     let (request, answer) = latest(&state(&harness).session.analysis);
-    CommandLine::of(&["simulate", "--scenario", SCENARIO])
+    CommandLine::new(&["simulate", "--scenario", SCENARIO])
         .asks_differently(&["source"])
         .compare(request, &answer.report);
 
@@ -191,13 +191,13 @@ fn a_scenario_is_solved_simulated_and_predicted_alike() {
     step_until(&mut harness, "the force model", has_model);
     step_until(&mut harness, "the force", is_answered);
     let (request, answer) = latest(&state(&harness).session.force.forecast);
-    CommandLine::of(&["predict", "force", "--scenario", SCENARIO])
+    CommandLine::new(&["predict", "force", "--scenario", SCENARIO])
         .asks_differently(&["collision"]) // The file; the window has its content.
         .compare(request, &answer.report);
     select(&mut harness, FORCES, "c002");
     step_until(&mut harness, "the force of the case", is_answered);
     let (request, answer) = latest(&state(&harness).session.force.forecast);
-    CommandLine::of(&["predict", "force", "--dataset", FORCES, "--case", "c002"])
+    CommandLine::new(&["predict", "force", "--dataset", FORCES, "--case", "c002"])
         .compare(request, &answer.report);
 }
 
@@ -206,7 +206,7 @@ fn cases_and_files_are_simulated_alike() {
     let mut harness = open_on(FORCES);
     select(&mut harness, FORCES, "c003");
     let (request, answer) = latest(&state(&harness).session.analysis);
-    CommandLine::of(&["simulate", "--dataset", FORCES, "--case", "c003"])
+    CommandLine::new(&["simulate", "--dataset", FORCES, "--case", "c003"])
         .compare(request, &answer.report);
     for (option, path) in [
         ("--force", concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea/forces/c001.csv")),
@@ -221,7 +221,7 @@ fn cases_and_files_are_simulated_alike() {
     ] {
         let harness = open_on(path);
         let (request, answer) = latest(&state(&harness).session.analysis);
-        CommandLine::of(&["simulate", option, path]).compare(request, &answer.report);
+        CommandLine::new(&["simulate", option, path]).compare(request, &answer.report);
     }
 }
 
@@ -250,7 +250,7 @@ fn a_scenario_on_a_road_with_zones_of_friction_is_simulated_alike() {
     assert_ne!(off_road["end"], on_road["end"], "the zones make a difference");
     let (request, answer) = latest(&state(&harness).session.analysis);
     // The window asks about a scenario in memory, the command line about a file.
-    CommandLine::of(&["simulate", "--scenario", &braked, "--site", site])
+    CommandLine::new(&["simulate", "--scenario", &braked, "--site", site])
         .asks_differently(&["source"])
         .compare(request, &answer.report);
 }
@@ -264,7 +264,7 @@ fn a_data_set_is_simulated_alike() {
     });
     let replays = &state(&harness).session.replays;
     let (request, answer) = finished(&replays[Path::new(TRAJECTORIES)].question);
-    CommandLine::of(&["simulate", "--dataset", TRAJECTORIES]).compare(request, &answer.report);
+    CommandLine::new(&["simulate", "--dataset", TRAJECTORIES]).compare(request, &answer.report);
 }
 
 /// Waits until the window has predicted the motion under a force, and compares the report with that
@@ -301,19 +301,19 @@ fn a_motion_is_predicted_alike() {
     compare_motion(
         &mut harness,
         ForceSource::Predicted(ModelChoice::default()),
-        CommandLine::of(&of_case),
+        CommandLine::new(&of_case),
     );
     let given = [&of_case[..], &["--given-force"]].concat();
-    compare_motion(&mut harness, ForceSource::Given, CommandLine::of(&given));
+    compare_motion(&mut harness, ForceSource::Given, CommandLine::new(&given));
 
     // The window asks about a scenario in memory, the command line about a file.
     apply(&mut harness, Command::Open(vec![SCENARIO.into()]));
     step_until(&mut harness, "the scenario", is_idle);
     let of_scenario = [&["predict", "--scenario", SCENARIO][..], &drawn].concat();
-    let predicted = CommandLine::of(&of_scenario).asks_differently(&["motion"]);
+    let predicted = CommandLine::new(&of_scenario).asks_differently(&["motion"]);
     compare_motion(&mut harness, ForceSource::Predicted(ModelChoice::default()), predicted);
     let given = [&of_scenario[..], &["--given-force"]].concat();
-    let given = CommandLine::of(&given).asks_differently(&["motion"]);
+    let given = CommandLine::new(&given).asks_differently(&["motion"]);
     compare_motion(&mut harness, ForceSource::Given, given);
     let braked = {
         let pit = std::fs::read_to_string(SCENARIO).expect("the scenario");
@@ -330,7 +330,7 @@ fn a_motion_is_predicted_alike() {
         &["--seed", "7", "--out", &results, "--overwrite"],
     ]
     .concat();
-    let predicted = CommandLine::of(&to_rest).asks_differently(&["motion"]);
+    let predicted = CommandLine::new(&to_rest).asks_differently(&["motion"]);
     compare_motion(&mut harness, ForceSource::Predicted(ModelChoice::default()), predicted);
     let rest = state(&harness).motion_forecast().and_then(|of| of.answer.report.rest.clone());
     assert!(rest.is_some_and(|rest| rest.share_at_rest == 1.0));
@@ -340,7 +340,7 @@ fn a_motion_is_predicted_alike() {
     let mut harness = open_on(record);
     few_draws(&mut harness);
     let of_record = [&["predict", "--trajectory", record, "--given-force"][..], &drawn].concat();
-    compare_motion(&mut harness, ForceSource::Given, CommandLine::of(&of_record));
+    compare_motion(&mut harness, ForceSource::Given, CommandLine::new(&of_record));
 }
 
 fn train(harness: &mut Harness<'_, App>, network: Network) {
@@ -366,7 +366,7 @@ fn a_force_network_is_trained_and_evaluated_alike() {
     let request = training.request.clone().expect("a question");
     let report = training.report.as_ref().expect("a report");
     let args = ["train", "force", "--data", FORCES, "--config", &config, "--epochs", "2"];
-    CommandLine::of(&[&args[..], &["--seed", "3", "--out", &model]].concat())
+    CommandLine::new(&[&args[..], &["--seed", "3", "--out", &model]].concat())
         .prints(&["model"])
         .asks_differently(&["checkpoint", "overwrite"])
         .compare(request, report);
@@ -381,7 +381,7 @@ fn a_force_network_is_trained_and_evaluated_alike() {
         !state.session.force.evaluation.is_running()
     });
     let (request, answer) = finished(&state(&harness).session.force.evaluation);
-    CommandLine::of(&["evaluate", "force", "--model", &model, "--data", FORCES])
+    CommandLine::new(&["evaluate", "force", "--model", &model, "--data", FORCES])
         .asks_differently(&["for_figures"])
         .compare(request, &answer.report);
 }
@@ -404,7 +404,7 @@ fn a_response_network_is_trained_fine_tuned_and_evaluated_alike() {
     let request = training.request.clone().expect("a question");
     let report = training.report.as_ref().expect("a report");
     let args = ["train", "response", "--data", FORCES, "--config", &config, "--seed", "1"];
-    CommandLine::of(&[&args[..], &["--out", &pretrained]].concat())
+    CommandLine::new(&[&args[..], &["--out", &pretrained]].concat())
         .prints(&["model"])
         .asks_differently(&["checkpoint", "overwrite"])
         .compare(request, report);
@@ -428,7 +428,7 @@ fn a_response_network_is_trained_fine_tuned_and_evaluated_alike() {
     let report = training.report.as_ref().expect("a report");
     let args = ["fine-tune", "response", "--model", &pretrained, "--data", TRAJECTORIES];
     let numbers = ["--trajectories", "3", "--seed", "1", "--choice", "2", "--config", &config];
-    CommandLine::of(&[&args[..], &numbers, &["--out", &tuned]].concat())
+    CommandLine::new(&[&args[..], &numbers, &["--out", &tuned]].concat())
         .prints(&["model"])
         .asks_differently(&["checkpoint", "overwrite"])
         .compare(request, report);
@@ -439,7 +439,7 @@ fn a_response_network_is_trained_fine_tuned_and_evaluated_alike() {
     let is_over = |state: &State| !state.session.response.comparison.is_running();
     step_until(&mut harness, "the evaluation", is_over);
     let (request, answer) = finished(&state(&harness).session.response.comparison.evaluate);
-    CommandLine::of(&["evaluate", "response", "--model", &tuned, "--data", TRAJECTORIES])
+    CommandLine::new(&["evaluate", "response", "--model", &tuned, "--data", TRAJECTORIES])
         .compare(request, &answer.report);
 }
 
@@ -457,7 +457,8 @@ fn models_are_compared_alike() {
     step_until(&mut harness, "the comparison", is_over);
     let (request, answer) = finished(&state(&harness).session.response.comparison.compare);
     let args = ["compare", "--data", TRAJECTORIES, "--trajectories", "3", "--choices", "1"];
-    CommandLine::of(&[&args[..], &["--config", &config]].concat()).compare(request, &answer.report);
+    CommandLine::new(&[&args[..], &["--config", &config]].concat())
+        .compare(request, &answer.report);
 }
 
 #[test]
@@ -482,6 +483,6 @@ fn a_reconstruction() {
         let (question, answer) = finished(&state(&harness).session.reconstruction.run);
         let mut args = vec!["reconstruct", path, "--particles", "60", "--seed", "3"];
         args.extend(ground.iter().flat_map(|site| ["--site", site]));
-        CommandLine::of(&args).compare(question.request, &answer.answer.report);
+        CommandLine::new(&args).compare(question.request, &answer.answer.report);
     }
 }

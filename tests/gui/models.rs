@@ -409,7 +409,7 @@ fn the_pane_shows_what_is_in_use_running_and_finished() {
 
 /// The number of times that a part of the measured work of a form is done.
 fn n_of(state: &State, place: CostPlace, what: &str) -> Option<f64> {
-    let cost = state.session.costs.of(place)?.as_ref().expect("a measurement").as_ref()?;
+    let cost = state.session.costs.get(place)?.as_ref().expect("a measurement").as_ref()?;
     assert!(cost.seconds() > 0.0 && cost.parts.iter().all(|part| part.seconds_each >= 0.0));
     let sum: f64 = cost.parts.iter().map(|part| part.n * part.seconds_each).sum();
     assert!((cost.seconds() - sum).abs() < 1e-9, "{cost:?}");
@@ -429,14 +429,14 @@ fn a_form_says_what_its_work_will_take_and_measures_again_when_it_changes() {
     let form = &mut harness.state_mut().state_mut().project.force_training;
     form.epochs = Some(5000);
     harness.run_steps(2);
-    assert!(state(&harness).session.costs.of(place).is_none(), "it is of other settings");
+    assert!(state(&harness).session.costs.get(place).is_none(), "it is of other settings");
     step_until(&mut harness, "a measurement", |state| n_of(state, place, "epochs") == Some(5000.0));
     save(&mut harness, "training-cost.png");
     // Settings that cannot be read are said instead.
     let form = &mut harness.state_mut().state_mut().project.force_training;
     form.config = "no/such.toml".to_owned();
     step_until(&mut harness, "the problem", |state| {
-        state.session.costs.of(place).is_some_and(Result::is_err)
+        state.session.costs.get(place).is_some_and(Result::is_err)
     });
     harness.get_by_label_contains("cannot be measured: no/such.toml");
     assert!(desk.names("trainings").is_empty() && desk.names("models").is_empty());

@@ -66,7 +66,7 @@ fn save(figure: &Figure, name: &str) {
 fn a_forecast_with_everything_over_it() {
     let case = &cases()[2];
     let settings = ForecastSettings { n_curves: 12, seed: 1 };
-    let forecast = ForceForecast::of(&about(&case.curve), settings).expect("a forecast");
+    let forecast = ForceForecast::new(&about(&case.curve), settings).expect("a forecast");
     let pulses = pulse_curves(case.impulse_n_s, 0.09).expect("pulses");
     let recorded = RecordedCurve { name: "c003, FEA", curve: &case.curve, cut_at_s: None };
     for component in ForceComponent::ALL {

@@ -60,17 +60,17 @@ fn rear_load_kg(car: &VehicleParameters) -> f64 {
 ///
 /// - `zones`: parts of the ground with their own friction.
 pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) -> Vec<Caveat> {
-    let road = of_road(evidence.road_friction());
-    of_vehicles(cars).into_iter().chain(road).chain(of_zones(zones)).collect()
+    let road = road_caveat(evidence.road_friction());
+    vehicle_caveats(cars).into_iter().chain(road).chain(zone_caveats(zones)).collect()
 }
 
 /// What of both vehicles lies outside of what rules and model are known to hold for.
-fn of_vehicles(cars: &Cars) -> Vec<Caveat> {
+fn vehicle_caveats(cars: &Cars) -> Vec<Caveat> {
     let both = [("struck car", &cars.struck), ("striking car", &cars.striking)];
-    both.into_iter().flat_map(|(which, car)| of_vehicle(which, car)).collect()
+    both.into_iter().flat_map(|(which, car)| car_caveats(which, car)).collect()
 }
 
-fn of_vehicle<'a>(which: &'a str, car: &'a Car) -> impl Iterator<Item = Caveat> + 'a {
+fn car_caveats<'a>(which: &'a str, car: &'a Car) -> impl Iterator<Item = Caveat> + 'a {
     KNOWN.iter().filter_map(move |Known { name, unit, of, range }| {
         let value = of(&car.parameters);
         let [low, high] = *range;
@@ -89,7 +89,7 @@ fn of_vehicle<'a>(which: &'a str, car: &'a Car) -> impl Iterator<Item = Caveat> 
 }
 
 /// A road whose measured friction is beyond those on which the model was tried.
-fn of_road(friction: Option<Measured>) -> Option<Caveat> {
+fn road_caveat(friction: Option<Measured>) -> Option<Caveat> {
     let Measured { value, sigma } = friction?;
     let [low, high] = ROAD_FRICTION;
     let reach = FRICTION_REACH * sigma;
@@ -104,7 +104,7 @@ fn of_road(friction: Option<Measured>) -> Option<Caveat> {
 }
 
 /// Zones of the ground whose friction is beyond that of the roads on which the model was tried.
-fn of_zones(zones: &[FrictionZone]) -> impl Iterator<Item = Caveat> {
+fn zone_caveats(zones: &[FrictionZone]) -> impl Iterator<Item = Caveat> {
     let [low, high] = ROAD_FRICTION;
     let outside = zones.iter().filter(move |zone| !(low..=high).contains(&zone.friction));
     outside.map(move |zone| {
@@ -146,7 +146,7 @@ mod tests {
     use impactlab_core::vehicle::LibraryVehicle;
 
     fn said(evidence: &Evidence) -> Vec<(String, f64)> {
-        let caveats = of_vehicles(&Cars::new(evidence, None, None));
+        let caveats = vehicle_caveats(&Cars::new(evidence, None, None));
         caveats.into_iter().map(|of| (of.quantity.unwrap(), of.value.unwrap())).collect()
     }
 
@@ -178,9 +178,9 @@ mod tests {
 
     #[test]
     fn ice_and_glue_are_roads_that_nobody_tried() {
-        let outside = |value| of_road(Some(Measured { value, sigma: 0.04 })).is_some();
+        let outside = |value| road_caveat(Some(Measured { value, sigma: 0.04 })).is_some();
         assert_eq!([0.15, 0.3, 0.95, 1.59].map(outside), [true, false, false, true]);
-        assert_eq!(of_road(None), None);
+        assert_eq!(road_caveat(None), None);
     }
 
     #[test]
@@ -188,7 +188,7 @@ mod tests {
         let evidence = Evidence { striking_car: CarEvidence::default(), ..read(SPIN) };
         for vehicle in LibraryVehicle::ALL {
             let cars = Cars::new(&evidence, None, Some(&vehicle.parameters()));
-            assert_eq!(of_vehicles(&cars), [], "{}", vehicle.id());
+            assert_eq!(vehicle_caveats(&cars), [], "{}", vehicle.id());
         }
     }
 

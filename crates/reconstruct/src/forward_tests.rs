@@ -191,7 +191,7 @@ fn evidence_of_the_own_motion_is_explained_and_other_evidence_is_not() {
     found.edr = None;
     let fit = |found: &Evidence| {
         let target = target(found);
-        EvidenceFit::of(&target.model().motions(&z, |motion| target.terms(&motion)))
+        EvidenceFit::from_particles(&target.model().motions(&z, |motion| target.terms(&motion)))
     };
     let own = fit(&found);
     let of_rest = |fit: &[EvidenceFit]| -> Vec<f64> {

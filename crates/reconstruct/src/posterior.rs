@@ -371,7 +371,7 @@ impl ReconstructionTarget {
         });
         let turned = told.iter().map(|(_, turned)| *turned).collect();
         let terms: Vec<_> = told.into_iter().step_by(every).map(|(terms, _)| terms).collect();
-        (EvidenceFit::of(&terms), turned)
+        (EvidenceFit::from_particles(&terms), turned)
     }
 }
 

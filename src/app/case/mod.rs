@@ -49,7 +49,7 @@ impl OpenCase {
     /// A case that was read, with what was wrong with the forms of its variants, if it is of version 1.
     ///
     /// - `project`: takes the settings of trainings that the variant that is shown has in its forms.
-    fn of_file(mut file: CaseFile, project: &mut Project) -> (Self, Vec<String>) {
+    fn from_file(mut file: CaseFile, project: &mut Project) -> (Self, Vec<String>) {
         let mut problems = Vec::new();
         for variant in &mut file.variants {
             let mut of_variant = project.clone();

@@ -232,7 +232,7 @@ impl State {
 
     /// Puts a case that was read in the place of the one that is open.
     fn take_file(&mut self, file: CaseFile) {
-        let (case, problems) = OpenCase::of_file(file, &mut self.project);
+        let (case, problems) = OpenCase::from_file(file, &mut self.project);
         self.case = case;
         problems.into_iter().for_each(|problem| self.say(Severity::Warning, problem));
     }

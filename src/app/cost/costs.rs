@@ -45,7 +45,7 @@ impl Costs {
     }
 
     /// Returns what a form costs with its present settings; `None` if it has not been measured.
-    pub fn of(&self, place: CostPlace) -> Option<&MeasuredCost> {
+    pub fn get(&self, place: CostPlace) -> Option<&MeasuredCost> {
         let (asked, _) = self.asked.get(&place)?;
         let (question, cost) = self.measured.get(&place)?;
         (question == asked).then_some(cost)
@@ -101,7 +101,7 @@ impl Costs {
         let is_due = |place: &&CostPlace| {
             let asked = self.asked.get(place);
             let has_rested = asked.is_some_and(|(_, since)| now_s - since >= REST.as_secs_f64());
-            has_rested && self.of(**place).is_none()
+            has_rested && self.get(**place).is_none()
         };
         let place = self.seen.iter().find(is_due)?;
         Some((*place, self.asked.get(place)?.0.clone()))

@@ -69,7 +69,7 @@ impl Choices {
     }
 
     /// The choices that a map makes.
-    pub fn of_map(proposals: Vec<ColumnProposal>, map: &ColumnMap) -> Self {
+    pub fn from_map(proposals: Vec<ColumnProposal>, map: &ColumnMap) -> Self {
         let columns = proposals.into_iter().map(ColumnChoice::new).collect();
         let mut choices = Self { columns, other_force_is_zero: false };
         for (channel, source) in map.iter() {

@@ -87,7 +87,7 @@ impl ImportDialog {
         {
             let (table, map) = (Arc::clone(table), self.map());
             self.start(tasks, move || {
-                let preview = Preview::of(&table, &map, units).map(Arc::new);
+                let preview = Preview::new(&table, &map, units).map(Arc::new);
                 ImportAnswer::Preview(map, preview.map_err(|error| error_chain(&error)))
             });
         }
@@ -122,7 +122,7 @@ impl ImportDialog {
                 if let Ok(table) = &table {
                     let found = proposals(table);
                     self.choices = match self.first_map.take() {
-                        Some(map) => Choices::of_map(found, &map),
+                        Some(map) => Choices::from_map(found, &map),
                         None => Choices::suggested(found),
                     };
                     self.beginning = table.beginning().to_vec();

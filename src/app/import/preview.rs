@@ -33,7 +33,7 @@ impl Preview {
     ///
     /// # Errors
     /// [`DataError`] if the map does not make a time series of it.
-    pub fn of(table: &Table, map: &ColumnMap, units: UnitSystem) -> Result<Self, DataError> {
+    pub fn new(table: &Table, map: &ColumnMap, units: UnitSystem) -> Result<Self, DataError> {
         let loaded = series_of_table(table, Some(map))?;
         let mut as_recorded = map.clone();
         as_recorded.settings.velocities = None;

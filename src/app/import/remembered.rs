@@ -38,13 +38,13 @@ impl ColumnMaps {
 
     /// The map with which this file was opened last; `None` if there is none, or if the header of
     /// the file is another one now. The file is read if it was opened with a map.
-    pub fn of_path(&self, path: &Path) -> Option<ColumnMap> {
+    pub fn find_by_path(&self, path: &Path) -> Option<ColumnMap> {
         let kept = self.maps.iter().find(|kept| kept.path == path)?;
         (fingerprint(path, &kept.map)? == kept.fingerprint).then(|| kept.map.clone())
     }
 
     /// The map that was chosen for a file with the same header. The file is read.
-    pub fn of_header(&self, path: &Path) -> Option<ColumnMap> {
+    pub fn find_by_header(&self, path: &Path) -> Option<ColumnMap> {
         let mut read: Vec<(&ColumnMap, Option<String>)> = Vec::new();
         for kept in &self.maps {
             let of_settings = |(map, _): &&(&ColumnMap, _)| map.settings == kept.map.settings;
@@ -87,18 +87,18 @@ mod tests {
         let mut maps = ColumnMaps::default();
         maps.keep(first.clone(), fingerprint(&first, &map).unwrap(), map.clone());
         let same = file("b.csv", "Zeit;Kraft\n0;5\n1;7\n2;8\n");
-        assert_eq!(maps.of_header(&same).as_ref(), Some(&map));
-        assert_eq!((maps.of_path(&same), maps.of_path(&first)), (None, Some(map)));
+        assert_eq!(maps.find_by_header(&same).as_ref(), Some(&map));
+        assert_eq!((maps.find_by_path(&same), maps.find_by_path(&first)), (None, Some(map)));
         let other = file("c.csv", "Zeit;Weg\n0;5\n1;7\n");
-        assert_eq!(maps.of_header(&other), None);
+        assert_eq!(maps.find_by_header(&other), None);
         // The same path with another header is another file.
         file("a.csv", "Kraft;Zeit\n1;0\n2;1\n");
-        assert_eq!(maps.of_path(&first), None);
+        assert_eq!(maps.find_by_path(&first), None);
         // Without a header, only the path says that it is the same.
         let plain = file("d.csv", "0;1\n1;2\n");
         let map: ColumnMap = "time=1:ms,fx=2:kN,fy=none".parse().unwrap();
         maps.keep(plain.clone(), fingerprint(&plain, &map).unwrap(), map.clone());
-        assert_eq!(maps.of_header(&file("e.csv", "0;1\n1;2\n")), None);
-        assert_eq!(maps.of_path(&plain), Some(map));
+        assert_eq!(maps.find_by_header(&file("e.csv", "0;1\n1;2\n")), None);
+        assert_eq!(maps.find_by_path(&plain), Some(map));
     }
 }

@@ -201,7 +201,7 @@ impl State {
 
 impl ModelsDialog {
     /// The question whether to remove something that is kept.
-    pub fn of_entry(entry: &KeptEntry, folder: &KeptFolder) -> Self {
+    pub fn remove_entry(entry: &KeptEntry, folder: &KeptFolder) -> Self {
         let path = folder.path_of(entry);
         let note = path.with_extension(super::NOTE_ENDING);
         let what = format!(

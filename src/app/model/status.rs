@@ -276,7 +276,7 @@ fn load<M: TrainedModel>(
 ) -> Result<CurrentModel<M>, String> {
     let name = choice.path().map(|path| name_of(path).unwrap_or_else(|| file_name(path)));
     let name = name.unwrap_or_else(|| choice.to_string());
-    match M::of_library(library, &choice) {
+    match M::from_library(library, &choice) {
         Ok(model) => Ok(CurrentModel { choice, model, name, is_saved: true }),
         Err(error) => Err(format!("{choice}: {}", error_chain(&error))),
     }

@@ -40,7 +40,7 @@ pub trait TrainedModel: Sized + Send + Sync + 'static {
     ///
     /// # Errors
     /// [`StudyError`] if the model cannot be read.
-    fn of_library(library: &Library, choice: &ModelChoice) -> Result<Arc<Self>, StudyError>;
+    fn from_library(library: &Library, choice: &ModelChoice) -> Result<Arc<Self>, StudyError>;
 
     /// Keeps the model in the library, where questions refer to it by `choice`.
     fn hold(library: &Library, choice: ModelChoice, model: Arc<Self>);
@@ -54,7 +54,7 @@ pub trait TrainedModel: Sized + Send + Sync + 'static {
     fn write(&self, path: &Path, existing: Existing) -> Result<(), String>;
 
     /// Separates the answer of a training into the model and the report.
-    fn of_answer(answer: Self::Answer) -> (Self, Self::Report);
+    fn from_answer(answer: Self::Answer) -> (Self, Self::Report);
 
     /// Returns the cases that the training left out, each with its reason, and the assumptions of
     /// the training.
@@ -96,7 +96,7 @@ impl TrainedModel for ForceModel {
         Command::ForceModel(Found::new(event))
     }
 
-    fn of_library(library: &Library, choice: &ModelChoice) -> Result<Arc<Self>, StudyError> {
+    fn from_library(library: &Library, choice: &ModelChoice) -> Result<Arc<Self>, StudyError> {
         library.force_model(choice)
     }
 
@@ -108,7 +108,7 @@ impl TrainedModel for ForceModel {
         self.save(path, existing).map_err(|error| error_chain(&error))
     }
 
-    fn of_answer(answer: TrainForceAnswer) -> (Self, TrainForceReport) {
+    fn from_answer(answer: TrainForceAnswer) -> (Self, TrainForceReport) {
         (answer.model, answer.report)
     }
 
@@ -173,7 +173,7 @@ impl TrainedModel for ResponseModel {
         Command::ResponseModel(Found::new(event))
     }
 
-    fn of_library(library: &Library, choice: &ModelChoice) -> Result<Arc<Self>, StudyError> {
+    fn from_library(library: &Library, choice: &ModelChoice) -> Result<Arc<Self>, StudyError> {
         library.response_model(choice)
     }
 
@@ -185,7 +185,7 @@ impl TrainedModel for ResponseModel {
         self.save(path, existing).map_err(|error| error_chain(&error))
     }
 
-    fn of_answer(answer: ResponseTrainingAnswer) -> (Self, ResponseTrainingReport) {
+    fn from_answer(answer: ResponseTrainingAnswer) -> (Self, ResponseTrainingReport) {
         (answer.model, answer.report)
     }
 

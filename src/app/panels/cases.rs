@@ -43,7 +43,7 @@ pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         Some(Subject::Case { dataset, case }) if *dataset == path => Some(case.as_str()),
         _ => None,
     };
-    let columns = CaseColumn::of(table.checked.dataset.kind);
+    let columns = CaseColumn::for_kind(table.checked.dataset.kind);
     let table = Table { cases: table, columns, selected };
     if let Some(case) = table.ui(ui, (view, show_selected)) {
         commands.push(Command::Select(Subject::Case { dataset: path, case }));

@@ -133,7 +133,7 @@ impl Condition {
     const ALL: [(Self, &str); 3] =
         [(Self::Free, "rolls freely"), (Self::Dragged, "dragged"), (Self::Locked, "locked")];
 
-    fn of(damaged: Option<&DamagedWheel>) -> Self {
+    fn from_damage(damaged: Option<&DamagedWheel>) -> Self {
         match damaged {
             None => Self::Free,
             Some(DamagedWheel { drag_share_of_friction: Some(_), .. }) => Self::Dragged,
@@ -147,7 +147,7 @@ impl Condition {
 }
 
 fn wheel_fields(ui: &mut Ui, wheel: Wheel, damage: &mut Vec<DamagedWheel>, units: UnitSystem) {
-    let before = Condition::of(damage.iter().find(|damaged| damaged.wheel == wheel));
+    let before = Condition::from_damage(damage.iter().find(|damaged| damaged.wheel == wheel));
     let mut condition = before;
     let name = ui.label(format!("Wheel, {}", wheel.label()));
     ComboBox::from_id_salt(wheel.label())

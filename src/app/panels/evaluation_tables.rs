@@ -121,7 +121,7 @@ fn clusters_ui(ui: &mut Ui, evaluation: &Evaluation, (statistic, units): (Statis
                 &cluster.model.peak_error,
                 &cluster.statistical.history_error,
             ] {
-                ui.monospace(percent(statistic.of(error)));
+                ui.monospace(percent(statistic.value_in(error)));
             }
             ui.end_row();
         }
@@ -151,8 +151,8 @@ fn error_row_ui(ui: &mut Ui, name: &str, (metrics, statistic): (&CurveMetrics, S
         &metrics.peak_error,
         &metrics.duration_error,
     ] {
-        let all = Statistic::ALL.map(|s| format!("{} {}", s.label(), percent(s.of(error))));
-        ui.monospace(percent(statistic.of(error))).on_hover_text(all.join("\n"));
+        let all = Statistic::ALL.map(|s| format!("{} {}", s.label(), percent(s.value_in(error))));
+        ui.monospace(percent(statistic.value_in(error))).on_hover_text(all.join("\n"));
     }
     ui.end_row();
 }
@@ -176,7 +176,7 @@ fn coverage_rows_ui(ui: &mut Ui, name: &str, spread: &DistributionMetrics) {
 
 impl Statistic {
     /// Reads this statistic from a summary over cases.
-    fn of(self, summary: &Summary) -> f64 {
+    fn value_in(self, summary: &Summary) -> f64 {
         match self {
             Self::Median => summary.median,
             Self::Mean => summary.mean,

@@ -24,7 +24,7 @@ pub struct EvidencePreview {
 }
 
 impl EvidencePreview {
-    pub(super) fn of(evidence: &Evidence, request: &ReconstructRequest) -> Self {
+    pub(super) fn new(evidence: &Evidence, request: &ReconstructRequest) -> Self {
         let chosen = [&request.vehicle, &request.striking].map(VehicleChoice::clone);
         let site = request.site.clone();
         let mut problem = None;

@@ -71,7 +71,7 @@ impl State {
         };
         if !is_known {
             let preview =
-                evidence.map(|(request, evidence)| EvidencePreview::of(evidence, request));
+                evidence.map(|(request, evidence)| EvidencePreview::new(evidence, request));
             let n_marks = preview.as_ref().map_or(0, |of| of.evidence.marks.len());
             let session = &mut self.session.reconstruction;
             session.preview = preview;

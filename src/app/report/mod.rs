@@ -70,7 +70,7 @@ impl ReportView {
     /// A message for the user if what was typed is no day, or if the clock tells none.
     pub fn report_date(&self) -> Result<ReportDate, String> {
         match self.date.trim() {
-            "" => ReportDate::of(SystemTime::now())
+            "" => ReportDate::from_instant(SystemTime::now())
                 .ok_or_else(|| "the clock of this machine tells no day: type one".to_owned()),
             text => text
                 .parse()
@@ -132,7 +132,7 @@ mod tests {
     fn a_date_is_the_one_that_was_typed_or_today() {
         let of = |date: &str| ReportView { date: date.to_owned(), ..ReportView::default() };
         assert_eq!(of(" 2026-03-01 ").report_date().unwrap().to_string(), "2026-03-01");
-        assert_eq!(of("").report_date().ok(), ReportDate::of(SystemTime::now()));
+        assert_eq!(of("").report_date().ok(), ReportDate::from_instant(SystemTime::now()));
         let error = of("1 March").report_date().unwrap_err();
         assert!(error.contains("YYYY-MM-DD"), "{error}");
     }

@@ -66,7 +66,7 @@ impl Question for MotionQuestion {
     ) -> Result<Outcome<MotionAnswer>, StudyError> {
         let answered = self.request.solve(library, observer)?;
         Ok(answered.map(|answer| {
-            let bands = MotionBands::of(&answer.forecast.distribution, BAND_STRIDE);
+            let bands = MotionBands::new(&answer.forecast.distribution, BAND_STRIDE);
             MotionAnswer { answer, bands }
         }))
     }

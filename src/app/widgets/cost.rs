@@ -19,7 +19,7 @@ pub fn cost_ui(ui: &mut Ui, costs: &mut Costs, (place, label): (CostPlace, &str)
             ui.weak(format!("{label}: measuring how long it takes…"));
             return;
         }
-        match costs.of(place) {
+        match costs.get(place) {
             None => drop(ui.weak(format!("{label}: how long it takes is not measured yet"))),
             Some(Ok(None)) => drop(ui.weak(format!("{label}: takes a moment"))),
             Some(Err(problem)) => drop(ui.weak(format!("{label}: cannot be measured: {problem}"))),

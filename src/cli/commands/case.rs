@@ -120,7 +120,7 @@ fn run_case(args: &RunArgs, console: &mut Console<'_>) -> Result<Verdict, CliErr
     let report = under_bar(|observer| case.ask(&args.variant, &console.library, observer))?;
     let report = report.complete().ok_or(CliError::Cancelled)?;
     console.print(&report, |out| print_case(out, &report, args.units.into()))?;
-    Ok(Verdict::of(!report.is_clean()))
+    Ok(Verdict::from_problems(!report.is_clean()))
 }
 
 /// What `case check` tells.
@@ -154,7 +154,7 @@ fn check_case(args: &CheckArgs, console: &mut Console<'_>) -> Result<Verdict, Cl
         }
         print_changes(out, &changes)
     })?;
-    Ok(Verdict::of(!changes.is_empty()))
+    Ok(Verdict::from_problems(!changes.is_empty()))
 }
 
 fn print_changes(out: &mut dyn Write, changes: &[Change]) -> io::Result<()> {

@@ -48,5 +48,5 @@ pub(in crate::cli) fn run(
     let request = CheckRequest { paths: paths.clone(), all: *all, map: map.clone() };
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     console.print(&answer.report, |out| print_check(out, &answer.report))?;
-    Ok(Verdict::of(!answer.report.ok))
+    Ok(Verdict::from_problems(!answer.report.ok))
 }

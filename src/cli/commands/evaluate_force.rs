@@ -97,7 +97,9 @@ pub(in crate::cli) fn run(
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
     console.print(&answer.report, |out| print_force_evaluation(out, &answer.report))?;
     Ok(match &answer.report {
-        ForceEvaluation::Cases(report) => Verdict::of(!report.evaluation.problems.is_empty()),
+        ForceEvaluation::Cases(report) => {
+            Verdict::from_problems(!report.evaluation.problems.is_empty())
+        }
         ForceEvaluation::Folds(_) => Verdict::Clean,
     })
 }

@@ -112,7 +112,7 @@ pub(in crate::cli) fn run(
     let units = args.units.into();
     console
         .print(&answer.report, |out| print_reconstruction_evaluation(out, &answer.report, units))?;
-    Ok(Verdict::of(!answer.report.left_out.is_empty()))
+    Ok(Verdict::from_problems(!answer.report.left_out.is_empty()))
 }
 
 impl From<KnownArg> for KnownEvidence {

@@ -161,7 +161,7 @@ pub(in crate::cli) fn run(
         check_window_end(args.window, asked_s)?;
     }
     let mut files = Vec::new();
-    let existing = OverwriteArg::of_flag(args.overwrite).into();
+    let existing = OverwriteArg::from_flag(args.overwrite).into();
     let out = (args.out.as_path(), existing, &KNOWN_FILES[..]);
     let answer = console.ask_into(&request, Some(out), |output, answer| {
         check_window_end(args.window, duration_s(&answer.forecast))?;

@@ -84,7 +84,7 @@ struct RenderedFilm<'a> {
 
 /// Makes the film and says so.
 pub(super) fn run(args: &FilmArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
-    let kind = FilmKind::of(&args.out)?;
+    let kind = FilmKind::from_path(&args.out)?;
     match kind {
         FilmKind::Mp4 => console.check_target(Some(&args.out), args.overwrite.into())?,
         FilmKind::Pictures => console.expect_folder(),
@@ -190,7 +190,7 @@ enum FilmKind {
 }
 
 impl FilmKind {
-    fn of(path: &Path) -> Result<Self, CliError> {
+    fn from_path(path: &Path) -> Result<Self, CliError> {
         let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
         match ending.as_deref().and_then(|ending| ending.to_str()) {
             Some("mp4") => Ok(Self::Mp4),

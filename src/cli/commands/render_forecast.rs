@@ -94,7 +94,8 @@ pub(super) fn figure(
         });
     }
     let density = DensityTask::new(&forecast.distribution, args.window.unwrap_or([at_s; 2]));
-    let (density, bands) = (density.on_cpu(), MotionBands::of(&forecast.distribution, BAND_STRIDE));
+    let (density, bands) =
+        (density.on_cpu(), MotionBands::new(&forecast.distribution, BAND_STRIDE));
     let caveats = &answer.report.caveats;
     let input = MotionForecastFigure {
         density: Some(&density),

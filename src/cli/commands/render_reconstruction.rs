@@ -76,7 +76,7 @@ pub(super) fn figure(
     units: UnitSystem,
     console: &mut Console<'_>,
 ) -> Result<(Noted, Option<ShownScene>), CliError> {
-    let of = Reconstructed::of(&args.evidence.request(), console)?;
+    let of = Reconstructed::new(&args.evidence.request(), console)?;
     let answer = &of.answer;
     let caveats = &answer.report.caveats;
     let (mut cars, mut notes) = (None, of.notes());
@@ -112,7 +112,7 @@ pub(super) fn cars_scene(
     units: UnitSystem,
     console: &mut Console<'_>,
 ) -> Result<(Scene, Vec<String>), CliError> {
-    let of = Reconstructed::of(request, console)?;
+    let of = Reconstructed::new(request, console)?;
     let scene = of.cars(&ReconstructedPaths::of(&of.answer), units);
     let notes = of.notes().into_iter().chain(of.far_notes(&scene)).collect();
     Ok((scene, notes))
@@ -125,7 +125,7 @@ struct Reconstructed {
 }
 
 impl Reconstructed {
-    fn of(request: &ReconstructRequest, console: &mut Console<'_>) -> Result<Self, CliError> {
+    fn new(request: &ReconstructRequest, console: &mut Console<'_>) -> Result<Self, CliError> {
         // A picture of a site that cannot be read is said before anything is sampled.
         let site = request.site.as_deref();
         let ground = site.map(|site| console.ground(site)).transpose()?;

@@ -105,7 +105,7 @@ pub(in crate::cli) fn run(
     args: &ReportArgs,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
-    let format = ReportFormat::of(&args.out)?;
+    let format = ReportFormat::from_path(&args.out)?;
     if console.print_request {
         print_json(console.out, &args.case()?.variants)?;
         return Ok(Verdict::Clean);
@@ -139,7 +139,7 @@ pub(in crate::cli) fn run(
         }
         report.changes.iter().try_for_each(|change| writeln!(out, "warning: {change}"))
     })?;
-    Ok(Verdict::of(!report.is_clean()))
+    Ok(Verdict::from_problems(!report.is_clean()))
 }
 
 impl ReportArgs {
@@ -175,7 +175,7 @@ impl ReportArgs {
             PaperArg::A4 => Paper::A4,
             PaperArg::Letter => Paper::Letter,
         };
-        let today = || ReportDate::of(SystemTime::now());
+        let today = || ReportDate::from_instant(SystemTime::now());
         let date = self.date.or_else(today).ok_or(CliError::NoClock)?;
         Ok(ReportSettings { language, units: self.units.into(), paper, date })
     }

@@ -281,7 +281,7 @@ fn simulate_dataset(
     let printed = PrintedSimulation { report, out };
     console
         .print(&printed, |text| print_dataset_simulation(text, (report, out), args.units.into()))?;
-    Ok(Verdict::of(!report.failures.is_empty()))
+    Ok(Verdict::from_problems(!report.failures.is_empty()))
 }
 
 /// What drives the motion of a single vehicle.

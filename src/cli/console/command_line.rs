@@ -25,7 +25,7 @@ pub(in crate::cli) enum Verdict {
 
 impl Verdict {
     /// The verdict on a list of problems.
-    pub(in crate::cli) fn of(problems: bool) -> Self {
+    pub(in crate::cli) fn from_problems(problems: bool) -> Self {
         if problems { Self::Problems } else { Self::Clean }
     }
 }

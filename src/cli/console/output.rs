@@ -31,7 +31,7 @@ pub(in crate::cli) fn print_table(
         rows.iter().map(|row| row.iter().map(|cell| shown_cell(cell)).collect()).collect();
     let rows = rows.as_slice();
     let columns: Vec<TextColumn> =
-        (0..header.len()).map(|idx| TextColumn::of(&header, rows, idx)).collect();
+        (0..header.len()).map(|idx| TextColumn::new(&header, rows, idx)).collect();
     let titled = header.iter().any(|name| !name.is_empty());
     for row in titled.then_some(&header).into_iter().chain(rows) {
         let cells = row.iter().zip(&columns);
@@ -66,7 +66,7 @@ struct TextColumn {
 }
 
 impl TextColumn {
-    fn of(header: &[String], rows: &[Vec<String>], idx: usize) -> Self {
+    fn new(header: &[String], rows: &[Vec<String>], idx: usize) -> Self {
         let cells = || rows.iter().filter_map(|row| row.get(idx));
         let is_number = |cell: &String| cell.is_empty() || cell.parse::<f64>().is_ok();
         let widths = cells().chain(header.get(idx)).map(|c| c.chars().count());

@@ -33,7 +33,7 @@ pub(in crate::cli) fn write_motion_prediction(
     let forecast = &answer.forecast;
     let path = |name: &str| wanted.folder.join(name);
     let (trajectory, map) = ("trajectory.csv".to_owned(), "density.csv".to_owned());
-    let bands = MotionBands::of(&forecast.distribution, 1);
+    let bands = MotionBands::new(&forecast.distribution, 1);
     let caveats = answer.report.caveats.clone();
     let restrictions = caveats.text();
     let said = restrictions.as_deref();

@@ -15,7 +15,7 @@ pub(in crate::cli) struct OverwriteArg {
 impl OverwriteArg {
     /// Of a command that cannot take it as a flattened argument, because clap then takes the
     /// arguments of the command for absent.
-    pub(in crate::cli) fn of_flag(overwrite: bool) -> Self {
+    pub(in crate::cli) fn from_flag(overwrite: bool) -> Self {
         Self { overwrite }
     }
 

@@ -42,7 +42,7 @@ pub fn report_case(
     library: &Library,
     observer: &mut Observer<'_>,
 ) -> Result<Outcome<(ReportDocument, CaseReport)>, CaseError> {
-    let (wording, paths) = (Wording::new(settings), ShownPaths::of(case));
+    let (wording, paths) = (Wording::new(settings), ShownPaths::from_case(case));
     let grounds = Grounds::default();
     let context = Context { wording: &wording, paths: &paths, grounds: &grounds };
     let mut parts: Vec<VariantParts> = Vec::new();

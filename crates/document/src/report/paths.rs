@@ -14,7 +14,7 @@ pub(super) struct ShownPaths {
 
 impl ShownPaths {
     /// The paths that a case names.
-    pub fn of(case: &CaseFile) -> Self {
+    pub fn from_case(case: &CaseFile) -> Self {
         let questions = case.variants.iter().flat_map(|variant| &variant.questions);
         let mut paths: Vec<PathBuf> = questions.flat_map(Request::input_files).collect();
         paths.extend(case.used_paths());

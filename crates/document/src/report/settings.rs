@@ -74,7 +74,7 @@ impl ReportDate {
     }
 
     /// The day of an instant, in UTC; `None` outside of the years 1 to 9999.
-    pub fn of(instant: SystemTime) -> Option<Self> {
+    pub fn from_instant(instant: SystemTime) -> Option<Self> {
         instant.duration_since(SystemTime::UNIX_EPOCH).ok()?;
         humantime::format_rfc3339_seconds(instant).to_string().get(..10)?.parse().ok()
     }
@@ -129,9 +129,9 @@ mod tests {
         assert_eq!(date.written(Language::De), "24.11.2026");
         assert!("2024-02-29".parse::<ReportDate>().is_ok());
         let second = std::time::Duration::from_secs(1_782_000_000);
-        let of_instant = ReportDate::of(SystemTime::UNIX_EPOCH + second).unwrap();
+        let of_instant = ReportDate::from_instant(SystemTime::UNIX_EPOCH + second).unwrap();
         assert_eq!(of_instant.to_string(), "2026-06-21");
-        assert_eq!(ReportDate::of(SystemTime::UNIX_EPOCH - second), None);
+        assert_eq!(ReportDate::from_instant(SystemTime::UNIX_EPOCH - second), None);
         for text in [
             "2026-02-29",
             "2026-13-01",

@@ -112,7 +112,9 @@ impl Evidence {
             positions,
             prior: _,
         } = self;
-        let Some(track) = Track::of(&motion.path) else { return (f64::NEG_INFINITY, Vec::new()) };
+        let Some(track) = Track::from_path(&motion.path) else {
+            return (f64::NEG_INFINITY, Vec::new());
+        };
         let mut comparison = Comparison::new(discrepancy, motion, &track, wants_terms);
         rest.iter().for_each(|rest| rest.compare(&mut comparison));
         positions.iter().for_each(|position| position.compare(&mut comparison));
@@ -135,7 +137,7 @@ impl Evidence {
         discrepancy: &Discrepancy,
         motion: &CollisionMotion,
     ) -> Option<(Vec<PathResidual>, f64)> {
-        let track = Track::of(&motion.path)?;
+        let track = Track::from_path(&motion.path)?;
         let mut comparison = Comparison::new(discrepancy, motion, &track, false);
         self.rest.iter().for_each(|rest| rest.compare(&mut comparison));
         self.positions.iter().for_each(|position| position.compare(&mut comparison));

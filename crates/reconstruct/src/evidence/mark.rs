@@ -111,7 +111,7 @@ impl Mark {
         let place_m = motion.vehicle.geometry.wheel_place_m(self.wheel);
         let wheel = track.wheel(place_m);
         let nearest = wheel.nearest(&self.points_m);
-        let onset = Onset::of(motion, track, self.wheel, &wheel);
+        let onset = Onset::new(motion, track, self.wheel, &wheel);
         let name = format!("mark {}", self.wheel.word());
         let (mut squares, mut distance) = (0.0, 0.0);
         for at in &nearest {

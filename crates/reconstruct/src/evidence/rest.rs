@@ -108,7 +108,7 @@ impl RestPose {
     /// The striking car, whose path is another one.
     pub(super) fn compare_striking(&self, comparison: &mut Comparison<'_>) {
         let motion = comparison.motion;
-        let track = motion.striking_path.as_ref().and_then(Track::of);
+        let track = motion.striking_path.as_ref().and_then(Track::from_path);
         let Some(track) = track else {
             comparison.log_likelihood = f64::NEG_INFINITY;
             return;

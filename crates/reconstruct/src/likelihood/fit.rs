@@ -37,7 +37,7 @@ impl EvidenceFit {
     /// discrepancies.
     ///
     /// - `particles`: the terms of each particle; those of motions that could not be computed are empty.
-    pub fn of(particles: &[Vec<EvidenceTerm>]) -> Vec<Self> {
+    pub fn from_particles(particles: &[Vec<EvidenceTerm>]) -> Vec<Self> {
         let of_motions: Vec<&Vec<EvidenceTerm>> =
             particles.iter().filter(|terms| !terms.is_empty()).collect();
         let Some(first) = of_motions.first() else { return Vec::new() };
@@ -96,9 +96,9 @@ mod tests {
             distance,
         };
         let particles = vec![vec![term("near", 0.5), term("far", 16.0)]; 3];
-        let fit = EvidenceFit::of(&particles);
+        let fit = EvidenceFit::from_particles(&particles);
         assert!((fit[0].p - 0.4795).abs() < 1e-3 && !fit[0].is_unexplained(), "{fit:?}");
         assert!(fit[1].p < 1e-4 && fit[1].is_unexplained(), "{fit:?}");
-        assert!(EvidenceFit::of(&[]).is_empty());
+        assert!(EvidenceFit::from_particles(&[]).is_empty());
     }
 }

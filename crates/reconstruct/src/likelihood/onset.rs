@@ -19,7 +19,7 @@ pub(crate) struct Onset {
 }
 
 impl Onset {
-    pub fn of(motion: &CollisionMotion, track: &Track, wheel: Wheel, path: &WheelTrack) -> Self {
+    pub fn new(motion: &CollisionMotion, track: &Track, wheel: Wheel, path: &WheelTrack) -> Self {
         let held = motion.manoeuvre.controls.wheels.as_ref();
         let zones = &motion.manoeuvre.friction_zones;
         let states = track.points.iter().zip(&path.velocity_m_s).zip(&path.at_m);

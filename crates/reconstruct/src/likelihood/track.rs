@@ -47,7 +47,7 @@ pub(crate) struct Nearest {
 
 impl Track {
     /// `None` for a motion that could not be computed.
-    pub fn of(path: &Path) -> Option<Self> {
+    pub fn from_path(path: &Path) -> Option<Self> {
         if path.end == PathEnd::Failed {
             return None;
         }

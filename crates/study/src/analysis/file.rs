@@ -50,7 +50,11 @@ pub fn analyse_drive(
     controls.wheels = wheels.or(controls.wheels);
     let start = (initial, settings.duration_s);
     let simulation = Some(simulate(start, load.as_ref(), controls.clone(), settings)?);
-    Ok(Analysis { simulation, notes, ..of_load(name, (Some(initial), controls), load, settings) })
+    Ok(Analysis {
+        simulation,
+        notes,
+        ..not_simulated(name, (Some(initial), controls), load, settings)
+    })
 }
 
 /// Analyses a recorded motion, and simulates it from its first sample over the recorded duration if
@@ -91,7 +95,7 @@ pub fn analyse_recording(
     let error = simulation.as_ref().map(between).transpose()?;
     let reference = Some(file.series.clone());
     let controls = settings.ending.controls(&settings.struck);
-    let analysis = of_load(name, (initial, controls), load, settings);
+    let analysis = not_simulated(name, (initial, controls), load, settings);
     Ok(Analysis { simulation, reference, error, notes, ..analysis })
 }
 
@@ -120,7 +124,7 @@ fn simulate(
 }
 
 /// The analysis before anything is simulated.
-fn of_load(
+fn not_simulated(
     name: &str,
     (initial, controls): (Option<VehicleState<f64>>, Controls),
     load: Option<ActingForce>,

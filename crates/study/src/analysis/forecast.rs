@@ -109,7 +109,7 @@ impl ForceForecast {
     ///
     /// # Errors
     /// [`MixtureError`], which does not occur with a mixture that was checked when it was made.
-    pub fn of(mixture: &CurveMixture, settings: ForecastSettings) -> Result<Self, MixtureError> {
+    pub fn new(mixture: &CurveMixture, settings: ForecastSettings) -> Result<Self, MixtureError> {
         let mut rng = random_stream(settings.seed, "draws", 0);
         let mut curves = mixture.sample(N_DRAWS.max(settings.n_curves), &mut rng);
         let draws = CurveQuantities::from_curves(&curves);
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn numbers_lie_inside_their_intervals_and_the_intervals_in_each_other() {
         let settings = ForecastSettings { n_curves: 5, seed: 3 };
-        let forecast = ForceForecast::of(&example(), settings).unwrap();
+        let forecast = ForceForecast::new(&example(), settings).unwrap();
         let [px, py] = &forecast.impulse_n_s;
         for (name, spread) in [
             ("P_x", px.clone()),
@@ -221,7 +221,7 @@ mod tests {
         }
         assert_eq!((forecast.curves.len(), forecast.bands.fx.len()), (5, 4));
         assert!(forecast.modes.windows(2).all(|pair| pair[0].weight >= pair[1].weight));
-        assert_eq!(forecast, ForceForecast::of(&example(), settings).unwrap());
+        assert_eq!(forecast, ForceForecast::new(&example(), settings).unwrap());
     }
 
     #[test]

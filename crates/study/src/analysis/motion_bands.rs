@@ -20,7 +20,7 @@ pub struct MotionBands {
 impl MotionBands {
     /// Intervals of every `stride`-th instant and of the last one. A quantity without a marginal
     /// distribution has its mean for both ends.
-    pub fn of(motion: &MotionDistribution, stride: usize) -> Self {
+    pub fn new(motion: &MotionDistribution, stride: usize) -> Self {
         let last = motion.n_instants().saturating_sub(1);
         let mut instants: Vec<usize> = (0..motion.n_instants()).step_by(stride.max(1)).collect();
         if instants.last().is_some_and(|at| *at != last) {

@@ -247,7 +247,7 @@ pub fn forecast_forces(
         seed: settings.seed,
     };
     let motion = match settings.until_rest {
-        true => whole_motions.settle().map(ForecastMotion::of_settled),
+        true => whole_motions.settle().map(ForecastMotion::from_settled),
         false => propagated((forces, &predictors), struck, settings)
             .filter(|motion| motion.is_followed_by_moments())
             .or_else(|| whole_motions.settle()?.timed(forces, settings.seed)),
@@ -289,7 +289,7 @@ struct ForecastMotion {
 }
 
 impl ForecastMotion {
-    fn of_settled(settled: Settled) -> Self {
+    fn from_settled(settled: Settled) -> Self {
         let Settled { distribution, paths, outcome, rest, applicabilities } = settled;
         Self { distribution, paths, outcome, rest: Some(rest), applicabilities }
     }
@@ -307,7 +307,7 @@ impl Settled {
     /// The same motion with its outcome at the end of the forecast, or where it has come to rest.
     fn timed(self, forces: &[ForceHistory], seed: u64) -> Option<ForecastMotion> {
         let outcome = timed_outcome((&self.distribution, &self.paths), forces, seed)?;
-        Some(ForecastMotion { outcome, rest: None, ..ForecastMotion::of_settled(self) })
+        Some(ForecastMotion { outcome, rest: None, ..ForecastMotion::from_settled(self) })
     }
 }
 
@@ -379,7 +379,7 @@ fn drawn_vehicles(
     n_forces: usize,
 ) -> Option<VehicleDraws> {
     let sheet = struck.vehicle.sheet.as_ref().filter(|_| settings.n_vehicles > 0)?;
-    let draws = VehicleDraws::of(sheet, settings.n_vehicles.max(n_forces), settings.seed);
+    let draws = VehicleDraws::from_sheet(sheet, settings.n_vehicles.max(n_forces), settings.seed);
     (!draws.is_empty()).then_some(draws)
 }
 

@@ -81,7 +81,7 @@ impl ToRest<'_> {
         let ends: Option<Vec<MotionEnd>> = draws.iter().map(end_of).collect();
         let ends = ends?;
         let distribution = distribution(&draws, &ends, n_instants);
-        let rest = RestOutcome::of(&ends, self.limit_s)?;
+        let rest = RestOutcome::from_ends(&ends, self.limit_s)?;
         let start_rad = self.struck.initial.yaw_rad;
         let outcome = outcome((&ends, &rest), n_instants, start_rad);
         Some(Settled { distribution, paths, outcome, rest, applicabilities })

@@ -69,7 +69,7 @@ pub struct RestOutcome {
 
 impl RestOutcome {
     /// The outcome over draws; `None` without any.
-    pub fn of(ends: &[MotionEnd], limit_s: f64) -> Option<Self> {
+    pub fn from_ends(ends: &[MotionEnd], limit_s: f64) -> Option<Self> {
         if ends.is_empty() {
             return None;
         }
@@ -198,12 +198,12 @@ mod tests {
     #[test]
     fn draws_that_still_move_are_said_and_count_as_lower_bounds() {
         let ends: Vec<MotionEnd> = (1..=100).map(|i| end(f64::from(i), 0.0, i <= 60)).collect();
-        let rest = RestOutcome::of(&ends, 50.0).unwrap();
+        let rest = RestOutcome::from_ends(&ends, 50.0).unwrap();
         assert!((rest.share_at_rest - 0.6).abs() < 1e-12, "{rest:?}");
         assert_eq!(rest.moving_speed_m_s, Some(1.0));
         assert!((rest.distance_m.median - 50.5).abs() < 1e-9, "{rest:?}");
         assert!(rest.distance_m.ninety()[1] > 94.0, "{rest:?}");
-        assert!(RestOutcome::of(&ends[..60], 50.0).unwrap().moving_speed_m_s.is_none());
-        assert_eq!(RestOutcome::of(&[], 50.0), None);
+        assert!(RestOutcome::from_ends(&ends[..60], 50.0).unwrap().moving_speed_m_s.is_none());
+        assert_eq!(RestOutcome::from_ends(&[], 50.0), None);
     }
 }

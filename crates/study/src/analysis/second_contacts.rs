@@ -46,7 +46,7 @@ impl SecondContacts {
     /// - `striking`: the striking vehicle;
     /// - `is_own`: whether the motion of the striking vehicle is that under the force of the
     ///   forecast. If not, it is simulated.
-    pub fn of(
+    pub fn find(
         forecast: &MotionForecast,
         (struck, striking): (Footprint, &VehicleTrack),
         is_own: bool,

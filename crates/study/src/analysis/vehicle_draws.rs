@@ -44,7 +44,7 @@ const CHI_SQUARED_95: f64 = 3.841;
 
 impl VehicleDraws {
     /// Draws every estimate of a data sheet, each independent of the others.
-    pub fn of(sheet: &DataSheet, n_draws: usize, seed: u64) -> Self {
+    pub fn from_sheet(sheet: &DataSheet, n_draws: usize, seed: u64) -> Self {
         let quantities: Vec<SheetQuantity> = sheet.estimated().collect();
         let draw = |idx: usize| {
             let mut rng = random_stream(seed, "vehicle estimates", idx as u64);
@@ -90,7 +90,7 @@ impl VehicleDraws {
             let factor: Vec<f64> = drawn.iter().map(|(z, _)| z[idx]).collect();
             let [x, y, heading] = [0, 1, 2].map(|component| {
                 let values: Vec<f64> = drawn.iter().map(|(_, end)| end[component]).collect();
-                Moments::of(&factor, &values)
+                Moments::new(&factor, &values)
             });
             let variance = x.variance + y.variance;
             let explained = x.explained() + y.explained();
@@ -121,7 +121,7 @@ struct Moments {
 }
 
 impl Moments {
-    fn of(factor: &[f64], values: &[f64]) -> Self {
+    fn new(factor: &[f64], values: &[f64]) -> Self {
         let n = factor.len().max(1) as f64;
         let mean = |values: &[f64]| values.iter().sum::<f64>() / n;
         let (mean_factor, mean_value) = (mean(factor), mean(values));
@@ -153,8 +153,8 @@ mod tests {
     #[test]
     fn the_shares_are_those_of_a_known_dependence() {
         let sheet = DataSheet::new("car", VehicleClass::Car);
-        let draws = VehicleDraws::of(&sheet, 400, 3);
-        assert_eq!(draws, VehicleDraws::of(&sheet, 400, 3), "the seed decides");
+        let draws = VehicleDraws::from_sheet(&sheet, 400, 3);
+        assert_eq!(draws, VehicleDraws::from_sheet(&sheet, 400, 3), "the seed decides");
         // 16 and 9 of 25 parts of the variance of the position, all of the heading.
         let end = |z: &Vec<f64>| Some([4.0 * z[2], 3.0 * z[5], -2.0 * z[7]]);
         let ends: Vec<_> = draws.latents.iter().map(end).collect();

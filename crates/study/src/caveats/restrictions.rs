@@ -20,7 +20,7 @@ const AGREEMENT_LEVEL: f64 = 0.99;
 const PHYSICS_ERROR: f64 = 0.125;
 
 /// Outlines that overlap by more than the tolerance within which they touch.
-pub(crate) fn of_overlap(geometry: &ScenarioGeometry) -> Option<Caveat> {
+pub(crate) fn overlap_caveat(geometry: &ScenarioGeometry) -> Option<Caveat> {
     let overlap_m = geometry.overlap_m.filter(|overlap_m| *overlap_m > TOUCH_TOLERANCE_M)?;
     let text = format!(
         "the outlines overlap by {overlap_m:.2} m; the contact is that at which they first touched"
@@ -32,7 +32,7 @@ pub(crate) fn of_overlap(geometry: &ScenarioGeometry) -> Option<Caveat> {
 }
 
 /// A record of a force that ends during the contact.
-pub(crate) fn of_cut_record(force: &ForceHistory) -> Option<Caveat> {
+pub(crate) fn cut_record_caveat(force: &ForceHistory) -> Option<Caveat> {
     let at_s = cut_at_s(force)?;
     let (peak_n, _) = force.peak()?;
     let (x, y) = force.fx_n.last().zip(force.fy_n.last())?;
@@ -49,7 +49,7 @@ pub(crate) fn of_cut_record(force: &ForceHistory) -> Option<Caveat> {
 }
 
 /// A flag of a simulated motion.
-pub(crate) fn of_flag(flag: &FlagReport) -> Caveat {
+pub(crate) fn flag_caveat(flag: &FlagReport) -> Caveat {
     let caveat = Caveat::new(flag.kind, &*flag.message);
     match flag.roll_rad {
         Some(roll_rad) => caveat
@@ -62,17 +62,17 @@ pub(crate) fn of_flag(flag: &FlagReport) -> Caveat {
 /// What restricts the simulation of one vehicle.
 ///
 /// - `until_rest`: whether the question asks where the vehicle comes to rest.
-pub(crate) fn of_simulation(report: &SimulateReport, until_rest: bool) -> Vec<Caveat> {
+pub(crate) fn simulation_caveats(report: &SimulateReport, until_rest: bool) -> Vec<Caveat> {
     let moving = report.end.filter(|_| until_rest && report.rest.is_none());
-    let moving = moving.map(|end| of_motion(end.speed_m_s, report.duration_s));
+    let moving = moving.map(|end| motion_caveat(end.speed_m_s, report.duration_s));
     let n_failed = report.uncertainty.as_ref().map_or(0, |of| of.n_failed);
-    let left_out = of_left_out(n_failed, "vehicles drawn from the data sheet");
-    let flags = report.flags.iter().map(of_flag);
+    let left_out = left_out_caveat(n_failed, "vehicles drawn from the data sheet");
+    let flags = report.flags.iter().map(flag_caveat);
     flags.chain(moving).chain(left_out).collect()
 }
 
 /// How many cases raise each kind of flag.
-pub(crate) fn of_flagged_cases(cases: &[ReplayedCaseReport]) -> Vec<Caveat> {
+pub(crate) fn flagged_cases_caveats(cases: &[ReplayedCaseReport]) -> Vec<Caveat> {
     let mut kinds: Vec<CaveatKind> =
         cases.iter().flat_map(|case| case.flags.iter().map(|flag| flag.kind)).collect();
     kinds.sort_unstable();
@@ -89,7 +89,7 @@ pub(crate) fn of_flagged_cases(cases: &[ReplayedCaseReport]) -> Vec<Caveat> {
 /// A motion that goes on at the end of its answer.
 ///
 /// - `speed_m_s`: speed at the end.
-pub(crate) fn of_motion(speed_m_s: f64, after_s: f64) -> Caveat {
+pub(crate) fn motion_caveat(speed_m_s: f64, after_s: f64) -> Caveat {
     let text = format!(
         "the vehicle still moves at {speed_m_s:.1} m/s after {after_s:.2} s: its end is not where it \
          comes to rest"
@@ -100,7 +100,7 @@ pub(crate) fn of_motion(speed_m_s: f64, after_s: f64) -> Caveat {
 }
 
 /// Draws of a motion that is followed to rest and still move at the limit of time.
-pub(crate) fn of_rest(rest: &RestOutcome) -> Option<Caveat> {
+pub(crate) fn rest_caveat(rest: &RestOutcome) -> Option<Caveat> {
     let speed_m_s = rest.moving_speed_m_s?;
     let text = format!(
         "in {} of {} draws the vehicle still moves after {:.2} s, at {speed_m_s:.1} m/s in the median: \
@@ -116,7 +116,7 @@ pub(crate) fn of_rest(rest: &RestOutcome) -> Option<Caveat> {
 }
 
 /// A motion that lasts longer than those that the response network has learned from.
-fn of_duration(report: &PredictMotionReport) -> Option<Caveat> {
+fn duration_caveat(report: &PredictMotionReport) -> Option<Caveat> {
     let end_s = match &report.rest {
         Some(rest) => rest.time_s.ninety()[1],
         None => report.outcome.time_s,
@@ -137,7 +137,7 @@ fn of_duration(report: &PredictMotionReport) -> Option<Caveat> {
 }
 
 /// A quantity of a motion that lies outside what a response network has learned from.
-fn of_outside_domain(outside: &OutsideDomain) -> Caveat {
+fn outside_domain_caveat(outside: &OutsideDomain) -> Caveat {
     let OutsideDomain { quantity, value, range } = outside;
     let [low, high] = range.map(significant);
     let text = format!(
@@ -150,33 +150,36 @@ fn of_outside_domain(outside: &OutsideDomain) -> Caveat {
 /// What restricts a predicted force.
 ///
 /// - `predicted`: those of the force network.
-pub(crate) fn of_predicted_force(report: &PredictForceReport, predicted: &[Caveat]) -> Vec<Caveat> {
-    let contact = report.implied_contact.as_ref().and_then(of_contact);
+pub(crate) fn predicted_force_caveats(
+    report: &PredictForceReport,
+    predicted: &[Caveat],
+) -> Vec<Caveat> {
+    let contact = report.implied_contact.as_ref().and_then(contact_caveat);
     predicted.iter().cloned().chain(contact).collect()
 }
 
 /// What restricts a predicted motion.
 ///
 /// - `predicted`: those of the force network, where it predicts the force.
-pub(crate) fn of_predicted_motion(
+pub(crate) fn predicted_motion_caveats(
     report: &PredictMotionReport,
     predicted: &[Caveat],
 ) -> Vec<Caveat> {
-    let domain = report.outside_domain.iter().map(of_outside_domain);
-    let contact = report.implied_contact.as_ref().and_then(of_contact);
-    let flags = report.flags.iter().map(of_flag);
+    let domain = report.outside_domain.iter().map(outside_domain_caveat);
+    let contact = report.implied_contact.as_ref().and_then(contact_caveat);
+    let flags = report.flags.iter().map(flag_caveat);
     let end = &report.outcome;
     let moving = match &report.rest {
-        Some(rest) => of_rest(rest),
-        None => (!end.is_at_rest).then(|| of_motion(end.speed_m_s, end.time_s)),
+        Some(rest) => rest_caveat(rest),
+        None => (!end.is_at_rest).then(|| motion_caveat(end.speed_m_s, end.time_s)),
     };
-    let beyond = of_duration(report);
+    let beyond = duration_caveat(report);
     let outside = predicted.iter().cloned().chain(domain).chain(beyond);
     outside.chain(contact).chain(flags).chain(moving).collect()
 }
 
 /// A predicted impulse that no contact brings about.
-pub(crate) fn of_contact(implied: &ImpliedContactReport) -> Option<Caveat> {
+pub(crate) fn contact_caveat(implied: &ImpliedContactReport) -> Option<Caveat> {
     let caveat = Caveat::new(CaveatKind::ImplausibleContact, implied.warning.as_ref()?);
     Some(if implied.p_rigid < LEAST_P_RIGID {
         let quantity = "share of the impulse with a restitution between 0 and 1";
@@ -192,7 +195,7 @@ pub(crate) fn of_contact(implied: &ImpliedContactReport) -> Option<Caveat> {
 ///
 /// - `has_same_force`: whether the simulation has the force of the forecast; else that of the momentum
 ///   solution.
-pub(crate) fn of_disagreement(
+pub(crate) fn disagreement_caveat(
     (forecast, simulated): (&MotionForecast, &Analysis),
     has_same_force: bool,
 ) -> Option<Caveat> {
@@ -231,7 +234,7 @@ pub(crate) fn of_disagreement(
 /// Cases or draws that could not be used.
 ///
 /// - `what`: what they are, in the plural.
-pub(crate) fn of_left_out(n: usize, what: &str) -> Option<Caveat> {
+pub(crate) fn left_out_caveat(n: usize, what: &str) -> Option<Caveat> {
     let caveat = || {
         let text = format!("{n} {what} could not be used");
         Caveat::new(CaveatKind::LeftOut, text).with_value(what, n as f64).with_range([0.0, 0.0])
@@ -240,7 +243,7 @@ pub(crate) fn of_left_out(n: usize, what: &str) -> Option<Caveat> {
 }
 
 /// Cases that the network which they judge has learned from.
-pub(crate) fn of_trained_on(n_known: usize, n_test: usize) -> Option<Caveat> {
+pub(crate) fn trained_on_caveat(n_known: usize, n_test: usize) -> Option<Caveat> {
     let caveat = || {
         let text = format!("the model was trained on {n_known} of these {n_test} cases");
         Caveat::new(CaveatKind::TrainedOn, text)

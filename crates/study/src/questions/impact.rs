@@ -140,7 +140,7 @@ impl Question for ImpactRequest {
         let caveats: Caveats = assumed::first_touch(&geometry)
             .into_iter()
             .chain(assumed::contact_default(&scenario, &impact))
-            .chain(restrictions::of_overlap(&geometry))
+            .chain(restrictions::overlap_caveat(&geometry))
             .collect();
         let report = ImpactReport {
             name: scenario.name.clone(),

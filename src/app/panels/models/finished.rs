@@ -153,7 +153,7 @@ fn buttons_ui(
     }
     let remove = ui.add_enabled(!is_in_use, egui::Button::new("Remove…"));
     if remove.on_disabled_hover_text("It is in use: use another model first").clicked() {
-        let dialog = ModelsDialog::of_entry(entry, folder);
+        let dialog = ModelsDialog::remove_entry(entry, folder);
         commands.push(Command::Models(ModelsCommand::Ask(dialog)));
     }
 }

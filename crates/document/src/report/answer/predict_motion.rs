@@ -76,7 +76,7 @@ fn pictures(
     let (forecast, analysis) = (&answer.forecast, &answer.analysis);
     let at_s = report.outcome.time_s;
     let density = Arc::new(DensityTask::new(&forecast.distribution, [at_s; 2]).on_cpu());
-    let bands = MotionBands::of(&forecast.distribution, BAND_STRIDE);
+    let bands = MotionBands::new(&forecast.distribution, BAND_STRIDE);
     let caveats = &report.caveats;
     let still = forecast_still((request, answer), (&density, caveats), context);
     let shown = (at_s, wording.units);

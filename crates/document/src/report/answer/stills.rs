@@ -107,7 +107,7 @@ fn on_ground(
     Context { wording, paths, grounds }: Context<'_>,
 ) -> (Arc<Scene>, String) {
     let quoted = |text: &String| wording.quoted(&paths.shown(text));
-    let note = match site.map(|site| grounds.of(site)) {
+    let note = match site.map(|site| grounds.read(site)) {
         None => String::new(),
         Some(Err(why)) => fill(wording.words.ground_not_drawn, &[("why", &quoted(&why))]),
         Some(Ok(loaded)) => {
@@ -128,7 +128,7 @@ type ReadGround = Result<Arc<LoadedGround>, String>;
 pub(in crate::report) struct Grounds(RefCell<BTreeMap<PathBuf, ReadGround>>);
 
 impl Grounds {
-    fn of(&self, site: &Path) -> ReadGround {
+    fn read(&self, site: &Path) -> ReadGround {
         let mut read = self.0.borrow_mut();
         let load = || LoadedGround::load(site).map(Arc::new).map_err(|error| error_chain(&error));
         read.entry(site.to_owned()).or_insert_with(load).clone()

@@ -38,7 +38,7 @@ impl ReportFormat {
     ///
     /// # Errors
     /// [`FormatError`] if no format has this ending.
-    pub fn of(path: &Path) -> Result<Self, FormatError> {
+    pub fn from_path(path: &Path) -> Result<Self, FormatError> {
         let ending = path.extension().map(|end| end.to_ascii_lowercase());
         match ending.as_deref().and_then(|end| end.to_str()) {
             Some("pdf") => Ok(Self::Pdf),
@@ -81,10 +81,10 @@ mod tests {
             ("r.md", ReportFormat::Markdown),
             ("r.v2.json", ReportFormat::Json),
         ] {
-            assert_eq!(ReportFormat::of(Path::new(path)).unwrap(), expected, "{path}");
+            assert_eq!(ReportFormat::from_path(Path::new(path)).unwrap(), expected, "{path}");
         }
         for path in ["report", "report.docx", ".pdf", "pdf"] {
-            let error = ReportFormat::of(Path::new(path)).unwrap_err().to_string();
+            let error = ReportFormat::from_path(Path::new(path)).unwrap_err().to_string();
             assert!(error.contains(path) && error.contains(".json"), "{error}");
         }
     }

@@ -167,7 +167,7 @@ impl CompareAnswer {
         models: impl IntoIterator<Item = ModelDigest>,
     ) -> Self {
         let provenance = Provenance::default().with_models(models);
-        caveats.extend(restrictions::of_left_out(left_out.len(), "cases"));
+        caveats.extend(restrictions::left_out_caveat(left_out.len(), "cases"));
         Self { report: CompareReport { comparison, left_out, caveats, provenance } }
     }
 }

@@ -241,7 +241,7 @@ impl Question for EvaluateForceRequest {
             None
         };
         let n_trained_on = test.iter().filter(|case| model.is_trained_on(case)).count();
-        let trained_on = restrictions::of_trained_on(n_trained_on, test.len()).into_iter();
+        let trained_on = restrictions::trained_on_caveat(n_trained_on, test.len()).into_iter();
         let report = EvaluateForceReport {
             model_file: self.model.to_string(),
             data: self.data.clone(),
@@ -250,7 +250,7 @@ impl Question for EvaluateForceRequest {
             n_trained_on,
             evaluation,
             left_out,
-            caveats: trained_on.chain(restrictions::of_left_out(n_left_out, "cases")).collect(),
+            caveats: trained_on.chain(restrictions::left_out_caveat(n_left_out, "cases")).collect(),
             provenance,
         };
         let report = ForceEvaluation::Cases(Box::new(report));
@@ -300,7 +300,7 @@ fn samples(
     let chosen = ranks.filter_map(|rank| ranked.get(rank));
     let settings = ForecastSettings { n_curves: 0, seed };
     let of = |case: &&ForceCase| {
-        let forecast = ForceForecast::of(&distribution(model, case)?, settings);
+        let forecast = ForceForecast::new(&distribution(model, case)?, settings);
         Ok(((*case).clone(), forecast.map_err(ForceError::from)?))
     };
     chosen.map(of).collect()

@@ -184,7 +184,7 @@ impl ForceQuestion {
                 unused = by_force_network(choice, &scenario)?;
                 let geometry = scenario.geometry().ok();
                 unused.extend(geometry.as_ref().and_then(assumed::first_touch));
-                overlap = geometry.as_ref().and_then(restrictions::of_overlap);
+                overlap = geometry.as_ref().and_then(restrictions::overlap_caveat);
                 let numbers = ForceScenario::from_scenario(&scenario);
                 let numbers = numbers.map_err(|source| choice.unsolved(source))?;
                 let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
@@ -256,7 +256,7 @@ impl Question for PredictForceRequest {
         let prediction = model.predict(&collision)?;
         let settings = ForecastSettings { n_curves: self.samples, seed: self.seed };
         let forecast =
-            ForceForecast::of(&prediction.mixture, settings).map_err(ForceError::from)?;
+            ForceForecast::new(&prediction.mixture, settings).map_err(ForceError::from)?;
         let provenance =
             Provenance::of_seed(self.seed).with_models([library.force_model_digest(&self.model)?]);
         let mut report = PredictForceReport::of(name, &self.model, (&prediction, &forecast));
@@ -264,7 +264,7 @@ impl Question for PredictForceRequest {
         report.implied_contact = impact.and_then(|(impact, heading_rad)| {
             ImpliedContactReport::of(&prediction, (&impact, heading_rad), self.seed)
         });
-        report.caveats = restrictions::of_predicted_force(&report, &prediction.caveats).into();
+        report.caveats = restrictions::predicted_force_caveats(&report, &prediction.caveats).into();
         report.caveats.extend(unused.into_iter().chain(overlap));
         Ok(Outcome::Complete(PredictForceAnswer { report, collision, forecast, prediction }))
     }

@@ -256,12 +256,12 @@ impl Question for PredictMotionRequest {
         let forecast = match &self.force {
             ForceSource::Given => {
                 let own = Some(own_force).filter(|_| self.motion.source.is_recorded());
-                cut = own.and_then(restrictions::of_cut_record);
+                cut = own.and_then(restrictions::cut_record_caveat);
                 forecast_forces(std::slice::from_ref(own_force), &model, struck, &settings)
             }
             ForceSource::File(path) => {
                 let force = given_force(path, (struck, settings.duration_s), library)?;
-                cut = restrictions::of_cut_record(&force);
+                cut = restrictions::cut_record_caveat(&force);
                 forecast_forces(&[force], &model, struck, &settings)
             }
             ForceSource::Predicted(choice) => {
@@ -285,10 +285,10 @@ impl Question for PredictMotionRequest {
             flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
             ..self.report(&analysis.name, struck, (&forecast, known))
         };
-        let restrictions = restrictions::of_predicted_motion(&report, predicted);
+        let restrictions = restrictions::predicted_motion_caveats(&report, predicted);
         report.caveats.extend(restrictions);
         let has_same_force = self.force == ForceSource::Given;
-        let apart = restrictions::of_disagreement((&forecast, &analysis), has_same_force);
+        let apart = restrictions::disagreement_caveat((&forecast, &analysis), has_same_force);
         report.caveats.extend(apart.into_iter().chain(cut));
         Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
     }
@@ -349,7 +349,7 @@ impl PredictMotionRequest {
     fn second_contact(&self, forecast: &MotionForecast, analysis: &Analysis) -> Option<FlagReport> {
         let striking = analysis.striking.as_ref()?;
         let is_own = self.force == ForceSource::Given;
-        let met = SecondContacts::of(forecast, (analysis.footprint, striking), is_own)?;
+        let met = SecondContacts::find(forecast, (analysis.footprint, striking), is_own)?;
         Some(FlagReport::from(&met))
     }
 

@@ -139,8 +139,8 @@ impl Question for SimulateDatasetRequest {
         let cases: Vec<ReplayedCaseReport> =
             replay.cases.iter().map(ReplayedCaseReport::of).collect();
         let failures: Vec<String> = problems.chain(failed).collect();
-        let flagged = restrictions::of_flagged_cases(&cases).into_iter();
-        let left_out = restrictions::of_left_out(failures.len(), "cases");
+        let flagged = restrictions::flagged_cases_caveats(&cases).into_iter();
+        let left_out = restrictions::left_out_caveat(failures.len(), "cases");
         caveats.extend(flagged.chain(left_out));
         let report = SimulateDatasetReport {
             dataset: self.dataset.clone(),
@@ -164,7 +164,7 @@ impl SimulateDatasetReport {
     pub fn caveats_of(&self, case: &str) -> Caveats {
         let flags = self.cases.iter().filter(|of| of.case == case).flat_map(|of| &of.flags);
         let assumptions = self.caveats.assumptions().cloned();
-        flags.map(restrictions::of_flag).chain(assumptions).collect()
+        flags.map(restrictions::flag_caveat).chain(assumptions).collect()
     }
 }
 

@@ -27,7 +27,7 @@ pub struct RecordedForceAnswer {
 impl RecordedForceAnswer {
     fn new(name: String, force: ForceHistory, notes: Vec<String>) -> Self {
         let notes = notes.into_iter().map(|text| Caveat::new(CaveatKind::Note, text));
-        let caveats = restrictions::of_cut_record(&force).into_iter().chain(notes).collect();
+        let caveats = restrictions::cut_record_caveat(&force).into_iter().chain(notes).collect();
         Self { name, force, caveats }
     }
 }

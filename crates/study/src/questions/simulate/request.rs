@@ -263,11 +263,11 @@ impl Question for SimulateRequest {
         if report.uncertainty.is_some() {
             report.provenance = Provenance::of_seed(self.seed);
         }
-        let restrictions = restrictions::of_simulation(&report, self.until_rest);
+        let restrictions = restrictions::simulation_caveats(&report, self.until_rest);
         report.caveats.extend(restrictions);
         report.caveats.extend(overlap);
         let recorded = analysis.force.as_ref().filter(|_| self.source.is_recorded());
-        report.caveats.extend(recorded.and_then(restrictions::of_cut_record));
+        report.caveats.extend(recorded.and_then(restrictions::cut_record_caveat));
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
     }
 }
@@ -280,7 +280,7 @@ fn contact_of(
 ) -> (Option<MomentumReport>, Option<Caveat>) {
     let geometry = scenario.geometry().ok();
     caveats.extend(geometry.as_ref().and_then(assumed::first_touch));
-    let overlap = geometry.as_ref().and_then(restrictions::of_overlap);
+    let overlap = geometry.as_ref().and_then(restrictions::overlap_caveat);
     let Ok(impact) = scenario.impact() else { return (None, overlap) };
     caveats.extend(assumed::contact_default(scenario, &impact));
     (MomentumReport::of(&impact, 0.0), overlap)

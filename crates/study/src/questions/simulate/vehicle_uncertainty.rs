@@ -56,7 +56,7 @@ pub(crate) fn vehicle_uncertainty(
 ) -> Option<VehicleUncertainty> {
     let sheet = settings.struck.sheet.as_ref()?;
     central.simulation.as_ref()?;
-    let draws = VehicleDraws::of(sheet, n_draws, seed);
+    let draws = VehicleDraws::from_sheet(sheet, n_draws, seed);
     if draws.is_empty() {
         return None;
     }
@@ -75,7 +75,7 @@ pub(crate) fn vehicle_uncertainty(
         drawn.iter().map(|drawn| drawn.as_ref().map(|of| of.state)).collect();
     let rest = || {
         let ends: Vec<MotionEnd> = drawn.iter().flatten().map(|drawn| drawn.end).collect();
-        RestOutcome::of(&ends, settings.duration_s)
+        RestOutcome::from_ends(&ends, settings.duration_s)
     };
     let of = |value: fn(&EndState) -> f64| {
         spread_of_draws(ends.iter().flatten().map(value).collect::<Vec<f64>>())

@@ -180,7 +180,7 @@ impl TrainForceReport {
             variance_factors: record.detail.variance_factors,
             train: best.map(|record| record.detail.train),
             validation: best.map(|record| record.detail.validation),
-            caveats: restrictions::of_left_out(left_out.len(), "cases").into_iter().collect(),
+            caveats: restrictions::left_out_caveat(left_out.len(), "cases").into_iter().collect(),
             left_out,
             provenance,
         }

@@ -210,7 +210,7 @@ impl ResponseTrainingAnswer {
         let provenance = Provenance::default().with_models(notes.start);
         let provenance = provenance.with_trained(RESPONSE_NETWORK, &model)?;
         let mut caveats = notes.caveats;
-        caveats.extend(restrictions::of_left_out(notes.left_out.len(), "cases"));
+        caveats.extend(restrictions::left_out_caveat(notes.left_out.len(), "cases"));
         let record = model.record();
         let last = record.history.last();
         let report = ResponseTrainingReport {

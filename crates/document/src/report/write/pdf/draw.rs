@@ -41,7 +41,7 @@ const BOLD: f32 = 0.028;
 pub fn pdf(document: &ReportDocument, drawing: Option<&Drawing<'_>>) -> Result<Vec<u8>, PdfError> {
     let fonts = Fonts::load()?;
     let pictures = pictures(document, drawing)?;
-    let flow = Flow::of(document, &fonts)?;
+    let flow = Flow::from_document(document, &fonts)?;
     let [width_pt, height_pt] = flow.size_pt;
     let mut pdf = krilla::Document::new();
     let mut drawn = Drawn { flow: &flow, document, pictures, contents: BTreeMap::new() };

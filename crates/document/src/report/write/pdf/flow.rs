@@ -68,7 +68,7 @@ pub(super) struct Style {
 
 impl<'a> Flow<'a> {
     /// Sets a document.
-    pub fn of(document: &ReportDocument, fonts: &'a Fonts) -> Result<Self, PdfError> {
+    pub fn from_document(document: &ReportDocument, fonts: &'a Fonts) -> Result<Self, PdfError> {
         let size_pt = document.paper.size_pt();
         let (pages, parts, outline) = (vec![PageItems::default()], Vec::new(), Vec::new());
         let mut flow = Self { fonts, size_pt, pages, parts, outline, y_pt: HIGH_MARGIN_PT };
@@ -302,7 +302,7 @@ mod tests {
         ];
         let fonts = Fonts::load().unwrap();
         let document = document(blocks);
-        let flow = Flow::of(&document, &fonts).unwrap();
+        let flow = Flow::from_document(&document, &fonts).unwrap();
         assert!(flow.pages.len() > 20);
         let [width_pt, height_pt] = flow.size_pt;
         let mut headers = 0;
