@@ -108,16 +108,16 @@ impl Window {
 
 /// Changes the lateral speed of the bullet, from 3 m/s to 4 m/s as `share` goes from 0 to 1.
 fn move_slider(state: &mut State, share: f64) {
-    let asked = collision_of(&state.project.predict_force, &state.session.sources);
-    let mut collision = asked.expect("a collision");
+    let found = collision_of(&state.project.predict_force, &state.session.sources);
+    let mut collision = found.expect("a collision");
     collision.numbers.striking_velocity_m_s[1] = 3.0 + share;
     collision.put_into(&mut state.project.predict_force);
 }
 
 /// Whether the collision in the form has these numbers.
 fn collision_is(state: &State, numbers: &ForceScenario) -> bool {
-    let asked = collision_of(&state.project.predict_force, &state.session.sources);
-    asked.is_some_and(|collision| collision.numbers == *numbers)
+    let found = collision_of(&state.project.predict_force, &state.session.sources);
+    found.is_some_and(|collision| collision.numbers == *numbers)
 }
 
 /// Prints a row with the median, the 90th and the 99th percentile of the durations in ms, and the

@@ -65,10 +65,15 @@ impl Variant {
                     ..case.scenario.clone()
                 },
             };
-            let said = model.predict(&scenario)?;
+            let predicted = model.predict(&scenario)?;
             let settings = ProbabilisticSettings { n_samples: N_DRAWS, seed: SEED };
-            self.scores.push(ProbabilisticScores::new(case, &said.mixture, settings, i as u64)?);
-            let prediction = CurvePrediction::from_mixture(said.mixture, &said.likely);
+            self.scores.push(ProbabilisticScores::new(
+                case,
+                &predicted.mixture,
+                settings,
+                i as u64,
+            )?);
+            let prediction = CurvePrediction::from_mixture(predicted.mixture, &predicted.likely);
             self.errors.push((case.is_clean(), PointErrors::new(case, &prediction)));
         }
         Ok(())

@@ -214,8 +214,8 @@ fn link_ui(ui: &mut Ui, link: &Link, commands: &mut Vec<Command>) {
         (false, true) => text,
         (false, false) => text.color(warning),
     };
-    let said = std::iter::once(&link.source).chain(&link.warnings);
-    let hint = said.map(String::as_str).collect::<Vec<_>>().join("\n");
+    let lines = std::iter::once(&link.source).chain(&link.warnings);
+    let hint = lines.map(String::as_str).collect::<Vec<_>>().join("\n");
     // Not by its colour alone.
     let button = match link.warnings.is_empty() {
         true => Button::new(text),

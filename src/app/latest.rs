@@ -23,15 +23,15 @@ pub type AnswerResult<Q> = Result<Arc<<Q as Question>::Answer>, String>;
 /// The latest question of one kind and the latest answer to it.
 pub struct Latest<Q: Question> {
     thread: Option<Thread<Q>>,
-    n_asked: u64,
+    n_questions: u64,
     n_answered: u64,
     /// Number of the latest question whose answer is not to be shown.
     n_dropped: u64,
     /// When the question that was asked last was asked.
-    asked_at: Option<Instant>,
+    question_at: Option<Instant>,
     /// The question that was asked last.
-    pub asked: Option<Q>,
-    /// The latest answer, or the reason why there is none. It belongs to `asked` unless
+    pub question: Option<Q>,
+    /// The latest answer, or the reason why there is none. It belongs to `question` unless
     /// [`Latest::is_waiting`].
     pub answer: Option<AnswerResult<Q>>,
     /// The latest coarse answer with the number of its question, until that is answered in full.
@@ -54,11 +54,11 @@ impl<Q: Question> Default for Latest<Q> {
     fn default() -> Self {
         Self {
             thread: None,
-            n_asked: 0,
+            n_questions: 0,
             n_answered: 0,
             n_dropped: 0,
-            asked_at: None,
-            asked: None,
+            question_at: None,
+            question: None,
             answer: None,
             coarse: None,
         }
@@ -85,7 +85,7 @@ impl<Q: Question> Latest<Q> {
         }
         if let Update::Panicked(text) = thread.job.poll() {
             (self.thread, self.coarse) = (None, None);
-            self.n_answered = self.n_asked;
+            self.n_answered = self.n_questions;
             self.answer = Some(Err(format!("internal error: {text}")));
         }
     }
@@ -97,13 +97,13 @@ impl<Q: Question> Latest<Q> {
     /// - `wake`: called after every answer; the thread keeps the callback with which it was
     ///   started.
     pub fn ask(&mut self, question: Q, library: &Arc<Library>, wake: impl Fn() + Send + 'static) {
-        if self.asked.as_ref() == Some(&question) {
+        if self.question.as_ref() == Some(&question) {
             return;
         }
-        self.n_asked += 1;
-        self.asked_at = Some(Instant::now());
-        let numbered = (self.n_asked, question.clone());
-        self.asked = Some(question);
+        self.n_questions += 1;
+        self.question_at = Some(Instant::now());
+        let numbered = (self.n_questions, question.clone());
+        self.question = Some(question);
         let is_sent = self
             .thread
             .as_ref()
@@ -119,7 +119,7 @@ impl<Q: Question> Latest<Q> {
                 self.thread = Some(thread);
             }
             Err(error) => {
-                self.n_answered = self.n_asked;
+                self.n_answered = self.n_questions;
                 self.answer = Some(Err(error.to_string()));
             }
         }
@@ -127,19 +127,19 @@ impl<Q: Question> Latest<Q> {
 
     /// Whether the answer to the latest question has not arrived yet.
     pub fn is_waiting(&self) -> bool {
-        self.n_asked != self.n_answered
+        self.n_questions != self.n_answered
     }
 
     /// Whether the answer to the latest question has not arrived for so long that a person sees it: an
     /// older answer that is still shown has to be marked then.
     pub fn is_late(&self) -> bool {
-        self.is_waiting() && self.asked_at.is_some_and(|at| at.elapsed() > SEEN)
+        self.is_waiting() && self.question_at.is_some_and(|at| at.elapsed() > SEEN)
     }
 
     /// The coarse answer that there is until the question is answered in full, and whether it is to the
     /// question that was asked last.
     pub fn coarse(&self) -> Option<(&Arc<Q::Answer>, bool)> {
-        self.coarse.as_ref().map(|(number, answer)| (answer, *number == self.n_asked))
+        self.coarse.as_ref().map(|(number, answer)| (answer, *number == self.n_questions))
     }
 
     /// Drops the answer, and that to a question under way, which belong to something else than what is
@@ -147,14 +147,14 @@ impl<Q: Question> Latest<Q> {
     pub fn drop_answer(&mut self) {
         self.coarse = None;
         self.answer = None;
-        self.asked = None;
-        self.n_dropped = self.n_asked;
+        self.question = None;
+        self.n_dropped = self.n_questions;
     }
 
     /// Allows the same question to be asked again, because the files or models that it refers to
     /// have changed.
     pub fn ask_again(&mut self) {
-        self.asked = None;
+        self.question = None;
     }
 
     /// Drops the question, the answer and the thread.
@@ -176,12 +176,12 @@ impl<Q: Question> Latest<Q> {
 
 impl<Q: Question> Thread<Q> {
     fn spawn(library: Arc<Library>, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let (questions, asked) = channel::<(u64, Q)>();
+        let (questions, received) = channel::<(u64, Q)>();
         let (answer, answers) = channel();
         let job = Job::spawn(Q::NAME, wake, move |report| {
             let mut next = None;
-            while let Some(mut latest) = next.take().or_else(|| asked.recv().ok()) {
-                while let Ok(newer) = asked.try_recv() {
+            while let Some(mut latest) = next.take().or_else(|| received.recv().ok()) {
+                while let Ok(newer) = received.try_recv() {
                     latest = newer;
                 }
                 let (number, question) = latest;
@@ -196,7 +196,7 @@ impl<Q: Question> Thread<Q> {
                     if !is_sent || observer(Event::Progress(Progress::default())).is_break() {
                         break;
                     }
-                    next = asked.try_recv().ok();
+                    next = received.try_recv().ok();
                     if next.is_some() {
                         continue;
                     }

@@ -171,7 +171,7 @@ impl App {
         looks::install(&cc.egui_ctx);
         let data_folder = state_file.as_deref().and_then(Path::parent).map(Path::to_owned);
         let OpenedState { store, restored, message } = open_state(state_file);
-        let (is_asked, is_restored) = (!paths.is_empty(), restored.is_some());
+        let (has_paths, is_restored) = (!paths.is_empty(), restored.is_some());
         let (mut state, last_open) = restored.unwrap_or_default();
         state.session.tasks.wake(cc.egui_ctx.clone());
         if let Some(message) = message {
@@ -193,7 +193,7 @@ impl App {
         }
         let shown = state.view.workspaces.shown;
         state.apply(Command::Open(to_open), &cc.egui_ctx);
-        if !is_asked {
+        if !has_paths {
             state.view.workspaces.shown = shown;
             state.session.shows_doors = !is_restored;
         }

@@ -227,8 +227,8 @@ impl Project {
             (motion, motion_at_start, subject.is_some()),
         ];
         let mut variant = Variant { name: name.to_owned(), ..Variant::default() };
-        for (request, at_start, is_asked) in filled_in {
-            if is_asked {
+        for (request, at_start, is_question) in filled_in {
+            if is_question {
                 variant.questions.push(request);
             } else if request != at_start {
                 variant.unasked.push(request);

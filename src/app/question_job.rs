@@ -62,7 +62,7 @@ impl<Q: Question> QuestionJob<Q> {
         wake: impl Fn() + Send + 'static,
         mut watch: impl FnMut(&Event<'_>) + Send + 'static,
     ) -> std::io::Result<()> {
-        let (asked, library) = (question.clone(), Arc::clone(library));
+        let (request, library) = (question.clone(), Arc::clone(library));
         let job = Job::spawn_in_background(Q::NAME, wake, move |report| {
             let mut observer = |event: Event<'_>| {
                 watch(&event);
@@ -71,7 +71,7 @@ impl<Q: Question> QuestionJob<Q> {
                     Event::Training(_) | Event::Sampling(_) => ControlFlow::Continue(()),
                 }
             };
-            asked.answer(&library, &mut observer).map_err(|error| error_chain(&error))
+            request.answer(&library, &mut observer).map_err(|error| error_chain(&error))
         })?;
         self.running = Some((question, job));
         Ok(())

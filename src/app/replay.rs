@@ -56,11 +56,11 @@ impl ReplayStatus {
         let names = report.cases.iter().enumerate();
         let by_case = names.map(|(idx, replay)| (replay.case.clone(), idx)).collect();
         let failures = &report.failures;
-        let told = failures.first().map(|first| {
+        let message = failures.first().map(|first| {
             format!("{} cases cannot be simulated; the first: {first}", failures.len())
         });
         self.by_case = by_case;
-        told
+        message
     }
 
     /// Whether there is nothing to show: no simulation is running and none has given a result.

@@ -235,7 +235,7 @@ mod tests {
     use super::*;
     use impactlab_core::data::Severity;
 
-    fn said(result: Result<&'static str, String>) -> Command {
+    fn command_of(result: Result<&'static str, String>) -> Command {
         match result {
             Ok(text) => Command::Say(Severity::Info, text.to_owned()),
             Err(why) => Command::Say(Severity::Error, why),
@@ -257,13 +257,13 @@ mod tests {
     #[test]
     fn a_task_ends_with_a_command_also_if_it_fails_or_panics() {
         let mut tasks = Tasks::default();
-        tasks.start(TaskKey::Report, |_| Ok("made"), said);
+        tasks.start(TaskKey::Report, |_| Ok("made"), command_of);
         assert!(tasks.is_running(&TaskKey::Report));
         assert_eq!(settled(&mut tasks), ["Info made"]);
         assert!(!tasks.is_running(&TaskKey::Report));
-        tasks.start(TaskKey::Report, |_| Err("no case".to_owned()), said);
+        tasks.start(TaskKey::Report, |_| Err("no case".to_owned()), command_of);
         assert_eq!(settled(&mut tasks), ["Error no case"]);
-        tasks.start(TaskKey::Report, |_| panic!("row 7"), said);
+        tasks.start(TaskKey::Report, |_| panic!("row 7"), command_of);
         assert_eq!(settled(&mut tasks), ["Error internal error: row 7"]);
     }
 
@@ -275,11 +275,11 @@ mod tests {
             let _ = waits.recv();
             Ok("first")
         };
-        tasks.start(TaskKey::Cost, first, said);
-        tasks.start(TaskKey::Cost, |_| Ok("second"), said);
+        tasks.start(TaskKey::Cost, first, command_of);
+        tasks.start(TaskKey::Cost, |_| Ok("second"), command_of);
         drop(sender);
         assert_eq!(settled(&mut tasks), ["Info second"]);
-        tasks.start(TaskKey::Ground, |_| Ok("read"), said);
+        tasks.start(TaskKey::Ground, |_| Ok("read"), command_of);
         tasks.stop(&TaskKey::Ground);
         assert!(settled(&mut tasks).is_empty());
         tasks.start(TaskKey::FileDialog, |_| Ok(()), |_| None::<Command>);

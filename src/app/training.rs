@@ -113,8 +113,8 @@ impl<A: Send + 'static> Training<A> {
                 diary.begin()?;
             }
             let mut observer = |event: Event<'_>| {
-                if let (Event::Training(told), Some(diary)) = (&event, &mut diary) {
-                    diary.told(told);
+                if let (Event::Training(report), Some(diary)) = (&event, &mut diary) {
+                    diary.record(report);
                 }
                 tell(&event, (&sender, &own_gate), report)
             };
@@ -231,10 +231,10 @@ fn tell(
 ) -> ControlFlow<()> {
     let progress = match event {
         Event::Progress(progress) => progress.clone(),
-        Event::Training(told) => {
+        Event::Training(report) => {
             // The send fails only if the receiver has been dropped with the training, which is
             // cancelled then.
-            let _ = sender.send((*told).clone());
+            let _ = sender.send((*report).clone());
             Progress::default()
         }
         Event::Sampling(_) => Progress::default(),

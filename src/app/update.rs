@@ -60,7 +60,7 @@ impl State {
         let Some(idx) = self.session.sources.iter().position(is_it) else { return };
         let source = self.session.sources.remove(idx);
         self.ask_again();
-        let (found, asked_about) = match result {
+        let (found, without_map) = match result {
             Ok(Outcome::Cancelled) => return,
             Ok(Outcome::Complete(opened)) => {
                 let failure = opened.failure.as_ref();
@@ -68,12 +68,12 @@ impl State {
                     self.say(Severity::Error, failure.message.clone());
                 }
                 let failed = failure.filter(|failure| failure.columns.is_some());
-                let asked_about = failed.map(|failure| failure.path.clone());
+                let without_map = failed.map(|failure| failure.path.clone());
                 match opened.is_doubtful {
                     true => (Vec::new(), Some(source.path.clone())),
                     false => {
                         self.remember_map(&source, &opened);
-                        (source.opened(&opened, &self.session.library), asked_about)
+                        (source.opened(&opened, &self.session.library), without_map)
                     }
                 }
             }
@@ -83,7 +83,7 @@ impl State {
             }
         };
         self.session.sources.splice(idx..idx, found);
-        if let Some(path) = asked_about {
+        if let Some(path) = without_map {
             self.ask_mapping(path);
         }
     }

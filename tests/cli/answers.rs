@@ -68,8 +68,8 @@ fn a_vehicle_that_still_rolls_at_the_end_is_said_to_move() {
     let args =
         ["predict", "--scenario", SCENARIO, "--given-force", "--duration", "0.5", "--overwrite"];
     let output = program().args(args).arg("--out").arg(&out).output().unwrap();
-    let told = ok(output);
-    assert!(told.contains("still moving after") && told.contains("0.5000 s"), "{told}");
+    let printed = ok(output);
+    assert!(printed.contains("still moving after") && printed.contains("0.5000 s"), "{printed}");
     assert_eq!(
         answer(&[&args[..], &["--out", text(&out)]].concat())["outcome"]["is_at_rest"],
         false
@@ -134,8 +134,11 @@ fn a_recording_without_rates_says_with_which_it_is_simulated() {
     });
     let bare = write(&folder, "bare.csv", &bare.collect::<String>());
     let report = answer(&["simulate", "--trajectory", text(&bare)]);
-    let told = report["assumptions"].to_string();
-    assert!(told.contains("start_of_record") && told.contains("yaw_rate_rad_s = 0"), "{told}");
+    let printed = report["assumptions"].to_string();
+    assert!(
+        printed.contains("start_of_record") && printed.contains("yaw_rate_rad_s = 0"),
+        "{printed}"
+    );
 }
 
 #[test]
@@ -150,9 +153,9 @@ fn what_the_force_network_does_not_know_is_said() {
     let unused = not_used(&report);
     assert_eq!(unused.len(), 3, "{unused:?}");
     assert!(unused[0].starts_with("yaw rate of the struck vehicle before the impact, 0.087"));
-    let told =
+    let printed =
         ok(program().args(["predict", "force", "--scenario"]).arg(&turning).output().unwrap());
-    assert!(told.contains("not used: yaw rate of the struck vehicle"), "{told}");
+    assert!(printed.contains("not used: yaw rate of the struck vehicle"), "{printed}");
 
     let hard = scenario_with(&folder, "hard.toml", "restitution = 0.15", "restitution = 0.5");
     let truck = scenario_with(&folder, "truck.toml", "length_m = 4.9", "length_m = 9");

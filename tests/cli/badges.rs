@@ -26,7 +26,7 @@ fn every_answer_with_numbers_has_badges() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("out");
     let evaluation = folder.path().join("evaluation");
-    let asked: [&[&str]; 6] = [
+    let commands: [&[&str]; 6] = [
         &["impact", SCENARIO],
         &["simulate", "--scenario", SCENARIO],
         &["simulate", "--dataset", TRAJECTORIES, "--case", "FE_c001"],
@@ -34,7 +34,7 @@ fn every_answer_with_numbers_has_badges() {
         &["predict", "--draws", "2", "--scenario", SCENARIO, "--out", text(&out)],
         &[&EVALUATE_SHIPPED[..], &["--out", text(&evaluation)]].concat(),
     ];
-    for args in asked {
+    for args in commands {
         let report = answer(args);
         assert_eq!(badges(&report, "energy_gain").len(), 0, "{args:?}: {report}");
     }
@@ -51,8 +51,8 @@ fn a_second_contact_is_a_badge_of_the_answer() {
     let found = badges(&report, "second_contact");
     assert_eq!(found.len(), 1, "{report}");
     assert_eq!(found[0]["value"], report["flags"][0]["time_s"]);
-    let told = ok(program().args(["simulate", "--scenario"]).arg(&slow).output().unwrap());
-    assert!(told.contains("warning: second contact: the vehicles"), "{told}");
+    let printed = ok(program().args(["simulate", "--scenario"]).arg(&slow).output().unwrap());
+    assert!(printed.contains("warning: second contact: the vehicles"), "{printed}");
 }
 
 #[test]
@@ -71,8 +71,9 @@ fn a_collision_outside_the_training_is_named_with_quantity_value_and_range() {
     assert_eq!(mass["value"], 3900.0);
     let high = mass["range"][1].as_f64().unwrap();
     assert!(high < 3900.0, "{mass}");
-    let told = ok(program().args(["predict", "force", "--scenario"]).arg(&heavy).output().unwrap());
-    assert!(told.contains(&format!("warning: outside the domain: {name} is 3900")), "{told}");
+    let printed =
+        ok(program().args(["predict", "force", "--scenario"]).arg(&heavy).output().unwrap());
+    assert!(printed.contains(&format!("warning: outside the domain: {name} is 3900")), "{printed}");
 }
 
 /// Each of these was answered with a band as tight as in the training, and without a word.

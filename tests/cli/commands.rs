@@ -264,7 +264,7 @@ fn check_says_what_a_bad_file_was_taken_for() {
     let evidence = shipped("assets/examples/reconstruction.toml");
     let vehicle = shipped("assets/vehicles/target-2000.toml");
     let scenario = shipped(SCENARIO);
-    for (text_of_file, kind, told) in [
+    for (text_of_file, kind, message) in [
         (evidence.replace("mass_kg = 1530", "mass_kg = -1"), "evidence", "a reconstruction"),
         (vehicle.replace("friction = 0.8", "friction = = 0.8"), "vehicle", "a vehicle"),
         (scenario.replace("[contact]", "[contract]"), "scenario", "a scenario"),
@@ -279,7 +279,7 @@ fn check_says_what_a_bad_file_was_taken_for() {
         assert_eq!(ran.code, 1, "{kind}: {}", ran.out);
         let problem = &ran.json()["problems"][0];
         assert_eq!(problem["kind"], kind, "{problem}");
-        assert!(problem["message"].as_str().unwrap().contains(told), "{problem}");
+        assert!(problem["message"].as_str().unwrap().contains(message), "{problem}");
     }
 }
 
@@ -491,8 +491,8 @@ fn what_nobody_said_is_listed_as_assumed() {
         assumed(&["simulate", "--force", force]),
         ["vehicle: \"reference-2000\"", "speed: \"20 m/s\""]
     );
-    let all_said = ["simulate", "--force", force, "--vehicle", "target-2000", "--speed", "20"];
-    assert_eq!(assumed(&all_said), [] as [&str; 0]);
+    let all_given = ["simulate", "--force", force, "--vehicle", "target-2000", "--speed", "20"];
+    assert_eq!(assumed(&all_given), [] as [&str; 0]);
     let scenario = assumed(&["simulate", "--scenario", SCENARIO]);
     let quantities: Vec<&str> = scenario.iter().filter_map(|text| text.split(':').next()).collect();
     assert_eq!(quantities, ["pulse", "contact_height", "vehicle", "bullet"]);
@@ -510,9 +510,9 @@ fn a_question_that_is_printed_has_the_same_answer_when_it_is_asked() {
     let request = impactlab(&[&args[..], &["--print-request"]].concat());
     assert_eq!(request.json()["question"], "simulate");
     let path = write(&folder, "request.json", &request.out);
-    let mut asked = impactlab(&["ask", text(&path)]).json();
-    asked["out"] = Value::Null;
-    assert_eq!(asked, answer);
+    let mut answered = impactlab(&["ask", text(&path)]).json();
+    answered["out"] = Value::Null;
+    assert_eq!(answered, answer);
     let wrong = write(&folder, "wrong.json", "{\"question\": \"simulate\"}");
     let ran = impactlab(&["ask", text(&wrong)]);
     assert!(ran.error_line().contains("is no request"), "{}", ran.err);

@@ -43,9 +43,9 @@ fn outlines_that_overlap_deeply_keep_the_normal_of_the_approach() {
         overlaps.push(report["overlap_m"].as_f64().unwrap());
         let assumed = report["assumptions"].to_string();
         assert_eq!(assumed.contains("they first touched there"), overlap_m > 0.1, "{assumed}");
-        let told = ok(program().arg("impact").arg(&scenario).output().unwrap());
-        assert!(told.contains("into the struck vehicle's right side"), "{told}");
-        assert!(told.contains("overlap of the outlines"), "{told}");
+        let printed = ok(program().arg("impact").arg(&scenario).output().unwrap());
+        assert!(printed.contains("into the struck vehicle's right side"), "{printed}");
+        assert!(printed.contains("overlap of the outlines"), "{printed}");
     }
     for (pair, step) in overlaps.windows(2).zip([0.2, 0.2, 0.2, 0.06, 0.14, 0.1]) {
         assert!((pair[1] - pair[0] - step).abs() < 1e-9, "{overlaps:?}");
@@ -101,8 +101,8 @@ fn a_second_contact_is_flagged() {
     assert!(flag["time_s"].as_f64().unwrap() > 0.1, "{flag}");
     assert!(flag["closing_speed_m_s"].as_f64().unwrap() > 0.5, "{flag}");
     assert_eq!(flag["position_m"].as_array().unwrap().len(), 2);
-    let told = ok(program().args(["simulate", "--scenario"]).arg(&slow).output().unwrap());
-    assert!(told.contains("a second contact, which is not computed"), "{told}");
+    let printed = ok(program().args(["simulate", "--scenario"]).arg(&slow).output().unwrap());
+    assert!(printed.contains("a second contact, which is not computed"), "{printed}");
     let out = folder.path().join("out");
     let predict = ["predict", "--draws", "5", "--scenario", text(&slow), "--out", text(&out)];
     let report = answer(&predict);
@@ -149,9 +149,10 @@ fn a_predicted_impulse_is_told_as_restitution_and_impulse_ratio() {
     let predict = ["predict", "--draws", "2", "--scenario", SCENARIO, "--out", text(&out)];
     assert_eq!(answer(&predict)["implied_contact"], *implied);
     assert_eq!(answer(&["simulate", "--scenario", SCENARIO])["momentum"], implied["momentum"]);
-    let told = ok(program().args(["predict", "force", "--scenario", SCENARIO]).output().unwrap());
+    let printed =
+        ok(program().args(["predict", "force", "--scenario", SCENARIO]).output().unwrap());
     for name in ["implied restitution", "implied impulse ratio", "momentum solution beside it"] {
-        assert!(told.contains(name), "{told}");
+        assert!(printed.contains(name), "{printed}");
     }
 }
 

@@ -44,8 +44,11 @@ fn the_library_is_listed_printed_and_read_back() {
         let estimates = &json(&["vehicles", id])["data_sheet_estimates"];
         assert!(estimates.as_array().unwrap().iter().all(|e| e["source"].is_string()), "{id}");
     }
-    let told = out(&["vehicles", "ford-explorer-2004", "--estimates"]);
-    assert!(told.contains("yaw inertia [kg m²]") && told.contains("Heydinger 1999"), "{told}");
+    let printed = out(&["vehicles", "ford-explorer-2004", "--estimates"]);
+    assert!(
+        printed.contains("yaw inertia [kg m²]") && printed.contains("Heydinger 1999"),
+        "{printed}"
+    );
 }
 
 #[test]
@@ -79,9 +82,12 @@ fn the_draws_of_a_simulation_follow_their_seed_and_are_told() {
     let other = with(&[&draws[..], &["--seed", "1"]].concat());
     assert_ne!(with(&draws)["x_m"], other["x_m"]);
     assert_eq!(with(&["--vehicle-draws", "0"]), Value::Null);
-    let told = out(&args);
-    assert!(told.contains("over vehicles drawn from what the data sheet leaves open"), "{told}");
-    assert!(told.contains("variance of the end") && told.contains("position"), "{told}");
+    let printed = out(&args);
+    assert!(
+        printed.contains("over vehicles drawn from what the data sheet leaves open"),
+        "{printed}"
+    );
+    assert!(printed.contains("variance of the end") && printed.contains("position"), "{printed}");
 }
 
 #[test]

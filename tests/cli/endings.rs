@@ -119,8 +119,9 @@ fn an_ordinary_vehicle_steers_the_fishhook_of_the_nhtsa() {
     assert!(fast["uncertainty"]["n_failed"] == 0, "{fast}");
     let assumed = |report: &serde_json::Value| report["assumptions"].to_string();
     assert!(assumed(&fast).contains("ratio 16"), "{fast}");
-    let said = fishhook("ford-explorer-2004", &["--speed", "45mph", "--steering-ratio", "18"]);
-    assert!(!assumed(&said).contains("ratio 16"), "{said}");
+    let with_ratio =
+        fishhook("ford-explorer-2004", &["--speed", "45mph", "--steering-ratio", "18"]);
+    assert!(!assumed(&with_ratio).contains("ratio 16"), "{with_ratio}");
     let lifts = |report: &serde_json::Value| report["flags"].to_string().contains("wheel_lift");
     assert!(!lifts(&slow), "{slow}");
     for vehicle in ["toyota-camry-2018", "generic-van", "reference-2000"] {
@@ -191,8 +192,8 @@ fn an_ending_in_a_question_is_checked() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("question.json");
     let args = ["simulate", "--scenario", "pit-right-rear", "--print-request"];
-    let asked = ok(program().args(args).output().unwrap());
-    let mut question: serde_json::Value = serde_json::from_str(&asked).unwrap();
+    let printed_request = ok(program().args(args).output().unwrap());
+    let mut question: serde_json::Value = serde_json::from_str(&printed_request).unwrap();
     let toml = fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap();
     let file = std::path::Path::new("pit.toml");
     let scenario = impactlab_core::collision::Scenario::from_toml(&toml, file).unwrap();
@@ -308,9 +309,9 @@ fn a_data_set_with_brakes_is_replayed_with_them() {
     assert!(end.abs() < 0.5, "{end}");
     fs::write(data.join("cases.csv"), rows("plenty")).unwrap();
     let output = program().args(["simulate", "--dataset", text(&data)]).output().unwrap();
-    let told = String::from_utf8_lossy(&output.stdout).into_owned()
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned()
         + &String::from_utf8_lossy(&output.stderr);
-    assert!(told.contains("\"braking_torque_n_m\" is \"plenty\""), "{told}");
+    assert!(printed.contains("\"braking_torque_n_m\" is \"plenty\""), "{printed}");
 }
 
 /// A forecast to rest of a scenario with an ending, in a folder of its own.
@@ -363,11 +364,14 @@ fn a_forecast_goes_on_to_rest_and_says_how_far_that_is() {
     let coasting = to_rest(folder.path(), "", &["--draws", "3", "--duration", "25"]);
     let share = coasting["rest"]["share_at_rest"].as_f64().unwrap();
     assert!(share < 0.9 && coasting["rest"]["moving_speed_m_s"].as_f64().unwrap() > 0.05);
-    let told = coasting["badges"].to_string();
-    assert!(told.contains("not_at_rest") && told.contains("still moves after 25.00 s"), "{told}");
+    let printed = coasting["badges"].to_string();
     assert!(
-        is_beyond(&coasting) && told.contains("learned from motions of up to 7.99 s"),
-        "{told}"
+        printed.contains("not_at_rest") && printed.contains("still moves after 25.00 s"),
+        "{printed}"
+    );
+    assert!(
+        is_beyond(&coasting) && printed.contains("learned from motions of up to 7.99 s"),
+        "{printed}"
     );
     let plain = answer(&[
         "predict",

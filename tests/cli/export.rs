@@ -19,8 +19,11 @@ fn each_format_is_written_and_nothing_is_replaced_unasked() {
     ] {
         let out = folder.path().join(file);
         let args = [&case[..], &[text(&out)], &options].concat();
-        let said = answer(&args);
-        assert_eq!((&said["format"], &said["title"]), (&Value::from(format), &"FE_c002".into()));
+        let report = answer(&args);
+        assert_eq!(
+            (&report["format"], &report["title"]),
+            (&Value::from(format), &"FE_c002".into())
+        );
         let written = fs::read(&out).expect("a file");
         let start = String::from_utf8_lossy(&written[..begins.len()]).into_owned();
         assert_eq!(start, begins, "{file}");

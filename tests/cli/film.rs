@@ -66,11 +66,11 @@ fn a_film_says_what_it_is_and_replaces_nothing_unasked() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("film.mp4");
     let options = ["--size", "320x180", "--fps", "10", "--from", "0.2", "--to", "700ms"];
-    let said = film(&out, &[&options[..], &["--slow", "0.3..0.4=0.1"]].concat());
-    assert_eq!(said["title"], "FE_c002");
+    let report = film(&out, &[&options[..], &["--slow", "0.3..0.4=0.1"]].concat());
+    assert_eq!(report["title"], "FE_c002");
     // 0.1 s, 0.1 s at a tenth, 0.3 s, and the last frame.
-    assert_eq!((&said["n_frames"], &said["frames_per_s"]), (&json("15"), &json("10")));
-    assert_eq!(said["size_px"], json("[320, 180]"));
+    assert_eq!((&report["n_frames"], &report["frames_per_s"]), (&json("15"), &json("10")));
+    assert_eq!(report["size_px"], json("[320, 180]"));
     let first = fs::read(&out).expect("a film");
     assert_eq!(first.get(4..8), Some(&b"ftyp"[..]));
 
@@ -87,8 +87,8 @@ fn a_name_without_an_ending_is_a_folder_of_numbered_pictures() {
     let out = folder.path().join("frames");
     // A picture may have any size.
     let options = ["--size", "321x181", "--fps", "5", "--to", "0.6", "--view", "perspective"];
-    let said = film(&out, &options);
-    assert_eq!(said["n_frames"], 4);
+    let report = film(&out, &options);
+    assert_eq!(report["n_frames"], 4);
     for idx in 1..=4 {
         let picture = fs::read(out.join(format!("frame-{idx:05}.png"))).expect("a picture");
         assert_eq!(picture.get(1..4), Some(&b"PNG"[..]));
@@ -152,8 +152,8 @@ fn a_scenario_is_filmed_too() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("film.mp4");
     let options = ["--size", "320x180", "--fps", "5", "--to", "1", "--out", text(&out)];
-    let said = answer(&[&["render", "film", "pit-right-rear"], &options[..]].concat());
-    assert_eq!(said["n_frames"], 6);
+    let report = answer(&[&["render", "film", "pit-right-rear"], &options[..]].concat());
+    assert_eq!(report["n_frames"], 6);
     assert!(out.exists());
 }
 
@@ -167,12 +167,12 @@ fn a_reconstruction_is_filmed_from_its_evidence() {
     let road = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/sites/country-road/site.toml");
     let few = ["render", "film", EVIDENCE, "--particles", "60", "--seed", "2", "--site", road];
     let seen = ["--view", "perspective", "--follow", "struck", "--size", "320x180", "--fps", "5"];
-    let said = answer(&[&few[..], &seen, &["--to", "1", "--out", text(&out)]].concat());
-    assert_eq!((&said["title"], &said["n_frames"]), (&json("\"spin\""), &json("6")));
+    let report = answer(&[&few[..], &seen, &["--to", "1", "--out", text(&out)]].concat());
+    assert_eq!((&report["title"], &report["n_frames"]), (&json("\"spin\""), &json("6")));
     let film = fs::read(&out).expect("a film");
     assert_eq!(film.get(4..8), Some(&b"ftyp"[..]));
     // What restricts the answer is said here and burnt in.
-    let notes = said["notes"].to_string();
+    let notes = report["notes"].to_string();
     for part in ["few particles", "road friction: zones of the site, each ± 15 %"] {
         assert!(notes.contains(part), "{notes}");
     }
@@ -211,9 +211,9 @@ fn an_end_just_after_the_motion_is_its_end_and_is_said() {
     let options = ["--size", "320x180", "--fps", "30", "--from"];
     let from = (end_s - 0.1).to_string();
     let to = (end_s + 0.04).to_string();
-    let said = film(&out, &[&options[..], &[&from, "--to", &to]].concat());
-    assert_eq!(said["n_frames"], 4);
-    let notes = said["notes"].to_string();
+    let report = film(&out, &[&options[..], &[&from, "--to", &to]].concat());
+    assert_eq!(report["n_frames"], 4);
+    let notes = report["notes"].to_string();
     assert!(notes.contains(&format!("--to is {to} s: the film ends with the motion")), "{notes}");
     let later = (end_s + 0.06).to_string();
     let error = refused(&folder.path().join("other.mp4"), &["--from", &from, "--to", &later]);
@@ -277,7 +277,7 @@ fn serve(mut stream: TcpStream, film: &[u8]) -> std::io::Result<Option<String>> 
 }
 
 /// What a page tells that a browser opens; `None` without a browser.
-fn told_by_browser(film: &[u8]) -> Option<Value> {
+fn report_of_browser(film: &[u8]) -> Option<Value> {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let address = format!("http://{}/", listener.local_addr().expect("an address"));
     let profile = tempfile::tempdir().expect("a folder");
@@ -300,8 +300,8 @@ fn told_by_browser(film: &[u8]) -> Option<Value> {
         stream.set_nonblocking(false).expect("a stream that blocks");
         // A browser opens connections that it does not use.
         stream.set_read_timeout(Some(Duration::from_millis(500))).expect("a timeout");
-        if let Ok(Some(told)) = serve(stream, film) {
-            return Some(json(&told));
+        if let Ok(Some(report)) = serve(stream, film) {
+            return Some(json(&report));
         }
     }
 }
@@ -312,21 +312,21 @@ fn a_browser_plays_the_film() {
     let out = folder.path().join("film.mp4");
     film(&out, &["--size", "640x360", "--fps", "10", "--to", "1.5", "--view", "perspective"]);
     let film = fs::read(&out).expect("a film");
-    let Some(told) = told_by_browser(&film) else {
+    let Some(report) = report_of_browser(&film) else {
         eprintln!("skipped: none of {BROWSERS:?} is installed to play the film");
         return;
     };
-    assert_eq!(told["error"], Value::Null, "{told}");
-    assert_eq!((&told["width"], &told["height"]), (&json("640"), &json("360")), "{told}");
-    assert_eq!(told["ended"], Value::Bool(true), "{told}");
-    let duration_s = told["duration_s"].as_f64().expect("a duration");
-    assert!((duration_s - 1.6).abs() < 0.02, "{told}");
-    let seen = told["seen"].as_array().expect("three instants");
+    assert_eq!(report["error"], Value::Null, "{report}");
+    assert_eq!((&report["width"], &report["height"]), (&json("640"), &json("360")), "{report}");
+    assert_eq!(report["ended"], Value::Bool(true), "{report}");
+    let duration_s = report["duration_s"].as_f64().expect("a duration");
+    assert!((duration_s - 1.6).abs() < 0.02, "{report}");
+    let seen = report["seen"].as_array().expect("three instants");
     let hashes: std::collections::BTreeSet<i64> =
         seen.iter().filter_map(|of| of["hash"].as_i64()).collect();
-    assert_eq!(hashes.len(), 3, "something moves: {told}");
+    assert_eq!(hashes.len(), 3, "something moves: {report}");
     // A light ground and no picture that could not be decoded.
     let is_light =
         |of: &Value| of["mean"].as_f64().is_some_and(|mean| (200.0..255.0).contains(&mean));
-    assert!(seen.iter().all(is_light), "{told}");
+    assert!(seen.iter().all(is_light), "{report}");
 }

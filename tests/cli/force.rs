@@ -60,9 +60,9 @@ fn answer(model: &Path) -> Value {
 fn train_kill_resume_predict() {
     let folder = tempfile::tempdir().unwrap();
     let [whole, killed] = ["whole", "killed"].map(|name| folder.path().join(name));
-    let told = json(&ok(train(&folder, &whole).arg("--json").output().unwrap()));
-    assert_eq!((&told["n_test"], &told["epochs"]), (&Value::from(25), &Value::from(6)));
-    assert_eq!(told["n_train"].as_u64().unwrap() + told["n_validation"].as_u64().unwrap(), 75);
+    let report = json(&ok(train(&folder, &whole).arg("--json").output().unwrap()));
+    assert_eq!((&report["n_test"], &report["epochs"]), (&Value::from(25), &Value::from(6)));
+    assert_eq!(report["n_train"].as_u64().unwrap() + report["n_validation"].as_u64().unwrap(), 75);
 
     kill_at_checkpoint(&mut train(&folder, &killed), &killed);
     // Nobody reads the output of the resumed training, which must not stop it.

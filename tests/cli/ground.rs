@@ -70,8 +70,8 @@ fn a_ground_that_lies_elsewhere_is_said_to_do_so() {
     let out = folder.path().join("out.dxf");
     let notes = || {
         let args = ["export", "pit-right-rear", "--site", text(&path), "--out", text(&out)];
-        let said = ok(program().args(args).args(["--overwrite", "--json"]).output().unwrap());
-        json(&said)["notes"].to_string()
+        let printed = ok(program().args(args).args(["--overwrite", "--json"]).output().unwrap());
+        json(&printed)["notes"].to_string()
     };
     assert!(!notes().contains("away from the scene"), "{}", notes());
     // Everything is in survey coordinates, which nothing is subtracted from any more.

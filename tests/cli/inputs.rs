@@ -53,8 +53,8 @@ fn assert_refused(folder: &Path, args: &[&str], input: &str) {
     let output = command.current_dir(folder).args(args).arg("--overwrite").output().unwrap();
     let error = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{args:?}: {error}");
-    let said = format!("is an input ({input}) of what is to be written, so it is not replaced");
-    assert!(error.contains(&said), "{args:?}: {error}");
+    let expected = format!("is an input ({input}) of what is to be written, so it is not replaced");
+    assert!(error.contains(&expected), "{args:?}: {error}");
     assert!(contents(folder) == before, "{args:?} has changed a file");
 }
 

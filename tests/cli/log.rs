@@ -136,14 +136,14 @@ fn a_log_of_100_samples_makes_the_next_impact_better_known() {
         let [log, force] = write_log(folder.path(), "log", (stride, 1));
         let mut command = fine_tune(folder.path());
         command.arg("--log").arg(&log).arg("--force").arg(&force).args([CONTACT_M, "--vehicle"]);
-        let told = json(&ok(command.arg(VEHICLE).output().unwrap()));
-        let facts = &told["logs"][0];
+        let report = json(&ok(command.arg(VEHICLE).output().unwrap()));
+        let facts = &report["logs"][0];
         assert_eq!(facts["force"], "recorded", "{hz} Hz");
         assert_eq!(facts["n_samples"], n_states, "{hz} Hz");
         let position_m = facts["noise"]["position_m"].as_f64().unwrap();
         assert!((0.015..0.026).contains(&position_m), "{hz} Hz: {position_m}");
-        assert_eq!(told["train"], serde_json::json!(["log"]));
-        assert_eq!((&told["latents"]["n_calibrated"], &told["n_test"]), (&0.into(), &0.into()));
+        assert_eq!(report["train"], serde_json::json!(["log"]));
+        assert_eq!((&report["latents"]["n_calibrated"], &report["n_test"]), (&0.into(), &0.into()));
         let [untuned_m, tuned_m] = errors_m(&folder.path().join("model"));
         assert!(tuned_m < 0.7 * untuned_m, "{hz} Hz: {tuned_m} of {untuned_m}");
     }
@@ -159,14 +159,14 @@ fn without_a_force_the_impulse_is_estimated_and_two_logs_are_calibrated_on() {
         fs::remove_file(force).unwrap();
     }
     let mut command = fine_tune(folder.path());
-    let told =
+    let report =
         json(&ok(command.args(["--vehicle", VEHICLE, "--log"]).arg(&logs).output().unwrap()));
-    assert_eq!(told["train"], serde_json::json!(["log_1", "log_2"]));
+    assert_eq!(report["train"], serde_json::json!(["log_1", "log_2"]));
     assert_eq!(
-        (&told["latents"]["n_calibrated"], &told["keeps_latents"]),
+        (&report["latents"]["n_calibrated"], &report["keeps_latents"]),
         (&2.into(), &false.into())
     );
-    for facts in told["logs"].as_array().unwrap() {
+    for facts in report["logs"].as_array().unwrap() {
         assert_eq!(facts["force"], "estimated");
         let impulse_n_s = facts["impulse_n_s"][1].as_f64().unwrap();
         assert!((70.0..110.0).contains(&impulse_n_s), "{facts}");
@@ -177,15 +177,15 @@ fn without_a_force_the_impulse_is_estimated_and_two_logs_are_calibrated_on() {
     fs::rename(folder.path().join("model"), &start).unwrap();
     let mut command = fine_tune(folder.path());
     command.args(["--vehicle", VEHICLE, "--log"]).arg(logs.join("log_1.csv"));
-    let told = json(&ok(command.arg("--model").arg(&start).output().unwrap()));
+    let report = json(&ok(command.arg("--model").arg(&start).output().unwrap()));
     assert_eq!(
-        (&told["latents"]["n_calibrated"], &told["keeps_latents"]),
+        (&report["latents"]["n_calibrated"], &report["keeps_latents"]),
         (&0.into(), &true.into())
     );
     for (scale, usual) in
-        told["latents"]["scales"].as_array().unwrap().iter().zip([0.02, 0.01, 0.02, 0.02])
+        report["latents"]["scales"].as_array().unwrap().iter().zip([0.02, 0.01, 0.02, 0.02])
     {
-        assert!(scale.as_f64().unwrap() >= usual, "{told}");
+        assert!(scale.as_f64().unwrap() >= usual, "{report}");
     }
 }
 

@@ -40,11 +40,11 @@ fn with_mark(rest: &str) -> String {
 /// Checks that the evidence is refused in one line that names place and reason.
 fn check_refused(folder: &TempDir, evidence: &[u8], expected: &[&str]) {
     let refused = reconstruct(folder, evidence);
-    let said = String::from_utf8(refused.stderr).unwrap();
-    assert_eq!(refused.status.code(), Some(1), "{expected:?}: {said}");
-    assert_eq!((said.lines().count(), refused.stdout.len()), (1, 0), "{said}");
+    let error = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(1), "{expected:?}: {error}");
+    assert_eq!((error.lines().count(), refused.stdout.len()), (1, 0), "{error}");
     for part in [&["evidence.toml"], expected].concat() {
-        assert!(said.contains(part), "{part:?} is not in {said}");
+        assert!(error.contains(part), "{part:?} is not in {error}");
     }
 }
 
@@ -139,8 +139,8 @@ fn what_nothing_explains_is_a_badge() {
         with_mark("wheel = \"RR\"\npoints_m = [[5, 40], [20, 42]]"),
     ] {
         let (report, _) = answered(&folder, &evidence);
-        let said = badges(&report, "evidence_unexplained");
-        assert!(!said.is_empty(), "{evidence}: {}", report["fit"]);
+        let caveats = badges(&report, "evidence_unexplained");
+        assert!(!caveats.is_empty(), "{evidence}: {}", report["fit"]);
     }
 }
 
@@ -152,8 +152,8 @@ fn where_nothing_is_known_the_answer_is_wide() {
     // Nothing, and a rest pose that takes a course of events of its own.
     for evidence in [start.to_owned(), rest.replace("y_m = -6", "y_m = -300")] {
         let (report, width) = answered(&folder, &evidence);
-        let said = badges(&report, "evidence_unexplained");
-        assert!(width > 8.0 || !said.is_empty(), "{evidence}: {width} m/s wide");
+        let caveats = badges(&report, "evidence_unexplained");
+        assert!(width > 8.0 || !caveats.is_empty(), "{evidence}: {width} m/s wide");
     }
 }
 
@@ -161,8 +161,8 @@ fn where_nothing_is_known_the_answer_is_wide() {
 fn a_lorry_is_outside_of_what_is_known() {
     let folder = TempDir::new().unwrap();
     let (report, _) = answered(&folder, &changed("mass_kg = 1900", "mass_kg = 20170"));
-    let said = badges(&report, "outside_domain");
-    assert_eq!(said.len(), 3, "{said:?}");
-    assert_eq!(said[0]["quantity"], "mass of the struck car [kg]");
-    assert_eq!((&said[0]["value"], &said[0]["range"][1]), (&20_170.0.into(), &2750.0.into()));
+    let caveats = badges(&report, "outside_domain");
+    assert_eq!(caveats.len(), 3, "{caveats:?}");
+    assert_eq!(caveats[0]["quantity"], "mass of the struck car [kg]");
+    assert_eq!((&caveats[0]["value"], &caveats[0]["range"][1]), (&20_170.0.into(), &2750.0.into()));
 }

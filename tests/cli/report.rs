@@ -92,10 +92,13 @@ fn the_same_date_gives_the_same_bytes_and_nothing_is_overwritten_unasked() {
     assert_eq!(refused.status.code(), Some(1));
     let error = String::from_utf8(refused.stderr).unwrap();
     assert!(error.contains("a.pdf") && error.contains("--overwrite"), "{error}");
-    let told = json(&ok(program().args(&args).arg("--overwrite").output().unwrap()));
-    assert_eq!(told["date"], "2026-11-24");
-    assert_eq!((&told["sections"], &told["unanswered"]), (&10.into(), &0.into()));
-    assert!(told["pictures"].as_u64().unwrap() >= 5 && told["changes"] == json("[]"), "{told}");
+    let printed = json(&ok(program().args(&args).arg("--overwrite").output().unwrap()));
+    assert_eq!(printed["date"], "2026-11-24");
+    assert_eq!((&printed["sections"], &printed["unanswered"]), (&10.into(), &0.into()));
+    assert!(
+        printed["pictures"].as_u64().unwrap() >= 5 && printed["changes"] == json("[]"),
+        "{printed}"
+    );
 }
 
 #[test]
@@ -111,8 +114,8 @@ fn what_is_wrong_with_the_arguments_is_said_and_nothing_is_written() {
         let args = [&["report", PIT, "--out", text(&out)][..], args].concat();
         let refused = program().args(args).output().unwrap();
         assert_eq!(refused.status.code(), Some(code), "{name}");
-        let told = String::from_utf8(refused.stderr).unwrap();
-        assert!(told.contains(error), "{told}");
+        let printed = String::from_utf8(refused.stderr).unwrap();
+        assert!(printed.contains(error), "{printed}");
         assert!(!out.exists());
     }
 }

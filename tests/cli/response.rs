@@ -62,12 +62,12 @@ fn workplace() -> &'static Workplace {
         let mut train = program();
         train.args(["train", "response", "--data", "datasets/fea", "--json"]);
         train.arg("--config").arg(&config).arg("--out").arg(&pretrained);
-        let told = json(&ok(train.output().unwrap()));
-        assert_eq!((&told["n_simulated"], &told["epochs"]), (&Value::from(4), &Value::from(2)));
-        let told = json(&ok(fine_tune((&config, &pretrained), &tuned).output().unwrap()));
-        assert_eq!(told["train"].as_array().unwrap().len(), 4);
-        assert_eq!((&told["n_test"], &told["epochs"]), (&Value::from(25), &Value::from(14)));
-        assert_eq!(told["latents"]["n_calibrated"], 4);
+        let report = json(&ok(train.output().unwrap()));
+        assert_eq!((&report["n_simulated"], &report["epochs"]), (&Value::from(4), &Value::from(2)));
+        let report = json(&ok(fine_tune((&config, &pretrained), &tuned).output().unwrap()));
+        assert_eq!(report["train"].as_array().unwrap().len(), 4);
+        assert_eq!((&report["n_test"], &report["epochs"]), (&Value::from(25), &Value::from(14)));
+        assert_eq!(report["latents"]["n_calibrated"], 4);
         Workplace { folder, config, pretrained, tuned }
     })
 }

@@ -52,9 +52,9 @@ fn every_table_and_picture_of_a_prediction_says_what_restricts_it() {
         let path = entry.unwrap().path();
         match path.extension().and_then(|ending| ending.to_str()) {
             Some("csv") => {
-                let (header, said) = last_column(&path);
+                let (header, restriction) = last_column(&path);
                 assert_eq!(header, "restrictions", "{path:?}");
-                assert!(said.contains(SENTENCE), "{path:?}: {said}");
+                assert!(restriction.contains(SENTENCE), "{path:?}: {restriction}");
                 n_tables += 1;
             }
             Some("png") => assert!(n_warning_pixels(&path) > 100, "{path:?}"),
@@ -72,12 +72,18 @@ fn a_restricted_force_is_read_again_and_says_so() {
     let args = ["predict", "force", "--samples", "1", "--scenario", text(&scenario), "--out"];
     run(&[&args[..], &[text(&out)]].concat());
     for name in ["bands.csv", "mean.csv", "sample_001.csv"] {
-        let (header, said) = last_column(&out.join(name));
-        assert!(header == "restrictions" && said.contains(SENTENCE), "{name}: {said}");
+        let (header, restriction) = last_column(&out.join(name));
+        assert!(
+            header == "restrictions" && restriction.contains(SENTENCE),
+            "{name}: {restriction}"
+        );
     }
-    let told = run(&["check", text(&out.join("mean.csv"))]);
-    assert!(told.contains("note: the file says of itself: warning: outside the domain"), "{told}");
-    assert!(told.contains("; 0 problems"), "{told}");
+    let printed = run(&["check", text(&out.join("mean.csv"))]);
+    assert!(
+        printed.contains("note: the file says of itself: warning: outside the domain"),
+        "{printed}"
+    );
+    assert!(printed.contains("; 0 problems"), "{printed}");
 }
 
 /// The table of a plan had neither time nor heading.
@@ -110,11 +116,11 @@ fn what_was_assumed_is_in_the_table_of_a_simulation() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("motion.csv");
     run(&["simulate", "--scenario", SCENARIO, "--out", text(&path)]);
-    let (header, said) = last_column(&path);
+    let (header, restriction) = last_column(&path);
     assert_eq!(header, "restrictions");
-    assert!(said.contains("note: assumed: struck vehicle: "), "{said}");
-    let told = run(&["check", text(&path)]);
-    assert!(told.contains("trajectory file") && told.contains("; 0 problems"), "{told}");
+    assert!(restriction.contains("note: assumed: struck vehicle: "), "{restriction}");
+    let printed = run(&["check", text(&path)]);
+    assert!(printed.contains("trajectory file") && printed.contains("; 0 problems"), "{printed}");
 }
 
 /// A record that ends during the contact was a force that comes to zero.
@@ -124,11 +130,11 @@ fn a_record_that_ends_during_the_contact_is_said_to_be_cut() {
     let path = folder.path().join("cut.csv");
     fs::write(&path, "time_s,fx_n,fy_n\n0,0,0\n0.02,0,40000\n0.04,0,30000\n").unwrap();
     let picture = folder.path().join("cut.png");
-    let told = run(&["render", "force", text(&path), "--out", text(&picture)]);
-    let said = "contact not ended: the record ends after 0.040 s at 75.0 % of the peak";
-    assert!(told.contains(said), "{told}");
+    let printed = run(&["render", "force", text(&path), "--out", text(&picture)]);
+    let restriction = "contact not ended: the record ends after 0.040 s at 75.0 % of the peak";
+    assert!(printed.contains(restriction), "{printed}");
     assert!(n_warning_pixels(&picture) > 100);
-    let told =
+    let printed =
         run(&["simulate", "--force", text(&path), "--speed", "15", "--contact=-1.5,-0.9,0.5"]);
-    assert!(told.contains(&format!("warning: {said}")), "{told}");
+    assert!(printed.contains(&format!("warning: {restriction}")), "{printed}");
 }

@@ -149,12 +149,12 @@ fn what_cannot_be_evaluated_is_said_before_any_work() {
         String::from_utf8(ran.stderr).unwrap()
     };
     let own = text(folder.path());
-    let said = refused(&[own]);
-    assert!(said.contains("truth/s00.toml") && said.contains("is not there"), "{said}");
-    let said = refused(&["datasets/staged", "--only", "s99"]);
-    assert!(said.contains("no case \"s99\"") && said.contains("40 cases"), "{said}");
-    let said = refused(&["datasets/staged", "--only", "s00", "--cases", "reported"]);
-    assert!(said.contains("no case is chosen"), "{said}");
+    let error = refused(&[own]);
+    assert!(error.contains("truth/s00.toml") && error.contains("is not there"), "{error}");
+    let error = refused(&["datasets/staged", "--only", "s99"]);
+    assert!(error.contains("no case \"s99\"") && error.contains("40 cases"), "{error}");
+    let error = refused(&["datasets/staged", "--only", "s00", "--cases", "reported"]);
+    assert!(error.contains("no case is chosen"), "{error}");
     assert!(refused(&["datasets/fea"]).contains("evidence"));
     // What is wrong with one case is told beside the others.
     copy("evidence/s07.toml", "evidence/s07.toml");
@@ -163,7 +163,10 @@ fn what_cannot_be_evaluated_is_said_before_any_work() {
     let args = [own, "--particles", "50", "--without-swarm", "--known", "rest-only"];
     let ran = program().args(["evaluate", "reconstruction"]).args(args).output().unwrap();
     assert_eq!(ran.status.code(), Some(1));
-    let told = String::from_utf8(ran.stdout).unwrap();
-    assert!(told.contains("left out: s07") && told.contains("[struck_car] is missing"), "{told}");
-    assert!(told.contains("rest only  reconstruction"), "{told}");
+    let printed = String::from_utf8(ran.stdout).unwrap();
+    assert!(
+        printed.contains("left out: s07") && printed.contains("[struck_car] is missing"),
+        "{printed}"
+    );
+    assert!(printed.contains("rest only  reconstruction"), "{printed}");
 }

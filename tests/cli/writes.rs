@@ -68,7 +68,7 @@ fn a_folder_of_results_is_replaced_only_where_that_is_said_and_holds_one_run() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("prediction");
     let seed = ["--seed", "5", "--samples", "2", "--json"];
-    let told = json(&ok(command(&[&PREDICT_FORCE[..], &seed].concat(), &out).output().unwrap()));
+    let report = json(&ok(command(&[&PREDICT_FORCE[..], &seed].concat(), &out).output().unwrap()));
     let written = ["bands.csv", "manifest.json", "mean.csv", "prediction.json"];
     let samples = ["sample_001.csv", "sample_002.csv"];
     assert_eq!(names(&out), [&written[..], &samples].concat());
@@ -82,7 +82,7 @@ fn a_folder_of_results_is_replaced_only_where_that_is_said_and_holds_one_run() {
     assert_eq!(manifest["command"][1], "predict");
     assert!(manifest["started"].as_str().unwrap().ends_with('Z'), "{manifest}");
     assert!(manifest["seconds"].as_f64().unwrap() > 0.0);
-    assert_eq!(manifest["models"], told["model_digests"]);
+    assert_eq!(manifest["models"], report["model_digests"]);
     assert_eq!(manifest["inputs"][0]["name"], SCENARIO);
     let scenario = FileDigest::from_file("", Path::new(SCENARIO)).unwrap();
     assert_eq!(manifest["inputs"][0]["sha256"], scenario.sha256);
@@ -118,22 +118,22 @@ fn a_folder_that_holds_a_file_of_the_same_name_is_refused_before_the_work_begins
 fn every_report_says_which_program_seed_and_models_gave_it() {
     let of_file =
         |name: &str| sha256_hex(&fs::read(format!("assets/models/{name}.safetensors")).unwrap());
-    let told = json(&ok(program().args(PREDICT_FORCE).arg("--json").output().unwrap()));
-    assert_eq!(told["version"], impactlab::VERSION);
-    assert_eq!(told["seed"], 0);
-    assert_eq!(told["model_digests"][0]["network"], "force");
-    assert_eq!(told["model_digests"][0]["name"], "shipped");
-    assert_eq!(told["model_digests"][0]["sha256"], of_file("force"));
+    let report = json(&ok(program().args(PREDICT_FORCE).arg("--json").output().unwrap()));
+    assert_eq!(report["version"], impactlab::VERSION);
+    assert_eq!(report["seed"], 0);
+    assert_eq!(report["model_digests"][0]["network"], "force");
+    assert_eq!(report["model_digests"][0]["name"], "shipped");
+    assert_eq!(report["model_digests"][0]["sha256"], of_file("force"));
 
     let folder = TempDir::new().unwrap();
     let few = ["predict", "--scenario", SCENARIO, "--draws", "2", "--duration", "0.5", "--json"];
     let out = folder.path().join("out");
-    let told = json(&ok(command(&[&few[..], &["--seed", "3"]].concat(), &out).output().unwrap()));
-    assert_eq!(told["seed"], 3);
-    assert_eq!(told["model_digests"][0]["sha256"], of_file("force"));
-    assert_eq!(told["model_digests"][1]["sha256"], of_file("response"));
+    let report = json(&ok(command(&[&few[..], &["--seed", "3"]].concat(), &out).output().unwrap()));
+    assert_eq!(report["seed"], 3);
+    assert_eq!(report["model_digests"][0]["sha256"], of_file("force"));
+    assert_eq!(report["model_digests"][1]["sha256"], of_file("response"));
     let own = out.join("trajectory.csv");
-    assert_eq!(told["files"][0], own.to_str().unwrap(), "the files are named where they are");
+    assert_eq!(report["files"][0], own.to_str().unwrap(), "the files are named where they are");
     assert!(own.exists());
 
     for args in [
@@ -142,9 +142,9 @@ fn every_report_says_which_program_seed_and_models_gave_it() {
         &SIMULATE,
         &["simulate", "--dataset", TRAJECTORIES, "--case", "FE_c001"],
     ] {
-        let told = json(&ok(program().args(args).arg("--json").output().unwrap()));
-        assert_eq!(told["version"], impactlab::VERSION, "{args:?}");
-        assert!(told.get("seed").is_none(), "{args:?}: nothing is drawn");
+        let report = json(&ok(program().args(args).arg("--json").output().unwrap()));
+        assert_eq!(report["version"], impactlab::VERSION, "{args:?}");
+        assert!(report.get("seed").is_none(), "{args:?}: nothing is drawn");
     }
 }
 
@@ -155,10 +155,11 @@ fn a_training_is_continued_or_replaced_only_where_that_is_said() {
     fs::write(&first, "mine").unwrap();
     let text = error(&mut train(&folder, &first));
     assert!(text.ends_with("first: exists already; --overwrite replaces it"), "{text}");
-    let told = json(&ok(train(&folder, &first).args(["--overwrite", "--json"]).output().unwrap()));
+    let report =
+        json(&ok(train(&folder, &first).args(["--overwrite", "--json"]).output().unwrap()));
     let bytes = fs::read(&first).unwrap();
-    assert_eq!(told["model_digests"][0]["sha256"], sha256_hex(&bytes));
-    assert_eq!(told["seed"], 4);
+    assert_eq!(report["model_digests"][0]["sha256"], sha256_hex(&bytes));
+    assert_eq!(report["seed"], 4);
 
     let text = error(&mut train(&folder, &first));
     let ways = "first.training: holds a training; --resume goes on with it, --overwrite begins \
@@ -266,9 +267,9 @@ fn a_question_that_is_only_printed_writes_nothing() {
 fn a_folder_without_the_right_to_write_is_named_with_the_true_cause() {
     let ran = program().args(["render", "impact", SCENARIO, "--out", "/sys/impact.csv"]).output();
     let ran = ran.unwrap();
-    let said = String::from_utf8(ran.stderr).unwrap();
-    assert!(!ran.status.success(), "{said}");
-    assert!(said.starts_with("error: /sys/impact.csv: cannot be written: "), "{said}");
-    assert!(said.contains("ermission") || said.contains("not permitted"), "{said}");
-    assert!(!said.contains("does not exist"), "{said}");
+    let error = String::from_utf8(ran.stderr).unwrap();
+    assert!(!ran.status.success(), "{error}");
+    assert!(error.starts_with("error: /sys/impact.csv: cannot be written: "), "{error}");
+    assert!(error.contains("ermission") || error.contains("not permitted"), "{error}");
+    assert!(!error.contains("does not exist"), "{error}");
 }

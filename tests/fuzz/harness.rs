@@ -292,9 +292,9 @@ impl Trial<'_> {
         match judged {
             Ok(answer) => {
                 seen.n_accepted += u64::from(answer.is_accepted);
-                let mut said = format!("{} ", answer.is_accepted);
-                answer.messages.iter().take(3).for_each(|text| said += &self.kind_of(text));
-                let is_new = seen.answers.insert(said);
+                let mut summary = format!("{} ", answer.is_accepted);
+                answer.messages.iter().take(3).for_each(|text| summary += &self.kind_of(text));
+                let is_new = seen.answers.insert(summary);
                 if is_new && self.keeps {
                     self.keep(input, seen);
                 }
@@ -322,7 +322,8 @@ impl Trial<'_> {
         let took = started.elapsed();
         seen.longest = seen.longest.max(took);
         seen.most_bytes = seen.most_bytes.max(memory.bytes_max);
-        let answer = outcome.expect("the loader was called").map_err(|payload| said(&*payload))?;
+        let answer =
+            outcome.expect("the loader was called").map_err(|payload| message_of(&*payload))?;
         let limit = memory_limit_bytes(input.len()) + answer.fixed_bytes;
         if took > LONGEST {
             return Err(format!("took {:.1} s for {} bytes", took.as_secs_f64(), input.len()));
@@ -422,7 +423,7 @@ fn hear_panics() {
     });
 }
 
-fn said(payload: &(dyn Any + Send)) -> String {
+fn message_of(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<String>().map(String::as_str);
     let text = text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("no text");
     LAST_PANIC.with(|place| format!("panicked at {}: {text}", place.borrow()))

@@ -31,7 +31,7 @@ struct CommandLine<'a> {
     /// Keys of the report that only the command line prints.
     only_printed: &'a [&'a str],
     /// Keys in which the questions of the two may differ, such as the file of a training's state.
-    not_asked_alike: &'a [&'a str],
+    not_compared: &'a [&'a str],
 }
 
 fn run(args: &[&str]) -> Output {
@@ -73,15 +73,15 @@ fn without(request: Value, keys: &[&str]) -> Value {
 
 impl<'a> CommandLine<'a> {
     fn new(args: &'a [&'a str]) -> Self {
-        Self { args, only_printed: &[], not_asked_alike: &[] }
+        Self { args, only_printed: &[], not_compared: &[] }
     }
 
     fn prints(self, only_printed: &'a [&'a str]) -> Self {
         Self { only_printed, ..self }
     }
 
-    fn asks_differently(self, not_asked_alike: &'a [&'a str]) -> Self {
-        Self { not_asked_alike, ..self }
+    fn asks_differently(self, not_compared: &'a [&'a str]) -> Self {
+        Self { not_compared, ..self }
     }
 
     /// Asks the question on the command line and compares question and report with those of the
@@ -89,19 +89,21 @@ impl<'a> CommandLine<'a> {
     fn compare(self, request: impl Into<Request>, report: &impl Serialize) {
         let keys = [&NOT_COMPARED, self.only_printed].concat();
         let shown = serde_json::to_string_pretty(report).expect("JSON");
-        let told = printed(self.args, "--json");
-        let [shown, told] = [&shown, &told].map(|text| lines_without(text, &keys));
+        let in_json = printed(self.args, "--json");
+        let [shown, in_json] = [&shown, &in_json].map(|text| lines_without(text, &keys));
         assert!(shown.len() > 5, "{shown:?}");
-        let difference = shown.iter().zip(&told).position(|(shown, told)| shown != told);
+        let difference = shown.iter().zip(&in_json).position(|(shown, in_json)| shown != in_json);
         if let Some(at) = difference {
-            panic!("{:?}: window {:?}, command line {:?}", self.args, shown[at], told[at]);
+            panic!("{:?}: window {:?}, command line {:?}", self.args, shown[at], in_json[at]);
         }
-        assert_eq!(shown.len(), told.len(), "{:?}", self.args);
+        assert_eq!(shown.len(), in_json.len(), "{:?}", self.args);
 
-        let asked = serde_json::from_str(&printed(self.args, "--print-request")).expect("JSON");
+        let printed_request =
+            serde_json::from_str(&printed(self.args, "--print-request")).expect("JSON");
         let request = serde_json::to_value(request.into()).expect("JSON");
-        let [request, asked] = [request, asked].map(|of| without(of, self.not_asked_alike));
-        assert_eq!(request, asked, "{:?}", self.args);
+        let [request, printed_request] =
+            [request, printed_request].map(|of| without(of, self.not_compared));
+        assert_eq!(request, printed_request, "{:?}", self.args);
     }
 }
 
@@ -113,7 +115,7 @@ fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
 fn latest<Q: Question>(latest: &Latest<Q>) -> (Q, &Q::Answer) {
     assert!(!latest.is_waiting());
     let answer = latest.answer.as_ref().expect("an answer");
-    (latest.asked.clone().expect("a question"), answer.as_ref().expect("no problem"))
+    (latest.question.clone().expect("a question"), answer.as_ref().expect("no problem"))
 }
 
 /// Returns the latest question of a [`QuestionJob`] and its answer.
@@ -185,7 +187,7 @@ fn a_scenario_is_solved_simulated_and_predicted_alike() {
     apply(&mut harness, Command::PredictScenario);
     let is_answered = |state: &State| {
         let forecast = &state.session.force.forecast;
-        forecast.asked.as_ref() == state.force_request().as_ref() && !forecast.is_waiting()
+        forecast.question.as_ref() == state.force_request().as_ref() && !forecast.is_waiting()
     };
     let has_model = |state: &State| state.session.force.model.current.is_some();
     step_until(&mut harness, "the force model", has_model);
@@ -274,9 +276,10 @@ fn compare_motion(harness: &mut Harness<'_, App>, force: ForceSource, asks: Comm
     harness.state_mut().state_mut().project.predict_motion.force = force;
     step_until(harness, "the motion", |state| {
         let forecast = &state.session.response.forecast;
-        let asked = forecast.asked.as_ref().map(|asked| &asked.request);
-        asked.is_some()
-            && asked == state.motion_request().as_ref()
+        let printed_request =
+            forecast.question.as_ref().map(|printed_request| &printed_request.request);
+        printed_request.is_some()
+            && printed_request == state.motion_request().as_ref()
             && !forecast.is_waiting()
             && state.motion_forecast().is_some_and(|of| of.is_predicted() == is_predicted)
     });

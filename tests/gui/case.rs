@@ -57,7 +57,7 @@ fn variant(harness: &mut Harness<'_, App>, command: VariantCommand) {
 }
 
 /// The answers to a case without a window.
-fn asked(path: &Path) -> Vec<(String, Vec<Report>)> {
+fn answers_of(path: &Path) -> Vec<(String, Vec<Report>)> {
     let case = CaseFile::load(path).expect("a case");
     let report = case.ask(&[], &Library::default(), &mut |_| ControlFlow::Continue(()));
     let report = report.expect("asked").complete().expect("answers");
@@ -90,10 +90,10 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
     assert!(state(&harness).is_case_changed());
     save_as(&mut harness, &path);
     assert!(!state(&harness).is_case_changed());
-    let answers = asked(&path);
+    let answers = answers_of(&path);
     assert_eq!(answers.len(), 3);
-    for ((name, motion), (told, reports)) in shown.iter().zip(&answers) {
-        assert_eq!(name, told);
+    for ((name, motion), (variant, reports)) in shown.iter().zip(&answers) {
+        assert_eq!(name, variant);
         let found = reports.iter().find_map(|report| match report {
             Report::PredictMotion(report) => Some(report),
             _ => None,
@@ -110,7 +110,7 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
     apply(&mut harness, Command::PackCase(zip.clone()));
     step_until(&mut harness, "the package", |state| !state.session.tasks.is_writing());
     let elsewhere = unpack(&zip, &folder.path().join("elsewhere")).expect("unpacked");
-    assert_eq!(asked(&elsewhere), answers);
+    assert_eq!(answers_of(&elsewhere), answers);
 }
 
 /// The questions of the first variant of a case file.
@@ -144,7 +144,7 @@ fn questions_that_were_edited_in_the_file_are_those_of_the_window() {
         text = text.replace(from, to);
     }
     fs::write(&one, &text).expect("edited");
-    let (edited, answers) = (questions_in(&one), asked(&one));
+    let (edited, answers) = (questions_in(&one), answers_of(&one));
     assert!(before.iter().zip(&edited).all(|(before, edited)| before != edited), "{edited:?}");
 
     let mut harness = saved_again(&one, &two);
@@ -152,7 +152,7 @@ fn questions_that_were_edited_in_the_file_are_those_of_the_window() {
     assert_eq!(project.scenario().expect("a scenario").contact.restitution, 0.35);
     assert_eq!((project.simulate.duration_s, project.predict_motion.draws), (3.0, 20));
     assert_eq!(questions_in(&two), edited);
-    assert_eq!(asked(&two), answers);
+    assert_eq!(answers_of(&two), answers);
 
     // What is edited in the window is in every question that has it.
     scenario(&mut harness).contact.restitution = 0.25;
@@ -206,7 +206,7 @@ fn a_case_of_version_1_is_its_questions_and_what_only_its_forms_say() {
     let text = fs::read_to_string(&new).expect("a case");
     assert!(text.contains("\"version\": 2") && !text.contains("\"forms\""), "{text}");
     assert_eq!(text.matches("\"restitution\"").count(), 1, "{text}");
-    assert_eq!(asked(&new), asked(&old));
+    assert_eq!(answers_of(&new), answers_of(&old));
 }
 
 #[test]
@@ -445,7 +445,7 @@ fn the_example_case_is_what_the_window_saves_and_has_an_answer_to_every_question
     let [made, found] = [&path, &shipped].map(|path| CaseFile::load(path).expect("a case"));
     assert_eq!(found.variants, made.variants, "UPDATE_EXAMPLES=1 writes it anew");
     assert_eq!((&found.models, &found.notes), (&made.models, &made.notes));
-    let answers = asked(&shipped);
+    let answers = answers_of(&shipped);
     assert_eq!(answers.len(), 3);
     assert!(answers.iter().all(|(_, reports)| reports.len() == 4), "{answers:?}");
 }

@@ -157,8 +157,9 @@ fn what_is_not_of_what_is_asked_any_more_is_not_saved() {
         assert_eq!(copied(&harness), None);
     }
     let messages = &state(&harness).session.messages[before..];
-    let said = messages.iter().filter(|message| message.text.contains("not the answer to what"));
-    assert_eq!(said.count(), 2, "{messages:?}");
+    let warnings =
+        messages.iter().filter(|message| message.text.contains("not the answer to what"));
+    assert_eq!(warnings.count(), 2, "{messages:?}");
     assert!(!path.exists() && !state(&harness).session.tasks.is_writing());
 
     // A question that is awaited makes the figures of the answer before outdated at once.

@@ -198,12 +198,12 @@ fn ask_film(harness: &mut Harness<'_, App>) {
 }
 
 /// The latest message.
-fn said(harness: &Harness<'_, App>) -> Option<String> {
+fn last_message(harness: &Harness<'_, App>) -> Option<String> {
     harness.state().state().session.messages.last().map(|message| message.text.clone())
 }
 
 /// The film that the form asks about.
-fn asked_film(harness: &Harness<'_, App>) -> Film {
+fn film_of_form(harness: &Harness<'_, App>) -> Film {
     harness.state().state().session.dialogs.film().expect("the form is open").film.clone()
 }
 
@@ -231,7 +231,7 @@ fn the_window_films_the_cars_of_a_reconstruction() {
     harness.run_steps(4);
     ask_film(&mut harness);
     save(&mut harness, "film-form-reconstruction.png");
-    let mut film = asked_film(&harness);
+    let mut film = film_of_form(&harness);
     let scene = &film.picture.scene;
     assert_eq!(scene.title, "spin");
     assert!(scene.struck().is_some(), "the car drives");
@@ -244,7 +244,7 @@ fn the_window_films_the_cars_of_a_reconstruction() {
     apply(&mut harness, Command::SaveFilm(Box::new(film.clone()), path.clone()));
     step_until(&mut harness, "the film", |state| state.session.tasks.film().is_none());
     assert_eq!(decoded(&path, 30).len(), n_frames);
-    assert!(said(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
+    assert!(last_message(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
 
     cancel_a_long_one(&mut harness, film, &folder.path().join("other.mp4"));
 }
@@ -257,7 +257,7 @@ fn cancel_a_long_one(harness: &mut Harness<'_, App>, mut film: Film, path: &Path
     harness.run_steps(2);
     apply(harness, Command::CancelFilm);
     step_until(harness, "the end of the film", |state| state.session.tasks.film().is_none());
-    assert!(said(harness).is_some_and(|text| text.ends_with("not written: cancelled")));
+    assert!(last_message(harness).is_some_and(|text| text.ends_with("not written: cancelled")));
     assert!(!path.exists());
 }
 
@@ -273,7 +273,7 @@ fn the_window_makes_a_film_of_the_scene_as_it_is_seen() {
     harness.get_by_label("Add slow motion").click();
     harness.run_steps(3);
     save(&mut harness, "film-form.png");
-    let form = asked_film(&harness);
+    let form = film_of_form(&harness);
     assert_eq!(form.timing.sections.len(), 1);
     assert!(form.picture.is_placed, "the camera is the one that is seen");
     harness.get_by_label("Remove part 1").click();
@@ -288,7 +288,7 @@ fn the_window_makes_a_film_of_the_scene_as_it_is_seen() {
     assert!(session.tasks.film().is_some() && session.dialogs.film().is_none());
     step_until(&mut harness, "the film", |state| state.session.tasks.film().is_none());
     assert_eq!(decoded(&path, 30).len(), n_frames);
-    assert!(said(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
+    assert!(last_message(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
 
     // A film that exists already is asked about, and a cancelled one is not written.
     apply(&mut harness, Command::SaveFilm(Box::new(film.clone()), path));

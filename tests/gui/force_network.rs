@@ -98,8 +98,8 @@ fn open_on(case: &str) -> Harness<'static, App> {
 /// Whether the forecast that is shown answers the current question.
 fn is_forecast_current(state: &State) -> bool {
     let forecast = &state.session.force.forecast;
-    let is_asked = forecast.asked.as_ref() == state.force_request().as_ref();
-    is_asked && !forecast.is_waiting() && forecast.ok().is_some() && is_idle(state)
+    let is_current = forecast.question.as_ref() == state.force_request().as_ref();
+    is_current && !forecast.is_waiting() && forecast.ok().is_some() && is_idle(state)
 }
 
 #[test]
@@ -116,8 +116,8 @@ fn a_case_is_predicted_edited_and_left_open() {
     // The prediction follows the selection in the case table.
     harness.key_press(egui::Key::ArrowDown);
     step_until(&mut harness, "the next case", |state| {
-        let asked = collision_of(&state.project.predict_force, &state.session.sources);
-        asked.is_some_and(|asked| asked.name == "c003") && is_forecast_current(state)
+        let collision = collision_of(&state.project.predict_force, &state.session.sources);
+        collision.is_some_and(|collision| collision.name == "c003") && is_forecast_current(state)
     });
     // A heavier striking vehicle gives a larger impulse. A mass far above those of the training is
     // reported.

@@ -154,14 +154,14 @@ fn an_orthophoto_alone_is_scaled_by_two_points_undone_and_saved() {
         (400.0 * photo.map.pixel_size_m()[0], photo.is_placed)
     };
     assert_eq!(width_m(&harness), (20.0, false), "0.05 m a pixel, said not to be known");
-    let said = harness
+    let is_reported = harness
         .state()
         .state()
         .session
         .messages
         .iter()
         .any(|message| message.text.contains("nothing says where its pixels lie"));
-    assert!(said, "the user is told");
+    assert!(is_reported, "the user is told");
     choose(&mut harness, "Scale of the orthophoto");
     for at_m in [[-6.0, 2.0], [4.0, 2.0]] {
         let at = on_screen(&harness, at_m);
@@ -208,10 +208,10 @@ fn a_reconstruction_stands_on_the_zones_of_the_ground() {
     let path = evidence_in(folder.path());
     let mut harness = open(&[path.to_str().expect("a plain name")]);
     harness.run_steps(4);
-    let asked = |harness: &Harness<'_, App>| {
+    let site_of_question = |harness: &Harness<'_, App>| {
         harness.state().state().project.reconstruct.clone().expect("a question").site
     };
-    assert_eq!(asked(&harness), None);
+    assert_eq!(site_of_question(&harness), None);
     let n_priors = |harness: &Harness<'_, App>| {
         harness.state().state().session.reconstruction.preview.as_ref().map(|of| of.priors.len())
     };
@@ -235,7 +235,7 @@ fn a_reconstruction_stands_on_the_zones_of_the_ground() {
     });
     apply(&mut harness, Command::Show(Pane::Evidence));
     harness.run_steps(4);
-    assert_eq!(asked(&harness).as_deref(), Some(Path::new(SITE)));
+    assert_eq!(site_of_question(&harness).as_deref(), Some(Path::new(SITE)));
     assert!(is_outdated(&harness), "the speeds are those without the zones");
     assert_eq!(n_priors(&harness), Some(without + 1));
     assert!(harness.query_by_label_contains("friction zones of site.toml").is_some());
@@ -246,7 +246,7 @@ fn a_reconstruction_stands_on_the_zones_of_the_ground() {
     apply(&mut harness, Command::Open(vec![torn]));
     step_until(&mut harness, "the problem", |state| state.session.ground.problem.is_some());
     harness.run_steps(2);
-    assert_eq!(asked(&harness), None);
+    assert_eq!(site_of_question(&harness), None);
 
     apply(&mut harness, Command::Open(vec![SITE.into()]));
     step_until(&mut harness, "the zones", |state| {
@@ -254,7 +254,7 @@ fn a_reconstruction_stands_on_the_zones_of_the_ground() {
     });
     apply(&mut harness, Command::Ground(GroundCommand::Remove));
     harness.run_steps(4);
-    assert_eq!(asked(&harness), None);
+    assert_eq!(site_of_question(&harness), None);
     assert!(!is_outdated(&harness));
 }
 

@@ -77,7 +77,7 @@ pub fn step_until(harness: &mut Harness<'_, App>, what: &str, wanted: impl Fn(&S
 /// Whether the data are loaded and the selected subject has been simulated.
 pub fn is_idle(state: &State) -> bool {
     state.session.sources.iter().all(impactlab::app::Source::is_settled)
-        && state.session.analysis.asked.is_some()
+        && state.session.analysis.question.is_some()
         && !state.session.analysis.is_waiting()
 }
 

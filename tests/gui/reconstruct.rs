@@ -96,8 +96,8 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
     assert!(!is_outdated(&harness));
     let answer = state(&harness).session.reconstruction.answer().expect("an answer");
     assert_eq!(answer.answer.report.n_particles, 60);
-    for said in ["Play the median", "Items of the evidence: found and expected"] {
-        assert!(harness.query_by_label(said).is_some(), "{said}");
+    for label in ["Play the median", "Items of the evidence: found and expected"] {
+        assert!(harness.query_by_label(label).is_some(), "{label}");
     }
     assert!(harness.query_by_label_contains("struck car by hand").is_some());
 

@@ -73,8 +73,8 @@ fn the_report_on_screen_is_the_one_of_the_case_file() {
         paper: impactlab_document::report::Paper::A4,
         date: DATE.parse().expect("a day"),
     };
-    let asked = (&case, std::slice::from_ref(&case.shown));
-    let outcome = report_case(asked, &settings, &Library::default(), &mut |_| {
+    let chosen = (&case, std::slice::from_ref(&case.shown));
+    let outcome = report_case(chosen, &settings, &Library::default(), &mut |_| {
         std::ops::ControlFlow::Continue(())
     });
     let (of_file, _) = outcome.expect("answers").complete().expect("a report");
@@ -114,8 +114,8 @@ fn a_report_is_saved_as_its_ending_says_unless_the_case_has_changed() {
     apply(&mut harness, Command::SaveReport(document, other.clone()));
     step_until(&mut harness, "the refusal", |state| !state.session.tasks.is_writing());
     assert!(!other.exists());
-    let said = &state(&harness).session.messages.last().expect("a message").text;
-    assert!(said.contains(".json"), "{said}");
+    let message = &state(&harness).session.messages.last().expect("a message").text;
+    assert!(message.contains(".json"), "{message}");
 
     assert!(harness.query_by_label("Save…").is_some());
     let is_outdated = |harness: &Harness<'_, App>| state(harness).session.report.is_outdated;

@@ -31,7 +31,7 @@ fn select(harness: &mut Harness<'_, App>, dataset: &str, case: &str) {
 fn is_density_current(state: &State, window_s: [f64; 2]) -> bool {
     let density = state.session.response.density.ok();
     density.map(|density| &density.map).is_some_and(|map| {
-        map.window_s.iter().zip(window_s).all(|(got, asked)| (got - asked).abs() < 0.006)
+        map.window_s.iter().zip(window_s).all(|(got, wanted)| (got - wanted).abs() < 0.006)
     })
 }
 

@@ -262,5 +262,7 @@ fn closing_everything_leaves_an_empty_window_that_says_what_to_do() {
     step_until(&mut harness, "the shipped data", |state| {
         state.session.sources.len() == n_shipped && is_idle(state)
     });
-    assert!(state(&harness).session.messages.iter().all(|said| said.severity != Severity::Error));
+    assert!(
+        state(&harness).session.messages.iter().all(|message| message.severity != Severity::Error)
+    );
 }

@@ -207,22 +207,23 @@ fn trajectories_of_a_car_narrow_its_bands_and_leave_other_cars_alone() {
         .collect();
     let set = TrainingSet::from_split("van".to_owned(), &cases, 0, TEST_SHARE);
     let set = set.choose(Some(3), 0).expect("three trajectories");
-    let told = condition(&model, &set).expect("a conditioned network");
-    let known = told.known_car(&cases[0].vehicle).expect("a known car");
+    let conditioned = condition(&model, &set).expect("a conditioned network");
+    let known = conditioned.known_car(&cases[0].vehicle).expect("a known car");
     assert_eq!(known.n_trajectories, 3);
-    let unseen = cases.iter().find(|case| !told.is_trained_on(case)).expect("another trajectory");
+    let unseen =
+        cases.iter().find(|case| !conditioned.is_trained_on(case)).expect("another trajectory");
     let n = unseen.inputs.len().min(300);
     let ask = |model: &ResponseModel| {
         end(model, (&unseen.vehicle, &unseen.states[0], &unseen.inputs[..n])).0
     };
-    assert!(ask(&told) < ask(&model), "{} {}", ask(&told), ask(&model));
+    assert!(ask(&conditioned) < ask(&model), "{} {}", ask(&conditioned), ask(&model));
     let other = car(1500.0, 0.7);
     let inputs = struck([0.5, 2.0], &other, 100);
     let initial = VehicleState::driving_straight(20.0);
     let of = |model: &ResponseModel| end(model, (&other, &initial, &inputs));
-    assert_eq!(of(&told), of(&model));
+    assert_eq!(of(&conditioned), of(&model));
     // The same trajectories say nothing twice.
-    let again = condition(&told, &set).unwrap_err();
+    let again = condition(&conditioned, &set).unwrap_err();
     assert!(matches!(again, LearningError::NothingNew), "{again}");
 }
 
@@ -258,16 +259,16 @@ fn a_fleet_is_learned_from_saved_and_read_again() {
     let settings = ResponseTrainSettings { config, seed: 3, checkpoint: None, resume: false };
     let set = small_fleet();
     let mut trainings = Vec::new();
-    let mut go_on = |told: &TrainingReport| {
-        if let TrainingReport::Epoch(epoch) = told {
+    let mut go_on = |conditioned: &TrainingReport| {
+        if let TrainingReport::Epoch(epoch) = conditioned {
             trainings.push([epoch.training_idx, epoch.n_trainings]);
         }
         ControlFlow::Continue(())
     };
     let start = fine_tune(None, &set, &settings, &mut go_on).expect("a start");
     trainings.clear();
-    let mut go_on = |told: &TrainingReport| {
-        if let TrainingReport::Epoch(epoch) = told {
+    let mut go_on = |conditioned: &TrainingReport| {
+        if let TrainingReport::Epoch(epoch) = conditioned {
             trainings.push([epoch.training_idx, epoch.n_trainings]);
         }
         ControlFlow::Continue(())
@@ -299,10 +300,10 @@ fn a_fleet_is_learned_from_saved_and_read_again() {
     let physics = rollout(&fifth[2].vehicle, fifth[2].states[0], &fifth[2].inputs, |_, _| [0.0; 4]);
     let physics_m = average_error_m(&physics, &fifth[2].states);
     let two = TrainingSet { train: fifth[..2].to_vec(), ..set.clone() };
-    let told = condition(&model, &two).expect("a conditioned model");
-    let (unseen_m, told_m) = (error_m(&model), error_m(&told));
+    let conditioned = condition(&model, &two).expect("a conditioned model");
+    let (unseen_m, conditioned_m) = (error_m(&model), error_m(&conditioned));
     assert!(unseen_m < 0.6 * physics_m, "{unseen_m} m, by the data sheet {physics_m} m");
-    assert!(told_m < 0.8 * unseen_m, "{told_m} m, before {unseen_m} m");
+    assert!(conditioned_m < 0.8 * unseen_m, "{conditioned_m} m, before {unseen_m} m");
     // One car is no fleet, and a network of one car cannot be told of another.
     let of_one = TrainingSet { train: set.train[..3].to_vec(), ..set.clone() };
     let mut go_on = |_: &TrainingReport| ControlFlow::Continue(());
@@ -442,8 +443,8 @@ proptest! {
         prop_assert!(width(report.outcome.x_m.ninety()) > 0.0, "{:?}", report.outcome);
         let is_outside = report.applicability < 1.0
             || report.force_applicability.is_some_and(|of| of < 1.0);
-        let is_said = report.caveats.has(CaveatKind::OutsideDomain);
-        prop_assert!(!is_outside || is_said, "{:?}", report.caveats);
+        let has_caveat = report.caveats.has(CaveatKind::OutsideDomain);
+        prop_assert!(!is_outside || has_caveat, "{:?}", report.caveats);
         prop_assert_eq!(report.rest.is_some(), until_rest);
     }
 }

@@ -95,8 +95,8 @@ fn every_question_is_answered_as_its_command_answers_it() {
     let library = Library::default();
     let mut go_on = |_: Event<'_>| std::ops::ControlFlow::Continue(());
     let report = case.ask(&[], &library, &mut go_on).expect("asked").complete().expect("answers");
-    for (variant, told) in case.variants.iter().zip(&report.variants) {
-        for (request, answer) in variant.questions.iter().zip(&told.answers) {
+    for (variant, answered) in case.variants.iter().zip(&report.variants) {
+        for (request, answer) in variant.questions.iter().zip(&answered.answers) {
             let alone = request.run(&library, &mut go_on).expect("an answer").complete();
             assert_eq!(answer.report, alone);
         }
@@ -192,9 +192,9 @@ fn a_package_opens_in_another_folder_with_the_same_answers() {
 fn what_is_no_case_is_refused_with_its_place() {
     let path = Path::new("/cases/a.impactlab");
     let error = |text: &str| CaseFile::parse(text, path).expect_err("no case");
-    let says = |text: &str, said: &str| {
+    let says = |text: &str, message: &str| {
         let error = error(text).to_string();
-        assert!(error.contains(said), "{error}");
+        assert!(error.contains(message), "{error}");
     };
     says("{\"format\": \"impactlab case\",\n  \"version\": 1,,", "/cases/a.impactlab:2:");
     says("{\"format\": \"gpx\", \"version\": 1}", "format is \"gpx\"");

@@ -223,7 +223,7 @@ fn what_is_recognised_but_not_read_is_said_by_its_name() {
     let rcforc = "  legend\n     1 bumper to door\n  end of legend\n\n slave         1  time  0.00000E+00   x  1.0000E+00   y  2.0000E+00   z  0.0000E+00   mass  0.0000E+00\n master        1  time  0.00000E+00   x -1.0000E+00   y -2.0000E+00   z  0.0000E+00   mass  0.0000E+00\n";
     let nodout = " n o d a l   p r i n t   o u t   f o r   t i m e  s t e p       1   ( at time 0.0000000E+00 )\n\n nodal point  x-disp     y-disp      z-disp\n 17  0.0  0.0  0.0\n";
     let folder = tempfile::tempdir().unwrap();
-    for (name, content, said) in [
+    for (name, content, message) in [
         (
             "rcforc",
             rcforc.as_bytes(),
@@ -277,7 +277,7 @@ fn what_is_recognised_but_not_read_is_said_by_its_name() {
         let path = file(folder.path(), name, content);
         let error = read_any_series(&path, None).unwrap_err().to_string();
         assert!(error.starts_with(&format!("{}: ", path.display())), "{error}");
-        assert!(error.contains(said), "{name}: {error}");
+        assert!(error.contains(message), "{name}: {error}");
         assert!(!error.contains("the header has") && !error.contains("is not text"), "{error}");
     }
 }
@@ -417,9 +417,9 @@ fn components_in_different_units_are_doubted() {
     let mixed = read("Time [s],Fx [kN],Fy [N]");
     let doubts: Vec<String> =
         mixed.notes.iter().filter(|note| note.is_doubt()).map(ToString::to_string).collect();
-    let [said] = doubts.as_slice() else { panic!("{doubts:?}") };
+    let [message] = doubts.as_slice() else { panic!("{doubts:?}") };
     let expected = "column 2 \"Fx [kN]\" is read in kN and column 3 \"Fy [N]\" in N";
-    assert!(said.starts_with(expected), "{said}");
+    assert!(message.starts_with(expected), "{message}");
     assert!(
         !read("Time [s],Fx [kN],Fy [kN]").notes.iter().any(impactlab_core::data::Note::is_doubt)
     );

@@ -170,21 +170,21 @@ fn a_clock_from_1970_and_survey_coordinates_keep_their_precision() {
 #[test]
 fn a_drawing_says_where_its_site_lies() {
     let (_, mut scene) = case();
-    let said = |scene: &Scene| {
+    let restrictions = |scene: &Scene| {
         let mut bytes = Vec::new();
         dxf(scene, &DxfOptions::default(), &mut bytes).expect("a drawing");
         String::from_utf8_lossy(&bytes).into_owned()
     };
-    assert!(!said(&scene).contains("axes of the site"));
+    assert!(!restrictions(&scene).contains("axes of the site"));
     let survey_m = [512_345.0, 5_423_456.0];
     let origin = SiteOrigin { survey_m, x_axis_azimuth_rad: 78_f64.to_radians() };
     let ground = SceneGround { origin: Some(origin), ..SceneGround::default() };
     scene.ground = Some(std::sync::Arc::new(ground));
     let text =
         "origin at easting 512345 m, northing 5423456 m, X at 78.000000 deg clockwise from grid";
-    assert!(said(&scene).contains(text));
+    assert!(restrictions(&scene).contains(text));
     scene.ground = Some(std::sync::Arc::new(SceneGround::default()));
-    assert!(said(&scene).contains("which has no origin in survey coordinates"));
+    assert!(restrictions(&scene).contains("which has no origin in survey coordinates"));
 }
 
 #[test]

@@ -48,19 +48,22 @@ fn inside_of_the_training_the_network_alone_answers() {
     let n_components = model.config().network.components;
     let mut n_inside = 0;
     for case in cases("fea").iter().chain(&cases("fea-wide")) {
-        let said = model.predict(&case.scenario).unwrap();
-        if said.applicability == 1.0 {
+        let predicted = model.predict(&case.scenario).unwrap();
+        if predicted.applicability == 1.0 {
             n_inside += 1;
-            assert_eq!(said.mixture.components().len(), n_components, "{}", case.name);
-            assert!(said.hooking_probability.is_some() && said.caveats.len() == said.outside.len());
+            assert_eq!(predicted.mixture.components().len(), n_components, "{}", case.name);
+            assert!(
+                predicted.hooking_probability.is_some()
+                    && predicted.caveats.len() == predicted.outside.len()
+            );
         } else {
-            assert!(!said.caveats.is_empty(), "{}", case.name);
+            assert!(!predicted.caveats.is_empty(), "{}", case.name);
         }
     }
     assert!(n_inside >= 195, "{n_inside}");
     // From the version before the domain: c002 of fea, a test case.
-    let said = model.predict(&cases("fea")[1].scenario).unwrap();
-    let [px, py] = [0, 1].map(|axis| said.mixture.impulse(axis).mean());
+    let predicted = model.predict(&cases("fea")[1].scenario).unwrap();
+    let [px, py] = [0, 1].map(|axis| predicted.mixture.impulse(axis).mean());
     let expected = [615.505_047, 2_640.495_234];
     assert!((px / expected[0] - 1.0).abs() < 1e-5, "{px:?}");
     assert!((py / expected[1] - 1.0).abs() < 1e-5, "{py:?}");
@@ -97,10 +100,10 @@ fn random_scenario(rng: &mut ChaCha8Rng) -> ForceScenario {
 }
 
 /// The smallest work of the contact over the means of the components, as a share of the largest, J.
-fn least_work(scenario: &ForceScenario, said: &ForcePrediction) -> Option<f64> {
+fn least_work(scenario: &ForceScenario, predicted: &ForcePrediction) -> Option<f64> {
     let impact = scenario.impact(0.0, 0.0)?;
     let (v, k) = (impact.relative_velocity_m_s(), impact.inverse_mass_1_kg());
-    let work = said.mixture.components().iter().map(|component| {
+    let work = predicted.mixture.components().iter().map(|component| {
         let n = component.mean.len() / 2;
         let sum = |values: &[f64]| values.iter().sum::<f64>() * 1e-3;
         contact_work_j(v, k, [sum(&component.mean[..n]), sum(&component.mean[n..2 * n])])
@@ -117,38 +120,48 @@ fn any_collision_is_finite_and_outside_of_the_training_as_uncertain_as_the_physi
     let (mut n_physics, mut n_apart) = (0, 0);
     for i in 0..N_RANDOM {
         let scenario = random_scenario(&mut rng);
-        let said = model.predict(&scenario).unwrap_or_else(|error| panic!("{i}: {error}"));
-        let values =
-            said.mixture.mean().to_values().into_iter().chain(said.mixture.std().to_values());
-        assert!(values.chain(said.centre.to_values()).all(f64::is_finite), "{i}: {scenario:?}");
-        assert!((0.0..=1.0).contains(&said.applicability), "{i}");
-        if said.applicability == 1.0 {
+        let predicted = model.predict(&scenario).unwrap_or_else(|error| panic!("{i}: {error}"));
+        let values = predicted
+            .mixture
+            .mean()
+            .to_values()
+            .into_iter()
+            .chain(predicted.mixture.std().to_values());
+        assert!(
+            values.chain(predicted.centre.to_values()).all(f64::is_finite),
+            "{i}: {scenario:?}"
+        );
+        assert!((0.0..=1.0).contains(&predicted.applicability), "{i}");
+        if predicted.applicability == 1.0 {
             continue;
         }
-        let named: Vec<_> =
-            said.caveats.iter().filter(|caveat| caveat.kind == CaveatKind::OutsideDomain).collect();
+        let named: Vec<_> = predicted
+            .caveats
+            .iter()
+            .filter(|caveat| caveat.kind == CaveatKind::OutsideDomain)
+            .collect();
         assert!(!named.is_empty(), "{i}: {scenario:?}");
         assert!(
             named
                 .iter()
                 .all(|of| of.quantity.is_some() && of.value.is_some() && of.range.is_some())
         );
-        if said.applicability > 0.0 {
+        if predicted.applicability > 0.0 {
             continue;
         }
         assert!(named.len() > 1, "{i}: no feature is named, {named:?}");
-        if said.caveats.iter().any(|caveat| caveat.kind == CaveatKind::ImplausibleContact) {
+        if predicted.caveats.iter().any(|caveat| caveat.kind == CaveatKind::ImplausibleContact) {
             n_apart += 1;
             continue;
         }
         n_physics += 1;
-        let [low, median, high] = impulse_quantiles(&said, [0.05, 0.5, 0.95]);
+        let [low, median, high] = impulse_quantiles(&predicted, [0.05, 0.5, 0.95]);
         let below = (median / low).ln();
         assert!(below > 0.9 * 1.645 * IMPULSE_LOG_STD, "{i}: {low} {median} {high}, {scenario:?}");
         // Above, energy sets a limit as well.
         assert!(high > 1.1 * median, "{i}: {low} {median} {high}, {scenario:?}");
-        if let Some(work) =
-            least_work(&scenario, &said).filter(|_| scenario.normal_rad.unwrap().abs() == FRAC_PI_2)
+        if let Some(work) = least_work(&scenario, &predicted)
+            .filter(|_| scenario.normal_rad.unwrap().abs() == FRAC_PI_2)
         {
             assert!(work > -1e-9, "{i}: a gain of {work}, {scenario:?}");
         }
@@ -163,13 +176,17 @@ fn the_network_fades_as_the_struck_gets_lighter() {
     let mut before = (1.0, 0.0);
     for mass_kg in [1500.0, 1450.0, 1400.0, 1350.0, 1300.0, 1200.0, 1000.0] {
         let lighter = ForceScenario { mass_kg: [mass_kg, seen.mass_kg[1]], ..seen.clone() };
-        let said = model.predict(&lighter).unwrap();
-        let [low, _, high] = impulse_quantiles(&said, [0.05, 0.5, 0.95]);
+        let predicted = model.predict(&lighter).unwrap();
+        let [low, _, high] = impulse_quantiles(&predicted, [0.05, 0.5, 0.95]);
         let width = (high / low).ln();
-        assert!(said.applicability <= before.0, "{mass_kg}: {} {before:?}", said.applicability);
+        assert!(
+            predicted.applicability <= before.0,
+            "{mass_kg}: {} {before:?}",
+            predicted.applicability
+        );
         // Where both have a share, the mixture is a little wider than either.
         assert!(width > 0.85 * before.1, "{mass_kg}: {width} {before:?}");
-        before = (said.applicability, width);
+        before = (predicted.applicability, width);
     }
     assert_eq!(before.0, 0.0);
 }

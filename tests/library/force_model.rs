@@ -53,8 +53,10 @@ fn settings(checkpoint: Option<PathBuf>) -> ForceTrainSettings {
 
 /// Trains until an epoch is over and stops, as if the training were killed then.
 fn train_until(epoch: usize, settings: &ForceTrainSettings) -> ForceModel {
-    let model = train(set(), settings, &mut |told| match told {
-        TrainingReport::Epoch(told) if told.summary.epoch == epoch => ControlFlow::Break(()),
+    let model = train(set(), settings, &mut |progress| match progress {
+        TrainingReport::Epoch(progress) if progress.summary.epoch == epoch => {
+            ControlFlow::Break(())
+        }
         _ => ControlFlow::Continue(()),
     });
     model.expect("the training works")
@@ -156,11 +158,11 @@ fn a_checkpoint_that_predicts_no_distribution_is_refused_with_its_name() {
         file.put_group(group, tensors.map(huge).collect());
         file.write(&path, Existing::Replace).unwrap();
         let mut n_epochs = 0;
-        let told = train(set(), &settings(Some(path.clone())), &mut |told| {
-            n_epochs += usize::from(matches!(told, TrainingReport::Epoch(_)));
+        let progress = train(set(), &settings(Some(path.clone())), &mut |progress| {
+            n_epochs += usize::from(matches!(progress, TrainingReport::Epoch(_)));
             ControlFlow::Continue(())
         });
-        let error = error_chain(&told.unwrap_err());
+        let error = error_chain(&progress.unwrap_err());
         let expected = format!("{}: cannot be used as a training: ", path.display());
         assert!(error.starts_with(&expected), "{group}: {error}");
         assert!(error.contains("component 0 is NaN"), "{group}: {error}");
@@ -245,8 +247,8 @@ fn what_is_left_open_widens_the_bands() {
     let spread = |open: bool| -> f64 {
         let ask = |case: &ForceCase| {
             let known = case.scenario.clone();
-            let asked = ForceScenario { contact_m: None, striking_body: None, ..known.clone() };
-            let prediction = model().predict(if open { &asked } else { &known }).unwrap();
+            let left_open = ForceScenario { contact_m: None, striking_body: None, ..known.clone() };
+            let prediction = model().predict(if open { &left_open } else { &known }).unwrap();
             assert_eq!([prediction.is_contact_open, prediction.is_body_open], [open, open]);
             prediction.mixture.std().fy_n.iter().sum::<f64>()
         };

@@ -153,24 +153,24 @@ fn the_example_has_every_section_and_the_numbers_of_its_answers() {
             }
             other => panic!("an answer of another kind: {other:?}"),
         }
-        let told = serde_json::to_value(answer).expect("JSON");
-        for badge in told["badges"].as_array().expect("badges") {
+        let fields = serde_json::to_value(answer).expect("JSON");
+        for badge in fields["badges"].as_array().expect("badges") {
             assert_says(document, badge["text"].as_str().expect("a text"));
         }
-        let is_told = |caveat: &Caveat| {
+        let is_shown = |caveat: &Caveat| {
             let of_answers = &document.section(SectionKind::Answers).expect("answers").blocks;
             of_answers
                 .iter()
                 .any(|block| matches!(block, Block::Notice { text } if text.contains(&caveat.text)))
         };
-        let caveats: Caveats = serde_json::from_value(told.clone()).expect("caveats");
+        let caveats: Caveats = serde_json::from_value(fields.clone()).expect("caveats");
         for caveat in caveats.iter().filter(|caveat| caveat.is_warning()) {
-            assert!(is_told(caveat), "{caveat} does not stand at the answer");
+            assert!(is_shown(caveat), "{caveat} does not stand at the answer");
         }
-        for assumption in told["assumptions"].as_array().expect("assumptions") {
+        for assumption in fields["assumptions"].as_array().expect("assumptions") {
             assert_says(document, assumption["reason"].as_str().expect("a reason"));
         }
-        for model in told["model_digests"].as_array().into_iter().flatten() {
+        for model in fields["model_digests"].as_array().into_iter().flatten() {
             assert_says(document, model["sha256"].as_str().expect("a digest"));
         }
     }

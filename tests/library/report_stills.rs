@@ -87,9 +87,9 @@ fn a_ground_that_cannot_be_drawn_is_said() {
     assert_eq!(stills.len(), 2);
     for (picture, still) in stills {
         assert!(still.scene.ground.is_none());
-        let said = picture.caption.contains("the ground is not drawn")
+        let is_noted = picture.caption.contains("the ground is not drawn")
             && picture.caption.contains("torn.dxf");
-        assert!(said, "{}", picture.caption);
+        assert!(is_noted, "{}", picture.caption);
     }
 }
 

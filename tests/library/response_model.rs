@@ -113,7 +113,7 @@ fn a_training_that_was_cut_goes_on_to_the_same_weights() {
         let checkpoint = scratch(&format!("cut_{cut_at}.training"));
         let mut settings = settings(small());
         settings.checkpoint = Some(checkpoint);
-        let mut cut = |told: &TrainingReport| match told {
+        let mut cut = |progress: &TrainingReport| match progress {
             TrainingReport::Epoch(epoch) if epoch.summary.epoch == cut_at => ControlFlow::Break(()),
             _ => ControlFlow::Continue(()),
         };

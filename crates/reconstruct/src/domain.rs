@@ -145,7 +145,7 @@ mod tests {
     use crate::evidence::examples::{SPIN, read};
     use impactlab_core::vehicle::LibraryVehicle;
 
-    fn said(evidence: &Evidence) -> Vec<(String, f64)> {
+    fn outside(evidence: &Evidence) -> Vec<(String, f64)> {
         let caveats = vehicle_caveats(&Cars::new(evidence, None, None));
         caveats.into_iter().map(|of| (of.quantity.unwrap(), of.value.unwrap())).collect()
     }
@@ -153,9 +153,9 @@ mod tests {
     #[test]
     fn a_lorry_is_named_with_what_is_too_heavy_and_a_toy_with_what_is_too_short() {
         let mut evidence = read(SPIN);
-        assert_eq!(said(&evidence), []);
+        assert_eq!(outside(&evidence), []);
         evidence.struck_car.mass_kg = Some(Measured { value: 20_170.0, sigma: 100.0 }.into());
-        let lorry = said(&evidence);
+        let lorry = outside(&evidence);
         let names: Vec<&str> = lorry.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(
             names,
@@ -171,7 +171,7 @@ mod tests {
         evidence.striking_car.cg_to_front_axle_m = Some(0.4);
         evidence.striking_car.cg_to_rear_axle_m = Some(0.5);
         evidence.striking_car.track_m = Some(2.4);
-        let toy = said(&evidence);
+        let toy = outside(&evidence);
         let expected = ["wheelbase of the striking car [m]", "track of the striking car [m]"];
         assert_eq!(toy.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), expected);
     }

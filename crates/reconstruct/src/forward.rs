@@ -132,7 +132,7 @@ impl ForwardModel {
     pub fn motions<R: Send>(
         &self,
         z: &[Vec<f64>],
-        told: impl Fn(CollisionMotion) -> R + Sync,
+        evaluate: impl Fn(CollisionMotion) -> R + Sync,
     ) -> Vec<R> {
         let prepared: Vec<Prepared> =
             z.par_iter().map(|z| self.prepared(self.prior.values(z))).collect();
@@ -148,7 +148,7 @@ impl ForwardModel {
         let striking_paths = simulate_paths(&striking_vehicles, self.limit, |_, path| path);
         simulate_paths(&runs, self.limit, |idx, path| {
             let motion = &prepared[idx];
-            told(CollisionMotion {
+            evaluate(CollisionMotion {
                 values: motion.values,
                 impact: motion.impact,
                 vehicle: motion.vehicle.clone(),

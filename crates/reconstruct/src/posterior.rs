@@ -316,10 +316,10 @@ impl BudgetItem {
 
     /// What kind of quantity it is.
     pub fn quantity(&self) -> Quantity {
-        let asked = ReconstructedQuantity::ALL.iter().find(|of| of.key() == self.known);
+        let reconstructed = ReconstructedQuantity::ALL.iter().find(|of| of.key() == self.known);
         let open = Latent::ALL.iter().find(|of| of.key() == self.known);
         let open = open.map_or(Quantity::Ratio, |latent| latent.quantity());
-        asked.map_or(open, |quantity| quantity.quantity())
+        reconstructed.map_or(open, |quantity| quantity.quantity())
     }
 
     /// The measurement with its standard deviation, such as `friction test, ± 0.02`.
@@ -331,18 +331,18 @@ impl BudgetItem {
 
 impl QuantityEstimate {
     /// Which quantity it is.
-    fn asked(&self) -> Option<ReconstructedQuantity> {
+    fn reconstructed(&self) -> Option<ReconstructedQuantity> {
         ReconstructedQuantity::ALL.iter().copied().find(|quantity| quantity.key() == self.name)
     }
 
     /// What it is called.
     pub fn label(&self) -> &'static str {
-        self.asked().map_or(self.name, ReconstructedQuantity::label)
+        self.reconstructed().map_or(self.name, ReconstructedQuantity::label)
     }
 
     /// What kind of quantity it is.
     pub fn quantity(&self) -> Quantity {
-        self.asked().map_or(Quantity::Ratio, ReconstructedQuantity::quantity)
+        self.reconstructed().map_or(Quantity::Ratio, ReconstructedQuantity::quantity)
     }
 
     /// Intervals of equally likely values; `None` without values.
@@ -365,12 +365,12 @@ impl ReconstructionTarget {
     /// each particle has turned at rest, rad.
     pub fn fit(&self, particles: &Particles) -> (Vec<EvidenceFit>, Vec<f64>) {
         let every = particles.z.len().div_ceil(FIT_PARTICLES).max(1);
-        let told = self.model().motions(&particles.z, |motion| {
+        let evaluated = self.model().motions(&particles.z, |motion| {
             let turned = motion.path.points.last().map_or(f64::NAN, |last| last.yaw_rad);
             (self.terms(&motion), turned)
         });
-        let turned = told.iter().map(|(_, turned)| *turned).collect();
-        let terms: Vec<_> = told.into_iter().step_by(every).map(|(terms, _)| terms).collect();
+        let turned = evaluated.iter().map(|(_, turned)| *turned).collect();
+        let terms: Vec<_> = evaluated.into_iter().step_by(every).map(|(terms, _)| terms).collect();
         (EvidenceFit::from_particles(&terms), turned)
     }
 }

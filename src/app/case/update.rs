@@ -27,16 +27,16 @@ const MAX_RECENT: usize = 10;
 impl State {
     /// Whether the case has something that is not in its file.
     pub fn is_case_changed(&self) -> bool {
-        self.case.is_changed(&self.asked_project())
+        self.case.is_changed(&self.project_of_questions())
     }
 
     /// What the case holds, by its content.
     pub(in crate::app) fn case_fingerprint(&self) -> String {
-        self.case.fingerprint(&self.asked_project())
+        self.case.fingerprint(&self.project_of_questions())
     }
 
     /// The project as it is asked: its questions in step, and no force predicted that cannot be.
-    fn asked_project(&self) -> Project {
+    fn project_of_questions(&self) -> Project {
         let mut project = self.project.clone();
         project.predict_motion.force = self.driving_force();
         project.keep_in_step();
@@ -45,13 +45,13 @@ impl State {
 
     /// Whether no variant of the case asks anything.
     pub(in crate::app) fn asks_nothing(&self) -> bool {
-        let file = self.case.with_shown(&self.asked_project());
+        let file = self.case.with_shown(&self.project_of_questions());
         file.variants.iter().all(|variant| variant.questions.is_empty())
     }
 
     /// The files that the case rests on, with its own and with everything that is open.
     pub(in crate::app) fn files_in_use(&self) -> Vec<PathBuf> {
-        let file = self.case.with_shown(&self.asked_project());
+        let file = self.case.with_shown(&self.project_of_questions());
         let sources = self.session.sources.iter().map(|source| source.path.clone());
         let own = self.case.path.iter().cloned();
         file.input_files().into_iter().chain(sources).chain(own).collect()
@@ -72,7 +72,7 @@ impl State {
 
     /// Writes the project into the variant that is shown.
     fn capture(&mut self) {
-        self.case.file = self.case.with_shown(&self.asked_project());
+        self.case.file = self.case.with_shown(&self.project_of_questions());
         let models = self.models_in_use();
         if !models.is_empty() {
             self.case.file.models = models;

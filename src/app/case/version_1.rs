@@ -140,9 +140,9 @@ pub(super) fn take_forms(
         wheels: wheels.as_ref().map(series),
         ..Drive::default()
     };
-    let mut asked = AskedKinds::default();
-    variant.questions.iter().for_each(|request| asked.add(request));
-    if !asked.has_motion
+    let mut kinds = QuestionKinds::default();
+    variant.questions.iter().for_each(|request| kinds.add(request));
+    if !kinds.has_motion
         && let Some(subject) = &shown.subject
     {
         let source = source_of(subject, (&shown, &start), &series);
@@ -150,11 +150,11 @@ pub(super) fn take_forms(
         variant.questions.push(forecast(&simulate, &shown).into());
         variant.questions.push(simulate.into());
     }
-    if let Some(scenario) = shown.scenario.clone().filter(|_| !asked.has_scenario) {
+    if let Some(scenario) = shown.scenario.clone().filter(|_| !kinds.has_scenario) {
         let scenario = ScenarioChoice::Inline(scenario);
         variant.unasked.push(ImpactRequest { scenario, paper: false }.into());
     }
-    variant.unasked.extend(force_question(&shown).filter(|_| !asked.has_force).map(Request::from));
+    variant.unasked.extend(force_question(&shown).filter(|_| !kinds.has_force).map(Request::from));
     let beside = Beside {
         channel_class: shown.channel_class,
         recording: shown.recording.map(|FormsRecording { path, offset_s }| OverlaidRecording {
@@ -178,13 +178,13 @@ pub(super) fn take_forms(
 
 /// What the questions of a variant are about.
 #[derive(Default)]
-struct AskedKinds {
+struct QuestionKinds {
     has_motion: bool,
     has_scenario: bool,
     has_force: bool,
 }
 
-impl AskedKinds {
+impl QuestionKinds {
     fn add(&mut self, request: &Request) {
         match request {
             Request::Impact(_) => self.has_scenario = true,

@@ -20,7 +20,7 @@ pub struct Costs {
     /// The forms that the last frame has drawn.
     pub(super) seen: Vec<CostPlace>,
     /// The question of each form, and since when it is that, in seconds of the window's clock.
-    asked: BTreeMap<CostPlace, (Request, f64)>,
+    current: BTreeMap<CostPlace, (Request, f64)>,
     pub(super) running: Option<(CostPlace, Request)>,
     measured: BTreeMap<CostPlace, (Request, MeasuredCost)>,
 }
@@ -34,7 +34,7 @@ impl Costs {
     /// Makes a form be measured again, at once.
     pub fn measure_again(&mut self, place: CostPlace) {
         self.measured.remove(&place);
-        if let Some((_, since)) = self.asked.get_mut(&place) {
+        if let Some((_, since)) = self.current.get_mut(&place) {
             *since = f64::NEG_INFINITY;
         }
     }
@@ -46,9 +46,9 @@ impl Costs {
 
     /// Returns what a form costs with its present settings; `None` if it has not been measured.
     pub fn get(&self, place: CostPlace) -> Option<&MeasuredCost> {
-        let (asked, _) = self.asked.get(&place)?;
+        let (current, _) = self.current.get(&place)?;
         let (question, cost) = self.measured.get(&place)?;
-        (question == asked).then_some(cost)
+        (question == current).then_some(cost)
     }
 
     /// Takes what has been measured.
@@ -70,19 +70,20 @@ impl Costs {
     /// Takes the present question of a form.
     pub(super) fn ask(&mut self, place: CostPlace, question: Option<Request>, now_s: f64) {
         let Some(question) = question else {
-            self.asked.remove(&place);
+            self.current.remove(&place);
             return;
         };
-        if self.asked.get(&place).is_none_or(|(asked, _)| *asked != question) {
-            self.asked.insert(place, (question, now_s));
+        if self.current.get(&place).is_none_or(|(current, _)| *current != question) {
+            self.current.insert(place, (question, now_s));
         }
     }
 
     /// Cancels a measurement of a form that has changed or is out of view.
     pub(super) fn drop_outdated(&mut self, tasks: &mut Tasks) {
         if let Some((place, question)) = &self.running {
-            let is_asked = self.asked.get(place).is_some_and(|(asked, _)| asked == question);
-            if !is_asked || !self.seen.contains(place) {
+            let is_current =
+                self.current.get(place).is_some_and(|(current, _)| current == question);
+            if !is_current || !self.seen.contains(place) {
                 self.stop(tasks);
             }
         }
@@ -99,11 +100,11 @@ impl Costs {
             return None;
         }
         let is_due = |place: &&CostPlace| {
-            let asked = self.asked.get(place);
-            let has_rested = asked.is_some_and(|(_, since)| now_s - since >= REST.as_secs_f64());
+            let current = self.current.get(place);
+            let has_rested = current.is_some_and(|(_, since)| now_s - since >= REST.as_secs_f64());
             has_rested && self.get(**place).is_none()
         };
         let place = self.seen.iter().find(is_due)?;
-        Some((*place, self.asked.get(place)?.0.clone()))
+        Some((*place, self.current.get(place)?.0.clone()))
     }
 }

@@ -44,7 +44,7 @@ impl State {
     }
 
     fn measure(&mut self, place: CostPlace, question: Request) {
-        let (asked, library) = (question.clone(), self.session.library.clone());
+        let (request, library) = (question.clone(), self.session.library.clone());
         self.session.costs.running = Some((place, question.clone()));
         self.session.tasks.start_in_background(
             TaskKey::Cost,
@@ -53,7 +53,7 @@ impl State {
                     Event::Progress(progress) => report(progress),
                     Event::Training(_) | Event::Sampling(_) => std::ops::ControlFlow::Continue(()),
                 };
-                asked.cost(&library, &mut observer).map_err(|error| error_chain(&error))
+                request.cost(&library, &mut observer).map_err(|error| error_chain(&error))
             },
             move |result| Command::Measured(place, Box::new(question), result),
         );

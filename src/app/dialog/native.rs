@@ -20,10 +20,14 @@ impl Purpose {
     /// The command that follows once paths are known.
     ///
     /// - `was_asked`: whether the user was asked already if a file of that name is to be replaced.
-    pub(in crate::app) fn command(&self, paths: Vec<PathBuf>, was_asked: bool) -> Option<Command> {
+    pub(in crate::app) fn command(
+        &self,
+        paths: Vec<PathBuf>,
+        is_confirmed: bool,
+    ) -> Option<Command> {
         let first = paths.first().cloned()?;
         let written = |ending: &str, command: &dyn Fn(PathBuf) -> Command| {
-            written((&first, ending), was_asked, command)
+            written((&first, ending), is_confirmed, command)
         };
         Some(match self {
             Self::Folder | Self::Files | Self::Ground | Self::OpenModel | Self::OpenComparison => {
@@ -89,10 +93,10 @@ impl Answer {
 ///
 /// - `purpose`: decides which dialog is opened and which command follows.
 pub fn ask_for_path(purpose: Purpose, tasks: &mut Tasks) {
-    let asked = purpose.clone();
+    let of_dialog = purpose.clone();
     let work = move |_: &mut ProgressCallback<'_>| {
         let start = Instant::now();
-        let paths = pollster::block_on(ask(&asked));
+        let paths = pollster::block_on(ask(&of_dialog));
         Ok(Answer { paths, took: start.elapsed() })
     };
     tasks.start(TaskKey::FileDialog, work, move |answer| match answer {
@@ -106,11 +110,11 @@ pub fn ask_for_path(purpose: Purpose, tasks: &mut Tasks) {
 /// to a name without one.
 fn written(
     (chosen, ending): (&Path, &str),
-    was_asked: bool,
+    is_confirmed: bool,
     command: &dyn Fn(PathBuf) -> Command,
 ) -> Command {
     match chosen.extension() {
-        Some(_) if was_asked => Command::Replace(Box::new(command(chosen.to_owned()))),
+        Some(_) if is_confirmed => Command::Replace(Box::new(command(chosen.to_owned()))),
         Some(_) => command(chosen.to_owned()),
         None => command(chosen.with_extension(ending)),
     }

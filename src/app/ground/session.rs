@@ -15,7 +15,7 @@ use impactlab_document::scene::LoadedGround;
 #[derive(Default)]
 pub struct GroundSession {
     /// What was asked for last.
-    asked: Option<PathBuf>,
+    path: Option<PathBuf>,
     is_loading: bool,
     read: Option<Arc<LoadedGround>>,
     /// The ground with its orthophoto where the project puts it.
@@ -51,19 +51,19 @@ impl GroundSession {
         map: Option<PixelMap>,
         tasks: &mut Tasks,
     ) {
-        if file != self.asked.as_ref() {
+        if file != self.path.as_ref() {
             self.forget();
-            self.asked = file.cloned();
+            self.path = file.cloned();
             if let Some(path) = file.cloned() {
                 self.is_loading = true;
-                let asked = path.clone();
+                let read_path = path.clone();
                 tasks.start(
                     TaskKey::Ground,
                     move |_| match LoadedGround::load(&path) {
                         Ok(ground) => Ok(Arc::new(ground)),
                         Err(error) => Err(error_chain(&error)),
                     },
-                    |result| Command::Ground(GroundCommand::Read(asked, result)),
+                    |result| Command::Ground(GroundCommand::Read(read_path, result)),
                 );
             }
         }
@@ -86,7 +86,7 @@ impl GroundSession {
         result: Result<Arc<LoadedGround>, String>,
         extent_m: [[f64; 2]; 2],
     ) -> Vec<(Severity, String)> {
-        if !self.is_loading || self.asked.as_deref() != Some(path) {
+        if !self.is_loading || self.path.as_deref() != Some(path) {
             return Vec::new();
         }
         self.is_loading = false;
@@ -95,9 +95,9 @@ impl GroundSession {
                 let notes = ground.notes.iter().map(|note| (Severity::Info, note.clone()));
                 let far = ground.far_notes(extent_m);
                 let far = far.into_iter().map(|note| (Severity::Warning, note));
-                let said = notes.chain(far).collect();
+                let messages = notes.chain(far).collect();
                 self.read = Some(ground);
-                said
+                messages
             }
             Err(why) => {
                 self.problem = Some(why.clone());

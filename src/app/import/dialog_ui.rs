@@ -40,7 +40,7 @@ impl ImportDialog {
     ///
     /// - `asked`: what a file does not say: how the struck vehicle moves and where the force acts, and
     ///   which vehicle it is.
-    pub fn ui(&mut self, ui: &mut Ui, asked: &mut Project, commands: &mut Vec<Command>) {
+    pub fn ui(&mut self, ui: &mut Ui, project: &mut Project, commands: &mut Vec<Command>) {
         let window = ui.ctx().content_rect().size();
         let width = WIDTH.min(window.x - WINDOW_MARGIN);
         ui.set_width(width);
@@ -63,7 +63,7 @@ impl ImportDialog {
                 ui.add_space(GAP);
                 ui.vertical(|ui| {
                     self.preview_ui(ui);
-                    self.asked_ui(ui, asked);
+                    self.left_open_ui(ui, project);
                 });
             });
         });
@@ -303,7 +303,7 @@ impl ImportDialog {
     }
 
     /// Draws what a force or a motion does not say about the struck vehicle.
-    fn asked_ui(&self, ui: &mut Ui, project: &mut Project) {
+    fn left_open_ui(&self, ui: &mut Ui, project: &mut Project) {
         let Some((_, Ok(preview))) = &self.preview else { return };
         let title = match preview.kind {
             FileKind::Force => "What a force does not say about the struck vehicle",

@@ -33,9 +33,9 @@ pub(super) fn file_start_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         file_ui(ui, "Torques at the wheels", wheels, commands);
     });
     ui.strong("For single files and cases of a force");
-    let is_asked = project.subject().is_some_and(|of| of.takes_ending(&session.sources));
+    let takes_ending = project.subject().is_some_and(|of| of.takes_ending(&session.sources));
     let Project { simulate, beside, .. } = &mut **project;
-    let ending = if is_asked { &mut simulate.ending } else { &mut beside.ending };
+    let ending = if takes_ending { &mut simulate.ending } else { &mut beside.ending };
     ending_form(ui, "struck vehicle", (ending, &mut beside.steering_ratio), view.units);
 }
 

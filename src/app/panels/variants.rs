@@ -72,11 +72,11 @@ fn row_ui(ui: &mut Ui, variant: &AnsweredVariant, units: UnitSystem, commands: &
         let text = RichText::new(cell).monospace();
         ui.label(if variant.is_waiting { text.weak() } else { text });
     }
-    let said = warning_texts(variant);
+    let texts = warning_texts(variant);
     let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-    match said.is_empty() {
+    match texts.is_empty() {
         true => ui.label(warnings),
-        false => ui.colored_label(warning, warnings).on_hover_text(said.join("\n")),
+        false => ui.colored_label(warning, warnings).on_hover_text(texts.join("\n")),
     };
     ui.end_row();
 }
@@ -114,12 +114,12 @@ fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 8] {
 fn warning_texts(variant: &AnsweredVariant) -> Vec<String> {
     let simulated = variant.simulation.iter().flat_map(|answer| &answer.report.caveats);
     let forecast = variant.forecast.iter().flat_map(|answer| &answer.answer.report.caveats);
-    let mut said: Vec<String> = Vec::new();
+    let mut texts: Vec<String> = Vec::new();
     for caveat in simulated.chain(forecast).filter(|caveat| caveat.is_warning()) {
         let text = format!("{}: {}", caveat.kind.label(), caveat.text);
-        if !said.contains(&text) {
-            said.push(text);
+        if !texts.contains(&text) {
+            texts.push(text);
         }
     }
-    said
+    texts
 }

@@ -276,7 +276,7 @@ fn parameters_ui(ui: &mut Ui, vehicle: &VehicleParameters) {
                 let name = format!("{table}.{key}");
                 let mark = match vehicle.stated.get(&name) {
                     _ if vehicle.estimates.contains_key(&name) => " (estimate)".to_owned(),
-                    Some(said) => format!(" ({said})"),
+                    Some(note) => format!(" ({note})"),
                     None => String::new(),
                 };
                 value_row(ui, key, &format!("{value}{mark}"));

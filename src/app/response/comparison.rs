@@ -154,8 +154,8 @@ pub fn write_comparison_folder(
     report: &CompareReport,
 ) -> Result<(), DataError> {
     let output = OutputFolder::begin(folder, existing, &["comparison.json", "comparison.md"])?;
-    let said = report.caveats.text();
-    write_comparison(output.staging(), &report.comparison, said.as_deref())?;
+    let restrictions = report.caveats.text();
+    write_comparison(output.staging(), &report.comparison, restrictions.as_deref())?;
     let Provenance { seed, model_digests: models, .. } = report.provenance_with_seed();
     output.finish(RunRecord { seed, models, ..RunRecord::default() })
 }

@@ -38,7 +38,7 @@ impl TrainingDiary {
     }
 
     /// Adds the planned number of epochs to the note once it is known.
-    pub fn told(&mut self, report: &TrainingReport) {
+    pub fn record(&mut self, report: &TrainingReport) {
         if let TrainingReport::Epoch(epoch) = report
             && self.note.plan.is_none()
         {

@@ -18,14 +18,14 @@ impl State {
         let (file, session) = (&self.case.file, &mut self.session);
         let is_other = |variant: &&Variant| variant.name != file.shown;
         let Session { other_variants, library, .. } = session;
-        let is_asked = self.view.shows_all_variants;
+        let shows_all = self.view.shows_all_variants;
         other_variants
-            .retain(|name, _| is_asked && *name != file.shown && file.variant(name).is_some());
+            .retain(|name, _| shows_all && *name != file.shown && file.variant(name).is_some());
         for answers in other_variants.values_mut() {
             answers.simulation.poll();
             answers.forecast.poll();
         }
-        if !is_asked || is_busy || other_variants.values().any(VariantAnswers::is_waiting) {
+        if !shows_all || is_busy || other_variants.values().any(VariantAnswers::is_waiting) {
             return;
         }
         for variant in file.variants.iter().filter(is_other) {

@@ -107,7 +107,8 @@ fn table(
     restrictions: &BTreeSet<String>,
 ) -> String {
     let rows = figures.iter().flat_map(rows).map(|row| row.join("\t"));
-    let said = restrictions.iter().map(|text| format!("Restrictions\t{text}"));
-    let lines: Vec<String> = std::iter::once(COLUMNS.join("\t")).chain(rows).chain(said).collect();
+    let restriction_lines = restrictions.iter().map(|text| format!("Restrictions\t{text}"));
+    let lines: Vec<String> =
+        std::iter::once(COLUMNS.join("\t")).chain(rows).chain(restriction_lines).collect();
     lines.join("\n") + "\n"
 }

@@ -95,8 +95,8 @@ pub(in crate::cli) fn run(
     let out = args.out.as_deref().map(|folder| (folder, args.overwrite.into(), known));
     let answer = console.ask_into(&request, out, |output, answer| {
         let report = &answer.report;
-        let said = report.caveats.text();
-        write_comparison(output.staging(), &report.comparison, said.as_deref())?;
+        let restrictions = report.caveats.text();
+        write_comparison(output.staging(), &report.comparison, restrictions.as_deref())?;
         Ok(answer.report.provenance_with_seed())
     })?;
     let Some(answer) = answer else { return Ok(Verdict::Clean) };

@@ -121,8 +121,8 @@ fn format_of(path: &Path) -> Result<FormatArg, CliError> {
 fn write(args: &ExportArgs, (format, built): (FormatArg, &BuiltScene)) -> Result<(), CliError> {
     let BuiltScene { scene, analysis, .. } = built;
     let (path, existing) = (&args.out, args.overwrite.into());
-    let said = scene.caveats.text();
-    let case = (analysis, said.as_deref());
+    let restrictions = scene.caveats.text();
+    let case = (analysis, restrictions.as_deref());
     let mut bytes = Vec::new();
     match format {
         FormatArg::Dxf => {
@@ -139,7 +139,12 @@ fn write(args: &ExportArgs, (format, built): (FormatArg, &BuiltScene)) -> Result
             let simulated = analysis.simulation.as_ref().map(|motion| &motion.series);
             let unknown = || ExchangeError::Unknown { name: analysis.name.clone(), what: "motion" };
             let series = simulated.or(analysis.reference.as_ref()).ok_or_else(unknown)?;
-            return Ok(write_restricted_series_csv(path, existing, series, said.as_deref())?);
+            return Ok(write_restricted_series_csv(
+                path,
+                existing,
+                series,
+                restrictions.as_deref(),
+            )?);
         }
     }
     write_atomically(path, existing, |out: &mut dyn Write| -> io::Result<()> {

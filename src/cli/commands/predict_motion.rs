@@ -138,7 +138,7 @@ pub(in crate::cli) fn run(
     if says_itself && ending.is_some() {
         return Err(CliError::EndingOfDataset);
     }
-    let asked_s = args.duration.unwrap_or(match args.until_rest {
+    let wanted_s = args.duration.unwrap_or(match args.until_rest {
         true => REST_LIMIT.high,
         false => DEFAULT_DURATION_S,
     });
@@ -146,7 +146,7 @@ pub(in crate::cli) fn run(
         motion: SimulateRequest {
             vehicle: VehicleArg::choice(&args.vehicle),
             friction: args.friction,
-            duration_s: asked_s,
+            duration_s: wanted_s,
             until_rest: args.until_rest,
             ending,
             vehicle_draws: args.vehicle_draws,
@@ -158,7 +158,7 @@ pub(in crate::cli) fn run(
         seed: args.seed,
     };
     if args.scenario.is_some() {
-        check_window_end(args.window, asked_s)?;
+        check_window_end(args.window, wanted_s)?;
     }
     let mut files = Vec::new();
     let existing = OverwriteArg::from_flag(args.overwrite).into();

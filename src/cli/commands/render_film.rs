@@ -168,14 +168,14 @@ fn reconstruction(
 /// The instants of the film; an end just after the motion is moved to its end, which is noted.
 fn timing(args: &FilmArgs, scene: &Scene, notes: &mut Vec<String>) -> FilmTiming {
     let whole = FilmTiming::from_scene(scene);
-    let asked = FilmTiming {
+    let wanted = FilmTiming {
         frames_per_s: args.fps,
         from_s: args.from.unwrap_or(whole.from_s),
         to_s: args.to.unwrap_or(whole.to_s),
         speed: args.playback,
         sections: args.slow.clone(),
     };
-    let (timing, before_s) = asked.ending_with_scene(scene);
+    let (timing, before_s) = wanted.ending_with_scene(scene);
     notes.extend(before_s.map(|before_s| {
         format!("--to is {before_s} s: the film ends with the motion, at {:.4} s", timing.to_s)
     }));

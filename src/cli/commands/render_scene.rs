@@ -213,9 +213,11 @@ pub(super) fn build(
         caveats: &caveats,
     });
     if args.ghosts > 0 {
-        let asked = (request, args.ghosts, density_s);
-        let said = add_ghosts(asked, (&mut scene, &mut caveats), console)?;
-        notes.extend(said.into_iter().filter(|note| !notes.contains(note)).collect::<Vec<_>>());
+        let ghosts = (request, args.ghosts, density_s);
+        let ghost_notes = add_ghosts(ghosts, (&mut scene, &mut caveats), console)?;
+        notes.extend(
+            ghost_notes.into_iter().filter(|note| !notes.contains(note)).collect::<Vec<_>>(),
+        );
         scene.caveats = caveats;
     }
     if let Some(path) = &args.vehicle.site {

@@ -238,8 +238,8 @@ fn simulate_one(
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     let (report, out) = (&answer.report, args.out.as_deref());
     if let (Some(path), Some(motion)) = (out, &answer.analysis.simulation) {
-        let said = report.caveats.text();
-        write_restricted_series_csv(path, existing, &motion.series, said.as_deref())?;
+        let restrictions = report.caveats.text();
+        write_restricted_series_csv(path, existing, &motion.series, restrictions.as_deref())?;
     }
     let printed = PrintedSimulation { report, out };
     console.print(&printed, |text| {
@@ -266,12 +266,12 @@ fn simulate_dataset(
     let answer = console.ask_into(&request, into, |output, answer| {
         for case in &answer.replay.cases {
             let path = output.staging().join(format!("{}.csv", case.case));
-            let said = answer.report.caveats_of(&case.case).text();
+            let restrictions = answer.report.caveats_of(&case.case).text();
             write_restricted_series_csv(
                 &path,
                 Existing::Refuse,
                 &case.motion.series,
-                said.as_deref(),
+                restrictions.as_deref(),
             )?;
         }
         Ok(answer.report.provenance.clone())

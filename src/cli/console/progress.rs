@@ -26,7 +26,7 @@ pub(in crate::cli) fn under_bar<T>(work: impl FnOnce(&mut Observer<'_>) -> T) ->
     let result = work(&mut |event| {
         let (progress, line) = match event {
             Event::Progress(progress) => (progress, None),
-            Event::Training(told) => training(told),
+            Event::Training(report) => training(report),
             Event::Sampling(_) => return ControlFlow::Continue(()),
         };
         if let (false, Some(line)) = (is_seen, line) {
@@ -43,18 +43,19 @@ pub(in crate::cli) fn under_bar<T>(work: impl FnOnce(&mut Observer<'_>) -> T) ->
 }
 
 /// How far a training is, and the line that is due, if any.
-fn training(told: &TrainingReport) -> (Progress, Option<String>) {
-    let (done, total, message) = match told {
+fn training(report: &TrainingReport) -> (Progress, Option<String>) {
+    let (done, total, message) = match report {
         TrainingReport::Fit { what, done, n_fits } => (*done, *n_fits, what.clone()),
         TrainingReport::Epoch(epoch) => {
             let (done, total) = epoch.progress();
             (done, total, epoch.to_string())
         }
     };
-    let line = match told {
+    let line = match report {
         TrainingReport::Fit { .. } => None,
-        TrainingReport::Epoch(told) => {
-            let (epoch, n, seconds) = (told.summary.epoch, told.n_epochs, told.summary.seconds);
+        TrainingReport::Epoch(report) => {
+            let (epoch, n, seconds) =
+                (report.summary.epoch, report.n_epochs, report.summary.seconds);
             let is_due = epoch.is_multiple_of(EPOCHS_PER_LINE) || epoch == 1;
             let pace = seconds.map_or(String::new(), |seconds| format!(" ({seconds:.2} s)"));
             is_due.then(|| format!("epoch {epoch} of {n}: {message}{pace}"))

@@ -19,13 +19,13 @@ pub(in crate::cli) fn write_force_prediction(
 ) -> Result<(), CliError> {
     let forecast = &answer.forecast;
     let restrictions = answer.report.caveats.text();
-    let said = restrictions.as_deref();
-    write_bands(&path.join("bands.csv"), (&forecast.mean, &forecast.bands), said)?;
+    let restrictions = restrictions.as_deref();
+    write_bands(&path.join("bands.csv"), (&forecast.mean, &forecast.bands), restrictions)?;
     let write_curve = |name: String, curve: &ForceCurve| -> Result<(), CliError> {
         let path = path.join(name);
         let unwritable = |source| StudyError::Series { path: path.clone(), source };
         let series = curve.to_history().to_series().map_err(unwritable)?;
-        Ok(write_restricted_series_csv(&path, Existing::Refuse, &series, said)?)
+        Ok(write_restricted_series_csv(&path, Existing::Refuse, &series, restrictions)?)
     };
     write_curve("mean.csv".to_owned(), &forecast.mean)?;
     for (i, sample) in forecast.curves.iter().enumerate() {

@@ -36,11 +36,11 @@ pub(in crate::cli) fn write_motion_prediction(
     let bands = MotionBands::new(&forecast.distribution, 1);
     let caveats = answer.report.caveats.clone();
     let restrictions = caveats.text();
-    let said = restrictions.as_deref();
-    write_trajectory(&path(&trajectory), (forecast, &bands), said)?;
+    let restrictions = restrictions.as_deref();
+    write_trajectory(&path(&trajectory), (forecast, &bands), restrictions)?;
     let window_s = wanted.window_s.unwrap_or([forecast.outcome.time_s; 2]);
     let density = DensityTask::new(&forecast.distribution, window_s).on_cpu();
-    write_density(&path(&map), &density, said)?;
+    write_density(&path(&map), &density, restrictions)?;
     let mut files = vec![trajectory, map];
     let shown = (forecast.outcome.time_s, wanted.units);
     let input = MotionForecastFigure {

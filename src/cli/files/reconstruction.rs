@@ -32,9 +32,9 @@ pub(in crate::cli) fn write_reconstruction(
         .collect();
     let rows = (0..posterior.values.len()).map(|idx| {
         let (values, impact) = (&posterior.values[idx], &posterior.impacts[idx]);
-        let asked = quantities.iter().map(|quantity| quantity.value(values, impact));
+        let estimates = quantities.iter().map(|quantity| quantity.value(values, impact));
         let open = open.iter().map(|latent| values.get(*latent));
-        asked
+        estimates
             .chain(open)
             .chain([particles.log_likelihood[idx]])
             .map(|value| value.to_string())

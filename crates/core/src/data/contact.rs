@@ -281,15 +281,15 @@ mod tests {
             for seed in 0..5 {
                 let noisy = noisy(&clean, share, seed);
                 let (from, to) = contact_interval(&noisy).unwrap();
-                let told = format!("noise {share}, seed {seed}: {from} to {to} s");
-                assert!((from - start_s).abs() < 0.015, "{told}, without noise from {start_s} s");
-                assert!((to - end_s).abs() < 0.005, "{told}, without noise to {end_s} s");
+                let record = format!("noise {share}, seed {seed}: {from} to {to} s");
+                assert!((from - start_s).abs() < 0.015, "{record}, without noise from {start_s} s");
+                assert!((to - end_s).abs() < 0.005, "{record}, without noise to {end_s} s");
                 let ([fx, fy], _) = noisy.cumulative().mean_over(from, to);
                 let impulse = [fx, fy].map(|mean_n| mean_n * (to - from));
                 let off = (impulse[0] - x).hypot(impulse[1] - y) / x.hypot(y);
                 let limit = if share < 0.04 { 0.01 } else { 0.02 };
-                assert!(off < limit, "{told}: the impulse is off by {:.2} %", 100.0 * off);
-                assert_eq!(cut_at_s(&noisy), None, "{told}");
+                assert!(off < limit, "{record}: the impulse is off by {:.2} %", 100.0 * off);
+                assert_eq!(cut_at_s(&noisy), None, "{record}");
             }
         }
     }

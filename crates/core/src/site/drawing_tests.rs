@@ -140,8 +140,8 @@ fn what_is_off_frozen_or_invisible_is_neither_drawn_nor_counted() {
     assert_eq!(ends, [[3.0, 1.0], [5.0, 0.0]], "{:?}", read.lines);
     assert_eq!(read.left_out.get("Text"), Some(&1), "{:?}", read.left_out);
     file.layers = Some(vec!["FROZEN".to_owned()]);
-    let asked = read_drawing(&file, &SiteOrigin::default()).unwrap();
-    assert_eq!(asked.lines.len(), 1, "a layer that is asked for is drawn");
+    let chosen = read_drawing(&file, &SiteOrigin::default()).unwrap();
+    assert_eq!(chosen.lines.len(), 1, "a layer that is asked for is drawn");
 }
 
 #[test]

@@ -232,8 +232,8 @@ impl Site {
             format!("orthophoto of {width} x {height} pixels of {pixel_m:.4} m{place}")
         });
         let drawing = self.drawing.as_ref().map(|file| {
-            let said = drawing.map(|summary| summary.contents()).unwrap_or_default();
-            format!("drawing {}{said}", file_name(&file.file))
+            let contents = drawing.map(|summary| summary.contents()).unwrap_or_default();
+            format!("drawing {}{contents}", file_name(&file.file))
         });
         let zones = counted(self.friction_zones.len(), "friction zone");
         let counts = [counted(self.lanes.len(), "lane"), counted(self.kerbs.len(), "kerb"), zones];

@@ -277,40 +277,43 @@ mod tests {
 
     #[test]
     fn the_lists_of_earlier_versions_are_written_from_the_caveats() {
-        let told = serde_json::to_value(caveats()).unwrap();
+        let written = serde_json::to_value(caveats()).unwrap();
         let texts = |list: &str, key: &str| -> Vec<Value> {
-            told[list].as_array().unwrap().iter().map(|item| item[key].clone()).collect()
+            written[list].as_array().unwrap().iter().map(|item| item[key].clone()).collect()
         };
         let kinds = ["outside_domain", "not_at_rest", "assumed", "not_used"];
         assert_eq!(texts("badges", "kind"), kinds);
         let summary = "parameter of the vehicle; speed before the impact";
-        assert_eq!(told["badges"][2]["text"], summary);
-        assert_eq!(told["badges"][3]["text"], "restitution, 0.3");
+        assert_eq!(written["badges"][2]["text"], summary);
+        assert_eq!(written["badges"][3]["text"], "restitution, 0.3");
         assert_eq!(
-            told["badges"][1],
+            written["badges"][1],
             json!({"kind": "not_at_rest", "text": "still moving", "value": 3.0,
                    "quantity": "speed at the end [m/s]", "range": [null, 0.05]})
         );
         assert_eq!(
-            told["assumptions"][3],
+            written["assumptions"][3],
             json!({"quantity": "not_used", "value": "restitution, 0.3", "reason": "no effect"})
         );
         let assumed = ["vehicle_parameter", "vehicle_parameter", "speed", "not_used"];
         assert_eq!(texts("assumptions", "quantity"), assumed);
-        assert_eq!(told["notes"], json!(["sampled at 1 kHz"]));
-        assert_eq!(told["caveats"].as_array().unwrap().len(), 7);
-        assert_eq!(told["caveats"][0]["severity"], "info");
+        assert_eq!(written["notes"], json!(["sampled at 1 kHz"]));
+        assert_eq!(written["caveats"].as_array().unwrap().len(), 7);
+        assert_eq!(written["caveats"][0]["severity"], "info");
     }
 
     #[test]
     fn reports_of_this_and_of_earlier_versions_are_read_whole() {
-        let mut told = serde_json::to_value(caveats()).unwrap();
-        assert_eq!(serde_json::from_value::<Caveats>(told.clone()).unwrap(), caveats());
-        told.as_object_mut().unwrap().remove("caveats");
-        let read: Caveats = serde_json::from_value(told.clone()).unwrap();
+        let mut written = serde_json::to_value(caveats()).unwrap();
+        assert_eq!(serde_json::from_value::<Caveats>(written.clone()).unwrap(), caveats());
+        written.as_object_mut().unwrap().remove("caveats");
+        let read: Caveats = serde_json::from_value(written.clone()).unwrap();
         assert_eq!(read.text(), caveats().text());
         assert_eq!(read.iter().count(), caveats().iter().count());
-        told["badges"][0]["kind"] = json!("of_a_later_version");
-        assert!(serde_json::from_value::<Caveats>(told).is_err(), "what is not known is an error");
+        written["badges"][0]["kind"] = json!("of_a_later_version");
+        assert!(
+            serde_json::from_value::<Caveats>(written).is_err(),
+            "what is not known is an error"
+        );
     }
 }

@@ -107,7 +107,7 @@ pub struct PathLimit {
 pub fn simulate_paths<R: Send>(
     runs: &[SimulationRun<'_>],
     limit: PathLimit,
-    told: impl Fn(usize, Path) -> R + Sync,
+    evaluate: impl Fn(usize, Path) -> R + Sync,
 ) -> Vec<R> {
     let lanes: Vec<Lane<'_>> =
         runs.iter().enumerate().map(|(idx, run)| Lane::new(idx, run)).collect();
@@ -119,7 +119,7 @@ pub fn simulate_paths<R: Send>(
     let ended = parts.into_par_iter().map(|part| {
         let task = Task { waiting: part, limit };
         let paths = pulp::Arch::new().dispatch(task);
-        paths.into_iter().map(|(idx, path)| (idx, told(idx, path))).collect::<Vec<_>>()
+        paths.into_iter().map(|(idx, path)| (idx, evaluate(idx, path))).collect::<Vec<_>>()
     });
     let mut ended: Vec<(usize, R)> = ended.flatten_iter().collect();
     ended.sort_by_key(|(idx, _)| *idx);

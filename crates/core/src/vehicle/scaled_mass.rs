@@ -103,8 +103,8 @@ mod tests {
         let (mass_kg, inertia) = (car().mass.mass_kg, car().mass.yaw_inertia_kg_m2);
         assert_eq!(car().with_mass(mass_kg, Some(inertia)), car(), "nothing differs");
         let lighter = car().with_mass(1500.0, None);
-        let said = &lighter.stated["mass.mass_kg"];
-        assert_eq!(said, "said with the collision, instead of 2000 kg");
+        let source = &lighter.stated["mass.mass_kg"];
+        assert_eq!(source, "said with the collision, instead of 2000 kg");
         assert_eq!(lighter.stated.len(), 1);
         for key in SCALED_KEYS.into_iter().chain([YAW_INERTIA_KEY]) {
             let rule = &lighter.estimates[key];

@@ -109,10 +109,10 @@ fn a_wheel_may_hold_more_along_its_plane_than_across_it() {
     let across = -0.64 * 5e3;
     assert!((fx - 1.15 * across * 0.6).abs() < 1.0 && (fy - across * 0.8).abs() < 1.0, "{fx} {fy}");
     // Rolling straight, it brakes with what would lock it otherwise.
-    let asked = braked(1.1 * 0.8 * 5e3);
-    let [fx, _] = slip(&tire, 20.0, [20.0, 0.0]).force_n(5e3, &asked);
-    assert!((fx + asked.braking_n).abs() < 0.03 * asked.braking_n, "{fx}");
-    let [fx, _] = slip(&TIRE, 20.0, [20.0, 0.0]).force_n(5e3, &asked);
+    let torque = braked(1.1 * 0.8 * 5e3);
+    let [fx, _] = slip(&tire, 20.0, [20.0, 0.0]).force_n(5e3, &torque);
+    assert!((fx + torque.braking_n).abs() < 0.03 * torque.braking_n, "{fx}");
+    let [fx, _] = slip(&TIRE, 20.0, [20.0, 0.0]).force_n(5e3, &torque);
     assert!(-fx < 0.8 * 5e3, "{fx}");
 }
 

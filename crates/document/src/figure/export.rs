@@ -163,8 +163,8 @@ mod tests {
         assert_eq!(reader.headers().unwrap().iter().collect::<Vec<_>>(), expected);
         let column: Vec<String> =
             reader.records().map(|row| row.unwrap().get(3).unwrap().to_owned()).collect();
-        let said = "warning: outside the domain: mass is 9000, it learned 800 to 3000";
-        assert_eq!(column, [said, "", ""]);
+        let restriction = "warning: outside the domain: mass is 9000, it learned 800 to 3000";
+        assert_eq!(column, [restriction, "", ""]);
     }
 
     #[test]

@@ -136,7 +136,7 @@ impl Builder<'_> {
             blocks.push(Block::heading(2, words.notes));
             blocks.extend(notes);
         }
-        let mut told: Vec<(&str, &Part)> = Vec::new();
+        let mut written: Vec<(&str, &Part)> = Vec::new();
         let level = if variants.len() > 1 { 3 } else { 2 };
         for variant in variants {
             if variants.len() > 1 {
@@ -148,7 +148,9 @@ impl Builder<'_> {
                         let error = self.wording.quoted(error);
                         blocks.push(Block::notice(fill(words.no_answer, &[("error", &error)])));
                     }
-                    Ok(part) => blocks.extend(self.answer(level, (&variant.name, part), &mut told)),
+                    Ok(part) => {
+                        blocks.extend(self.answer(level, (&variant.name, part), &mut written))
+                    }
                 }
             }
         }
@@ -163,18 +165,18 @@ impl Builder<'_> {
         &self,
         level: u8,
         (variant, part): (&'b str, &'b Part),
-        told: &mut Vec<(&'b str, &'b Part)>,
+        written: &mut Vec<(&'b str, &'b Part)>,
     ) -> Vec<Block> {
         let words = self.wording.words;
         let mut blocks = vec![Block::heading(level, part.title.clone())];
         let is_same = |of: &Part| {
             (&of.title, &of.answer, &of.caveats) == (&part.title, &part.answer, &part.caveats)
         };
-        if let Some((name, _)) = told.iter().find(|(_, of)| is_same(of)) {
+        if let Some((name, _)) = written.iter().find(|(_, of)| is_same(of)) {
             blocks.push(Block::paragraph(fill(words.same_as, &[("name", name)])));
             return blocks;
         }
-        told.push((variant, part));
+        written.push((variant, part));
         let warnings = part.caveats.iter().filter(|caveat| caveat.is_warning());
         let notices = warnings.map(|caveat| {
             let label = self.wording.term(caveat.kind.label());
@@ -312,13 +314,13 @@ impl Builder<'_> {
     fn sensitivity(&self, variants: &[VariantParts]) -> Vec<Block> {
         let words = self.wording.words;
         let mut blocks = Vec::new();
-        let mut told: Vec<&[Block]> = Vec::new();
+        let mut written: Vec<&[Block]> = Vec::new();
         for variant in variants {
             for part in parts_of(variant).filter(|part| !part.sensitivity.is_empty()) {
-                if told.contains(&&*part.sensitivity) {
+                if written.contains(&&*part.sensitivity) {
                     continue;
                 }
-                told.push(&part.sensitivity);
+                written.push(&part.sensitivity);
                 let name = match variants.len() {
                     1 => part.title.clone(),
                     _ => format!(
@@ -360,13 +362,13 @@ fn methods(variants: &[VariantParts]) -> BTreeSet<Method> {
 
 /// What the parts contribute, each once.
 fn distinct(variants: &[VariantParts], of: impl Fn(&Part) -> &Vec<Block>) -> Vec<Block> {
-    let mut told: Vec<&Vec<Block>> = Vec::new();
+    let mut written: Vec<&Vec<Block>> = Vec::new();
     for blocks in variants.iter().flat_map(parts_of).map(&of) {
-        if !told.contains(&blocks) {
-            told.push(blocks);
+        if !written.contains(&blocks) {
+            written.push(blocks);
         }
     }
-    told.into_iter().flatten().cloned().collect()
+    written.into_iter().flatten().cloned().collect()
 }
 
 /// Blocks, or a sentence if there are none.

@@ -86,12 +86,12 @@ fn sentence(caveat: &Caveat, wording: &Wording) -> String {
     let mut text = wording.quoted(&caveat.text);
     // A whole number of the text, so that 0 is not said by 10.
     let is_number = |c: char| c.is_ascii_digit() || c == '.' || c == '-';
-    let is_said = |value: f64| {
-        let (said, mut numbers) = (significant(value), caveat.text.split(|c| !is_number(c)));
-        numbers.any(|number| number.trim_end_matches('.') == said)
+    let is_in_text = |value: f64| {
+        let (number_text, mut numbers) = (significant(value), caveat.text.split(|c| !is_number(c)));
+        numbers.any(|number| number.trim_end_matches('.') == number_text)
     };
     if let (Some(quantity), Some(value)) = (&caveat.quantity, caveat.value)
-        && !is_said(value)
+        && !is_in_text(value)
     {
         let range = match caveat.range {
             Some([Some(low), Some(high)]) => {

@@ -127,13 +127,13 @@ impl FilmTiming {
     /// - returns the film, and where it ended before if its end was moved, s.
     pub fn ending_with_scene(mut self, scene: &Scene) -> (Self, Option<f64>) {
         let [_, end_s] = interval_s(scene);
-        let asked_s = self.to_s;
+        let wanted_s = self.to_s;
         let frame_s = self.speed / f64::from(self.frames_per_s);
-        let is_moved = asked_s > end_s && asked_s - end_s < frame_s.max(END_TOLERANCE_S);
+        let is_moved = wanted_s > end_s && wanted_s - end_s < frame_s.max(END_TOLERANCE_S);
         if is_moved {
             self.to_s = end_s;
         }
-        (self, is_moved.then_some(asked_s))
+        (self, is_moved.then_some(wanted_s))
     }
 
     /// Duration of the film, s of its own time.
@@ -331,8 +331,8 @@ mod tests {
             (900.0, 30, 1.0, false),
             (f64::NAN, 30, 1.0, false),
         ] {
-            let asked = FilmTiming { frames_per_s, speed, ..timing(to_s, &[]) };
-            let (film, before_s) = asked.ending_with_scene(&whole);
+            let wanted = FilmTiming { frames_per_s, speed, ..timing(to_s, &[]) };
+            let (film, before_s) = wanted.ending_with_scene(&whole);
             assert_eq!(before_s, moved.then_some(to_s), "{to_s} s, {frames_per_s} in a second");
             let is_known = moved || to_s <= 3.99;
             assert_eq!(film.instants(&whole).is_ok(), is_known, "{to_s} s, {frames_per_s}");

@@ -60,8 +60,8 @@ struct Variant {
     applicability: f64,
 }
 
-/// What the network, or the physics alone, says of a canonical scenario.
-struct Said {
+/// The prediction of the network, of the physics alone, or of both for a canonical scenario.
+struct CanonicalPrediction {
     mixture: CurveMixture,
     likely: CurveMixture,
     centre: ForceCurve,
@@ -87,28 +87,28 @@ impl ForceModel {
             variants.iter().map(|variant| variant.probability * variant.applicability).sum::<f64>();
         let is_inside = variants.iter().all(|variant| variant.applicability == 1.0);
         let applicability = if is_inside { 1.0 } else { applicability.clamp(0.0, 1.0) };
-        let (said, bare) = match (is_inside, applicability > 0.0) {
-            (true, _) => (self.said_by_network(&canonical, &variants)?, None),
+        let (prediction, bare) = match (is_inside, applicability > 0.0) {
+            (true, _) => (self.predict_by_network(&canonical, &variants)?, None),
             (false, true) => {
-                let network = self.said_by_network(&canonical, &variants)?;
-                let bare = self.said_by_physics(&canonical, &variants)?;
+                let network = self.predict_by_network(&canonical, &variants)?;
+                let bare = self.predict_by_physics(&canonical, &variants)?;
                 (network.mixed(applicability, &bare.0)?, Some(bare.1))
             }
             (false, false) => {
-                let (bare, is_approaching) = self.said_by_physics(&canonical, &variants)?;
+                let (bare, is_approaching) = self.predict_by_physics(&canonical, &variants)?;
                 (bare, Some(is_approaching))
             }
         };
         let outside = self.domain.outside(&canonical);
         let caveats = caveats(applicability, &outside, bare);
         let turned = |mixture: CurveMixture| if mirrored { mixture.mirrored() } else { mixture };
-        let [px, py] = said.momentum_impulse_n_s;
+        let [px, py] = prediction.momentum_impulse_n_s;
         Ok(ForcePrediction {
-            mixture: turned(said.mixture),
-            likely: turned(said.likely),
-            centre: if mirrored { said.centre.mirrored() } else { said.centre },
+            mixture: turned(prediction.mixture),
+            likely: turned(prediction.likely),
+            centre: if mirrored { prediction.centre.mirrored() } else { prediction.centre },
             momentum_impulse_n_s: [px, if mirrored { -py } else { py }],
-            hooking_probability: said.hooking_probability,
+            hooking_probability: prediction.hooking_probability,
             applicability,
             outside,
             caveats,
@@ -118,11 +118,11 @@ impl ForceModel {
     }
 
     /// The prediction of the network alone.
-    fn said_by_network(
+    fn predict_by_network(
         &self,
         canonical: &ForceScenario,
         variants: &[Variant],
-    ) -> Result<Said, ForceError> {
+    ) -> Result<CanonicalPrediction, ForceError> {
         let n_bodies = self.bodies().len();
         let centre =
             |variant: &Variant| self.centre.curve(canonical, variant.contact_m, variant.body_idx);
@@ -162,7 +162,7 @@ impl ForceModel {
         let [likely, mixture] = [likely, CurveMixture::new(components)?]
             .map(|mixture| self.record.detail.variance_factors.apply(mixture));
         let curves = centres.iter().map(|centre| &centre.curve);
-        Ok(Said {
+        Ok(CanonicalPrediction {
             mixture,
             likely,
             centre: mean_curve(curves.zip(variants.iter().map(|of| of.probability))),
@@ -173,11 +173,11 @@ impl ForceModel {
 
     /// What is left without the network, and whether the vehicles approach each other. The kind of
     /// the striking vehicle's body plays no part in it.
-    fn said_by_physics(
+    fn predict_by_physics(
         &self,
         canonical: &ForceScenario,
         variants: &[Variant],
-    ) -> Result<(Said, bool), ForceError> {
+    ) -> Result<(CanonicalPrediction, bool), ForceError> {
         let mut contacts: Vec<([f64; 2], f64)> = Vec::new();
         for variant in variants {
             let share = variant.probability;
@@ -199,14 +199,14 @@ impl ForceModel {
             bare.iter().map(|(force, share)| (force.curve(), *share)).collect();
         let momentum_impulse_n_s =
             [0, 1].map(|axis| bare.iter().map(|(of, share)| share * of.impulse_n_s[axis]).sum());
-        let said = Said {
+        let prediction = CanonicalPrediction {
             likely: mixture.clone(),
             mixture,
             centre: mean_curve(curves.iter().map(|(curve, share)| (curve, *share))),
             momentum_impulse_n_s,
             hooking_probability: None,
         };
-        Ok((said, bare.iter().any(|(of, _)| of.is_approaching)))
+        Ok((prediction, bare.iter().any(|(of, _)| of.is_approaching)))
     }
 
     fn variants(&self, scenario: &ForceScenario) -> Result<Vec<Variant>, ForceError> {
@@ -238,7 +238,7 @@ impl ForceModel {
     }
 }
 
-impl Said {
+impl CanonicalPrediction {
     /// What the network and the physics alone say together.
     ///
     /// - `share`: of the network.
@@ -260,7 +260,7 @@ impl Said {
 fn caveats(applicability: f64, outside: &[OutsideTraining], bare: Option<bool>) -> Vec<Caveat> {
     let mut caveats: Vec<Caveat> = outside.iter().map(OutsideTraining::caveat).collect();
     if applicability < 1.0 {
-        let said = match applicability > 0.0 {
+        let text = match applicability > 0.0 {
             true => format!(
                 "{} of the force is that of the physics alone, with its measured errors",
                 percent(1.0 - applicability)
@@ -269,7 +269,7 @@ fn caveats(applicability: f64, outside: &[OutsideTraining], bare: Option<bool>) 
                       with its measured errors; the network says nothing here"
                 .to_owned(),
         };
-        let caveat = Caveat::new(CaveatKind::OutsideDomain, said)
+        let caveat = Caveat::new(CaveatKind::OutsideDomain, text)
             .with_value("applicability of the force network", applicability)
             .with_range([1.0, 1.0]);
         caveats.push(caveat);

@@ -37,11 +37,11 @@ pub fn run_epochs<L: EpochLoop, C: PartialEq + Serialize + DeserializeOwned>(
     report: &mut TrainingProgress<'_>,
 ) -> Result<(), L::Error> {
     while let Some(epoch) = training.epoch()? {
-        let told = report(&TrainingReport::Epoch(epoch));
-        if told.is_break() || training.is_checkpoint_due() {
+        let flow = report(&TrainingReport::Epoch(epoch));
+        if flow.is_break() || training.is_checkpoint_due() {
             file.write(|file| training.put(file))?;
         }
-        if told.is_break() {
+        if flow.is_break() {
             return Ok(());
         }
     }

@@ -121,15 +121,15 @@ fn an_error_names_file_line_key_and_what_is_expected() {
     ] {
         assert!(CASE.contains(good), "{good}");
         let error = read(&CASE.replacen(good, bad, 1)).unwrap_err();
-        let (line, said) = expected.split_once(": ").unwrap();
-        let is_there = error.starts_with(&format!("case.toml:{line}:")) && error.contains(said);
+        let (line, message) = expected.split_once(": ").unwrap();
+        let is_there = error.starts_with(&format!("case.toml:{line}:")) && error.contains(message);
         assert!(is_there, "{error}\n{expected}");
     }
 }
 
 /// A standard deviation of the size of the program's is one that was stated.
 #[test]
-fn what_is_stated_is_told_apart_from_what_the_program_takes() {
+fn what_is_stated_differs_from_what_the_program_takes() {
     let stated = CASE
         .replace("y_ft = -20", "y_ft = -20\nposition_sigma_m = 0.15")
         .replace("kind = \"locked\"", "kind = \"locked\"\nsigma_m = 0.10");

@@ -66,13 +66,13 @@ struct QuestionText {
 impl From<Variant> for VariantText {
     fn from(variant: Variant) -> Self {
         let Variant { name, questions, unasked, view, forms } = variant;
-        let n_asked = questions.len();
+        let n_questions = questions.len();
         let value = |request: &Request| serde_json::to_value(request).unwrap_or_default();
         let mut questions: Vec<Value> = questions.iter().chain(&unasked).map(value).collect();
         let common = take_common(&mut questions);
         let mut questions: Vec<QuestionText> =
             questions.into_iter().map(QuestionText::from_value).collect();
-        let unasked = questions.split_off(n_asked);
+        let unasked = questions.split_off(n_questions);
         Self { name, common, questions, unasked, view, forms }
     }
 }

@@ -73,24 +73,25 @@ impl CaseFile {
         &self,
         (variants, library): (&[String], &Library),
         observer: &mut Observer<'_>,
-        told: &mut AnswerListener<'_>,
+        listener: &mut AnswerListener<'_>,
     ) -> Result<Outcome<CaseReport>, CaseError> {
         if let Some(name) = variants.iter().find(|name| self.variant(name).is_none()) {
             return Err(self.no_variant(name));
         }
-        let is_asked = |variant: &&Variant| variants.is_empty() || variants.contains(&variant.name);
+        let is_chosen =
+            |variant: &&Variant| variants.is_empty() || variants.contains(&variant.name);
         let mut reports = Vec::new();
-        for variant in self.variants.iter().filter(is_asked) {
+        for variant in self.variants.iter().filter(is_chosen) {
             let mut answers = Vec::new();
             for request in &variant.questions {
                 let answered = match request.answer(library, observer) {
                     Ok(Outcome::Complete(answer)) => {
-                        told(variant, request, Ok(&answer));
+                        listener(variant, request, Ok(&answer));
                         (Some(answer.into_report()), None)
                     }
                     Ok(Outcome::Cancelled) => return Ok(Outcome::Cancelled),
                     Err(error) => {
-                        told(variant, request, Err(&error));
+                        listener(variant, request, Err(&error));
                         (None, Some(error_chain(&error)))
                     }
                 };
@@ -145,8 +146,8 @@ impl CaseReport {
 fn models_of<'a>(reports: impl Iterator<Item = &'a Report>) -> BTreeMap<(String, String), String> {
     let mut models = BTreeMap::new();
     for report in reports {
-        let told = serde_json::to_value(report).unwrap_or_default();
-        let digests = told.get("model_digests").cloned().unwrap_or_default();
+        let fields = serde_json::to_value(report).unwrap_or_default();
+        let digests = fields.get("model_digests").cloned().unwrap_or_default();
         let digests: Vec<UsedModel> = serde_json::from_value(digests).unwrap_or_default();
         for UsedModel { network, name, sha256 } in digests {
             models.insert((network, name), sha256);

@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn estimates_are_told_with_three_digits() {
+    fn estimates_have_three_digits() {
         for (value, expected) in [
             (2451.7, "2452"),
             (0.6049, "0.605"),

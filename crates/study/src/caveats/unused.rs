@@ -212,8 +212,8 @@ mod tests {
         let border_m = vec![[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]];
         let ice = FrictionZone { name: "ice".to_owned(), border_m, friction: 0.1 };
         struck.friction_zones.push(ice);
-        let said = zones_by_network(&struck).unwrap();
-        assert_eq!(said.kind, CaveatKind::NotUsed);
-        assert_eq!(said.text, "friction zones: ice");
+        let caveat = zones_by_network(&struck).unwrap();
+        assert_eq!(caveat.kind, CaveatKind::NotUsed);
+        assert_eq!(caveat.text, "friction zones: ice");
     }
 }

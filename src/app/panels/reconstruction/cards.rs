@@ -35,16 +35,16 @@ pub fn cards_ui(
         evidence.items(&mut AddMenu { ui });
     });
     let side = evidence.damage.side;
-    let mut cards = Cards { ui, units, sheets, adds_to, group: Group::Scene, asked: None };
+    let mut cards = Cards { ui, units, sheets, adds_to, group: Group::Scene, command: None };
     evidence.items(&mut cards);
     cards.group = Group::Cars;
     evidence.items(&mut cards);
-    let asked = cards.asked;
+    let command = cards.command;
     let damage = &mut evidence.damage;
     if damage.side != side {
         *damage = Damage { side, ..*damage }.on_side(damage.side);
     }
-    asked
+    command
 }
 
 /// The picture of an item.
@@ -68,7 +68,7 @@ struct Cards<'u, 's> {
     sheets: SheetChoices<'s>,
     adds_to: Option<usize>,
     group: Group,
-    asked: Option<ReconstructionCommand>,
+    command: Option<ReconstructionCommand>,
 }
 
 impl Cards<'_, '_> {
@@ -84,7 +84,7 @@ impl Cards<'_, '_> {
     ) -> bool {
         let number = idx.map_or(String::new(), |idx| format!(" {}", idx + 1));
         let title = sentence_case(&format!("{}{number}", section.title));
-        let Self { units, adds_to, sheets, asked, .. } = self;
+        let Self { units, adds_to, sheets, command, .. } = self;
         let [struck, striking] = &mut sheets.chosen;
         let cars = [(STRUCK_CAR, struck), (STRIKING_CAR, striking)];
         let chosen = cars.into_iter().find(|(car, _)| car == section).map(|(_, sheet)| sheet);
@@ -109,7 +109,7 @@ impl Cards<'_, '_> {
                     rows.shown = ShownFields::Measured;
                 }
                 item.fields(&mut rows);
-                *asked = rows.asked.take().or(asked.take());
+                *command = rows.command.take().or(command.take());
             });
             if let Some(sheet) = chosen {
                 let header = match &*sheet {
@@ -156,7 +156,7 @@ impl Items for Cards<'_, '_> {
         }
         if let Some(idx) = removed {
             items.remove(idx);
-            self.asked = Some(ReconstructionCommand::AddPoints(None));
+            self.command = Some(ReconstructionCommand::AddPoints(None));
         }
     }
 }
@@ -167,7 +167,7 @@ struct AddMenu<'u> {
 }
 
 impl AddMenu<'_> {
-    fn is_asked(&mut self, section: &Section) -> bool {
+    fn is_clicked(&mut self, section: &Section) -> bool {
         let button = icon_button(icon(section), &sentence_case(section.title));
         self.ui.add(button).clicked()
     }
@@ -177,13 +177,13 @@ impl Items for AddMenu<'_> {
     fn item(&mut self, _: &'static Section, _: Option<usize>, _: &mut impl Item) {}
 
     fn optional<T: Item>(&mut self, section: &'static Section, item: &mut Option<T>) {
-        if item.is_none() && self.is_asked(section) {
+        if item.is_none() && self.is_clicked(section) {
             *item = Some(T::default());
         }
     }
 
     fn many<T: Item>(&mut self, section: &'static Section, items: &mut Vec<T>) {
-        if self.is_asked(section) {
+        if self.is_clicked(section) {
             items.push(T::default());
         }
     }

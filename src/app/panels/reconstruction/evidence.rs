@@ -36,8 +36,8 @@ pub fn evidence_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let chosen = [&mut request.vehicle, &mut request.striking];
         let sheets = SheetChoices { chosen, own: &own };
         let shown = (session.adds_to, view.units);
-        let asked = cards_ui(ui, (&mut evidence, sheets), shown);
-        commands.extend(asked.map(Command::Reconstruct));
+        let command = cards_ui(ui, (&mut evidence, sheets), shown);
+        commands.extend(command.map(Command::Reconstruct));
         ui.add_space(looks::PART);
         prior_ranges_ui(ui, &mut evidence.prior, view.units);
         priors_ui(ui, (preview, request, session), view.units);

@@ -42,7 +42,7 @@ pub struct FieldRows<'u> {
     /// The item to which clicks in the scene add points.
     pub adds_to: Option<usize>,
     /// What the user asks for beside the edits.
-    pub asked: Option<ReconstructionCommand>,
+    pub command: Option<ReconstructionCommand>,
 }
 
 /// A label as the beginning of a row.
@@ -54,7 +54,7 @@ pub fn sentence_case(text: &str) -> String {
 impl<'u> FieldRows<'u> {
     /// All fields of an item.
     pub fn new(ui: &'u mut Ui, units: UnitSystem, item: (&'static str, Option<usize>)) -> Self {
-        Self { ui, units, item, shown: ShownFields::All, adds_to: None, asked: None }
+        Self { ui, units, item, shown: ShownFields::All, adds_to: None, command: None }
     }
 
     fn quantity(
@@ -138,7 +138,7 @@ impl Fields for FieldRows<'_> {
         }
         self.ui.end_row();
         if adds.clicked() {
-            self.asked = Some(ReconstructionCommand::AddPoints(idx.filter(|_| !is_adding)));
+            self.command = Some(ReconstructionCommand::AddPoints(idx.filter(|_| !is_adding)));
         }
     }
 

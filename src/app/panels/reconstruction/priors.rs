@@ -77,8 +77,8 @@ fn prior_row(
         if let Some(after) = after {
             bar(after, (BAR[1] / 2.0, Role::Model));
         }
-        let said = format!("possible: {}", text([low, high]));
-        response.on_hover_text(said);
+        let hint = format!("possible: {}", text([low, high]));
+        response.on_hover_text(hint);
         ui.label(text(after.unwrap_or(before)));
     });
 }

@@ -68,9 +68,9 @@ pub fn write_restricted_table(
         let mut header = header.to_vec();
         header.extend(restrictions.map(|_| RESTRICTIONS_COLUMN.to_owned()));
         csv.write_record(&header)?;
-        let mut said = restrictions.map(str::to_owned);
+        let mut restrictions = restrictions.map(str::to_owned);
         for mut row in rows {
-            row.extend(said.as_mut().map(std::mem::take));
+            row.extend(restrictions.as_mut().map(std::mem::take));
             csv.write_record(&row)?;
         }
         csv.flush()
@@ -90,13 +90,13 @@ mod tests {
         }
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("force.csv");
-        let said = "warning: outside the domain: mass, \"bullet\" | note: assumed: 1, 2";
-        write_restricted_series_csv(&path, Existing::Refuse, &series, Some(said)).unwrap();
+        let restrictions = "warning: outside the domain: mass, \"bullet\" | note: assumed: 1, 2";
+        write_restricted_series_csv(&path, Existing::Refuse, &series, Some(restrictions)).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(text.starts_with("time_s,fx_n,fy_n,restrictions\n0,0,0,\"warning: "), "{text}");
         let loaded = read_force_file(&path, None).unwrap();
         assert_eq!(loaded.series, series);
         let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
-        assert_eq!(notes, [format!("the file says of itself: {said}")]);
+        assert_eq!(notes, [format!("the file says of itself: {restrictions}")]);
     }
 }

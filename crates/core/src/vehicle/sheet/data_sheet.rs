@@ -193,14 +193,14 @@ impl DataSheet {
     }
 
     /// Resolves every quantity in order, and tells the rule of those that are not known.
-    pub(super) fn resolve(&self, mut told: impl FnMut(SheetQuantity, &Rule)) -> SheetValues<'_> {
+    pub(super) fn resolve(&self, mut report: impl FnMut(SheetQuantity, &Rule)) -> SheetValues<'_> {
         let mut values = SheetValues { sheet: self, values: BTreeMap::new() };
         for &quantity in SheetQuantity::ALL {
             let value = match self.known(quantity) {
                 Some(value) => value,
                 None => {
                     let rule = Rule::new(quantity, (self.class, self.drive), &values);
-                    told(quantity, &rule);
+                    report(quantity, &rule);
                     let latent = self.latents.get(&quantity).copied().unwrap_or(0.0);
                     bounded(quantity, rule.at(latent))
                 }
@@ -256,9 +256,9 @@ mod tests {
         let ratio = heavy.mass.yaw_inertia_kg_m2 / light.mass.yaw_inertia_kg_m2;
         assert!((ratio - 1900.0 / 1450.0).abs() < 1e-9, "{ratio}");
         assert_eq!(measured.vehicle().with_mass(1900.0, None).mass.yaw_inertia_kg_m2, 2500.0);
-        let said = car().vehicle().with_mass(1900.0, Some(3000.0));
-        assert_eq!(said.mass.yaw_inertia_kg_m2, 3000.0);
-        assert!(!said.estimates.contains_key("mass.yaw_inertia_kg_m2"));
+        let stated = car().vehicle().with_mass(1900.0, Some(3000.0));
+        assert_eq!(stated.mass.yaw_inertia_kg_m2, 3000.0);
+        assert!(!stated.estimates.contains_key("mass.yaw_inertia_kg_m2"));
         // What a scenario has from the estimate is no measurement.
         let inertia = car().with(Q::Mass, 1900.0).vehicle().mass.yaw_inertia_kg_m2;
         let repeated = car().vehicle().with_mass(1900.0, Some(inertia));

@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn every_input_of_the_likelihood_is_told() {
+    fn every_input_of_the_likelihood_is_listed() {
         let rows = rows(Language::En);
         for (group, label, value) in [
             ("one scale for both cars", "error of the scale, as a share", "0.0123"),
@@ -318,14 +318,14 @@ mod tests {
             ("after the impact", "driver braked", "not known"),
             ("ranges beforehand", "restitution", "0.11 to 0.29"),
         ] {
-            let is_told =
+            let is_listed =
                 |row: &InputRow| row.group == group && row.label == label && row.value == value;
-            assert!(rows.iter().any(is_told), "{group}: {label} = {value} in {rows:#?}");
+            assert!(rows.iter().any(is_listed), "{group}: {label} = {value} in {rows:#?}");
         }
     }
 
     #[test]
-    fn every_row_is_told_in_german() {
+    fn every_row_has_german_words() {
         for row in rows(Language::De) {
             for text in [&row.group, &row.label, &row.value] {
                 assert!(!text.contains("(engl.)"), "{row:?}");

@@ -22,12 +22,12 @@ pub(super) fn part(request: &Request, answer: &Answer, context: Context<'_>) -> 
     let question = serde_json::to_value(request).unwrap_or_default();
     let kind = question.get("question").and_then(Value::as_str).unwrap_or_default();
     let kind = wording.key(kind);
-    let (mut told, caveats, provenance) = taken_apart(answer);
-    if let Value::Object(fields) = &mut told {
+    let (mut report, caveats, provenance) = taken_apart(answer);
+    if let Value::Object(fields) = &mut report {
         fields.retain(|name, _| !ELSEWHERE.contains(&name.as_str()));
     }
     let row = |row: FlatRow| [row.group(wording), wording.key(&row.key), row.value];
-    let rows = flatten(&told, wording, context.paths).into_iter().map(row).collect();
+    let rows = flatten(&report, wording, context.paths).into_iter().map(row).collect();
     let columns = [words.part_of, words.quantity, words.value];
     Part {
         answer: vec![

@@ -28,8 +28,8 @@ pub(super) fn part(
 ) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
-    let asked = [("name", &*report.scenario), ("vehicle", &*report.vehicle)];
-    let mut blocks = vec![Block::paragraph(fill(words.ask_motion, &asked))];
+    let names = [("name", &*report.scenario), ("vehicle", &*report.vehicle)];
+    let mut blocks = vec![Block::paragraph(fill(words.ask_motion, &names))];
     let is_one = report.n_forces <= 1 && report.n_vehicles == 0;
     let meaning = if is_one { words.meaning_motion_one } else { words.meaning_motion };
     blocks.extend(facts_with_meanings(&report.motion_table(), meaning, context));

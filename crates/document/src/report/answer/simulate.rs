@@ -24,8 +24,8 @@ pub(super) fn part(
 ) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
-    let asked = [("name", &*report.name), ("vehicle", &*report.vehicle)];
-    let mut blocks = vec![Block::paragraph(fill(words.ask_simulate, &asked))];
+    let names = [("name", &*report.name), ("vehicle", &*report.vehicle)];
+    let mut blocks = vec![Block::paragraph(fill(words.ask_simulate, &names))];
     blocks.extend(facts_with_meanings(&report.motion_table(), "", context));
     blocks.extend(computed_marks(report, context));
     let mut sensitivity = Vec::new();

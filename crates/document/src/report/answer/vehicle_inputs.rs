@@ -18,8 +18,8 @@ pub(super) fn vehicle_rows(
     group: &str,
     wording: &Wording,
 ) -> Vec<InputRow> {
-    let told = serde_json::to_value(vehicle).unwrap_or_default();
-    let rows = flatten(&told, wording, &ShownPaths::default());
+    let fields = serde_json::to_value(vehicle).unwrap_or_default();
+    let rows = flatten(&fields, wording, &ShownPaths::default());
     let is_text = |row: &&FlatRow| {
         row.path.first().is_none_or(|name| name != "estimates" && name != "stated")
             && row.key != "source"
@@ -30,13 +30,13 @@ pub(super) fn vehicle_rows(
         .map(|row| {
             let name = format!("{}.{}", row.path.join("."), row.key);
             let rule = vehicle.estimates.get(&name);
-            let said = rule.or_else(|| vehicle.stated.get(&name)).unwrap_or(&vehicle.source);
+            let source = rule.or_else(|| vehicle.stated.get(&name)).unwrap_or(&vehicle.source);
             InputRow {
                 group: group.to_owned(),
                 label: wording.key(&row.key),
                 value: row.value.clone(),
                 class: if rule.is_some() { InputClass::Estimated } else { InputClass::Given },
-                source: wording.quoted(said),
+                source: wording.quoted(source),
             }
         })
         .collect();

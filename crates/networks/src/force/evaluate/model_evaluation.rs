@@ -103,9 +103,9 @@ fn predictions(
     settings: &EvaluationSettings,
 ) -> Result<Vec<CurvePrediction>, ForceError> {
     let predict = |case: &ForceCase| {
-        let said = model.predict(&known(&case.scenario, settings.columns))?;
-        let applicability = said.applicability;
-        let prediction = CurvePrediction::from_mixture(said.mixture, &said.likely);
+        let predicted = model.predict(&known(&case.scenario, settings.columns))?;
+        let applicability = predicted.applicability;
+        let prediction = CurvePrediction::from_mixture(predicted.mixture, &predicted.likely);
         Ok(CurvePrediction { applicability, ..prediction })
     };
     test.iter().map(predict).collect()
@@ -147,17 +147,17 @@ pub fn cross_validate(
         let set = TrainingSet { name, train: of(&fold.train), test: Vec::new() };
         let train_settings = TrainSettings::unsaved(config.clone(), settings.seed);
         let (mut is_cancelled, first) = (false, (i * config.training.epochs) as u64);
-        let model = train(&set, &train_settings, &mut |told| {
-            let (done, what) = match told {
+        let model = train(&set, &train_settings, &mut |progress| {
+            let (done, what) = match progress {
                 TrainingReport::Fit { what, .. } => (0, format!("{}: {what}", set.name)),
-                TrainingReport::Epoch(told) => {
-                    let epoch = told.summary.epoch;
+                TrainingReport::Epoch(trained) => {
+                    let epoch = trained.summary.epoch;
                     (epoch as u64, format!("{}: epoch {epoch}", set.name))
                 }
             };
-            let told = report(Progress::new(first + done, n_steps, what));
-            is_cancelled |= told.is_break();
-            told
+            let flow = report(Progress::new(first + done, n_steps, what));
+            is_cancelled |= flow.is_break();
+            flow
         })?;
         if is_cancelled {
             return Ok(Outcome::Cancelled);

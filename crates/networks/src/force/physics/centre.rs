@@ -183,8 +183,8 @@ impl CentreModel {
         let mut histories = model.unseen_histories(cases, &folds)?;
         if kind == Centre::Committee {
             let crush: Vec<ForceCurve> = histories.iter().map(|of| of.curve.clone()).collect();
-            let mut told = |fit, n_fits| report(CentreFit::Regression { fit, n_fits });
-            let fitted = Committee::fit((cases, &folds), &crush, seed, &mut told)?;
+            let mut on_fit = |fit, n_fits| report(CentreFit::Regression { fit, n_fits });
+            let fitted = Committee::fit((cases, &folds), &crush, seed, &mut on_fit)?;
             if let Some((committee, curves)) = fitted {
                 model.committee = Some(committee);
                 for (history, curve) in histories.iter_mut().zip(curves) {

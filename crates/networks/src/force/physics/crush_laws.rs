@@ -107,8 +107,8 @@ pub(super) fn fit_laws(
         let train = fold.train.iter().filter_map(|&idx| cases.get(idx));
         let samples: Vec<CrushSample> =
             train.filter_map(|case| sample(case, &prior, config.hooked_weight)).collect();
-        let mut told = |cost| report(CentreFit::Crush { fit, n_fits, cost });
-        let law = prior.fit(&samples, settings, &mut told);
+        let mut on_fit = |cost| report(CentreFit::Crush { fit, n_fits, cost });
+        let law = prior.fit(&samples, settings, &mut on_fit);
         law.ok_or(ForceError::NoCrushFit { n_cases: samples.len() })
     };
     folds.iter().enumerate().map(law).collect()

@@ -73,12 +73,12 @@ pub fn train(
         Some(training) => training,
         None => {
             let mut is_cut = false;
-            let mut told = |fit: &TrainingReport| {
+            let mut on_fit = |fit: &TrainingReport| {
                 let flow = report(fit);
                 is_cut |= flow.is_break();
                 flow
             };
-            let physics = fit_physics(set, settings, &mut told)?;
+            let physics = fit_physics(set, settings, &mut on_fit)?;
             if is_cut {
                 // A later training must not be resumed from physics whose fit was interrupted.
                 file.disable();
@@ -125,11 +125,11 @@ pub fn fit_physics(
     report: &mut TrainingProgress<'_>,
 ) -> Result<(CentreModel, Vec<CentreCurve>), ForceError> {
     let (kind, crush) = (settings.config.network.centre, settings.config.crush);
-    let mut told = |fit: CentreFit| {
+    let mut on_fit = |fit: CentreFit| {
         let (done, n_fits) = fit.progress();
         report(&TrainingReport::Fit { what: fit.to_string(), done, n_fits })
     };
-    CentreModel::fit(&set.train, (kind, crush), settings.seed, &mut told)
+    CentreModel::fit(&set.train, (kind, crush), settings.seed, &mut on_fit)
 }
 
 /// Runs the epochs that are left and builds the model.

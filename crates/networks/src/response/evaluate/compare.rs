@@ -180,8 +180,8 @@ impl<'a, 'b> Work<'a, 'b> {
                 Some(start) => start.copied()?,
                 None => {
                     let settings = TrainSettings::unsaved(config, self.settings.seed);
-                    pretrain(&set.name, &records, &settings, &mut |told| {
-                        self.tell(share_done(told), message)
+                    pretrain(&set.name, &records, &settings, &mut |progress| {
+                        self.tell(share_done(progress), message)
                     })?
                 }
             };
@@ -217,12 +217,12 @@ impl<'a, 'b> Work<'a, 'b> {
         for (idx, (config, start, label)) in of.into_iter().enumerate() {
             let started = std::time::Instant::now();
             let settings = TrainSettings::unsaved(config, choice);
-            let model = fine_tune(Some(start), set, &settings, &mut |told| {
-                let part = match told {
+            let model = fine_tune(Some(start), set, &settings, &mut |progress| {
+                let part = match progress {
                     TrainingReport::Epoch(epoch) => epoch.part().unwrap_or_default(),
                     TrainingReport::Fit { what, .. } => what.clone(),
                 };
-                self.tell(share_done(told), &format!("{label} on {n} trajectories, {part}"))
+                self.tell(share_done(progress), &format!("{label} on {n} trajectories, {part}"))
             })?;
             let model = Box::new(model);
             let model =
@@ -237,8 +237,8 @@ impl<'a, 'b> Work<'a, 'b> {
 }
 
 /// Share that is done of a training, 0 to 1.
-fn share_done(told: &TrainingReport) -> f64 {
-    match told {
+fn share_done(progress: &TrainingReport) -> f64 {
+    match progress {
         TrainingReport::Fit { .. } => 0.0,
         TrainingReport::Epoch(epoch) => epoch.share_done(),
     }

@@ -39,15 +39,15 @@ pub fn compare_on_unseen_cars(
         is_broken.set(is_broken.get() || flow.is_break());
         flow
     };
-    let mut told = |told: &TrainingReport| match told {
+    let mut on_progress = |progress: &TrainingReport| match progress {
         TrainingReport::Epoch(epoch) => tell(0.8 * epoch.share_done(), "training on other cars"),
         TrainingReport::Fit { .. } => ControlFlow::Continue(()),
     };
-    let parts = train_parts(start, set, &training, &mut told)?;
+    let parts = train_parts(start, set, &training, &mut on_progress)?;
     if is_broken.get() {
         return Ok(None);
     }
-    let mut asked = Asked { settings, test: Vec::new(), rows: Vec::new() };
+    let mut compared = ComparedCars { settings, test: Vec::new(), rows: Vec::new() };
     for (number, part) in parts.iter().enumerate() {
         let others = parts.iter().enumerate().filter(|(other, _)| *other != number);
         let unseen: Vec<UnseenCars<'_>> = others.map(|(_, other)| other.unseen(set)).collect();
@@ -56,31 +56,35 @@ pub fn compare_on_unseen_cars(
         let mut model = part.model.copied()?;
         learn_population(&mut model, &unseen, &train)?;
         for cases in part.unseen(set).cars {
-            asked.ask(&model, &cases)?;
+            compared.compare(&model, &cases)?;
         }
         let done = 0.8 + 0.2 * (number + 1) as f64 / parts.len() as f64;
         if tell(done, "cars that were left out").is_break() {
             return Ok(None);
         }
     }
-    let Asked { test, rows, .. } = asked;
+    let ComparedCars { test, rows, .. } = compared;
     let test: Vec<&ResponseCase> = test.iter().collect();
     let clusters = clusters(&test, settings.seed);
     Ok(Some(Comparison::new((&set.name, settings), &test, &clusters, rows, &[])))
 }
 
-/// The cars that were asked about.
-struct Asked<'a> {
+/// The answers of every model about cars that were left out.
+struct ComparedCars<'a> {
     settings: &'a ComparisonSettings,
     test: Vec<ResponseCase>,
     rows: Vec<ComparedCase>,
 }
 
-impl Asked<'_> {
+impl ComparedCars<'_> {
     /// Asks every model about a car.
     ///
     /// - `model`: that has not seen it.
-    fn ask(&mut self, model: &ResponseModel, cases: &[&ResponseCase]) -> Result<(), LearningError> {
+    fn compare(
+        &mut self,
+        model: &ResponseModel,
+        cases: &[&ResponseCase],
+    ) -> Result<(), LearningError> {
         let seed = self.settings.seed;
         let cases: Vec<ResponseCase> = cases.iter().copied().cloned().collect();
         let all = TrainingSet::from_split(String::new(), &cases, seed, TEST_SHARE);

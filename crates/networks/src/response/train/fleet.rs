@@ -63,13 +63,13 @@ pub fn train_fleet(
     report: &mut TrainingProgress<'_>,
 ) -> Result<ResponseModel, LearningError> {
     let is_cut = Cell::new(false);
-    let mut told = |told: &TrainingReport| {
-        let flow = report(told);
+    let mut on_progress = |progress: &TrainingReport| {
+        let flow = report(progress);
         is_cut.set(is_cut.get() || flow.is_break());
         flow
     };
-    let parts = train_parts(start, set, settings, &mut told)?;
-    let mut last = |of: &TrainingReport| told(&numbered(of, N_PARTS));
+    let parts = train_parts(start, set, settings, &mut on_progress)?;
+    let mut last = |of: &TrainingReport| on_progress(&numbered(of, N_PARTS));
     let mut model = fine_tune_once(Some(start), set, settings, &mut last)?;
     if is_cut.get() {
         return Ok(model);
@@ -169,8 +169,8 @@ pub(crate) fn train_parts(
             name.into()
         });
         let settings = ResponseTrainSettings { checkpoint, ..settings.clone() };
-        let mut told = |of: &TrainingReport| report(&numbered(of, part));
-        let model = fine_tune_once(Some(start), &set.part(&train), &settings, &mut told)?;
+        let mut on_progress = |of: &TrainingReport| report(&numbered(of, part));
+        let model = fine_tune_once(Some(start), &set.part(&train), &settings, &mut on_progress)?;
         trained.push(FleetPart { left_out, model });
     }
     Ok(trained)
@@ -236,11 +236,11 @@ pub fn learn_population(
         .flat_map(|of| of.cars.iter().map(|cases| UnseenCar { cases, network: of.model.network() }))
         .collect();
     let mut population = StrengthPopulation::fit(&cars)?;
-    let of_unseen: Vec<Asked<'_>> = unseen
+    let of_unseen: Vec<UnseenCases<'_>> = unseen
         .iter()
         .map(|of| {
             let cases = of.cars.iter().flatten().copied().collect();
-            Ok(Asked { model: of.model.copied()?, population: population.clone(), cases })
+            Ok(UnseenCases { model: of.model.copied()?, population: population.clone(), cases })
         })
         .collect::<Result<_, LearningError>>()?;
     population.set_widths(calibrated(&of_unseen)?);
@@ -260,7 +260,7 @@ pub fn learn_population(
 }
 
 /// Trajectories that a model has not seen, with what it knows of their cars.
-struct Asked<'a> {
+struct UnseenCases<'a> {
     model: ResponseModel,
     population: StrengthPopulation,
     cases: Vec<&'a ResponseCase>,
@@ -273,7 +273,7 @@ fn well_known_widths(
     unseen: &[UnseenCars<'_>],
     train: &[ResponseCase],
 ) -> Result<Widths, LearningError> {
-    let mut asked = Vec::new();
+    let mut unseen_cases = Vec::new();
     for of in unseen.iter().filter(|of| !of.motions.is_empty()) {
         let mut known = population.clone();
         let learned: Vec<ResponseCase> =
@@ -281,25 +281,25 @@ fn well_known_widths(
         for car in cars_of(&learned) {
             let cases: Vec<&ResponseCase> =
                 car.iter().filter_map(|idx| learned.get(*idx)).collect();
-            let is_asked = |asked: &&ResponseCase| {
-                cases.first().is_some_and(|case| is_same_car(&case.vehicle, &asked.vehicle))
+            let is_of_car = |other: &&ResponseCase| {
+                cases.first().is_some_and(|case| is_same_car(&case.vehicle, &other.vehicle))
             };
-            if of.motions.iter().any(is_asked) {
+            if of.motions.iter().any(is_of_car) {
                 known = known.with_learned_car((of.model.network(), Widths::NORMAL), &cases)?;
             }
         }
         let cases = of.motions.clone();
-        asked.push(Asked { model: of.model.copied()?, population: known, cases });
+        unseen_cases.push(UnseenCases { model: of.model.copied()?, population: known, cases });
     }
-    if asked.is_empty() { Ok(population.widths()) } else { calibrated(&asked) }
+    if unseen_cases.is_empty() { Ok(population.widths()) } else { calibrated(&unseen_cases) }
 }
 
 /// The widths with which the regions hold as many of the recorded positions as they say.
-fn calibrated(asked: &[Asked<'_>]) -> Result<Widths, LearningError> {
+fn calibrated(unseen_cases: &[UnseenCases<'_>]) -> Result<Widths, LearningError> {
     let mut best = (f64::INFINITY, Widths::NORMAL);
     for widening in FACTORS {
         let mut counts = [Held::default(); RATIOS.len()];
-        for of in asked {
+        for of in unseen_cases {
             let mut population = of.population.clone();
             population.set_widths(Widths { widening, ..Widths::NORMAL });
             let mut model = of.model.copied()?;

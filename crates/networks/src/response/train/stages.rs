@@ -85,8 +85,8 @@ pub fn fine_tune(
     let folds = calibration_folds(set, settings);
     let n_trainings = folds.len() + 1;
     let (training_idx, is_cut) = (Cell::new(0), Cell::new(false));
-    let mut told = |told: &TrainingReport| {
-        let flow = match told {
+    let mut on_progress = |progress: &TrainingReport| {
+        let flow = match progress {
             TrainingReport::Epoch(epoch) => {
                 let training_idx = training_idx.get();
                 let epoch = EpochReport { training_idx, n_trainings, ..epoch.clone() };
@@ -97,7 +97,7 @@ pub fn fine_tune(
         is_cut.set(is_cut.get() || flow.is_break());
         flow
     };
-    let mut model = fine_tune_once(start, set, settings, &mut told)?;
+    let mut model = fine_tune_once(start, set, settings, &mut on_progress)?;
     let mut unseen = Vec::new();
     for fold in &folds {
         if is_cut.get() {
@@ -106,7 +106,7 @@ pub fn fine_tune(
         training_idx.set(training_idx.get() + 1);
         let part = set.part(&fold.train);
         let quiet = ResponseTrainSettings { checkpoint: None, ..settings.clone() };
-        let member = fine_tune_once(start, &part, &quiet, &mut told)?;
+        let member = fine_tune_once(start, &part, &quiet, &mut on_progress)?;
         for case in fold.test.iter().filter_map(|&idx| set.train.get(idx)) {
             unseen.push(Unseen { case, predictor: member.predictor(&case.vehicle)? });
         }

@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_stands_beyond_the_margins_and_every_text_is_told_once() {
+    fn nothing_stands_beyond_the_margins_and_every_text_is_set_once() {
         let long = "word ".repeat(900) + &"y".repeat(4000);
         let row =
             |n: usize| [format!("row {n}"), long.chars().take(n * 40).collect(), String::new()];
