@@ -63,7 +63,7 @@ impl State {
             | Command::SaveEvidence(..)
             | Command::SaveSite(_)
             | Command::SaveModel(..)
-            | Command::SaveKept(..)
+            | Command::SaveArchived(..)
             | Command::SaveCaseAs(_)
             | Command::PackCase(_)
             | Command::SaveReport(..) => {
@@ -98,7 +98,7 @@ impl State {
             }
             Command::ForceModel(event) => self.take_force_model(&event),
             Command::ResponseModel(event) => self.take_response_model(&event),
-            Command::Kept(event) => self.take_kept_event(event.take(), context),
+            Command::Archive(event) => self.take_archive_event(event.take(), context),
             Command::PredictCase => self.predict_case(),
             Command::PredictScenario => self.predict_scenario(),
             Command::UseModel(network, path) => self.use_model(network, path),

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use egui::Context;
 
+use crate::app::archive::{ArchiveEntry, ArchiveEvent, ModelsDialog, Removal};
 use crate::app::case::{Leaving, SavedCase, VariantCommand};
 use crate::app::cost::CostPlace;
 use crate::app::dialog::Purpose;
@@ -16,7 +17,6 @@ use crate::app::export::SceneExport;
 use crate::app::found::Found;
 use crate::app::ground::GroundCommand;
 use crate::app::import::ImportAnswer;
-use crate::app::kept::{KeptEntry, KeptEvent, ModelsDialog, Removal};
 use crate::app::model::ModelEvent;
 use crate::app::network::Network;
 use crate::app::panes::Pane;
@@ -140,7 +140,7 @@ pub enum Command {
     /// Act on what is kept of models, comparisons and trainings.
     Models(ModelsCommand),
     /// Write a copy of a kept model, the first path, to a file of the user, the second one.
-    SaveKept(PathBuf, PathBuf),
+    SaveArchived(PathBuf, PathBuf),
     /// Evaluate the current force model on the chosen data set.
     Evaluate,
     /// Cancel the evaluation of the force model.
@@ -182,7 +182,7 @@ pub enum Command {
     /// Take what has become of a model of the response network.
     ResponseModel(Found<ModelEvent<ResponseModel>>),
     /// Take what has become of what is kept.
-    Kept(Found<KeptEvent>),
+    Archive(Found<ArchiveEvent>),
     /// Show a message in the status line.
     Say(Severity, String),
     /// Take the latest message out of the status line. It stays in the list of all messages.
@@ -213,11 +213,11 @@ pub enum ModelsCommand {
     /// Ask the user for a name or whether to remove something.
     Ask(ModelsDialog),
     /// Give something another name.
-    Rename(Box<KeptEntry>, String),
+    Rename(Box<ArchiveEntry>, String),
     /// Remove files.
     Remove(Removal),
     /// Show a comparison or an evaluation again.
-    Open(Box<KeptEntry>),
+    Open(Box<ArchiveEntry>),
     /// Go on with the training of this checkpoint.
     Resume(PathBuf),
     /// Do not speak of interrupted trainings in the status line any more.

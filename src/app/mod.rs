@@ -4,6 +4,7 @@
 //! [`study`](impactlab_study), on threads that [`jobs`](impactlab_core::jobs) starts.
 
 mod apply;
+mod archive;
 mod case;
 mod case_filter;
 mod case_row;
@@ -20,7 +21,6 @@ mod found;
 mod frame_times;
 mod ground;
 mod import;
-mod kept;
 mod keyboard;
 mod latest;
 mod licences;
@@ -75,6 +75,7 @@ use impactlab_draw::scene::SceneView;
 use impactlab_draw::scene::gpu::WindowDevice;
 use impactlab_draw::{DensityGpu, theme};
 
+pub use archive::{ArchiveEntry, ArchiveKind, ArchiveStatus, ModelsDialog, Removal};
 pub use case::{Leaving, OpenCase, VariantCommand};
 pub use chain::Link;
 pub use command::{Command, ComparisonCommand, ModelsCommand, TrainingCommand};
@@ -83,7 +84,6 @@ pub use cost::{CostPlace, Costs};
 pub use dialog::{Dialog, Dialogs, Purpose};
 pub use force::{ForceSession, NamedCollision, collision_of};
 pub use ground::{GroundCommand, GroundSession};
-pub use kept::{KeptEntry, KeptKind, KeptStatus, ModelsDialog, Removal};
 pub use latest::Latest;
 pub use measure::{Measure, Measurement, Measuring};
 pub use network::Network;

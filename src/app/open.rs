@@ -140,13 +140,13 @@ impl State {
     fn forget_sources(&mut self, is_closed: impl Fn(&Source) -> bool) {
         let session = &mut self.session;
         session.sources.retain(|source| {
-            let is_kept = !is_closed(source);
-            if !is_kept {
+            let is_open = !is_closed(source);
+            if !is_open {
                 session.library.forget(&source.path);
                 session.replays.remove(&source.path);
                 session.tasks.stop(&TaskKey::Load(source.opened.clone()));
             }
-            is_kept
+            is_open
         });
         session.force.recorded = None;
     }

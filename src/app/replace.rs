@@ -29,7 +29,7 @@ impl Command {
             | Self::SaveEvidence(_, path)
             | Self::SaveSite(path)
             | Self::SaveModel(_, path)
-            | Self::SaveKept(_, path)
+            | Self::SaveArchived(_, path)
             | Self::SaveCaseAs(path)
             | Self::PackCase(path)
             | Self::SaveReport(_, path)
@@ -94,9 +94,9 @@ impl State {
                 self.start_writing(path, move |to| export::write_report(&document, to, existing));
             }
             Command::SaveModel(network, path) => self.save_model(network, path, existing),
-            Command::SaveKept(kept, path) => self.start_writing(path, move |to| {
+            Command::SaveArchived(model, path) => self.start_writing(path, move |to| {
                 let bytes =
-                    read_bytes(&kept, MAX_MODEL_BYTES).map_err(|error| error_chain(&error))?;
+                    read_bytes(&model, MAX_MODEL_BYTES).map_err(|error| error_chain(&error))?;
                 write_atomically(to, existing, |out| out.write_all(&bytes))
                     .map_err(|error| error_chain(&error))
             }),
@@ -133,7 +133,7 @@ impl State {
             Command::SaveVehicle(..) => Some(InputKind::Vehicle),
             Command::SaveEvidence(..) => Some(InputKind::Evidence),
             Command::SaveSite(_) => Some(InputKind::Site),
-            Command::SaveModel(..) | Command::SaveKept(..) => Some(InputKind::Network),
+            Command::SaveModel(..) | Command::SaveArchived(..) => Some(InputKind::Network),
             Command::SaveCaseAs(_) => Some(InputKind::Case),
             _ => None,
         };

@@ -119,12 +119,12 @@ impl Store {
     ///
     /// - `why`: the reason why it cannot be restored.
     fn set_aside(self, why: &str) -> OpenedState {
-        let (path, kept) = (self.path.display(), free_name(&self.path));
-        match std::fs::rename(&self.path, &kept) {
+        let (path, renamed) = (self.path.display(), free_name(&self.path));
+        match std::fs::rename(&self.path, &renamed) {
             Ok(()) => {
                 let message = format!(
                     "the state of the last run cannot be restored ({why}); it is kept as {}",
-                    kept.display()
+                    renamed.display()
                 );
                 OpenedState { store: Some(self), restored: None, message: Some(message) }
             }

@@ -42,13 +42,13 @@ pub enum TaskKey {
     /// A network of this name is kept in the user's data folder.
     KeepModel(Network, String),
     /// The list of what is kept is read.
-    ListKept,
+    ListArchive,
     /// The note or the content of something that is kept is written, by its digest.
-    PutKept(String),
+    PutIntoArchive(String),
     /// Files of what is kept are removed.
-    RemoveKept(Vec<PathBuf>),
+    RemoveArchived(Vec<PathBuf>),
     /// A comparison or an evaluation that is kept is read.
-    OpenKept,
+    OpenArchived,
     /// The list of trainings that have not ended is read.
     ListTrainings,
     /// A comparison is read from a file of the user.
@@ -220,10 +220,10 @@ impl TaskKey {
             Self::LoadModel(_) => "load model",
             Self::SaveModel(_) => "save model",
             Self::KeepModel(..) => "keep model",
-            Self::ListKept | Self::ListTrainings => "list",
-            Self::PutKept(_) => "keep result",
-            Self::RemoveKept(_) => "remove",
-            Self::OpenKept => "open result",
+            Self::ListArchive | Self::ListTrainings => "list",
+            Self::PutIntoArchive(_) => "keep result",
+            Self::RemoveArchived(_) => "remove",
+            Self::OpenArchived => "open result",
             Self::OpenComparison => "open comparison",
             Self::Cost => "measure",
         }

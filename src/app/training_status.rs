@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::app::kept::{Fact, KeptEntry, KeptKind};
+use crate::app::archive::{ArchiveEntry, ArchiveKind, Fact};
 use crate::app::network::TrainedModel;
 use crate::app::training::{TrainingEnd, TrainingSlot, time_left};
 use crate::app::unfinished::{TrainingDiary, training_options};
@@ -124,13 +124,13 @@ impl<M: TrainedModel> TrainingStatus<M> {
     ///
     /// - `name`: what the model is called;
     /// - `is_complete`: whether the training was completed; otherwise it was cancelled.
-    pub fn kept_note(&self, model: &M, name: String, is_complete: bool) -> Option<KeptEntry> {
+    pub fn archive_note(&self, model: &M, name: String, is_complete: bool) -> Option<ArchiveEntry> {
         let (report, mut question) = (self.report.as_ref()?, self.request.clone()?);
         if let Some(options) = training_options(&mut question) {
             (options.checkpoint, options.resume) = (None, false); // Those of a finished training.
         }
-        let kind = KeptKind::from(M::NETWORK);
-        let mut entry = KeptEntry::new(kind, (name, model.data().to_owned()), question);
+        let kind = ArchiveKind::from(M::NETWORK);
+        let mut entry = ArchiveEntry::new(kind, (name, model.data().to_owned()), question);
         entry.is_cancelled = !is_complete;
         (entry.figures, entry.settings) = (model.facts(), model.settings());
         let time = Duration::try_from_secs_f64(M::seconds(report)).unwrap_or_default();

@@ -41,7 +41,7 @@ impl State {
         self.update_reconstruction(context);
         self.update_variants(context);
         self.update_report();
-        self.take_kept_names();
+        self.take_archived_names();
         self.update_costs(context);
         self.advance_time(context);
         if self.session.is_waiting() {

@@ -129,8 +129,8 @@ fn a_recording_without_rates_says_with_which_it_is_simulated() {
     let bare = recorded.replacen("yaw_rate_rad_s", "comment", 1);
     let bare = bare.lines().map(|line| {
         let cells: Vec<&str> = line.split(',').collect();
-        let kept = cells.iter().enumerate().filter(|(i, _)| *i != 7).map(|(_, cell)| *cell);
-        format!("{}\n", kept.collect::<Vec<_>>().join(","))
+        let others = cells.iter().enumerate().filter(|(i, _)| *i != 7).map(|(_, cell)| *cell);
+        format!("{}\n", others.collect::<Vec<_>>().join(","))
     });
     let bare = write(&folder, "bare.csv", &bare.collect::<String>());
     let report = answer(&["simulate", "--trajectory", text(&bare)]);

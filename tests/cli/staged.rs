@@ -104,7 +104,7 @@ fn what_is_asked_of_one_case_is_what_reconstruct_answers() {
 fn finished_cases_are_kept_and_taken_by_the_same_question_only() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("out");
-    let kept = out.join("finished/s07-everything.json");
+    let finished = out.join("finished/s07-everything.json");
     let ask = |more: &[&str]| {
         let args = ["--known", "everything", "--without-swarm", "--overwrite", "--out", text(&out)];
         evaluated(&[&args[..], more].concat())
@@ -124,12 +124,12 @@ fn finished_cases_are_kept_and_taken_by_the_same_question_only() {
         assert_eq!(a["quantities"], b["quantities"]);
     }
     // Another seed is another question; a file that is cut short is none.
-    let before = fs::read(&kept).unwrap();
+    let before = fs::read(&finished).unwrap();
     let other = ask(&["--seed", "1"]);
-    assert_ne!(fs::read(&kept).unwrap(), before);
+    assert_ne!(fs::read(&finished).unwrap(), before);
     assert_ne!(median(cases(&other).nth(2).unwrap()), median(cases(&first).nth(2).unwrap()));
-    let whole = fs::read(&kept).unwrap();
-    fs::write(&kept, &whole[..whole.len() / 2]).unwrap();
+    let whole = fs::read(&finished).unwrap();
+    fs::write(&finished, &whole[..whole.len() / 2]).unwrap();
     let again = ask(&["--seed", "1"]);
     assert_eq!(median(cases(&again).nth(2).unwrap()), median(cases(&other).nth(2).unwrap()));
 }

@@ -40,10 +40,10 @@ const LONGEST_SEED: usize = 4096;
 const LONGEST_MESSAGE: usize = 4096;
 
 /// Longest file that is added to the corpus.
-const LONGEST_KEPT: usize = 1024;
+const LONGEST_STORED: usize = 1024;
 
 /// Most files that one run adds to the corpus.
-const MOST_KEPT: usize = 8;
+const MOST_STORED: usize = 8;
 
 /// The most memory that reading a file of this size may take at a time.
 pub fn memory_limit_bytes(file_bytes: usize) -> u64 {
@@ -156,7 +156,7 @@ struct Seen {
     kinds: BTreeSet<String>,
     /// Faults, each with the file that shows it.
     faults: Vec<String>,
-    n_kept: usize,
+    n_stored: usize,
 }
 
 /// Reads the corpus of a format, then files that are made from it.
@@ -388,10 +388,10 @@ impl Trial<'_> {
     }
 
     fn keep(&self, input: &[u8], seen: &mut Seen) {
-        if input.len() <= LONGEST_KEPT && seen.n_kept < MOST_KEPT {
+        if input.len() <= LONGEST_STORED && seen.n_stored < MOST_STORED {
             let path = corpus_folder(self.format.name).join(format!("found-{}", digest(input)));
             fs::write(path, input).expect("a file of the corpus can be written");
-            seen.n_kept += 1;
+            seen.n_stored += 1;
         }
     }
 }

@@ -51,7 +51,7 @@ fn printed(args: &[&str], option: &str) -> String {
 /// must be scalars or lists of scalars.
 fn lines_without(text: &str, keys: &[&str]) -> Vec<String> {
     let mut is_in_list = false;
-    let is_kept = |line: &&str| {
+    let is_compared = |line: &&str| {
         let line = line.trim();
         if is_in_list {
             is_in_list = !line.starts_with(']');
@@ -62,7 +62,7 @@ fn lines_without(text: &str, keys: &[&str]) -> Vec<String> {
         !is_left_out
     };
     // Whether a line ends in a comma depends on the line after it, which may have been removed.
-    text.lines().filter(is_kept).map(|line| line.trim_end_matches(',').to_owned()).collect()
+    text.lines().filter(is_compared).map(|line| line.trim_end_matches(',').to_owned()).collect()
 }
 
 fn without(request: Value, keys: &[&str]) -> Value {

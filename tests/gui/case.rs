@@ -186,8 +186,8 @@ fn questions_for_which_there_is_no_form_stay_in_their_variant() {
     harness.step();
     apply(&mut harness, Command::SaveCase);
     step_until(&mut harness, "the case on disk", |state| !state.is_case_changed());
-    let kept = questions_in(&two);
-    assert!(made[3..].iter().all(|question| kept.contains(question)), "{kept:?}");
+    let questions = questions_in(&two);
+    assert!(made[3..].iter().all(|question| questions.contains(question)), "{questions:?}");
 }
 
 #[test]

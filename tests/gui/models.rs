@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{
-    App, Command, ComparisonCommand, CostPlace, KeptEntry, KeptKind, Leaving, Network, Pane, State,
-    TrainingCommand, TrainingMode,
+    App, ArchiveEntry, ArchiveKind, Command, ComparisonCommand, CostPlace, Leaving, Network, Pane,
+    State, TrainingCommand, TrainingMode,
 };
 use impactlab_study::ModelChoice;
 
@@ -52,7 +52,7 @@ impl Desk {
         let mut harness = open_with(paths, Some(self.path("state.json")));
         step_until(&mut harness, "the data and what is kept", |state| {
             state.session.sources.iter().all(impactlab::app::Source::is_settled)
-                && !state.session.kept.is_reading()
+                && !state.session.archive.is_reading()
                 && state.session.force.model.current.is_some()
                 && state.session.response.model.current.is_some()
         });
@@ -88,15 +88,15 @@ fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
     harness.state().state()
 }
 
-fn entries<'a>(harness: &'a Harness<'_, App>) -> &'a [KeptEntry] {
-    &state(harness).session.kept.list.entries
+fn entries<'a>(harness: &'a Harness<'_, App>) -> &'a [ArchiveEntry] {
+    &state(harness).session.archive.list.entries
 }
 
 /// Starts the training of the force network and waits until its model is kept.
 fn train(harness: &mut Harness<'_, App>) {
     let n = entries(harness).len();
     apply(harness, Command::Train(Network::Force, TrainingCommand::Start));
-    step_until(harness, "the kept model", |state| state.session.kept.list.entries.len() > n);
+    step_until(harness, "the kept model", |state| state.session.archive.list.entries.len() > n);
 }
 
 /// What the window refers to the force model in use by, and its name.
@@ -118,7 +118,7 @@ fn a_finished_training_is_kept_named_and_used_after_a_restart() {
     // It is in use, and from now on by its file, so that a restart does not lose it.
     let [entry] = entries(&harness) else { panic!("{:?}", entries(&harness)) };
     let entry = entry.clone();
-    assert_eq!((entry.kind, entry.is_cancelled), (KeptKind::ForceModel, false));
+    assert_eq!((entry.kind, entry.is_cancelled), (ArchiveKind::ForceModel, false));
     assert_eq!(entry.data, "fea");
     let path =
         state(&harness).project.predict_force.model.path().expect("the kept model").to_owned();
@@ -161,7 +161,7 @@ fn a_finished_training_is_kept_named_and_used_after_a_restart() {
     harness.run_steps(2);
     harness.get_by_label("Rename it").click();
     step_until(&mut harness, "the name", |state| {
-        state.session.kept.list.entries[0].name == "my PIT model"
+        state.session.archive.list.entries[0].name == "my PIT model"
     });
     harness.get_by_label("Use").click();
     harness.run_steps(2);
@@ -170,7 +170,7 @@ fn a_finished_training_is_kept_named_and_used_after_a_restart() {
     });
     assert_eq!(in_use(&harness).0, ModelChoice::file(&path));
     let copy = desk.path("copy.safetensors");
-    apply(&mut harness, Command::SaveKept(path.clone(), copy.clone()));
+    apply(&mut harness, Command::SaveArchived(path.clone(), copy.clone()));
     step_until(&mut harness, "the copy", |_| copy.exists());
     assert_eq!(fs::read(&copy).expect("a copy"), fs::read(&path).expect("a model"));
     desk.store(&mut harness);
@@ -199,7 +199,7 @@ fn a_finished_training_is_kept_named_and_used_after_a_restart() {
     harness.query_all_by_label("Remove…").last().expect("one").click();
     harness.run_steps(3);
     harness.get_by_label("Remove it").click();
-    step_until(&mut harness, "the removal", |state| state.session.kept.list.entries.is_empty());
+    step_until(&mut harness, "the removal", |state| state.session.archive.list.entries.is_empty());
     assert!(desk.names("models").is_empty());
 }
 
@@ -214,7 +214,7 @@ fn a_cancelled_training_is_kept_as_such_and_can_be_resumed_but_is_not_used() {
     save(&mut harness, "models-running.png");
     harness.get_by_label("Cancel").click();
     step_until(&mut harness, "the kept model", |state| {
-        !state.session.kept.list.entries.is_empty()
+        !state.session.archive.list.entries.is_empty()
             && !state.session.unfinished.list.trainings.is_empty()
     });
     assert!(entries(&harness)[0].is_cancelled);
@@ -276,7 +276,9 @@ fn an_interrupted_training_is_offered_after_a_restart_and_goes_on_to_its_end() {
     show_models(&mut harness);
     // The form of this user has other settings and no data are open: the note has everything.
     harness.get_by_label("Resume training").click();
-    step_until(&mut harness, "the kept model", |state| !state.session.kept.list.entries.is_empty());
+    step_until(&mut harness, "the kept model", |state| {
+        !state.session.archive.list.entries.is_empty()
+    });
     let training = &state(&harness).session.force.training;
     assert_eq!(training.problem, None);
     let entry = &entries(&harness)[0];
@@ -303,20 +305,20 @@ fn comparisons_and_evaluations_are_opened_again_after_a_restart() {
         form.config = desk.path("response.toml").display().to_string();
         (form.trajectories, form.n_choices) = ("3".to_owned(), 1);
     }
-    let n_kept = |n: usize| move |state: &State| state.session.kept.list.entries.len() == n;
+    let n_archived = |n: usize| move |state: &State| state.session.archive.list.entries.len() == n;
     apply(&mut harness, Command::Compare(ComparisonCommand::Start));
-    step_until(&mut harness, "the comparison", n_kept(1));
+    step_until(&mut harness, "the comparison", n_archived(1));
     let compared = state(&harness).session.response.comparison.report().expect("one").clone();
     apply(&mut harness, Command::Compare(ComparisonCommand::Evaluate));
-    step_until(&mut harness, "the evaluation of the response model", n_kept(2));
+    step_until(&mut harness, "the evaluation of the response model", n_archived(2));
     apply(&mut harness, Command::Evaluate);
-    step_until(&mut harness, "the evaluation of the force model", n_kept(3));
+    step_until(&mut harness, "the evaluation of the force model", n_archived(3));
     let evaluated = state(&harness).session.force.evaluation.ok().expect("one").report.clone();
     desk.store(&mut harness);
     drop(harness);
 
     let mut harness = desk.open(&[]);
-    let of_kind = |harness: &Harness<'_, App>, kind: KeptKind| {
+    let of_kind = |harness: &Harness<'_, App>, kind: ArchiveKind| {
         let entry = entries(harness).iter().find(|entry| entry.kind == kind);
         entry.unwrap_or_else(|| panic!("no {kind:?}")).clone()
     };
@@ -324,11 +326,11 @@ fn comparisons_and_evaluations_are_opened_again_after_a_restart() {
     show_models(&mut harness);
     assert_eq!(harness.query_all_by_label("Open again").count(), 3);
     save(&mut harness, "models-results.png");
-    let open = |harness: &mut Harness<'_, App>, kind: KeptKind| {
+    let open = |harness: &mut Harness<'_, App>, kind: ArchiveKind| {
         let entry = Box::new(of_kind(harness, kind));
         apply(harness, Command::Models(impactlab::app::ModelsCommand::Open(entry)));
     };
-    open(&mut harness, KeptKind::Comparison);
+    open(&mut harness, ArchiveKind::Comparison);
     step_until(&mut harness, "the comparison", |state| {
         state.session.response.comparison.report().is_some()
     });
@@ -337,7 +339,7 @@ fn comparisons_and_evaluations_are_opened_again_after_a_restart() {
     let again = state(&harness).session.response.comparison.report().expect("one");
     assert_eq!(format!("{again:?}"), format!("{compared:?}"));
     harness.get_by_label_contains("25 trajectories that no model has seen");
-    open(&mut harness, KeptKind::ForceEvaluation);
+    open(&mut harness, ArchiveKind::ForceEvaluation);
     step_until(&mut harness, "the evaluation", |state| {
         state.session.force.evaluation.ok().is_some()
     });
@@ -391,7 +393,7 @@ fn the_pane_shows_what_is_in_use_running_and_finished() {
     step_until(&mut harness, "the trajectories", is_idle);
     apply(&mut harness, Command::Train(Network::Response, TrainingCommand::Start));
     step_until(&mut harness, "the response model", |state| {
-        state.session.kept.list.entries.len() == 2
+        state.session.archive.list.entries.len() == 2
     });
     let form = &mut harness.state_mut().state_mut().project.force_training;
     form.epochs = Some(100_000);

@@ -181,9 +181,9 @@ fn a_finished_run_is_back_after_a_restart_and_a_damaged_one_is_sampled_again() {
     harness.run_steps(4);
     step_until(&mut harness, "the speeds", is_answered);
     let first = particles(&harness);
-    let kept: Vec<PathBuf> =
+    let runs: Vec<PathBuf> =
         std::fs::read_dir(&runs).expect("a folder").map(|of| of.expect("a file").path()).collect();
-    assert_eq!(kept.len(), 1, "{kept:?}");
+    assert_eq!(runs.len(), 1, "{runs:?}");
     harness.run_steps(90);
     step_until(&mut harness, "the stored state", |_| {
         std::fs::read_to_string(&store).is_ok_and(|text| text.contains("60"))
@@ -197,7 +197,7 @@ fn a_finished_run_is_back_after_a_restart_and_a_damaged_one_is_sampled_again() {
     assert!(!is_outdated(&harness));
     drop(harness);
 
-    std::fs::write(&kept[0], b"no run").expect("a file");
+    std::fs::write(&runs[0], b"no run").expect("a file");
     let mut harness = open_with(&[], Some(store));
     step_until(&mut harness, "the speeds anew", is_answered);
     assert_eq!(particles(&harness), first);

@@ -131,9 +131,9 @@ fn compare(pictures: &[Vec<Color32>; 2], size: [usize; 2], name: &str) {
     let first = gpu.first().copied().unwrap_or_default();
     assert!(gpu.iter().any(|pixel| *pixel != first), "{name}: an empty picture");
     if mean > MEAN || share > SHARE {
-        let kept = save(gpu, size, &format!("{name}-gpu.png"));
+        let reused = save(gpu, size, &format!("{name}-gpu.png"));
         save(cpu, size, &format!("{name}-cpu.png"));
-        panic!("{name}: mean {mean:.3}, others {share:.5}: {}", kept.display());
+        panic!("{name}: mean {mean:.3}, others {share:.5}: {}", reused.display());
     }
 }
 
@@ -184,7 +184,7 @@ fn what_is_kept_does_not_show() {
     let Some(device) = device() else { return };
     let scene = Arc::new(Scene { ground: Some(Arc::new(road())), ..braked_scene() });
     let other = Arc::new(forecast_scene());
-    let mut kept = GpuCanvas::new(Arc::clone(&device));
+    let mut reused = GpuCanvas::new(Arc::clone(&device));
     let looks = [ViewKind::Above, ViewKind::Perspective].map(|kind| look_at(&scene, kind, false));
     let small = SceneLook { size_px: [333, 219], ..looks[0] };
     let steps = [
@@ -197,13 +197,13 @@ fn what_is_kept_does_not_show() {
     ];
     for (scene, look, time_s) in steps {
         let mut fresh = GpuCanvas::new(Arc::clone(&device));
-        let [mut from_kept, mut from_fresh] = [Vec::new(), Vec::new()];
-        assert!(kept.draw(scene, &look, time_s).expect("it is drawn"));
-        assert!(!kept.draw(scene, &look, time_s).expect("it is drawn"), "nothing has changed");
-        kept.read(&mut from_kept).expect("it is read");
+        let [mut from_reused, mut from_fresh] = [Vec::new(), Vec::new()];
+        assert!(reused.draw(scene, &look, time_s).expect("it is drawn"));
+        assert!(!reused.draw(scene, &look, time_s).expect("it is drawn"), "nothing has changed");
+        reused.read(&mut from_reused).expect("it is read");
         fresh.draw(scene, &look, time_s).expect("it is drawn");
         fresh.read(&mut from_fresh).expect("it is read");
-        assert!(from_kept == from_fresh, "{look:?} at {time_s} s");
+        assert!(from_reused == from_fresh, "{look:?} at {time_s} s");
     }
 }
 

@@ -154,11 +154,11 @@ fn a_damaged_state_is_kept_under_another_name() {
     for (n, damaged) in [&b"{\"version\":1,\"proj"[..], b"", b"\xff\xfe"].into_iter().enumerate() {
         fs::write(&state_file, damaged).expect("a file");
         let harness = open_and_store(&state_file);
-        let kept = folder.path().join(format!("state.json.damaged-{}", n + 1));
+        let renamed = folder.path().join(format!("state.json.damaged-{}", n + 1));
         let text = messages(&harness);
         assert!(text.contains("the state of the last run cannot be restored"), "{text}");
-        assert!(text.contains(&kept.display().to_string()), "{text}");
-        assert_eq!(fs::read(&kept).expect("the damaged state"), damaged);
+        assert!(text.contains(&renamed.display().to_string()), "{text}");
+        assert_eq!(fs::read(&renamed).expect("the damaged state"), damaged);
         assert_eq!(state(&harness).session.messages[0].severity, Severity::Warning);
     }
     let left = ["state.json", "state.json.damaged-1", "state.json.damaged-2"];

@@ -51,11 +51,11 @@ fn a_new_file_has_the_permissions_of_every_new_file() {
 fn a_replaced_file_keeps_its_permissions() {
     let here = folder();
     let path = here.path().join("f.csv");
-    for kept in [0o600, 0o640, 0o666, 0o755] {
+    for bits in [0o600, 0o640, 0o666, 0o755] {
         fs::write(&path, "old").unwrap();
-        set_mode(&path, kept);
+        set_mode(&path, bits);
         write(&path, Existing::Replace, "new").unwrap();
-        assert_eq!(mode(&path), kept, "{kept:o}");
+        assert_eq!(mode(&path), bits, "{bits:o}");
         assert_eq!(fs::read_to_string(&path).unwrap(), "new");
     }
 }

@@ -223,16 +223,17 @@ fn the_notices_name_every_crate_and_font_of_the_program() {
     if std::env::var_os("UPDATE_LICENCES").is_some() {
         fs::write(&path, &expected).expect("the notices can be written");
     }
-    let kept = fs::read_to_string(&path).unwrap_or_default();
-    let differs = expected.lines().zip(kept.lines()).find(|(expected, kept)| expected != kept);
+    let stored = fs::read_to_string(&path).unwrap_or_default();
+    let differs =
+        expected.lines().zip(stored.lines()).find(|(expected, stored)| expected != stored);
     assert!(
-        kept == expected,
+        stored == expected,
         "{} is out of date, first at {differs:?}; \
          UPDATE_LICENCES=1 ./test --test library dependencies writes it",
         path.display()
     );
     for part in ["Ubuntu-Light.ttf", "SIL OPEN FONT LICENSE Version 1.1", "UBUNTU FONT LICENCE"] {
-        assert!(kept.contains(part), "{part}");
+        assert!(stored.contains(part), "{part}");
     }
 }
 

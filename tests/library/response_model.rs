@@ -170,9 +170,9 @@ fn the_shipped_model_keeps_its_word() {
         let path = Path::new("datasets").join(data);
         let mut go_on = |_| ControlFlow::Continue(());
         let cases = ResponseCase::load_all(&path, None, &mut go_on).unwrap().complete().unwrap();
-        let kept = &model.record().test;
-        let is_kept = |case: &&ResponseCase| kept.iter().any(|id| id.digest == case.digest);
-        let test: Vec<&ResponseCase> = cases.iter().filter(is_kept).collect();
+        let left_out = &model.record().test;
+        let is_left_out = |case: &&ResponseCase| left_out.iter().any(|id| id.digest == case.digest);
+        let test: Vec<&ResponseCase> = cases.iter().filter(is_left_out).collect();
         assert_eq!(test.len(), 25, "{data}");
         assert!(test.iter().all(|case| !model.is_trained_on(case)));
         let copy = Box::new(model.copied().unwrap());

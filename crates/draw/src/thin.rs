@@ -25,10 +25,13 @@ fn outline(part: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> + '_ {
     let by_height = |a: &usize, b: &usize| part[*a][1].total_cmp(&part[*b][1]);
     let lowest = (0..part.len()).min_by(by_height).unwrap_or(0);
     let highest = (0..part.len()).max_by(by_height).unwrap_or(0);
-    let mut kept = [0, lowest, highest, part.len().saturating_sub(1)];
-    kept.sort_unstable();
-    let is_new = move |position: &usize| *position == 0 || kept[*position] != kept[*position - 1];
-    (0..kept.len()).filter(is_new).filter_map(move |position| part.get(kept[position]).copied())
+    let mut positions = [0, lowest, highest, part.len().saturating_sub(1)];
+    positions.sort_unstable();
+    let is_new =
+        move |position: &usize| *position == 0 || positions[*position] != positions[*position - 1];
+    (0..positions.len())
+        .filter(is_new)
+        .filter_map(move |position| part.get(positions[position]).copied())
 }
 
 #[cfg(test)]

@@ -54,8 +54,8 @@ impl Purpose {
             Self::SaveModel(network) => {
                 written(MODEL_ENDING, &|path| Command::SaveModel(*network, path))
             }
-            Self::SaveKept(_, kept) => {
-                written(MODEL_ENDING, &|path| Command::SaveKept(kept.clone(), path))
+            Self::SaveArchived(_, model) => {
+                written(MODEL_ENDING, &|path| Command::SaveArchived(model.clone(), path))
             }
             Self::SaveCase => written(CASE_ENDING, &Command::SaveCaseAs),
             Self::PackCase => written("zip", &Command::PackCase),
@@ -143,7 +143,7 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         Purpose::Ground => dialog.add_filter("site file or orthophoto", &GROUNDS).pick_file().await,
         Purpose::Site => save(dialog.add_filter("site file", &["toml"]), name).await,
         Purpose::OpenModel => dialog.add_filter("model", &[MODEL_ENDING]).pick_file().await,
-        Purpose::SaveModel(_) | Purpose::SaveKept(..) => {
+        Purpose::SaveModel(_) | Purpose::SaveArchived(..) => {
             save(dialog.add_filter("model", &[MODEL_ENDING]), name).await
         }
         Purpose::Picture(_) | Purpose::ScenePicture(_) => {

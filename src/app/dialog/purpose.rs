@@ -45,7 +45,7 @@ pub enum Purpose {
     /// A file for the current model of a network.
     SaveModel(Network),
     /// A file for a copy of a kept model.
-    SaveKept(Network, PathBuf),
+    SaveArchived(Network, PathBuf),
     /// A `comparison.json` file to open.
     OpenComparison,
     /// A folder for the comparison of response models.
@@ -74,7 +74,7 @@ impl Purpose {
             Self::Ground => "Open a ground",
             Self::Site => "Save the ground",
             Self::OpenModel => "Open a model",
-            Self::SaveModel(_) | Self::SaveKept(..) => "Save the model",
+            Self::SaveModel(_) | Self::SaveArchived(..) => "Save the model",
             Self::OpenComparison => "Open a comparison",
             Self::SaveComparison => "A folder for the comparison",
             Self::SaveCase => "Save the case",
@@ -100,7 +100,7 @@ impl Purpose {
             Self::Scenario => "scenario.toml",
             Self::Vehicle(sheet) => return file_stem(&sheet.name) + ".toml",
             Self::Evidence(evidence) => return file_stem(&evidence.case) + ".toml",
-            Self::SaveModel(network) | Self::SaveKept(network, _) => network.file_name(),
+            Self::SaveModel(network) | Self::SaveArchived(network, _) => network.file_name(),
             Self::SaveComparison => "comparison",
             Self::SaveCase => "case.impactlab",
             Self::PackCase => "case.zip",

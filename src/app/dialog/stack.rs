@@ -3,12 +3,12 @@
 use std::collections::VecDeque;
 use std::path::PathBuf;
 
+use crate::app::archive::ModelsDialog;
 use crate::app::case::Leaving;
 use crate::app::command::Command;
 use crate::app::dialog::PathDialog;
 use crate::app::film::FilmForm;
 use crate::app::import::ImportDialog;
-use crate::app::kept::ModelsDialog;
 
 /// A dialog within the window.
 pub enum Dialog {

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use egui::Context;
 
+use crate::app::archive::{ArchiveEntry, keep_trained};
 use crate::app::command::{TrainingCommand, wake};
 use crate::app::force::ForceSession;
 use crate::app::force::recorded::RecordedCase;
-use crate::app::kept::{KeptEntry, keep_trained};
 use crate::app::network::Network;
 use crate::app::source::{OpenDataset, Source, chosen_dataset, open_datasets};
 use crate::app::state::{Session, State, Subject};
@@ -34,7 +34,7 @@ impl State {
 
     fn poll_training(&mut self) {
         let was_running = self.session.force.training.run.is_running();
-        let Session { force, library, kept, tasks, .. } = &mut self.session;
+        let Session { force, library, archive, tasks, .. } = &mut self.session;
         match force.training.poll() {
             None => {}
             Some(Ok((model, is_complete))) => {
@@ -42,12 +42,12 @@ impl State {
                 let name =
                     format!("trained on {}, epoch {}", record.data, record.detail.best_epoch);
                 let of = format!("{name} of {}", record.history.len());
-                let draft = force.training.kept_note(&model, name.clone(), is_complete);
+                let draft = force.training.archive_note(&model, name.clone(), is_complete);
                 let used = is_complete.then_some(&mut self.project.predict_force.model);
                 let taken = force.model.take_trained(model, name, (library, used));
-                let draft = draft.map(|draft| KeptEntry { name: taken.1, ..draft });
+                let draft = draft.map(|draft| ArchiveEntry { name: taken.1, ..draft });
                 let ForceSession { model: status, training, .. } = force;
-                keep_trained(status, training, taken.0, draft, kept.folder(), tasks);
+                keep_trained(status, training, taken.0, draft, archive.folder(), tasks);
                 self.say_of_training(&of, is_complete);
             }
             Some(Err(problem)) => self.say(Severity::Error, format!("training: {problem}")),

@@ -37,8 +37,8 @@ impl ColumnChoice {
         self.channel = channel;
         let Some(quantity) = channel.map(Channel::quantity) else { return };
         let stated = self.proposal.stated_unit(quantity).ok().flatten();
-        let kept = self.unit.filter(|unit| unit.quantity == quantity);
-        self.unit = stated.or(kept);
+        let chosen = self.unit.filter(|unit| unit.quantity == quantity);
+        self.unit = stated.or(chosen);
     }
 
     /// Whether the channel of the column has units and none of them is known.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use impactlab_core::data::{ColumnMap, Table};
 
 /// Number of maps that are kept; the oldest ones are forgotten.
-const KEPT: usize = 100;
+const MAX_MAPS: usize = 100;
 
 /// The column maps of earlier files, the newest first.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -31,33 +31,33 @@ impl ColumnMaps {
     /// Keeps the map with which a file was opened. It replaces the map of the same header and that
     /// of the same path.
     pub fn keep(&mut self, path: PathBuf, fingerprint: String, map: ColumnMap) {
-        self.maps.retain(|kept| kept.fingerprint != fingerprint && kept.path != path);
+        self.maps.retain(|entry| entry.fingerprint != fingerprint && entry.path != path);
         self.maps.insert(0, RememberedMap { fingerprint, path, map });
-        self.maps.truncate(KEPT);
+        self.maps.truncate(MAX_MAPS);
     }
 
     /// The map with which this file was opened last; `None` if there is none, or if the header of
     /// the file is another one now. The file is read if it was opened with a map.
     pub fn find_by_path(&self, path: &Path) -> Option<ColumnMap> {
-        let kept = self.maps.iter().find(|kept| kept.path == path)?;
-        (fingerprint(path, &kept.map)? == kept.fingerprint).then(|| kept.map.clone())
+        let entry = self.maps.iter().find(|entry| entry.path == path)?;
+        (fingerprint(path, &entry.map)? == entry.fingerprint).then(|| entry.map.clone())
     }
 
     /// The map that was chosen for a file with the same header. The file is read.
     pub fn find_by_header(&self, path: &Path) -> Option<ColumnMap> {
         let mut read: Vec<(&ColumnMap, Option<String>)> = Vec::new();
-        for kept in &self.maps {
-            let of_settings = |(map, _): &&(&ColumnMap, _)| map.settings == kept.map.settings;
+        for entry in &self.maps {
+            let of_settings = |(map, _): &&(&ColumnMap, _)| map.settings == entry.map.settings;
             let found = match read.iter().find(of_settings) {
                 Some((_, found)) => found.clone(),
                 None => {
-                    let found = fingerprint(path, &kept.map);
-                    read.push((&kept.map, found.clone()));
+                    let found = fingerprint(path, &entry.map);
+                    read.push((&entry.map, found.clone()));
                     found
                 }
             };
-            if found.as_ref() == Some(&kept.fingerprint) {
-                return Some(kept.map.clone());
+            if found.as_ref() == Some(&entry.fingerprint) {
+                return Some(entry.map.clone());
             }
         }
         None

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::app::kept::KeptEntry;
+use crate::app::archive::ArchiveEntry;
 use impactlab_study::ModelChoice;
 
 /// A model in use or ready for use, and its origin.
@@ -33,7 +33,7 @@ pub enum ModelEvent<M> {
     /// The model is in this file of the user now, or why it is not.
     Saved(Arc<M>, Result<PathBuf, String>),
     /// The model is kept in this file of the user's data folder now, or why it is not, with its name.
-    Kept(Arc<M>, Result<(KeptEntry, PathBuf), String>),
+    Archived(Arc<M>, Result<(ArchiveEntry, PathBuf), String>),
 }
 
 /// What the user has to know of it.
@@ -45,5 +45,5 @@ pub enum ModelNews {
     /// A model was written, or could not be.
     Saved(Result<PathBuf, String>),
     /// A model is kept, or could not be.
-    Kept(Result<KeptEntry, String>),
+    Archived(Result<ArchiveEntry, String>),
 }

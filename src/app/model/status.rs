@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::app::kept::{KeptEntry, KeptError, KeptFolder, NOTE_ENDING, name_of};
+use crate::app::archive::{ArchiveEntry, ArchiveError, ArchiveFolder, NOTE_ENDING, name_of};
 use crate::app::model::current::{CurrentModel, ModelEvent, ModelNews};
 use crate::app::model::name::file_name;
 use crate::app::network::TrainedModel;
@@ -99,9 +99,9 @@ impl<M: TrainedModel> ModelStatus<M> {
                 }
                 ModelNews::Saved(result.clone())
             }
-            ModelEvent::Kept(model, result) => {
+            ModelEvent::Archived(model, result) => {
                 self.n_keeping = self.n_keeping.saturating_sub(1);
-                ModelNews::Kept(result.clone().map(|(entry, path)| {
+                ModelNews::Archived(result.clone().map(|(entry, path)| {
                     // A file to which the user has saved it meanwhile comes before the kept one.
                     let current = self.current.as_ref();
                     if current.is_some_and(|of| Arc::ptr_eq(&of.model, model) && of.is_saved) {
@@ -157,8 +157,8 @@ impl<M: TrainedModel> ModelStatus<M> {
     pub fn keep(
         &mut self,
         model: Arc<M>,
-        draft: KeptEntry,
-        folder: KeptFolder,
+        draft: ArchiveEntry,
+        folder: ArchiveFolder,
         checkpoint: Option<PathBuf>,
         tasks: &mut Tasks,
     ) {
@@ -177,7 +177,7 @@ impl<M: TrainedModel> ModelStatus<M> {
             let path = folder.path_of(&entry);
             Ok((entry, path))
         };
-        tasks.start(key, work, |result| M::command(ModelEvent::Kept(model, result)));
+        tasks.start(key, work, |result| M::command(ModelEvent::Archived(model, result)));
     }
 
     /// Whether a model is being kept.
@@ -262,12 +262,12 @@ impl<M: TrainedModel> ModelStatus<M> {
 /// Writes a model into the folder of kept models.
 fn keep<M: TrainedModel>(
     model: &M,
-    draft: KeptEntry,
-    folder: &KeptFolder,
-) -> Result<KeptEntry, KeptError> {
-    let sha256 = model.digest().map_err(KeptError::Content)?;
-    let write = |path: &Path| model.write(path, Existing::Replace).map_err(KeptError::Content);
-    folder.put(KeptEntry { sha256, ..draft }, write)
+    draft: ArchiveEntry,
+    folder: &ArchiveFolder,
+) -> Result<ArchiveEntry, ArchiveError> {
+    let sha256 = model.digest().map_err(ArchiveError::Content)?;
+    let write = |path: &Path| model.write(path, Existing::Replace).map_err(ArchiveError::Content);
+    folder.put(ArchiveEntry { sha256, ..draft }, write)
 }
 
 fn load<M: TrainedModel>(

@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::app::archive::{Fact, differences};
 use crate::app::command::Command;
 use crate::app::found::Found;
-use crate::app::kept::{Fact, differences};
 use crate::app::model::ModelEvent;
 use crate::app::network::kind::Network;
 use impactlab_core::data::Existing;

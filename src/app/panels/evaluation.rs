@@ -38,7 +38,7 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         };
         let ForceEvaluation::Cases(report) = &answer.report else { return };
         ui.separator();
-        let name = session.kept.name_of(&latest.question.model);
+        let name = session.archive.name_of(&latest.question.model);
         heading_ui(ui, report, &name);
         tables_ui(ui, &report.evaluation, (&mut view.force, view.units));
         ui.separator();

@@ -2,19 +2,19 @@
 //! Reconstructed scene and Speeds show them.
 
 mod cars;
-mod kept_runs;
 mod live;
 mod preview;
 mod question;
 mod settings;
+mod stored_runs;
 mod update;
 
 pub use cars::{CarsSource, ReconstructedCars, ShownPaths};
-pub use kept_runs::KeptRuns;
 pub use live::LiveParticles;
 pub use preview::EvidencePreview;
 pub use question::{PreparedReconstruction, ReconstructionQuestion};
 pub use settings::ReconstructionView;
+pub use stored_runs::StoredRuns;
 
 use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
@@ -67,7 +67,7 @@ pub struct ReconstructionSession {
     /// The file of the evidence, where the project names one.
     pub file: Option<ReadEvidence>,
     /// Where runs are kept; `None` if this window keeps none.
-    pub kept_runs: Option<KeptRuns>,
+    pub stored_runs: Option<StoredRuns>,
     /// What follows from the evidence before anything is sampled.
     pub preview: Option<EvidencePreview>,
     /// The run and the latest answer.

@@ -1,6 +1,6 @@
 //! A reconstruction whose answer is prepared for drawing.
 
-use crate::app::reconstruction::KeptRuns;
+use crate::app::reconstruction::StoredRuns;
 use impactlab_core::data::Outcome;
 use impactlab_document::figure::prior_values;
 use impactlab_reconstruct::ReconstructedQuantity;
@@ -15,7 +15,7 @@ pub struct ReconstructionQuestion {
     /// The question for the reconstruction itself.
     pub request: ReconstructRequest,
     /// Where its run is kept; `None` keeps none.
-    pub kept_runs: Option<KeptRuns>,
+    pub stored_runs: Option<StoredRuns>,
 }
 
 impl ReconstructionQuestion {
@@ -26,7 +26,7 @@ impl ReconstructionQuestion {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<ReconstructAnswer>, StudyError> {
-        let Some(runs) = &self.kept_runs else { return self.request.solve(library, observer) };
+        let Some(runs) = &self.stored_runs else { return self.request.solve(library, observer) };
         let resumed = runs.resumed(&self.request)?;
         match resumed.solve(library, observer) {
             Err(error) if error.is_of_checkpoint() => {

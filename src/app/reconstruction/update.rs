@@ -78,7 +78,7 @@ impl State {
             session.adds_to = session.adds_to.filter(|idx| *idx < n_marks);
             let is_first = !session.run.is_running() && session.run.latest.is_none();
             let request = self.project.reconstruct.as_ref();
-            let runs = session.kept_runs.as_ref().filter(|_| is_first);
+            let runs = session.stored_runs.as_ref().filter(|_| is_first);
             if request.is_some_and(|request| runs.is_some_and(|runs| runs.holds(request))) {
                 self.run_reconstruction(context);
             }
@@ -129,7 +129,7 @@ impl State {
         let session = &mut self.session.reconstruction;
         *session = ReconstructionSession {
             file: session.file.take(),
-            kept_runs: session.kept_runs.take(),
+            stored_runs: session.stored_runs.take(),
             ..ReconstructionSession::default()
         };
     }
@@ -176,7 +176,7 @@ impl State {
         let (sender, news) = channel();
         let session = &mut self.session.reconstruction;
         (session.live, session.news) = (None, Some(news));
-        let question = ReconstructionQuestion { request, kept_runs: session.kept_runs.clone() };
+        let question = ReconstructionQuestion { request, stored_runs: session.stored_runs.clone() };
         let (library, watch) = (&self.session.library, watch(sender));
         if let Err(error) = session.run.start_watched(question, library, wake(context), watch) {
             self.say(Severity::Error, error.to_string());

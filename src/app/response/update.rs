@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use egui::Context;
 
+use crate::app::archive::{ArchiveEntry, keep_trained};
 use crate::app::command::{Command, ComparisonCommand, TrainingCommand, wake};
 use crate::app::found::Found;
-use crate::app::kept::{KeptEntry, keep_trained};
 use crate::app::model::file_name;
 use crate::app::network::Network;
 use crate::app::response::comparison::write_comparison_folder;
@@ -41,7 +41,7 @@ impl State {
 
     fn poll_response_training(&mut self) {
         let was_running = self.session.response.training.run.is_running();
-        let Session { response, library, kept, tasks, .. } = &mut self.session;
+        let Session { response, library, archive, tasks, .. } = &mut self.session;
         match response.training.poll() {
             None => {}
             Some(Ok((model, is_complete))) => {
@@ -50,12 +50,12 @@ impl State {
                     0 => format!("pre-trained on {} simulations", record.detail.n_simulated),
                     n => format!("trained on {n} trajectories of {}", record.data),
                 };
-                let draft = response.training.kept_note(&model, name.clone(), is_complete);
+                let draft = response.training.archive_note(&model, name.clone(), is_complete);
                 let used = is_complete.then_some(&mut self.project.predict_motion.response_model);
                 let taken = response.model.take_trained(model, name.clone(), (library, used));
-                let draft = draft.map(|draft| KeptEntry { name: taken.1, ..draft });
+                let draft = draft.map(|draft| ArchiveEntry { name: taken.1, ..draft });
                 let ResponseSession { model: status, training, .. } = response;
-                keep_trained(status, training, taken.0, draft, kept.folder(), tasks);
+                keep_trained(status, training, taken.0, draft, archive.folder(), tasks);
                 self.say_of_training(&name, is_complete);
             }
             Some(Err(problem)) => self.say(Severity::Error, format!("training: {problem}")),

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use crate::app::archive::ArchiveStatus;
 use crate::app::case_table::CaseList;
 use crate::app::cost::Costs;
 use crate::app::dialog::Dialogs;
 use crate::app::force::ForceSession;
 use crate::app::frame_times::FrameTimes;
 use crate::app::ground::GroundSession;
-use crate::app::kept::KeptStatus;
 use crate::app::latest::Latest;
 use crate::app::playback::Playback;
 use crate::app::reconstruction::ReconstructionSession;
@@ -52,7 +52,7 @@ pub struct Session {
     /// The report of the case.
     pub report: ReportSession,
     /// Models, comparisons and evaluations that are kept in the user's data folder.
-    pub kept: KeptStatus,
+    pub archive: ArchiveStatus,
     /// Trainings that have not ended and can go on.
     pub unfinished: UnfinishedTrainings,
     /// What the work of the forms will cost.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::kept::NOTE_ENDING;
+use crate::app::archive::NOTE_ENDING;
 use crate::app::unfinished::note::TrainingNote;
 use impactlab_core::data::{Existing, write_atomically};
 use impactlab_core::error_chain;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::kept::{KeptError, NOTE_ENDING};
+use crate::app::archive::{ArchiveError, NOTE_ENDING};
 use crate::app::network::Network;
 use impactlab_core::data::write::WriterLock;
 use impactlab_core::data::{MAX_RESULTS_BYTES, list_folder, read_bytes};
@@ -133,7 +133,7 @@ impl UnfinishedList {
 
 fn read_training(checkpoint: &Path, note: &Path) -> Result<Unfinished, String> {
     if !note.exists() {
-        return Err(KeptError::NoNote { path: checkpoint.to_owned() }.to_string());
+        return Err(ArchiveError::NoNote { path: checkpoint.to_owned() }.to_string());
     }
     let bytes = read_bytes(note, MAX_RESULTS_BYTES).map_err(|error| error_chain(&error))?;
     let damaged = |error| format!("{}: the note is damaged ({error})", note.display());

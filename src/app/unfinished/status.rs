@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::app::archive::ArchiveEvent;
 use crate::app::command::Command;
-use crate::app::kept::KeptEvent;
 use crate::app::network::Network;
 use crate::app::tasks::{TaskKey, Tasks};
 use crate::app::unfinished::note::{LostTraining, Unfinished, UnfinishedList};
@@ -43,7 +43,7 @@ impl UnfinishedTrainings {
         }
         self.is_reading = true;
         let work = move |_: &mut ProgressCallback<'_>| Ok(UnfinishedList::read(&folder));
-        let take = |result| Command::from(KeptEvent::Trainings(result));
+        let take = |result| Command::from(ArchiveEvent::Trainings(result));
         tasks.start(TaskKey::ListTrainings, work, take);
     }
 

@@ -99,7 +99,7 @@ impl Console<'_> {
     /// The same for a file that a question writes itself, and checks, while it is answered.
     pub(in crate::cli) fn keeps(&mut self, path: Option<&Path>) {
         if let Some(path) = path {
-            self.targets.add_kept(path);
+            self.targets.add_unchecked(path);
         }
     }
 

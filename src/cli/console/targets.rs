@@ -23,12 +23,12 @@ pub(in crate::cli) struct Targets {
 impl Targets {
     /// Adds a file, and says what stands in its way.
     pub(super) fn add(&mut self, path: &Path, existing: Existing) -> Result<(), CliError> {
-        self.add_kept(path);
+        self.add_unchecked(path);
         Ok(check_target(path, existing)?)
     }
 
     /// Adds a file of which the question that writes it sees itself whether it can be written.
-    pub(super) fn add_kept(&mut self, path: &Path) {
+    pub(super) fn add_unchecked(&mut self, path: &Path) {
         self.files.push(path.to_owned());
     }
 

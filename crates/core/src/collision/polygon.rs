@@ -26,19 +26,19 @@ pub(super) fn clip(subject: &[[f64; 2]], window: &[[f64; 2]]) -> Vec<[f64; 2]> {
     for (i, &a) in window.iter().enumerate() {
         let b = window[(i + 1) % window.len()];
         let inside = |p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
-        let mut kept = Vec::with_capacity(polygon.len() + 1);
+        let mut clipped = Vec::with_capacity(polygon.len() + 1);
         for (j, &p) in polygon.iter().enumerate() {
             let q = polygon[(j + 1) % polygon.len()];
             let (dp, dq) = (inside(p), inside(q));
             if dp >= 0.0 {
-                kept.push(p);
+                clipped.push(p);
             }
             if (dp > 0.0 && dq < 0.0) || (dp < 0.0 && dq > 0.0) {
                 let t = dp / (dp - dq);
-                kept.push([0, 1].map(|k| p[k] + t * (q[k] - p[k])));
+                clipped.push([0, 1].map(|k| p[k] + t * (q[k] - p[k])));
             }
         }
-        polygon = kept;
+        polygon = clipped;
     }
     polygon
 }

@@ -114,8 +114,8 @@ fn split(line: &str, separator: Separator) -> Vec<String> {
     let mut record = StringRecord::new();
     // Reading from memory fails for invalid UTF-8 only, which a `str` cannot contain.
     let _ = reader.read_record(&mut record);
-    let kept = |cell: &&str| separator != Separator::Blanks || !cell.is_empty();
-    record.iter().filter(kept).map(str::to_owned).collect()
+    let is_cell = |cell: &&str| separator != Separator::Blanks || !cell.is_empty();
+    record.iter().filter(is_cell).map(str::to_owned).collect()
 }
 
 /// Checks the number and the length of the fields of the first lines.

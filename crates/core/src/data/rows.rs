@@ -157,8 +157,8 @@ fn n_fields(cells: &StringRecord, separator: Separator, expected: usize) -> usiz
 /// Whether there are only text and blank fields to the right of the last column, and no number that
 /// could belong to a column.
 fn is_text_beyond(cells: &StringRecord, dialect: Dialect, n_columns: usize) -> bool {
-    let is_kept = |cell: &&str| dialect.separator != Separator::Blanks || !cell.is_empty();
-    let mut beyond = cells.iter().filter(is_kept).skip(n_columns).map(str::trim);
+    let is_cell = |cell: &&str| dialect.separator != Separator::Blanks || !cell.is_empty();
+    let mut beyond = cells.iter().filter(is_cell).skip(n_columns).map(str::trim);
     let is_text = |cell: &str| {
         dialect.number(cell).is_none() && !cell.starts_with(|c: char| c.is_ascii_digit())
     };

@@ -249,8 +249,8 @@ fn is_unit_key(key: &str) -> bool {
 }
 
 fn letters_and_digits(text: &str) -> String {
-    let kept = text.chars().filter(|c| c.is_alphanumeric());
-    kept.flat_map(char::to_lowercase).collect()
+    let letters = text.chars().filter(|c| c.is_alphanumeric());
+    letters.flat_map(char::to_lowercase).collect()
 }
 
 /// Reduces a unit to one spelling, so that `m/s²`, `m/s^2`, `m_s2` and `m/sec2` are equal, and so

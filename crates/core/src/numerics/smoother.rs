@@ -163,8 +163,9 @@ fn update((mean, covariance): &mut (Vector3<f64>, Matrix3<f64>), sample: &TrackS
     let gain = *covariance * row.transpose() / spread;
     *mean += gain * surprise;
     // The form of Joseph keeps the covariance positive definite in spite of rounding.
-    let kept = Matrix3::identity() - gain * row;
-    *covariance = kept * *covariance * kept.transpose() + gain * gain.transpose() * variance;
+    let remaining = Matrix3::identity() - gain * row;
+    *covariance =
+        remaining * *covariance * remaining.transpose() + gain * gain.transpose() * variance;
     -0.5 * (surprise * surprise / spread + (std::f64::consts::TAU * spread).ln())
 }
 

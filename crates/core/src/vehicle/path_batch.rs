@@ -123,7 +123,7 @@ pub fn simulate_paths<R: Send>(
     });
     let mut ended: Vec<(usize, R)> = ended.flatten_iter().collect();
     ended.sort_by_key(|(idx, _)| *idx);
-    ended.into_iter().map(|(_, kept)| kept).collect()
+    ended.into_iter().map(|(_, value)| value).collect()
 }
 
 /// A run that waits for a lane, or is in one.

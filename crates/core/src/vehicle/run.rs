@@ -127,8 +127,8 @@ impl<'a> Run<'a> {
         self.recorder.record(time_s, (&now, coming), forces);
         let is_pushed = coming.collision.is_some() || coming.is_driven();
         let share = self.energy.gain(self.vehicle, &now, is_pushed);
-        let is_kept = share <= MAX_ENERGY_GAIN; // not where it is NaN
-        if !is_kept {
+        let is_conserved = share <= MAX_ENERGY_GAIN; // not where it is NaN
+        if !is_conserved {
             if !self.is_baseline {
                 return Err(SimulationError::EnergyGain { time_s, share });
             }

@@ -50,7 +50,7 @@ impl SceneLook {
 pub struct SceneCanvas {
     threads: Option<ThreadPool>,
     /// The scene and the look of the ground that is kept.
-    kept: Option<(Arc<Scene>, SceneLook)>,
+    drawn: Option<(Arc<Scene>, SceneLook)>,
     /// The time of the picture.
     time_s: Option<f64>,
     ground: Vec<Color32>,
@@ -65,11 +65,11 @@ impl SceneCanvas {
     ///
     /// - returns whether the picture has changed.
     pub fn draw(&mut self, scene: &Arc<Scene>, look: &SceneLook, time_s: f64) -> bool {
-        let is_kept = self
-            .kept
+        let is_drawn = self
+            .drawn
             .as_ref()
-            .is_some_and(|(kept, as_seen)| Arc::ptr_eq(kept, scene) && as_seen == look);
-        if is_kept && self.time_s == Some(time_s) {
+            .is_some_and(|(drawn, as_seen)| Arc::ptr_eq(drawn, scene) && as_seen == look);
+        if is_drawn && self.time_s == Some(time_s) {
             return false;
         }
         if self.threads.is_none() {
@@ -77,7 +77,7 @@ impl SceneCanvas {
         }
         let threads = self.threads.take();
         let mut work = || {
-            if !is_kept {
+            if !is_drawn {
                 self.draw_ground(scene, look);
             }
             self.draw_frame(scene, look, time_s);
@@ -87,7 +87,7 @@ impl SceneCanvas {
             None => work(),
         }
         self.threads = threads;
-        self.kept = Some((Arc::clone(scene), *look));
+        self.drawn = Some((Arc::clone(scene), *look));
         self.time_s = Some(time_s);
         true
     }

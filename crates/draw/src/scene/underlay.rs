@@ -194,18 +194,19 @@ fn seen_corners(border_m: &[[f64; 2]], projection: &Projection) -> Option<Vec<[f
     let near = 2.0 * NEAR_M;
     let points: Vec<[f64; 3]> =
         border_m.iter().map(|[x, y]| projection.in_camera([*x, *y, 0.0])).collect();
-    let mut kept = Vec::with_capacity(points.len() + 2);
+    let mut clipped = Vec::with_capacity(points.len() + 2);
     for (from, to) in points.iter().zip(points.iter().cycle().skip(1)) {
         let is_seen = |point: &[f64; 3]| projection.is_parallel() || point[2] >= near;
         if is_seen(from) {
-            kept.push(*from);
+            clipped.push(*from);
         }
         if is_seen(from) != is_seen(to) {
             let share = (near - from[2]) / (to[2] - from[2]);
-            kept.push(std::array::from_fn(|i| from[i] + (to[i] - from[i]) * share));
+            clipped.push(std::array::from_fn(|i| from[i] + (to[i] - from[i]) * share));
         }
     }
-    let seen = kept.into_iter().map(|point| projection.in_picture(point).map(|[x, y, _]| [x, y]));
+    let seen =
+        clipped.into_iter().map(|point| projection.in_picture(point).map(|[x, y, _]| [x, y]));
     let seen: Vec<[f64; 2]> = seen.collect::<Option<_>>()?;
     let is_finite = seen.iter().flatten().all(|value| value.is_finite());
     (seen.len() > 2 && is_finite).then_some(seen)

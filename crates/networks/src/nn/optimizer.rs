@@ -288,8 +288,8 @@ impl Moments {
         self.second = mean(&self.second, &gradient.sqr()?, config.beta_2)?;
         let root = ((self.second.sqrt()? * rates.root_scale)? + config.epsilon)?;
         let step = ((&self.first * rates.step_size)? / root)?;
-        let kept = (variable.as_detached_tensor() * (1.0 - rates.decay))?;
-        Ok(variable.set(&(kept - step)?)?)
+        let decayed = (variable.as_detached_tensor() * (1.0 - rates.decay))?;
+        Ok(variable.set(&(decayed - step)?)?)
     }
 
     /// The same with the values of exported tensors.

@@ -51,7 +51,7 @@ pub fn rejection_sample(
     seed: u64,
 ) -> Result<Rejection, RejectionError> {
     let mut rng = random_stream(seed, "rejection", 0);
-    let mut kept = Vec::new();
+    let mut accepted = Vec::new();
     let mut left = n_evaluations;
     while left > 0 {
         let n = BATCH.min(left);
@@ -63,12 +63,12 @@ pub fn rejection_sample(
             }
             // NaN is less than nothing.
             if rng.random::<f64>().ln() < value - log_bound {
-                kept.push(z);
+                accepted.push(z);
             }
         }
     }
-    let share = kept.len() as f64 / n_evaluations as f64;
-    Ok(Rejection { z: kept, n_evaluations, log_evidence: log_bound + share.ln() })
+    let share = accepted.len() as f64 / n_evaluations as f64;
+    Ok(Rejection { z: accepted, n_evaluations, log_evidence: log_bound + share.ln() })
 }
 
 #[cfg(test)]

@@ -56,7 +56,7 @@ impl Track {
         for point in &path.points {
             let is_due = points
                 .last()
-                .is_none_or(|kept: &PathPoint| point.time_s >= kept.time_s + POINT_INTERVAL_S);
+                .is_none_or(|last: &PathPoint| point.time_s >= last.time_s + POINT_INTERVAL_S);
             if is_due {
                 points.push(*point);
             }

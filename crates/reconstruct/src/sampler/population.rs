@@ -194,10 +194,10 @@ impl Population {
     /// Forgets the particles that have no weight worth mentioning.
     pub fn forget_negligible(&mut self, weights: &Weights) {
         let keep = |idx: usize| weights.weight[idx] > NEGLIGIBLE;
-        let kept: Vec<usize> = (0..self.z.len()).filter(|idx| keep(*idx)).collect();
-        self.z = kept.iter().map(|idx| std::mem::take(&mut self.z[*idx])).collect();
-        self.log_likelihood = kept.iter().map(|idx| self.log_likelihood[*idx]).collect();
-        self.log_density = kept.iter().map(|idx| self.log_density[*idx]).collect();
+        let remaining: Vec<usize> = (0..self.z.len()).filter(|idx| keep(*idx)).collect();
+        self.z = remaining.iter().map(|idx| std::mem::take(&mut self.z[*idx])).collect();
+        self.log_likelihood = remaining.iter().map(|idx| self.log_likelihood[*idx]).collect();
+        self.log_density = remaining.iter().map(|idx| self.log_density[*idx]).collect();
     }
 
     /// Checks a population that comes from a file, so that nothing is counted or indexed wrongly.

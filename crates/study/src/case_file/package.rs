@@ -170,10 +170,10 @@ pub fn unpack(package: &Path, folder: &Path) -> Result<PathBuf, CaseError> {
         extract(&mut archive, i, (staging.path(), &mut left), package)?;
     }
     CaseFile::load(&staging.path().join(&case))?;
-    let kept = staging.keep();
-    if let Err(source) = fs::rename(&kept, &absolute) {
+    let staged = staging.keep();
+    if let Err(source) = fs::rename(&staged, &absolute) {
         // What was unpacked is of no use there.
-        let _ = fs::remove_dir_all(&kept);
+        let _ = fs::remove_dir_all(&staged);
         return Err(CaseError::Io { path: folder.to_owned(), source });
     }
     Ok(absolute.join(case))

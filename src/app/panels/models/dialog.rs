@@ -2,8 +2,8 @@
 
 use egui::{Key, Ui};
 
+use crate::app::archive::ModelsDialog;
 use crate::app::command::{Command, ModelsCommand};
-use crate::app::kept::ModelsDialog;
 
 /// Draws the question and adds a command when the user has answered.
 pub fn models_dialog_ui(ui: &mut Ui, dialog: &mut ModelsDialog, commands: &mut Vec<Command>) {

@@ -2,12 +2,12 @@
 
 use egui::{Frame, Ui};
 
+use crate::app::archive::{
+    ArchiveEntry, ArchiveFolder, ArchiveProblem, ArchiveStatus, Fact, LIMIT_BYTES, ModelsDialog,
+    Removal, bytes_text, how_it_was_made,
+};
 use crate::app::command::{Command, ModelsCommand};
 use crate::app::dialog::Purpose;
-use crate::app::kept::{
-    Fact, KeptEntry, KeptFolder, KeptProblem, KeptStatus, LIMIT_BYTES, ModelsDialog, Removal,
-    bytes_text, how_it_was_made,
-};
 use crate::app::network::Network;
 use crate::app::panels::models::parts::facts_ui;
 use crate::app::panes::PaneContext;
@@ -21,32 +21,32 @@ const N_MAIN_FIGURES: usize = 4;
 /// Draws how much is kept where, what is damaged, and the entries.
 pub fn finished_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, session, commands, .. } = pane;
-    let kept = &session.kept;
-    let Some(folder) = kept.folder() else {
+    let archive = &session.archive;
+    let Some(folder) = archive.folder() else {
         ui.weak("This window has no folder of its own and keeps nothing: save what you need.");
         return;
     };
-    summary_ui(ui, kept);
-    for problem in &kept.list.problems {
+    summary_ui(ui, archive);
+    for problem in &archive.list.problems {
         problem_ui(ui, problem, commands);
     }
-    for entry in &kept.list.entries {
+    for entry in &archive.list.entries {
         Frame::group(ui.style()).show(ui, |ui| {
             ui.set_width(ui.available_width());
             entry_ui(ui, entry, (project, folder), commands);
         });
     }
-    if kept.list.entries.is_empty() && !kept.is_reading() {
+    if archive.list.entries.is_empty() && !archive.is_reading() {
         ui.weak("What a training, a comparison or an evaluation gives is kept here when it ends.");
     }
 }
 
-fn summary_ui(ui: &mut Ui, kept: &KeptStatus) {
-    if kept.is_reading() {
+fn summary_ui(ui: &mut Ui, archive: &ArchiveStatus) {
+    if archive.is_reading() {
         ui.horizontal(|ui| (ui.spinner(), ui.label("reading what is kept")));
         return;
     }
-    let (n, bytes) = (kept.list.entries.len(), kept.bytes());
+    let (n, bytes) = (archive.list.entries.len(), archive.bytes());
     let limit = bytes_text(LIMIT_BYTES);
     if bytes > LIMIT_BYTES {
         let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
@@ -63,7 +63,7 @@ fn summary_ui(ui: &mut Ui, kept: &KeptStatus) {
     }
 }
 
-fn problem_ui(ui: &mut Ui, problem: &KeptProblem, commands: &mut Vec<Command>) {
+fn problem_ui(ui: &mut Ui, problem: &ArchiveProblem, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
         ui.colored_label(color, format!("Cannot be used: {}", problem.reason));
@@ -80,8 +80,8 @@ fn problem_ui(ui: &mut Ui, problem: &KeptProblem, commands: &mut Vec<Command>) {
 
 fn entry_ui(
     ui: &mut Ui,
-    entry: &KeptEntry,
-    (project, folder): (&Project, &KeptFolder),
+    entry: &ArchiveEntry,
+    (project, folder): (&Project, &ArchiveFolder),
     commands: &mut Vec<Command>,
 ) {
     let path = folder.path_of(entry);
@@ -126,8 +126,8 @@ fn entry_ui(
 
 fn buttons_ui(
     ui: &mut Ui,
-    entry: &KeptEntry,
-    (is_in_use, folder): (bool, &KeptFolder),
+    entry: &ArchiveEntry,
+    (is_in_use, folder): (bool, &ArchiveFolder),
     commands: &mut Vec<Command>,
 ) {
     let path = folder.path_of(entry);
@@ -137,7 +137,7 @@ fn buttons_ui(
                 commands.push(Command::UseModel(network, Some(path.clone())));
             }
             if ui.button("Save as…").clicked() {
-                commands.push(Command::Ask(Purpose::SaveKept(network, path)));
+                commands.push(Command::Ask(Purpose::SaveArchived(network, path)));
             }
         }
         None => {

@@ -2,8 +2,8 @@
 
 use egui::Ui;
 
+use crate::app::archive::{ArchiveStatus, Fact, how_it_was_made};
 use crate::app::command::Command;
-use crate::app::kept::{Fact, KeptStatus, how_it_was_made};
 use crate::app::model::{CurrentModel, ModelStatus};
 use crate::app::network::TrainedModel;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
@@ -16,23 +16,24 @@ use impactlab_study::{ForceSource, ModelChoice};
 pub fn in_use_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, session, commands, .. } = pane;
     let is_chained = matches!(project.predict_motion.force, ForceSource::Predicted(_));
-    let (force, response, kept) = (&session.force.model, &session.response.model, &session.kept);
+    let (force, response, archive) =
+        (&session.force.model, &session.response.model, &session.archive);
     ui.columns(2, |columns| {
         let [left, right] = columns else { return };
         let use_of_it = match is_chained {
             true => "Answers the force prediction, and gives the motion forecast its force.",
             false => "Answers the force prediction. The motion forecast takes the given force.",
         };
-        network_ui(left, (force, use_of_it), kept, commands);
+        network_ui(left, (force, use_of_it), archive, commands);
         let use_of_it = "Answers the motion forecast and the outcome.";
-        network_ui(right, (response, use_of_it), kept, commands);
+        network_ui(right, (response, use_of_it), archive, commands);
     });
 }
 
 fn network_ui<M: TrainedModel>(
     ui: &mut Ui,
     (model, use_of_it): (&ModelStatus<M>, &str),
-    kept: &KeptStatus,
+    archive: &ArchiveStatus,
     commands: &mut Vec<Command>,
 ) {
     ui.strong(M::NETWORK.label());
@@ -43,7 +44,7 @@ fn network_ui<M: TrainedModel>(
     model_row_ui(ui, model, "The model that answers", commands);
     ui.label(use_of_it);
     let mut facts = vec![
-        Fact::new("How it came to be", origin(current, kept)),
+        Fact::new("How it came to be", origin(current, archive)),
         Fact::new("Data", current.model.data()),
     ];
     facts.extend(current.model.facts());
@@ -68,9 +69,9 @@ fn network_ui<M: TrainedModel>(
 }
 
 /// Says where a model comes from.
-fn origin<M: TrainedModel>(current: &CurrentModel<M>, kept: &KeptStatus) -> String {
+fn origin<M: TrainedModel>(current: &CurrentModel<M>, archive: &ArchiveStatus) -> String {
     match &current.choice {
-        ModelChoice::Source(ModelSource::File(path)) => match kept.entry_of(path) {
+        ModelChoice::Source(ModelSource::File(path)) => match archive.entry_of(path) {
             Some(entry) => {
                 let cancelled = if entry.is_cancelled { ", cancelled" } else { "" };
                 let how = how_it_was_made(&entry.question);

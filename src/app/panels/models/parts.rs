@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use crate::app::kept::Fact;
+use crate::app::archive::Fact;
 use crate::app::widgets::value_row;
 
 /// Characters of a value that are shown without hovering over it.

@@ -3,8 +3,8 @@
 
 use egui::{RichText, Ui};
 
+use crate::app::archive::{ModelsDialog, Removal, how_it_was_made, moment_text};
 use crate::app::command::{Command, ModelsCommand};
-use crate::app::kept::{ModelsDialog, Removal, how_it_was_made, moment_text};
 use crate::app::network::Network;
 use crate::app::panes::Pane;
 use crate::app::state::Session;

@@ -110,12 +110,12 @@ impl GroundResources {
         let picture = scene.ground.as_ref().and_then(|site| site.picture.as_ref());
         let held = self.picture.0.as_ref();
         // A picture that was only moved has the same pixels.
-        let is_kept = match (picture, held) {
+        let is_held = match (picture, held) {
             (Some(picture), Some(held)) => picture.has_pixels_of(held),
             (None, None) => true,
             _ => false,
         };
-        if is_kept {
+        if is_held {
             return Ok(());
         }
         self.picture.0 = None;

@@ -104,7 +104,7 @@ pub struct GpuCanvas {
     below: GrowingBuffer,
     above: GrowingBuffer,
     /// The scene and the look of the ground that is kept.
-    kept: Option<(Arc<Scene>, SceneLook)>,
+    drawn: Option<(Arc<Scene>, SceneLook)>,
     time_s: Option<f64>,
 }
 
@@ -132,7 +132,7 @@ impl GpuCanvas {
             lines: MovingLines::default(),
             below: GrowingBuffer::for_vertices("lines below"),
             above: GrowingBuffer::for_vertices("lines above"),
-            kept: None,
+            drawn: None,
             time_s: None,
             on,
         }
@@ -151,17 +151,17 @@ impl GpuCanvas {
         look: &SceneLook,
         time_s: f64,
     ) -> Result<bool, GpuError> {
-        let kept = self.kept.take();
-        let is_kept = kept
+        let drawn = self.drawn.take();
+        let is_drawn = drawn
             .as_ref()
-            .is_some_and(|(kept, as_seen)| Arc::ptr_eq(kept, scene) && as_seen == look);
-        if is_kept && self.time_s == Some(time_s) {
-            self.kept = kept;
+            .is_some_and(|(drawn, as_seen)| Arc::ptr_eq(drawn, scene) && as_seen == look);
+        if is_drawn && self.time_s == Some(time_s) {
+            self.drawn = drawn;
             return Ok(false);
         }
         let on = Arc::clone(&self.on);
-        checked(&on.device, || self.encode(scene, look, (time_s, is_kept)))??;
-        self.kept = Some((Arc::clone(scene), *look));
+        checked(&on.device, || self.encode(scene, look, (time_s, is_drawn)))??;
+        self.drawn = Some((Arc::clone(scene), *look));
         self.time_s = Some(time_s);
         Ok(true)
     }
@@ -183,7 +183,7 @@ impl GpuCanvas {
         &mut self,
         scene: &Arc<Scene>,
         look: &SceneLook,
-        (time_s, is_kept): (f64, bool),
+        (time_s, is_drawn): (f64, bool),
     ) -> Result<(), GpuError> {
         let on = Arc::clone(&self.on);
         let projection = look.projection();
@@ -191,7 +191,7 @@ impl GpuCanvas {
         let targets = self.targets_of(look.size_px)?;
         let mut encoder =
             on.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        if !is_kept {
+        if !is_drawn {
             self.draw_ground(&mut encoder, &ground, look, &targets)?;
         }
         self.update_frame(&ground, look.size_px, time_s);

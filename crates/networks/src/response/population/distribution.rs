@@ -304,9 +304,9 @@ impl StrengthPopulation {
             let eigen = moved.symmetric_eigen();
             let mut order: Vec<usize> = (0..places.len()).collect();
             order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
-            let kept: f64 = order.iter().take(slots.len()).map(|i| eigen.eigenvalues[*i]).sum();
+            let retained: f64 = order.iter().take(slots.len()).map(|i| eigen.eigenvalues[*i]).sum();
             let total: f64 = eigen.eigenvalues.iter().sum();
-            let scale = if kept > 0.0 { (total / kept).max(1.0).sqrt() } else { 1.0 };
+            let scale = if retained > 0.0 { (total / retained).max(1.0).sqrt() } else { 1.0 };
             for (slot, i) in slots.iter_mut().zip(order) {
                 let direction = &root * eigen.eigenvectors.column(i) * scale;
                 for (place, value) in places.iter().zip(direction.iter()) {

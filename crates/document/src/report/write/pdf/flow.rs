@@ -18,7 +18,7 @@ const BODY_PT: f32 = 9.5;
 /// Size of captions, points.
 const CAPTION_PT: f32 = 8.5;
 /// Room below a heading that keeps it from the foot of a page, points.
-const KEPT_PT: f32 = 72.0;
+const BELOW_HEADING_PT: f32 = 72.0;
 /// Height of a picture over its width.
 pub(super) const PICTURE_ASPECT: f32 = 0.58;
 
@@ -158,7 +158,7 @@ impl<'a> Flow<'a> {
 
     /// A heading, which stays with what follows it.
     fn heading(&mut self, (level, size_pt): (u8, f32), (text, behind): (&str, &[Block])) {
-        self.need(size_pt * LEADING + self.kept_pt(behind));
+        self.need(size_pt * LEADING + self.below_heading_pt(behind));
         let page = self.pages.len() - 1;
         let entry = OutlineEntry { level, text: text.to_owned(), page, y_pt: self.y_pt };
         self.outline.push(entry);
@@ -169,11 +169,11 @@ impl<'a> Flow<'a> {
     }
 
     /// Room that the beginning of what follows a heading takes, further headings included.
-    fn kept_pt(&self, blocks: &[Block]) -> f32 {
+    fn below_heading_pt(&self, blocks: &[Block]) -> f32 {
         match blocks {
-            [Block::Heading { .. }, behind @ ..] => 24.0 + self.kept_pt(behind),
+            [Block::Heading { .. }, behind @ ..] => 24.0 + self.below_heading_pt(behind),
             [Block::Picture(picture), ..] => self.picture_pt(picture) + 8.0,
-            _ => KEPT_PT,
+            _ => BELOW_HEADING_PT,
         }
     }
 

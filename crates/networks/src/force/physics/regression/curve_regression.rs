@@ -265,13 +265,13 @@ mod tests {
         let split = split(&cases, 0, TEST_SHARE);
         // Of the training cases only: a third is kept back here.
         let train: Vec<&ForceCase> = split.train.iter().map(|idx| &cases[*idx]).collect();
-        let (kept_back, fitted_to): (Vec<_>, Vec<_>) =
+        let (held_out, fitted_to): (Vec<_>, Vec<_>) =
             train.iter().enumerate().partition(|(i, _)| i % 3 == 0);
         let fitted_to: Vec<&ForceCase> = fitted_to.into_iter().map(|(_, case)| *case).collect();
         let columns = ColumnSet::ThetaContactAndBody;
         let model = CurveRegression::fit_with(&fitted_to, columns, OPTIONS, 0).unwrap();
         let predict = |case: &ForceCase| model.predict(&case.scenario).unwrap();
-        let clean = kept_back.iter().map(|(_, case)| **case).filter(|case| case.is_clean());
+        let clean = held_out.iter().map(|(_, case)| **case).filter(|case| case.is_clean());
         let errors = clean.map(|case| PointErrors::new(case, &predict(case)).history_error);
         let error = Summary::from_values(errors).unwrap();
         assert!(error.median < 0.4 && error.mean < 0.45, "{error:?}");

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::app::kept::{KeptEntry, KeptList};
+use crate::app::archive::{ArchiveEntry, ArchiveList};
 use crate::app::unfinished::UnfinishedList;
 use impactlab_study::{CompareReport, EvaluateForceReport, Request};
 
@@ -23,7 +23,7 @@ pub enum ModelsDialog {
     /// What an entry is to be called.
     Rename {
         /// The entry.
-        entry: Box<KeptEntry>,
+        entry: Box<ArchiveEntry>,
         /// The name as typed so far.
         name: String,
     },
@@ -33,11 +33,11 @@ pub enum ModelsDialog {
 
 /// What a task has done with what is kept.
 #[derive(Clone)]
-pub enum KeptEvent {
+pub enum ArchiveEvent {
     /// The list was read.
-    Listed(Result<KeptList, String>),
+    Listed(Result<ArchiveList, String>),
     /// An entry was written, anew or with another name.
-    Put(Result<KeptEntry, String>),
+    Put(Result<ArchiveEntry, String>),
     /// Files were removed.
     Removed(Result<Removal, String>),
     /// A comparison or an evaluation was read.

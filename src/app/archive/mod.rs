@@ -21,9 +21,9 @@ mod update;
 
 pub use described::{differences, how_it_was_made};
 pub(in crate::app) use entry::moment_text;
-pub use entry::{Fact, KeptEntry, KeptKind};
-pub use error::KeptError;
-pub use event::{KeptEvent, ModelsDialog, OpenedResult, Removal};
-pub use folder::{KeptFolder, KeptList, KeptProblem, NOTE_ENDING, name_of};
-pub use status::KeptStatus;
+pub use entry::{ArchiveEntry, ArchiveKind, Fact};
+pub use error::ArchiveError;
+pub use event::{ArchiveEvent, ModelsDialog, OpenedResult, Removal};
+pub use folder::{ArchiveFolder, ArchiveList, ArchiveProblem, NOTE_ENDING, name_of};
+pub use status::ArchiveStatus;
 pub(in crate::app) use update::{LIMIT_BYTES, bytes_text, keep_trained};

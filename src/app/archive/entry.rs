@@ -12,7 +12,7 @@ pub(super) const VERSION: u32 = 1;
 /// What is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum KeptKind {
+pub enum ArchiveKind {
     /// A model of the force network.
     ForceModel,
     /// A model of the response network.
@@ -25,7 +25,7 @@ pub enum KeptKind {
     ForceEvaluation,
 }
 
-impl KeptKind {
+impl ArchiveKind {
     /// Returns the name for lists and sentences, such as “force model”.
     pub fn label(self) -> &'static str {
         match self {
@@ -56,7 +56,7 @@ impl KeptKind {
     }
 }
 
-impl From<Network> for KeptKind {
+impl From<Network> for ArchiveKind {
     fn from(network: Network) -> Self {
         match network {
             Network::Force => Self::ForceModel,
@@ -83,13 +83,13 @@ impl Fact {
 
 /// The note of a model, a comparison or an evaluation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct KeptEntry {
+pub struct ArchiveEntry {
     /// Version of the format.
     pub version: u32,
     /// Version of the program that made it.
     pub program: String,
     /// What it is.
-    pub kind: KeptKind,
+    pub kind: ArchiveKind,
     /// What the user calls it.
     pub name: String,
     /// When it was finished: UTC, RFC 3339.
@@ -110,10 +110,10 @@ pub struct KeptEntry {
     pub bytes: u64,
 }
 
-impl KeptEntry {
+impl ArchiveEntry {
     /// The note of something that is finished now. Its digest and its size are filled in when it is
     /// written.
-    pub fn new(kind: KeptKind, (name, data): (String, String), question: Request) -> Self {
+    pub fn new(kind: ArchiveKind, (name, data): (String, String), question: Request) -> Self {
         Self {
             version: VERSION,
             program: crate::VERSION.to_owned(),

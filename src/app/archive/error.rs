@@ -6,7 +6,7 @@ use impactlab_core::data::DataError;
 
 /// The reason why something is not kept, or why what was kept cannot be used.
 #[derive(Debug, thiserror::Error)]
-pub enum KeptError {
+pub enum ArchiveError {
     /// The folder cannot be made or listed, or a file cannot be read or removed.
     #[error("{}: {source}", path.display())]
     Io {
@@ -67,7 +67,7 @@ pub enum KeptError {
     },
 }
 
-impl KeptError {
+impl ArchiveError {
     /// An error of the operating system at `path`.
     pub(in crate::app) fn io(path: &std::path::Path) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_owned();

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::app::kept::Fact;
+use crate::app::archive::Fact;
 use impactlab_study::{Learning, Request};
 
 /// Returns in words how the answer of a question is made, such as “fine-tuned from shipped”.

@@ -5,15 +5,16 @@ use std::sync::Arc;
 
 use egui::Context;
 
+use crate::app::archive::{
+    ArchiveEntry, ArchiveEvent, ArchiveFolder, ArchiveKind, ArchiveStatus, Fact, ModelsDialog,
+    OpenedResult,
+};
 use crate::app::command::{Command, ModelsCommand};
 use crate::app::dialog::Dialog;
-use crate::app::kept::{
-    Fact, KeptEntry, KeptEvent, KeptFolder, KeptKind, KeptStatus, ModelsDialog, OpenedResult,
-};
 use crate::app::model::{ModelEvent, ModelNews, ModelStatus, file_name};
 use crate::app::network::TrainedModel;
 use crate::app::question_job::Answered;
-use crate::app::reconstruction::KeptRuns;
+use crate::app::reconstruction::StoredRuns;
 use crate::app::state::{Session, State};
 use crate::app::tasks::Tasks;
 use crate::app::training_status::TrainingStatus;
@@ -37,30 +38,32 @@ impl State {
     /// - `stores_trainings`: whether this window stores the state of its trainings; a second window
     ///   does not, since it would offer those of the first one.
     pub(in crate::app) fn open_data_folder(&mut self, folder: PathBuf, stores_trainings: bool) {
-        let Session { unfinished, kept, reconstruction, tasks, .. } = &mut self.session;
+        let Session { unfinished, archive, reconstruction, tasks, .. } = &mut self.session;
         if stores_trainings {
             unfinished.open(&folder, tasks);
         }
-        reconstruction.kept_runs = Some(KeptRuns::new(&folder));
-        kept.open(folder, tasks);
+        reconstruction.stored_runs = Some(StoredRuns::new(&folder));
+        archive.open(folder, tasks);
     }
 
     /// Takes what a task has done with what is kept.
-    pub(in crate::app) fn take_kept_event(&mut self, event: KeptEvent, context: &Context) {
-        let Session { kept, unfinished, tasks, .. } = &mut self.session;
+    pub(in crate::app) fn take_archive_event(&mut self, event: ArchiveEvent, context: &Context) {
+        let Session { archive, unfinished, tasks, .. } = &mut self.session;
         let problem = match event {
-            KeptEvent::Trainings(list) => return unfinished.take(list, tasks),
-            KeptEvent::Listed(list) => {
-                kept.end_reading();
-                list.map(|list| kept.take_list(list)).err()
+            ArchiveEvent::Trainings(list) => return unfinished.take(list, tasks),
+            ArchiveEvent::Listed(list) => {
+                archive.end_reading();
+                list.map(|list| archive.take_list(list)).err()
             }
-            KeptEvent::Put(entry) => entry.map(|entry| kept.add(entry)).err(),
-            KeptEvent::Removed(Ok(removal)) => {
-                kept.forget(&removal);
+            ArchiveEvent::Put(entry) => entry.map(|entry| archive.add(entry)).err(),
+            ArchiveEvent::Removed(Ok(removal)) => {
+                archive.forget(&removal);
                 return self.read_unfinished();
             }
-            KeptEvent::Opened(Ok(opened)) => return self.show_result(opened, context),
-            KeptEvent::Removed(Err(problem)) | KeptEvent::Opened(Err(problem)) => Some(problem),
+            ArchiveEvent::Opened(Ok(opened)) => return self.show_result(opened, context),
+            ArchiveEvent::Removed(Err(problem)) | ArchiveEvent::Opened(Err(problem)) => {
+                Some(problem)
+            }
         };
         self.say_problem(problem);
     }
@@ -85,9 +88,9 @@ impl State {
             ModelNews::Nothing => {}
             ModelNews::Problem(problem) => self.say(Severity::Error, problem),
             ModelNews::Saved(written) => self.say_of_file(written),
-            ModelNews::Kept(kept) => {
-                match kept {
-                    Ok(entry) => self.take_kept(entry),
+            ModelNews::Archived(result) => {
+                match result {
+                    Ok(entry) => self.take_archived(entry),
                     Err(problem) => self.say(Severity::Error, problem),
                 }
                 self.read_unfinished();
@@ -95,10 +98,10 @@ impl State {
         }
     }
 
-    fn take_kept(&mut self, entry: KeptEntry) {
-        let before = self.session.kept.bytes();
-        self.session.kept.add(entry);
-        let bytes = self.session.kept.bytes();
+    fn take_archived(&mut self, entry: ArchiveEntry) {
+        let before = self.session.archive.bytes();
+        self.session.archive.add(entry);
+        let bytes = self.session.archive.bytes();
         if before <= LIMIT_BYTES && bytes > LIMIT_BYTES {
             let text = format!(
                 "kept models and comparisons take more than {}; all are kept, remove what you do not need in the Models pane",
@@ -109,11 +112,11 @@ impl State {
     }
 
     /// Names models in use as the user has named them in the list.
-    pub(in crate::app) fn take_kept_names(&mut self) {
-        let (kept, session) = (&self.session.kept, &self.session);
+    pub(in crate::app) fn take_archived_names(&mut self) {
+        let (archive, session) = (&self.session.archive, &self.session);
         let name_of = |choice: Option<&ModelChoice>| match choice {
             Some(ModelChoice::Source(ModelSource::File(path))) => {
-                kept.entry_of(path).map(|entry| entry.name.clone())
+                archive.entry_of(path).map(|entry| entry.name.clone())
             }
             _ => None,
         };
@@ -135,7 +138,7 @@ impl State {
     /// Keeps a comparison or an evaluation of response models that has just been finished.
     pub(in crate::app) fn keep_comparison(&mut self, question: Request, answer: &CompareAnswer) {
         let content = serde_json::to_vec(&answer.report).map_err(|error| error.to_string());
-        let draft = comparison_note(question, &answer.report, &self.session.kept);
+        let draft = comparison_note(question, &answer.report, &self.session.archive);
         self.keep_result(draft, content);
     }
 
@@ -146,14 +149,14 @@ impl State {
         let ForceEvaluation::Cases(report) = &answer.report else { return };
         let content = serde_json::to_vec(report).map_err(|error| error.to_string());
         let question = Request::from(latest.question.clone());
-        let draft = evaluation_note(question, report, &self.session.kept);
+        let draft = evaluation_note(question, report, &self.session.archive);
         self.keep_result(draft, content);
     }
 
-    fn keep_result(&mut self, draft: KeptEntry, content: Result<Vec<u8>, String>) {
-        let Session { kept, tasks, .. } = &mut self.session;
+    fn keep_result(&mut self, draft: ArchiveEntry, content: Result<Vec<u8>, String>) {
+        let Session { archive, tasks, .. } = &mut self.session;
         match content {
-            Ok(content) => kept.keep_result(draft, content, tasks),
+            Ok(content) => archive.keep_result(draft, content, tasks),
             Err(problem) => {
                 self.say(Severity::Error, format!("{} is not kept: {problem}", draft.name));
             }
@@ -162,15 +165,15 @@ impl State {
 
     /// Carries out a command of the Models pane.
     pub(in crate::app) fn change_models(&mut self, command: ModelsCommand, context: &Context) {
-        let Session { kept, tasks, dialogs, unfinished, .. } = &mut self.session;
+        let Session { archive, tasks, dialogs, unfinished, .. } = &mut self.session;
         if matches!(command, ModelsCommand::Rename(..) | ModelsCommand::Remove(_)) {
             dialogs.close_if(|dialog| matches!(dialog, Dialog::Models(_)));
         }
         match command {
             ModelsCommand::Ask(dialog) => dialogs.open(Dialog::Models(dialog)),
-            ModelsCommand::Rename(entry, name) => kept.rename(*entry, name, tasks),
-            ModelsCommand::Remove(removal) => kept.remove(removal, tasks),
-            ModelsCommand::Open(entry) => kept.open_result(*entry, tasks),
+            ModelsCommand::Rename(entry, name) => archive.rename(*entry, name, tasks),
+            ModelsCommand::Remove(removal) => archive.remove(removal, tasks),
+            ModelsCommand::Open(entry) => archive.open_result(*entry, tasks),
             ModelsCommand::Resume(checkpoint) => self.resume_training(&checkpoint, context),
             ModelsCommand::HideInterrupted => unfinished.is_hidden = true,
         }
@@ -181,7 +184,7 @@ impl State {
             OpenedResult::Comparison(report) => {
                 let answer = Arc::new(CompareAnswer { report: *report });
                 self.session.response.comparison.shown = Some(Ok(answer));
-                KeptKind::Comparison.pane()
+                ArchiveKind::Comparison.pane()
             }
             OpenedResult::ForceEvaluation(of) => {
                 let (question, report) = *of;
@@ -190,7 +193,7 @@ impl State {
                 let answer = Ok(Arc::new(EvaluateForceAnswer { report, cases: None }));
                 let latest = Answered { question: *question, answer };
                 self.session.force.evaluation.latest = Some(latest);
-                KeptKind::ForceEvaluation.pane()
+                ArchiveKind::ForceEvaluation.pane()
             }
         };
         if let Some(pane) = pane {
@@ -201,7 +204,7 @@ impl State {
 
 impl ModelsDialog {
     /// The question whether to remove something that is kept.
-    pub fn remove_entry(entry: &KeptEntry, folder: &KeptFolder) -> Self {
+    pub fn remove_entry(entry: &ArchiveEntry, folder: &ArchiveFolder) -> Self {
         let path = folder.path_of(entry);
         let note = path.with_extension(super::NOTE_ENDING);
         let what = format!(
@@ -219,8 +222,8 @@ pub(in crate::app) fn keep_trained<M: TrainedModel>(
     status: &mut ModelStatus<M>,
     training: &TrainingStatus<M>,
     model: Arc<M>,
-    draft: Option<KeptEntry>,
-    folder: Option<&KeptFolder>,
+    draft: Option<ArchiveEntry>,
+    folder: Option<&ArchiveFolder>,
     tasks: &mut Tasks,
 ) {
     if let (Some(folder), Some(draft)) = (folder, draft) {
@@ -228,16 +231,20 @@ pub(in crate::app) fn keep_trained<M: TrainedModel>(
     }
 }
 
-fn comparison_note(question: Request, report: &CompareReport, kept: &KeptStatus) -> KeptEntry {
+fn comparison_note(
+    question: Request,
+    report: &CompareReport,
+    archive: &ArchiveStatus,
+) -> ArchiveEntry {
     let comparison = &report.comparison;
     let (kind, name) = match &question {
         Request::EvaluateResponse(of) => {
-            let model = kept.name_of(&of.model);
-            (KeptKind::ResponseEvaluation, format!("{model} on {}", comparison.data))
+            let model = archive.name_of(&of.model);
+            (ArchiveKind::ResponseEvaluation, format!("{model} on {}", comparison.data))
         }
-        _ => (KeptKind::Comparison, format!("models compared on {}", comparison.data)),
+        _ => (ArchiveKind::Comparison, format!("models compared on {}", comparison.data)),
     };
-    let mut entry = KeptEntry::new(kind, (name, comparison.data.clone()), question);
+    let mut entry = ArchiveEntry::new(kind, (name, comparison.data.clone()), question);
     entry.figures.push(Fact::new("Trajectories asked about", comparison.test.len()));
     for model in &comparison.models {
         let name = model_name(&model.name, model.trajectories);
@@ -256,14 +263,14 @@ fn comparison_note(question: Request, report: &CompareReport, kept: &KeptStatus)
 fn evaluation_note(
     question: Request,
     report: &EvaluateForceReport,
-    kept: &KeptStatus,
-) -> KeptEntry {
+    archive: &ArchiveStatus,
+) -> ArchiveEntry {
     let data = file_name(&report.data);
     let name = match &question {
-        Request::EvaluateForce(of) => format!("{} on {data}", kept.name_of(&of.model)),
+        Request::EvaluateForce(of) => format!("{} on {data}", archive.name_of(&of.model)),
         _ => data.clone(),
     };
-    let mut entry = KeptEntry::new(KeptKind::ForceEvaluation, (name, data), question);
+    let mut entry = ArchiveEntry::new(ArchiveKind::ForceEvaluation, (name, data), question);
     let of_model = &report.evaluation.metrics.overall;
     entry.figures = vec![
         Fact::new("Cases", report.n_test),

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::app::kept::entry::VERSION;
-use crate::app::kept::{KeptEntry, KeptError, KeptKind};
+use crate::app::archive::entry::VERSION;
+use crate::app::archive::{ArchiveEntry, ArchiveError, ArchiveKind};
 use impactlab_core::data::write::FileDigest;
 use impactlab_core::data::{
     Existing, MAX_RESULTS_BYTES, list_folder, read_bytes, write_atomically,
@@ -21,20 +21,20 @@ const RESULT_ENDING: &str = "json";
 
 /// The user's data folder, in which results are kept.
 #[derive(Debug, Clone)]
-pub struct KeptFolder(PathBuf);
+pub struct ArchiveFolder(PathBuf);
 
 /// What is kept.
 #[derive(Debug, Clone, Default)]
-pub struct KeptList {
+pub struct ArchiveList {
     /// Everything that is whole, the latest first.
-    pub entries: Vec<KeptEntry>,
+    pub entries: Vec<ArchiveEntry>,
     /// What cannot be used, and why.
-    pub problems: Vec<KeptProblem>,
+    pub problems: Vec<ArchiveProblem>,
 }
 
 /// A file that was kept and cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct KeptProblem {
+pub struct ArchiveProblem {
     /// The files that belong together and are useless.
     pub files: Vec<PathBuf>,
     /// What is wrong, with the name of the file.
@@ -47,18 +47,18 @@ struct NoteVersion {
     version: u32,
 }
 
-impl KeptFolder {
+impl ArchiveFolder {
     /// The folders in the user's data folder.
     pub fn new(data_folder: PathBuf) -> Self {
         Self(data_folder)
     }
 
     /// Returns the file with the content of an entry.
-    pub fn path_of(&self, entry: &KeptEntry) -> PathBuf {
+    pub fn path_of(&self, entry: &ArchiveEntry) -> PathBuf {
         self.content(entry.kind, &entry.sha256)
     }
 
-    fn content(&self, kind: KeptKind, sha256: &str) -> PathBuf {
+    fn content(&self, kind: ArchiveKind, sha256: &str) -> PathBuf {
         let (folder, ending) = match kind.network() {
             Some(_) => ("models", MODEL_ENDING),
             None => ("comparisons", RESULT_ENDING),
@@ -73,15 +73,15 @@ impl KeptFolder {
     /// - `write`: writes the content to a file.
     ///
     /// # Errors
-    /// [`KeptError`] if a file cannot be written.
+    /// [`ArchiveError`] if a file cannot be written.
     pub fn put(
         &self,
-        draft: KeptEntry,
-        write: impl FnOnce(&Path) -> Result<(), KeptError>,
-    ) -> Result<KeptEntry, KeptError> {
+        draft: ArchiveEntry,
+        write: impl FnOnce(&Path) -> Result<(), ArchiveError>,
+    ) -> Result<ArchiveEntry, ArchiveError> {
         let path = self.path_of(&draft);
         if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder).map_err(KeptError::io(folder))?;
+            fs::create_dir_all(folder).map_err(ArchiveError::io(folder))?;
         }
         let before = self.read_note(&path.with_extension(NOTE_ENDING));
         match before {
@@ -91,25 +91,25 @@ impl KeptFolder {
             _ => {}
         }
         write(&path)?;
-        let bytes = fs::metadata(&path).map_err(KeptError::io(&path))?.len();
-        let entry = KeptEntry { bytes, ..draft };
+        let bytes = fs::metadata(&path).map_err(ArchiveError::io(&path))?.len();
+        let entry = ArchiveEntry { bytes, ..draft };
         self.write_note(&entry)?;
         Ok(entry)
     }
 
-    fn write_note(&self, entry: &KeptEntry) -> Result<(), KeptError> {
+    fn write_note(&self, entry: &ArchiveEntry) -> Result<(), ArchiveError> {
         let path = self.path_of(entry).with_extension(NOTE_ENDING);
         let text = serde_json::to_string_pretty(entry)
-            .map_err(|error| KeptError::Content(error.to_string()))?;
+            .map_err(|error| ArchiveError::Content(error.to_string()))?;
         Ok(write_atomically(&path, Existing::Replace, |out| out.write_all(text.as_bytes()))?)
     }
 
     /// Gives something another name.
     ///
     /// # Errors
-    /// [`KeptError`] if its note cannot be written.
-    pub fn rename(&self, entry: KeptEntry, name: String) -> Result<KeptEntry, KeptError> {
-        let renamed = KeptEntry { name, ..entry };
+    /// [`ArchiveError`] if its note cannot be written.
+    pub fn rename(&self, entry: ArchiveEntry, name: String) -> Result<ArchiveEntry, ArchiveError> {
+        let renamed = ArchiveEntry { name, ..entry };
         self.write_note(&renamed)?;
         Ok(renamed)
     }
@@ -117,35 +117,35 @@ impl KeptFolder {
     /// Reads the content of something and checks its digest.
     ///
     /// # Errors
-    /// [`KeptError`] if it cannot be read or is not what was kept.
-    pub fn read_content(&self, entry: &KeptEntry) -> Result<Vec<u8>, KeptError> {
+    /// [`ArchiveError`] if it cannot be read or is not what was kept.
+    pub fn read_content(&self, entry: &ArchiveEntry) -> Result<Vec<u8>, ArchiveError> {
         self.check_content(entry)?;
         Ok(read_bytes(&self.path_of(entry), MAX_RESULTS_BYTES)?)
     }
 
-    fn check_content(&self, entry: &KeptEntry) -> Result<(), KeptError> {
+    fn check_content(&self, entry: &ArchiveEntry) -> Result<(), ArchiveError> {
         let path = self.path_of(entry);
         let got = FileDigest::from_file("", &path).map_err(|error| match error.kind() {
-            std::io::ErrorKind::NotFound => KeptError::NoContent { path: path.clone() },
-            _ => KeptError::io(&path)(error),
+            std::io::ErrorKind::NotFound => ArchiveError::NoContent { path: path.clone() },
+            _ => ArchiveError::io(&path)(error),
         })?;
         if got.sha256 != entry.sha256 {
             let (expected, got) = (entry.sha256.clone(), got.sha256);
-            return Err(KeptError::OtherContent { path, expected, got });
+            return Err(ArchiveError::OtherContent { path, expected, got });
         }
         Ok(())
     }
 
     /// Reads the note at a path and checks that the content is what was kept.
-    fn read_note(&self, path: &Path) -> Result<KeptEntry, KeptError> {
+    fn read_note(&self, path: &Path) -> Result<ArchiveEntry, ArchiveError> {
         let entry = note_at(path)?;
         self.check_content(&entry)?;
         Ok(entry)
     }
 
     /// Reads all notes, and the content of all files to check that it is what was kept.
-    pub fn read(&self) -> KeptList {
-        let mut list = KeptList::default();
+    pub fn read(&self) -> ArchiveList {
+        let mut list = ArchiveList::default();
         for name in ["models", "comparisons"] {
             let folder = self.0.join(name);
             if folder.symlink_metadata().is_err() {
@@ -154,7 +154,7 @@ impl KeptFolder {
             match list_folder(&folder) {
                 Ok(paths) => self.read_folder(paths, &mut list),
                 Err(error) => {
-                    let problem = KeptProblem { files: Vec::new(), reason: error.to_string() };
+                    let problem = ArchiveProblem { files: Vec::new(), reason: error.to_string() };
                     list.problems.push(problem);
                 }
             }
@@ -163,7 +163,7 @@ impl KeptFolder {
         list
     }
 
-    fn read_folder(&self, mut paths: Vec<PathBuf>, list: &mut KeptList) {
+    fn read_folder(&self, mut paths: Vec<PathBuf>, list: &mut ArchiveList) {
         paths.sort();
         let has_ending = |path: &Path, ending: &str| path.extension().is_some_and(|e| e == ending);
         for path in &paths {
@@ -174,14 +174,14 @@ impl KeptFolder {
                         let stem = path.with_extension("");
                         let of_it = |other: &&PathBuf| other.with_extension("") == stem;
                         let files = paths.iter().filter(of_it).cloned().collect();
-                        list.problems.push(KeptProblem { files, reason: error.to_string() });
+                        list.problems.push(ArchiveProblem { files, reason: error.to_string() });
                     }
                 }
             } else if [MODEL_ENDING, RESULT_ENDING].iter().any(|ending| has_ending(path, ending))
                 && !paths.contains(&path.with_extension(NOTE_ENDING))
             {
-                let reason = KeptError::NoNote { path: path.clone() }.to_string();
-                list.problems.push(KeptProblem { files: vec![path.clone()], reason });
+                let reason = ArchiveError::NoNote { path: path.clone() }.to_string();
+                list.problems.push(ArchiveProblem { files: vec![path.clone()], reason });
             }
         }
     }
@@ -192,9 +192,9 @@ pub fn name_of(path: &Path) -> Option<String> {
     Some(note_at(&path.with_extension(NOTE_ENDING)).ok()?.name)
 }
 
-fn note_at(path: &Path) -> Result<KeptEntry, KeptError> {
+fn note_at(path: &Path) -> Result<ArchiveEntry, ArchiveError> {
     let bytes = read_bytes(path, MAX_RESULTS_BYTES)?;
-    let damaged = |error: serde_json::Error| KeptError::Note {
+    let damaged = |error: serde_json::Error| ArchiveError::Note {
         path: path.to_owned(),
         line: error.line(),
         column: error.column(),
@@ -203,7 +203,7 @@ fn note_at(path: &Path) -> Result<KeptEntry, KeptError> {
     let NoteVersion { version } = serde_json::from_slice(&bytes).map_err(damaged)?;
     if version != VERSION {
         let path = path.to_owned();
-        return Err(KeptError::Version { path, expected: VERSION, got: version });
+        return Err(ArchiveError::Version { path, expected: VERSION, got: version });
     }
     serde_json::from_slice(&bytes).map_err(damaged)
 }
@@ -214,35 +214,35 @@ mod tests {
     use impactlab_core::data::write::sha256_hex;
     use impactlab_study::{EvaluateForceRequest, ModelChoice, Request};
 
-    fn draft(content: &[u8], name: &str) -> KeptEntry {
+    fn draft(content: &[u8], name: &str) -> ArchiveEntry {
         let question = EvaluateForceRequest::new(ModelChoice::default(), "data");
         let names = (name.to_owned(), "data".to_owned());
-        let entry = KeptEntry::new(KeptKind::ForceEvaluation, names, Request::from(question));
-        KeptEntry { sha256: sha256_hex(content), ..entry }
+        let entry = ArchiveEntry::new(ArchiveKind::ForceEvaluation, names, Request::from(question));
+        ArchiveEntry { sha256: sha256_hex(content), ..entry }
     }
 
-    fn put(folder: &KeptFolder, content: &[u8], draft: KeptEntry) -> KeptEntry {
-        let write = |path: &Path| fs::write(path, content).map_err(KeptError::io(path));
+    fn put(folder: &ArchiveFolder, content: &[u8], draft: ArchiveEntry) -> ArchiveEntry {
+        let write = |path: &Path| fs::write(path, content).map_err(ArchiveError::io(path));
         folder.put(draft, write).unwrap()
     }
 
     #[test]
     fn the_same_content_is_kept_once_and_nothing_is_replaced() {
         let root = tempfile::tempdir().unwrap();
-        let folder = KeptFolder::new(root.path().to_owned());
+        let folder = ArchiveFolder::new(root.path().to_owned());
         assert!(folder.read().entries.is_empty() && folder.read().problems.is_empty());
-        let cancelled = KeptEntry { is_cancelled: true, ..draft(b"a", "half") };
+        let cancelled = ArchiveEntry { is_cancelled: true, ..draft(b"a", "half") };
         put(&folder, b"a", cancelled.clone());
         put(&folder, b"b", draft(b"b", "other"));
         assert_eq!(folder.read().entries.len(), 2);
         // A completed training takes the place of the cancelled one with the same weights, and
         // not the other way round.
         put(&folder, b"a", draft(b"a", "whole"));
-        let kept = put(&folder, b"a", cancelled);
-        assert_eq!((kept.name.as_str(), kept.is_cancelled), ("whole", false));
-        let kept = put(&folder, b"a", draft(b"a", "again"));
-        assert_eq!(kept.name, "whole");
-        let renamed = folder.rename(kept, "mine".to_owned()).unwrap();
+        let entry = put(&folder, b"a", cancelled);
+        assert_eq!((entry.name.as_str(), entry.is_cancelled), ("whole", false));
+        let entry = put(&folder, b"a", draft(b"a", "again"));
+        assert_eq!(entry.name, "whole");
+        let renamed = folder.rename(entry, "mine".to_owned()).unwrap();
         assert_eq!(name_of(&folder.path_of(&renamed)).as_deref(), Some("mine"));
         assert_eq!(folder.read().entries.len(), 2);
     }
@@ -250,9 +250,9 @@ mod tests {
     #[test]
     fn what_is_damaged_is_named_and_hurts_nothing_else() {
         let root = tempfile::tempdir().unwrap();
-        let folder = KeptFolder::new(root.path().to_owned());
+        let folder = ArchiveFolder::new(root.path().to_owned());
         let whole = put(&folder, b"whole", draft(b"whole", "whole"));
-        let reason = |folder: &KeptFolder| {
+        let reason = |folder: &ArchiveFolder| {
             let list = folder.read();
             assert_eq!(list.entries, std::slice::from_ref(&whole));
             assert_eq!(list.problems.len(), 1, "{:?}", list.problems);

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::app::archive::event::{ArchiveEvent, OpenedResult, Removal};
+use crate::app::archive::{ArchiveEntry, ArchiveError, ArchiveFolder, ArchiveList};
 use crate::app::command::Command;
 use crate::app::found::Found;
-use crate::app::kept::event::{KeptEvent, OpenedResult, Removal};
-use crate::app::kept::{KeptEntry, KeptError, KeptFolder, KeptList};
 use crate::app::model::file_name;
 use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::data::write::sha256_hex;
@@ -15,36 +15,36 @@ use impactlab_core::jobs::ProgressCallback;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{ModelChoice, Request};
 
-impl From<KeptEvent> for Command {
-    fn from(event: KeptEvent) -> Self {
-        Self::Kept(Found::new(event))
+impl From<ArchiveEvent> for Command {
+    fn from(event: ArchiveEvent) -> Self {
+        Self::Archive(Found::new(event))
     }
 }
 
 /// What is kept, and the work on it.
 #[derive(Default)]
-pub struct KeptStatus {
-    folder: Option<KeptFolder>,
+pub struct ArchiveStatus {
+    folder: Option<ArchiveFolder>,
     is_reading: bool,
     /// What is kept.
-    pub list: KeptList,
+    pub list: ArchiveList,
 }
 
-impl KeptStatus {
+impl ArchiveStatus {
     /// Takes the user's data folder and starts to read what is kept there.
     pub fn open(&mut self, folder: PathBuf, tasks: &mut Tasks) {
-        let folder = KeptFolder::new(folder);
+        let folder = ArchiveFolder::new(folder);
         self.folder = Some(folder.clone());
         self.is_reading = true;
         tasks.start(
-            TaskKey::ListKept,
+            TaskKey::ListArchive,
             move |_| Ok(folder.read()),
-            |result| Command::from(KeptEvent::Listed(result)),
+            |result| Command::from(ArchiveEvent::Listed(result)),
         );
     }
 
     /// Returns where results are kept; `None` if this window keeps nothing.
-    pub fn folder(&self) -> Option<&KeptFolder> {
+    pub fn folder(&self) -> Option<&ArchiveFolder> {
         self.folder.as_ref()
     }
 
@@ -54,7 +54,7 @@ impl KeptStatus {
     }
 
     /// Returns the entry of a model file; `None` for a file of the user.
-    pub fn entry_of(&self, path: &Path) -> Option<&KeptEntry> {
+    pub fn entry_of(&self, path: &Path) -> Option<&ArchiveEntry> {
         let folder = self.folder.as_ref()?;
         self.list.entries.iter().find(|entry| folder.path_of(entry) == path)
     }
@@ -79,30 +79,30 @@ impl KeptStatus {
     ///
     /// - `draft`: its note;
     /// - `content`: the report as JSON.
-    pub fn keep_result(&self, draft: KeptEntry, content: Vec<u8>, tasks: &mut Tasks) {
+    pub fn keep_result(&self, draft: ArchiveEntry, content: Vec<u8>, tasks: &mut Tasks) {
         let Some(folder) = self.folder.clone() else { return };
-        let key = TaskKey::PutKept(sha256_hex(&content));
+        let key = TaskKey::PutIntoArchive(sha256_hex(&content));
         let work = move |_: &mut ProgressCallback<'_>| {
             let name = draft.name.clone();
-            let kept = keep_bytes(&folder, draft, &content);
-            kept.map_err(|error| format!("{name} is not kept: {}", error_chain(&error)))
+            let entry = keep_bytes(&folder, draft, &content);
+            entry.map_err(|error| format!("{name} is not kept: {}", error_chain(&error)))
         };
-        tasks.start(key, work, |result| Command::from(KeptEvent::Put(result)));
+        tasks.start(key, work, |result| Command::from(ArchiveEvent::Put(result)));
     }
 
     /// Starts to give an entry another name.
-    pub fn rename(&self, entry: KeptEntry, name: String, tasks: &mut Tasks) {
+    pub fn rename(&self, entry: ArchiveEntry, name: String, tasks: &mut Tasks) {
         let Some(folder) = self.folder.clone() else { return };
-        let key = TaskKey::PutKept(entry.sha256.clone());
+        let key = TaskKey::PutIntoArchive(entry.sha256.clone());
         let work = move |_: &mut ProgressCallback<'_>| {
             folder.rename(entry, name).map_err(|error| error_chain(&error))
         };
-        tasks.start(key, work, |result| Command::from(KeptEvent::Put(result)));
+        tasks.start(key, work, |result| Command::from(ArchiveEvent::Put(result)));
     }
 
     /// Starts to remove files. What is missing already counts as removed.
     pub fn remove(&self, removal: Removal, tasks: &mut Tasks) {
-        let key = TaskKey::RemoveKept(removal.files.clone());
+        let key = TaskKey::RemoveArchived(removal.files.clone());
         let work = move |_: &mut ProgressCallback<'_>| {
             for path in &removal.files {
                 match std::fs::remove_file(path) {
@@ -114,18 +114,20 @@ impl KeptStatus {
             }
             Ok(removal)
         };
-        tasks.start(key, work, |result| Command::from(KeptEvent::Removed(result)));
+        tasks.start(key, work, |result| Command::from(ArchiveEvent::Removed(result)));
     }
 
     /// Starts to read a comparison or an evaluation.
-    pub fn open_result(&self, entry: KeptEntry, tasks: &mut Tasks) {
+    pub fn open_result(&self, entry: ArchiveEntry, tasks: &mut Tasks) {
         let Some(folder) = self.folder.clone() else { return };
         let work = move |_: &mut ProgressCallback<'_>| read_result(&folder, entry);
-        tasks.start(TaskKey::OpenKept, work, |result| Command::from(KeptEvent::Opened(result)));
+        tasks.start(TaskKey::OpenArchived, work, |result| {
+            Command::from(ArchiveEvent::Opened(result))
+        });
     }
 
     /// Takes the list that was read. What was kept while it was being read is in it or is newer.
-    pub fn take_list(&mut self, list: KeptList) {
+    pub fn take_list(&mut self, list: ArchiveList) {
         let newer = std::mem::replace(&mut self.list, list);
         newer.entries.into_iter().for_each(|entry| self.add(entry));
     }
@@ -136,7 +138,7 @@ impl KeptStatus {
     }
 
     /// Adds an entry, or replaces the one with the same content.
-    pub fn add(&mut self, entry: KeptEntry) {
+    pub fn add(&mut self, entry: ArchiveEntry) {
         let entries = &mut self.list.entries;
         match entries.iter_mut().find(|of| of.sha256 == entry.sha256 && of.kind == entry.kind) {
             Some(before) => *before = entry,
@@ -147,7 +149,7 @@ impl KeptStatus {
     /// Takes files that were removed out of the list.
     pub fn forget(&mut self, removal: &Removal) {
         if let Some(folder) = &self.folder {
-            let is_left = |entry: &KeptEntry| !removal.files.contains(&folder.path_of(entry));
+            let is_left = |entry: &ArchiveEntry| !removal.files.contains(&folder.path_of(entry));
             self.list.entries.retain(is_left);
         }
         let is_left = |file: &PathBuf| !removal.files.contains(file);
@@ -157,17 +159,17 @@ impl KeptStatus {
 
 /// Keeps content that is in memory.
 fn keep_bytes(
-    folder: &KeptFolder,
-    draft: KeptEntry,
+    folder: &ArchiveFolder,
+    draft: ArchiveEntry,
     content: &[u8],
-) -> Result<KeptEntry, KeptError> {
-    let draft = KeptEntry { sha256: sha256_hex(content), ..draft };
+) -> Result<ArchiveEntry, ArchiveError> {
+    let draft = ArchiveEntry { sha256: sha256_hex(content), ..draft };
     folder.put(draft, |path| {
         Ok(write_atomically(path, Existing::Replace, |out| out.write_all(content))?)
     })
 }
 
-fn read_result(folder: &KeptFolder, entry: KeptEntry) -> Result<OpenedResult, String> {
+fn read_result(folder: &ArchiveFolder, entry: ArchiveEntry) -> Result<OpenedResult, String> {
     let bytes = folder.read_content(&entry).map_err(|error| error_chain(&error))?;
     let damaged = |error: serde_json::Error| {
         format!("{}: {error}, expected a report", folder.path_of(&entry).display())

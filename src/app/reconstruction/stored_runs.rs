@@ -25,11 +25,11 @@ const MAX_RUNS: usize = 20;
 
 /// The folder of the runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct KeptRuns {
+pub struct StoredRuns {
     folder: PathBuf,
 }
 
-impl KeptRuns {
+impl StoredRuns {
     /// The runs in the user's data folder.
     pub fn new(data_folder: &Path) -> Self {
         Self { folder: data_folder.join(FOLDER) }
@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn the_oldest_runs_make_room_and_nothing_else_is_removed() {
         let folder = tempfile::tempdir().unwrap();
-        let runs = KeptRuns::new(folder.path());
+        let runs = StoredRuns::new(folder.path());
         std::fs::create_dir_all(&runs.folder).unwrap();
         let write = |name: String, age_s: u64| {
             let file = std::fs::File::create(runs.folder.join(name)).unwrap();
@@ -107,6 +107,6 @@ mod tests {
     fn evidence_that_cannot_be_read_has_no_run() {
         let folder = tempfile::tempdir().unwrap();
         let missing = EvidenceChoice::File(folder.path().join("none.toml"));
-        assert!(!KeptRuns::new(folder.path()).holds(&ReconstructRequest::new(missing)));
+        assert!(!StoredRuns::new(folder.path()).holds(&ReconstructRequest::new(missing)));
     }
 }
