@@ -27,13 +27,13 @@ impl Caveats {
     /// One caveat for all that was assumed, each subject once, and one for all that is not used.
     pub fn summaries(&self) -> Vec<Caveat> {
         let summary = |kind| {
-            let all = self.0.iter().filter(|caveat| caveat.kind == kind);
-            let what = |caveat: &'_ Caveat| match caveat.subject {
-                Some(subject) => subject.label().to_owned(),
-                None => caveat.text.clone(),
-            };
-            let mut all: Vec<String> = all.map(what).collect();
-            all.dedup();
+            let mut all: Vec<&str> = Vec::new();
+            for caveat in self.0.iter().filter(|caveat| caveat.kind == kind) {
+                let what = caveat.subject.map_or(caveat.text.as_str(), CaveatSubject::label);
+                if !all.contains(&what) {
+                    all.push(what);
+                }
+            }
             (!all.is_empty()).then(|| Caveat::new(kind, all.join("; ")))
         };
         [CaveatKind::Assumed, CaveatKind::NotUsed].into_iter().filter_map(summary).collect()
@@ -247,6 +247,7 @@ mod tests {
             Caveat::assumed(CaveatSubject::VehicleParameter, "mass 1500 kg", "by the rest"),
             Caveat::assumed(CaveatSubject::VehicleParameter, "track 1.5 m", "by the rest"),
             Caveat::assumed(CaveatSubject::Speed, "15 m/s", "nobody said it"),
+            Caveat::assumed(CaveatSubject::VehicleParameter, "cg 1.2 m", "by the rest"),
             Caveat::not_used("restitution, 0.3", unused),
         ])
     }
@@ -258,6 +259,7 @@ mod tests {
                         note: assumed: parameter of the vehicle: mass 1500 kg | \
                         note: assumed: parameter of the vehicle: track 1.5 m | \
                         note: assumed: speed before the impact: 15 m/s | \
+                        note: assumed: parameter of the vehicle: cg 1.2 m | \
                         note: not used: restitution, 0.3";
         assert_eq!(caveats().text().unwrap(), expected);
         let outdated = caveats().outdated_if(true);
@@ -292,13 +294,14 @@ mod tests {
                    "quantity": "speed at the end [m/s]", "range": [null, 0.05]})
         );
         assert_eq!(
-            written["assumptions"][3],
+            written["assumptions"][4],
             json!({"quantity": "not_used", "value": "restitution, 0.3", "reason": "no effect"})
         );
-        let assumed = ["vehicle_parameter", "vehicle_parameter", "speed", "not_used"];
+        let assumed =
+            ["vehicle_parameter", "vehicle_parameter", "speed", "vehicle_parameter", "not_used"];
         assert_eq!(texts("assumptions", "quantity"), assumed);
         assert_eq!(written["notes"], json!(["sampled at 1 kHz"]));
-        assert_eq!(written["caveats"].as_array().unwrap().len(), 7);
+        assert_eq!(written["caveats"].as_array().unwrap().len(), 8);
         assert_eq!(written["caveats"][0]["severity"], "info");
     }
 
