@@ -162,6 +162,30 @@ fn an_impact_is_solved_in_si_and_shown_in_us_units() {
 }
 
 #[test]
+fn a_file_of_another_kind_is_called_what_it_is() {
+    let evidence = "assets/examples/reconstruction.toml";
+    let vehicle = "assets/vehicles/target-2000.toml";
+    let site = "assets/sites/country-road/site.toml";
+    let scenario = "assets/scenarios/pit_right_rear.toml";
+    let case = "assets/examples/pit.impactlab";
+    for (args, expected) in [
+        (&["impact", evidence][..], "is the evidence of a reconstruction, expected a scenario"),
+        (&["impact", case], "is a case, expected a scenario"),
+        (&["reconstruct", scenario], "is a scenario, expected the evidence of a reconstruction"),
+        (&["simulate", "--scenario", vehicle], "is a vehicle, expected a scenario"),
+        (&["reconstruct", evidence, "--vehicle", site], "is a site, expected a vehicle"),
+        (&["reconstruct", evidence, "--site", vehicle], "is a vehicle, expected a site"),
+    ] {
+        let ran = impactlab(args);
+        assert_eq!(ran.code, 1, "{args:?}: {}", ran.err);
+        assert!(ran.err.contains(expected), "{args:?}: {}", ran.err);
+    }
+    // One that is not there is not said to be of another kind.
+    let ran = impactlab(&["impact", "no-such.impactlab"]);
+    assert!(!ran.err.contains("is a case"), "{}", ran.err);
+}
+
+#[test]
 fn the_shipped_trajectories_are_met() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("simulated");

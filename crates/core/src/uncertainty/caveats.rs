@@ -29,7 +29,7 @@ impl Caveats {
         let summary = |kind| {
             let mut all: Vec<&str> = Vec::new();
             for caveat in self.0.iter().filter(|caveat| caveat.kind == kind) {
-                let what = caveat.subject.map_or(caveat.text.as_str(), CaveatSubject::label);
+                let what = caveat.subject.map_or(caveat.text.as_str(), |subject| subject.label());
                 if !all.contains(&what) {
                     all.push(what);
                 }

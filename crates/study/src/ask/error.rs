@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::InputKind;
 use crate::analysis::{AnalysisError, MotionForecastError};
 use impactlab_core::collision::{OffOutline, ScenarioError};
 use impactlab_core::compare::ReplayError;
@@ -122,6 +123,16 @@ pub enum StudyError {
         vehicle: String,
         /// The angle, rad.
         angle_rad: f64,
+    },
+    /// A file is of another kind than is needed.
+    #[error("{}: is {found}, expected {expected}", path.display())]
+    OtherKind {
+        /// The file.
+        path: PathBuf,
+        /// What it holds.
+        found: InputKind,
+        /// What is needed.
+        expected: InputKind,
     },
     /// A file or data set cannot be read.
     #[error(transparent)]

@@ -9,6 +9,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use crate::StudyError;
 use crate::case_file::{CASE_ENDING, FORMAT};
 use impactlab_core::data::{CASES_FILE, DatasetKind, TomlFile, open_file};
 use impactlab_core::site::{is_picture, is_picture_file};
@@ -108,6 +109,27 @@ impl InputKind {
             return Self::Dataset;
         }
         from_content(path).unwrap_or_else(|| from_name(path))
+    }
+
+    /// What reading a file as this kind came to; where it failed because the file is of another kind,
+    /// the error says which.
+    ///
+    /// # Errors
+    /// [`StudyError::OtherKind`], or the error of the reader.
+    pub(crate) fn explain<T, E: Into<StudyError>>(
+        self,
+        path: &Path,
+        read: Result<T, E>,
+    ) -> Result<T, StudyError> {
+        read.map_err(|error| {
+            let found = Self::from_path(path);
+            // These are what is left where nothing in the file says what it is.
+            let is_guess = matches!(found, Self::UnknownToml | Self::Series | Self::Comparison);
+            if found == self || is_guess || !path.exists() {
+                return error.into();
+            }
+            StudyError::OtherKind { path: path.to_owned(), found, expected: self }
+        })
     }
 
     /// Whether it holds time series, which are read for seconds and checked.

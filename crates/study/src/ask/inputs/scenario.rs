@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::StudyError;
 use crate::ask::checks::check_all;
+use crate::{InputKind, StudyError};
 use impactlab_core::collision::{SCENARIO_PRESETS, Scenario, ScenarioError};
 
 /// A scenario: a file, or one that is in memory.
@@ -25,7 +25,7 @@ impl ScenarioChoice {
     /// [`StudyError::TomlFile`], with line and column.
     pub fn load(&self) -> Result<Scenario, StudyError> {
         match self {
-            Self::File(path) => Ok(Scenario::preset_or_file(path)?),
+            Self::File(path) => InputKind::Scenario.explain(path, Scenario::preset_or_file(path)),
             Self::Inline(scenario) => Ok(scenario.as_ref().clone()),
         }
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use serde::{Deserialize, Serialize};
 
-use crate::StudyError;
+use crate::{InputKind, StudyError};
 use impactlab_core::vehicle::{DataSheet, Preset, VehicleParameters, built_in_vehicle};
 
 /// The struck vehicle where neither the question nor the data set says which it is: the car that
@@ -50,7 +50,9 @@ impl VehicleChoice {
                 Some(vehicle) => Ok(Some(vehicle)),
                 None => Err(StudyError::unknown_vehicle(id)),
             },
-            Self::File(path) if path.exists() => Ok(Some(VehicleParameters::load(path)?)),
+            Self::File(path) if path.exists() => {
+                InputKind::Vehicle.explain(path, VehicleParameters::load(path)).map(Some)
+            }
             Self::Sheet(sheet) => Ok(Some(sheet.checked_vehicle()?)),
             Self::File(path) => Err(StudyError::unknown_vehicle(&path.display().to_string())),
         }

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
 use crate::{
-    Event, FrictionZoneReport, Library, Observer, Provenance, Question, Sampling, StudyError,
-    VehicleChoice,
+    Event, FrictionZoneReport, InputKind, Library, Observer, Provenance, Question, Sampling,
+    StudyError, VehicleChoice,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::jobs::Progress;
@@ -169,7 +169,8 @@ impl ReconstructRequest {
     /// # Errors
     /// [`StudyError`], if vehicles or site cannot be read.
     pub fn model(&self, evidence: &Evidence) -> Result<ForwardModel, StudyError> {
-        let site = self.site.as_deref().map(Site::load).transpose()?;
+        let load = |path| InputKind::Site.explain(path, Site::load(path));
+        let site = self.site.as_deref().map(load).transpose()?;
         let zones = site.map_or_else(Vec::new, |site| site.friction_zones);
         Ok(ForwardModel::new(evidence, self.cars(evidence)?).on_zones(zones))
     }
@@ -209,7 +210,7 @@ impl EvidenceChoice {
     /// has not been filled in.
     pub fn load(&self) -> Result<Evidence, StudyError> {
         match self {
-            Self::File(path) => Ok(Evidence::load(path)?),
+            Self::File(path) => InputKind::Evidence.explain(path, Evidence::load(path)),
             Self::Inline(evidence) => match evidence.missing() {
                 None => Ok(evidence.as_ref().clone()),
                 Some(missing) => Err(StudyError::IncompleteEvidence { name: self.name(), missing }),

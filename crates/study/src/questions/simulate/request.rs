@@ -1,6 +1,5 @@
 //! The motion of one struck vehicle by the 4DOF model: `simulate`.
 
-use crate::caveats::assumed;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
@@ -11,8 +10,8 @@ use crate::analysis::{
 };
 use crate::ask::checks::{check, check_all, check_count, check_given};
 use crate::ask::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
-use crate::caveats::restrictions;
 use crate::caveats::unused::by_simulation;
+use crate::caveats::{assumed, restrictions};
 use crate::questions::simulate::dataset::take_case;
 use crate::questions::simulate::motion_source::{
     acting_force, contact_height_assumption, pulse_assumptions, recorded_force, start_of_record,
@@ -20,8 +19,8 @@ use crate::questions::simulate::motion_source::{
 };
 use crate::questions::simulate::vehicle_uncertainty::vehicle_uncertainty;
 use crate::{
-    Library, MomentumReport, MotionSource, Observer, Provenance, Question, SimulateReport,
-    StudyError, VehicleChoice,
+    InputKind, Library, MomentumReport, MotionSource, Observer, Provenance, Question,
+    SimulateReport, StudyError, VehicleChoice,
 };
 use impactlab_core::collision::Scenario;
 use impactlab_core::data::{ContactOutside, DatasetKind, Outcome};
@@ -151,7 +150,8 @@ impl SimulateRequest {
 
     /// The zones of the site.
     fn friction_zones(&self) -> Result<Vec<FrictionZone>, StudyError> {
-        let site = self.site.as_deref().map(Site::load).transpose()?;
+        let load = |path| InputKind::Site.explain(path, Site::load(path));
+        let site = self.site.as_deref().map(load).transpose()?;
         Ok(site.map_or_else(Vec::new, |site| site.friction_zones))
     }
 
