@@ -11,7 +11,7 @@ use impactlab_core::units::Quantity;
 use impactlab_study::{DEFAULT_STRIKING, DEFAULT_VEHICLE, SimulateRequest, VehicleChoice};
 
 /// A part of the case.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr, strum::VariantArray)]
 pub enum Group {
     /// The vehicles.
     Vehicles,
@@ -29,19 +29,11 @@ pub enum Group {
 
 impl Group {
     /// Every part, from top to bottom.
-    pub const ALL: [Self; 6] =
-        [Self::Vehicles, Self::Scene, Self::Impact, Self::Data, Self::Models, Self::Results];
+    pub const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
 
     /// The name that is shown.
     pub fn title(self) -> &'static str {
-        match self {
-            Self::Vehicles => "Vehicles",
-            Self::Scene => "Scene",
-            Self::Impact => "Impact",
-            Self::Data => "Data",
-            Self::Models => "Models",
-            Self::Results => "Results",
-        }
+        self.into()
     }
 
     /// The icon beside the name.

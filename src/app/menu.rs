@@ -148,7 +148,7 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 }
 
 fn view_menu_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
-    for pane in Pane::ALL {
+    for &pane in Pane::ALL {
         let panel = panels::panel(pane);
         if ui.add(icon_button(panel.icon, panel.title)).clicked() {
             commands.push(Command::Show(pane));

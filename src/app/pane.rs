@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// A pane of the window. What it is called and how it is drawn stands in the list of panels.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::VariantArray)]
 pub enum Pane {
     /// What the case consists of, and what is missing.
     Case,
@@ -51,29 +51,7 @@ pub enum Pane {
 
 impl Pane {
     /// Every pane, in the order of the menu.
-    pub const ALL: [Self; 21] = [
-        Self::Case,
-        Self::Data,
-        Self::Cases,
-        Self::Vehicle,
-        Self::Scenario,
-        Self::Scene,
-        Self::Motion,
-        Self::Force,
-        Self::Comparison,
-        Self::ForcePrediction,
-        Self::MotionForecast,
-        Self::Evidence,
-        Self::ReconstructedScene,
-        Self::Speeds,
-        Self::Variants,
-        Self::Models,
-        Self::Training,
-        Self::Evaluation,
-        Self::ModelComparison,
-        Self::Report,
-        Self::ReportPages,
-    ];
+    pub const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
 
     /// Whether the pane shows nothing but the simulation of the subject.
     pub(in crate::app) fn is_answer(self) -> bool {

@@ -11,7 +11,9 @@ use crate::app::panes::Pane;
 pub type Layout = Tree<Pane>;
 
 /// A job of the analyst.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr,
+)]
 pub enum Workspace {
     /// Build a case and see where the struck vehicle goes.
     #[default]
@@ -33,13 +35,7 @@ impl Workspace {
 
     /// The name that is shown.
     pub fn title(self) -> &'static str {
-        match self {
-            Self::Case => "Case",
-            Self::Reconstruct => "Reconstruct",
-            Self::Data => "Data",
-            Self::Models => "Models",
-            Self::Report => "Report",
-        }
+        self.into()
     }
 
     /// The icon beside its name.
@@ -254,7 +250,7 @@ mod tests {
 
     #[test]
     fn every_pane_stands_in_a_workspace_and_is_found_there() {
-        for pane in Pane::ALL {
+        for &pane in Pane::ALL {
             let mut workspaces = Workspaces::default();
             workspaces.show_pane(pane);
             assert!(has_pane(workspaces.layout(workspaces.shown), pane), "{pane:?}");

@@ -82,7 +82,7 @@ fn the_contents_name_what_is_missing_and_lead_to_it() {
     let mut harness = open(&[SCENARIO]);
     step_until(&mut harness, "the forecast", is_forecast);
     let contents = state(&harness).contents();
-    for group in Group::ALL {
+    for &group in Group::ALL {
         assert!(contents.iter().any(|entry| entry.group == group), "{group:?}");
     }
     let impact = contents.iter().find(|entry| entry.group == Group::Impact).unwrap();

@@ -108,7 +108,7 @@ fn assert_says(document: &ReportDocument, text: &str) {
 #[test]
 fn the_example_has_every_section_and_the_numbers_of_its_answers() {
     let (document, answers) = pit();
-    for kind in SectionKind::ALL {
+    for &kind in SectionKind::ALL {
         let section = document.section(kind).expect("every section");
         assert!(!section.blocks.is_empty(), "{kind:?} says nothing");
     }

@@ -1,7 +1,7 @@
 //! The forms with work that takes a while.
 
 /// A form with work that takes a while.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, strum::VariantArray)]
 pub enum CostPlace {
     /// The training of the force network.
     ForceTraining,
@@ -13,14 +13,4 @@ pub enum CostPlace {
     Comparison,
     /// The evaluation of the response network.
     ResponseEvaluation,
-}
-
-impl CostPlace {
-    pub(super) const ALL: [Self; 5] = [
-        Self::ForceTraining,
-        Self::ResponseTraining,
-        Self::ForceEvaluation,
-        Self::Comparison,
-        Self::ResponseEvaluation,
-    ];
 }

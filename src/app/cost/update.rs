@@ -1,6 +1,7 @@
 //! Measures a form whose settings have rested.
 
 use egui::Context;
+use strum::VariantArray;
 
 use crate::app::command::Command;
 use crate::app::cost::costs::REST;
@@ -24,7 +25,7 @@ impl State {
     /// Starts to measure a form whose settings have rested.
     pub(in crate::app) fn update_costs(&mut self, context: &Context) {
         let now_s = context.input(|input| input.time);
-        for place in CostPlace::ALL {
+        for &place in CostPlace::VARIANTS {
             if self.session.costs.seen.contains(&place) {
                 let question = self.question_of(place);
                 self.session.costs.ask(place, question, now_s);

@@ -13,7 +13,7 @@ use impactlab_draw::theme;
 pub fn contents_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { contents, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        for group in Group::ALL {
+        for &group in Group::ALL {
             let entries: Vec<_> = contents.iter().filter(|entry| entry.group == group).collect();
             let n_missing = entries.iter().filter(|entry| entry.missing.is_some()).count();
             let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);

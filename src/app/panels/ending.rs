@@ -1,6 +1,7 @@
 //! The form that says what happens to the wheels of the struck vehicle after the first contact.
 
 use egui::{CollapsingHeader, ComboBox, Grid, Ui};
+use strum::VariantArray;
 
 use crate::app::widgets::quantity_field;
 use impactlab_core::ranges::{
@@ -102,10 +103,10 @@ fn drive_fields(ui: &mut Ui, drive: &mut Option<Driving>, units: UnitSystem) {
 fn axle_field(ui: &mut Ui, label: &str, axle: &mut DrivenAxle) {
     let name = ui.label(label);
     ComboBox::from_id_salt(label)
-        .selected_text(axle_label(*axle))
+        .selected_text(axle.word())
         .show_ui(ui, |ui| {
-            for option in [DrivenAxle::Front, DrivenAxle::Rear, DrivenAxle::All] {
-                ui.selectable_value(axle, option, axle_label(option));
+            for &option in DrivenAxle::ALL {
+                ui.selectable_value(axle, option, option.word());
             }
         })
         .response
@@ -113,26 +114,17 @@ fn axle_field(ui: &mut Ui, label: &str, axle: &mut DrivenAxle) {
     ui.end_row();
 }
 
-fn axle_label(axle: DrivenAxle) -> &'static str {
-    match axle {
-        DrivenAxle::Front => "front",
-        DrivenAxle::Rear => "rear",
-        DrivenAxle::All => "all",
-    }
-}
-
 /// How a wheel is after the impact.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, strum::IntoStaticStr, strum::VariantArray)]
+#[strum(serialize_all = "snake_case")]
 enum Condition {
+    #[strum(to_string = "rolls freely")]
     Free,
     Dragged,
     Locked,
 }
 
 impl Condition {
-    const ALL: [(Self, &str); 3] =
-        [(Self::Free, "rolls freely"), (Self::Dragged, "dragged"), (Self::Locked, "locked")];
-
     fn from_damage(damaged: Option<&DamagedWheel>) -> Self {
         match damaged {
             None => Self::Free,
@@ -142,7 +134,7 @@ impl Condition {
     }
 
     fn label(self) -> &'static str {
-        Self::ALL.iter().find(|(condition, _)| *condition == self).map_or("", |(_, label)| label)
+        self.into()
     }
 }
 
@@ -153,8 +145,8 @@ fn wheel_fields(ui: &mut Ui, wheel: Wheel, damage: &mut Vec<DamagedWheel>, units
     ComboBox::from_id_salt(wheel.label())
         .selected_text(condition.label())
         .show_ui(ui, |ui| {
-            for (option, label) in Condition::ALL {
-                ui.selectable_value(&mut condition, option, label);
+            for &option in Condition::VARIANTS {
+                ui.selectable_value(&mut condition, option, option.label());
             }
         })
         .response

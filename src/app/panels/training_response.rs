@@ -21,7 +21,7 @@ pub fn response_form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &
                 .selected_text(form.mode.label())
                 .width(320.0)
                 .show_ui(ui, |ui| {
-                    for mode in TrainingMode::ALL {
+                    for &mode in TrainingMode::ALL {
                         ui.selectable_value(&mut form.mode, mode, mode.label());
                     }
                 })

@@ -8,7 +8,9 @@ use impactlab_core::data::DatasetKind;
 use impactlab_study::{BadCases, CompareRequest, EvaluatedCases};
 
 /// The initial weights and the data of a training of the response network.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, strum::VariantArray,
+)]
 pub enum TrainingMode {
     /// Fine-tune the shipped pre-trained network on trajectories.
     #[default]
@@ -25,13 +27,7 @@ pub enum TrainingMode {
 
 impl TrainingMode {
     /// All modes.
-    pub const ALL: [Self; 5] = [
-        Self::FineTuneShipped,
-        Self::FineTuneCurrent,
-        Self::Condition,
-        Self::FromScratch,
-        Self::Pretrain,
-    ];
+    pub const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
 
     /// Returns the name of the mode, shown to the user.
     pub fn label(self) -> &'static str {

@@ -29,8 +29,9 @@ pub struct Footprint {
 }
 
 /// One of the four sides of the outline of a vehicle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Side {
     /// The front of the vehicle, with the outward normal along +x of the body axes.
     Front,
@@ -114,12 +115,7 @@ impl Side {
 
     /// Name of the side in scenario files.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Front => "front",
-            Self::Left => "left",
-            Self::Rear => "rear",
-            Self::Right => "right",
-        }
+        self.into()
     }
 
     /// Name of the side in sentences.

@@ -14,8 +14,9 @@ use crate::data::{ForceAxes, ForceHistory, Sampling};
 
 /// Shape of a pulse as a function of the relative time `u = (t − start) / duration`, scaled to an
 /// area of 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum PulseShape {
     /// Half a period of a sine: `π/2 sin πu`.
     HalfSine,
@@ -54,12 +55,7 @@ impl PulseShape {
 
     /// Name of the shape in plots and tables.
     pub fn label(self) -> &'static str {
-        match self {
-            Self::HalfSine => "half-sine",
-            Self::Haversine => "haversine",
-            Self::Triangle => "triangle",
-            Self::Square => "square",
-        }
+        self.into()
     }
 
     /// Ratio of the force at the relative time `u` to the mean force of the pulse. Its integral

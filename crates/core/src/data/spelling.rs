@@ -159,7 +159,7 @@ static UNITS: LazyLock<Vec<(Quantity, String, Unit)>> = LazyLock::new(|| {
     let units = |quantity: Quantity| {
         quantity.units().iter().map(move |unit| (quantity, unit_key(unit.symbol), *unit))
     };
-    Quantity::ALL.into_iter().flat_map(units).collect()
+    Quantity::ALL.iter().copied().flat_map(units).collect()
 });
 
 /// The unit at the end of a header whose name need not be that of a channel, such as `Kraft X
@@ -210,23 +210,8 @@ pub(crate) fn unit_text(rest: &str) -> Option<&str> {
 }
 
 /// The name of a quantity in messages.
-pub(crate) fn quantity_name(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Time => "time",
-        Quantity::Length => "length",
-        Quantity::Speed => "speed",
-        Quantity::Acceleration => "acceleration",
-        Quantity::Angle => "angle",
-        Quantity::AngularVelocity => "angular velocity",
-        Quantity::Mass => "mass",
-        Quantity::MomentOfInertia => "moment of inertia",
-        Quantity::Force => "force",
-        Quantity::Moment => "moment",
-        Quantity::Impulse => "impulse",
-        Quantity::AngularImpulse => "angular impulse",
-        Quantity::Energy => "energy",
-        Quantity::Ratio => "ratio",
-    }
+pub(crate) fn quantity_name(quantity: Quantity) -> String {
+    <&str>::from(quantity).replace('_', " ")
 }
 
 /// The symbols of all units of a quantity, for a message.
@@ -245,7 +230,7 @@ fn is_unit(text: &str) -> bool {
 }
 
 fn is_unit_key(key: &str) -> bool {
-    Quantity::ALL.into_iter().any(|quantity| unit_of_key(quantity, key).is_some())
+    Quantity::ALL.iter().any(|quantity| unit_of_key(*quantity, key).is_some())
 }
 
 fn letters_and_digits(text: &str) -> String {

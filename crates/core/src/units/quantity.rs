@@ -23,7 +23,21 @@ const DEGREE_RAD: f64 = std::f64::consts::PI / 180.0;
 const REVOLUTION_PER_MINUTE_RAD_S: f64 = std::f64::consts::PI / 30.0;
 
 /// The physical quantity that a number measures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "snake_case")]
 pub enum Quantity {
     /// Time, s.
     Time,
@@ -101,22 +115,7 @@ impl Unit {
 
 impl Quantity {
     /// Every quantity.
-    pub const ALL: [Self; 14] = [
-        Self::Time,
-        Self::Length,
-        Self::Speed,
-        Self::Acceleration,
-        Self::Angle,
-        Self::AngularVelocity,
-        Self::Mass,
-        Self::MomentOfInertia,
-        Self::Force,
-        Self::Moment,
-        Self::Impulse,
-        Self::AngularImpulse,
-        Self::Energy,
-        Self::Ratio,
-    ];
+    pub const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
 
     /// The SI unit of the quantity, which is used inside the program and in the files that it
     /// writes.
@@ -153,7 +152,7 @@ impl Quantity {
     /// The quantity whose SI unit has a symbol; `None` for another symbol, and for none.
     pub fn from_si_symbol(symbol: &str) -> Option<Self> {
         let is_unit = |quantity: &Self| quantity.si_unit().symbol == symbol && !symbol.is_empty();
-        Self::ALL.into_iter().find(is_unit)
+        Self::ALL.iter().copied().find(is_unit)
     }
 
     /// A number in SI units as text for the user, as [`NumberFormat::value`] writes it in English.

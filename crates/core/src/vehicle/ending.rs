@@ -82,8 +82,21 @@ fn default_brake_rise_s() -> f64 {
 }
 
 /// An axle of the vehicle, or both.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    Default,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+    strum::VariantNames,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum DrivenAxle {
     /// The front axle.
     #[default]
@@ -311,6 +324,14 @@ impl Braking {
 }
 
 impl DrivenAxle {
+    /// All of them.
+    pub const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
+
+    /// Its word in a file and in a list.
+    pub fn word(self) -> &'static str {
+        self.into()
+    }
+
     fn drives(self, wheel: Wheel) -> bool {
         match self {
             Self::All => true,

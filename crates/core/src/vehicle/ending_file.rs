@@ -21,6 +21,8 @@
 //! steer_rise_s = 0.3              # optional
 //! ```
 
+use strum::VariantNames;
+
 use crate::data::{TomlError, TomlTable};
 use crate::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, STEER_ANGLE,
@@ -30,8 +32,6 @@ use crate::vehicle::{
     Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
     HeldSteer, Wheel,
 };
-
-const AXLES: [DrivenAxle; 3] = [DrivenAxle::Front, DrivenAxle::Rear, DrivenAxle::All];
 
 const CONDITIONS: [&str; 2] = ["dragged", "locked"];
 
@@ -63,18 +63,18 @@ impl Ending {
         }
         if let Some(engine) = &self.engine {
             add("engine_braking_m_s2".to_owned(), engine.deceleration_m_s2.into());
-            add("driven_axle".to_owned(), name_of(engine.axle).into());
+            add("driven_axle".to_owned(), engine.axle.word().into());
         }
         if let Some(drive) = &self.drive {
             add("drive_torque_n_m".to_owned(), drive.torque_n_m.into());
-            add("drive_axle".to_owned(), name_of(drive.axle).into());
+            add("drive_axle".to_owned(), drive.axle.word().into());
             add("drive_start_s".to_owned(), drive.start_s.into());
             add("drive_rise_s".to_owned(), drive.rise_s.into());
         }
         for damaged in &self.damage {
             let name = key_of(damaged.wheel);
             let condition = CONDITIONS[usize::from(damaged.drag_share_of_friction.is_none())];
-            add(name.to_owned(), condition.into());
+            add(name.clone(), condition.into());
             if let Some(share) = damaged.drag_share_of_friction {
                 add(format!("{name}_share"), share.into());
             }
@@ -89,22 +89,9 @@ impl Ending {
     }
 }
 
-fn name_of(axle: DrivenAxle) -> &'static str {
-    match axle {
-        DrivenAxle::Front => "front",
-        DrivenAxle::Rear => "rear",
-        DrivenAxle::All => "all",
-    }
-}
-
 /// The key of a wheel.
-fn key_of(wheel: Wheel) -> &'static str {
-    match wheel {
-        Wheel::FrontLeft => "front_left",
-        Wheel::FrontRight => "front_right",
-        Wheel::RearLeft => "rear_left",
-        Wheel::RearRight => "rear_right",
-    }
+fn key_of(wheel: Wheel) -> String {
+    wheel.label().replace(' ', "_")
 }
 
 fn read_brake(section: &mut TomlTable<'_>) -> Result<Option<Braking>, TomlError> {
@@ -130,8 +117,8 @@ fn read_engine(
     let start_s = section.number("drive_start", &CONTROL_TIME)?;
     let rise_s = section.number("drive_rise", &BRAKE_RISE)?;
     let mut axle = |key| -> Result<Option<DrivenAxle>, TomlError> {
-        let chosen = section.choice(key, &AXLES.map(name_of))?;
-        Ok(chosen.and_then(|idx| AXLES.get(idx)).copied())
+        let chosen = section.choice(key, DrivenAxle::VARIANTS)?;
+        Ok(chosen.and_then(|idx| DrivenAxle::ALL.get(idx)).copied())
     };
     let (axle, drive_axle) = (axle("driven_axle")?, axle("drive_axle")?);
     match (deceleration, torque) {
@@ -158,7 +145,7 @@ fn read_wheel(
     section: &mut TomlTable<'_>,
     wheel: Wheel,
 ) -> Result<Option<DamagedWheel>, TomlError> {
-    let name = key_of(wheel);
+    let name = &key_of(wheel);
     let condition = section.choice(name, &CONDITIONS)?;
     let share = section.number(&format!("{name}_share"), &DRAG_SHARE)?;
     let start_s = section.number(&format!("{name}_start"), &CONTROL_TIME)?;

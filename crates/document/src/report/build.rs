@@ -90,7 +90,7 @@ impl Builder<'_> {
             SectionKind::Provenance => self.provenance(variants),
             SectionKind::Log => log_blocks(self.case, self.wording),
         };
-        let numbered = SectionKind::ALL.into_iter().enumerate();
+        let numbered = SectionKind::ALL.iter().copied().enumerate();
         let sections = numbered.map(|(idx, kind)| Section {
             kind,
             title: format!("{} {}", idx + 1, section_title(kind, self.wording)),

@@ -34,7 +34,7 @@ pub struct ReportDocument {
 }
 
 /// What a section is about. Every report has each once, in this order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, strum::VariantArray)]
 #[serde(rename_all = "snake_case")]
 pub enum SectionKind {
     /// What was asked, and what came out.
@@ -61,18 +61,7 @@ pub enum SectionKind {
 
 impl SectionKind {
     /// All of them in their order.
-    pub const ALL: [Self; 10] = [
-        Self::Answers,
-        Self::Pictures,
-        Self::Inputs,
-        Self::Evidence,
-        Self::Method,
-        Self::Validity,
-        Self::Validation,
-        Self::Sensitivity,
-        Self::Provenance,
-        Self::Log,
-    ];
+    pub const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
 }
 
 /// A section.

@@ -17,16 +17,19 @@ const PICKUP_LENGTH_M: f64 = 5.3;
 const CG_OVER_ROOF: f64 = 0.385;
 
 /// The kind of body of a car in a picture. No simulation depends on it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum BodyClass {
     /// Two boxes, with a steep tail.
+    #[strum(to_string = "hatchback")]
     Hatch,
     /// Three boxes, with a boot.
     Saloon,
     /// A long roof down to the tail.
     Estate,
     /// Sport utility vehicle: tall, with a long roof.
+    #[strum(to_string = "sport utility vehicle")]
     Suv,
     /// One box with a short bonnet.
     Van,
@@ -41,14 +44,7 @@ impl BodyClass {
 
     /// What the kind is called.
     pub fn label(self) -> &'static str {
-        match self {
-            Self::Hatch => "hatchback",
-            Self::Saloon => "saloon",
-            Self::Estate => "estate",
-            Self::Suv => "sport utility vehicle",
-            Self::Van => "van",
-            Self::Pickup => "pickup",
-        }
+        self.into()
     }
 
     /// The kind by the class of the data sheet. A passenger car is an estate or a hatchback if its name

@@ -24,8 +24,11 @@ const BLOCKED_WHEELS: Choice = Choice {
 };
 
 /// Whether the driver braked after the impact.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum DriverBraked {
     /// He did.
     Yes,
@@ -40,11 +43,7 @@ impl Word for DriverBraked {
     const ALL: &'static [Self] = &[Self::Yes, Self::No, Self::Unknown];
 
     fn word(self) -> &'static str {
-        match self {
-            Self::Yes => "yes",
-            Self::No => "no",
-            Self::Unknown => "unknown",
-        }
+        self.into()
     }
 
     fn label(self) -> &'static str {

@@ -220,12 +220,7 @@ impl Word for Side {
     }
 
     fn word(self) -> &'static str {
-        match self {
-            Self::Left => "left",
-            Self::Right => "right",
-            Self::Front => "front",
-            Self::Rear => "rear",
-        }
+        self.name()
     }
 
     fn mirrored(self) -> Self {

@@ -43,8 +43,9 @@ const SIGMA: Sigma = Sigma::fixed(
 );
 
 /// What left a mark.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum MarkKind {
     /// A wheel that slid sideways.
     SideSlip,
@@ -56,10 +57,7 @@ impl Word for MarkKind {
     const ALL: &'static [Self] = &[Self::SideSlip, Self::Locked];
 
     fn word(self) -> &'static str {
-        match self {
-            Self::SideSlip => "side-slip",
-            Self::Locked => "locked",
-        }
+        self.into()
     }
 
     fn label(self) -> &'static str {
