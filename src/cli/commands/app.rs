@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use crate::app::RendererChoice;
 use crate::cli::CliError;
 use crate::cli::console::Verdict;
+use crate::cli::options::{Words, one_of};
 
 /// Open the window (the same as no command at all)
 #[derive(Debug, Default, Args)]
@@ -16,21 +17,24 @@ pub(in crate::cli) struct AppArgs {
     #[arg(value_name = "PATH")]
     paths: Vec<PathBuf>,
     /// What draws the window
-    #[arg(long, value_enum, default_value_t)]
-    renderer: WindowRenderer,
+    #[arg(long, value_parser = one_of(RENDERERS), default_value = "auto")]
+    renderer: RendererChoice,
 }
 
 /// What draws the window.
-#[derive(Debug, Clone, Copy, Default, ValueEnum)]
-enum WindowRenderer {
-    /// The graphics processor if there is one, else OpenGL in software
-    #[default]
-    Auto,
-    /// wgpu (Vulkan, Metal, DirectX), also where it is emulated in software
-    Wgpu,
-    /// OpenGL; try it where the window stays empty
-    Opengl,
-}
+const RENDERERS: Words<RendererChoice> = &[
+    (
+        "auto",
+        "The graphics processor if there is one, else OpenGL in software",
+        RendererChoice::Automatic,
+    ),
+    (
+        "wgpu",
+        "wgpu (Vulkan, Metal, DirectX), also where it is emulated in software",
+        RendererChoice::Wgpu,
+    ),
+    ("opengl", "OpenGL; try it where the window stays empty", RendererChoice::OpenGl),
+];
 
 /// Opens the window and waits until it is closed.
 ///
@@ -40,12 +44,7 @@ pub(in crate::cli) fn run(args: AppArgs) -> Result<Verdict, CliError> {
     if !has_display(|name| std::env::var_os(name)) {
         return Err(CliError::NoDisplay);
     }
-    let renderer = match args.renderer {
-        WindowRenderer::Auto => RendererChoice::Automatic,
-        WindowRenderer::Wgpu => RendererChoice::Wgpu,
-        WindowRenderer::Opengl => RendererChoice::OpenGl,
-    };
-    crate::app::run(args.paths, renderer)?;
+    crate::app::run(args.paths, args.renderer)?;
     Ok(Verdict::Clean)
 }
 

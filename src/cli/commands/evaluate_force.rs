@@ -2,26 +2,27 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_force_evaluation;
-use crate::cli::options::{BadCasesArg, OverwriteArg, SplitArg, count};
+use crate::cli::options::{BadCasesArg, OverwriteArg, SPLITS, Words, count, one_of};
 use crate::cli::text::print_force_evaluation;
 use impactlab_core::ranges::FOLDS;
 use impactlab_networks::force::ColumnSet;
 use impactlab_networks::shipped::ModelSource;
-use impactlab_study::{EvaluateForceRequest, ForceEvaluation};
+use impactlab_study::{EvaluateForceRequest, EvaluatedCases, ForceEvaluation};
 
 /// What is known of a scenario.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ColumnsArg {
-    /// Masses, velocities, angle, contact point, body of the striking vehicle
-    Full,
-    /// Masses, velocities, angle: the rest is left open
-    Theta,
-}
+const COLUMNS: Words<ColumnSet> = &[
+    (
+        "full",
+        "Masses, velocities, angle, contact point, body of the striking vehicle",
+        ColumnSet::ThetaContactAndBody,
+    ),
+    ("theta", "Masses, velocities, angle: the rest is left open", ColumnSet::Theta),
+];
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -33,11 +34,11 @@ pub(in crate::cli) struct EvaluateForceArgs {
     #[arg(long, value_name = "DIR")]
     data: PathBuf,
     /// Which of its cases
-    #[arg(long, value_enum, default_value_t = SplitArg::Test)]
-    split: SplitArg,
+    #[arg(long, value_parser = one_of(SPLITS), default_value = "test")]
+    split: EvaluatedCases,
     /// What is known of each scenario
-    #[arg(long, value_enum, default_value_t = ColumnsArg::Full)]
-    columns: ColumnsArg,
+    #[arg(long, value_parser = one_of(COLUMNS), default_value = "full")]
+    columns: ColumnSet,
     /// Instead: train anew with the model's settings in K folds of its training cases, so that no
     /// test case is looked at
     #[arg(long, value_name = "K", value_parser = count::<usize>(FOLDS))]
@@ -75,11 +76,8 @@ pub(in crate::cli) fn run(
     let request = EvaluateForceRequest {
         model: args.model.clone().into(),
         data: args.data.clone(),
-        split: args.split.into(),
-        columns: match args.columns {
-            ColumnsArg::Full => ColumnSet::ThetaContactAndBody,
-            ColumnsArg::Theta => ColumnSet::Theta,
-        },
+        split: args.split,
+        columns: args.columns,
         cross_validate: args.cross_validate,
         seed: args.seed,
         bad_cases: args.bad_cases.into(),

@@ -2,37 +2,29 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::{RECONSTRUCTION_EVALUATION_FILES, write_reconstruction_evaluation};
-use crate::cli::options::{OverwriteArg, UnitsArg};
+use crate::cli::options::{OverwriteArg, UnitsArg, Words, one_of};
 use crate::cli::text::print_reconstruction_evaluation;
 use impactlab_reconstruct::evaluate::{KnownEvidence, StagedSplit};
 use impactlab_study::{EvaluateReconstructionRequest, ReconstructRequest};
 
 /// How much of the evidence is used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum KnownArg {
-    /// All of it
-    Everything,
-    /// All but the event data recorder
-    WithoutEdr,
-    /// The rest poses, with damage, masses and friction
-    RestOnly,
-}
+const KNOWN: Words<KnownEvidence> = &[
+    ("everything", "All of it", KnownEvidence::Everything),
+    ("without-edr", "All but the event data recorder", KnownEvidence::WithoutEdr),
+    ("rest-only", "The rest poses, with damage, masses and friction", KnownEvidence::RestOnly),
+];
 
 /// Which cases of the folder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum CasesArg {
-    /// All of them
-    All,
-    /// The first half in the order of the SHA-256 of their names
-    Tuning,
-    /// The other half
-    Reported,
-}
+const CASES: Words<StagedSplit> = &[
+    ("all", "All of them", StagedSplit::All),
+    ("tuning", "The first half in the order of the SHA-256 of their names", StagedSplit::Tuning),
+    ("reported", "The other half", StagedSplit::Reported),
+];
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -41,11 +33,11 @@ pub(in crate::cli) struct EvaluateReconstructionArgs {
     #[arg(value_name = "DIR")]
     data: PathBuf,
     /// How much of the evidence is used; may be given several times; all three without
-    #[arg(long, value_enum, value_name = "WHAT")]
-    known: Vec<KnownArg>,
+    #[arg(long, value_parser = one_of(KNOWN), value_name = "WHAT")]
+    known: Vec<KnownEvidence>,
     /// Which of the cases
-    #[arg(long, value_enum, default_value_t = CasesArg::All)]
-    cases: CasesArg,
+    #[arg(long, value_parser = one_of(CASES), default_value = "all")]
+    cases: StagedSplit,
     /// Only those of them that have these names
     #[arg(long, num_args = 1.., value_name = "NAME")]
     only: Vec<String>,
@@ -89,12 +81,11 @@ pub(in crate::cli) fn run(
     args: &EvaluateReconstructionArgs,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
-    let known: Vec<KnownEvidence> = args.known.iter().map(|known| (*known).into()).collect();
     let out = args.out.as_deref();
     let usual = EvaluateReconstructionRequest::new(&args.data);
     let request = EvaluateReconstructionRequest {
-        known: if known.is_empty() { usual.known } else { known },
-        split: args.cases.into(),
+        known: if args.known.is_empty() { usual.known } else { args.known.clone() },
+        split: args.cases,
         only: args.only.clone(),
         particles: args.particles,
         seed: args.seed,
@@ -113,24 +104,4 @@ pub(in crate::cli) fn run(
     console
         .print(&answer.report, |out| print_reconstruction_evaluation(out, &answer.report, units))?;
     Ok(Verdict::from_problems(!answer.report.left_out.is_empty()))
-}
-
-impl From<KnownArg> for KnownEvidence {
-    fn from(known: KnownArg) -> Self {
-        match known {
-            KnownArg::Everything => Self::Everything,
-            KnownArg::WithoutEdr => Self::WithoutEdr,
-            KnownArg::RestOnly => Self::RestOnly,
-        }
-    }
-}
-
-impl From<CasesArg> for StagedSplit {
-    fn from(cases: CasesArg) -> Self {
-        match cases {
-            CasesArg::All => Self::All,
-            CasesArg::Tuning => Self::Tuning,
-            CasesArg::Reported => Self::Reported,
-        }
-    }
 }

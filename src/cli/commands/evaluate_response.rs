@@ -6,11 +6,11 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::options::{BadCasesArg, OverwriteArg, SplitArg, VehicleArg};
+use crate::cli::options::{BadCasesArg, OverwriteArg, SPLITS, VehicleArg, one_of};
 use crate::cli::text::print_comparison;
 use impactlab_networks::response::evaluate::write_comparison;
 use impactlab_networks::shipped::ModelSource;
-use impactlab_study::EvaluateResponseRequest;
+use impactlab_study::{EvaluateResponseRequest, EvaluatedCases};
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -22,8 +22,8 @@ pub(in crate::cli) struct EvaluateResponseArgs {
     #[arg(long, value_name = "DIR")]
     data: PathBuf,
     /// Which of its cases
-    #[arg(long, value_enum, default_value_t = SplitArg::Test)]
-    split: SplitArg,
+    #[arg(long, value_parser = one_of(SPLITS), default_value = "test")]
+    split: EvaluatedCases,
     /// The struck vehicle: a preset or a file, instead of the data set's own
     #[arg(long, value_name = "NAME|FILE")]
     vehicle: Option<VehicleArg>,
@@ -56,7 +56,7 @@ pub(in crate::cli) fn run(
     let request = EvaluateResponseRequest {
         model: args.model.clone().into(),
         data: args.data.clone(),
-        split: args.split.into(),
+        split: args.split,
         vehicle: VehicleArg::choice(&args.vehicle),
         seed: args.seed,
         bad_cases: args.bad_cases.into(),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use crate::cli::CliError;
@@ -13,7 +13,7 @@ use crate::cli::commands::render_reconstruction::{self, ReconstructionArgs};
 use crate::cli::commands::render_scene::{self, SceneArgs, ShownScene};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{
-    OverwriteArg, SourceArgs, UnitsArg, VehicleArg, contact_point, number, size_px,
+    OverwriteArg, SourceArgs, UnitsArg, VehicleArg, Words, contact_point, number, one_of, size_px,
 };
 use impactlab_core::collision::ChannelClass;
 use impactlab_core::data::{Channel, write_atomically};
@@ -171,8 +171,8 @@ struct ForceArgs {
     #[command(flatten)]
     source: SourceArgs,
     /// Filter with this channel frequency class (SAE J211), the unfiltered force behind
-    #[arg(long, value_enum)]
-    cfc: Option<ClassArg>,
+    #[arg(long, value_parser = one_of(CLASSES))]
+    cfc: Option<ChannelClass>,
     #[command(flatten)]
     output: OutputArgs,
 }
@@ -182,8 +182,8 @@ struct MotionArgs {
     #[command(flatten)]
     source: SourceArgs,
     /// What is shown
-    #[arg(long, value_enum)]
-    channel: ChannelArg,
+    #[arg(long, value_parser = one_of(CHANNELS))]
+    channel: Channel,
     #[command(flatten)]
     vehicle: VehicleArgs,
     #[command(flatten)]
@@ -202,49 +202,21 @@ struct ImpactFigureArgs {
     output: OutputArgs,
 }
 
-/// A channel frequency class.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ClassArg {
-    #[value(name = "60")]
-    Cfc60,
-    #[value(name = "180")]
-    Cfc180,
-    #[value(name = "600")]
-    Cfc600,
-    #[value(name = "1000")]
-    Cfc1000,
-}
+/// The channel frequency classes.
+const CLASSES: Words<ChannelClass> = &[
+    ("60", "", ChannelClass::Cfc60),
+    ("180", "", ChannelClass::Cfc180),
+    ("600", "", ChannelClass::Cfc600),
+    ("1000", "", ChannelClass::Cfc1000),
+];
 
-impl From<ClassArg> for ChannelClass {
-    fn from(class: ClassArg) -> Self {
-        match class {
-            ClassArg::Cfc60 => Self::Cfc60,
-            ClassArg::Cfc180 => Self::Cfc180,
-            ClassArg::Cfc600 => Self::Cfc600,
-            ClassArg::Cfc1000 => Self::Cfc1000,
-        }
-    }
-}
-
-/// A channel of the motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ChannelArg {
-    Vx,
-    Vy,
-    YawRate,
-    Roll,
-}
-
-impl From<ChannelArg> for Channel {
-    fn from(channel: ChannelArg) -> Self {
-        match channel {
-            ChannelArg::Vx => Self::Vx,
-            ChannelArg::Vy => Self::Vy,
-            ChannelArg::YawRate => Self::YawRate,
-            ChannelArg::Roll => Self::Roll,
-        }
-    }
-}
+/// The channels of the motion.
+const CHANNELS: Words<Channel> = &[
+    ("vx", "", Channel::Vx),
+    ("vy", "", Channel::Vy),
+    ("yaw-rate", "", Channel::YawRate),
+    ("roll", "", Channel::Roll),
+];
 
 #[derive(Debug, Serialize)]
 struct RenderedFigure<'a> {
@@ -290,11 +262,11 @@ fn figure(args: &FigureArgs, console: &mut Console<'_>) -> Result<Verdict, CliEr
     let mut scene: Option<ShownScene> = None;
     let (mut figure, notes) = match args {
         FigureArgs::Force(args) => {
-            let class = args.cfc.map(ChannelClass::from);
+            let class = args.cfc;
             render_figure::force(&args.source, class, units, console)?
         }
         FigureArgs::Motion(args) => {
-            let channel = args.channel.into();
+            let channel = args.channel;
             let request = args.vehicle.request(&args.source, &console.library)?;
             render_figure::motion(&request, channel, units, console)?
         }

@@ -1,13 +1,13 @@
 //! `impactlab render forecast`: what the response network says of a recorded case.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::commands::predict_motion::{check_window_end, duration_s};
 use crate::cli::commands::render::{OutputArgs, VehicleArgs};
 use crate::cli::commands::render_figure::{Noted, noted};
 use crate::cli::console::Console;
-use crate::cli::options::{SourceArgs, number, window_s};
+use crate::cli::options::{SourceArgs, Words, number, one_of, window_s};
 use impactlab_core::data::Channel;
 use impactlab_core::ranges::INSTANT;
 use impactlab_core::units::UnitSystem;
@@ -27,8 +27,8 @@ pub(in crate::cli) struct ForecastArgs {
     #[command(flatten)]
     source: SourceArgs,
     /// This quantity over time instead of the scene
-    #[arg(long, value_enum)]
-    channel: Option<ForecastChannelArg>,
+    #[arg(long, value_parser = one_of(CHANNELS))]
+    channel: Option<Channel>,
     /// The moment of outlines and density, s; the end if not given
     #[arg(long, value_parser = number(INSTANT))]
     time: Option<f64>,
@@ -44,29 +44,15 @@ pub(in crate::cli) struct ForecastArgs {
     pub(super) output: OutputArgs,
 }
 
-/// A quantity with bands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ForecastChannelArg {
-    X,
-    Y,
-    Yaw,
-    Vx,
-    Vy,
-    YawRate,
-}
-
-impl From<ForecastChannelArg> for Channel {
-    fn from(channel: ForecastChannelArg) -> Self {
-        match channel {
-            ForecastChannelArg::X => Self::X,
-            ForecastChannelArg::Y => Self::Y,
-            ForecastChannelArg::Yaw => Self::Yaw,
-            ForecastChannelArg::Vx => Self::Vx,
-            ForecastChannelArg::Vy => Self::Vy,
-            ForecastChannelArg::YawRate => Self::YawRate,
-        }
-    }
-}
+/// The quantities with bands.
+const CHANNELS: Words<Channel> = &[
+    ("x", "", Channel::X),
+    ("y", "", Channel::Y),
+    ("yaw", "", Channel::Yaw),
+    ("vx", "", Channel::Vx),
+    ("vy", "", Channel::Vy),
+    ("yaw-rate", "", Channel::YawRate),
+];
 
 /// The scene or a quantity over time, with what was recorded and what the 4DOF model says.
 pub(super) fn figure(
@@ -103,8 +89,7 @@ pub(super) fn figure(
         ..MotionForecastFigure::new(&answer, (&bands, caveats), (at_s, units))
             .with_motions(analysis)
     };
-    let wanted = args.channel.map(Channel::from);
-    let channel = FORECAST_CHANNELS.into_iter().find(|of| Some(of.channel) == wanted);
+    let channel = FORECAST_CHANNELS.into_iter().find(|of| Some(of.channel) == args.channel);
     let figure = match channel {
         Some(channel) => forecast_channel_figure(&input, channel),
         None => forecast_scene_figure(&input),

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, shown_path, under_bar};
-use crate::cli::options::{OverwriteArg, UnitsArg};
+use crate::cli::options::{OverwriteArg, UnitsArg, Words, one_of};
 use impactlab_core::data::write_atomically;
 use impactlab_document::report::{
     Drawing, Language, Paper, ReportDate, ReportFormat, ReportSettings, report_case,
@@ -41,14 +41,14 @@ pub(in crate::cli) struct ReportArgs {
     #[arg(long, value_name = "NAME")]
     variant: Vec<String>,
     /// Language
-    #[arg(long, value_enum, default_value_t)]
-    language: LanguageArg,
+    #[arg(long, value_parser = one_of(LANGUAGES), default_value = "en")]
+    language: Language,
     /// Units of the numbers
     #[arg(long, value_enum, default_value_t)]
     units: UnitsArg,
     /// Size of the pages
-    #[arg(long, value_enum, default_value_t)]
-    paper: PaperArg,
+    #[arg(long, value_parser = one_of(PAPERS), default_value = "a4")]
+    paper: Paper,
     /// The date that the report bears; today in UTC if not given
     #[arg(long, value_name = "YYYY-MM-DD")]
     date: Option<ReportDate>,
@@ -68,25 +68,11 @@ JSON: out, title, date, sections, pictures, unanswered, changes [{kind, path | n
 Exit code 1 if a question has no answer, or if a file or a network is not what it was when the case was
 saved. The report is written then too, and says so.";
 
-/// A language.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-enum LanguageArg {
-    /// English
-    #[default]
-    En,
-    /// German
-    De,
-}
+const LANGUAGES: Words<Language> =
+    &[("en", "English", Language::En), ("de", "German", Language::De)];
 
-/// A size of pages.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-enum PaperArg {
-    /// 210 mm × 297 mm
-    #[default]
-    A4,
-    /// 8.5 in × 11 in
-    Letter,
-}
+const PAPERS: Words<Paper> =
+    &[("a4", "210 mm × 297 mm", Paper::A4), ("letter", "8.5 in × 11 in", Paper::Letter)];
 
 /// What was written.
 #[derive(Debug, Serialize)]
@@ -167,14 +153,7 @@ impl ReportArgs {
     }
 
     fn settings(&self) -> Result<ReportSettings, CliError> {
-        let language = match self.language {
-            LanguageArg::En => Language::En,
-            LanguageArg::De => Language::De,
-        };
-        let paper = match self.paper {
-            PaperArg::A4 => Paper::A4,
-            PaperArg::Letter => Paper::Letter,
-        };
+        let (language, paper) = (self.language, self.paper);
         let today = || ReportDate::from_instant(SystemTime::now());
         let date = self.date.or_else(today).ok_or(CliError::NoClock)?;
         Ok(ReportSettings { language, units: self.units.into(), paper, date })

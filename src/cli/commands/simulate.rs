@@ -9,15 +9,17 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, shown_path};
 use crate::cli::options::{
-    EndingArgs, EquationsArg, IntegratorArg, OverwriteArg, SamplingArg, UnitsArg, VehicleArg,
-    contact_point, count, number,
+    EQUATIONS, EndingArgs, INTEGRATORS, OverwriteArg, SAMPLINGS, UnitsArg, VehicleArg,
+    contact_point, count, number, one_of,
 };
 use crate::cli::text::{print_answer, print_dataset_simulation};
-use impactlab_core::data::{ColumnMap, DatasetKind, Existing, write_restricted_series_csv};
+use impactlab_core::data::{
+    ColumnMap, DatasetKind, Existing, Sampling, write_restricted_series_csv,
+};
 use impactlab_core::ranges::{
     REST_LIMIT, ROAD_FRICTION, SIMULATED_DURATION, SPEED, VEHICLE_DRAWS, YAW_RATE,
 };
-use impactlab_core::vehicle::{ContactPoint, Equations};
+use impactlab_core::vehicle::{ContactPoint, Equations, Integrator};
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::{
     DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, Drive, MotionSource, ScenarioChoice, SeriesFile,
@@ -55,11 +57,11 @@ pub(in crate::cli) struct SimulateArgs {
     #[arg(id = "bullet", long = "bullet", value_name = "V.toml|PRESET")]
     striking: Option<VehicleArg>,
     /// How the equations of motion are integrated
-    #[arg(long, value_enum, default_value_t)]
-    integrator: IntegratorArg,
+    #[arg(long, value_parser = one_of(INTEGRATORS), default_value = "rk4")]
+    integrator: Integrator,
     /// Which equations of motion
-    #[arg(long, value_enum)]
-    equations: Option<EquationsArg>,
+    #[arg(long, value_parser = one_of(EQUATIONS))]
+    equations: Option<Equations>,
     /// Write the trajectory as CSV, 100 Hz (with --dataset: every trajectory, into this folder)
     #[arg(long, value_name = "PATH")]
     out: Option<PathBuf>,
@@ -161,8 +163,8 @@ struct SingleArgs {
     #[arg(long)]
     map: Option<ColumnMap>,
     /// What a force sample stands for; without it, as the columns suggest
-    #[arg(long, value_enum, requires = "force")]
-    sampling: Option<SamplingArg>,
+    #[arg(long, value_parser = one_of(SAMPLINGS), requires = "force")]
+    sampling: Option<Sampling>,
     /// Where the force acts: x, y from the CG in body axes (x forward, y left), z above the
     /// ground, m. The yaw moment follows from it; without it, the file's own mz at CG height, or, if
     /// there is none, the right rear quarter
@@ -220,8 +222,8 @@ fn simulate_one(
         source,
         vehicle: VehicleArg::choice(&args.vehicle),
         striking: VehicleArg::choice(&args.striking),
-        equations: args.equations.map(Equations::from),
-        integrator: args.integrator.into(),
+        equations: args.equations,
+        integrator: args.integrator,
         friction: args.single.friction,
         site: args.site.clone(),
         duration_s: args.single.duration.unwrap_or(match args.until_rest {
@@ -258,8 +260,8 @@ fn simulate_dataset(
         dataset: root.to_owned(),
         case: args.case.clone(),
         vehicle: VehicleArg::choice(&args.vehicle),
-        equations: args.equations.map(Equations::from),
-        integrator: args.integrator.into(),
+        equations: args.equations,
+        integrator: args.integrator,
     };
     let out = args.out.as_deref();
     let into = out.map(|folder| (folder, args.overwrite.into(), &[][..]));
@@ -301,7 +303,7 @@ fn source(args: &SimulateArgs) -> MotionSource {
         vy_m_s: single.vy,
         yaw_rate_rad_s: single.yaw_rate,
         force: single.force.clone().map(|path| file(path, &single.map)),
-        sampling: single.sampling.map(Into::into),
+        sampling: single.sampling,
         contact: single.contact,
         steer: single.steer.clone().map(|path| file(path, &single.steer_map)),
         steering_ratio: match single.steer.is_some() || single.fishhook {

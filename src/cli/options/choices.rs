@@ -3,6 +3,7 @@
 use std::convert::Infallible;
 use std::str::FromStr;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 
 use impactlab_core::data::Sampling;
@@ -29,6 +30,22 @@ impl From<UnitsArg> for UnitSystem {
     }
 }
 
+/// The words of an option, each with its meaning for the help, which may be empty, and its value.
+pub(in crate::cli) type Words<T> = &'static [(&'static str, &'static str, T)];
+
+/// A parser of one of some words.
+pub(in crate::cli) fn one_of<T: Copy + Send + Sync + 'static>(
+    words: Words<T>,
+) -> impl TypedValueParser<Value = T> {
+    let shown = |&(word, meaning, _): &(&'static str, &'static str, T)| {
+        PossibleValue::new(word).help((!meaning.is_empty()).then_some(meaning))
+    };
+    PossibleValuesParser::new(words.iter().map(shown)).try_map(move |chosen| {
+        let found = words.iter().find(|(word, ..)| *word == chosen);
+        found.map(|(.., value)| *value).ok_or("none of the words")
+    })
+}
+
 /// A vehicle by name or file.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::cli) struct VehicleArg(VehicleChoice);
@@ -52,100 +69,46 @@ impl VehicleArg {
 #[derive(Debug, Clone, Copy, Args)]
 pub(in crate::cli) struct BadCasesArg {
     /// What happens to cases that cannot be used
-    #[arg(long, value_enum, default_value_t, value_name = "WHAT")]
-    bad_cases: BadCasesWord,
-}
-
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-enum BadCasesWord {
-    /// The first one is an error
-    #[default]
-    Refuse,
-    /// They are left out and listed
-    LeaveOut,
+    #[arg(long, value_parser = one_of(BAD_CASES), default_value = "refuse", value_name = "WHAT")]
+    bad_cases: BadCases,
 }
 
 impl From<BadCasesArg> for BadCases {
     fn from(arg: BadCasesArg) -> Self {
-        match arg.bad_cases {
-            BadCasesWord::Refuse => Self::Refuse,
-            BadCasesWord::LeaveOut => Self::LeaveOut,
-        }
+        arg.bad_cases
     }
 }
+
+const BAD_CASES: Words<BadCases> = &[
+    ("refuse", "The first one is an error", BadCases::Refuse),
+    ("leave-out", "They are left out and listed", BadCases::LeaveOut),
+];
 
 /// Which cases of the data set.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum SplitArg {
-    /// Those that the model was not trained on, recognised by their content
-    Test,
-    /// All, also those that it was trained on
-    All,
-}
-
-impl From<SplitArg> for EvaluatedCases {
-    fn from(split: SplitArg) -> Self {
-        match split {
-            SplitArg::Test => Self::Test,
-            SplitArg::All => Self::All,
-        }
-    }
-}
+pub(in crate::cli) const SPLITS: Words<EvaluatedCases> = &[
+    (
+        "test",
+        "Those that the model was not trained on, recognised by their content",
+        EvaluatedCases::Test,
+    ),
+    ("all", "All, also those that it was trained on", EvaluatedCases::All),
+];
 
 /// How the equations of motion are integrated.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum IntegratorArg {
-    /// Classical Runge–Kutta, 1 ms: the reference
-    #[default]
-    Rk4,
-    /// Explicit Euler, 10 ms: the paper's baseline
-    Euler,
-}
-
-impl From<IntegratorArg> for Integrator {
-    fn from(integrator: IntegratorArg) -> Self {
-        match integrator {
-            IntegratorArg::Rk4 => Self::Rk4,
-            IntegratorArg::Euler => Self::Euler,
-        }
-    }
-}
+pub(in crate::cli) const INTEGRATORS: Words<Integrator> = &[
+    ("rk4", "Classical Runge–Kutta, 1 ms: the reference", Integrator::Rk4),
+    ("euler", "Explicit Euler, 10 ms: the paper's baseline", Integrator::Euler),
+];
 
 /// Which equations of motion; without the option, the vehicle file says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum EquationsArg {
-    /// The paper's, mended
-    Corrected,
-    /// The paper's, as printed: an ablation that diverges
-    Paper,
-}
-
-impl From<EquationsArg> for Equations {
-    fn from(equations: EquationsArg) -> Self {
-        match equations {
-            EquationsArg::Corrected => Self::Corrected,
-            EquationsArg::Paper => Self::Paper,
-        }
-    }
-}
+pub(in crate::cli) const EQUATIONS: Words<Equations> = &[
+    ("corrected", "The paper's, mended", Equations::Corrected),
+    ("paper", "The paper's, as printed: an ablation that diverges", Equations::Paper),
+];
 
 /// What a force sample stands for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum SamplingArg {
-    /// The value at its instant
-    Instant,
-    /// The mean over an interval centred at its instant
-    CentredMean,
-    /// The mean from its instant to the next one
-    ComingMean,
-}
-
-impl From<SamplingArg> for Sampling {
-    fn from(sampling: SamplingArg) -> Self {
-        match sampling {
-            SamplingArg::Instant => Self::Instant,
-            SamplingArg::CentredMean => Self::CentredMean,
-            SamplingArg::ComingMean => Self::ComingMean,
-        }
-    }
-}
+pub(in crate::cli) const SAMPLINGS: Words<Sampling> = &[
+    ("instant", "The value at its instant", Sampling::Instant),
+    ("centred-mean", "The mean over an interval centred at its instant", Sampling::CentredMean),
+    ("coming-mean", "The mean from its instant to the next one", Sampling::ComingMean),
+];

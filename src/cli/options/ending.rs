@@ -2,8 +2,9 @@
 
 use std::str::FromStr;
 
-use clap::{ArgGroup, Args, ValueEnum};
+use clap::{ArgGroup, Args};
 
+use crate::cli::options::choices::{Words, one_of};
 use crate::cli::options::quantity::{QuantityError, number};
 use impactlab_core::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, OutOfRange,
@@ -47,11 +48,11 @@ pub(in crate::cli) struct EndingArgs {
         requires = "drive_torque")]
     drive_start: f64,
     /// The driven axle
-    #[arg(long, value_enum, default_value_t, requires = "engine")]
-    driven: AxleArg,
+    #[arg(long, value_parser = one_of(AXLES), default_value = "front", requires = "engine")]
+    driven: DrivenAxle,
     /// A wheel that cannot turn from the first contact on; may be given several times
-    #[arg(long, value_enum, value_name = "WHEEL")]
-    locked: Vec<WheelArg>,
+    #[arg(long, value_parser = one_of(WHEELS), value_name = "WHEEL")]
+    locked: Vec<Wheel>,
     /// A wheel that bent bodywork drags with this share of what the road can hold, such as
     /// rear-left=0.5; may be given several times
     #[arg(long, value_name = "WHEEL=SHARE")]
@@ -77,26 +78,23 @@ pub(in crate::cli) struct EndingArgs {
     steer_rise: f64,
 }
 
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-enum AxleArg {
-    #[default]
-    Front,
-    Rear,
-    All,
-}
+const AXLES: Words<DrivenAxle> = &[
+    ("front", "", DrivenAxle::Front),
+    ("rear", "", DrivenAxle::Rear),
+    ("all", "", DrivenAxle::All),
+];
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum WheelArg {
-    FrontLeft,
-    FrontRight,
-    RearLeft,
-    RearRight,
-}
+const WHEELS: Words<Wheel> = &[
+    ("front-left", "", Wheel::FrontLeft),
+    ("front-right", "", Wheel::FrontRight),
+    ("rear-left", "", Wheel::RearLeft),
+    ("rear-right", "", Wheel::RearRight),
+];
 
 /// A wheel and its drag.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct DraggedArg {
-    wheel: WheelArg,
+    wheel: Wheel,
     share: f64,
 }
 
@@ -117,29 +115,9 @@ impl FromStr for DraggedArg {
 
     fn from_str(text: &str) -> Result<Self, DraggedError> {
         let (wheel, share) = text.split_once('=').ok_or(DraggedError::Form)?;
-        let wheel = WheelArg::from_str(wheel.trim(), true).or(Err(DraggedError::Form))?;
+        let is_it = |(word, ..): &&(&str, _, _)| word.eq_ignore_ascii_case(wheel.trim());
+        let (.., wheel) = *WHEELS.iter().find(is_it).ok_or(DraggedError::Form)?;
         Ok(Self { wheel, share: number(DRAG_SHARE)(share)? })
-    }
-}
-
-impl From<WheelArg> for Wheel {
-    fn from(wheel: WheelArg) -> Self {
-        match wheel {
-            WheelArg::FrontLeft => Self::FrontLeft,
-            WheelArg::FrontRight => Self::FrontRight,
-            WheelArg::RearLeft => Self::RearLeft,
-            WheelArg::RearRight => Self::RearRight,
-        }
-    }
-}
-
-impl From<AxleArg> for DrivenAxle {
-    fn from(axle: AxleArg) -> Self {
-        match axle {
-            AxleArg::Front => Self::Front,
-            AxleArg::Rear => Self::Rear,
-            AxleArg::All => Self::All,
-        }
     }
 }
 
@@ -156,22 +134,18 @@ impl EndingArgs {
         };
         let locked = self.locked.iter().map(|&wheel| (wheel, None));
         let dragged = self.dragged.iter().map(|dragged| (dragged.wheel, Some(dragged.share)));
-        let damaged = |(wheel, share): (WheelArg, Option<f64>)| DamagedWheel {
-            wheel: wheel.into(),
-            start_s: 0.0,
-            drag_share_of_friction: share,
-        };
+        let damaged =
+            |(wheel, share)| DamagedWheel { wheel, start_s: 0.0, drag_share_of_friction: share };
         let ending = Ending {
             brake: self.brake.map(|share_of_friction| {
                 Braking::new(self.brake_start, share_of_friction, self.brake_rise)
             }),
-            engine: self.engine_braking.map(|deceleration_m_s2| EngineBraking {
-                deceleration_m_s2,
-                axle: self.driven.into(),
-            }),
+            engine: self
+                .engine_braking
+                .map(|deceleration_m_s2| EngineBraking { deceleration_m_s2, axle: self.driven }),
             drive: self.drive_torque.map(|torque_n_m| Driving {
                 torque_n_m,
-                axle: self.driven.into(),
+                axle: self.driven,
                 start_s: self.drive_start,
                 rise_s: DEFAULT_BRAKE_RISE_S,
             }),

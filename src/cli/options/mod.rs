@@ -10,7 +10,7 @@ mod source;
 mod training;
 
 pub(super) use choices::{
-    BadCasesArg, EquationsArg, IntegratorArg, SamplingArg, SplitArg, UnitsArg, VehicleArg,
+    BadCasesArg, EQUATIONS, INTEGRATORS, SAMPLINGS, SPLITS, UnitsArg, VehicleArg, Words, one_of,
 };
 pub(super) use ending::EndingArgs;
 pub(super) use evidence::EvidenceArgs;
