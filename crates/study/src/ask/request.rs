@@ -7,9 +7,10 @@ use crate::{
     CheckReport, CheckRequest, CompareRequest, EvaluateForceRequest, EvaluateReconstructionReport,
     EvaluateReconstructionRequest, EvaluateResponseRequest, FineTuneRequest, ForceEvaluation,
     ImpactReport, ImpactRequest, Library, Observer, PredictForceReport, PredictForceRequest,
-    PredictMotionReport, PredictMotionRequest, Question, ReconstructReport, ReconstructRequest,
-    ResponseTrainingReport, SimulateDatasetReport, SimulateDatasetRequest, SimulateReport,
-    SimulateRequest, StudyError, TrainForceReport, TrainForceRequest, TrainResponseRequest,
+    PredictMotionReport, PredictMotionRequest, Provenance, Question, ReconstructReport,
+    ReconstructRequest, ResponseTrainingReport, SimulateDatasetReport, SimulateDatasetRequest,
+    SimulateReport, SimulateRequest, StudyError, TrainForceReport, TrainForceRequest,
+    TrainResponseRequest,
 };
 use impactlab_core::data::Outcome;
 
@@ -111,4 +112,24 @@ questions! {
     EvaluateResponse(EvaluateResponseRequest) -> CompareReport;
     /// Which response model does best.
     Compare(CompareRequest) -> CompareReport;
+}
+
+impl Report {
+    /// Where the answer comes from.
+    pub fn provenance(&self) -> &Provenance {
+        match self {
+            Self::Check(report) => &report.provenance,
+            Self::Impact(report) => &report.provenance,
+            Self::Simulate(report) => &report.provenance,
+            Self::SimulateDataset(report) => &report.provenance,
+            Self::PredictForce(report) => &report.provenance,
+            Self::PredictMotion(report) => &report.provenance,
+            Self::Reconstruct(report) => &report.provenance,
+            Self::TrainForce(report) => &report.provenance,
+            Self::TrainResponse(report) | Self::FineTune(report) => &report.provenance,
+            Self::EvaluateForce(report) => report.provenance(),
+            Self::EvaluateReconstruction(report) => &report.provenance,
+            Self::EvaluateResponse(report) | Self::Compare(report) => &report.provenance,
+        }
+    }
 }

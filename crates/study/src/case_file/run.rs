@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::case_file::{CaseError, CaseFile, Change, UsedModel, Variant};
 use crate::{Answer, Library, Observer, Report, Request, StudyError};
 use impactlab_core::data::Outcome;
+use impactlab_core::data::write::ModelDigest;
 use impactlab_core::error_chain;
 
 /// The answers to all questions of a case.
@@ -144,14 +145,44 @@ impl CaseReport {
 
 /// The networks that reports name, by kind and name.
 fn models_of<'a>(reports: impl Iterator<Item = &'a Report>) -> BTreeMap<(String, String), String> {
-    let mut models = BTreeMap::new();
-    for report in reports {
-        let fields = serde_json::to_value(report).unwrap_or_default();
-        let digests = fields.get("model_digests").cloned().unwrap_or_default();
-        let digests: Vec<UsedModel> = serde_json::from_value(digests).unwrap_or_default();
-        for UsedModel { network, name, sha256 } in digests {
-            models.insert((network, name), sha256);
-        }
+    let digests = reports.flat_map(|report| &report.provenance().model_digests);
+    let model =
+        |of: &ModelDigest| ((of.network.clone().into_owned(), of.name.clone()), of.sha256.clone());
+    digests.map(model).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+    use std::path::Path;
+
+    use super::*;
+    use crate::{ForceQuestion, ImpactRequest, ModelChoice, PredictForceRequest, ScenarioChoice};
+    use impactlab_core::collision::Scenario;
+
+    const PIT: &str = include_str!("../../../../assets/scenarios/pit_right_rear.toml");
+
+    #[test]
+    fn the_networks_that_answered_are_found_and_others_than_before_are_changes() {
+        let scenario = Scenario::from_toml(PIT, Path::new("pit.toml")).unwrap();
+        let scenario = ScenarioChoice::Inline(Box::new(scenario));
+        let force = PredictForceRequest::new(ForceQuestion::Scenario(scenario.clone()));
+        let questions = vec![ImpactRequest { scenario, paper: false }.into(), Request::from(force)];
+        let variant = Variant { name: "one".into(), questions, ..Variant::default() };
+        let mut case = CaseFile::new("case", variant);
+        let library = Library::default();
+        let ask = |case: &CaseFile| {
+            let answered = case.ask(&[], &library, &mut |_| ControlFlow::Continue(()));
+            answered.unwrap().complete().unwrap()
+        };
+        let report = ask(&case);
+        let ModelDigest { network, name, sha256 } =
+            library.force_model_digest(&ModelChoice::default()).unwrap();
+        let used = UsedModel { network: network.into_owned(), name, sha256 };
+        assert_eq!(report.models(), std::slice::from_ref(&used));
+        assert!(report.is_clean(), "{:?}", report.changes);
+        let change = Change::Model { network: used.network.clone(), name: used.name.clone() };
+        case.models = vec![UsedModel { sha256: "another".into(), ..used }];
+        assert_eq!(ask(&case).changes, [change]);
     }
-    models
 }
