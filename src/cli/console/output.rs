@@ -67,10 +67,14 @@ struct TextColumn {
 
 impl TextColumn {
     fn new(header: &[String], rows: &[Vec<String>], idx: usize) -> Self {
-        let cells = || rows.iter().filter_map(|row| row.get(idx));
+        let cells = || rows.iter().filter_map(|row| Some((row.get(idx)?, row.get(idx + 1..)?)));
         let is_number = |cell: &String| cell.is_empty() || cell.parse::<f64>().is_ok();
-        let widths = cells().chain(header.get(idx)).map(|c| c.chars().count());
-        Self { width: widths.max().unwrap_or(0), is_numeric: cells().all(is_number) }
+        let is_numeric = cells().all(|(cell, _)| is_number(cell));
+        // A text with nothing beside it does not push the columns apart.
+        let has_room = |beside: &[String]| !is_numeric && beside.iter().all(String::is_empty);
+        let cells = cells().filter(|(_, beside)| !has_room(beside)).map(|(cell, _)| cell);
+        let widths = cells.chain(header.get(idx)).map(|cell| cell.chars().count());
+        Self { width: widths.max().unwrap_or(0), is_numeric }
     }
 
     fn pad(&self, cell: &str) -> String {
@@ -89,6 +93,16 @@ mod tests {
         let mut text = Vec::new();
         print_table(&mut text, &["name", "m"], &rows).unwrap();
         let expected = "name    m\na     1.5\nbcd   -10\n";
+        assert_eq!(String::from_utf8(text).unwrap(), expected);
+    }
+
+    #[test]
+    fn a_text_with_nothing_beside_it_does_not_push_the_columns_apart() {
+        let rows = [["a", "1 m", "0 to 2 m"], ["b", "some long text", ""]];
+        let rows = rows.map(|row| row.map(str::to_owned).to_vec());
+        let mut text = Vec::new();
+        print_table(&mut text, &["", "median", "90 %"], &rows).unwrap();
+        let expected = "   median  90 %\na  1 m     0 to 2 m\nb  some long text\n";
         assert_eq!(String::from_utf8(text).unwrap(), expected);
     }
 
