@@ -11,6 +11,7 @@ use std::ffi::OsString;
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::force::{ForceError, ForceModel};
@@ -34,7 +35,9 @@ const PRETRAINED_RESPONSE_MODEL: &[u8] =
     include_bytes!("../../../assets/models/response_pretrained.safetensors");
 
 /// The source of a model. In text and files it is written as its word or as the path of its file.
-#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(from = "PathBuf", into = "PathBuf")]
 pub enum ModelSource {
     /// The trained model that is part of the program, written `shipped`.

@@ -3,6 +3,7 @@
 //! The fit says how well the whole posterior explains a mark, by the path of its wheel; this compares the
 //! mark of one motion with the mark that was found.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::CollisionMotion;
@@ -13,7 +14,7 @@ use impactlab_core::vehicle::{ControlledVehicle, Integrator, TireMark, Wheel, ti
 const STEP_M: f64 = 0.1;
 
 /// A mark that was found, beside the computed one of its wheel that lies nearest.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MarkComparison {
     /// The wheel.
     pub wheel: Wheel,

@@ -1,11 +1,12 @@
 //! One-dimensional prior distributions as transformations of a standard normal variable.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use impactlab_core::numerics::{normal_cdf, normal_quantile};
 
 /// Prior distribution of one quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "form", rename_all = "snake_case")]
 pub enum Distribution {
     /// Each value of a range is equally likely.

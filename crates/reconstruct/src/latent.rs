@@ -1,5 +1,6 @@
 //! The quantities that the motion of a collision depends on, and a value of each.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use impactlab_core::units::Quantity;
@@ -13,7 +14,7 @@ pub const BLOCKED_PROBABILITY: f64 = 0.2;
 macro_rules! latents {
     ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $label:literal;)+) => {
         /// A quantity that the motion depends on.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
         #[serde(rename_all = "snake_case")]
         pub enum Latent {
             $($(#[$doc])* $name,)+

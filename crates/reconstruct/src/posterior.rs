@@ -1,6 +1,7 @@
 //! What the particles say: quantities with their intervals, modes, fit, and what further evidence
 //! would bring.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::sampler::Particles;
@@ -92,7 +93,7 @@ impl ReconstructedQuantity {
 pub(crate) const LEVELS: [f64; 4] = [0.5, 0.8, 0.9, 0.95];
 
 /// A quantity with its intervals, which leave out as much below as above.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(into = "WrittenEstimate")]
 pub struct QuantityEstimate {
     /// Name with its unit.
@@ -105,7 +106,7 @@ pub struct QuantityEstimate {
 
 /// A [`QuantityEstimate`] as it is written, with the keys of version 0.1, which a later version will
 /// not write.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct WrittenEstimate {
     /// Name with its unit.
     name: &'static str,
@@ -134,7 +135,7 @@ impl From<QuantityEstimate> for WrittenEstimate {
 }
 
 /// A kind of course of events that the evidence leaves possible.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Mode {
     /// What sets it apart.
     pub name: String,
@@ -150,7 +151,7 @@ pub struct Mode {
 }
 
 /// What one more piece of evidence would bring.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct BudgetItem {
     /// The quantity that would be measured, with its unit.
     pub known: &'static str,

@@ -33,6 +33,7 @@
 
 use std::f64::consts::PI;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cars::{Car, Cars};
@@ -45,7 +46,7 @@ use impactlab_core::collision::{ContactDistribution, Side};
 use impactlab_core::vehicle::sheet::SheetQuantity;
 
 /// A quantity with its prior distribution.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct PriorComponent {
     /// The quantity.
     pub latent: Latent,
@@ -56,7 +57,7 @@ pub struct PriorComponent {
 }
 
 /// Where a distribution of the prior comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PriorSource {
     /// Given as a range or a scatter with the evidence, or as a value of the chosen vehicle.

@@ -43,6 +43,7 @@ pub use ask::library::Library;
 pub use ask::provenance::Provenance;
 pub use ask::question::{Event, Observer, Question, Sampling};
 pub use ask::request::{Answer, Report, Request};
+pub use ask::schema::{JsonKind, json_kinds};
 pub use ask::word::word;
 pub use questions::check::report::{
     CaseFlag, CheckReport, ColumnReport, DatasetReport, FileReport, InputFileReport, PathProblem,

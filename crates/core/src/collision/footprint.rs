@@ -1,5 +1,6 @@
 //! Outlines of vehicles in plan view: rectangles of the outer length and width.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ranges::OFF_OUTLINE;
@@ -18,7 +19,7 @@ pub struct Pose {
 
 /// Outline of a vehicle in plan view: a rectangle whose sides are parallel to the body axes, with
 /// the CG midway between the left and the right side.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Footprint {
     /// Outer length of the vehicle, m, more than 0.
     pub length_m: f64,
@@ -29,7 +30,7 @@ pub struct Footprint {
 }
 
 /// One of the four sides of the outline of a vehicle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, strum::IntoStaticStr, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Side {

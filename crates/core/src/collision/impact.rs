@@ -25,6 +25,7 @@
 //! Validated in `tests/library/validation_collision.rs` against the published worked example and
 //! against finite-element runs.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::collision::PrincipalDirectionOfForce;
@@ -50,7 +51,7 @@ pub struct ImpactBody<T = f64> {
 }
 
 /// Model of friction at the contact.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FrictionModel {
     /// The contact points do not slide at the end of the contact, unless that needs `|P_τ| > μ_c
@@ -77,7 +78,7 @@ pub enum FrictionModel {
 ///
 /// Both give `v_n' = −e v_n`. They agree for e = 0, and while the contact points slide to the same
 /// side, since then `P_τ = ±μ_c P_n` in both. Without sliding they agree for e = 0 alone.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RestitutionForm {
     /// Restitution acts on the normal component alone (Newton's hypothesis). Source:
@@ -141,7 +142,7 @@ pub struct Impact<T = f64> {
 }
 
 /// State of the contact at its end, which determines the tangential impulse.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Regime {
     /// The contact points have the same tangential velocity at the end of the contact.

@@ -8,6 +8,7 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::collision::polygon::{centroid, clip, direction, dot, reach};
@@ -29,7 +30,7 @@ pub const MAX_APPROACH_TIME_S: f64 = 0.2;
 const MIN_CLOSING_M_S: f64 = 1e-6;
 
 /// The side to which the contact normal is perpendicular, and the vehicle to which it belongs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StruckSurface {
     /// A side of the struck vehicle, which is struck by a corner or a side of the striking vehicle.

@@ -3,6 +3,7 @@
 //!
 //! The source of the default restitution and friction limit is given at [`DEFAULT_RESTITUTION`].
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::collision::{
@@ -36,7 +37,7 @@ pub const DEFAULT_CONTACT_CLOSING_M_S: [f64; 2] = [0.8, 5.0];
 
 /// Vehicle data and motion before the impact of one of the two vehicles. The ranges are checked
 /// when a scenario is read from a file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioVehicle {
     /// Mass, kg, 1 to 1e8. A fixed barrier is represented by a very heavy vehicle.
@@ -63,7 +64,7 @@ pub struct ScenarioVehicle {
 
 /// The way in which a scenario specifies contact point, contact normal and position of the striking
 /// vehicle.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "from", rename_all = "snake_case")]
 pub enum ContactLocation {
     /// The position of the striking vehicle is given. Contact point and normal follow from the
@@ -110,7 +111,7 @@ pub enum ContactLocation {
 }
 
 /// The contact of a scenario: its location, restitution and friction.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ScenarioContact {
     /// Specification of contact point, contact normal and position of the striking vehicle.
     #[serde(flatten)]
@@ -132,7 +133,7 @@ pub struct ScenarioContact {
 
 /// Two vehicles that are about to collide. [`Scenario::load`] and [`Scenario::from_toml`] read a
 /// scenario and check every range; [`Scenario::to_toml`] writes it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
     /// Name of the scenario in lists and reports; may be empty.

@@ -1,5 +1,6 @@
 //! Error metrics of a predicted motion against a reference, and violations of energy conservation.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::{
@@ -16,26 +17,32 @@ pub const SPIN_YAW_CHANGE_RAD: f64 = std::f64::consts::FRAC_PI_2;
 
 /// Errors of a predicted motion against a reference, evaluated at the reference's samples. JSON has
 /// `null` for an error that is not finite, which that of a model whose motion diverges is.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionError {
     /// Mean over the samples of the distance between the positions (X, Y), m.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub average_error_m: f64,
     /// Distance between the positions at the last sample, m.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub final_error_m: f64,
     /// Difference of yaw (prediction − reference) at the last sample, wrapped, rad.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub final_heading_error_rad: f64,
     /// Distance between the positions at each of [`HORIZONS_S`], m, linear between samples; NaN for
     /// a horizon more than a sample interval beyond the end of the reference.
     #[serde(serialize_with = "finite_or_nulls", deserialize_with = "nulls_as_nan")]
+    #[schemars(with = "[Option<f64>; 4]")]
     pub horizon_error_m: [f64; 4],
     /// Root mean square error of X, m.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub rmse_x_m: f64,
     /// Root mean square error of Y, m.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub rmse_y_m: f64,
     /// Root mean square error of v_x, m/s; `None` unless both motions have it.
     #[serde(rename = "rmse_vx_m_s")]

@@ -2,6 +2,7 @@
 //! initial state under its recorded force, and compared with its recorded motion.
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::collision::{Footprint, OffOutline};
@@ -81,7 +82,7 @@ pub struct DatasetReplay {
 }
 
 /// Error metrics summarised over several cases.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ErrorSummary {
     /// Mean over time of the distance between the positions (X, Y), m.
     pub average_error_m: Summary,

@@ -1,6 +1,7 @@
 //! The attributes of a case that the physics needs, taken from the columns of `cases.csv` by name.
 //! The names end in the SI unit.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::{Attributes, CaseBraking, DataError, DatasetKind};
@@ -58,7 +59,7 @@ const FORCE_COLUMNS: &[AttributeColumn] = &[
 const TRAJECTORY_COLUMNS: &[AttributeColumn] = &[SPEED_BEFORE, MU, AT_X, AT_Y, HEIGHT];
 
 /// The side on which the struck vehicle is hit, as seen by its driver.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum StruckSide {
     /// The left side of the struck vehicle, +y in its body axes.
     Left,

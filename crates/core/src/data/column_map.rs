@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::error::quoted;
@@ -58,7 +59,7 @@ pub struct ColumnSource {
 /// assert_eq!(map.to_string(), "time=1:ms,fx=Kraft X:kN,fy=Kraft Y:kN");
 /// # Ok::<(), crate::data::MapError>(())
 /// ```
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "String", into = "String")]
 pub struct ColumnMap {
     sources: BTreeMap<Channel, ColumnSource>,

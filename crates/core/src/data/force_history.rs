@@ -1,5 +1,6 @@
 //! The contact force on the struck vehicle over time, and its impulse.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::{Channel, SeriesError, TimeSeries};
@@ -16,7 +17,7 @@ pub enum ForceAxes {
 }
 
 /// What one sample of a force history stands for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Sampling {
     /// The force at the instant of the sample; it varies linearly between samples.

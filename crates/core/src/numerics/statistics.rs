@@ -1,10 +1,11 @@
 //! Summary statistics and quantiles of a sample.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use statrs::statistics::{Data, Distribution, Max, Min, OrderStatistics};
 
 /// Mean, standard deviation and order statistics of a sample, in the unit of its values.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Summary {
     /// Number of values.
     pub n: usize,

@@ -1,11 +1,12 @@
 //! All caveats of an answer, and how they are written: into JSON, a picture, a table or the clipboard.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::uncertainty::{Caveat, CaveatKind, CaveatSubject};
 
 /// What restricts an answer and what it rests on. It stands beside the answer wherever that goes.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(from = "CaveatsJson", into = "CaveatsJson")]
 pub struct Caveats(Vec<Caveat>);
 
@@ -149,25 +150,32 @@ impl<'a> IntoIterator for &'a Caveats {
 
 /// The caveats in a JSON report, and beside them the lists that stood in their place until
 /// version 0.1: these are still written, and read where there are no caveats.
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 struct CaveatsJson {
+    /// What restricts the answer and what it rests on.
     caveats: Option<Vec<Caveat>>,
+    /// Former key: what a person should know beside that.
     #[serde(default)]
     notes: Vec<String>,
+    /// Former key: what was assumed, and what is not used.
     #[serde(default)]
     assumptions: Vec<AssumptionJson>,
+    /// Former key: what restricts the answer, the warnings first, and what was assumed.
     #[serde(default)]
     badges: Vec<BadgeJson>,
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 struct AssumptionJson {
+    /// What was assumed.
     quantity: AssumedJson,
+    /// Its value.
     value: String,
+    /// Why.
     reason: String,
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 enum AssumedJson {
     #[serde(rename = "not_used")]
     NotUsed,
@@ -175,12 +183,17 @@ enum AssumedJson {
     Assumed(CaveatSubject),
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 struct BadgeJson {
+    /// What it is.
     kind: CaveatKind,
+    /// For a person.
     text: String,
+    /// The number that it is about, with its unit.
     quantity: Option<String>,
+    /// Its value.
     value: Option<f64>,
+    /// Lower and upper end within which there would be no badge.
     range: Option<[Option<f64>; 2]>,
 }
 

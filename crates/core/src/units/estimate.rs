@@ -1,9 +1,10 @@
 //! A median with its central intervals: the one form in which the program says how sure a number is.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A central interval of a quantity: it leaves out as much below as above.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Interval {
     /// Probability that the interval holds the quantity, 0 to 1.
     pub level: f64,
@@ -14,7 +15,7 @@ pub struct Interval {
 }
 
 /// Median of a quantity with its central intervals, in SI units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(into = "WrittenEstimate")]
 pub struct Estimate {
     /// Median: the value that is exceeded with a probability of 50 %.
@@ -25,7 +26,7 @@ pub struct Estimate {
 
 /// An [`Estimate`] as it is written. Estimates with intervals of 50 % and 90 % alone, or of 90 % alone,
 /// also have the keys of version 0.1, which a later version will not write.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct WrittenEstimate {
     /// Median: the value that is exceeded with a probability of 50 %.
     median: f64,

@@ -20,6 +20,7 @@
 //! forces, accelerations and loads is resolved; here this is done by fixed-point passes as in
 //! `four_dof.rs`.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::numerics::{Lanes, LanesOver};
@@ -29,7 +30,7 @@ use crate::vehicle::frames::Heading;
 use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleState};
 
 /// The form of the equations of motion of the 4DOF vehicle.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Equations {
     /// The equations of the paper with the corrections that are described in `four_dof.rs`,

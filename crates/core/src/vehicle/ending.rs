@@ -12,6 +12,7 @@
 //!
 //! [`Gillespie1992`]: crate::bibliography::Gillespie1992
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ranges::{
@@ -31,7 +32,7 @@ pub const DEFAULT_BRAKE_RISE_S: f64 = 0.3;
 const CATCH_S: f64 = 0.01;
 
 /// What happens to the wheels after the first contact. By default the vehicle coasts.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Ending {
     /// The driver brakes.
@@ -52,7 +53,7 @@ pub struct Ending {
 }
 
 /// Braking by the driver, with all wheels and without an anti-lock system.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Braking {
     /// When the force begins to rise, s after the first contact.
@@ -93,7 +94,7 @@ fn default_brake_rise_s() -> f64 {
     Deserialize,
     strum::IntoStaticStr,
     strum::VariantArray,
-    strum::VariantNames,
+    strum::VariantNames, JsonSchema
 )]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
@@ -108,7 +109,7 @@ pub enum DrivenAxle {
 }
 
 /// Braking by the engine through an open differential.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EngineBraking {
     /// Deceleration of the whole vehicle that it causes on a straight course, m/s².
@@ -119,7 +120,7 @@ pub struct EngineBraking {
 }
 
 /// Drive by the engine, through an open differential.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Driving {
     /// Torque at the wheels of each driven axle together, N m. It does not depend on the speed.
@@ -136,7 +137,7 @@ pub struct Driving {
 }
 
 /// A wheel that is dragged or locked.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DamagedWheel {
     /// The wheel.
@@ -151,7 +152,7 @@ pub struct DamagedWheel {
 }
 
 /// A steer angle that is reached and held.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HeldSteer {
     /// When the wheels begin to turn, s after the first contact.

@@ -33,6 +33,7 @@ use nalgebra::{SMatrix, SVector};
 use num_dual::DualSVec64;
 use pulp::NullaryFnOnce;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::numerics::{Four, Lanes, LanesOver};
@@ -46,7 +47,7 @@ use crate::vehicle::{Equations, N_STATE, VehicleParameters, VehicleState};
 pub(super) const LOAD_PASSES: usize = 2;
 
 /// Point of the vehicle at which the collision force acts.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ContactPoint<T = f64> {
     /// Coordinate x of the point in body axes, m: its distance in front of the CG.
     #[serde(rename = "x_m")]

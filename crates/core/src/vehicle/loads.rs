@@ -13,6 +13,7 @@
 //! - Every load is ≥ 0 and their sum is m g. If a wheel lifts, the other wheel of the axle carries
 //!   its load; if an axle lifts, the other axle carries its load.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::numerics::{Lanes, LanesOver};
@@ -21,7 +22,7 @@ use crate::vehicle::VehicleParameters;
 use crate::vehicle::constants::BodyConstants;
 
 /// The four wheels. Every array over wheels is in this order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Wheel {
     /// The left wheel of the front axle.

@@ -7,6 +7,7 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::{ForceHistory, SeriesError, TimeSeries};
@@ -27,7 +28,7 @@ pub const ROLL_LIMIT_RAD: f64 = 0.26;
 pub const OUTPUT_INTERVAL_S: f64 = 0.01;
 
 /// Method by which the equations of motion are integrated.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Integrator {
     /// Classical Runge–Kutta method of order 4 with a step of 1 ms.
     #[default]

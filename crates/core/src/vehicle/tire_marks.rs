@@ -18,6 +18,7 @@
 //!
 //! [`Brach2011`]: crate::bibliography::Brach2011
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::data::{Channel, TimeSeries};
@@ -46,7 +47,7 @@ const DARK_FRICTION: f64 = 0.8;
 const PATCH_LENGTH_RATIO: f64 = 0.6;
 
 /// What left most of a mark.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TireMarkKind {
     /// A locked wheel.

@@ -1,12 +1,13 @@
 //! One case against its truth.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::QuantityEstimate;
 use crate::evaluate::{KnownEvidence, ReconstructionMethod, SpeedEstimates, TrueSpeeds};
 
 /// A quantity beside its true value.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ScoredQuantity {
     /// What was estimated.
     #[serde(flatten)]
@@ -18,7 +19,7 @@ pub struct ScoredQuantity {
 }
 
 /// A case by one method beside its truth.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CaseScore {
     /// Name of the case.
     pub case: String,

@@ -1,5 +1,6 @@
 //! The speeds before the impact as one method estimates them.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::baseline::PointOptimum;
@@ -18,7 +19,7 @@ pub const SPEEDS: [ReconstructedQuantity; 3] = [
 ];
 
 /// How the speeds are estimated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ReconstructionMethod {
     /// The particles of the posterior.

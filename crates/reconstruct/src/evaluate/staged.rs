@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ReconstructedQuantity;
@@ -14,7 +15,7 @@ use impactlab_core::ranges::{EVIDENCE_SPEED, SPEED};
 ///
 /// The cases are put into the order of the SHA-256 of their names in hexadecimal digits, so that the
 /// order has nothing to do with how they were made.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StagedSplit {
     /// All of them.

@@ -1,5 +1,6 @@
 //! Many cases against their truths.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::evaluate::{CaseScore, KnownEvidence, ReconstructionMethod, SPEEDS, ScoredQuantity};
@@ -9,7 +10,7 @@ use impactlab_core::numerics::quantile_of_sorted;
 pub const SUFFICIENT_ESS: f64 = 400.0;
 
 /// How one method does on cases of which the same is known.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MethodSummary {
     /// How much of the evidence was used.
     pub known: KnownEvidence,
@@ -29,7 +30,7 @@ pub struct MethodSummary {
 }
 
 /// How well a quantity is estimated.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct QuantitySummary {
     /// Name with its unit.
     pub name: &'static str,

@@ -1,6 +1,7 @@
 //! What driver and damage did to the wheels after the impact: it decides what the forward model leaves open.
 
 use impactlab_core::vehicle::Wheel;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::evidence::{Choice, Fields, Group, Item, Section, Word};
@@ -25,7 +26,7 @@ const BLOCKED_WHEELS: Choice = Choice {
 
 /// Whether the driver braked after the impact.
 #[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr,
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr, JsonSchema
 )]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
@@ -55,7 +56,7 @@ impl Word for DriverBraked {
 }
 
 /// What driver and damage did to the wheels after the impact.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct After {
     /// Wheels that were found blocked; `None` if nobody looked, so that each wheel near the damage may

@@ -5,6 +5,7 @@ use impactlab_core::ranges::{
     CG_HEIGHT, CG_TO_AXLE, MASS_SIGMA, OUTER_LENGTH, OUTER_WIDTH, TRACK_WIDTH, VEHICLE_MASS,
     VEHICLE_YAW_INERTIA,
 };
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::Latent;
@@ -41,7 +42,7 @@ const WIDTH: Field = Field::new("width", "outer width", OUTER_WIDTH);
 const YAW_INERTIA: Field = Field::new("yaw_inertia", "yaw inertia", VEHICLE_YAW_INERTIA);
 
 /// What is known of a car.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CarEvidence {
     /// Mass, kg.

@@ -3,6 +3,7 @@
 
 use impactlab_core::collision::Side;
 use impactlab_core::ranges::{ANGLE_SIGMA, CONTACT_X, CONTACT_Y, EVIDENCE_HEADING, POSITION_SIGMA};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::Latent;
@@ -28,7 +29,7 @@ const ANGLE_SIGMA_FIELD: Sigma = Sigma::fixed(
 );
 
 /// Where and in which direction the struck car was hit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Damage {
     /// Struck side.

@@ -5,10 +5,11 @@ use impactlab_core::collision::Side;
 use impactlab_core::data::key_with_unit;
 use impactlab_core::ranges::Range;
 use impactlab_core::vehicle::Wheel;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A number with its standard deviation, both in the same unit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Measured {
     /// The value.
     pub value: f64,
@@ -17,7 +18,7 @@ pub struct Measured {
 }
 
 /// A number as somebody states it. [`Sigma::resolve`] makes a [`Measured`] number of it.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Stated {
     /// The value; `None` until it is entered.

@@ -3,6 +3,7 @@
 //! World axes: origin at the CG of the struck car at first contact, X along its heading before the
 //! impact, Y to the left.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::CollisionMotion;
@@ -15,7 +16,7 @@ use crate::likelihood::{Comparison, Discrepancy, EvidenceTerm, PathResidual, Tra
 
 /// Everything that is found. Each item is shown to what reads, writes, draws and tells the evidence by
 /// [`Evidence::items`], and is compared with a motion by [`Evidence::compared`].
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Evidence {
     /// Name of the case.

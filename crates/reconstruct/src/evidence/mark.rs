@@ -2,6 +2,7 @@
 
 use impactlab_core::ranges::{EVIDENCE_POSITION, POSITION_SIGMA};
 use impactlab_core::vehicle::Wheel;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::evidence::{Choice, Field, Fields, Group, Item, PointsMut, Section, Sigma, Word};
@@ -43,7 +44,7 @@ const SIGMA: Sigma = Sigma::fixed(
 );
 
 /// What left a mark.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
 pub enum MarkKind {
@@ -69,7 +70,7 @@ impl Word for MarkKind {
 }
 
 /// A tire mark.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mark {
     /// The wheel that left it.

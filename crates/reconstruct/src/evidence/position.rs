@@ -1,6 +1,7 @@
 //! Position of the struck car at a time, from a video.
 
 use impactlab_core::ranges::{EVIDENCE_POSITION, EVIDENCE_TIME, POSITION_SIGMA};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::evidence::{Field, Fields, Group, Item, PlaceMut, Section, Sigma};
@@ -21,7 +22,7 @@ const Y: Field = Field::new("y", "Y of the CG", EVIDENCE_POSITION).required().tu
 const SIGMA: Sigma = Sigma::fixed(("sigma", "± along each axis"), POSITION_SIGMA, 0.30, "assumed");
 
 /// Position of the struck car at a time.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct VideoPosition {
     /// Time after the first contact, s; `None` until it is entered.

@@ -4,6 +4,7 @@ use impactlab_core::ranges::{
     BRAKE_SHARE, CONTROL_TIME, EVIDENCE_HEADING, EVIDENCE_SPEED, FRICTION_LIMIT, HEADING,
     RESTITUTION,
 };
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::evidence::{Bounds, Field, Fields, Group, Item, Section};
@@ -33,7 +34,7 @@ const BRAKE_SHARE_RANGE: Field =
 
 /// Ranges in which quantities are taken to lie before the evidence is looked at; each value inside is
 /// equally likely. What has none has the default of [`Prior`](crate::Prior).
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct PriorRanges {
     /// Speed of the struck car before the impact, m/s.

@@ -1,6 +1,7 @@
 //! Record of an event data recorder in the struck car.
 
 use impactlab_core::ranges::{CONTACT_X, CONTACT_Y, EVIDENCE_SPEED, PULSE_END, SPEED, SPEED_SIGMA};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::Latent;
@@ -37,7 +38,7 @@ const ENDS: Field =
     Field::new("ends", "end of the record", PULSE_END).with_default("the end of the contact");
 
 /// Record of an event data recorder in the struck car.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Edr {
     /// Bounds of the change of velocity along the x axis of the car, m/s.

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use impactlab_core::collision::Pose;
 use impactlab_core::numerics::wrap_angle_rad;
 use impactlab_core::ranges::{ANGLE_SIGMA, EVIDENCE_HEADING, EVIDENCE_POSITION, POSITION_SIGMA};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::evidence::{Field, Fields, Group, Item, Measured, PlaceMut, Section, Sigma, Stated};
@@ -46,7 +47,7 @@ const HEADING_SIGMA: Sigma = Sigma::fixed(
 );
 
 /// Where a car came to rest.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RestPose {
     /// X of the CG, m; `None` until it is entered.

@@ -1,6 +1,7 @@
 //! Friction of the road. It is measured by itself, so that it is a part of the prior.
 
 use impactlab_core::ranges::{FRICTION_SIGMA, ROAD_FRICTION};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::Latent;
@@ -31,7 +32,7 @@ const SIGMA: Sigma = Sigma::fixed(
 );
 
 /// Friction of the road.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Road {
     /// Peak friction, as stated.

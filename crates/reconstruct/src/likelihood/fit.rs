@@ -1,5 +1,6 @@
 //! Whether the posterior explains the evidence.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -7,7 +8,7 @@ use crate::likelihood::EvidenceTerm;
 use impactlab_core::numerics::wrap_angle_rad;
 
 /// One item of the evidence against the whole posterior.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct EvidenceFit {
     /// The item.
     pub evidence: String,

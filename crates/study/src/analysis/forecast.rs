@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use impactlab_core::collision::{PrincipalDirectionOfForce, Pulse, PulseError, PulseShape};
@@ -29,7 +30,7 @@ pub struct ForecastSettings {
 }
 
 /// One component of the predicted mixture: one of the possible courses of the collision.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Mode {
     /// Probability of the component, 0 to 1.
     pub weight: f64,

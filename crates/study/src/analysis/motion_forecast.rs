@@ -9,6 +9,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::analysis::motion_to_rest::{Settled, ToRest};
@@ -107,7 +108,7 @@ pub struct MotionForecast {
 }
 
 /// State of the vehicle at rest, or at the end of the forecast.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MotionOutcome {
     /// Time from the start of the impact at which the vehicle comes to rest, or duration of the
     /// forecast, s.

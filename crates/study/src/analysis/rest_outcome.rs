@@ -1,5 +1,6 @@
 //! Where, when and after what distance a vehicle comes to rest, over draws of its motion.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::analysis::spread_of_draws;
@@ -41,7 +42,7 @@ pub struct MotionEnd {
 /// Draws that still move at the limit of time count with where they are then: times and distances are
 /// longer than what is said of them. With less than 95 % at rest the upper ends of the 90 % intervals
 /// are such lower bounds.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RestOutcome {
     /// Draws of the motion.
     pub n_draws: usize,

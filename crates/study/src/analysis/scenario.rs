@@ -1,6 +1,7 @@
 //! Analysis of a two-vehicle scenario: the collision is solved by conservation of momentum, its
 //! impulse is spread over a classic force pulse, and the motion of both vehicles is simulated.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, VehicleTrack};
@@ -17,7 +18,7 @@ use impactlab_core::vehicle::{
 const PULSE_INTERVAL_S: f64 = 1e-3;
 
 /// Force pulse over which the impulse of the momentum solution is spread.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PulseSetup {
     /// Shape of the pulse.
     pub shape: PulseShape,

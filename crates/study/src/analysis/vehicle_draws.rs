@@ -3,6 +3,7 @@
 
 use rand::RngExt as _;
 use rand_distr::StandardNormal;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use impactlab_core::numerics::random_stream;
@@ -17,7 +18,7 @@ pub struct VehicleDraws {
 }
 
 /// How much of what is uncertain about the end of a motion comes from one estimate.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Sensitivity {
     /// The estimate.
     pub quantity: SheetQuantity,

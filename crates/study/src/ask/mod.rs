@@ -10,4 +10,5 @@ pub(crate) mod library;
 pub(crate) mod provenance;
 pub(crate) mod question;
 pub(crate) mod request;
+pub(crate) mod schema;
 pub(crate) mod word;

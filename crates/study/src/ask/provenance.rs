@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::StudyError;
@@ -19,7 +20,7 @@ pub(crate) const RESPONSE_NETWORK: &str = "response";
 const TRAINED: &str = "trained";
 
 /// Version of the program, seed and trained networks of an answer. It is part of every report.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Provenance {
     /// Version of the program that answered, [`program::version`].
     pub version: Cow<'static, str>,

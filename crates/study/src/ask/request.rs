@@ -1,7 +1,9 @@
 //! Any question and any answer, as JSON reads and writes them.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::ask::schema::JsonKind;
 use crate::questions::evaluate::compare::CompareReport;
 use crate::{
     CheckReport, CheckRequest, CompareRequest, EvaluateForceRequest, EvaluateReconstructionReport,
@@ -15,24 +17,24 @@ use crate::{
 use impactlab_core::data::Outcome;
 
 macro_rules! questions {
-    ($($(#[$doc:meta])* $variant:ident($request:ty) -> $report:ty;)+) => {
+    ($(#[doc = $meaning:literal] $variant:ident($request:ty) -> $report:ty;)+) => {
         /// Any question that can be asked.
-        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(tag = "question", rename_all = "snake_case")]
         pub enum Request {
-            $($(#[$doc])* $variant(Box<$request>),)+
+            $(#[doc = $meaning] $variant(Box<$request>),)+
         }
 
         /// The answer to any question, as it is told.
-        #[derive(Debug, Clone, PartialEq, Serialize)]
+        #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
         #[serde(untagged)]
         pub enum Report {
-            $($(#[$doc])* $variant(Box<$report>),)+
+            $(#[doc = $meaning] $variant(Box<$report>),)+
         }
 
         /// The answer to any question, with what its report was made from and figures are drawn from.
         pub enum Answer {
-            $($(#[$doc])* $variant(Box<<$request as Question>::Answer>),)+
+            $(#[doc = $meaning] $variant(Box<<$request as Question>::Answer>),)+
         }
 
         impl Answer {
@@ -45,6 +47,11 @@ macro_rules! questions {
         }
 
         impl Request {
+            /// Every kind of question with the schemas of question and answer.
+            pub(crate) fn kinds() -> Vec<JsonKind> {
+                vec![$(JsonKind::question::<$request, $report>(stringify!($variant), $meaning),)+]
+            }
+
             /// Answers the question, whichever it is.
             ///
             /// # Errors

@@ -18,6 +18,7 @@
 //!
 //! In memory each question is whole, so that nothing but this file knows of it.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -39,25 +40,32 @@ const SCENARIOS: [&str; 4] = [
 const OWN: [&str; 3] = ["question", "vehicle_draws", "seed"];
 
 /// A variant as its file has it.
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct VariantText {
+    /// What it is called.
     name: String,
+    /// What several questions have in common.
     #[serde(default, skip_serializing_if = "Map::is_empty")]
     common: Map<String, Value>,
+    /// What is asked of it.
     #[serde(default)]
     questions: Vec<QuestionText>,
+    /// Questions that are filled in and not asked.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     unasked: Vec<QuestionText>,
+    /// How the window draws it.
     #[serde(default, skip_serializing_if = "Value::is_null")]
     view: Value,
+    /// How the forms of the window were filled in, in files of version 1.
     #[serde(default, skip_serializing_if = "Value::is_null")]
     forms: Value,
 }
 
 /// A question as the file has it, its kind first.
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 struct QuestionText {
+    /// Which question it is; its other keys are those of `impactlab schema` with this name.
     question: String,
     #[serde(flatten)]
     fields: Map<String, Value>,

@@ -27,6 +27,7 @@ mod package;
 
 mod run;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::Request;
@@ -39,7 +40,7 @@ pub(crate) use store::FORMAT;
 pub use used::{Change, UsedFile};
 
 /// A case.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CaseFile {
     /// What kind of file it is; checked before anything else is read.
@@ -69,7 +70,7 @@ pub struct CaseFile {
 }
 
 /// One way in which it may have happened.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "common::VariantText", into = "common::VariantText")]
 pub struct Variant {
     /// What it is called.
@@ -87,7 +88,7 @@ pub struct Variant {
 }
 
 /// A trained network by the content of its file.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UsedModel {
     /// Which network it is: `force` or `response`.
@@ -99,7 +100,7 @@ pub struct UsedModel {
 }
 
 /// What was done and when.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LogEntry {
     /// The time of day in UTC, RFC 3339.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::case_file::{CaseError, CaseFile, Change, UsedModel, Variant};
@@ -11,7 +12,7 @@ use impactlab_core::data::write::ModelDigest;
 use impactlab_core::error_chain;
 
 /// The answers to all questions of a case.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CaseReport {
     /// What the case is called.
     pub name: String,
@@ -22,7 +23,7 @@ pub struct CaseReport {
 }
 
 /// The answers to the questions of a variant.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct VariantReport {
     /// What it is called.
     pub name: String,
@@ -31,7 +32,7 @@ pub struct VariantReport {
 }
 
 /// A question with its answer, or why there is none.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct AnsweredQuestion {
     /// The question.
     pub request: Request,

@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::case_file::paths::absolute_paths;
@@ -16,7 +17,7 @@ use impactlab_core::site::Site;
 const NOT_THERE: &str = "it was not there when the case was saved either";
 
 /// A file or a folder that a case uses, by its content.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UsedFile {
     /// The file or folder.
@@ -29,7 +30,7 @@ pub struct UsedFile {
 }
 
 /// What has become of something that a case uses since it was saved.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Change {
     /// A file or folder is not there, or cannot be read.

@@ -1,6 +1,7 @@
 //! The impulse solution of a scenario: `impact`.
 
 use crate::caveats::assumed;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::caveats::restrictions;
@@ -13,7 +14,7 @@ use impactlab_core::data::Outcome;
 use impactlab_core::uncertainty::Caveats;
 
 /// Asks for impulse, velocities after the impact, delta-v, energy and direction of force.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ImpactRequest {
     /// The two vehicles and where they meet.
     pub scenario: ScenarioChoice,
@@ -23,7 +24,7 @@ pub struct ImpactRequest {
 }
 
 /// The solution of an impact in SI units. The impulse acts on the struck vehicle; world axes.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ImpactReport {
     /// Name of the scenario.
     pub name: String,
@@ -79,7 +80,7 @@ pub struct ImpactReport {
 }
 
 /// One vehicle after the impact, world axes.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct BodyReport {
     /// Velocity [x, y], m/s.
     pub velocity_m_s: [f64; 2],

@@ -6,6 +6,7 @@ use std::io::Read;
 use std::path::{Component, Path};
 use std::time::SystemTime;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::write::FileDigest;
@@ -35,7 +36,7 @@ pub struct RunRecord {
 }
 
 /// A trained network by the content of its file.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ModelDigest {
     /// Which network it is.
     pub network: Cow<'static, str>,

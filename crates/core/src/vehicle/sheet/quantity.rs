@@ -1,5 +1,6 @@
 //! The quantities of a data sheet, in the order in which one follows from those before it.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ranges::{
@@ -67,7 +68,7 @@ macro_rules! quantities {
     ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $label:literal, $range:expr, [$($parameter:literal),*];)+) => {
         /// A quantity of a data sheet. Each may be known; what is not known is estimated from
         /// quantities that stand before it.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
         #[serde(rename_all = "snake_case")]
         pub enum SheetQuantity {
             $($(#[$doc])* $name,)+

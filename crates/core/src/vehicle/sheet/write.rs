@@ -1,8 +1,11 @@
 //! Writes a data sheet as a vehicle file, and makes one of a vehicle whose parameters are all given.
 
+use std::borrow::Cow;
 use std::path::Path;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser};
+use serde_json::{Value, json};
 
 use crate::data::{TomlError, TomlFile, key_with_unit};
 use crate::ranges::Range;
@@ -147,6 +150,47 @@ impl<'de> Deserialize<'de> for DataSheet {
         let text = toml::Table::deserialize(deserializer)?.to_string();
         let file = TomlFile { path: Path::new(NO_FILE), text: &text };
         Self::from_toml(file).map_err(de::Error::custom)
+    }
+}
+
+/// As the table of a vehicle file: every quantity with its range.
+impl JsonSchema for DataSheet {
+    fn schema_name() -> Cow<'static, str> {
+        "DataSheet".into()
+    }
+
+    fn json_schema(_generator: &mut SchemaGenerator) -> Schema {
+        let number = |meaning: String| json!({ "type": "number", "description": meaning });
+        let described = |quantity: &Q| {
+            let meaning = format!("{}: {}", quantity.label(), quantity.range().expected_si());
+            (quantity.si_key(), number(meaning))
+        };
+        let mut properties: serde_json::Map<String, Value> = Q::ALL.iter().map(described).collect();
+        let words =
+            |words: &[&str], meaning: &str| json!({ "enum": words, "description": meaning });
+        let classes = VehicleClass::ALL.map(VehicleClass::word);
+        let instead = |of: &str| number(format!("where it is known instead of the {of}"));
+        properties.extend([
+            ("class".to_owned(), words(&classes, "Kind of vehicle.")),
+            ("drive".to_owned(), words(&Drive::WORDS, "Driven axle, if it is known.")),
+            ("roll_stiffness_n_m_rad".to_owned(), instead("roll gradient")),
+            ("roll_damping_n_m_s_rad".to_owned(), instead("damping ratio")),
+        ]);
+        json_schema!({
+            "type": "object",
+            "description": "What is known of one car, as in a vehicle file: a key may end in another \
+                            unit of its quantity. Everything else is estimated by rule.",
+            "properties": {
+                "name": { "type": "string", "description": "Name of the vehicle." },
+                "source": { "type": "string", "description": "Source of the values." },
+                "equations": { "type": "string", "description": "Form of the equations of motion." },
+                "data_sheet": {
+                    "type": "object",
+                    "description": "What is known.",
+                    "properties": properties,
+                },
+            },
+        })
     }
 }
 

@@ -1,5 +1,6 @@
 //! The evaluation of the force network on test cases, and by cross-validation on training cases.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::force::metrics::{CurveMetrics, PointErrors};
@@ -24,7 +25,7 @@ pub enum EvaluateError {
 }
 
 /// Metrics of the network and of its baselines over the same cases.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ComparedMetrics {
     /// The force network.
     pub model: CurveMetrics,
@@ -38,7 +39,7 @@ pub struct ComparedMetrics {
 
 /// The result of a cross-validation, in which every case is predicted by a model that was trained
 /// without it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CrossValidation {
     /// Over all cases.
     pub overall: Option<ComparedMetrics>,

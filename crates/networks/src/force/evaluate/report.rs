@@ -1,12 +1,13 @@
 //! The result of an evaluation.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::force::metrics::{CurveMetrics, PointErrors};
 use crate::force::regression::ColumnSet;
 
 /// Metrics of one model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ForceMetrics {
     /// Over all cases.
     pub overall: CurveMetrics,
@@ -15,7 +16,7 @@ pub struct ForceMetrics {
 }
 
 /// Metrics of a model inside and outside of what it has learned from; each `None` without cases.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DomainMetrics {
     /// Over the cases to which it applies fully.
     pub inside: Option<CurveMetrics>,
@@ -24,7 +25,7 @@ pub struct DomainMetrics {
 }
 
 /// Metrics of the baselines.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BaselineMetrics {
     /// Classic pulse with the momentum solution's impulse.
     pub pulse: ForceMetrics,
@@ -35,7 +36,7 @@ pub struct BaselineMetrics {
 }
 
 /// Metrics within one cluster.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClusterMetrics {
     /// Name of the cluster: C0, C1, … by rising impulse.
     pub name: String,
@@ -48,7 +49,7 @@ pub struct ClusterMetrics {
 }
 
 /// Errors of all models on one case.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CaseErrors {
     /// Name of the case.
     pub name: String,
@@ -67,7 +68,7 @@ pub struct CaseErrors {
 }
 
 /// A model's metrics beside those of the baselines.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Evaluation {
     /// Name of the model in tables.
     pub model: String,

@@ -3,6 +3,7 @@
 //! Two symmetries hold: a mirrored scenario has the mirrored force, and a common velocity of both
 //! vehicles does not change the force, since tire forces during the contact are neglected.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use impactlab_core::collision::{Impact, ImpactCase, Scenario, ScenarioError};
@@ -14,7 +15,7 @@ use impactlab_core::ranges::{
 
 /// Two vehicles at first contact, in world axes with X along the struck vehicle's heading. Neither
 /// vehicle turns before the contact.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ForceScenario {
     /// Masses of the struck and the striking vehicle, kg.
     pub mass_kg: [f64; 2],

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::force::metrics::{
@@ -10,7 +11,7 @@ use crate::force::metrics::{
 use impactlab_core::numerics::Summary;
 
 /// Statistics of [`PointErrors`] over several cases, all of the same weight.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CurveMetrics {
     /// Number of cases.
     pub n_cases: usize,
@@ -38,7 +39,7 @@ pub struct CurveMetrics {
 }
 
 /// How often the intervals of one level contain the observed values.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct IntervalCoverage {
     /// Nominal share.
     pub level: f64,
@@ -52,7 +53,7 @@ pub struct IntervalCoverage {
 }
 
 /// Statistics of [`ProbabilisticScores`] over several cases.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DistributionMetrics {
     /// Observed shares of F_x(t) and F_y(t) by nominal level in percent.
     pub coverage: BTreeMap<String, f64>,

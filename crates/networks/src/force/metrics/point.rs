@@ -1,12 +1,13 @@
 //! Errors of the point estimates of one case.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::force::{CurvePrediction, ForceCase};
 use impactlab_core::uncertainty::distance_n;
 
 /// Errors of one case, as shares unless the name has a unit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PointErrors {
     /// Root mean square error over the peak of `|F|`.
     ///

@@ -1,5 +1,6 @@
 //! The inputs of the network: numbers that describe a scenario and its physics.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::force::physics::CentreCurve;
@@ -45,7 +46,7 @@ pub struct Standardisation {
 }
 
 /// A feature of a scenario that lies outside the range of the training cases.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct OutsideTraining {
     /// Name and unit of the feature in the canonical scenario: striking vehicle on the right,
     /// velocities relative to the struck vehicle.

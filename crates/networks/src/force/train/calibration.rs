@@ -2,6 +2,7 @@
 //! contain their nominal share of the observed values.
 
 use rand_chacha::ChaCha8Rng;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::force::ForceCase;
@@ -28,7 +29,7 @@ const N_PEAK_DRAWS: usize = 200;
 const LEAST_CASES: usize = 8;
 
 /// Factors on the variances of force curves.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VarianceFactors {
     /// Factor on the variance of forces through the latent factors.

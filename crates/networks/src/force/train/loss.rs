@@ -6,6 +6,7 @@
 use std::f64::consts::TAU;
 
 use candle_core::{D, Tensor};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::force::network::NetworkOutput;
@@ -15,7 +16,7 @@ use crate::nn::product;
 use impactlab_core::uncertainty::CURVE_INTERVAL_S;
 
 /// The terms of the loss as unweighted means over cases, and their weighted sum.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LossTerms {
     /// The weighted sum of the terms, which is minimised.

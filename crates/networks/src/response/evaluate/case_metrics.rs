@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::learning::LearningError;
@@ -22,7 +23,7 @@ const REST_SEARCH_S: f64 = 10.0;
 const N_DRAWS: usize = 200;
 
 /// How often the recorded positions lie in the predicted regions, for one model on one trajectory.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionCoverage {
     /// Share of the instants inside the 50 % region.
     pub path_50: f64,
@@ -36,20 +37,24 @@ pub struct MotionCoverage {
     pub end_level: f64,
     /// Mean over time of the continuous ranked probability score of X, m.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub crps_x_m: f64,
     /// Mean over time of the continuous ranked probability score of Y, m.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub crps_y_m: f64,
     /// Mean over time of the continuous ranked probability score of the heading, rad.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub crps_yaw_rad: f64,
     /// Mean over time of the energy score of (X, Y), m.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub energy_score_m: f64,
 }
 
 /// Metrics of one model on one trajectory.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionCaseMetrics {
     /// Errors of the mean path; infinite where it is not finite.
     #[serde(flatten)]
@@ -60,6 +65,7 @@ pub struct MotionCaseMetrics {
         serialize_with = "finite_or_null",
         deserialize_with = "null_as_nan"
     )]
+    #[schemars(with = "Option<f64>")]
     pub average_error_4_s_m: f64,
     /// Distance between the recorded and the predicted rest position, m; `None` where the recording
     /// does not end at rest.

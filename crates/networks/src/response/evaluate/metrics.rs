@@ -1,5 +1,6 @@
 //! Error metrics of a model over trajectories.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::response::evaluate::{MotionCaseMetrics, MotionCoverage};
@@ -7,21 +8,24 @@ use impactlab_core::data::{finite_or_null, null_as_nan};
 use impactlab_core::numerics::quantile_of_sorted;
 
 /// Mean, standard deviation and median.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MeanStd {
     /// Mean.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub mean: f64,
     /// Standard deviation over the trajectories (divisor n).
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub std: f64,
     /// Median.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub median: f64,
 }
 
 /// Metrics of a model over trajectories.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionMetrics {
     /// Trajectories asked about, counted once for each choice of the fine-tune trajectories.
     pub n: usize,
@@ -38,6 +42,7 @@ pub struct MotionMetrics {
     pub n_at_rest: usize,
     /// 1/mean of the average error, 1/m.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub score: f64,
     /// Root mean square errors.
     pub rmse: RootMeanSquares,
@@ -54,7 +59,7 @@ pub struct MotionMetrics {
 }
 
 /// Root mean square errors over a trajectory.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RootMeanSquares {
     /// Error of X, m.
     pub x_m: MeanStd,
@@ -82,7 +87,7 @@ impl RootMeanSquares {
 }
 
 /// How well the predicted distribution agrees with the recorded positions.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CoverageMetrics {
     /// Share of the positions along the path that lie in the 50 % regions.
     #[serde(rename = "50")]
@@ -96,15 +101,19 @@ pub struct CoverageMetrics {
     pub end_90: f64,
     /// Mean continuous ranked probability score of X, m.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub crps_x_m: f64,
     /// Mean continuous ranked probability score of Y, m.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub crps_y_m: f64,
     /// Mean continuous ranked probability score of the heading, deg.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub crps_yaw_deg: f64,
     /// Mean energy score of (X, Y), m.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
+    #[schemars(with = "Option<f64>")]
     pub energy_score_m: f64,
 }
 

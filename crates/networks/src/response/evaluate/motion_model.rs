@@ -1,5 +1,6 @@
 //! The models that are compared.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::learning::LearningError;
@@ -9,7 +10,9 @@ use crate::response::{
 use impactlab_core::vehicle::VehicleState;
 
 /// The kind of a model of the motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum MotionModelKind {
     /// The 4DOF model by the vehicle's data sheet.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::learning::LearningError;
@@ -21,7 +22,7 @@ pub const PATH_STEP_S: f64 = 0.1;
 const PATH_UNIT: f64 = 1e4;
 
 /// A model with its metrics over all trajectories.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ComparedModel {
     /// Such as `PINN`.
     pub name: String,
@@ -39,7 +40,7 @@ pub struct ComparedModel {
 }
 
 /// A model on one trajectory.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ComparedCase {
     /// Name of the trajectory.
     pub case: String,
@@ -64,7 +65,7 @@ pub struct ComparedCase {
 }
 
 /// The models on a group of trajectories: a cluster by impulse, or those of a kind of ending.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClusterRow {
     /// Such as `C0`, by rising impulse, or `coasting`.
     pub name: String,
@@ -77,7 +78,7 @@ pub struct ClusterRow {
 }
 
 /// A model on one cluster.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClusterModel {
     /// Such as `PINN`.
     pub name: String,
@@ -89,7 +90,7 @@ pub struct ClusterModel {
 }
 
 /// A trajectory asked about.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TestCase {
     /// Its name.
     pub name: String,
@@ -104,7 +105,7 @@ pub struct TestCase {
 }
 
 /// All models on the same trajectories.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Comparison {
     /// What the data are called.
     pub data: String,

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::response::motion_log::impulse::estimated_load;
@@ -28,7 +29,7 @@ pub struct LogSettings {
 }
 
 /// Where the force of a log comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ForceOrigin {
     /// The force was recorded.

@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::response::motion_log::contact::find_contact;
@@ -20,7 +21,7 @@ const POSITION_PRIOR: [f64; 3] = [1e3, 60.0, 30.0];
 const RUN_IN_S: f64 = 2.0;
 
 /// Noise of a log's channels, standard deviations.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct LogNoise {
     /// Noise of x and y, m.
     pub position_m: f64,

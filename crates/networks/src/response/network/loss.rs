@@ -20,6 +20,7 @@
 //! likelihood.
 
 use candle_core::{D, Device, Tensor};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::nn::{NnError, softmax};
@@ -30,7 +31,7 @@ use crate::response::{N_RESIDUAL, ResponseLossWeights};
 const DIVERSITY_SCALE: f64 = 2.0;
 
 /// Terms of the loss, each before its weight.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ResponseLossTerms {
     /// The weighted sum.

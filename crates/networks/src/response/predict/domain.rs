@@ -7,6 +7,7 @@
 //!
 //! Distance and power are chosen, not fitted. Within the ranges the applicability is 1; half of half a range beyond one of them it is a half.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::nn::{Expected, NnError, check_numbers};
@@ -81,7 +82,7 @@ pub struct MotionDomain {
 }
 
 /// A quantity that lies outside of what a model has learned from.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct OutsideDomain {
     /// The quantity, with its unit.
     pub quantity: &'static str,

@@ -14,6 +14,7 @@
 //! its distribution, so that a car between recovering and spinning is not one wide normal
 //! distribution but several narrow ones.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::nn::{Expected, NnError, check_number, check_numbers};
@@ -57,7 +58,7 @@ pub(crate) struct Latents {
 }
 
 /// How uncertain a model is along a motion, by latent factors that have a name.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatentScales {
     /// s: standard deviation of the grip, of the balance between the axles (shares of the friction),

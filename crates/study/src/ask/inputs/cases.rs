@@ -5,6 +5,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use impactlab_core::uncertainty::{CaveatSubject, Caveats};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::inputs::{OpenVehicle, struck_vehicle};
@@ -16,7 +17,7 @@ use impactlab_networks::learning::{cases_and_problems, check_kind, load_cases};
 use impactlab_networks::response::ResponseCase;
 
 /// What happens to cases of a data set that cannot be used.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BadCases {
     /// The first one is an error, so that two runs on one data set have the same cases.
@@ -27,7 +28,7 @@ pub enum BadCases {
 }
 
 /// Which cases of a data set a model is evaluated on.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EvaluatedCases {
     /// Those that the model was not trained on, recognised by their content.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{BadCases, StudyError};
@@ -9,7 +10,7 @@ use impactlab_core::data::write::WriterLock;
 use impactlab_core::data::{Existing, check_target};
 
 /// Where the settings of a training come from.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ConfigChoice {
     /// Those of the model that is trained on, else the defaults.
@@ -36,7 +37,7 @@ impl From<Option<PathBuf>> for ConfigChoice {
 }
 
 /// How a network is trained, whichever it is.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct TrainingOptions {
     /// Settings of network and training.

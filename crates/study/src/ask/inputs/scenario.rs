@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_all;
@@ -9,7 +10,7 @@ use crate::{InputKind, StudyError};
 use impactlab_core::collision::{SCENARIO_PRESETS, Scenario, ScenarioError};
 
 /// A scenario: a file, or one that is in memory.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ScenarioChoice {
     /// A scenario file, or the name of a scenario that comes with the program.

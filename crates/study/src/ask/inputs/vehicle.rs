@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{InputKind, StudyError};
@@ -16,7 +17,7 @@ pub const DEFAULT_VEHICLE: Preset = Preset::Reference;
 pub const DEFAULT_STRIKING: Preset = Preset::Bullet2000;
 
 /// Which vehicle it is.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum VehicleChoice {
     /// The data set's own, else [`DEFAULT_VEHICLE`] or [`DEFAULT_STRIKING`], which is then listed as
     /// an assumption.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use crate::{InputKind, Provenance, word};
@@ -13,7 +14,7 @@ use impactlab_core::error_chain;
 use impactlab_core::uncertainty::Caveats;
 
 /// All that was found.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct CheckReport {
     /// Whether nothing is wrong.
     pub ok: bool,
@@ -34,7 +35,7 @@ pub struct CheckReport {
 }
 
 /// A file that holds no data of its own: a case, evidence, a scenario, a vehicle, a site and others.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct InputFileReport {
     /// Its path.
     pub path: PathBuf,
@@ -48,7 +49,7 @@ pub struct InputFileReport {
 }
 
 /// A data set.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct DatasetReport {
     /// Its path.
     pub path: PathBuf,
@@ -60,6 +61,7 @@ pub struct DatasetReport {
     pub vehicle_file: Option<PathBuf>,
     /// Its columns.
     #[serde(serialize_with = "channels")]
+    #[schemars(with = "Vec<JsonColumn>")]
     pub columns: Vec<Channel>,
     /// What is suspicious or wrong, the worst first.
     pub flags: Vec<CaseFlag>,
@@ -72,7 +74,7 @@ pub struct DatasetReport {
 }
 
 /// A single file.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FileReport {
     /// Its path.
     pub path: PathBuf,
@@ -103,7 +105,7 @@ pub struct FileReport {
 }
 
 /// The force of a file, so that a wrong unit is seen at once.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RecordedForceReport {
     /// Axes of the components: `world` or `heading`.
     pub axes: String,
@@ -118,7 +120,7 @@ pub struct RecordedForceReport {
 }
 
 /// A column of a file and what it is taken for.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ColumnReport {
     /// Its number, from 1.
     pub column: usize,
@@ -133,7 +135,7 @@ pub struct ColumnReport {
 }
 
 /// A flag of a case or a file.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CaseFlag {
     /// Name of the case; none for a file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -156,7 +158,7 @@ pub struct CaseFlag {
 }
 
 /// A path that cannot be read.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct PathProblem {
     /// Its path.
     pub path: PathBuf,
@@ -171,7 +173,7 @@ pub struct PathProblem {
 }
 
 /// A column of a file that is not understood.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ProposedColumn {
     /// Its number, from 1.
     pub column: usize,
@@ -316,13 +318,18 @@ impl ProposedColumn {
     }
 }
 
+/// A column of a data set, as it is told.
+#[derive(Serialize, JsonSchema)]
+struct JsonColumn {
+    /// What its header says.
+    name: &'static str,
+    /// What it holds.
+    channel: &'static str,
+    /// Its unit.
+    unit: &'static str,
+}
+
 fn channels<S: Serializer>(channels: &[Channel], serializer: S) -> Result<S::Ok, S::Error> {
-    #[derive(Serialize)]
-    struct JsonColumn {
-        name: &'static str,
-        channel: &'static str,
-        unit: &'static str,
-    }
     serializer.collect_seq(channels.iter().map(|channel| JsonColumn {
         name: channel.header(),
         channel: channel.short_name(),

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::question::progress_of;
@@ -19,7 +20,7 @@ use impactlab_core::error_chain;
 use impactlab_core::vehicle::VehicleParameters;
 
 /// Asks what is in files and data sets, in which units, and what is wrong with them.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CheckRequest {
     /// Data sets, folders of data sets, files of time series, scenarios, vehicles.
     pub paths: Vec<PathBuf>,

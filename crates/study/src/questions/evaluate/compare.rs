@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::{check, check_count};
@@ -30,7 +31,7 @@ const DEFAULT_TRAJECTORIES: [usize; 2] = [5, 20];
 pub const DEFAULT_CHOICES: u64 = 3;
 
 /// Asks which response model does best on motions that none has seen.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CompareRequest {
     /// A trajectory data set; a share of its cases is kept apart for the test. With
     /// [`CompareRequest::leave_one_car_out`] a folder of such sets, one for each car.
@@ -137,7 +138,7 @@ impl CompareReport {
 }
 
 /// A finished comparison, or the evaluation of one model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CompareReport {
     /// The models, their metrics and the cases.
     #[serde(flatten)]

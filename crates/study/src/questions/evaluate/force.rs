@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{ForceForecast, ForecastSettings, bands_of_draws};
@@ -29,7 +30,7 @@ use impactlab_networks::force::{
 const N_SAMPLE_CASES: usize = 6;
 
 /// Asks how well a force network predicts the cases of a data set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EvaluateForceRequest {
     /// The force network.
     #[serde(default)]
@@ -96,7 +97,7 @@ impl EvaluateForceRequest {
 }
 
 /// What is told of an evaluation or a cross-validation.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ForceEvaluation {
     /// The model on cases of the data set.
@@ -124,7 +125,7 @@ impl ForceEvaluation {
 }
 
 /// A force network on cases of a data set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EvaluateForceReport {
     /// The force network.
     pub model_file: String,
@@ -150,7 +151,7 @@ pub struct EvaluateForceReport {
 }
 
 /// A cross-validation over the training cases of a force network.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CrossValidateForceReport {
     /// The metrics over all folds, and of each fold.
     #[serde(flatten)]

@@ -4,6 +4,7 @@
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
@@ -20,7 +21,7 @@ use impactlab_reconstruct::evaluate::{
 };
 
 /// Asks how well the speeds of staged collisions are reconstructed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EvaluateReconstructionRequest {
     /// The folder of staged collisions: `evidence/<case>.toml` and `truth/<case>.toml`.
     pub data: PathBuf,
@@ -61,7 +62,7 @@ fn with_swarm() -> bool {
 }
 
 /// Staged collisions beside their truths, SI units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct EvaluateReconstructionReport {
     /// The folder.
     pub data: PathBuf,

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use impactlab_core::uncertainty::Caveats;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::inputs::{UsableCases, data_name, response_cases};
@@ -15,7 +16,7 @@ use impactlab_networks::response::evaluate::{MotionModel, evaluate_motion_model}
 use impactlab_networks::response::{Correction, ResponseCase, ResponseModel};
 
 /// Asks how well a response network predicts the motions of a data set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EvaluateResponseRequest {
     /// The response network.
     #[serde(default)]

@@ -1,6 +1,7 @@
 //! The distribution of an impact force history: `predict force`.
 
 use crate::caveats::assumed;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{ForceForecast, ForecastSettings, Mode};
@@ -22,7 +23,7 @@ use impactlab_core::units::Estimate;
 use impactlab_networks::force::{ForceError, ForcePrediction, ForceScenario, OutsideTraining};
 
 /// Asks which force a collision brings about, and how sure that is.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PredictForceRequest {
     /// The collision.
     pub collision: ForceQuestion,
@@ -45,7 +46,7 @@ pub struct PredictForceRequest {
 }
 
 /// The collision whose force is asked about.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ForceQuestion {
     /// A scenario of two vehicles.
@@ -67,7 +68,7 @@ pub enum ForceQuestion {
 }
 
 /// The predicted force of a collision, SI units, axes along the heading of the struck vehicle.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct PredictForceReport {
     /// What the collision is called.
     pub scenario: String,
@@ -115,7 +116,7 @@ pub struct PredictForceReport {
 }
 
 /// An impulse with its intervals, N s.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ImpulseReport {
     /// Mean [x, y].
     pub mean: [f64; 2],

@@ -1,5 +1,6 @@
 //! The momentum solution beside a predicted impulse: both describe the same contact.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::analysis::bands_of_draws;
@@ -19,7 +20,7 @@ pub(crate) const LEAST_P_RIGID: f64 = 0.5;
 pub(crate) const MOST_P_ENERGY_GAIN: f64 = 0.05;
 
 /// The momentum solution of a collision: with which restitution and friction, and what it gives.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MomentumReport {
     /// Coefficient of restitution that was used.
     pub restitution: f64,
@@ -41,7 +42,7 @@ pub struct MomentumReport {
 ///
 /// Both forms of restitution need the same restitution. The momentum solution gives the impulse if
 /// the restitution lies between 0 and 1 and the ratio does not exceed the critical one.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ImpliedContactReport {
     /// Coefficient of restitution e.
     pub restitution: Estimate,

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
@@ -31,7 +32,7 @@ pub const DEFAULT_DRAWS: usize = 30;
 pub const COARSE_DRAWS: usize = 5;
 
 /// Asks where the struck vehicle goes, by the response network, and how sure that is.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PredictMotionRequest {
     /// The struck vehicle, its start, and the force that it takes.
     pub motion: SimulateRequest,
@@ -53,7 +54,7 @@ fn default_draws() -> usize {
 }
 
 /// Which force drives a motion.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ForceSource {
     /// What a force network says of the collision.
@@ -65,7 +66,7 @@ pub enum ForceSource {
 }
 
 /// Where the struck vehicle goes, SI units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct PredictMotionReport {
     /// The scenario, case or file.
     pub scenario: String,

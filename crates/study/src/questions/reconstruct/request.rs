@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
@@ -34,7 +35,7 @@ const LEAST_ESS: f64 = 400.0;
 const EVALUATIONS_PER_PARTICLE: usize = 150;
 
 /// Asks how fast both cars were.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReconstructRequest {
     /// What was found.
     pub evidence: EvidenceChoice,
@@ -66,7 +67,7 @@ fn default_particles() -> usize {
 }
 
 /// The evidence: a file, or in memory.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EvidenceChoice {
     /// An evidence file.
@@ -76,7 +77,7 @@ pub enum EvidenceChoice {
 }
 
 /// What the evidence says of the speeds, SI units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ReconstructReport {
     /// Name of the case.
     pub case: String,

@@ -3,6 +3,7 @@
 use crate::caveats::assumed;
 use std::path::PathBuf;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::inputs::{OpenVehicle, struck_vehicle};
@@ -16,7 +17,7 @@ use impactlab_core::uncertainty::{CaveatSubject, Caveats};
 use impactlab_core::vehicle::{Equations, Integrator};
 
 /// Asks how far the 4DOF model lies from every recorded motion of a data set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulateDatasetRequest {
     /// The data set.
     pub dataset: PathBuf,
@@ -35,7 +36,7 @@ pub struct SimulateDatasetRequest {
 }
 
 /// How far the simulation lies from the recorded motions, SI units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct SimulateDatasetReport {
     /// The data set.
     pub dataset: PathBuf,
@@ -64,7 +65,7 @@ pub struct SimulateDatasetReport {
 }
 
 /// One case, simulated and compared.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ReplayedCaseReport {
     /// Its name.
     pub case: String,

@@ -1,6 +1,7 @@
 //! A start with the files of what pushes, steers, brakes and drives the vehicle.
 
 use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{AnalysisError, DriveSetup, Settings};
@@ -21,7 +22,7 @@ use impactlab_core::vehicle::{
 pub const ASSUMED_SPEED_M_S: f64 = 20.0;
 
 /// How a vehicle starts and what pushes and steers it.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Drive {
     /// Forward speed at the start, m/s.

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::PulseSetup;
@@ -20,7 +21,7 @@ pub const ASSUMED_CONTACT: ContactPoint =
     ContactPoint { x_body_m: -1.5, y_body_m: -0.9, height_m: 0.52 };
 
 /// What drives a motion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MotionSource {
     /// A case of a data set, with its recorded start and force.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::analysis::{Analysis, MotionEnd, SecondContacts};
@@ -18,7 +19,7 @@ use impactlab_core::vehicle::frames::world_from_body;
 use impactlab_core::vehicle::{FrictionZone, Motion, MotionFlag};
 
 /// A part of the ground with its own friction.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FrictionZoneReport {
     /// What it is called.
     pub name: String,
@@ -40,7 +41,7 @@ impl FrictionZoneReport {
 }
 
 /// The simulation of one vehicle, SI units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct SimulateReport {
     /// The case, file or scenario.
     pub name: String,
@@ -91,7 +92,7 @@ pub struct SimulateReport {
 }
 
 /// The force that drives a simulation.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ForceReport {
     /// Its file; `None` where it comes from a case or a scenario.
     pub path: Option<PathBuf>,
@@ -119,7 +120,7 @@ pub struct ForceReport {
 }
 
 /// The pose in which a vehicle has come to rest.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct RestState {
     /// The instant since which it is at rest, s.
     pub time_s: f64,
@@ -134,7 +135,7 @@ pub struct RestState {
 }
 
 /// State at the last sample.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct EndState {
     /// X of the CG, m.
     pub x_m: f64,
@@ -155,7 +156,7 @@ pub struct EndState {
 }
 
 /// A [`MotionFlag`] or a [`SecondContact`] for machines and, as `message`, for a person.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FlagReport {
     /// `wheel_lift`, `roll_limit`, `energy_gain` or `second_contact`.
     pub kind: CaveatKind,

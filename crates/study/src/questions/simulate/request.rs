@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
@@ -30,7 +31,7 @@ use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use impactlab_core::vehicle::{ContactPoint, Ending, Equations, FrictionZone, Integrator};
 
 /// Asks where the struck vehicle goes, by the 4DOF model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulateRequest {
     /// What drives the motion.
     pub source: MotionSource,

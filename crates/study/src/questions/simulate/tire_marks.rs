@@ -1,12 +1,13 @@
 //! The marks that the tires of simulated vehicles leave, as a report tells them.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::analysis::Analysis;
 use impactlab_core::vehicle::{TireMark, TireMarkKind, Wheel, tire_marks};
 
 /// A computed mark of a tire.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct TireMarkReport {
     /// `struck` or `striking`.
     pub vehicle: &'static str,

@@ -1,6 +1,7 @@
 //! How the end of a simulated motion varies with what the data sheet of the vehicle leaves open.
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use impactlab_core::units::Estimate;
@@ -14,7 +15,7 @@ use crate::questions::simulate::report::motion_end;
 
 /// Where and how the motion ends over vehicles that are drawn from the estimates of a data sheet, SI
 /// units. The rest of what is asked is the same for all of them.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct VehicleUncertainty {
     /// Vehicles that were drawn.
     pub n_draws: usize,

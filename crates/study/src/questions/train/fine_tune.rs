@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use impactlab_core::uncertainty::CaveatSubject;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::{check, check_count};
@@ -25,7 +26,7 @@ use impactlab_networks::response::{
 };
 
 /// What is learned from recorded motions.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Learning {
     /// The network itself, for the cars of the data.
@@ -38,7 +39,7 @@ pub enum Learning {
 }
 
 /// Asks for a response network that has learned from recorded motions.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FineTuneRequest {
     /// What is learned.
     #[serde(default)]

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use impactlab_core::uncertainty::Caveats;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::caveats::restrictions;
@@ -20,7 +21,7 @@ use impactlab_networks::force::{
 };
 
 /// Asks for a force network that has learned from force data sets.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TrainForceRequest {
     /// A force data set; a share of its cases is kept apart for the test.
     pub data: PathBuf,
@@ -39,7 +40,7 @@ pub struct TrainForceRequest {
 }
 
 /// What was trained.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct TrainForceReport {
     /// What the data are called.
     pub data: String,

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::StudyError;
@@ -19,7 +20,7 @@ use impactlab_networks::response::{
 pub const DEFAULT_LOG_DURATION_S: f64 = 4.0;
 
 /// Logs of single impacts.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionLogs {
     /// Log files, and folders of such files.
     pub logs: Vec<PathBuf>,
@@ -46,7 +47,7 @@ fn default_duration_s() -> f64 {
 }
 
 /// What was made of a log.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct LogReport {
     /// The file.
     pub log: PathBuf,

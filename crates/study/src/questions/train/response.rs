@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use impactlab_core::uncertainty::{CaveatSubject, Caveats};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::caveats::restrictions;
@@ -27,7 +28,7 @@ use impactlab_networks::response::{
 };
 
 /// Asks for a response network that has learned from simulations under recorded forces.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TrainResponseRequest {
     /// A force or trajectory data set: its forces drive the simulations; a share of its cases is
     /// left out, so that they can serve as a test later.
@@ -44,7 +45,7 @@ pub struct TrainResponseRequest {
 }
 
 /// What was trained.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ResponseTrainingReport {
     /// What the data are called.
     pub data: String,

@@ -1,5 +1,6 @@
 //! The inputs of regressions and baselines: a canonical scenario as a row of numbers.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::force::{ForceCase, ForceScenario, MomentumModel};
@@ -10,7 +11,7 @@ use impactlab_core::collision::ImpactSolution;
 const LATERAL_SPEED_SCALE_M_S: f64 = 0.5;
 
 /// The columns of a scenario that a model may use.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ColumnSet {
     /// θ alone: masses, velocities and heading of the striking vehicle.
