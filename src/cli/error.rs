@@ -137,6 +137,12 @@ pub enum CliError {
         /// The word that was looked for.
         word: String,
     },
+    /// No question has such a name.
+    #[error("no question is called {name:?}; `impactlab schema` lists all")]
+    NoSchema {
+        /// The name as given.
+        name: String,
+    },
     /// An output file is of an unknown kind.
     #[error("{}: cannot be made; expected a name that ends in .png or .csv", path.display())]
     OutputKind {

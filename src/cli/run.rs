@@ -9,7 +9,7 @@ use clap::{Parser, Subcommand};
 use crate::cli::CliError;
 use crate::cli::commands::{
     app, ask, case, check, compare, condition, evaluate, export, fine_tune, impact, licences,
-    predict, ranges, reconstruct, render, report, simulate, train, vehicles,
+    predict, ranges, reconstruct, render, report, schema, simulate, train, vehicles,
 };
 use crate::cli::console::{Console, Escaped, Targets, Verdict, within_line};
 use impactlab_core::error_chain;
@@ -63,6 +63,7 @@ enum CliCommand {
     #[command(alias = "licenses")]
     Licences(licences::LicencesArgs),
     Ranges(ranges::RangesArgs),
+    Schema(schema::SchemaArgs),
 }
 
 /// Runs the command in the program's arguments.
@@ -137,5 +138,6 @@ fn dispatch(command: Option<CliCommand>, console: &mut Console<'_>) -> Result<Ve
         Some(CliCommand::Vehicles(args)) => vehicles::run(&args, console),
         Some(CliCommand::Licences(_)) => licences::run(console),
         Some(CliCommand::Ranges(args)) => ranges::run(&args, console),
+        Some(CliCommand::Schema(args)) => schema::run(&args, console),
     }
 }

@@ -75,6 +75,7 @@ fn every_help_shows_an_example() {
         &["render", "impact"],
         &["vehicles"],
         &["ranges"],
+        &["schema"],
     ] {
         let ran = impactlab(&[command, &["--help"]].concat());
         assert_eq!(ran.code, 0, "{command:?}");

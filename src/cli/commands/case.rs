@@ -51,8 +51,7 @@ Example:
   impactlab case run assets/examples/pit.impactlab
   impactlab case run assets/examples/pit.impactlab --variant \"brakes\" --json
 
-JSON: name; changes [{kind: missing|changed|model, path | network and name}]; variants [{name, answers
-  [{request, report | error}]}]. A report is what the command of its question prints with --json.
+JSON: impactlab schema case --answer says every key with its unit
 
 Exit code 1 if a question has no answer, or if a file or a network is not what it was when the case was
 saved.";

@@ -30,12 +30,7 @@ Examples:
   impactlab check datasets
   impactlab check measured.csv --map \"time=1:ms,fx=Kraft X:kN,fy=Kraft Y:kN\"
 
-JSON: ok; datasets [{path, kind, n_cases, vehicle_file, columns [{name, channel, unit}],
-  flags [{case, kind, severity, message, value, limit, time_s}], n_clean, clean_cases (--all),
-  problems}]; files [{path, kind, n_samples, start_s, end_s, encoding, separator, decimal_comma,
-  force_sampling, columns [{column, name, channel, unit, unit_is_stated}], force {axes, impulse_n_s
-  [x, y], peak_n, peak_time_s, contact_s [s, s]}, notes, flags}];
-  models [{path, kind, name, contents}]; problems [{path, kind, message, columns, map}]
+JSON: impactlab schema check --answer says every key with its unit
 
 Exit code 1 if anything cannot be read or has an error flag.";
 

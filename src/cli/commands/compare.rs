@@ -64,11 +64,7 @@ Examples:
 Every model is fitted to the same trajectories and asked about the same others. The column of the
 paper holds what it printed, measured on other data.
 
-JSON: data, seed, n_choices, test [name, cluster, spins, path [X, Y, yaw] every 0.1 s], models [name, trajectories, average_error_m {mean, std, median},
-  rmse {x_m, y_m, vx_km_h, vy_km_h, yaw_rate_deg_s}, horizon_error_m, time_per_step_us, violations,
-  coverage {50, 90, end_50, end_90, …}, average_error_4_s_m, rest_error_m, n_at_rest],
-  clusters [name, n, impulse_n_s, models], endings [coasting, braked: name, n, models],
-  cases [case, model, trajectories, choice, average_error_m, …, path], left_out, assumptions, badges";
+JSON: impactlab schema compare --answer says every key with its unit";
 
 /// Compares.
 pub(in crate::cli) fn run(

@@ -54,7 +54,7 @@ The effects that the 4DOF model leaves out have strengths that differ from car t
 was trained on a fleet knows how they are distributed; every trajectory of a car is a Gaussian update
 of its own. Other cars are predicted as before. With many trajectories, see fine-tune response.
 
-JSON: as of fine-tune response";
+JSON: as of impactlab fine-tune response";
 
 /// Conditions what was asked for.
 pub(in crate::cli) fn run(

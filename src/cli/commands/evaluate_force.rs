@@ -63,10 +63,7 @@ Examples:
 
 The baselines are fitted here, to the cases that the model was trained on, which it carries.
 
-JSON: overall and separated (without hooked and unseparated cases), each with rmse_over_peak,
-  history_error, impulse_error, peak_error, duration_error {mean, median, p90}, coverage {50, 80,
-  90, 95} and more; baselines {pulse, nearest, statistical}, each with overall and separated;
-  clusters, cases, n_train, columns, split, problems, left_out, assumptions, badges";
+JSON: impactlab schema evaluate-force --answer says every key with its unit";
 
 /// Evaluates.
 pub(in crate::cli) fn run(

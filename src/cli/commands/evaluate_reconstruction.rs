@@ -70,11 +70,7 @@ The truth is read after the last reconstruction. The calculation by hand knows n
 car, and its closing speed is that across the struck side. The swarm's intervals are those of the
 curvature at its optimum.
 
-JSON: summary [{known, method, n_cases, median_seconds, p90_seconds, n_sufficient_ess, quantities [{name,
-  unit, n, coverage_50, coverage_80, coverage_90, coverage_95, median_absolute_error, median_error,
-  median_width_90, mean_crps}]}]; cases [{case, known, method, seconds, ess, n_simulations, quantities
-  [{name, unit, median, intervals, truth, crps}]}]; data, split,
-  n_cases, n_particles, stopped, left_out, assumptions, badges, seed";
+JSON: impactlab schema evaluate-reconstruction --answer says every key with its unit";
 
 /// Evaluates.
 pub(in crate::cli) fn run(

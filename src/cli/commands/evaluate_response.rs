@@ -46,7 +46,7 @@ Example:
 --split test: the trajectories that the model was not trained on, recognised by their content; if the
 model knows which were kept for its test, those of them that are there.
 
-JSON: as of impactlab compare, with one model";
+JSON: impactlab schema evaluate-response --answer says every key with its unit";
 
 /// Evaluates.
 pub(in crate::cli) fn run(

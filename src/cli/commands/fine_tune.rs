@@ -57,10 +57,8 @@ effects.ridge and effects.common are those for few samples, see --print-config.
 
 A training that was killed goes on with --resume to the same weights as if it had not been.
 
-JSON: model, data, data_digest, seed, n_simulated, train, n_test, n_parameters, seconds, epochs, loss,
-  balance, latents, keeps_latents, left_out, assumptions; with --log: logs [{log, start_s, contact_s [s, s] or null, force
-  (recorded, estimated, none), impulse_n_s [x, y], n_samples, noise {position_m, velocity_m_s,
-  yaw_rad, yaw_rate_rad_s}}]";
+JSON: impactlab schema fine-tune --answer says every key with its unit;
+  and model, the file";
 
 /// Fine-tunes what was asked for.
 pub(in crate::cli) fn run(

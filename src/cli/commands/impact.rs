@@ -32,14 +32,7 @@ Example:
 The impulse acts ON the struck vehicle. World axes: X along the road, Y to the left; yaw to the
 left is positive. PDOF: clockwise from straight ahead, where the force comes from.
 
-JSON: name, restitution, restitution_form, friction_limit, friction_of_critical,
-  critical_impulse_ratio, friction_model, regime, impulse_n_s [x, y], impulse_magnitude_n_s, impulse_normal_n_s,
-  impulse_tangential_n_s, closing_velocity_m_s [normal, tangential], contact_point_m [x, y],
-  normal_angle_rad, struck_surface {target|bullet: side}, overlap_m, dissipated_energy_j; target and bullet each with velocity_m_s [x, y],
-  speed_m_s, yaw_rate_rad_s, delta_v_m_s [x, y], delta_v_magnitude_m_s, delta_yaw_rate_rad_s,
-  pdof_deg, pdof_clock; caveats
-  [{kind, severity, subject, text, quantity, value, range, reason}], version; of
-  former versions: notes, assumptions, badges";
+JSON: impactlab schema impact --answer says every key with its unit";
 
 /// Solves the scenario and prints the solution.
 pub(in crate::cli) fn run(

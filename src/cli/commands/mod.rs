@@ -26,6 +26,7 @@ mod render_forecast;
 mod render_reconstruction;
 mod render_scene;
 pub(super) mod report;
+pub(super) mod schema;
 pub(super) mod simulate;
 pub(super) mod train;
 mod train_force;

@@ -58,15 +58,8 @@ Example:
 bands.csv: time, mean and the edges of the 50, 80, 90 and 95 % bands of F_x, F_y and |F|, N.
 mean.csv and sample_001.csv, …: force histories that every other command reads.
 
-JSON: scenario, model, impulse_n_s {mean [x, y], x, y, magnitude}, peak_n, peak_time_s, duration_s, pdof_interval_deg
-  (each median and intervals [{level, low, high}] at 50, 80, 90, 95 %), pdof_deg, pdof_clock, momentum_impulse_n_s,
-  implied_contact {restitution, impulse_ratio, p_rigid, p_energy_gain, warning,
-  momentum {restitution, restitution_form,
-  friction_limit, critical_impulse_ratio, regime, impulse_n_s}},
-  hooking_probability, modes, applicability (0 to 1), outside_training [feature, value, range, deviations], is_contact_open,
-  is_body_open, out, caveats
-  [{kind, severity, subject, text, quantity, value, range, reason}], version, seed, model_digests; of
-  former versions: notes, assumptions, badges";
+JSON: impactlab schema predict-force --answer says every key with its unit;
+  and out, the folder of the files";
 
 /// The report, and where its files are.
 #[derive(Debug, Serialize)]

@@ -104,15 +104,8 @@ trajectory.csv: time, central path (nothing uncertain), mean, standard deviation
 scene.png and one picture per quantity, each with its numbers as CSV beside it (pictures need the
   build with the window).
 
-JSON: scenario, vehicle, force (a file), force_model, response_model, n_forces, n_vehicles, outcome {time_s, is_at_rest, x_m, y_m,
-  heading_change_rad (each {median, intervals [{level, low, high}]} at 50 and 90 %), speed_m_s, yaw_rate_rad_s, region_90_m2, p_quarter_turn, p_half_turn},
-  rest (null without --until-rest) {n_draws, share_at_rest, limit_s, time_s, distance_m, x_m, y_m, yaw_rad (as
-  above), region_50_m2, region_90_m2, moving_speed_m_s}, learned_duration_s,
-  sensitivity [{quantity, label, position_share, heading_share, chance_share}] of a vehicle with a data sheet,
-  implied_contact, hooking_probability, flags, force_applicability, outside_training, applicability
-  (of the response network, 0 to 1), outside_domain, files, caveats
-  [{kind, severity, subject, text, quantity, value, range, reason}], version, seed, model_digests; of
-  former versions: notes, assumptions, badges";
+JSON: impactlab schema predict-motion --answer says every key with its unit;
+  and files, what was written";
 
 /// The report, and which files were written.
 #[derive(Debug, Serialize)]

@@ -44,15 +44,8 @@ How often the intervals hold was tried on simulated collisions only: docs/guide/
 Whoever hit a flank behind the CG is taken to have matched the speed, as in a PIT manoeuvre; [prior] in
 the evidence file says otherwise.
 
-JSON: case; quantities [{name, unit, median, intervals [{level, low, high}]}] with
-  target_speed_m_s, bullet_speed_m_s, closing_speed_m_s, heading_difference_rad, road_friction,
-  delta_v_target_m_s, target_yaw_rate_after_rad_s; modes [{name, probability, standard_error, quantities}];
-  fit [{evidence, unit, expected, found, p}]; budget [{known, sigma, now_m_s, then_m_s, ess, believable}]; ess,
-  n_simulations, n_particles, log_evidence, by_hand_m_s [value, standard deviation],
-  friction_zones [{name, friction}] (with --site),
-  marks, priors [{latent, distribution, source}], out, caveats
-  [{kind, severity, subject, text, quantity, value, range, reason}], version, seed; of
-  former versions: notes, assumptions, badges";
+JSON: impactlab schema reconstruct --answer says every key with its unit;
+  and out, the folder of the files";
 
 /// Files that are written.
 const KNOWN_FILES: [&str; 2] = ["particles.csv", "reconstruction.json"];

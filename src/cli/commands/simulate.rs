@@ -105,27 +105,8 @@ A force sample stands for: the mean around its instant in finite-element files (
 columns, as in forces/ of the data sets); the mean over the coming interval in trajectories (with
 fx_body); else the value at its instant. --sampling overrules it.
 
-JSON, one vehicle: name, vehicle, equations, integrator, friction, friction_zones [{name, friction}]
-  (with --site), duration_s, force {path, sampling, axes, impulse_n_s [x, y], peak_n,
-  peak_time_s, pdof_deg, pdof_clock, contact_start_s, contact_end_s, yaw_moment}, momentum {restitution, restitution_form, friction_limit,
-  critical_impulse_ratio, regime, impulse_n_s} of a scenario, delta_v_m_s [x, y] and
-  delta_v_magnitude_m_s over the contact (null without), end {x_m, y_m, yaw_rad, roll_rad,
-  vx_m_s, vy_m_s, yaw_rate_rad_s, speed_m_s}, distance_m, rest {time_s, x_m, y_m, yaw_rad,
-  distance_m} (null while it moves), largest_yaw_change_rad,
-  flags [{kind, time_s, wheel, roll_rad, position_m, closing_speed_m_s, probability, message}],
-  tyre_marks [{vehicle, wheel, kind, length_m, from_s, start_m, to_s, end_m}], error (against a
-  record), out, caveats
-  [{kind, severity, subject, text, quantity, value, range, reason}], version, seed, model_digests; of
-  former versions: notes, assumptions, badges; for a vehicle of which only a data sheet is known uncertainty
-  {n_draws, n_failed, x_m, y_m, yaw_rad, speed_m_s: each {median, intervals [{level, low, high}]},
-  rest (with --until-rest; as in `predict`), second_contact_probability,
-  sensitivity [{quantity, label, position_share, heading_share, chance_share}]}
-
-JSON, data set: dataset, vehicle, equations, integrator, cases [{case, spin, average_error_m, final_error_m,
-  final_heading_error_rad, horizon_error_m (at 0.5, 1, 2, 4 s), rmse_*, flags}], overall, spinning
-  and not_spinning {average_error_m, final_error_m, final_heading_error_rad,
-  rmse_yaw_rate_rad_s: each {n, mean, std, median, p90, min, max}}, failures [text], assumptions,
-  badges, out
+JSON: impactlab schema simulate --answer says every key with its unit, of a data set impactlab
+  schema simulate-dataset --answer; and out, what was written
 
 Exit code 1 if any case failed.";
 

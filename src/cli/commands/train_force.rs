@@ -40,8 +40,8 @@ Examples:
 A training that was killed goes on with --resume to the same weights as if it had not been. The same
 seed gives the same weights on the same machine.
 
-JSON: model, data, n_train, n_validation, n_test, n_parameters, seconds, best_epoch, epochs,
-  variance_factors, train and validation (losses of the best epoch), left_out, assumptions";
+JSON: impactlab schema train-force --answer says every key with its unit;
+  and model, the file";
 
 /// Trains and saves the model.
 pub(in crate::cli) fn run(

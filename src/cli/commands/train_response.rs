@@ -37,8 +37,8 @@ Examples:
 The network learns on simulations of the 4DOF model, under the forces of the data set, what another
 vehicle, another road and another speed change. No recorded motion is looked at.
 
-JSON: model, data, data_digest, seed, n_simulated, train, n_test, n_parameters, seconds, epochs, loss,
-  balance, latents, keeps_latents, left_out, assumptions";
+JSON: impactlab schema train-response --answer says every key with its unit;
+  and model, the file";
 
 /// Pre-trains and saves the model.
 pub(in crate::cli) fn run(
