@@ -14,7 +14,7 @@ use impactlab_core::numerics::quantile_of_sorted;
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Estimate, Interval, NumberFormat, Quantity, UnitSystem, percent};
 use impactlab_draw::theme;
-use impactlab_study::SimulateReport;
+use impactlab_study::{Answer, SimulateReport};
 
 /// Ends of the interval that is shown with a figure, as probabilities.
 const ENDS: [f64; 2] = [0.05, 0.95];
@@ -59,7 +59,7 @@ impl State {
 
     /// The change of velocity of the struck vehicle: of a scenario by the momentum solution, which the
     /// scenario panel shows; of a recorded force over its contact, with what the tires add.
-    fn impact_link(&self, report: Option<&SimulateReport>) -> Link {
+    fn impact_link(&self, report: Option<&Answer<SimulateReport>>) -> Link {
         let is_scenario = self.project.subject() == Some(Subject::Scenario);
         let solved = self.session.impact.ok().filter(|_| is_scenario && report.is_some());
         let (delta_v, source, pane) = match (is_scenario, solved) {
@@ -105,7 +105,7 @@ impl State {
 
 /// The force that drives the forecast: a distribution where a network predicts it.
 fn force_link(
-    report: Option<&SimulateReport>,
+    report: Option<&Answer<SimulateReport>>,
     motion: Option<&MotionAnswer>,
     units: UnitSystem,
 ) -> Link {
@@ -157,7 +157,7 @@ fn motion_link(motion: Option<&MotionAnswer>) -> Link {
 
 /// Where the vehicle is in the end: by the forecast, or by the 4DOF model where there is none.
 fn outcome_link(
-    report: Option<&SimulateReport>,
+    report: Option<&Answer<SimulateReport>>,
     motion: Option<&MotionAnswer>,
     units: UnitSystem,
 ) -> Link {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::app::question_job::QuestionJob;
 use impactlab_core::compare::MotionError;
 use impactlab_study::{
-    Library, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest,
+    Answer, Library, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest,
 };
 
 /// The simulation of a data set, running or finished.
@@ -69,7 +69,7 @@ impl ReplayStatus {
     }
 
     /// Returns the report of the latest simulation.
-    pub fn report(&self) -> Option<&SimulateDatasetReport> {
+    pub fn report(&self) -> Option<&Answer<SimulateDatasetReport>> {
         let answer: &SimulateDatasetAnswer = self.question.ok()?;
         Some(&answer.report)
     }

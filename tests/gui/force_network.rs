@@ -278,7 +278,7 @@ fn a_model_is_evaluated_beside_the_baselines() {
         !state.session.force.evaluation.is_running()
     });
     let answer = state(&harness).session.force.evaluation.ok().expect("an evaluation");
-    let ForceEvaluation::Cases(report) = &answer.report else { panic!("folds") };
+    let ForceEvaluation::Cases(report) = &answer.report.report else { panic!("folds") };
     let cases = answer.cases.as_ref().expect("single cases");
     assert_eq!((report.n_test, report.n_trained_on), (25, 0));
     assert_eq!((cases.all.len(), cases.samples.len()), (25, 6));

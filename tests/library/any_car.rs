@@ -22,8 +22,8 @@ use impactlab_networks::response::{
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::{
-    Event, ForceSource, Library, MotionSource, PredictMotionReport, PredictMotionRequest, Question,
-    ScenarioChoice, StudyError,
+    Answer, Event, ForceSource, Library, MotionSource, PredictMotionReport, PredictMotionRequest,
+    Question, ScenarioChoice, StudyError,
 };
 use proptest::prelude::*;
 
@@ -371,7 +371,7 @@ fn forecast(
     scenario: Scenario,
     friction: f64,
     until_rest: bool,
-) -> Result<PredictMotionReport, StudyError> {
+) -> Result<Answer<PredictMotionReport>, StudyError> {
     let scenario = ScenarioChoice::Inline(Box::new(scenario));
     let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
     let shipped = ForceSource::Predicted(ModelSource::Shipped.into());

@@ -31,6 +31,7 @@ mod caveats;
 mod examples;
 mod questions;
 
+pub use ask::answer::Answer;
 pub use ask::checks::check_window;
 pub use ask::cost::{Cost, CostPart};
 pub use ask::error::StudyError;
@@ -42,7 +43,7 @@ pub use ask::inputs::{
 pub use ask::library::Library;
 pub use ask::provenance::Provenance;
 pub use ask::question::{Event, Observer, Question, Sampling};
-pub use ask::request::{Answer, Report, Request};
+pub use ask::request::{AnyAnswer, Report, Request};
 pub use ask::schema::{JsonKind, json_kinds};
 pub use ask::word::word;
 pub use questions::check::report::{

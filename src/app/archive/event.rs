@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::app::archive::{ArchiveEntry, ArchiveList};
 use crate::app::unfinished::UnfinishedList;
-use impactlab_study::{CompareReport, EvaluateForceReport, Request};
+use impactlab_study::{Answer, CompareReport, EvaluateForceReport, Request};
 
 /// Files that are to be removed together, after a question.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -50,7 +50,7 @@ pub enum ArchiveEvent {
 #[derive(Clone)]
 pub enum OpenedResult {
     /// A comparison of response models, or the evaluation of one.
-    Comparison(Box<CompareReport>),
+    Comparison(Box<Answer<CompareReport>>),
     /// An evaluation of a force model, with its question.
-    ForceEvaluation(Box<(Request, EvaluateForceReport)>),
+    ForceEvaluation(Box<(Request, Answer<EvaluateForceReport>)>),
 }

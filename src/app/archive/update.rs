@@ -146,8 +146,8 @@ impl State {
     pub(in crate::app) fn keep_force_evaluation(&mut self) {
         let Some(latest) = &self.session.force.evaluation.latest else { return };
         let Ok(answer) = &latest.answer else { return };
-        let ForceEvaluation::Cases(report) = &answer.report else { return };
-        let content = serde_json::to_vec(report).map_err(|error| error.to_string());
+        let ForceEvaluation::Cases(report) = &answer.report.report else { return };
+        let content = serde_json::to_vec(&answer.report).map_err(|error| error.to_string());
         let question = Request::from(latest.question.clone());
         let draft = evaluation_note(question, report, &self.session.archive);
         self.keep_result(draft, content);
@@ -189,7 +189,7 @@ impl State {
             OpenedResult::ForceEvaluation(of) => {
                 let (question, report) = *of;
                 let Request::EvaluateForce(question) = question else { return };
-                let report = ForceEvaluation::Cases(Box::new(report));
+                let report = report.map(|report| ForceEvaluation::Cases(Box::new(report)));
                 let answer = Ok(Arc::new(EvaluateForceAnswer { report, cases: None }));
                 let latest = Answered { question: *question, answer };
                 self.session.force.evaluation.latest = Some(latest);

@@ -16,7 +16,7 @@ use impactlab_networks::force::{ForceConfig, ForceModel};
 use impactlab_networks::learning::{EpochRecord, EpochSummary, ModelFile};
 use impactlab_networks::response::{ResponseConfig, ResponseModel};
 use impactlab_study::{
-    Library, ModelChoice, ResponseTrainingAnswer, ResponseTrainingReport, StudyError,
+    Answer, Library, ModelChoice, ResponseTrainingAnswer, ResponseTrainingReport, StudyError,
     TrainForceAnswer, TrainForceReport,
 };
 
@@ -90,7 +90,7 @@ impl TrainedModel for ForceModel {
     const NETWORK: Network = Network::Force;
 
     type Answer = TrainForceAnswer;
-    type Report = TrainForceReport;
+    type Report = Answer<TrainForceReport>;
 
     fn command(event: ModelEvent<Self>) -> Command {
         Command::ForceModel(Found::new(event))
@@ -108,15 +108,15 @@ impl TrainedModel for ForceModel {
         self.save(path, existing).map_err(|error| error_chain(&error))
     }
 
-    fn from_answer(answer: TrainForceAnswer) -> (Self, TrainForceReport) {
+    fn from_answer(answer: TrainForceAnswer) -> (Self, Self::Report) {
         (answer.model, answer.report)
     }
 
-    fn notes(report: &TrainForceReport) -> (&[String], &Caveats) {
+    fn notes(report: &Self::Report) -> (&[String], &Caveats) {
         (&report.left_out, &report.caveats)
     }
 
-    fn seconds(report: &TrainForceReport) -> f64 {
+    fn seconds(report: &Self::Report) -> f64 {
         report.seconds
     }
 
@@ -167,7 +167,7 @@ impl TrainedModel for ResponseModel {
     const NETWORK: Network = Network::Response;
 
     type Answer = ResponseTrainingAnswer;
-    type Report = ResponseTrainingReport;
+    type Report = Answer<ResponseTrainingReport>;
 
     fn command(event: ModelEvent<Self>) -> Command {
         Command::ResponseModel(Found::new(event))
@@ -185,15 +185,15 @@ impl TrainedModel for ResponseModel {
         self.save(path, existing).map_err(|error| error_chain(&error))
     }
 
-    fn from_answer(answer: ResponseTrainingAnswer) -> (Self, ResponseTrainingReport) {
+    fn from_answer(answer: ResponseTrainingAnswer) -> (Self, Self::Report) {
         (answer.model, answer.report)
     }
 
-    fn notes(report: &ResponseTrainingReport) -> (&[String], &Caveats) {
+    fn notes(report: &Self::Report) -> (&[String], &Caveats) {
         (&report.left_out, &report.caveats)
     }
 
-    fn seconds(report: &ResponseTrainingReport) -> f64 {
+    fn seconds(report: &Self::Report) -> f64 {
         report.seconds
     }
 

@@ -12,7 +12,7 @@ use impactlab_core::compare::{ErrorSummary, HORIZONS_S, MotionError};
 use impactlab_core::data::DatasetKind;
 use impactlab_core::numerics::Summary;
 use impactlab_core::units::{Quantity, UnitSystem, significant};
-use impactlab_study::{SimulateDatasetReport, SimulateReport};
+use impactlab_study::{Answer, SimulateDatasetReport, SimulateReport};
 
 /// Draws the errors of the selected subject, and below them those of the whole data set with the
 /// button that starts its simulation.
@@ -49,7 +49,12 @@ pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     });
 }
 
-fn case_ui(ui: &mut Ui, report: &SimulateReport, units: UnitSystem, commands: &mut Vec<Command>) {
+fn case_ui(
+    ui: &mut Ui,
+    report: &Answer<SimulateReport>,
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
     ui.strong(format!("{} with {}", report.name, report.vehicle));
     caveats_ui(ui, &report.caveats, commands);
     for note in report.caveats.notes() {
@@ -97,7 +102,7 @@ fn error_rows(error: &MotionError, units: UnitSystem) -> Vec<(String, String)> {
 /// those that do not.
 fn dataset_ui(
     ui: &mut Ui,
-    report: &SimulateDatasetReport,
+    report: &Answer<SimulateDatasetReport>,
     units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {

@@ -13,6 +13,7 @@ use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{bad_cases_ui, cost_ui, dataset_choice, no_dataset_ui, restrictions_ui};
 use impactlab_core::data::{DatasetKind, Severity};
+use impactlab_core::uncertainty::Caveats;
 use impactlab_draw::theme;
 use impactlab_study::{EvaluateForceReport, EvaluatedCases, ForceEvaluation};
 
@@ -36,14 +37,15 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             ui.weak("Errors of the model on cases that it has not seen, beside a classic pulse, the nearest training case and Gaussian processes; how honest its bands are.");
             return;
         };
-        let ForceEvaluation::Cases(report) = &answer.report else { return };
+        let ForceEvaluation::Cases(report) = &answer.report.report else { return };
         ui.separator();
         let name = session.archive.name_of(&latest.question.model);
-        heading_ui(ui, report, &name);
+        let caveats = &answer.report.caveats;
+        heading_ui(ui, (report, caveats), &name);
         tables_ui(ui, &report.evaluation, (&mut view.force, view.units));
         ui.separator();
         match &answer.cases {
-            Some(cases) => plots_ui(ui, (report, cases), (view, session.fit_plots), commands),
+            Some(cases) => plots_ui(ui, (report, caveats, cases), (view, session.fit_plots), commands),
             None => drop(ui.weak(
                 "The plots of single cases are not kept with an evaluation; Evaluate draws them.",
             )),
@@ -106,20 +108,20 @@ fn start_ui(
 /// evaluated ones, of problems and of cases that were left out.
 ///
 /// - `model`: what the user calls the model.
-fn heading_ui(ui: &mut Ui, report: &EvaluateForceReport, model: &str) {
+fn heading_ui(ui: &mut Ui, (report, caveats): (&EvaluateForceReport, &Caveats), model: &str) {
     let (data, evaluation) = (file_name(&report.data), &report.evaluation);
     ui.horizontal_wrapped(|ui| {
         ui.strong(format!("{model} on {} cases of {data}", report.n_test));
         ui.weak(format!("baselines fitted to its {} training cases", evaluation.n_train));
         if ui.button("Copy as text").clicked() {
-            ui.ctx().copy_text(report.caveats.appended_to(evaluation.to_text()));
+            ui.ctx().copy_text(caveats.appended_to(evaluation.to_text()));
         }
         if ui.button("Copy as Markdown").clicked() {
-            ui.ctx().copy_text(report.caveats.appended_to(evaluation.to_markdown()));
+            ui.ctx().copy_text(caveats.appended_to(evaluation.to_markdown()));
         }
     });
     let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-    restrictions_ui(ui, &report.caveats);
+    restrictions_ui(ui, caveats);
     for problem in &evaluation.problems {
         ui.colored_label(color, problem);
     }

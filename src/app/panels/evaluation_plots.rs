@@ -6,6 +6,7 @@ use egui::{Id, Ui};
 use crate::app::command::Command;
 use crate::app::state::View;
 use crate::app::widgets::figure_frame;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::Estimate;
 use impactlab_core::units::Quantity;
 use impactlab_document::figure::{
@@ -27,11 +28,10 @@ const N_COLUMNS: usize = 3;
 /// - `reset`: whether the plots fit their view to the data again.
 pub fn plots_ui(
     ui: &mut Ui,
-    (report, cases): (&EvaluateForceReport, &EvaluatedForceCases),
+    (report, caveats, cases): (&EvaluateForceReport, &Caveats, &EvaluatedForceCases),
     (view, reset): (&mut View, bool),
     commands: &mut Vec<Command>,
 ) {
-    let caveats = &report.caveats;
     let mut figures = vec![
         parity(cases, ("Impulse", "|P|", Quantity::Impulse), view),
         parity(cases, ("Peak force", "Peak |F|", Quantity::Force), view),

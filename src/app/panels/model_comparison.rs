@@ -20,7 +20,7 @@ use impactlab_draw::theme;
 use impactlab_networks::response::evaluate::{
     ComparisonTable, all_tables, paper_metrics, to_markdown,
 };
-use impactlab_study::{CompareReport, EvaluatedCases};
+use impactlab_study::{Answer, CompareReport, EvaluatedCases};
 
 /// Draws the settings and buttons, and of the last comparison the figures, the case browser and the
 /// tables.
@@ -159,7 +159,7 @@ fn buttons_ui(
 
 /// Draws the title, what was assumed, the cases that were left out, and the errors that the paper
 /// prints for the models that it has.
-fn heading_ui(ui: &mut Ui, report: &CompareReport, commands: &mut Vec<Command>) {
+fn heading_ui(ui: &mut Ui, report: &Answer<CompareReport>, commands: &mut Vec<Command>) {
     let comparison = &report.comparison;
     ui.horizontal_wrapped(|ui| {
         let n_test = comparison.test.len();
@@ -193,7 +193,7 @@ fn heading_ui(ui: &mut Ui, report: &CompareReport, commands: &mut Vec<Command>) 
     }
 }
 
-fn tables_ui(ui: &mut Ui, report: &CompareReport) {
+fn tables_ui(ui: &mut Ui, report: &Answer<CompareReport>) {
     let restrictions = report.caveats.text();
     for (title, _, table) in all_tables(&report.comparison) {
         if table.rows.is_empty() {

@@ -14,7 +14,7 @@ use impactlab_draw::FigureOptions;
 use impactlab_networks::response::evaluate::{
     ComparedModel, Comparison, CoverageMetrics, MeanStd, MotionModelKind, TestCase,
 };
-use impactlab_study::CompareReport;
+use impactlab_study::{Answer, CompareReport};
 
 /// Height of a plot, points.
 const PLOT_HEIGHT: f32 = 220.0;
@@ -31,7 +31,7 @@ const KM_H_PER_M_S: f64 = 3.6;
 /// - `reset`: whether the plots fit their view to the data again.
 pub fn overview_ui(
     ui: &mut Ui,
-    report: &CompareReport,
+    report: &Answer<CompareReport>,
     (units, reset): (UnitSystem, bool),
     commands: &mut Vec<Command>,
 ) {
@@ -160,7 +160,7 @@ fn calibration(comparison: &Comparison) -> Vec<Figure> {
 /// - `reset`: whether the plot fits its view to the data again.
 pub fn browser_ui(
     ui: &mut Ui,
-    report: &CompareReport,
+    report: &Answer<CompareReport>,
     (view, reset): (&mut View, bool),
     commands: &mut Vec<Command>,
 ) {

@@ -5,7 +5,7 @@ use impactlab_core::data::Outcome;
 use impactlab_document::figure::prior_values;
 use impactlab_reconstruct::ReconstructedQuantity;
 use impactlab_study::{
-    Library, Observer, Question, ReconstructAnswer, ReconstructReport, ReconstructRequest,
+    Answer, Library, Observer, Question, ReconstructAnswer, ReconstructReport, ReconstructRequest,
     ReconstructedPaths, StudyError,
 };
 
@@ -70,14 +70,14 @@ impl PreparedReconstruction {
 
 impl Question for ReconstructionQuestion {
     type Answer = PreparedReconstruction;
-    type Report = ReconstructReport;
+    type Report = Answer<ReconstructReport>;
     const NAME: &'static str = ReconstructRequest::NAME;
 
     fn check(&self) -> Result<(), StudyError> {
         self.request.check()
     }
 
-    fn report(answer: &Self::Answer) -> &ReconstructReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.answer.report
     }
 

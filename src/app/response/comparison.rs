@@ -16,8 +16,8 @@ use impactlab_core::jobs::{Progress, ProgressCallback};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_networks::response::evaluate::{Comparison, write_comparison};
 use impactlab_study::{
-    CompareAnswer, CompareReport, CompareRequest, EvaluateResponseRequest, Library, Provenance,
-    Question, Request,
+    Answer, CompareAnswer, CompareReport, CompareRequest, EvaluateResponseRequest, Library,
+    Provenance, Question, Request,
 };
 
 /// A comparison or an evaluation, running or finished.
@@ -101,9 +101,8 @@ impl ComparisonStatus {
     pub fn take(&mut self, comparison: Result<Comparison, String>) {
         self.is_opening = false;
         self.shown = Some(comparison.map(|comparison| {
-            let report = CompareReport {
-                comparison,
-                left_out: Vec::new(),
+            let report = Answer {
+                report: CompareReport { comparison, left_out: Vec::new() },
                 caveats: Caveats::default(),
                 provenance: Provenance::default(),
             };
@@ -129,7 +128,7 @@ impl ComparisonStatus {
     }
 
     /// Returns the report of the comparison that is shown, if there is one.
-    pub fn report(&self) -> Option<&CompareReport> {
+    pub fn report(&self) -> Option<&Answer<CompareReport>> {
         self.shown.as_ref()?.as_ref().ok().map(|answer| &answer.report)
     }
 }
@@ -151,7 +150,7 @@ where
 pub fn write_comparison_folder(
     folder: &Path,
     existing: Existing,
-    report: &CompareReport,
+    report: &Answer<CompareReport>,
 ) -> Result<(), DataError> {
     let output = OutputFolder::begin(folder, existing, &["comparison.json", "comparison.md"])?;
     let restrictions = report.caveats.text();

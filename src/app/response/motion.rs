@@ -8,8 +8,8 @@ use impactlab_draw::DensityGpu;
 use impactlab_networks::response::STEP_S;
 use impactlab_study::analysis::{DensityMap, DensityTask, MotionBands};
 use impactlab_study::{
-    Library, Observer, PredictMotionAnswer, PredictMotionReport, PredictMotionRequest, Question,
-    StudyError, check_window,
+    Answer, Library, Observer, PredictMotionAnswer, PredictMotionReport, PredictMotionRequest,
+    Question, StudyError, check_window,
 };
 
 /// Number of time steps between two points of the bands over time, which makes 50 ms.
@@ -44,7 +44,7 @@ impl MotionAnswer {
 
 impl Question for MotionQuestion {
     type Answer = MotionAnswer;
-    type Report = PredictMotionReport;
+    type Report = Answer<PredictMotionReport>;
     const NAME: &'static str = PredictMotionRequest::NAME;
 
     fn check(&self) -> Result<(), StudyError> {
@@ -55,7 +55,7 @@ impl Question for MotionQuestion {
         Some(Self { request: self.request.coarse()? })
     }
 
-    fn report(answer: &Self::Answer) -> &PredictMotionReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.answer.report
     }
 

@@ -24,7 +24,7 @@ use crate::app::variants::OtherVariants;
 use crate::app::widgets::BetweenCursors;
 use impactlab_core::data::Severity;
 use impactlab_core::uncertainty::Caveats;
-use impactlab_study::{ImpactRequest, Library, SimulateReport, SimulateRequest};
+use impactlab_study::{Answer, ImpactRequest, Library, SimulateReport, SimulateRequest};
 
 /// Loaded data, answers and running work, which are not saved.
 #[derive(Default)]
@@ -104,7 +104,7 @@ impl Session {
     }
 
     /// What restricts the simulation that is shown.
-    pub fn simulation_caveats(&self, report: &SimulateReport) -> Caveats {
+    pub fn simulation_caveats(&self, report: &Answer<SimulateReport>) -> Caveats {
         let caveats = report.caveats.clone();
         caveats.outdated_if(self.analysis.is_waiting())
     }

@@ -87,11 +87,11 @@ pub(in crate::cli) fn run(
     let out = args.out.as_deref().map(|folder| (folder, args.overwrite.into(), &known[..]));
     let answer = console.ask_into(&request, out, |output, answer| {
         write_force_evaluation(output.staging(), &answer.report)?;
-        Ok(answer.report.provenance().clone())
+        Ok(answer.report.provenance.clone())
     })?;
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
     console.print(&answer.report, |out| print_force_evaluation(out, &answer.report))?;
-    Ok(match &answer.report {
+    Ok(match &answer.report.report {
         ForceEvaluation::Cases(report) => {
             Verdict::from_problems(!report.evaluation.problems.is_empty())
         }

@@ -12,7 +12,9 @@ use crate::cli::options::{OverwriteArg, UnitsArg, count};
 use crate::cli::text::print_answer;
 use impactlab_core::ranges::SAMPLES;
 use impactlab_networks::shipped::ModelSource;
-use impactlab_study::{ForceQuestion, PredictForceReport, PredictForceRequest, ScenarioChoice};
+use impactlab_study::{
+    Answer, ForceQuestion, PredictForceReport, PredictForceRequest, ScenarioChoice,
+};
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -65,7 +67,7 @@ JSON: impactlab schema predict-force --answer says every key with its unit;
 #[derive(Debug, Serialize)]
 struct PrintedForce<'a> {
     #[serde(flatten)]
-    report: &'a PredictForceReport,
+    report: &'a Answer<PredictForceReport>,
     out: Option<&'a Path>,
 }
 

@@ -19,7 +19,7 @@ use impactlab_networks::response::STEP_S;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::analysis::{MotionForecast, PulseSetup};
 use impactlab_study::{
-    DEFAULT_DRAWS, DEFAULT_DURATION_S, ForceSource, MotionSource, PredictMotionReport,
+    Answer, DEFAULT_DRAWS, DEFAULT_DURATION_S, ForceSource, MotionSource, PredictMotionReport,
     PredictMotionRequest, ScenarioChoice, SeriesFile, SimulateRequest,
 };
 
@@ -111,7 +111,7 @@ JSON: impactlab schema predict-motion --answer says every key with its unit;
 #[derive(Debug, Serialize)]
 struct PrintedMotion<'a> {
     #[serde(flatten)]
-    report: &'a PredictMotionReport,
+    report: &'a Answer<PredictMotionReport>,
     files: &'a [PathBuf],
 }
 

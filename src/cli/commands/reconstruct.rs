@@ -10,7 +10,7 @@ use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_reconstruction;
 use crate::cli::options::{EvidenceArgs, OverwriteArg, UnitsArg};
 use crate::cli::text::print_answer;
-use impactlab_study::{ReconstructReport, ReconstructRequest};
+use impactlab_study::{Answer, ReconstructReport, ReconstructRequest};
 
 /// From the evidence to the speeds before the impact, as a distribution
 #[derive(Debug, Args)]
@@ -54,7 +54,7 @@ const KNOWN_FILES: [&str; 2] = ["particles.csv", "reconstruction.json"];
 #[derive(Debug, Serialize)]
 struct PrintedReconstruction<'a> {
     #[serde(flatten)]
-    report: &'a ReconstructReport,
+    report: &'a Answer<ReconstructReport>,
     out: Option<&'a Path>,
 }
 

@@ -6,24 +6,24 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use impactlab_core::data::{Existing, write_atomically};
-use impactlab_study::ForceEvaluation;
+use impactlab_study::{Answer, ForceEvaluation};
 
 /// Writes an evaluation as JSON and Markdown, or a cross-validation as JSON, into a folder that
 /// exists.
 pub(in crate::cli) fn write_force_evaluation(
     path: &Path,
-    report: &ForceEvaluation,
+    answer: &Answer<ForceEvaluation>,
 ) -> Result<(), CliError> {
-    match report {
+    match &answer.report {
         ForceEvaluation::Cases(report) => {
-            write_json(&path.join("evaluation.json"), report)?;
-            let text = report.caveats.appended_to(report.evaluation.to_markdown());
+            write_json(&path.join("evaluation.json"), answer)?;
+            let text = answer.caveats.appended_to(report.evaluation.to_markdown());
             write_atomically(&path.join("evaluation.md"), Existing::Refuse, |out| {
                 out.write_all(text.as_bytes())
             })?;
         }
-        ForceEvaluation::Folds(report) => {
-            write_json(&path.join("cross_validation.json"), report)?;
+        ForceEvaluation::Folds(_) => {
+            write_json(&path.join("cross_validation.json"), answer)?;
         }
     }
     Ok(())

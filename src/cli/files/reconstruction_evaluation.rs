@@ -6,7 +6,7 @@ use crate::cli::CliError;
 use crate::cli::files::write_json;
 use impactlab_core::data::{Existing, write_restricted_table};
 use impactlab_reconstruct::evaluate::{CaseScore, SPEEDS, ScoredQuantity};
-use impactlab_study::{EvaluateReconstructionReport, word};
+use impactlab_study::{Answer, EvaluateReconstructionReport, word};
 
 /// Files that are written.
 pub(in crate::cli) const RECONSTRUCTION_EVALUATION_FILES: [&str; 2] =
@@ -22,7 +22,7 @@ const COLUMNS: [&str; 11] = [
 /// into a folder that exists.
 pub(in crate::cli) fn write_reconstruction_evaluation(
     path: &Path,
-    report: &EvaluateReconstructionReport,
+    report: &Answer<EvaluateReconstructionReport>,
 ) -> Result<(), CliError> {
     let restrictions = report.caveats.text();
     let of_speed = SPEEDS.iter().flat_map(|speed| {

@@ -4,12 +4,12 @@ use std::io::{self, Write};
 
 use crate::cli::console::{print_caveats, print_table};
 use impactlab_networks::response::evaluate::all_tables;
-use impactlab_study::CompareReport;
+use impactlab_study::{Answer, CompareReport};
 
 /// Prints the tables below each other.
 pub(in crate::cli) fn print_comparison(
     out: &mut dyn Write,
-    report: &CompareReport,
+    report: &Answer<CompareReport>,
 ) -> io::Result<()> {
     let comparison = &report.comparison;
     writeln!(

@@ -7,7 +7,8 @@ use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_study::facts::{FactTable, FactWriter};
 use impactlab_study::{
-    ImpactReport, PredictForceReport, PredictMotionReport, ReconstructReport, SimulateReport,
+    Answer, ImpactReport, PredictForceReport, PredictMotionReport, ReconstructReport,
+    SimulateReport,
 };
 
 /// What is printed of an answer.
@@ -19,8 +20,8 @@ pub(in crate::cli) struct PrintedAnswer<'a> {
 
 macro_rules! answers {
     ($($report:ty: $name:ident;)+) => {
-        $(impl<'a> From<&'a $report> for PrintedAnswer<'a> {
-            fn from(report: &'a $report) -> Self {
+        $(impl<'a> From<&'a Answer<$report>> for PrintedAnswer<'a> {
+            fn from(report: &'a Answer<$report>) -> Self {
                 Self {
                     name: &report.$name,
                     tables: report.facts(),

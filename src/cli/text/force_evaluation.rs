@@ -5,15 +5,18 @@ use std::io::{self, Write};
 use crate::cli::console::{print_caveats, print_table};
 use impactlab_networks::force::CrossValidation;
 use impactlab_networks::force::metrics::CurveMetrics;
-use impactlab_study::{EvaluateForceReport, ForceEvaluation};
+use impactlab_study::{Answer, EvaluateForceReport, ForceEvaluation};
 
 /// Prints the tables below each other.
 pub(in crate::cli) fn print_force_evaluation(
     out: &mut dyn Write,
-    report: &ForceEvaluation,
+    answer: &Answer<ForceEvaluation>,
 ) -> io::Result<()> {
-    match report {
-        ForceEvaluation::Cases(report) => print_cases(out, report),
+    match &answer.report {
+        ForceEvaluation::Cases(report) => {
+            print_cases(out, report)?;
+            print_caveats(out, &answer.caveats)
+        }
         ForceEvaluation::Folds(report) => print_folds(out, &report.validation),
     }
 }
@@ -23,7 +26,7 @@ fn print_cases(out: &mut dyn Write, report: &EvaluateForceReport) -> io::Result<
     for case in &report.left_out {
         writeln!(out, "left out: {case}")?;
     }
-    print_caveats(out, &report.caveats)
+    Ok(())
 }
 
 fn print_folds(out: &mut dyn Write, validation: &CrossValidation) -> io::Result<()> {

@@ -6,12 +6,12 @@ use crate::cli::console::{print_caveats, print_table};
 use impactlab_core::units::{Quantity, UnitSystem, percent};
 use impactlab_reconstruct::ReconstructedQuantity;
 use impactlab_reconstruct::evaluate::{MethodSummary, QuantitySummary, SPEEDS, SUFFICIENT_ESS};
-use impactlab_study::{EvaluateReconstructionReport, word};
+use impactlab_study::{Answer, EvaluateReconstructionReport, word};
 
 /// Prints the summary of each speed, the time that it takes, and what is left out.
 pub(in crate::cli) fn print_reconstruction_evaluation(
     out: &mut dyn Write,
-    report: &EvaluateReconstructionReport,
+    report: &Answer<EvaluateReconstructionReport>,
     units: UnitSystem,
 ) -> io::Result<()> {
     let (data, split) = (report.data.display(), word(&report.split));

@@ -6,14 +6,14 @@ use std::path::Path;
 use crate::cli::console::{print_caveats, print_table, shown_path};
 use impactlab_core::numerics::Summary;
 use impactlab_core::units::{Quantity, UnitSystem};
-use impactlab_study::{ReplayedCaseReport, SimulateDatasetReport};
+use impactlab_study::{Answer, ReplayedCaseReport, SimulateDatasetReport};
 
 /// Prints the errors case by case and over all.
 ///
 /// - `folder`: where the motions were written.
 pub(in crate::cli) fn print_dataset_simulation(
     out: &mut dyn Write,
-    (report, folder): (&SimulateDatasetReport, Option<&Path>),
+    (report, folder): (&Answer<SimulateDatasetReport>, Option<&Path>),
     units: UnitSystem,
 ) -> io::Result<()> {
     let length = Quantity::Length.display_unit(units);

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::cli::console::{print_caveats, print_facts, shown_path};
 use impactlab_networks::force::LossTerms;
 use impactlab_networks::response::{ForceOrigin, LATENT_NAMES};
-use impactlab_study::{LogReport, ResponseTrainingReport, TrainForceReport};
+use impactlab_study::{Answer, LogReport, ResponseTrainingReport, TrainForceReport};
 
 /// A report of a training, and where its model was written.
 #[derive(Debug, Serialize)]
@@ -29,7 +29,7 @@ fn losses<'a>(named: impl IntoIterator<Item = (&'a str, f64)>) -> String {
 /// Prints what came of a training of the force network.
 pub(in crate::cli) fn print_force_training(
     out: &mut dyn Write,
-    trained: &Trained<'_, TrainForceReport>,
+    trained: &Trained<'_, Answer<TrainForceReport>>,
 ) -> io::Result<()> {
     let report = trained.report;
     let loss = |terms: Option<LossTerms>| terms.map_or(String::new(), |of| losses(of.named()));
@@ -61,7 +61,7 @@ pub(in crate::cli) fn print_force_training(
 /// Prints what came of a training of the response network.
 pub(in crate::cli) fn print_response_training(
     out: &mut dyn Write,
-    trained: &Trained<'_, ResponseTrainingReport>,
+    trained: &Trained<'_, Answer<ResponseTrainingReport>>,
 ) -> io::Result<()> {
     let report = trained.report;
     let scale = |(name, scale): (&&str, f64)| format!("{name} {:.1} %", 100.0 * scale);

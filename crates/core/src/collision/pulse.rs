@@ -15,7 +15,18 @@ use crate::data::{ForceAxes, ForceHistory, Sampling};
 
 /// Shape of a pulse as a function of the relative time `u = (t − start) / duration`, scaled to an
 /// area of 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, strum::IntoStaticStr, JsonSchema)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    Serialize,
+    Deserialize,
+    strum::IntoStaticStr,
+    JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "kebab-case")]
 pub enum PulseShape {

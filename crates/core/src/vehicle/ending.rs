@@ -94,7 +94,8 @@ fn default_brake_rise_s() -> f64 {
     Deserialize,
     strum::IntoStaticStr,
     strum::VariantArray,
-    strum::VariantNames, JsonSchema
+    strum::VariantNames,
+    JsonSchema,
 )]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]

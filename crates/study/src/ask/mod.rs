@@ -1,6 +1,7 @@
 //! What can be asked, and how it is answered: questions and what they refer to, their checks, the
 //! models and data in memory, errors, cost.
 
+pub(crate) mod answer;
 pub(crate) mod checks;
 pub(crate) mod cost;
 pub(crate) mod error;

@@ -19,7 +19,7 @@ pub(crate) const RESPONSE_NETWORK: &str = "response";
 /// What a digest calls a network that the answer itself brings forth.
 const TRAINED: &str = "trained";
 
-/// Version of the program, seed and trained networks of an answer. It is part of every report.
+/// Version of the program, seed and trained networks of an answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Provenance {
     /// Version of the program that answered, [`program::version`].

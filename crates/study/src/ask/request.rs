@@ -1,20 +1,21 @@
 //! Any question and any answer, as JSON reads and writes them.
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 use crate::ask::schema::JsonKind;
 use crate::questions::evaluate::compare::CompareReport;
 use crate::{
-    CheckReport, CheckRequest, CompareRequest, EvaluateForceRequest, EvaluateReconstructionReport,
-    EvaluateReconstructionRequest, EvaluateResponseRequest, FineTuneRequest, ForceEvaluation,
-    ImpactReport, ImpactRequest, Library, Observer, PredictForceReport, PredictForceRequest,
-    PredictMotionReport, PredictMotionRequest, Provenance, Question, ReconstructReport,
-    ReconstructRequest, ResponseTrainingReport, SimulateDatasetReport, SimulateDatasetRequest,
-    SimulateReport, SimulateRequest, StudyError, TrainForceReport, TrainForceRequest,
-    TrainResponseRequest,
+    Answer, CheckReport, CheckRequest, CompareRequest, EvaluateForceRequest,
+    EvaluateReconstructionReport, EvaluateReconstructionRequest, EvaluateResponseRequest,
+    FineTuneRequest, ForceEvaluation, ImpactReport, ImpactRequest, Library, Observer,
+    PredictForceReport, PredictForceRequest, PredictMotionReport, PredictMotionRequest, Provenance,
+    Question, ReconstructReport, ReconstructRequest, ResponseTrainingReport, SimulateDatasetReport,
+    SimulateDatasetRequest, SimulateReport, SimulateRequest, StudyError, TrainForceReport,
+    TrainForceRequest, TrainResponseRequest,
 };
 use impactlab_core::data::Outcome;
+use impactlab_core::uncertainty::Caveats;
 
 macro_rules! questions {
     ($(#[doc = $meaning:literal] $variant:ident($request:ty) -> $report:ty;)+) => {
@@ -29,19 +30,58 @@ macro_rules! questions {
         #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
         #[serde(untagged)]
         pub enum Report {
-            $(#[doc = $meaning] $variant(Box<$report>),)+
+            $(#[doc = $meaning] $variant(Box<Answer<$report>>),)+
         }
 
         /// The answer to any question, with what its report was made from and figures are drawn from.
-        pub enum Answer {
+        pub enum AnyAnswer {
             $(#[doc = $meaning] $variant(Box<<$request as Question>::Answer>),)+
         }
 
-        impl Answer {
+        impl Report {
+            /// What restricts the answer and what it rests on.
+            pub fn caveats(&self) -> &Caveats {
+                match self {
+                    $(Self::$variant(answer) => &answer.caveats,)+
+                }
+            }
+
+            /// Where the answer comes from.
+            pub fn provenance(&self) -> &Provenance {
+                match self {
+                    $(Self::$variant(answer) => &answer.provenance,)+
+                }
+            }
+        }
+
+        impl AnyAnswer {
             /// What is told of the answer.
             pub fn into_report(self) -> Report {
                 match self {
                     $(Self::$variant(answer) => Report::$variant(Box::new(answer.report)),)+
+                }
+            }
+
+            /// What restricts the answer and what it rests on.
+            pub fn caveats(&self) -> &Caveats {
+                match self {
+                    $(Self::$variant(answer) => &answer.report.caveats,)+
+                }
+            }
+
+            /// Where the answer comes from.
+            pub fn provenance(&self) -> &Provenance {
+                match self {
+                    $(Self::$variant(answer) => &answer.report.provenance,)+
+                }
+            }
+        }
+
+        /// An answer is written as it is told.
+        impl Serialize for AnyAnswer {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                match self {
+                    $(Self::$variant(answer) => answer.report.serialize(serializer),)+
                 }
             }
         }
@@ -49,7 +89,7 @@ macro_rules! questions {
         impl Request {
             /// Every kind of question with the schemas of question and answer.
             pub(crate) fn kinds() -> Vec<JsonKind> {
-                vec![$(JsonKind::question::<$request, $report>(stringify!($variant), $meaning),)+]
+                vec![$(JsonKind::question::<$request, Answer<$report>>(stringify!($variant), $meaning),)+]
             }
 
             /// Answers the question, whichever it is.
@@ -60,11 +100,11 @@ macro_rules! questions {
                 &self,
                 library: &Library,
                 observer: &mut Observer<'_>,
-            ) -> Result<Outcome<Answer>, StudyError> {
+            ) -> Result<Outcome<AnyAnswer>, StudyError> {
                 match self {
                     $(Self::$variant(request) => {
                         let answer = request.answer(library, observer)?;
-                        Ok(answer.map(|answer| Answer::$variant(Box::new(answer))))
+                        Ok(answer.map(|answer| AnyAnswer::$variant(Box::new(answer))))
                     })+
                 }
             }
@@ -78,7 +118,7 @@ macro_rules! questions {
                 library: &Library,
                 observer: &mut Observer<'_>,
             ) -> Result<Outcome<Report>, StudyError> {
-                Ok(self.answer(library, observer)?.map(Answer::into_report))
+                Ok(self.answer(library, observer)?.map(AnyAnswer::into_report))
             }
         }
 
@@ -119,24 +159,4 @@ questions! {
     EvaluateResponse(EvaluateResponseRequest) -> CompareReport;
     /// Which response model does best.
     Compare(CompareRequest) -> CompareReport;
-}
-
-impl Report {
-    /// Where the answer comes from.
-    pub fn provenance(&self) -> &Provenance {
-        match self {
-            Self::Check(report) => &report.provenance,
-            Self::Impact(report) => &report.provenance,
-            Self::Simulate(report) => &report.provenance,
-            Self::SimulateDataset(report) => &report.provenance,
-            Self::PredictForce(report) => &report.provenance,
-            Self::PredictMotion(report) => &report.provenance,
-            Self::Reconstruct(report) => &report.provenance,
-            Self::TrainForce(report) => &report.provenance,
-            Self::TrainResponse(report) | Self::FineTune(report) => &report.provenance,
-            Self::EvaluateForce(report) => report.provenance(),
-            Self::EvaluateReconstruction(report) => &report.provenance,
-            Self::EvaluateResponse(report) | Self::Compare(report) => &report.provenance,
-        }
-    }
 }

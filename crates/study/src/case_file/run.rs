@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::case_file::{CaseError, CaseFile, Change, UsedModel, Variant};
-use crate::{Answer, Library, Observer, Report, Request, StudyError};
+use crate::{AnyAnswer, Library, Observer, Report, Request, StudyError};
 use impactlab_core::data::Outcome;
 use impactlab_core::data::write::ModelDigest;
 use impactlab_core::error_chain;
@@ -45,7 +45,7 @@ pub struct AnsweredQuestion {
 }
 
 /// Is told of the variant, the question, and its answer or why there is none.
-pub type AnswerListener<'a> = dyn FnMut(&Variant, &Request, Result<&Answer, &StudyError>) + 'a;
+pub type AnswerListener<'a> = dyn FnMut(&Variant, &Request, Result<&AnyAnswer, &StudyError>) + 'a;
 
 impl CaseFile {
     /// Answers every question of the variants. A question without an answer does not keep the others from

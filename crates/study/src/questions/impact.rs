@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::caveats::restrictions;
-use crate::{Library, Observer, Provenance, Question, ScenarioChoice, StudyError};
+use crate::{Answer, Library, Observer, Provenance, Question, ScenarioChoice, StudyError};
 use impactlab_core::collision::{
     BodyAfter, FrictionModel, ImpactSolution, PrincipalDirectionOfForce, Regime, RestitutionForm,
     Scenario, StruckSurface,
@@ -71,12 +71,6 @@ pub struct ImpactReport {
     /// The striking vehicle after the impact.
     #[serde(rename = "bullet")]
     pub striking: BodyReport,
-    /// What restricts the answer and what it rests on.
-    #[serde(flatten)]
-    pub caveats: Caveats,
-    /// Version of the program, seed and trained networks.
-    #[serde(flatten)]
-    pub provenance: Provenance,
 }
 
 /// One vehicle after the impact, world axes.
@@ -104,7 +98,7 @@ pub struct BodyReport {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImpactAnswer {
     /// What is told.
-    pub report: ImpactReport,
+    pub report: Answer<ImpactReport>,
     /// The scenario that was solved.
     pub scenario: Scenario,
     /// Its solution.
@@ -113,14 +107,14 @@ pub struct ImpactAnswer {
 
 impl Question for ImpactRequest {
     type Answer = ImpactAnswer;
-    type Report = ImpactReport;
+    type Report = Answer<ImpactReport>;
     const NAME: &'static str = "impact";
 
     fn check(&self) -> Result<(), StudyError> {
         self.scenario.check()
     }
 
-    fn report(answer: &Self::Answer) -> &ImpactReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 
@@ -164,9 +158,8 @@ impl Question for ImpactRequest {
             dissipated_energy_j: solution.dissipated_energy_j,
             struck: (&solution.struck).into(),
             striking: (&solution.striking).into(),
-            caveats,
-            provenance: Provenance::default(),
         };
+        let report = Answer { report, caveats, provenance: Provenance::default() };
         Ok(Outcome::Complete(ImpactAnswer { report, scenario, solution }))
     }
 }

@@ -16,8 +16,8 @@ use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::{marginal_figure, pair_figure};
 use impactlab_draw::FigureOptions;
 use impactlab_reconstruct::ReconstructedQuantity;
-use impactlab_study::ReconstructReport;
 use impactlab_study::facts::FactTable;
+use impactlab_study::{Answer, ReconstructReport};
 
 /// Heights of the plots, points.
 const MARGINAL_HEIGHT: f32 = 190.0;
@@ -72,7 +72,7 @@ pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 /// Draws what restricts the answer, the table of quantities, and what was assumed.
 fn numbers_ui(
     ui: &mut Ui,
-    report: &ReconstructReport,
+    report: &Answer<ReconstructReport>,
     units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {

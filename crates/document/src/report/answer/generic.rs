@@ -8,21 +8,20 @@ use crate::report::flatten::{FlatRow, flatten};
 use crate::report::numbers::fill;
 use crate::report::parts::Part;
 use crate::report::{Block, Table};
-use impactlab_core::uncertainty::Caveats;
-use impactlab_study::{Answer, Provenance, Request};
+use impactlab_study::{AnyAnswer, Request};
 
 /// What is told in sections of its own.
 const ELSEWHERE: [&str; 7] =
     ["caveats", "notes", "badges", "assumptions", "version", "seed", "model_digests"];
 
 /// What an answer contributes that has no text of its own.
-pub(super) fn part(request: &Request, answer: &Answer, context: Context<'_>) -> Part {
+pub(super) fn part(request: &Request, answer: &AnyAnswer, context: Context<'_>) -> Part {
     let wording = context.wording;
     let words = wording.words;
     let question = serde_json::to_value(request).unwrap_or_default();
     let kind = question.get("question").and_then(Value::as_str).unwrap_or_default();
     let kind = wording.key(kind);
-    let (mut report, caveats, provenance) = taken_apart(answer);
+    let mut report = serde_json::to_value(answer).unwrap_or_default();
     if let Value::Object(fields) = &mut report {
         fields.retain(|name, _| !ELSEWHERE.contains(&name.as_str()));
     }
@@ -36,42 +35,8 @@ pub(super) fn part(request: &Request, answer: &Answer, context: Context<'_>) -> 
         ],
         kind: kind.clone(),
         title: kind,
-        caveats: caveats.clone(),
-        provenance: provenance_of(provenance, &[], wording),
+        caveats: answer.caveats().clone(),
+        provenance: provenance_of(answer.provenance(), &[], wording),
         ..Part::default()
     }
-}
-
-/// All that is in an answer, what restricts it and where it comes from.
-fn taken_apart(answer: &Answer) -> (Value, &Caveats, &Provenance) {
-    macro_rules! parts {
-        ($($kind:ident),+) => {
-            match answer {
-                $(Answer::$kind(answer) => {
-                    let report = &answer.report;
-                    (serde_json::to_value(report), &report.caveats, &report.provenance)
-                })+
-                Answer::EvaluateForce(answer) => {
-                    let report = &answer.report;
-                    (serde_json::to_value(report), report.caveats(), report.provenance())
-                }
-            }
-        };
-    }
-    let (value, caveats, provenance) = parts!(
-        Check,
-        Impact,
-        Simulate,
-        SimulateDataset,
-        PredictForce,
-        PredictMotion,
-        Reconstruct,
-        TrainForce,
-        TrainResponse,
-        FineTune,
-        EvaluateReconstruction,
-        EvaluateResponse,
-        Compare
-    );
-    (value.unwrap_or_default(), caveats, provenance)
 }

@@ -32,7 +32,7 @@ use crate::report::answer::stills::Grounds;
 use crate::report::numbers::Wording;
 use crate::report::parts::Part;
 use crate::report::paths::ShownPaths;
-use impactlab_study::{Answer, Request};
+use impactlab_study::{AnyAnswer, Request};
 
 /// Language and names with which an answer is written.
 #[derive(Clone, Copy)]
@@ -47,17 +47,17 @@ pub(super) struct Context<'a> {
 
 /// What an answer contributes. A kind of answer that has no text of its own is told as a table of all
 /// that is in it.
-pub(super) fn part_of(request: &Request, answer: &Answer, context: Context<'_>) -> Part {
+pub(super) fn part_of(request: &Request, answer: &AnyAnswer, context: Context<'_>) -> Part {
     let part = match (request, answer) {
-        (_, Answer::Impact(answer)) => impact::part(answer, context),
-        (Request::Simulate(request), Answer::Simulate(answer)) => {
+        (_, AnyAnswer::Impact(answer)) => impact::part(answer, context),
+        (Request::Simulate(request), AnyAnswer::Simulate(answer)) => {
             simulate::part(request, answer, context)
         }
-        (_, Answer::PredictForce(answer)) => predict_force::part(answer, context),
-        (Request::PredictMotion(request), Answer::PredictMotion(answer)) => {
+        (_, AnyAnswer::PredictForce(answer)) => predict_force::part(answer, context),
+        (Request::PredictMotion(request), AnyAnswer::PredictMotion(answer)) => {
             predict_motion::part(request, answer, context)
         }
-        (Request::Reconstruct(request), Answer::Reconstruct(answer)) => {
+        (Request::Reconstruct(request), AnyAnswer::Reconstruct(answer)) => {
             reconstruct::part(request, answer, context)
         }
         (request, other) => generic::part(request, other, context),

@@ -5,13 +5,12 @@ use std::path::{Path, PathBuf};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
-use crate::{InputKind, Provenance, word};
+use crate::{InputKind, word};
 use impactlab_core::data::{
     Case, Channel, ColumnProposal, ColumnUse, Dataset, Flag, ForceHistory, Loaded, Severity,
     contact_interval, map_from_proposals,
 };
 use impactlab_core::error_chain;
-use impactlab_core::uncertainty::Caveats;
 
 /// All that was found.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
@@ -26,12 +25,6 @@ pub struct CheckReport {
     pub models: Vec<InputFileReport>,
     /// What cannot be read.
     pub problems: Vec<PathProblem>,
-    /// What restricts the answer and what it rests on.
-    #[serde(flatten)]
-    pub caveats: Caveats,
-    /// Version of the program, seed and trained networks.
-    #[serde(flatten)]
-    pub provenance: Provenance,
 }
 
 /// A file that holds no data of its own: a case, evidence, a scenario, a vehicle, a site and others.

@@ -9,14 +9,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::ask::question::progress_of;
 use crate::{
-    CheckReport, DatasetReport, FileReport, InputError, InputFile, InputFileReport, InputKind,
-    Library, Observer, PathProblem, ProposedColumn, Question, StudyError,
+    Answer, CheckReport, DatasetReport, FileReport, InputError, InputFile, InputFileReport,
+    InputKind, Library, Observer, PathProblem, ProposedColumn, Provenance, Question, StudyError,
 };
 use impactlab_core::data::{
     ColumnMap, DataError, Dataset, Flag, Loaded, Opened, Outcome, check_case, check_file, open,
     propose_columns, read_any_series,
 };
 use impactlab_core::error_chain;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::vehicle::VehicleParameters;
 
 /// Asks what is in files and data sets, in which units, and what is wrong with them.
@@ -36,7 +37,7 @@ pub struct CheckRequest {
 #[derive(Debug)]
 pub struct CheckAnswer {
     /// What is told.
-    pub report: CheckReport,
+    pub report: Answer<CheckReport>,
     /// The data that could be read.
     pub items: Vec<CheckedItem>,
 }
@@ -82,14 +83,14 @@ pub struct CheckedFile {
 
 impl Question for CheckRequest {
     type Answer = CheckAnswer;
-    type Report = CheckReport;
+    type Report = Answer<CheckReport>;
     const NAME: &'static str = "check";
 
     fn check(&self) -> Result<(), StudyError> {
         Ok(())
     }
 
-    fn report(answer: &Self::Answer) -> &CheckReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 
@@ -98,11 +99,11 @@ impl Question for CheckRequest {
         _library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<CheckAnswer>, StudyError> {
-        let mut answer = CheckAnswer { report: CheckReport::default(), items: Vec::new() };
+        let (mut report, mut all) = (CheckReport::default(), Vec::new());
         for path in &self.paths {
             let kind = InputKind::from_path(path);
             if !kind.is_data() {
-                answer.report.add_input_file(path, kind);
+                report.add_input_file(path, kind);
                 continue;
             }
             if self.map.is_some() && path.is_dir() {
@@ -111,16 +112,18 @@ impl Question for CheckRequest {
             match check_path(path, self.map.as_ref(), observer) {
                 Ok(Outcome::Cancelled) => return Ok(Outcome::Cancelled),
                 Ok(Outcome::Complete((items, problems))) => {
-                    answer.report.add(&items, self.all);
+                    report.add(&items, self.all);
                     let problems = problems.iter().map(|error| problem(path, kind, error));
-                    answer.report.problems.extend(problems);
-                    answer.items.extend(items);
+                    report.problems.extend(problems);
+                    all.extend(items);
                 }
-                Err(error) => answer.report.problems.push(problem(path, kind, &error)),
+                Err(error) => report.problems.push(problem(path, kind, &error)),
             }
         }
-        answer.report.ok = !answer.report.has_problems();
-        Ok(Outcome::Complete(answer))
+        report.ok = !report.has_problems();
+        let (caveats, provenance) = (Caveats::default(), Provenance::default());
+        let report = Answer { report, caveats, provenance };
+        Ok(Outcome::Complete(CheckAnswer { report, items: all }))
     }
 }
 

@@ -11,8 +11,8 @@ use crate::ask::inputs::{UsableCases, data_name, dataset_folders, response_cases
 use crate::ask::question::progress_of;
 use crate::caveats::restrictions;
 use crate::{
-    BadCases, ConfigChoice, Library, ModelChoice, Observer, Provenance, Question, StudyError,
-    VehicleChoice,
+    Answer, BadCases, ConfigChoice, Library, ModelChoice, Observer, Provenance, Question,
+    StudyError, VehicleChoice,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::data::write::ModelDigest;
@@ -130,7 +130,7 @@ impl CompareRequest {
     }
 }
 
-impl CompareReport {
+impl Answer<CompareReport> {
     /// Version of the program, seed and the networks that were given.
     pub fn provenance_with_seed(&self) -> Provenance {
         Provenance { seed: Some(self.comparison.seed), ..self.provenance.clone() }
@@ -145,19 +145,13 @@ pub struct CompareReport {
     pub comparison: Comparison,
     /// Cases that were left out, and why.
     pub left_out: Vec<String>,
-    /// What restricts the answer and what it rests on.
-    #[serde(flatten)]
-    pub caveats: Caveats,
-    /// Version of the program, seed and trained networks.
-    #[serde(flatten)]
-    pub provenance: Provenance,
 }
 
 /// A finished comparison, or the evaluation of one model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompareAnswer {
     /// What is told.
-    pub report: CompareReport,
+    pub report: Answer<CompareReport>,
 }
 
 impl CompareAnswer {
@@ -169,13 +163,14 @@ impl CompareAnswer {
     ) -> Self {
         let provenance = Provenance::default().with_models(models);
         caveats.extend(restrictions::left_out_caveat(left_out.len(), "cases"));
-        Self { report: CompareReport { comparison, left_out, caveats, provenance } }
+        let report = CompareReport { comparison, left_out };
+        Self { report: Answer { report, caveats, provenance } }
     }
 }
 
 impl Question for CompareRequest {
     type Answer = CompareAnswer;
-    type Report = CompareReport;
+    type Report = Answer<CompareReport>;
     const NAME: &'static str = "compare";
 
     fn check(&self) -> Result<(), StudyError> {
@@ -186,7 +181,7 @@ impl Question for CompareRequest {
         check("choices", &CHOICES, self.choices as f64)
     }
 
-    fn report(answer: &Self::Answer) -> &CompareReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 

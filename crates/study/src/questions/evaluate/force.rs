@@ -11,7 +11,7 @@ use crate::ask::inputs::{UsableCases, force_cases};
 use crate::ask::question::progress_of;
 use crate::caveats::restrictions;
 use crate::{
-    BadCases, EvaluatedCases, Event, Library, ModelChoice, Observer, Provenance, Question,
+    Answer, BadCases, EvaluatedCases, Event, Library, ModelChoice, Observer, Provenance, Question,
     StudyError,
 };
 use impactlab_core::data::Outcome;
@@ -106,24 +106,6 @@ pub enum ForceEvaluation {
     Folds(Box<CrossValidateForceReport>),
 }
 
-impl ForceEvaluation {
-    /// What restricts it and what it rests on.
-    pub fn caveats(&self) -> &Caveats {
-        match self {
-            Self::Cases(report) => &report.caveats,
-            Self::Folds(report) => &report.caveats,
-        }
-    }
-
-    /// Version of the program, seed and the network.
-    pub fn provenance(&self) -> &Provenance {
-        match self {
-            Self::Cases(report) => &report.provenance,
-            Self::Folds(report) => &report.provenance,
-        }
-    }
-}
-
 /// A force network on cases of a data set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EvaluateForceReport {
@@ -142,12 +124,6 @@ pub struct EvaluateForceReport {
     pub evaluation: Evaluation,
     /// Cases that were left out, and why.
     pub left_out: Vec<String>,
-    /// What restricts the answer and what it rests on.
-    #[serde(flatten)]
-    pub caveats: Caveats,
-    /// Version of the program, seed and trained networks.
-    #[serde(flatten)]
-    pub provenance: Provenance,
 }
 
 /// A cross-validation over the training cases of a force network.
@@ -156,19 +132,13 @@ pub struct CrossValidateForceReport {
     /// The metrics over all folds, and of each fold.
     #[serde(flatten)]
     pub validation: CrossValidation,
-    /// What restricts the answer and what it rests on.
-    #[serde(flatten)]
-    pub caveats: Caveats,
-    /// Version of the program, seed and trained networks.
-    #[serde(flatten)]
-    pub provenance: Provenance,
 }
 
 /// A finished evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluateForceAnswer {
     /// What is told.
-    pub report: ForceEvaluation,
+    pub report: Answer<ForceEvaluation>,
     /// Single cases, where figures were asked for.
     pub cases: Option<EvaluatedForceCases>,
 }
@@ -184,14 +154,14 @@ pub struct EvaluatedForceCases {
 
 impl Question for EvaluateForceRequest {
     type Answer = EvaluateForceAnswer;
-    type Report = ForceEvaluation;
+    type Report = Answer<ForceEvaluation>;
     const NAME: &'static str = "evaluate";
 
     fn check(&self) -> Result<(), StudyError> {
         self.cross_validate.map_or(Ok(()), |n| check_count("cross_validate", &FOLDS, n))
     }
 
-    fn report(answer: &Self::Answer) -> &ForceEvaluation {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 
@@ -219,11 +189,10 @@ impl Question for EvaluateForceRequest {
                 let what = format!("data set {}", self.data.display());
                 let reason = "a cross-validation uses the training cases that the model holds";
                 let caveats = Caveats::from(vec![Caveat::not_used(what, reason)]);
-                let report = CrossValidateForceReport { validation, caveats, provenance };
-                EvaluateForceAnswer {
-                    report: ForceEvaluation::Folds(Box::new(report)),
-                    cases: None,
-                }
+                let report = CrossValidateForceReport { validation };
+                let report = ForceEvaluation::Folds(Box::new(report));
+                let report = Answer { report, caveats, provenance };
+                EvaluateForceAnswer { report, cases: None }
             }));
         }
         let cases = self.test_cases(&model, (library, observer))?;
@@ -251,10 +220,12 @@ impl Question for EvaluateForceRequest {
             n_trained_on,
             evaluation,
             left_out,
+        };
+        let report = Answer {
+            report: ForceEvaluation::Cases(Box::new(report)),
             caveats: trained_on.chain(restrictions::left_out_caveat(n_left_out, "cases")).collect(),
             provenance,
         };
-        let report = ForceEvaluation::Cases(Box::new(report));
         Ok(Outcome::Complete(EvaluateForceAnswer { report, cases }))
     }
 }

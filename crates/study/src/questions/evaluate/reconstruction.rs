@@ -9,12 +9,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
 use crate::questions::evaluate::reconstruction_estimates::{Asked, CaseEstimates, FinishedCases};
-use crate::{Event, Library, Observer, Provenance, Question, ReconstructRequest, StudyError};
+use crate::{
+    Answer, Event, Library, Observer, Provenance, Question, ReconstructRequest, StudyError,
+};
 use impactlab_core::data::Outcome;
 use impactlab_core::error_chain;
 use impactlab_core::jobs::Progress;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
-use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
+use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_reconstruct::evaluate::{
     CaseScore, KnownEvidence, MethodSummary, ReconstructionMethod, StagedCollisions, StagedSplit,
     TrueSpeeds,
@@ -80,19 +82,13 @@ pub struct EvaluateReconstructionReport {
     pub cases: Vec<CaseScore>,
     /// Cases that have no answer, and why.
     pub left_out: Vec<String>,
-    /// What restricts the answer and what it rests on.
-    #[serde(flatten)]
-    pub caveats: Caveats,
-    /// Version of the program, seed.
-    #[serde(flatten)]
-    pub provenance: Provenance,
 }
 
 /// A finished evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluateReconstructionAnswer {
     /// What is told.
-    pub report: EvaluateReconstructionReport,
+    pub report: Answer<EvaluateReconstructionReport>,
 }
 
 impl EvaluateReconstructionRequest {
@@ -212,14 +208,14 @@ impl Estimated {
 
 impl Question for EvaluateReconstructionRequest {
     type Answer = EvaluateReconstructionAnswer;
-    type Report = EvaluateReconstructionReport;
+    type Report = Answer<EvaluateReconstructionReport>;
     const NAME: &'static str = "evaluate";
 
     fn check(&self) -> Result<(), StudyError> {
         check_count("particles", &RECONSTRUCTION_PARTICLES, self.particles)
     }
 
-    fn report(answer: &Self::Answer) -> &EvaluateReconstructionReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 
@@ -246,8 +242,12 @@ impl Question for EvaluateReconstructionRequest {
             stopped,
             summary: MethodSummary::from_scores(&scores),
             cases: scores,
-            caveats: of_missing(n_answers, cases.len() * self.known.len()).into_iter().collect(),
             left_out,
+        };
+        let missing = of_missing(n_answers, cases.len() * self.known.len());
+        let report = Answer {
+            report,
+            caveats: missing.into_iter().collect(),
             provenance: Provenance::of_seed(self.seed),
         };
         Ok(Outcome::Complete(EvaluateReconstructionAnswer { report }))

@@ -14,7 +14,7 @@ fn request() -> EvaluateReconstructionRequest {
 }
 
 /// The report of an evaluation that is stopped once a share of the work is done.
-fn stopped_at(share: f32) -> Option<EvaluateReconstructionReport> {
+fn stopped_at(share: f32) -> Option<Answer<EvaluateReconstructionReport>> {
     let mut stop = |event: Event<'_>| match event {
         Event::Progress(told) if told.fraction().is_some_and(|done| done >= share) => {
             ControlFlow::Break(())

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::ask::inputs::{UsableCases, data_name, response_cases};
 use crate::{
-    BadCases, CompareAnswer, CompareReport, EvaluatedCases, Library, ModelChoice, Observer,
+    Answer, BadCases, CompareAnswer, CompareReport, EvaluatedCases, Library, ModelChoice, Observer,
     Question, StudyError, VehicleChoice,
 };
 use impactlab_core::data::Outcome;
@@ -73,14 +73,14 @@ pub type EvaluateResponseAnswer = CompareAnswer;
 
 impl Question for EvaluateResponseRequest {
     type Answer = EvaluateResponseAnswer;
-    type Report = CompareReport;
+    type Report = Answer<CompareReport>;
     const NAME: &'static str = "evaluate";
 
     fn check(&self) -> Result<(), StudyError> {
         Ok(())
     }
 
-    fn report(answer: &Self::Answer) -> &CompareReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 

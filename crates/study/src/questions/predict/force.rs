@@ -10,15 +10,15 @@ use crate::caveats::restrictions;
 use crate::caveats::unused::by_force_network;
 use crate::questions::simulate::dataset::take_case;
 use crate::{
-    ImpliedContactReport, Library, ModelChoice, Observer, Provenance, Question, ScenarioChoice,
-    StudyError,
+    Answer, ImpliedContactReport, Library, ModelChoice, Observer, Provenance, Question,
+    ScenarioChoice, StudyError,
 };
 use impactlab_core::collision::{
     DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, Impact, PrincipalDirectionOfForce,
 };
 use impactlab_core::data::{DatasetKind, Outcome};
 use impactlab_core::ranges::SAMPLES;
-use impactlab_core::uncertainty::{Caveat, Caveats};
+use impactlab_core::uncertainty::Caveat;
 use impactlab_core::units::Estimate;
 use impactlab_networks::force::{ForceError, ForcePrediction, ForceScenario, OutsideTraining};
 
@@ -107,12 +107,6 @@ pub struct PredictForceReport {
     pub is_contact_open: bool,
     /// Whether the striking vehicle's body is open and drawn from that of the training cases.
     pub is_body_open: bool,
-    /// What restricts the answer and what it rests on.
-    #[serde(flatten)]
-    pub caveats: Caveats,
-    /// Version of the program, seed and trained networks.
-    #[serde(flatten)]
-    pub provenance: Provenance,
 }
 
 /// An impulse with its intervals, N s.
@@ -132,7 +126,7 @@ pub struct ImpulseReport {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PredictForceAnswer {
     /// What is told.
-    pub report: PredictForceReport,
+    pub report: Answer<PredictForceReport>,
     /// The collision as the network was asked.
     pub collision: ForceScenario,
     /// Bands, mean and whole curves.
@@ -212,7 +206,7 @@ impl ForceQuestion {
 
 impl Question for PredictForceRequest {
     type Answer = PredictForceAnswer;
-    type Report = PredictForceReport;
+    type Report = Answer<PredictForceReport>;
     const NAME: &'static str = "predict force";
 
     fn check(&self) -> Result<(), StudyError> {
@@ -224,7 +218,7 @@ impl Question for PredictForceRequest {
         }
     }
 
-    fn report(answer: &Self::Answer) -> &PredictForceReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 
@@ -261,12 +255,12 @@ impl Question for PredictForceRequest {
         let provenance =
             Provenance::of_seed(self.seed).with_models([library.force_model_digest(&self.model)?]);
         let mut report = PredictForceReport::of(name, &self.model, (&prediction, &forecast));
-        report.provenance = provenance;
         report.implied_contact = impact.and_then(|(impact, heading_rad)| {
             ImpliedContactReport::of(&prediction, (&impact, heading_rad), self.seed)
         });
-        report.caveats = restrictions::predicted_force_caveats(&report, &prediction.caveats).into();
-        report.caveats.extend(unused.into_iter().chain(overlap));
+        let restrictions = restrictions::predicted_force_caveats(&report, &prediction.caveats);
+        let caveats = restrictions.into_iter().chain(unused).chain(overlap).collect();
+        let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(PredictForceAnswer { report, collision, forecast, prediction }))
     }
 }
@@ -299,8 +293,6 @@ impl PredictForceReport {
             outside_training: prediction.outside.clone(),
             is_contact_open: prediction.is_contact_open,
             is_body_open: prediction.is_body_open,
-            caveats: Caveats::default(),
-            provenance: Provenance::default(),
         }
     }
 }

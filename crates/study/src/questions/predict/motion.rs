@@ -15,9 +15,9 @@ use crate::caveats::restrictions;
 use crate::caveats::unused::{by_force_network, by_forecast, zones_by_network};
 use crate::questions::simulate::dataset::take_case;
 use crate::{
-    DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, Library, ModelChoice, MotionSource,
-    Observer, Provenance, Question, SeriesFile, SimulateAnswer, SimulateRequest, StudyError,
-    VehicleChoice,
+    Answer, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, Library, ModelChoice,
+    MotionSource, Observer, Provenance, Question, SeriesFile, SimulateAnswer, SimulateRequest,
+    StudyError, VehicleChoice,
 };
 use impactlab_core::data::{DatasetKind, ForceHistory, Outcome, check_contact_within};
 use impactlab_core::ranges::{DRAWS, FORECAST_DURATION, REST_LIMIT};
@@ -109,19 +109,13 @@ pub struct PredictMotionReport {
     pub applicability: f64,
     /// Where vehicle, road or impact lie outside what the response network has learned from.
     pub outside_domain: Vec<OutsideDomain>,
-    /// What restricts the answer and what it rests on.
-    #[serde(flatten)]
-    pub caveats: Caveats,
-    /// Version of the program, seed and trained networks.
-    #[serde(flatten)]
-    pub provenance: Provenance,
 }
 
 /// A predicted motion.
 #[derive(Debug)]
 pub struct PredictMotionAnswer {
     /// What is told.
-    pub report: PredictMotionReport,
+    pub report: Answer<PredictMotionReport>,
     /// The 4DOF simulation, the record and the force of the same source.
     pub analysis: Analysis,
     /// The distribution of the motion.
@@ -175,7 +169,7 @@ impl PredictMotionRequest {
 
 impl Question for PredictMotionRequest {
     type Answer = PredictMotionAnswer;
-    type Report = PredictMotionReport;
+    type Report = Answer<PredictMotionReport>;
     const NAME: &'static str = "predict motion";
 
     fn check(&self) -> Result<(), StudyError> {
@@ -204,7 +198,7 @@ impl Question for PredictMotionRequest {
         (coarse != *self && is_drawn && !self.motion.until_rest).then_some(coarse)
     }
 
-    fn report(answer: &Self::Answer) -> &PredictMotionReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 
@@ -279,18 +273,17 @@ impl Question for PredictMotionRequest {
         let mut caveats: Caveats = simulated.caveats.into_iter().filter(holds_here).collect();
         caveats.extend(unused);
         let provenance = self.provenance(library)?;
-        let known = (caveats, provenance);
         let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.caveats);
-        let mut report = PredictMotionReport {
+        let report = PredictMotionReport {
             implied_contact: self.implied_contact(&forecast)?,
             flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
-            ..self.report(&analysis.name, struck, (&forecast, known))
+            ..self.report(&analysis.name, struck, &forecast)
         };
-        let restrictions = restrictions::predicted_motion_caveats(&report, predicted);
-        report.caveats.extend(restrictions);
+        caveats.extend(restrictions::predicted_motion_caveats(&report, predicted));
         let has_same_force = self.force == ForceSource::Given;
         let apart = restrictions::disagreement_caveat((&forecast, &analysis), has_same_force);
-        report.caveats.extend(apart.into_iter().chain(cut));
+        caveats.extend(apart.into_iter().chain(cut));
+        let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
     }
 }
@@ -383,7 +376,7 @@ impl PredictMotionRequest {
         &self,
         name: &str,
         struck: &StruckVehicle,
-        (forecast, (caveats, provenance)): (&MotionForecast, (Caveats, Provenance)),
+        forecast: &MotionForecast,
     ) -> PredictMotionReport {
         let predicted = forecast.force.as_ref();
         PredictMotionReport {
@@ -412,8 +405,6 @@ impl PredictMotionRequest {
             outside_training: predicted.map_or_else(Vec::new, |force| force.outside.clone()),
             applicability: forecast.applicability.value,
             outside_domain: forecast.applicability.outside.clone(),
-            caveats,
-            provenance,
         }
     }
 }

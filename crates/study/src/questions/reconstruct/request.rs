@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
 use crate::{
-    Event, FrictionZoneReport, InputKind, Library, Observer, Provenance, Question, Sampling,
-    StudyError, VehicleChoice,
+    Answer, Event, FrictionZoneReport, InputKind, Library, Observer, Provenance, Question,
+    Sampling, StudyError, VehicleChoice,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::jobs::Progress;
@@ -107,19 +107,13 @@ pub struct ReconstructReport {
     pub friction_zones: Vec<FrictionZoneReport>,
     /// What was taken to be likely before.
     pub priors: Vec<PriorComponent>,
-    /// What restricts the answer and what it rests on.
-    #[serde(flatten)]
-    pub caveats: Caveats,
-    /// Version of the program, seed.
-    #[serde(flatten)]
-    pub provenance: Provenance,
 }
 
 /// A reconstruction.
 #[derive(Debug, Clone)]
 pub struct ReconstructAnswer {
     /// What is told.
-    pub report: ReconstructReport,
+    pub report: Answer<ReconstructReport>,
     /// The posterior that was sampled.
     pub target: ReconstructionTarget,
     /// Its particles.
@@ -237,14 +231,14 @@ impl EvidenceChoice {
 
 impl Question for ReconstructRequest {
     type Answer = ReconstructAnswer;
-    type Report = ReconstructReport;
+    type Report = Answer<ReconstructReport>;
     const NAME: &'static str = "reconstruct";
 
     fn check(&self) -> Result<(), StudyError> {
         check_count("particles", &RECONSTRUCTION_PARTICLES, self.particles)
     }
 
-    fn report(answer: &Self::Answer) -> &ReconstructReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 
@@ -307,9 +301,8 @@ impl Question for ReconstructRequest {
             by_hand_m_s,
             friction_zones,
             priors: target.model().prior().components().to_vec(),
-            caveats,
-            provenance: Provenance::of_seed(self.seed),
         };
+        let report = Answer { report, caveats, provenance: Provenance::of_seed(self.seed) };
         Ok(Outcome::Complete(ReconstructAnswer { report, target, particles, posterior }))
     }
 }

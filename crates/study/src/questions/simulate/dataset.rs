@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize};
 use crate::ask::inputs::{OpenVehicle, struck_vehicle};
 use crate::ask::question::progress_of;
 use crate::caveats::restrictions;
-use crate::{FlagReport, Library, Observer, Provenance, Question, StudyError, VehicleChoice, word};
+use crate::{
+    Answer, FlagReport, Library, Observer, Provenance, Question, StudyError, VehicleChoice, word,
+};
 use impactlab_core::compare::{DatasetReplay, ErrorSummary, MotionError, Replay, replay_dataset};
 use impactlab_core::data::{DataError, Dataset, DatasetKind, Outcome};
 use impactlab_core::error_chain;
@@ -56,12 +58,6 @@ pub struct SimulateDatasetReport {
     pub not_spinning: Option<ErrorSummary>,
     /// Cases that could not be read or simulated, and why.
     pub failures: Vec<String>,
-    /// What restricts the answer and what it rests on.
-    #[serde(flatten)]
-    pub caveats: Caveats,
-    /// Version of the program, seed and trained networks.
-    #[serde(flatten)]
-    pub provenance: Provenance,
 }
 
 /// One case, simulated and compared.
@@ -84,21 +80,21 @@ pub struct ReplayedCaseReport {
 #[derive(Debug)]
 pub struct SimulateDatasetAnswer {
     /// What is told.
-    pub report: SimulateDatasetReport,
+    pub report: Answer<SimulateDatasetReport>,
     /// The motions.
     pub replay: DatasetReplay,
 }
 
 impl Question for SimulateDatasetRequest {
     type Answer = SimulateDatasetAnswer;
-    type Report = SimulateDatasetReport;
+    type Report = Answer<SimulateDatasetReport>;
     const NAME: &'static str = "simulate";
 
     fn check(&self) -> Result<(), StudyError> {
         Ok(())
     }
 
-    fn report(answer: &Self::Answer) -> &SimulateDatasetReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 
@@ -153,14 +149,13 @@ impl Question for SimulateDatasetRequest {
             spinning: summary(|replay| replay.spin),
             not_spinning: summary(|replay| !replay.spin),
             failures,
-            caveats,
-            provenance: Provenance::default(),
         };
+        let report = Answer { report, caveats, provenance: Provenance::default() };
         Ok(Outcome::Complete(SimulateDatasetAnswer { report, replay }))
     }
 }
 
-impl SimulateDatasetReport {
+impl Answer<SimulateDatasetReport> {
     /// What restricts the motion of one case.
     pub fn caveats_of(&self, case: &str) -> Caveats {
         let flags = self.cases.iter().filter(|of| of.case == case).flat_map(|of| &of.flags);

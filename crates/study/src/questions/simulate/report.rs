@@ -6,14 +6,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::analysis::{Analysis, MotionEnd, SecondContacts};
-use crate::{
-    MomentumReport, Provenance, SimulateRequest, TireMarkReport, VehicleUncertainty, word,
-};
+use crate::{MomentumReport, SimulateRequest, TireMarkReport, VehicleUncertainty, word};
 use impactlab_core::collision::{PrincipalDirectionOfForce, SecondContact};
 use impactlab_core::compare::{MotionError, largest_yaw_change_rad};
 use impactlab_core::data::{Channel, ForceAxes, SeriesError, TimeSeries, contact_interval};
 use impactlab_core::numerics::interpolate;
-use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
+use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::units::percent;
 use impactlab_core::vehicle::frames::world_from_body;
 use impactlab_core::vehicle::{FrictionZone, Motion, MotionFlag};
@@ -83,12 +81,6 @@ pub struct SimulateReport {
     pub uncertainty: Option<VehicleUncertainty>,
     /// Wheel lift, roll beyond the limit, a second contact.
     pub flags: Vec<FlagReport>,
-    /// What restricts the answer and what it rests on.
-    #[serde(flatten)]
-    pub caveats: Caveats,
-    /// Version of the program, seed and trained networks.
-    #[serde(flatten)]
-    pub provenance: Provenance,
 }
 
 /// The force that drives a simulation.
@@ -264,13 +256,7 @@ impl From<&MotionFlag> for FlagReport {
 
 impl SimulateReport {
     /// What follows from an analysis.
-    pub(crate) fn of(
-        request: &SimulateRequest,
-        analysis: &Analysis,
-        mut caveats: Caveats,
-    ) -> Result<Self, SeriesError> {
-        let notes = analysis.notes.iter().map(|text| Caveat::new(CaveatKind::Note, text));
-        caveats.extend(notes);
+    pub(crate) fn of(request: &SimulateRequest, analysis: &Analysis) -> Result<Self, SeriesError> {
         let motion = analysis.simulation.as_ref();
         let series = motion.map(|motion| &motion.series);
         let interval = analysis.force.as_ref().and_then(contact_interval);
@@ -304,8 +290,6 @@ impl SimulateReport {
                 .flat_map(|motion| motion.flags.iter().map(FlagReport::from))
                 .chain(analysis.second_contact.iter().map(FlagReport::from))
                 .collect(),
-            caveats,
-            provenance: Provenance::default(),
         })
     }
 }
@@ -449,7 +433,7 @@ mod tests {
             let impact = impact.answer(&library, &mut go_on).unwrap().complete().unwrap();
             let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
             let motion = SimulateRequest::new(source).answer(&library, &mut go_on).unwrap();
-            let force = motion.complete().unwrap().report.force.unwrap();
+            let force = motion.complete().unwrap().report.report.force.unwrap();
             let (expected, got) = (impact.report.struck.pdof_deg.unwrap(), force.pdof_deg.unwrap());
             assert!((expected - got).abs() < 1e-6, "{heading_deg}: {expected} {got}");
             assert_eq!(force.pdof_clock, impact.report.struck.pdof_clock, "{heading_deg}");

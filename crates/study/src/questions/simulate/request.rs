@@ -20,14 +20,14 @@ use crate::questions::simulate::motion_source::{
 };
 use crate::questions::simulate::vehicle_uncertainty::vehicle_uncertainty;
 use crate::{
-    InputKind, Library, MomentumReport, MotionSource, Observer, Provenance, Question,
+    Answer, InputKind, Library, MomentumReport, MotionSource, Observer, Provenance, Question,
     SimulateReport, StudyError, VehicleChoice,
 };
 use impactlab_core::collision::Scenario;
 use impactlab_core::data::{ContactOutside, DatasetKind, Outcome};
 use impactlab_core::ranges::{ROAD_FRICTION, SIMULATED_DURATION, VEHICLE_DRAWS};
 use impactlab_core::site::Site;
-use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
 use impactlab_core::vehicle::{ContactPoint, Ending, Equations, FrictionZone, Integrator};
 
 /// Asks where the struck vehicle goes, by the 4DOF model.
@@ -91,7 +91,7 @@ fn default_duration_s() -> f64 {
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulateAnswer {
     /// What is told.
-    pub report: SimulateReport,
+    pub report: Answer<SimulateReport>,
     /// Motion, force and record.
     pub analysis: Analysis,
 }
@@ -170,7 +170,7 @@ type Analyse<'a> = dyn Fn(&Settings) -> Result<Analysis, AnalysisError> + Sync +
 
 impl Question for SimulateRequest {
     type Answer = SimulateAnswer;
-    type Report = SimulateReport;
+    type Report = Answer<SimulateReport>;
     const NAME: &'static str = "simulate";
 
     fn check(&self) -> Result<(), StudyError> {
@@ -182,7 +182,7 @@ impl Question for SimulateRequest {
         self.source.check()
     }
 
-    fn report(answer: &Self::Answer) -> &SimulateReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 
@@ -256,19 +256,22 @@ impl Question for SimulateRequest {
         let analysis = analyse(&settings).map_err(failed)?;
         refuse_contact_off_vehicle(&analysis)?;
         caveats.extend(assumed::estimates(&analysis.vehicle));
-        let mut report = SimulateReport::of(self, &analysis, caveats)
+        let notes = analysis.notes.iter().map(|text| Caveat::new(CaveatKind::Note, text));
+        caveats.extend(notes);
+        let mut report = SimulateReport::of(self, &analysis)
             .map_err(|source| failed(AnalysisError::Series(source)))?;
         report.momentum = momentum;
         let asked = (self.vehicle_draws, self.seed);
         report.uncertainty = vehicle_uncertainty(asked, (&settings, &analysis), &analyse);
-        if report.uncertainty.is_some() {
-            report.provenance = Provenance::of_seed(self.seed);
-        }
-        let restrictions = restrictions::simulation_caveats(&report, self.until_rest);
-        report.caveats.extend(restrictions);
-        report.caveats.extend(overlap);
+        let provenance = match report.uncertainty {
+            Some(_) => Provenance::of_seed(self.seed),
+            None => Provenance::default(),
+        };
+        caveats.extend(restrictions::simulation_caveats(&report, self.until_rest));
+        caveats.extend(overlap);
         let recorded = analysis.force.as_ref().filter(|_| self.source.is_recorded());
-        report.caveats.extend(recorded.and_then(restrictions::cut_record_caveat));
+        caveats.extend(recorded.and_then(restrictions::cut_record_caveat));
+        let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
     }
 }

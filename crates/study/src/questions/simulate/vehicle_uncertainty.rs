@@ -115,14 +115,14 @@ mod tests {
 
     use crate::analysis::PulseSetup;
     use crate::{
-        Drive, Library, MotionSource, Question, ScenarioChoice, SimulateReport, SimulateRequest,
-        VehicleChoice,
+        Answer, Drive, Library, MotionSource, Question, ScenarioChoice, SimulateReport,
+        SimulateRequest, VehicleChoice,
     };
     use impactlab_core::collision::Scenario;
     use impactlab_core::uncertainty::{Caveat, CaveatSubject};
     use impactlab_core::vehicle::sheet::SheetQuantity;
 
-    fn report(source: MotionSource, vehicle: &str, n_draws: usize) -> SimulateReport {
+    fn report(source: MotionSource, vehicle: &str, n_draws: usize) -> Answer<SimulateReport> {
         let request = SimulateRequest {
             vehicle: VehicleChoice::named(vehicle),
             vehicle_draws: n_draws,
@@ -141,7 +141,7 @@ mod tests {
     #[test]
     fn what_the_data_sheet_leaves_open_spreads_the_end() {
         let report = report(pit(), "toyota-camry-2018", 60);
-        let uncertainty = report.uncertainty.unwrap();
+        let uncertainty = report.uncertainty.as_ref().unwrap();
         assert_eq!((uncertainty.n_draws, uncertainty.n_failed), (60, 0));
         let end = report.end.unwrap();
         assert!(uncertainty.second_contact_probability.unwrap() > 0.9, "{uncertainty:?}");
@@ -163,7 +163,8 @@ mod tests {
         assert_eq!(report(pit(), "reference-2000", 20).uncertainty, None);
         assert_eq!(report(pit(), "toyota-camry-2018", 0).uncertainty, None);
         let drive = Drive { speed_m_s: Some(20.0), ..Drive::default() };
-        let straight = report(MotionSource::Drive(drive), "generic-suv", 60).uncertainty.unwrap();
+        let straight =
+            report(MotionSource::Drive(drive), "generic-suv", 60).report.uncertainty.unwrap();
         assert_eq!(straight.second_contact_probability, None);
         let [low, high] = straight.y_m.ninety();
         assert!(low.abs() < 1e-6 && high.abs() < 1e-6, "{straight:?}");

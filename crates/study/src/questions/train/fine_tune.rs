@@ -14,7 +14,7 @@ use crate::ask::checks::{check, check_count};
 use crate::ask::inputs::{OpenVehicle, data_name, dataset_folders, response_cases, struck_vehicle};
 use crate::questions::train::response::TrainingNotes;
 use crate::{
-    ConfigChoice, Event, Library, ModelChoice, MotionLogs, Observer, Question,
+    Answer, ConfigChoice, Event, Library, ModelChoice, MotionLogs, Observer, Question,
     ResponseTrainingAnswer, ResponseTrainingReport, StudyError, TrainingOptions, VehicleChoice,
 };
 use impactlab_core::data::Outcome;
@@ -170,7 +170,7 @@ impl FineTuneRequest {
 
 impl Question for FineTuneRequest {
     type Answer = ResponseTrainingAnswer;
-    type Report = ResponseTrainingReport;
+    type Report = Answer<ResponseTrainingReport>;
     const NAME: &'static str = "fine-tune";
 
     fn check(&self) -> Result<(), StudyError> {
@@ -181,7 +181,7 @@ impl Question for FineTuneRequest {
         self.logs.as_ref().map_or(Ok(()), MotionLogs::check)
     }
 
-    fn report(answer: &Self::Answer) -> &ResponseTrainingReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 

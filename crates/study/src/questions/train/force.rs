@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use impactlab_core::uncertainty::Caveats;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +11,7 @@ use crate::caveats::restrictions;
 use crate::ask::checks::check_count;
 use crate::ask::inputs::{data_names, force_cases};
 use crate::ask::provenance::FORCE_NETWORK;
-use crate::{Event, Library, Observer, Provenance, Question, StudyError, TrainingOptions};
+use crate::{Answer, Event, Library, Observer, Provenance, Question, StudyError, TrainingOptions};
 use impactlab_core::data::Outcome;
 use impactlab_core::ranges::EPOCHS;
 use impactlab_networks::force::{
@@ -68,19 +67,13 @@ pub struct TrainForceReport {
     pub validation: Option<LossTerms>,
     /// Cases that were left out, and why.
     pub left_out: Vec<String>,
-    /// What restricts the answer and what it rests on.
-    #[serde(flatten)]
-    pub caveats: Caveats,
-    /// Version of the program, seed and trained networks.
-    #[serde(flatten)]
-    pub provenance: Provenance,
 }
 
 /// A trained force network.
 #[derive(Debug)]
 pub struct TrainForceAnswer {
     /// What is told.
-    pub report: TrainForceReport,
+    pub report: Answer<TrainForceReport>,
     /// The network.
     pub model: ForceModel,
 }
@@ -123,14 +116,14 @@ impl TrainForceRequest {
 
 impl Question for TrainForceRequest {
     type Answer = TrainForceAnswer;
-    type Report = TrainForceReport;
+    type Report = Answer<TrainForceReport>;
     const NAME: &'static str = "train";
 
     fn check(&self) -> Result<(), StudyError> {
         self.epochs.map_or(Ok(()), |epochs| check_count("epochs", &EPOCHS, epochs))
     }
 
-    fn report(answer: &Self::Answer) -> &TrainForceReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 
@@ -155,17 +148,18 @@ impl Question for TrainForceRequest {
         let seconds = started.elapsed().as_secs_f64();
         let provenance = Provenance::of_seed(self.training.seed);
         let provenance = provenance.with_trained(FORCE_NETWORK, &model)?;
-        let report = TrainForceReport::of(&model, seconds, (left_out, provenance));
+        let left_out_cases = restrictions::of_left_out(left_out.len(), "cases");
+        let report = Answer {
+            report: TrainForceReport::of(&model, seconds, left_out),
+            caveats: left_out_cases.into_iter().collect(),
+            provenance,
+        };
         Ok(Outcome::Complete(TrainForceAnswer { report, model }))
     }
 }
 
 impl TrainForceReport {
-    fn of(
-        model: &ForceModel,
-        seconds: f64,
-        (left_out, provenance): (Vec<String>, Provenance),
-    ) -> Self {
+    fn of(model: &ForceModel, seconds: f64, left_out: Vec<String>) -> Self {
         let record = model.record();
         let best = record.detail.best_epoch.checked_sub(1).and_then(|idx| record.history.get(idx));
         Self {
@@ -181,9 +175,7 @@ impl TrainForceReport {
             variance_factors: record.detail.variance_factors,
             train: best.map(|record| record.detail.train),
             validation: best.map(|record| record.detail.validation),
-            caveats: restrictions::left_out_caveat(left_out.len(), "cases").into_iter().collect(),
             left_out,
-            provenance,
         }
     }
 }

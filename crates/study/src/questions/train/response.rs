@@ -14,7 +14,7 @@ use crate::caveats::restrictions;
 use crate::ask::inputs::{OpenVehicle, data_name, force_cases, response_cases, struck_vehicle};
 use crate::ask::provenance::RESPONSE_NETWORK;
 use crate::{
-    Event, Library, LogReport, Observer, Provenance, Question, StudyError, TrainingOptions,
+    Answer, Event, Library, LogReport, Observer, Provenance, Question, StudyError, TrainingOptions,
     VehicleChoice,
 };
 use impactlab_core::data::write::ModelDigest;
@@ -78,19 +78,13 @@ pub struct ResponseTrainingReport {
     pub logs: Vec<LogReport>,
     /// Cases that were left out, and why.
     pub left_out: Vec<String>,
-    /// What restricts the answer and what it rests on.
-    #[serde(flatten)]
-    pub caveats: Caveats,
-    /// Version of the program, seed and trained networks.
-    #[serde(flatten)]
-    pub provenance: Provenance,
 }
 
 /// A trained response network.
 #[derive(Debug)]
 pub struct ResponseTrainingAnswer {
     /// What is told.
-    pub report: ResponseTrainingReport,
+    pub report: Answer<ResponseTrainingReport>,
     /// The network.
     pub model: ResponseModel,
 }
@@ -166,14 +160,14 @@ pub(crate) struct TrainingNotes {
 
 impl Question for TrainResponseRequest {
     type Answer = ResponseTrainingAnswer;
-    type Report = ResponseTrainingReport;
+    type Report = Answer<ResponseTrainingReport>;
     const NAME: &'static str = "train";
 
     fn check(&self) -> Result<(), StudyError> {
         Ok(())
     }
 
-    fn report(answer: &Self::Answer) -> &ResponseTrainingReport {
+    fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 
@@ -229,10 +223,9 @@ impl ResponseTrainingAnswer {
             latents: *model.latents(),
             keeps_latents: record.detail.keeps_latents,
             logs: notes.logs,
-            caveats,
             left_out: notes.left_out,
-            provenance,
         };
+        let report = Answer { report, caveats, provenance };
         Ok(Self { report, model })
     }
 }
