@@ -20,7 +20,7 @@ pub(in crate::cli) fn print_dataset_simulation(
     let degrees = Quantity::Angle.display_unit(units);
     writeln!(out, "{}: {}, {}\n", shown_path(&report.dataset), report.vehicle, report.integrator)?;
     let row = |case: &ReplayedCaseReport| {
-        let flags: Vec<&str> = case.flags.iter().map(|f| f.message.as_str()).collect();
+        let flags: Vec<&str> = case.flags.iter().map(|f| f.caveat.text.as_str()).collect();
         let error = &case.error;
         vec![
             case.case.clone(),

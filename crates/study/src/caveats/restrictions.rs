@@ -3,14 +3,14 @@
 use crate::analysis::{Analysis, MotionForecast, RestOutcome};
 use crate::questions::predict::implied_contact::{LEAST_P_RIGID, MOST_P_ENERGY_GAIN};
 use crate::{
-    FlagReport, ImpliedContactReport, PredictForceReport, PredictMotionReport, ReplayedCaseReport,
+    ImpliedContactReport, PredictForceReport, PredictMotionReport, ReplayedCaseReport,
     SimulateReport,
 };
 use impactlab_core::collision::{ScenarioGeometry, TOUCH_TOLERANCE_M};
 use impactlab_core::data::{CONTACT_SHARE_OF_PEAK, Channel, ForceHistory, cut_at_s};
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{percent, significant};
-use impactlab_core::vehicle::{REST_SPEED_M_S, ROLL_LIMIT_RAD};
+use impactlab_core::vehicle::REST_SPEED_M_S;
 use impactlab_networks::response::{OutsideDomain, STEP_S};
 
 /// The region of a forecast in which the 4DOF model ends if the two agree.
@@ -48,17 +48,6 @@ pub(crate) fn cut_record_caveat(force: &ForceHistory) -> Option<Caveat> {
     Some(caveat)
 }
 
-/// A flag of a simulated motion.
-pub(crate) fn flag_caveat(flag: &FlagReport) -> Caveat {
-    let caveat = Caveat::new(flag.kind, &*flag.message);
-    match flag.roll_rad {
-        Some(roll_rad) => caveat
-            .with_value("roll angle [rad]", roll_rad)
-            .with_range([-ROLL_LIMIT_RAD, ROLL_LIMIT_RAD]),
-        None => caveat.with_value("time [s]", flag.time_s),
-    }
-}
-
 /// What restricts the simulation of one vehicle.
 ///
 /// - `until_rest`: whether the question asks where the vehicle comes to rest.
@@ -67,18 +56,19 @@ pub(crate) fn simulation_caveats(report: &SimulateReport, until_rest: bool) -> V
     let moving = moving.map(|end| motion_caveat(end.speed_m_s, report.duration_s));
     let n_failed = report.uncertainty.as_ref().map_or(0, |of| of.n_failed);
     let left_out = left_out_caveat(n_failed, "vehicles drawn from the data sheet");
-    let flags = report.flags.iter().map(flag_caveat);
+    let flags = report.flags.iter().map(|flag| flag.caveat.clone());
     flags.chain(moving).chain(left_out).collect()
 }
 
 /// How many cases raise each kind of flag.
 pub(crate) fn flagged_cases_caveats(cases: &[ReplayedCaseReport]) -> Vec<Caveat> {
     let mut kinds: Vec<CaveatKind> =
-        cases.iter().flat_map(|case| case.flags.iter().map(|flag| flag.kind)).collect();
+        cases.iter().flat_map(|case| case.flags.iter().map(|flag| flag.caveat.kind)).collect();
     kinds.sort_unstable();
     kinds.dedup();
     let of_kind = |kind| {
-        let is_flagged = |case: &&ReplayedCaseReport| case.flags.iter().any(|of| of.kind == kind);
+        let is_flagged =
+            |case: &&ReplayedCaseReport| case.flags.iter().any(|of| of.caveat.kind == kind);
         let n = cases.iter().filter(is_flagged).count();
         let text = format!("in {n} of {} cases", cases.len());
         Caveat::new(kind, text).with_value("cases", n as f64).with_range([0.0, 0.0])
@@ -167,7 +157,7 @@ pub(crate) fn predicted_motion_caveats(
 ) -> Vec<Caveat> {
     let domain = report.outside_domain.iter().map(outside_domain_caveat);
     let contact = report.implied_contact.as_ref().and_then(contact_caveat);
-    let flags = report.flags.iter().map(flag_caveat);
+    let flags = report.flags.iter().map(|flag| flag.caveat.clone());
     let end = &report.outcome;
     let moving = match &report.rest {
         Some(rest) => rest_caveat(rest),

@@ -160,7 +160,7 @@ impl Answer<SimulateDatasetReport> {
     pub fn caveats_of(&self, case: &str) -> Caveats {
         let flags = self.cases.iter().filter(|of| of.case == case).flat_map(|of| &of.flags);
         let assumptions = self.caveats.assumptions().cloned();
-        flags.map(restrictions::flag_caveat).chain(assumptions).collect()
+        flags.map(|flag| flag.caveat.clone()).chain(assumptions).collect()
     }
 }
 

@@ -11,10 +11,10 @@ use impactlab_core::collision::{PrincipalDirectionOfForce, SecondContact};
 use impactlab_core::compare::{MotionError, largest_yaw_change_rad};
 use impactlab_core::data::{Channel, ForceAxes, SeriesError, TimeSeries, contact_interval};
 use impactlab_core::numerics::interpolate;
-use impactlab_core::uncertainty::CaveatKind;
+use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::percent;
 use impactlab_core::vehicle::frames::world_from_body;
-use impactlab_core::vehicle::{FrictionZone, Motion, MotionFlag};
+use impactlab_core::vehicle::{FrictionZone, Motion, MotionFlag, ROLL_LIMIT_RAD};
 
 /// A part of the ground with its own friction.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -147,26 +147,75 @@ pub struct EndState {
     pub speed_m_s: f64,
 }
 
-/// A [`MotionFlag`] or a [`SecondContact`] for machines and, as `message`, for a person.
+/// A [`MotionFlag`] or a [`SecondContact`]: the caveat that it is, and its numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(into = "FlagJson")]
 pub struct FlagReport {
-    /// `wheel_lift`, `roll_limit`, `energy_gain` or `second_contact`.
-    pub kind: CaveatKind,
+    /// What it says of the motion.
+    pub caveat: Caveat,
     /// When it is first raised, s.
     pub time_s: f64,
     /// The wheel that lifts.
     pub wheel: Option<String>,
-    /// The roll angle, rad.
-    pub roll_rad: Option<f64>,
-    /// Where the vehicles meet again [x, y], m.
-    pub position_m: Option<[f64; 2]>,
+    /// Where the vehicles meet again.
+    pub contact: Option<FlaggedContact>,
+}
+
+/// Where and how the vehicles meet again.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlaggedContact {
+    /// Place [x, y], m.
+    pub position_m: [f64; 2],
     /// How fast their overlap grows there, m/s.
-    pub closing_speed_m_s: Option<f64>,
+    pub closing_speed_m_s: f64,
     /// Share of the draws in which they do; time, place and speed are then medians. None where
     /// nothing is drawn.
     pub probability: Option<f64>,
-    /// For a person.
-    pub message: String,
+}
+
+/// A flag as JSON says it.
+#[derive(Serialize, JsonSchema)]
+struct FlagJson {
+    /// `wheel_lift`, `roll_limit`, `energy_gain` or `second_contact`.
+    kind: CaveatKind,
+    /// When it is first raised, s.
+    time_s: f64,
+    /// The wheel that lifts.
+    wheel: Option<String>,
+    /// Roll angle at that time, rad.
+    roll_rad: Option<f64>,
+    /// Where the vehicles meet again, [x, y], m.
+    position_m: Option<[f64; 2]>,
+    /// How fast their overlap grows there, m/s.
+    closing_speed_m_s: Option<f64>,
+    /// Share of the draws in which they do.
+    probability: Option<f64>,
+    /// What it says of the motion.
+    message: String,
+}
+
+impl From<FlagReport> for FlagJson {
+    fn from(FlagReport { caveat, time_s, wheel, contact }: FlagReport) -> Self {
+        let Caveat { kind, value, text, .. } = caveat;
+        Self {
+            kind,
+            time_s,
+            wheel,
+            roll_rad: value.filter(|_| kind == CaveatKind::RollLimit),
+            position_m: contact.map(|contact| contact.position_m),
+            closing_speed_m_s: contact.map(|contact| contact.closing_speed_m_s),
+            probability: contact.and_then(|contact| contact.probability),
+            message: text,
+        }
+    }
+}
+
+impl FlagReport {
+    /// A flag about which no more is known than when it is raised.
+    fn new(kind: CaveatKind, time_s: f64, message: String) -> Self {
+        let caveat = Caveat::new(kind, message).with_value("time [s]", time_s);
+        Self { caveat, time_s, wheel: None, contact: None }
+    }
 }
 
 /// What a person should know of a second contact.
@@ -177,16 +226,14 @@ impl From<&SecondContact> for FlagReport {
     fn from(second: &SecondContact) -> Self {
         let ([x, y], speed) = (second.point_m, second.closing_speed_m_s);
         let how = if second.was_apart { "meet again" } else { "go deeper into each other" };
-        Self {
-            kind: CaveatKind::SecondContact,
-            time_s: second.time_s,
-            wheel: None,
-            roll_rad: None,
-            position_m: Some(second.point_m),
-            closing_speed_m_s: Some(speed),
+        let message = second_contact_text(how, second.time_s, [x, y], speed);
+        let contact = FlaggedContact {
+            position_m: second.point_m,
+            closing_speed_m_s: speed,
             probability: None,
-            message: second_contact_text(how, second.time_s, [x, y], speed),
-        }
+        };
+        let flag = Self::new(CaveatKind::SecondContact, second.time_s, message);
+        Self { contact: Some(contact), ..flag }
     }
 }
 
@@ -217,37 +264,28 @@ impl From<&SecondContacts> for FlagReport {
                 percent(met.probability),
             ),
         };
-        Self {
-            kind: CaveatKind::SecondContact,
-            time_s,
-            wheel: None,
-            roll_rad: None,
-            position_m: Some([x, y]),
-            closing_speed_m_s: Some(speed),
+        let contact = FlaggedContact {
+            position_m: [x, y],
+            closing_speed_m_s: speed,
             probability: Some(met.probability),
-            message,
-        }
+        };
+        let flag = Self::new(CaveatKind::SecondContact, time_s, message);
+        Self { contact: Some(contact), ..flag }
     }
 }
 
 impl From<&MotionFlag> for FlagReport {
     fn from(flag: &MotionFlag) -> Self {
-        let of = |kind, time_s: f64| Self {
-            kind,
-            time_s,
-            wheel: None,
-            roll_rad: None,
-            position_m: None,
-            closing_speed_m_s: None,
-            probability: None,
-            message: flag.to_string(),
-        };
+        let of = |kind, time_s: f64| Self::new(kind, time_s, flag.to_string());
         match flag {
             MotionFlag::WheelLift { wheel, time_s } => {
                 Self { wheel: Some(word(wheel)), ..of(CaveatKind::WheelLift, *time_s) }
             }
             MotionFlag::RollLimit { time_s, roll_rad } => {
-                Self { roll_rad: Some(*roll_rad), ..of(CaveatKind::RollLimit, *time_s) }
+                let caveat = Caveat::new(CaveatKind::RollLimit, flag.to_string())
+                    .with_value("roll angle [rad]", *roll_rad)
+                    .with_range([-ROLL_LIMIT_RAD, ROLL_LIMIT_RAD]);
+                Self { caveat, ..of(CaveatKind::RollLimit, *time_s) }
             }
             MotionFlag::EnergyGain { time_s } => of(CaveatKind::EnergyGain, *time_s),
         }
@@ -412,12 +450,33 @@ mod tests {
     use std::ops::ControlFlow;
     use std::path::Path;
 
+    use serde_json::json;
+
     use super::*;
     use crate::analysis::PulseSetup;
     use crate::{ImpactRequest, Library, MotionSource, Question, ScenarioChoice};
     use impactlab_core::collision::Scenario;
+    use impactlab_core::vehicle::Wheel;
 
     const PIT: &str = include_str!("../../../../../assets/scenarios/pit_right_rear.toml");
+
+    #[test]
+    fn a_flag_is_written_with_its_numbers_and_is_a_caveat() {
+        let roll = FlagReport::from(&MotionFlag::RollLimit { time_s: 0.4, roll_rad: 0.6 });
+        let lift = MotionFlag::WheelLift { wheel: Wheel::FrontLeft, time_s: 0.3 };
+        let lift = FlagReport::from(&lift);
+        let json = serde_json::to_value([&roll, &lift]).unwrap();
+        let form = |flag: &FlagReport, kind: &str, wheel: Option<&str>, roll_rad: Option<f64>| {
+            json!({
+                "kind": kind, "time_s": flag.time_s, "wheel": wheel, "roll_rad": roll_rad,
+                "position_m": null, "closing_speed_m_s": null, "probability": null,
+                "message": flag.caveat.text,
+            })
+        };
+        assert_eq!(json[0], form(&roll, "roll_limit", None, Some(0.6)));
+        assert_eq!(json[1], form(&lift, "wheel_lift", Some("front_left"), None));
+        assert_eq!(lift.caveat.value, Some(0.3));
+    }
 
     #[test]
     fn the_direction_of_force_is_that_of_the_impact_whichever_way_the_vehicle_heads() {

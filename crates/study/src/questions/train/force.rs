@@ -148,7 +148,7 @@ impl Question for TrainForceRequest {
         let seconds = started.elapsed().as_secs_f64();
         let provenance = Provenance::of_seed(self.training.seed);
         let provenance = provenance.with_trained(FORCE_NETWORK, &model)?;
-        let left_out_cases = restrictions::of_left_out(left_out.len(), "cases");
+        let left_out_cases = restrictions::left_out_caveat(left_out.len(), "cases");
         let report = Answer {
             report: TrainForceReport::of(&model, seconds, left_out),
             caveats: left_out_cases.into_iter().collect(),
