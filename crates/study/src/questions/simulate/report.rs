@@ -162,7 +162,7 @@ pub struct FlagReport {
 }
 
 /// Where and how the vehicles meet again.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
 pub struct FlaggedContact {
     /// Place [x, y], m.
     pub position_m: [f64; 2],
