@@ -81,11 +81,11 @@ pub use questions::simulate::dataset::{
     ReplayedCaseReport, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest,
 };
 pub use questions::simulate::drive::{ASSUMED_SPEED_M_S, Drive};
+pub use questions::simulate::flag::{FlagReport, FlaggedContact};
 pub use questions::simulate::motion_source::{ASSUMED_CONTACT, MotionSource};
 pub use questions::simulate::recorded_force::{RecordedForceAnswer, RecordedForceRequest};
 pub use questions::simulate::report::{
-    EndState, FlagReport, FlaggedContact, ForceReport, FrictionZoneReport, RestState,
-    SimulateReport,
+    EndState, ForceReport, FrictionZoneReport, RestState, SimulateReport,
 };
 pub use questions::simulate::request::{
     DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, SimulateAnswer, SimulateRequest,
