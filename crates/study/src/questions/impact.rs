@@ -97,7 +97,7 @@ pub struct BodyReport {
 /// A solved impact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImpactAnswer {
-    /// What is told.
+    /// What is told, with what restricts it and where it comes from.
     pub report: Answer<ImpactReport>,
     /// The scenario that was solved.
     pub scenario: Scenario,

@@ -36,7 +36,7 @@ pub struct CheckRequest {
 /// What was found, and the data themselves.
 #[derive(Debug)]
 pub struct CheckAnswer {
-    /// What is told.
+    /// What is told, with what restricts it and where it comes from.
     pub report: Answer<CheckReport>,
     /// The data that could be read.
     pub items: Vec<CheckedItem>,

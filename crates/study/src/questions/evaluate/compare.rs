@@ -150,7 +150,7 @@ pub struct CompareReport {
 /// A finished comparison, or the evaluation of one model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompareAnswer {
-    /// What is told.
+    /// What is told, with what restricts it and where it comes from.
     pub report: Answer<CompareReport>,
 }
 

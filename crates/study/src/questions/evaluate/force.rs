@@ -137,7 +137,7 @@ pub struct CrossValidateForceReport {
 /// A finished evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluateForceAnswer {
-    /// What is told.
+    /// What is told, with what restricts it and where it comes from.
     pub report: Answer<ForceEvaluation>,
     /// Single cases, where figures were asked for.
     pub cases: Option<EvaluatedForceCases>,

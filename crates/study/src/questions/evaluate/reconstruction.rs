@@ -87,7 +87,7 @@ pub struct EvaluateReconstructionReport {
 /// A finished evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluateReconstructionAnswer {
-    /// What is told.
+    /// What is told, with what restricts it and where it comes from.
     pub report: Answer<EvaluateReconstructionReport>,
 }
 

@@ -125,7 +125,7 @@ pub struct ImpulseReport {
 /// A predicted force.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PredictForceAnswer {
-    /// What is told.
+    /// What is told, with what restricts it and where it comes from.
     pub report: Answer<PredictForceReport>,
     /// The collision as the network was asked.
     pub collision: ForceScenario,

@@ -114,7 +114,7 @@ pub struct PredictMotionReport {
 /// A predicted motion.
 #[derive(Debug)]
 pub struct PredictMotionAnswer {
-    /// What is told.
+    /// What is told, with what restricts it and where it comes from.
     pub report: Answer<PredictMotionReport>,
     /// The 4DOF simulation, the record and the force of the same source.
     pub analysis: Analysis,

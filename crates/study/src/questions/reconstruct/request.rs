@@ -112,7 +112,7 @@ pub struct ReconstructReport {
 /// A reconstruction.
 #[derive(Debug, Clone)]
 pub struct ReconstructAnswer {
-    /// What is told.
+    /// What is told, with what restricts it and where it comes from.
     pub report: Answer<ReconstructReport>,
     /// The posterior that was sampled.
     pub target: ReconstructionTarget,

@@ -79,7 +79,7 @@ pub struct ReplayedCaseReport {
 /// A simulated data set.
 #[derive(Debug)]
 pub struct SimulateDatasetAnswer {
-    /// What is told.
+    /// What is told, with what restricts it and where it comes from.
     pub report: Answer<SimulateDatasetReport>,
     /// The motions.
     pub replay: DatasetReplay,

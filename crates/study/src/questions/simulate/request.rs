@@ -90,7 +90,7 @@ fn default_duration_s() -> f64 {
 /// A simulated motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulateAnswer {
-    /// What is told.
+    /// What is told, with what restricts it and where it comes from.
     pub report: Answer<SimulateReport>,
     /// Motion, force and record.
     pub analysis: Analysis,

@@ -72,7 +72,7 @@ pub struct TrainForceReport {
 /// A trained force network.
 #[derive(Debug)]
 pub struct TrainForceAnswer {
-    /// What is told.
+    /// What is told, with what restricts it and where it comes from.
     pub report: Answer<TrainForceReport>,
     /// The network.
     pub model: ForceModel,

@@ -83,7 +83,7 @@ pub struct ResponseTrainingReport {
 /// A trained response network.
 #[derive(Debug)]
 pub struct ResponseTrainingAnswer {
-    /// What is told.
+    /// What is told, with what restricts it and where it comes from.
     pub report: Answer<ResponseTrainingReport>,
     /// The network.
     pub model: ResponseModel,
