@@ -75,7 +75,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn agreement(predictor: &Predictor, case: &ResponseCase, n_draws: usize) -> Vec<(f64, Agreement)> {
     let Some(initial) = case.states.first() else { return Vec::new() };
     let motion = predictor.motion(initial, &case.inputs);
-    let draws = predictor.sample((initial, &case.inputs), (n_draws, SEED));
+    let draws = predictor.sample(initial, &case.inputs, n_draws, SEED);
     let at = |at_s: f64| {
         let at = (at_s / STEP_S).round() as usize;
         let planar: Vec<[f64; 6]> =

@@ -65,7 +65,7 @@ pub struct ContentsEntry {
 }
 
 impl ContentsEntry {
-    fn new(group: Group, (label, detail): (&str, String), command: Command) -> Self {
+    fn new(group: Group, label: &str, detail: String, command: Command) -> Self {
         Self { group, label: label.to_owned(), detail, missing: None, command }
     }
 
@@ -84,8 +84,12 @@ impl State {
         entries.push(self.impact_entry());
         entries.extend(self.session.sources.iter().map(|source| self.source_entry(source)));
         if self.session.sources.is_empty() {
-            let text = ("nothing open", String::new());
-            entries.push(ContentsEntry::new(Group::Data, text, Command::Show(Pane::Data)));
+            entries.push(ContentsEntry::new(
+                Group::Data,
+                "nothing open",
+                String::new(),
+                Command::Show(Pane::Data),
+            ));
         }
         entries.extend(self.evidence_entry());
         entries.push(model_entry("Force network", &self.session.force.model));
@@ -100,7 +104,7 @@ impl State {
         let striking = choice_text(striking, DEFAULT_STRIKING.id());
         [("Struck", struck), ("Striking", striking)].map(|(label, detail)| {
             let show = Command::Show(Pane::Vehicle);
-            ContentsEntry::new(Group::Vehicles, (label, detail), show)
+            ContentsEntry::new(Group::Vehicles, label, detail, show)
         })
     }
 
@@ -127,8 +131,8 @@ impl State {
             _ => Pane::Vehicle,
         };
         [
-            ContentsEntry::new(Group::Scene, ("Road", road), Command::Show(Pane::Vehicle)),
-            ContentsEntry::new(Group::Scene, ("After the impact", after), Command::Show(pane)),
+            ContentsEntry::new(Group::Scene, "Road", road, Command::Show(Pane::Vehicle)),
+            ContentsEntry::new(Group::Scene, "After the impact", after, Command::Show(pane)),
         ]
     }
 
@@ -144,7 +148,7 @@ impl State {
         let missing = ground.shown().and_then(|loaded| loaded.notes.first().cloned());
         let missing = ground.problem.clone().or(missing);
         let show = Command::Show(Pane::Scene);
-        Some(ContentsEntry::new(Group::Scene, ("Ground", detail), show).missing(missing))
+        Some(ContentsEntry::new(Group::Scene, "Ground", detail, show).missing(missing))
     }
 
     fn impact_entry(&self) -> ContentsEntry {
@@ -168,7 +172,7 @@ impl State {
             }
             (Some(_), problem) => problem.map(str::to_owned),
         };
-        ContentsEntry::new(Group::Impact, (label, detail), Command::Show(pane)).missing(missing)
+        ContentsEntry::new(Group::Impact, label, detail, Command::Show(pane)).missing(missing)
     }
 
     fn source_entry(&self, source: &Source) -> ContentsEntry {
@@ -189,7 +193,7 @@ impl State {
                 ("not read".to_owned(), Some(why.clone()), Command::Show(Pane::Data))
             }
         };
-        ContentsEntry::new(Group::Data, (&source.name(), detail), command).missing(missing)
+        ContentsEntry::new(Group::Data, &source.name(), detail, command).missing(missing)
     }
 
     /// The evidence of a reconstruction, if there is any.
@@ -202,7 +206,7 @@ impl State {
             None => ("not read".to_owned(), problem),
         };
         let show = Command::Show(Pane::Evidence);
-        Some(ContentsEntry::new(Group::Data, ("Evidence", detail), show).missing(problem))
+        Some(ContentsEntry::new(Group::Data, "Evidence", detail, show).missing(problem))
     }
 
     /// The figures of the chain that were found, each with its warnings.
@@ -216,7 +220,7 @@ impl State {
             };
             let missing = (!link.warnings.is_empty()).then(|| link.warnings.join("\n"));
             let show = Command::Show(link.pane);
-            ContentsEntry::new(Group::Results, (label, detail), show).missing(missing)
+            ContentsEntry::new(Group::Results, label, detail, show).missing(missing)
         };
         links.map(entry).collect()
     }
@@ -239,5 +243,5 @@ fn model_entry<M: TrainedModel>(label: &str, status: &ModelStatus<M>) -> Content
         None => "none".to_owned(),
     };
     let show = Command::Show(Pane::Training);
-    ContentsEntry::new(Group::Models, (label, detail), show).missing(status.problem.clone())
+    ContentsEntry::new(Group::Models, label, detail, show).missing(status.problem.clone())
 }

@@ -67,7 +67,7 @@ fn set_scale(style: &mut Style) {
 pub fn icon(icon: Icon) -> Atom<'static> {
     let [_, body, _] = SIZES;
     Atom::paint(Vec2::splat(body + 2.0), move |ui, args| {
-        paint(ui, icon, args.rect.center(), (body + 1.0, args.fallback_text_color));
+        paint(ui, icon, args.rect.center(), body + 1.0, args.fallback_text_color);
     })
 }
 
@@ -80,7 +80,7 @@ pub fn icon_size(ui: &Ui) -> f32 {
 pub fn colored_icon(icon: Icon, color: Color32) -> Atom<'static> {
     let [_, body, _] = SIZES;
     Atom::paint(Vec2::splat(body + 2.0), move |ui, args| {
-        paint(ui, icon, args.rect.center(), (body + 1.0, color));
+        paint(ui, icon, args.rect.center(), body + 1.0, color);
     })
 }
 
@@ -88,7 +88,7 @@ pub fn colored_icon(icon: Icon, color: Color32) -> Atom<'static> {
 pub fn icon_ui(ui: &mut Ui, icon: Icon, color: Color32) -> Response {
     let size = icon_size(ui);
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(size), egui::Sense::hover());
-    paint(ui, icon, rect.center(), (size - 1.0, color));
+    paint(ui, icon, rect.center(), size - 1.0, color);
     response
 }
 
@@ -99,7 +99,7 @@ pub fn icon_at(ui: &Ui, icon: Icon, end: [f32; 2]) {
     let [right, middle] = end;
     let size = TextStyle::Body.resolve(ui.style()).size + 1.0;
     let center = egui::pos2(right - size, middle);
-    paint(ui, icon, center, (size, ui.visuals().weak_text_color()));
+    paint(ui, icon, center, size, ui.visuals().weak_text_color());
 }
 
 /// A button with an icon beside its words.
@@ -109,7 +109,7 @@ pub fn icon_button<'a>(of: Icon, text: impl Into<egui::WidgetText>) -> Button<'a
 }
 
 /// Draws nothing in a window that was given no fonts by [`install`].
-fn paint(ui: &Ui, icon: Icon, center: egui::Pos2, (size, color): (f32, Color32)) {
+fn paint(ui: &Ui, icon: Icon, center: egui::Pos2, size: f32, color: Color32) {
     let family = icon_family();
     if !ui.ctx().fonts(|fonts| fonts.definitions().families.contains_key(&family)) {
         return;

@@ -13,7 +13,7 @@ use crate::app::panels;
 use crate::app::panes::Pane;
 use crate::app::reconstruction::ReconstructionCommand;
 use crate::app::report::ReportCommand;
-use crate::app::state::{Session, State};
+use crate::app::state::State;
 use crate::app::tasks::TaskKey;
 use crate::app::widgets::duration_text;
 use crate::app::workspaces::Workspace;
@@ -37,10 +37,10 @@ pub fn menu_ui(ui: &mut Ui, state: &mut State, history: History, commands: &mut 
         MenuBar::new().ui(ui, |ui| {
             ui.menu_button("File", |ui| file_menu_ui(ui, state, commands));
             ui.menu_button("Edit", |ui| {
-                let (undo, redo) = ((Icon::Undo2, "Undo"), (Icon::Redo2, "Redo"));
                 let History { can_undo, can_redo } = history;
-                edit_item(ui, undo, keyboard::UNDO, (can_undo, Command::Undo), commands);
-                edit_item(ui, redo, keyboard::REDO, (can_redo, Command::Redo), commands);
+                let (undo, redo) = (keyboard::UNDO, keyboard::REDO);
+                edit_item(ui, Icon::Undo2, "Undo", undo, can_undo, Command::Undo, commands);
+                edit_item(ui, Icon::Redo2, "Redo", redo, can_redo, Command::Redo, commands);
             });
             ui.menu_button("View", |ui| view_menu_ui(ui, state, commands));
             ui.menu_button("Help", |ui| help_menu_ui(ui, commands));
@@ -80,9 +80,11 @@ fn workspaces_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 
 fn edit_item(
     ui: &mut Ui,
-    (of, label): (Icon, &str),
+    of: Icon,
+    label: &str,
     shortcut: egui::KeyboardShortcut,
-    (enabled, command): (bool, Command),
+    enabled: bool,
+    command: Command,
     commands: &mut Vec<Command>,
 ) {
     let button = icon_button(of, label).shortcut_text(ui.ctx().format_shortcut(&shortcut));
@@ -92,14 +94,14 @@ fn edit_item(
 }
 
 fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    for (label, shortcut, command) in [
-        ((Icon::FilePlus, "New case"), keyboard::NEW, Command::NewCase),
-        ((Icon::File, "Open files…"), keyboard::OPEN, Command::Ask(Purpose::Files)),
-        ((Icon::FolderOpen, "Open folder…"), keyboard::OPEN_FOLDER, Command::Ask(Purpose::Folder)),
-        ((Icon::Save, "Save case"), keyboard::SAVE, Command::SaveCase),
-        ((Icon::SaveAll, "Save case as…"), keyboard::SAVE_AS, Command::Ask(Purpose::SaveCase)),
+    for (of, label, shortcut, command) in [
+        (Icon::FilePlus, "New case", keyboard::NEW, Command::NewCase),
+        (Icon::File, "Open files…", keyboard::OPEN, Command::Ask(Purpose::Files)),
+        (Icon::FolderOpen, "Open folder…", keyboard::OPEN_FOLDER, Command::Ask(Purpose::Folder)),
+        (Icon::Save, "Save case", keyboard::SAVE, Command::SaveCase),
+        (Icon::SaveAll, "Save case as…", keyboard::SAVE_AS, Command::Ask(Purpose::SaveCase)),
     ] {
-        edit_item(ui, label, shortcut, (true, command), commands);
+        edit_item(ui, of, label, shortcut, true, command, commands);
     }
     if ui.add(icon_button(Icon::FileText, "Report…")).clicked() {
         commands.push(Command::ShowWorkspace(Workspace::Report));
@@ -216,9 +218,11 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     Panel::bottom("status").show(ui, |ui| {
         let tasks = &state.session.tasks;
         for source in &state.session.sources {
-            if let Some(progress) = tasks.progress(&TaskKey::Load(source.opened.clone())) {
+            if let Some((progress, elapsed)) = tasks.progress(&TaskKey::Load(source.opened.clone()))
+            {
                 let cancel = Command::Close(source.opened.clone());
-                progress_ui(ui, &format!("Loading {}", source.name()), progress, cancel, commands);
+                let what = format!("Loading {}", source.name());
+                progress_ui(ui, &what, progress, elapsed, cancel, commands);
             }
         }
         for (path, replay) in &state.session.replays {
@@ -228,19 +232,18 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
                 job_ui(ui, &format!("Simulating {name}"), job, cancel, commands);
             }
         }
-        let Session { force, response, .. } = &state.session;
-        let paused = (force.training.run.is_paused(), response.training.run.is_paused());
-        if force.training.run.is_running() {
-            training_job_ui(ui, (Network::Force, paused.0), force.training.progress(), commands);
+        let (force, response) = (&state.session.force.training, &state.session.response.training);
+        if force.run.is_running() {
+            training_job_ui(ui, Network::Force, force.run.is_paused(), force.progress(), commands);
         }
-        if response.training.run.is_running() {
-            let progress = response.training.progress();
-            training_job_ui(ui, (Network::Response, paused.1), progress, commands);
+        if response.run.is_running() {
+            let is_paused = response.run.is_paused();
+            training_job_ui(ui, Network::Response, is_paused, response.progress(), commands);
         }
-        if let Some((what, progress, elapsed)) = response.comparison.progress() {
+        if let Some((what, progress, elapsed)) = state.session.response.comparison.progress() {
             let what = format!("{what}, {}", progress.message);
             let cancel = Command::Compare(ComparisonCommand::Cancel);
-            progress_ui(ui, &what, (progress, elapsed), cancel, commands);
+            progress_ui(ui, &what, progress, elapsed, cancel, commands);
         }
         // In its own workspace the reconstruction shows its progress itself.
         if let Some(job) = state.session.reconstruction.run.job()
@@ -249,17 +252,18 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             let cancel = Command::Reconstruct(ReconstructionCommand::Cancel);
             job_ui(ui, "Reconstructing", job, cancel, commands);
         }
-        if let Some(progress) = tasks.progress(&TaskKey::Report)
+        if let Some((progress, elapsed)) = tasks.progress(&TaskKey::Report)
             && state.view.workspaces.shown != Workspace::Report
         {
             let cancel = Command::Report(ReportCommand::Cancel);
-            progress_ui(ui, "Making the report", progress, cancel, commands);
+            progress_ui(ui, "Making the report", progress, elapsed, cancel, commands);
         }
         if let Some(path) = tasks.film()
-            && let Some(progress) = tasks.progress(&TaskKey::Film(path.to_owned()))
+            && let Some((progress, elapsed)) = tasks.progress(&TaskKey::Film(path.to_owned()))
         {
             let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-            progress_ui(ui, &format!("Making {name}"), progress, Command::CancelFilm, commands);
+            let what = format!("Making {name}");
+            progress_ui(ui, &what, progress, elapsed, Command::CancelFilm, commands);
         }
         if state.session.frame_times.is_shown {
             ui.weak(state.session.frame_times.text());
@@ -328,7 +332,8 @@ pub fn messages_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 /// front.
 fn training_job_ui(
     ui: &mut Ui,
-    (network, is_paused): (Network, bool),
+    network: Network,
+    is_paused: bool,
     progress: (Option<f32>, Option<Duration>),
     commands: &mut Vec<Command>,
 ) {
@@ -351,13 +356,14 @@ fn training_job_ui(
 
 /// Draws a row for a running job: a button to cancel, the share done and the time left.
 fn job_ui<T>(ui: &mut Ui, what: &str, job: &Job<T>, cancel: Command, commands: &mut Vec<Command>) {
-    progress_ui(ui, what, (job.progress(), job.elapsed()), cancel, commands);
+    progress_ui(ui, what, job.progress(), job.elapsed(), cancel, commands);
 }
 
 fn progress_ui(
     ui: &mut Ui,
     what: &str,
-    (progress, elapsed): (&Progress, Duration),
+    progress: &Progress,
+    elapsed: Duration,
     cancel: Command,
     commands: &mut Vec<Command>,
 ) {

@@ -78,14 +78,14 @@ impl State {
             Command::SaveFilm(film, path) => self.make_film(*film, path, existing),
             Command::SaveScenario(path) => {
                 if let Some(scenario) = self.project.scenario() {
-                    self.write_text(&scenario.to_toml(), (&path, existing));
+                    self.write_text(&scenario.to_toml(), &path, existing);
                 }
             }
             Command::SaveVehicle(sheet, path) => {
-                self.write_text(&sheet.to_toml(), (&path, existing));
+                self.write_text(&sheet.to_toml(), &path, existing);
             }
             Command::SaveEvidence(evidence, path) => {
-                self.write_text(&evidence.to_toml(), (&path, existing));
+                self.write_text(&evidence.to_toml(), &path, existing);
             }
             Command::SaveSite(path) => self.save_site(&path, existing),
             Command::SaveCaseAs(path) => self.save_case(path, existing),
@@ -142,7 +142,7 @@ impl State {
     }
 
     /// Writes a short text and tells the user that it has been written, or why it could not be.
-    fn write_text(&mut self, text: &str, (path, existing): (&Path, Existing)) {
+    fn write_text(&mut self, text: &str, path: &Path, existing: Existing) {
         let written = write_atomically(path, existing, |out| out.write_all(text.as_bytes()));
         match written {
             Ok(()) => self.say(Severity::Info, format!("{} written", path.display())),

@@ -167,7 +167,8 @@ impl State {
     /// - `extra`: other data sets, from which all cases are used for training.
     pub(in crate::app) fn train_force_request(
         &self,
-        (chosen, extra): (&OpenDataset<'_>, &[OpenDataset<'_>]),
+        chosen: &OpenDataset<'_>,
+        extra: &[OpenDataset<'_>],
     ) -> TrainForceRequest {
         let form: &ForceTrainingForm = &self.project.force_training;
         TrainForceRequest {
@@ -222,7 +223,8 @@ impl State {
     /// current model is to be fine-tuned and there is none.
     pub(in crate::app) fn fine_tune_request(
         &self,
-        (data, logs): (Vec<PathBuf>, Option<MotionLogs>),
+        data: Vec<PathBuf>,
+        logs: Option<MotionLogs>,
     ) -> Option<FineTuneRequest> {
         let form: &ResponseTrainingForm = &self.project.response_training;
         let model = match form.mode {

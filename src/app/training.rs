@@ -101,7 +101,8 @@ impl<A> Drop for Training<A> {
 
 impl<A: Send + 'static> Training<A> {
     fn start<Q: Question<Answer = A>>(
-        (question, mut diary): (Q, Option<TrainingDiary>),
+        question: Q,
+        mut diary: Option<TrainingDiary>,
         library: Arc<Library>,
         wake: impl Fn() + Send + 'static,
     ) -> std::io::Result<Self> {
@@ -116,7 +117,7 @@ impl<A: Send + 'static> Training<A> {
                 if let (Event::Training(report), Some(diary)) = (&event, &mut diary) {
                     diary.record(report);
                 }
-                tell(&event, (&sender, &own_gate), report)
+                tell(&event, &sender, &own_gate, report)
             };
             let answer = question.answer(&library, &mut observer);
             if let Some(diary) = diary {
@@ -201,11 +202,12 @@ impl<A: Send + 'static> TrainingSlot<A> {
     /// The error of the operating system, if the thread cannot be started.
     pub fn start<Q: Question<Answer = A>>(
         &mut self,
-        (question, diary): (Q, Option<TrainingDiary>),
+        question: Q,
+        diary: Option<TrainingDiary>,
         library: &Arc<Library>,
         wake: impl Fn() + Send + 'static,
     ) -> std::io::Result<()> {
-        self.0 = Some(Training::start((question, diary), Arc::clone(library), wake)?);
+        self.0 = Some(Training::start(question, diary, Arc::clone(library), wake)?);
         Ok(())
     }
 
@@ -226,7 +228,8 @@ impl<A: Send + 'static> TrainingSlot<A> {
 /// cancelled meanwhile.
 fn tell(
     event: &Event<'_>,
-    (sender, gate): (&Sender<TrainingReport>, &Gate),
+    sender: &Sender<TrainingReport>,
+    gate: &Gate,
     report: &mut ProgressCallback<'_>,
 ) -> ControlFlow<()> {
     let progress = match event {

@@ -70,14 +70,16 @@ impl<M: TrainedModel> TrainingStatus<M> {
     /// The error of the operating system, if the thread cannot be started.
     pub fn start<Q: Question<Answer = M::Answer> + Into<Request>>(
         &mut self,
-        (question, diary): (Q, Option<TrainingDiary>),
-        (data, library): (String, &Arc<Library>),
+        question: Q,
+        diary: Option<TrainingDiary>,
+        data: String,
+        library: &Arc<Library>,
         wake: impl Fn() + Send + 'static,
     ) -> std::io::Result<()> {
         let checkpoint = diary.as_ref().map(|diary| diary.checkpoint().to_owned());
         let request = Some(question.clone().into());
         *self = Self { data, request, checkpoint, ..Self::default() };
-        self.run.start((question, diary), library, wake)
+        self.run.start(question, diary, library, wake)
     }
 
     /// Receives the reports. When the training has ended, returns the model and whether the
@@ -130,7 +132,7 @@ impl<M: TrainedModel> TrainingStatus<M> {
             (options.checkpoint, options.resume) = (None, false); // Those of a finished training.
         }
         let kind = ArchiveKind::from(M::NETWORK);
-        let mut entry = ArchiveEntry::new(kind, (name, model.data().to_owned()), question);
+        let mut entry = ArchiveEntry::new(kind, name, model.data().to_owned(), question);
         entry.is_cancelled = !is_complete;
         (entry.figures, entry.settings) = (model.facts(), model.settings());
         let time = Duration::try_from_secs_f64(M::seconds(report)).unwrap_or_default();

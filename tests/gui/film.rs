@@ -57,7 +57,7 @@ fn film() -> Film {
 }
 
 fn make(film: &Film, path: &Path) -> Result<Outcome<()>, FilmError> {
-    write_film(film, (path, Existing::Refuse), &mut |_| ControlFlow::Continue(()))
+    write_film(film, path, Existing::Refuse, &mut |_| ControlFlow::Continue(()))
 }
 
 /// The frames of an MP4 file as red, green, blue and alpha, after a check of its table of frames.
@@ -147,7 +147,7 @@ fn the_same_film_gives_the_same_bytes() {
 fn a_cancelled_film_leaves_no_file_and_an_existing_one_stays() {
     let (folder, film) = (tempfile::tempdir().expect("a folder"), film());
     let path = folder.path().join("film.mp4");
-    let cancelled = write_film(&film, (&path, Existing::Refuse), &mut |progress| {
+    let cancelled = write_film(&film, &path, Existing::Refuse, &mut |progress| {
         assert_eq!(progress.total, 17);
         if progress.done == 4 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
@@ -156,13 +156,13 @@ fn a_cancelled_film_leaves_no_file_and_an_existing_one_stays() {
 
     std::fs::write(&path, "mine").expect("a file");
     let mut n_frames = 0;
-    let refused = write_film(&film, (&path, Existing::Refuse), &mut |_| {
+    let refused = write_film(&film, &path, Existing::Refuse, &mut |_| {
         n_frames += 1;
         ControlFlow::Continue(())
     });
     assert!(refused.is_err_and(|error| error.to_string().contains("exists already")));
     assert_eq!((n_frames, std::fs::read(&path).expect("a file")), (0, b"mine".to_vec()));
-    let cancelled = write_film(&film, (&path, Existing::Replace), &mut |_| ControlFlow::Break(()));
+    let cancelled = write_film(&film, &path, Existing::Replace, &mut |_| ControlFlow::Break(()));
     assert!(matches!(cancelled, Ok(Outcome::Cancelled)));
     assert_eq!(std::fs::read(&path).expect("a file"), b"mine");
 }

@@ -158,8 +158,9 @@ fn learning_and_calibration() {
             }
         })
         .collect();
-    let of = (Quantity::Impulse, UnitSystem::Si);
-    save(&parity_figure(("Impulse", "|P|", "90 % interval"), &points, of), "parity");
+    let (interval, quantity) = ("90 % interval", Quantity::Impulse);
+    let parity = parity_figure("Impulse", "|P|", interval, &points, quantity, UnitSystem::Si);
+    save(&parity, "parity");
     save(&pit_figure("PIT of the force", &[5, 8, 11, 9, 12, 14, 9, 8, 13, 20]), "pit");
     let points = |off: f64| {
         let point = |level: f64| CoveragePoint { level, share: level - off, standard_error: 0.04 };

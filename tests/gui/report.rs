@@ -73,10 +73,13 @@ fn the_report_on_screen_is_the_one_of_the_case_file() {
         paper: impactlab_document::report::Paper::A4,
         date: DATE.parse().expect("a day"),
     };
-    let chosen = (&case, std::slice::from_ref(&case.shown));
-    let outcome = report_case(chosen, &settings, &Library::default(), &mut |_| {
-        std::ops::ControlFlow::Continue(())
-    });
+    let outcome = report_case(
+        &case,
+        std::slice::from_ref(&case.shown),
+        &settings,
+        &Library::default(),
+        &mut |_| std::ops::ControlFlow::Continue(()),
+    );
     let (of_file, _) = outcome.expect("answers").complete().expect("a report");
     let shown = &made(&harness).document;
     for kind in [SectionKind::Answers, SectionKind::Inputs, SectionKind::Sensitivity] {

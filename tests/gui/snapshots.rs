@@ -59,26 +59,36 @@ fn check(figure: &Figure, dark: bool, name: &str) {
 fn force() {
     let analysis = analysis("fea", "c002");
     let class = Some(ChannelClass::Cfc60);
-    let shown = (&analysis, &Caveats::default());
-    let figure = analysis_force_figure(shown, class, &[], UnitSystem::Si).expect("it filters");
+    let figure = analysis_force_figure(&analysis, &Caveats::default(), class, &[], UnitSystem::Si)
+        .expect("it filters");
     check(&figure.expect("a force"), false, "force");
 }
 
 #[test]
 fn motion() {
     let analysis = analysis("trajectories-pulse", "P001");
-    let shown = (&analysis, &Caveats::default());
-    check(&analysis_motion_figure(shown, Channel::YawRate, UnitSystem::Us), true, "motion");
+    check(
+        &analysis_motion_figure(&analysis, &Caveats::default(), Channel::YawRate, UnitSystem::Us),
+        true,
+        "motion",
+    );
 }
 
 #[test]
 fn scene_with_striking_and_scene_with_reference() {
     let force_case = analysis("fea", "c002");
-    let shown = (&force_case, &Caveats::default());
-    check(&analysis_scene_figure(shown, 0.4, UnitSystem::Si), false, "scene_bullet");
+    let caveats = Caveats::default();
+    check(
+        &analysis_scene_figure(&force_case, &caveats, 0.4, UnitSystem::Si),
+        false,
+        "scene_bullet",
+    );
     let trajectory = analysis("trajectories-fea", "FE_c002");
-    let shown = (&trajectory, &Caveats::default());
-    check(&analysis_scene_figure(shown, 2.0, UnitSystem::Us), true, "scene_reference");
+    check(
+        &analysis_scene_figure(&trajectory, &caveats, 2.0, UnitSystem::Us),
+        true,
+        "scene_reference",
+    );
 }
 
 /// The scene of a case, drawn as cars.

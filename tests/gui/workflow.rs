@@ -170,7 +170,8 @@ fn a_dropped_file_opens_and_a_figure_is_exported() {
     harness.get_by_label_contains("c002.csv · force");
     let analysis = state(&harness).analysis().unwrap().analysis.clone();
     let figure = impactlab_document::figure::analysis_scene_figure(
-        (&analysis, &Caveats::default()),
+        &analysis,
+        &Caveats::default(),
         1.0,
         UnitSystem::Si,
     );

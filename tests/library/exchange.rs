@@ -159,7 +159,7 @@ fn a_clock_from_1970_and_survey_coordinates_keep_their_precision() {
     let ys: Vec<f64> = ys.collect();
     assert!(ys.iter().all(|y| (y - 5_423_456.37).abs() < 1e-6) && !ys.is_empty(), "{ys:?}");
     let mut table = Vec::new();
-    hve_motion((&answer.analysis, None), &mut table).expect("a motion");
+    hve_motion(&answer.analysis, None, &mut table).expect("a motion");
     let table = String::from_utf8(table).expect("UTF-8");
     let first = table.lines().find(|line| line.starts_with("17")).expect("rows");
     let cells: Vec<f64> = first.split('\t').map_while(|cell| cell.parse().ok()).take(3).collect();
@@ -258,8 +258,8 @@ fn tables_for_hve_have_its_units_and_signs() {
     let (answer, _) = case();
     let analysis = &answer.analysis;
     let [mut pulse, mut motion] = [Vec::new(), Vec::new()];
-    hve_pulse((analysis, Some("assumed: a pulse")), &mut pulse).expect("a pulse");
-    hve_motion((analysis, None), &mut motion).expect("a motion");
+    hve_pulse(analysis, Some("assumed: a pulse"), &mut pulse).expect("a pulse");
+    hve_motion(analysis, None, &mut motion).expect("a motion");
     let rows = |text: &str| -> (Vec<String>, Vec<Vec<f64>>) {
         let mut lines = text.lines().filter(|line| !line.starts_with('#'));
         let header = lines.next().expect("names").split('\t').map(str::to_owned).collect();

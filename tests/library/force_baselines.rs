@@ -29,8 +29,8 @@ fn evaluation(columns: ColumnSet) -> Evaluation {
     let truth = test.iter().map(|case| CurvePrediction::from_curve(case.curve.clone()));
     let settings = EvaluationSettings { columns, ..EvaluationSettings::default() };
     let mut report = |_| ControlFlow::Continue(());
-    let parts = (train.as_slice(), test.as_slice());
-    let outcome = evaluate("the truth", parts, &truth.collect::<Vec<_>>(), &settings, &mut report);
+    let outcome =
+        evaluate("the truth", &train, &test, &truth.collect::<Vec<_>>(), &settings, &mut report);
     outcome.expect("an evaluation").complete().expect("not cancelled")
 }
 
@@ -96,9 +96,9 @@ fn an_evaluation_can_be_cancelled_and_needs_a_prediction_a_case() {
         some.iter().map(|case| CurvePrediction::from_curve(case.curve.clone())).collect();
     let settings = EvaluationSettings::default();
     let mut stop = |_| ControlFlow::Break(());
-    let parts = (some.as_slice(), some.as_slice());
-    let cancelled = evaluate("model", parts, &truth, &settings, &mut stop).unwrap();
+    let some = some.as_slice();
+    let cancelled = evaluate("model", some, some, &truth, &settings, &mut stop).unwrap();
     assert_eq!(cancelled, Outcome::Cancelled);
-    let short = evaluate("model", parts, &truth[1..], &settings, &mut stop).unwrap_err();
+    let short = evaluate("model", some, some, &truth[1..], &settings, &mut stop).unwrap_err();
     assert!(matches!(short, EvaluationError::Predictions { expected: 8, got: 7 }), "{short}");
 }

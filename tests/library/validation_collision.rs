@@ -145,7 +145,7 @@ fn finite_element_impulses() {
     let mut errors: [Vec<f64>; 3] = Default::default();
     for row in rows {
         let case = impact_case(&headers, &row);
-        let scenario = case.to_scenario([OUTLINE; 2], (0.3, 0.4)).expect("a side");
+        let scenario = case.to_scenario([OUTLINE; 2], 0.3, 0.4).expect("a side");
         let impact = case.to_impact(0.3, 0.4).expect("a side");
         assert_eq!(scenario.impact().expect("a contact"), impact);
         let [px, py] = impact.solve().expect("a solution").impulse_world_n_s;

@@ -19,7 +19,7 @@ const SPACING: f32 = 3.0;
 /// and what was assumed. Where the picture is too small for all of it, the values that were assumed
 /// are only counted; what does not fit even then is said to be in the table of the figure.
 pub fn picture_ui(ui: &mut Ui, figure: &Figure) {
-    framed_ui(ui, (&figure.title, &figure.caveats), |ui, height| {
+    framed_ui(ui, &figure.title, &figure.caveats, |ui, height| {
         figure_ui(ui, figure, &FigureOptions { height, ..FigureOptions::default() });
     });
 }
@@ -29,7 +29,8 @@ pub fn picture_ui(ui: &mut Ui, figure: &Figure) {
 /// - `draw`: given the height that is left, points; `None` if that is all the space there is.
 pub fn framed_ui(
     ui: &mut Ui,
-    (title, caveats): (&str, &Caveats),
+    title: &str,
+    caveats: &Caveats,
     draw: impl FnOnce(&mut Ui, Option<f32>),
 ) {
     let area = ui.available_size();

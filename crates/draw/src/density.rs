@@ -119,7 +119,7 @@ impl DensityGpu {
             .filter(|held| held.bytes().iter().zip(bytes).all(|(held, needed)| *held >= needed));
         let buffers = checked(device, || {
             let buffers = buffers.unwrap_or_else(|| Buffers::new(device, pipeline, bytes));
-            buffers.submit((device, &self.queue), pipeline, (size, tiles), &packed);
+            buffers.submit(device, &self.queue, pipeline, size, tiles, &packed);
             buffers
         })?;
         let values = buffers.read(device, n_points, largest)?;

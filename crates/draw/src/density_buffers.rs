@@ -66,9 +66,11 @@ impl Buffers {
     /// - `kernels`: eight numbers for each kernel, as in the shader.
     pub(super) fn submit(
         &self,
-        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
         pipeline: &wgpu::ComputePipeline,
-        (size, tiles): ([u32; 3], [u32; 2]),
+        size: [u32; 3],
+        tiles: [u32; 2],
         kernels: &[f32],
     ) {
         let grid: Vec<u8> = size.into_iter().chain([0]).flat_map(u32::to_le_bytes).collect();

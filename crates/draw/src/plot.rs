@@ -141,7 +141,7 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
             plot_ui.set_plot_bounds(PlotBounds::from_min_max(low, high));
         }
         for element in &figure.elements {
-            draw_element(plot_ui, element, (dark, figure.log_y));
+            draw_element(plot_ui, dark, element, figure.log_y);
         }
         if let Some(x) = options.cursor_x {
             let stroke = Stroke::new(theme::LINE_WIDTH, theme::cursor_color(dark));
@@ -304,11 +304,7 @@ fn heat_map(plot: &mut PlotUi<'_>, map: &HeatMap, color: Color32) {
 
 /// Draws an element with the colours of the dark or the light theme; on a logarithmic axis y is
 /// replaced by its logarithm.
-fn draw_element<'a>(
-    plot: &mut PlotUi<'a>,
-    element: &'a FigureElement,
-    (dark, log_y): (bool, bool),
-) {
+fn draw_element<'a>(plot: &mut PlotUi<'a>, dark: bool, element: &'a FigureElement, log_y: bool) {
     let color = theme::color(element.role(), dark);
     let stroke = Stroke::new(theme::line_width(element.role()), color);
     let style = |series: &Series| match series.style {

@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     /// Labels of the ticks of a logarithmic axis whose step size exceeds `least_step`.
-    fn labels((low, high): (f64, f64), least_step: f64) -> Vec<String> {
+    fn labels(low: f64, high: f64, least_step: f64) -> Vec<String> {
         let bounds = (low.log10(), high.log10());
         let marks = log_grid(GridInput { bounds, base_step_size: 0.02 });
         marks.into_iter().filter(|mark| mark.step_size > least_step).map(log_tick_label).collect()
@@ -123,11 +123,11 @@ mod tests {
     #[test]
     fn logarithmic_ticks_stand_at_round_values() {
         assert_eq!(
-            labels((0.03, 30.0), 0.1),
+            labels(0.03, 30.0, 0.1),
             ["0.05", "0.1", "0.2", "0.5", "1", "2", "5", "10", "20"]
         );
-        assert_eq!(labels((1.05, 1.42), 0.0), ["1.1", "1.2", "1.3", "1.4"]);
-        assert_eq!(labels((3e-5, 3e-3), 0.1), ["5e-5", "1e-4", "2e-4", "5e-4", "0.001", "0.002"]);
+        assert_eq!(labels(1.05, 1.42, 0.0), ["1.1", "1.2", "1.3", "1.4"]);
+        assert_eq!(labels(3e-5, 3e-3, 0.1), ["5e-5", "1e-4", "2e-4", "5e-4", "0.001", "0.002"]);
         assert!(log_grid(GridInput { bounds: (f64::NAN, 1.0), base_step_size: 1.0 }).is_empty());
     }
 

@@ -263,8 +263,8 @@ impl Posterior {
 
     /// What further measurements would bring, by [`Narrowing`].
     ///
-    /// - `(ess, seed)`: effective sample size of the particles, seed of the errors of measurements.
-    pub fn budget(&self, (ess, seed): (f64, u64)) -> Vec<BudgetItem> {
+    /// - `ess`, `seed`: effective sample size of the particles, seed of the errors of measurements.
+    pub fn budget(&self, ess: f64, seed: u64) -> Vec<BudgetItem> {
         let speeds = self.values(ReconstructedQuantity::StruckSpeed);
         let latent = |latent: Latent| self.values.iter().map(|v| v.get(latent)).collect::<Vec<_>>();
         let quantity = |quantity: ReconstructedQuantity| self.values(quantity);

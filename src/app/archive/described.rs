@@ -38,12 +38,12 @@ pub fn how_it_was_made(question: &Request) -> String {
 pub fn differences<C: Serialize>(config: &C, usual: &C) -> Vec<Fact> {
     let mut found = Vec::new();
     if let (Ok(config), Ok(usual)) = (serde_json::to_value(config), serde_json::to_value(usual)) {
-        collect(String::new(), (&config, Some(&usual)), &mut found);
+        collect(String::new(), &config, Some(&usual), &mut found);
     }
     found
 }
 
-fn collect(name: String, (value, usual): (&Value, Option<&Value>), found: &mut Vec<Fact>) {
+fn collect(name: String, value: &Value, usual: Option<&Value>, found: &mut Vec<Fact>) {
     if Some(value) == usual {
         return;
     }
@@ -51,7 +51,7 @@ fn collect(name: String, (value, usual): (&Value, Option<&Value>), found: &mut V
         Value::Object(fields) => {
             for (key, field) in fields {
                 let name = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
-                collect(name, (field, usual.and_then(|usual| usual.get(key))), found);
+                collect(name, field, usual.and_then(|usual| usual.get(key)), found);
             }
         }
         _ => found.push(Fact::new(name, value)),

@@ -113,7 +113,7 @@ pub struct ArchiveEntry {
 impl ArchiveEntry {
     /// The note of something that is finished now. Its digest and its size are filled in when it is
     /// written.
-    pub fn new(kind: ArchiveKind, (name, data): (String, String), question: Request) -> Self {
+    pub fn new(kind: ArchiveKind, name: String, data: String, question: Request) -> Self {
         Self {
             version: VERSION,
             program: crate::VERSION.to_owned(),

@@ -216,8 +216,12 @@ mod tests {
 
     fn draft(content: &[u8], name: &str) -> ArchiveEntry {
         let question = EvaluateForceRequest::new(ModelChoice::default(), "data");
-        let names = (name.to_owned(), "data".to_owned());
-        let entry = ArchiveEntry::new(ArchiveKind::ForceEvaluation, names, Request::from(question));
+        let entry = ArchiveEntry::new(
+            ArchiveKind::ForceEvaluation,
+            name.to_owned(),
+            "data".to_owned(),
+            Request::from(question),
+        );
         ArchiveEntry { sha256: sha256_hex(content), ..entry }
     }
 

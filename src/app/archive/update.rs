@@ -244,7 +244,7 @@ fn comparison_note(
         }
         _ => (ArchiveKind::Comparison, format!("models compared on {}", comparison.data)),
     };
-    let mut entry = ArchiveEntry::new(kind, (name, comparison.data.clone()), question);
+    let mut entry = ArchiveEntry::new(kind, name, comparison.data.clone(), question);
     entry.figures.push(Fact::new("Trajectories asked about", comparison.test.len()));
     for model in &comparison.models {
         let name = model_name(&model.name, model.trajectories);
@@ -270,7 +270,7 @@ fn evaluation_note(
         Request::EvaluateForce(of) => format!("{} on {data}", archive.name_of(&of.model)),
         _ => data.clone(),
     };
-    let mut entry = ArchiveEntry::new(ArchiveKind::ForceEvaluation, (name, data), question);
+    let mut entry = ArchiveEntry::new(ArchiveKind::ForceEvaluation, name, data, question);
     let of_model = &report.evaluation.metrics.overall;
     entry.figures = vec![
         Fact::new("Cases", report.n_test),

@@ -145,8 +145,8 @@ pub(super) fn take_forms(
     if !kinds.has_motion
         && let Some(subject) = &shown.subject
     {
-        let source = source_of(subject, (&shown, &start), &series);
-        let simulate = simulation(&forms, (source, &shown))?;
+        let source = source_of(subject, &shown, &start, &series);
+        let simulate = simulation(&forms, source, &shown)?;
         variant.questions.push(forecast(&simulate, &shown).into());
         variant.questions.push(simulate.into());
     }
@@ -197,7 +197,8 @@ impl QuestionKinds {
 
 fn source_of(
     subject: &FormsSubject,
-    (shown, start): (&FormsProject, &Drive),
+    shown: &FormsProject,
+    start: &Drive,
     series: &impl Fn(&PathBuf) -> SeriesFile,
 ) -> MotionSource {
     match subject {
@@ -221,7 +222,8 @@ fn source_of(
 /// The simulation of the forms, whose settings had the names of those of the question.
 fn simulation(
     forms: &Value,
-    (source, shown): (MotionSource, &FormsProject),
+    source: MotionSource,
+    shown: &FormsProject,
 ) -> Result<SimulateRequest, serde_json::Error> {
     let is_open = matches!(source, MotionSource::Drive(_));
     let mut settings = forms["project"].clone();

@@ -27,7 +27,7 @@ impl Purpose {
     ) -> Option<Command> {
         let first = paths.first().cloned()?;
         let written = |ending: &str, command: &dyn Fn(PathBuf) -> Command| {
-            written((&first, ending), is_confirmed, command)
+            written(&first, ending, is_confirmed, command)
         };
         Some(match self {
             Self::Folder | Self::Files | Self::Ground | Self::OpenModel | Self::OpenComparison => {
@@ -109,7 +109,8 @@ pub fn ask_for_path(purpose: Purpose, tasks: &mut Tasks) {
 /// asked already whether that file is to be replaced, but not a file with the ending that is added
 /// to a name without one.
 fn written(
-    (chosen, ending): (&Path, &str),
+    chosen: &Path,
+    ending: &str,
     is_confirmed: bool,
     command: &dyn Fn(PathBuf) -> Command,
 ) -> Command {

@@ -34,7 +34,7 @@ impl State {
         self.session.tasks.start_in_background(
             TaskKey::Film(path.clone()),
             move |report| {
-                write_film(&film, (&target, existing), report).map_err(|error| error_chain(&error))
+                write_film(&film, &target, existing, report).map_err(|error| error_chain(&error))
             },
             |result| Command::FilmEnded(path, result),
         );

@@ -44,7 +44,7 @@ impl State {
                 let of = format!("{name} of {}", record.history.len());
                 let draft = force.training.archive_note(&model, name.clone(), is_complete);
                 let used = is_complete.then_some(&mut self.project.predict_force.model);
-                let taken = force.model.take_trained(model, name, (library, used));
+                let taken = force.model.take_trained(model, name, library, used);
                 let draft = draft.map(|draft| ArchiveEntry { name: taken.1, ..draft });
                 let ForceSession { model: status, training, .. } = force;
                 keep_trained(status, training, taken.0, draft, archive.folder(), tasks);
@@ -89,7 +89,7 @@ impl State {
         if recorded.as_ref().is_some_and(|r| r.dataset == *dataset && r.case == *case) {
             return;
         }
-        self.session.force.recorded = force_case(&self.session.sources, (dataset, case));
+        self.session.force.recorded = force_case(&self.session.sources, dataset, case);
     }
 
     /// Takes the collision of the selected case into the force prediction, if the case has a
@@ -135,14 +135,14 @@ impl State {
         let extra: Vec<_> = datasets.iter().copied().filter(is_extra).collect();
         let names = std::iter::once(&chosen).chain(&extra).map(OpenDataset::name);
         let data = names.collect::<Vec<_>>().join(" + ");
-        Some((self.train_force_request((&chosen, &extra)).into(), data))
+        Some((self.train_force_request(&chosen, &extra).into(), data))
     }
 
     /// Starts a training on the chosen data set.
     fn start_force_training(&mut self, context: &Context) {
         match self.force_training() {
             Some((question, data)) => {
-                self.start_training(question, (Network::Force, data), context);
+                self.start_training(question, Network::Force, data, context);
             }
             None => self.say(Severity::Warning, "open a force data set to train on first"),
         }
@@ -176,7 +176,7 @@ impl State {
 
 /// Returns the case of an open force data set with its recorded force; `None` if it is not open or
 /// cannot be used.
-fn force_case(sources: &[Source], (path, name): (&Path, &str)) -> Option<RecordedCase> {
+fn force_case(sources: &[Source], path: &Path, name: &str) -> Option<RecordedCase> {
     let source = sources.iter().find(|source| source.path == path)?;
     let checked = source.dataset().filter(|c| c.dataset.kind == DatasetKind::Force)?;
     let case = checked.dataset.case(name)?;

@@ -95,7 +95,7 @@ impl<M: TrainedModel> ModelStatus<M> {
             ModelEvent::Saved(model, result) => {
                 self.is_saving = false;
                 if let Ok(path) = result {
-                    self.identify((model, path), file_name(path), (library, wanted));
+                    self.identify(model, path, file_name(path), library, wanted);
                 }
                 ModelNews::Saved(result.clone())
             }
@@ -107,7 +107,7 @@ impl<M: TrainedModel> ModelStatus<M> {
                     if current.is_some_and(|of| Arc::ptr_eq(&of.model, model) && of.is_saved) {
                         M::hold(library, ModelChoice::file(&path), Arc::clone(model));
                     } else {
-                        self.identify((model, &path), entry.name.clone(), (library, wanted));
+                        self.identify(model, &path, entry.name.clone(), library, wanted);
                     }
                     entry
                 }))
@@ -130,7 +130,8 @@ impl<M: TrainedModel> ModelStatus<M> {
         &mut self,
         model: M,
         name: String,
-        (library, wanted): (&Library, Option<&mut ModelChoice>),
+        library: &Library,
+        wanted: Option<&mut ModelChoice>,
     ) -> (Arc<M>, String) {
         self.n_trained += 1;
         // The library identifies a model by its name. Two models of the same name would make the
@@ -194,9 +195,11 @@ impl<M: TrainedModel> ModelStatus<M> {
     /// Identifies a model by a file that holds it from now on, also if it is not in use.
     fn identify(
         &mut self,
-        (model, path): (&Arc<M>, &Path),
+        model: &Arc<M>,
+        path: &Path,
         name: String,
-        (library, wanted): (&Library, &mut ModelChoice),
+        library: &Library,
+        wanted: &mut ModelChoice,
     ) {
         let choice = ModelChoice::file(path);
         let is_it = |of: &&mut CurrentModel<M>| Arc::ptr_eq(&of.model, model);
@@ -319,7 +322,7 @@ mod tests {
         status.save(path.clone(), Existing::Replace, &mut tasks).unwrap();
         let trained = ModelSource::Shipped.force_model().unwrap();
         let used = Some(&mut wanted);
-        status.take_trained(trained, "trained meanwhile".to_owned(), (&library, used));
+        status.take_trained(trained, "trained meanwhile".to_owned(), &library, used);
         let in_use = wanted.clone();
         let saved = settle(&mut status, &mut tasks, &library, &mut wanted);
         assert!(matches!(&saved[..], [ModelNews::Saved(Ok(saved))] if *saved == path));

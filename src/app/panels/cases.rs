@@ -45,7 +45,7 @@ pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     };
     let columns = CaseColumn::for_kind(table.checked.dataset.kind);
     let table = Table { cases: table, columns, selected };
-    if let Some(case) = table.ui(ui, (view, show_selected)) {
+    if let Some(case) = table.ui(ui, view, show_selected) {
         commands.push(Command::Select(Subject::Case { dataset: path, case }));
     }
 }
@@ -80,7 +80,7 @@ impl Table<'_> {
     /// Draws the table and returns the name of the case that the user clicked, if any.
     ///
     /// - `show_selected`: whether the table scrolls to the selected case.
-    fn ui(&self, ui: &mut Ui, (view, show_selected): (&mut View, bool)) -> Option<String> {
+    fn ui(&self, ui: &mut Ui, view: &mut View, show_selected: bool) -> Option<String> {
         let mut picked = None;
         let units = view.units;
         egui::ScrollArea::horizontal().show(ui, |ui| {

@@ -54,7 +54,7 @@ pub fn data_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             }
         }
         for source in &session.sources {
-            source_ui(ui, source, (project, view), commands);
+            source_ui(ui, source, project, view, commands);
         }
         let selected = project.subject() == Some(Subject::Scenario);
         let hint = "Two vehicles of your own: see the Scenario pane";
@@ -69,7 +69,8 @@ pub fn data_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 fn source_ui(
     ui: &mut Ui,
     source: &Source,
-    (project, view): (&Project, &View),
+    project: &Project,
+    view: &View,
     commands: &mut Vec<Command>,
 ) {
     match &source.content {
@@ -78,12 +79,12 @@ fn source_ui(
         }
         Content::Dataset(checked) => {
             let listed = view.listed.as_ref() == Some(&source.path);
-            dataset_ui(ui, source, (checked, listed), commands);
+            dataset_ui(ui, source, checked, listed, commands);
         }
         Content::File(file) => {
             let subject = Subject::File(source.path.clone());
             let selected = project.subject().as_ref() == Some(&subject);
-            file_ui(ui, source, (file, selected), commands);
+            file_ui(ui, source, file, selected, commands);
         }
         Content::Failed(why) => {
             let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
@@ -107,7 +108,8 @@ fn source_ui(
 fn dataset_ui(
     ui: &mut Ui,
     source: &Source,
-    (checked, listed): (&CheckedDataset, bool),
+    checked: &CheckedDataset,
+    listed: bool,
     commands: &mut Vec<Command>,
 ) {
     let dataset = &checked.dataset;
@@ -153,7 +155,8 @@ fn dataset_ui(
 fn file_ui(
     ui: &mut Ui,
     source: &Source,
-    (file, selected): (&CheckedFile, bool),
+    file: &CheckedFile,
+    selected: bool,
     commands: &mut Vec<Command>,
 ) {
     let kind = match file.loaded.kind {

@@ -34,7 +34,8 @@ const SMALL_STEER_RAD: f64 = 0.0524;
 pub(super) fn ending_form(
     ui: &mut Ui,
     vehicle: &str,
-    (ending, steering_ratio): (&mut Option<Ending>, &mut Option<f64>),
+    ending: &mut Option<Ending>,
+    steering_ratio: &mut Option<f64>,
     units: UnitSystem,
 ) {
     let title = match ending.as_ref().is_none_or(Ending::is_coasting) {
@@ -50,7 +51,7 @@ pub(super) fn ending_form(
             for wheel in Wheel::ALL {
                 wheel_fields(ui, wheel, &mut edited.damage, units);
             }
-            steer_fields(ui, (&mut edited.steer, steering_ratio), units);
+            steer_fields(ui, &mut edited.steer, steering_ratio, units);
         });
         if ending.clone().unwrap_or_default() != edited {
             *ending = (!edited.is_coasting()).then_some(edited);
@@ -71,9 +72,9 @@ fn brake_fields(ui: &mut Ui, brake: &mut Option<Braking>, units: UnitSystem) {
     let usual = Braking::new(REACTION_S, HARD_BRAKING, DEFAULT_BRAKE_RISE_S);
     switch(ui, "The driver brakes", brake, usual);
     let Some(brake) = brake else { return };
-    quantity_field(ui, "from", &mut brake.start_s, (&CONTROL_TIME, units));
-    quantity_field(ui, "share of friction", &mut brake.share_of_friction, (&BRAKE_SHARE, units));
-    quantity_field(ui, "rises over", &mut brake.rise_s, (&BRAKE_RISE, units));
+    quantity_field(ui, "from", &mut brake.start_s, &CONTROL_TIME, units);
+    quantity_field(ui, "share of friction", &mut brake.share_of_friction, &BRAKE_SHARE, units);
+    quantity_field(ui, "rises over", &mut brake.rise_s, &BRAKE_RISE, units);
 }
 
 fn engine_fields(ui: &mut Ui, engine: &mut Option<EngineBraking>, units: UnitSystem) {
@@ -81,7 +82,7 @@ fn engine_fields(ui: &mut Ui, engine: &mut Option<EngineBraking>, units: UnitSys
         EngineBraking { deceleration_m_s2: USUAL_ENGINE_BRAKING_M_S2, axle: DrivenAxle::default() };
     switch(ui, "The engine brakes", engine, usual);
     let Some(engine) = engine else { return };
-    quantity_field(ui, "deceleration", &mut engine.deceleration_m_s2, (&ENGINE_BRAKING, units));
+    quantity_field(ui, "deceleration", &mut engine.deceleration_m_s2, &ENGINE_BRAKING, units);
     axle_field(ui, "driven axle", &mut engine.axle);
 }
 
@@ -94,10 +95,10 @@ fn drive_fields(ui: &mut Ui, drive: &mut Option<Driving>, units: UnitSystem) {
     };
     switch(ui, "The driver accelerates", drive, usual);
     let Some(drive) = drive else { return };
-    quantity_field(ui, "torque at an axle", &mut drive.torque_n_m, (&DRIVE_TORQUE, units));
+    quantity_field(ui, "torque at an axle", &mut drive.torque_n_m, &DRIVE_TORQUE, units);
     axle_field(ui, "accelerated axle", &mut drive.axle);
-    quantity_field(ui, "from", &mut drive.start_s, (&CONTROL_TIME, units));
-    quantity_field(ui, "rises over", &mut drive.rise_s, (&BRAKE_RISE, units));
+    quantity_field(ui, "from", &mut drive.start_s, &CONTROL_TIME, units);
+    quantity_field(ui, "rises over", &mut drive.rise_s, &BRAKE_RISE, units);
 }
 
 fn axle_field(ui: &mut Ui, label: &str, axle: &mut DrivenAxle) {
@@ -161,15 +162,16 @@ fn wheel_fields(ui: &mut Ui, wheel: Wheel, damage: &mut Vec<DamagedWheel>, units
     }
     for damaged in damage.iter_mut().filter(|damaged| damaged.wheel == wheel) {
         if let Some(share) = &mut damaged.drag_share_of_friction {
-            quantity_field(ui, "share of friction", share, (&DRAG_SHARE, units));
+            quantity_field(ui, "share of friction", share, &DRAG_SHARE, units);
         }
-        quantity_field(ui, "from", &mut damaged.start_s, (&CONTROL_TIME, units));
+        quantity_field(ui, "from", &mut damaged.start_s, &CONTROL_TIME, units);
     }
 }
 
 fn steer_fields(
     ui: &mut Ui,
-    (steer, steering_ratio): (&mut Option<HeldSteer>, &mut Option<f64>),
+    steer: &mut Option<HeldSteer>,
+    steering_ratio: &mut Option<f64>,
     units: UnitSystem,
 ) {
     let usual =
@@ -180,12 +182,12 @@ fn steer_fields(
     match steering_ratio {
         None => {
             let angle = &mut steer.road_wheel_rad;
-            quantity_field(ui, "angle, to the left", angle, (&STEER_ANGLE, units));
+            quantity_field(ui, "angle, to the left", angle, &STEER_ANGLE, units);
         }
         Some(ratio) => steering_wheel_fields(ui, &mut steer.road_wheel_rad, ratio, units),
     }
-    quantity_field(ui, "from", &mut steer.start_s, (&CONTROL_TIME, units));
-    quantity_field(ui, "turned over", &mut steer.rise_s, (&BRAKE_RISE, units));
+    quantity_field(ui, "from", &mut steer.start_s, &CONTROL_TIME, units);
+    quantity_field(ui, "turned over", &mut steer.rise_s, &BRAKE_RISE, units);
 }
 
 /// Draws the ratio of the steering and the angle of the steering wheel. Another ratio keeps the angle of
@@ -197,11 +199,11 @@ fn steering_wheel_fields(
     units: UnitSystem,
 ) {
     let mut angle_rad = *road_wheel_rad * *ratio;
-    let mut is_changed = quantity_field(ui, "steering ratio", ratio, (&STEERING_RATIO, units));
+    let mut is_changed = quantity_field(ui, "steering ratio", ratio, &STEERING_RATIO, units);
     let range =
         STEERING_WHEEL_ANGLE.within([STEER_ANGLE.low, STEER_ANGLE.high].map(|end| end * *ratio));
     let label = "angle of the steering wheel, to the left";
-    is_changed |= quantity_field(ui, label, &mut angle_rad, (&range, units));
+    is_changed |= quantity_field(ui, label, &mut angle_rad, &range, units);
     if is_changed {
         *road_wheel_rad = (angle_rad / *ratio).clamp(STEER_ANGLE.low, STEER_ANGLE.high);
     }

@@ -23,9 +23,9 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let force = &session.force;
-        start_ui(ui, (&mut view.force, force), &session.sources, commands);
+        start_ui(ui, &mut view.force, force, &session.sources, commands);
         if force.model.current.is_some() && !force.evaluation.is_running() {
-            cost_ui(ui, &mut session.costs, (CostPlace::ForceEvaluation, "Evaluation"));
+            cost_ui(ui, &mut session.costs, CostPlace::ForceEvaluation, "Evaluation");
         }
         if let Some(problem) = force.evaluation.problem() {
             let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
@@ -41,11 +41,13 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ui.separator();
         let name = session.archive.name_of(&latest.question.model);
         let caveats = &answer.report.caveats;
-        heading_ui(ui, (report, caveats), &name);
-        tables_ui(ui, &report.evaluation, (&mut view.force, view.units));
+        heading_ui(ui, report, caveats, &name);
+        tables_ui(ui, &report.evaluation, &mut view.force, view.units);
         ui.separator();
         match &answer.cases {
-            Some(cases) => plots_ui(ui, (report, caveats, cases), (view, session.fit_plots), commands),
+            Some(cases) => {
+                plots_ui(ui, report, caveats, cases, view, session.fit_plots, commands)
+            }
             None => drop(ui.weak(
                 "The plots of single cases are not kept with an evaluation; Evaluate draws them.",
             )),
@@ -57,7 +59,8 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 /// the progress while it runs.
 fn start_ui(
     ui: &mut Ui,
-    (view, force): (&mut ForceView, &ForceSession),
+    view: &mut ForceView,
+    force: &ForceSession,
     sources: &[Source],
     commands: &mut Vec<Command>,
 ) {
@@ -108,7 +111,7 @@ fn start_ui(
 /// evaluated ones, of problems and of cases that were left out.
 ///
 /// - `model`: what the user calls the model.
-fn heading_ui(ui: &mut Ui, (report, caveats): (&EvaluateForceReport, &Caveats), model: &str) {
+fn heading_ui(ui: &mut Ui, report: &EvaluateForceReport, caveats: &Caveats, model: &str) {
     let (data, evaluation) = (file_name(&report.data), &report.evaluation);
     ui.horizontal_wrapped(|ui| {
         ui.strong(format!("{model} on {} cases of {data}", report.n_test));

@@ -28,18 +28,21 @@ const N_COLUMNS: usize = 3;
 /// - `reset`: whether the plots fit their view to the data again.
 pub fn plots_ui(
     ui: &mut Ui,
-    (report, caveats, cases): (&EvaluateForceReport, &Caveats, &EvaluatedForceCases),
-    (view, reset): (&mut View, bool),
+    report: &EvaluateForceReport,
+    caveats: &Caveats,
+    cases: &EvaluatedForceCases,
+    view: &mut View,
+    reset: bool,
     commands: &mut Vec<Command>,
 ) {
     let mut figures = vec![
-        parity(cases, ("Impulse", "|P|", Quantity::Impulse), view),
-        parity(cases, ("Peak force", "Peak |F|", Quantity::Force), view),
+        parity(cases, "Impulse", "|P|", Quantity::Impulse, view),
+        parity(cases, "Peak force", "Peak |F|", Quantity::Force, view),
     ];
     figures.extend(calibration(report));
     let figures: Vec<Figure> =
         figures.into_iter().map(|figure| figure.with_caveats(caveats)).collect();
-    rows_ui(ui, &figures, (None, reset), commands);
+    rows_ui(ui, &figures, None, reset, commands);
     ui.horizontal(|ui| {
         ui.strong("Sample cases, from the smallest to the largest impulse");
         for component in ForceComponent::ALL {
@@ -69,7 +72,7 @@ pub fn plots_ui(
             Figure { title: format!("{}{kind}", case.name), ..figure }
         })
         .collect();
-    rows_ui(ui, &samples, (Some(Id::unique("samples")), reset), commands);
+    rows_ui(ui, &samples, Some(Id::unique("samples")), reset, commands);
 }
 
 /// Draws figures in rows of [`N_COLUMNS`].
@@ -80,7 +83,8 @@ pub fn plots_ui(
 fn rows_ui(
     ui: &mut Ui,
     figures: &[Figure],
-    (group, reset): (Option<Id>, bool),
+    group: Option<Id>,
+    reset: bool,
     commands: &mut Vec<Command>,
 ) {
     for (row, figures) in figures.chunks(N_COLUMNS).enumerate() {
@@ -94,7 +98,7 @@ fn rows_ui(
                     legend: group.is_none() || row + place == 0,
                     ..FigureOptions::default()
                 };
-                figure_frame(ui, (&figure.title, figure), &options, commands);
+                figure_frame(ui, &figure.title, figure, &options, commands);
             }
         });
     }
@@ -105,7 +109,9 @@ fn rows_ui(
 /// - `quantity`: the impulse for [`Quantity::Impulse`], otherwise the peak of the force.
 fn parity(
     cases: &EvaluatedForceCases,
-    (title, label, quantity): (&str, &str, Quantity),
+    title: &str,
+    label: &str,
+    quantity: Quantity,
     view: &View,
 ) -> Figure {
     let point = |(case, impulse_n_s, peak_n): &(ForceCase, Estimate, Estimate)| {
@@ -122,7 +128,7 @@ fn parity(
         }
     };
     let points: Vec<ParityPoint> = cases.all.iter().map(point).collect();
-    parity_figure((title, label, "90 % interval"), &points, (quantity, view.units))
+    parity_figure(title, label, "90 % interval", &points, quantity, view.units)
 }
 
 /// Coverage of the intervals and histograms of the probability integral transform (PIT) of force

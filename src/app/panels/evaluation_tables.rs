@@ -14,11 +14,7 @@ use impactlab_networks::force::{Evaluation, ForceMetrics};
 
 /// Draws the tables of errors, of coverage and of errors by cluster, for the model and its three
 /// baselines, and the choice of the statistic over the cases that is shown.
-pub fn tables_ui(
-    ui: &mut Ui,
-    evaluation: &Evaluation,
-    (view, units): (&mut ForceView, UnitSystem),
-) {
+pub fn tables_ui(ui: &mut Ui, evaluation: &Evaluation, view: &mut ForceView, units: UnitSystem) {
     ui.horizontal(|ui| {
         ui.label("Errors, over cases");
         for statistic in Statistic::ALL {
@@ -33,7 +29,7 @@ pub fn tables_ui(
     ];
     errors_ui(ui, models, view.statistic);
     coverage_ui(ui, models);
-    clusters_ui(ui, evaluation, (view.statistic, units));
+    clusters_ui(ui, evaluation, view.statistic, units);
 }
 
 /// Draws the relative errors of each model, over all cases and over those in which the vehicles
@@ -64,7 +60,7 @@ fn errors_ui(ui: &mut Ui, models: [(&str, &ForceMetrics); 4], statistic: Statist
             ui.end_row();
             for (name, of) in models {
                 if let Some(metrics) = choose(of) {
-                    error_row_ui(ui, name, (metrics, statistic));
+                    error_row_ui(ui, name, metrics, statistic);
                 }
             }
         }
@@ -94,7 +90,7 @@ fn coverage_ui(ui: &mut Ui, models: [(&str, &ForceMetrics); 4]) {
 
 /// Draws the errors of the model in each cluster of impulse, beside those of the Gaussian
 /// processes.
-fn clusters_ui(ui: &mut Ui, evaluation: &Evaluation, (statistic, units): (Statistic, UnitSystem)) {
+fn clusters_ui(ui: &mut Ui, evaluation: &Evaluation, statistic: Statistic, units: UnitSystem) {
     ui.add_space(looks::PART);
     ui.strong("By cluster of impulse")
         .on_hover_text("k-means of the training cases by impulse and force, ordered by impulse");
@@ -142,7 +138,7 @@ fn titles_ui(ui: &mut Ui, titles: &[(&str, &str)]) {
 }
 
 /// Draws the errors of one model; hovering over an error shows all statistics of it.
-fn error_row_ui(ui: &mut Ui, name: &str, (metrics, statistic): (&CurveMetrics, Statistic)) {
+fn error_row_ui(ui: &mut Ui, name: &str, metrics: &CurveMetrics, statistic: Statistic) {
     ui.label(name);
     for error in [
         &metrics.rmse_over_peak,

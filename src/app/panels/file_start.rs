@@ -27,16 +27,16 @@ pub(super) fn file_start_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let start = project.start_mut();
         start_fields(ui, start, view.units);
         let files = |kind| open_files(&session.sources, kind);
-        file_ui(ui, "Steering", (&mut start.steer, &files(FileKind::Steer)), commands);
+        file_ui(ui, "Steering", &mut start.steer, &files(FileKind::Steer), commands);
         ratio_ui(ui, start, view.units);
-        let wheels = (&mut start.wheels, &*files(FileKind::Wheels));
-        file_ui(ui, "Torques at the wheels", wheels, commands);
+        let open = files(FileKind::Wheels);
+        file_ui(ui, "Torques at the wheels", &mut start.wheels, &open, commands);
     });
     ui.strong("For single files and cases of a force");
     let takes_ending = project.subject().is_some_and(|of| of.takes_ending(&session.sources));
     let Project { simulate, beside, .. } = &mut **project;
     let ending = if takes_ending { &mut simulate.ending } else { &mut beside.ending };
-    ending_form(ui, "struck vehicle", (ending, &mut beside.steering_ratio), view.units);
+    ending_form(ui, "struck vehicle", ending, &mut beside.steering_ratio, view.units);
 }
 
 /// Draws rows of a two-column grid with the speed before the impact and the contact point.
@@ -58,13 +58,14 @@ pub(super) fn open_files(sources: &[Source], kind: FileKind) -> Vec<PathBuf> {
 fn file_ui(
     ui: &mut Ui,
     label: &str,
-    (chosen, open): (&mut Option<SeriesFile>, &[PathBuf]),
+    chosen: &mut Option<SeriesFile>,
+    open: &[PathBuf],
     commands: &mut Vec<Command>,
 ) {
     let hint = "A file that goes with the one that is shown. Drop it on the window, or open it";
     let before = chosen.as_ref().map(|file| file.path.clone());
     let mut path = before.clone();
-    file_list_ui(ui, (label, "none", hint), (&mut path, open));
+    file_list_ui(ui, label, "none", hint, &mut path, open);
     if path != before {
         *chosen = path.map(SeriesFile::new);
     }
@@ -79,8 +80,11 @@ fn file_ui(
 /// Draws two cells of a grid with the choice of one of the open files, or of none.
 pub(super) fn file_list_ui(
     ui: &mut Ui,
-    (label, none, hint): (&str, &str, &str),
-    (chosen, open): (&mut Option<PathBuf>, &[PathBuf]),
+    label: &str,
+    none: &str,
+    hint: &str,
+    chosen: &mut Option<PathBuf>,
+    open: &[PathBuf],
 ) {
     let name = ui.label(label).on_hover_text(hint);
     let text = chosen.as_deref().map_or(none.to_owned(), file_name);
@@ -107,7 +111,7 @@ fn ratio_ui(ui: &mut Ui, start: &mut Drive, units: UnitSystem) {
     }
     ui.end_row();
     if let Some(ratio) = &mut start.steering_ratio {
-        quantity_field(ui, "Steering ratio", ratio, (&STEERING_RATIO, units));
+        quantity_field(ui, "Steering ratio", ratio, &STEERING_RATIO, units);
     }
 }
 
@@ -121,7 +125,7 @@ fn speed_ui(ui: &mut Ui, start: &mut Drive, units: UnitSystem) {
         }
         return;
     };
-    quantity_field(ui, label, speed_m_s, (&SPEED, units));
+    quantity_field(ui, label, speed_m_s, &SPEED, units);
     if leave_open_ui(ui, "Speed not known") {
         start.speed_m_s = None;
     }
@@ -145,7 +149,7 @@ fn contact_ui(ui: &mut Ui, start: &mut Drive, units: UnitSystem) {
         ("Contact left of CG", y_body_m, CONTACT_Y),
         ("Contact above ground", height_m, CONTACT_HEIGHT),
     ] {
-        quantity_field(ui, label, value, (&range, units));
+        quantity_field(ui, label, value, &range, units);
     }
     if leave_open_ui(ui, "Contact point not known") {
         start.contact = None;

@@ -69,9 +69,9 @@ fn timing_rows(ui: &mut Ui, film: &mut Film) {
     let name = ui.label("Frames per second");
     count_field(ui, &mut timing.frames_per_s, &FILM_RATE, 0.2).labelled_by(name.id);
     ui.end_row();
-    quantity_field(ui, "From", &mut timing.from_s, (&instants, UnitSystem::Si));
-    quantity_field(ui, "To", &mut timing.to_s, (&instants, UnitSystem::Si));
-    quantity_field(ui, "Speed ×", &mut timing.speed, (&FILM_SPEED, UnitSystem::Si));
+    quantity_field(ui, "From", &mut timing.from_s, &instants, UnitSystem::Si);
+    quantity_field(ui, "To", &mut timing.to_s, &instants, UnitSystem::Si);
+    quantity_field(ui, "Speed ×", &mut timing.speed, &FILM_SPEED, UnitSystem::Si);
 }
 
 /// Draws the parts with a speed of their own.
@@ -87,7 +87,7 @@ fn sections_ui(ui: &mut Ui, form: &mut FilmForm) {
             for (label, value, range) in fields {
                 ui.horizontal(|ui| {
                     let name = ui.label(label);
-                    let (field, _) = quantity_value(ui, value, (range, UnitSystem::Si));
+                    let (field, _) = quantity_value(ui, value, range, UnitSystem::Si);
                     field.labelled_by(name.id);
                 });
             }

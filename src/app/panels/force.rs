@@ -35,7 +35,7 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let pulses = if project.beside.show_pulses { pulses(force) } else { Vec::new() };
     let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
     let class = project.beside.channel_class;
-    let figure = analysis_force_figure((analysis, &caveats), class, &pulses, view.units);
+    let figure = analysis_force_figure(analysis, &caveats, class, &pulses, view.units);
     let height = (ui.available_height() - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
     let mut figure = match figure {
         Ok(Some(figure)) => figure,
@@ -46,9 +46,10 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         }
     };
     for (i, (name, other)) in other_simulations(variants).enumerate() {
-        let shown = (&other.analysis, &other.report.caveats);
-        if let Ok(Some(other)) = analysis_force_figure(shown, class, &[], view.units) {
-            figure.overlay((name, i), &other);
+        if let Ok(Some(other)) =
+            analysis_force_figure(&other.analysis, &other.report.caveats, class, &[], view.units)
+        {
+            figure.overlay(name, i, &other);
         }
     }
     let options = FigureOptions {
@@ -60,7 +61,7 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ..FigureOptions::default()
     };
     let drawn = ScrollArea::vertical()
-        .show(ui, |ui| time_figure(ui, (&figure.title, &figure), options, between, commands));
+        .show(ui, |ui| time_figure(ui, &figure.title, &figure, options, between, commands));
     if let Some(x) = drawn.inner.picked_x {
         commands.push(Command::SetTime(figure.x.unit.to_si(x).max(0.0)));
     }

@@ -37,7 +37,7 @@ pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 (can_start[1], CostPlace::ResponseEvaluation, "Evaluation"),
             ] {
                 if can {
-                    cost_ui(ui, &mut session.costs, (place, label));
+                    cost_ui(ui, &mut session.costs, place, label);
                 }
             }
         }
@@ -53,9 +53,9 @@ pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 let report = &answer.report;
                 ui.separator();
                 heading_ui(ui, report, commands);
-                overview_ui(ui, report, (view.units, session.fit_plots), commands);
+                overview_ui(ui, report, view.units, session.fit_plots, commands);
                 ui.separator();
-                browser_ui(ui, report, (view, session.fit_plots), commands);
+                browser_ui(ui, report, view, session.fit_plots, commands);
                 ui.separator();
                 tables_ui(ui, report);
             }
@@ -199,11 +199,11 @@ fn tables_ui(ui: &mut Ui, report: &Answer<CompareReport>) {
         if table.rows.is_empty() {
             continue;
         }
-        ui.collapsing(title, |ui| table_ui(ui, title, (&table, restrictions.as_deref())));
+        ui.collapsing(title, |ui| table_ui(ui, title, &table, restrictions.as_deref()));
     }
 }
 
-fn table_ui(ui: &mut Ui, id: &str, (table, restrictions): (&ComparisonTable, Option<&str>)) {
+fn table_ui(ui: &mut Ui, id: &str, table: &ComparisonTable, restrictions: Option<&str>) {
     if ui.small_button("Copy table").on_hover_text("As CSV").clicked() {
         ui.ctx().copy_text(table.to_csv(restrictions));
     }

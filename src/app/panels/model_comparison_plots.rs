@@ -32,14 +32,15 @@ const KM_H_PER_M_S: f64 = 3.6;
 pub fn overview_ui(
     ui: &mut Ui,
     report: &Answer<CompareReport>,
-    (units, reset): (UnitSystem, bool),
+    units: UnitSystem,
+    reset: bool,
     commands: &mut Vec<Command>,
 ) {
     let (comparison, caveats) = (&report.comparison, &report.caveats);
     let mut row_ui = |ui: &mut Ui, id: &str, figures: Vec<Figure>| {
         let figures: Vec<Figure> =
             figures.into_iter().map(|figure| figure.with_caveats(caveats)).collect();
-        row_ui(ui, (id, &figures), reset, commands);
+        row_ui(ui, id, &figures, reset, commands);
     };
     ui.weak("Point: mean over trajectories; bar: ± standard deviation; tick: median.");
     let first = vec![ranking(comparison, units), horizon_figure(comparison, units)];
@@ -59,7 +60,7 @@ pub fn overview_ui(
 /// Draws figures in rows of three, or in rows of two if there are one, two or four of them.
 ///
 /// - `id`: distinguishes these figures from the others of the panel.
-fn row_ui(ui: &mut Ui, (id, figures): (&str, &[Figure]), reset: bool, commands: &mut Vec<Command>) {
+fn row_ui(ui: &mut Ui, id: &str, figures: &[Figure], reset: bool, commands: &mut Vec<Command>) {
     let n_columns = if matches!(figures.len(), 1 | 2 | 4) { 2 } else { 3 };
     for (row, part) in figures.chunks(n_columns).enumerate() {
         ui.columns(n_columns, |columns| {
@@ -72,7 +73,7 @@ fn row_ui(ui: &mut Ui, (id, figures): (&str, &[Figure]), reset: bool, commands: 
                     legend: figure.y.names.is_empty(),
                     ..FigureOptions::default()
                 };
-                figure_frame(ui, (&figure.title, figure), &options, commands);
+                figure_frame(ui, &figure.title, figure, &options, commands);
             }
         });
     }
@@ -82,7 +83,7 @@ fn row_ui(ui: &mut Ui, (id, figures): (&str, &[Figure]), reset: bool, commands: 
 fn ranking(comparison: &Comparison, units: UnitSystem) -> Figure {
     let unit = Quantity::Length.display_unit(units);
     let of = |model: &ComparedModel| model.metrics.average_error_m.times(unit.from_si(1.0));
-    ranking_figure(comparison, ("Average error", "Average error", unit), of)
+    ranking_figure(comparison, "Average error", "Average error", unit, of)
 }
 
 /// Root mean square error of each model in X, Y, v_x, v_y and yaw rate, one figure per variable.
@@ -100,9 +101,7 @@ fn variables(comparison: &Comparison, units: UnitSystem) -> Vec<Figure> {
     let figure = |(name, quantity, si, of): (&str, Quantity, f64, Of)| {
         let unit = quantity.display_unit(units);
         let title = format!("RMSE of {name}");
-        ranking_figure(comparison, (&title, &title, unit), |model| {
-            of(model).times(unit.from_si(si))
-        })
+        ranking_figure(comparison, &title, &title, unit, |model| of(model).times(unit.from_si(si)))
     };
     rows.into_iter().map(figure).collect()
 }
@@ -161,7 +160,8 @@ fn calibration(comparison: &Comparison) -> Vec<Figure> {
 pub fn browser_ui(
     ui: &mut Ui,
     report: &Answer<CompareReport>,
-    (view, reset): (&mut View, bool),
+    view: &mut View,
+    reset: bool,
     commands: &mut Vec<Command>,
 ) {
     let comparison = &report.comparison;
@@ -181,7 +181,7 @@ pub fn browser_ui(
     let choice = comparison.seed + view.compared_choice;
     let mut clicked = None;
     ui.columns(2, |columns| {
-        clicked = cases_ui(&mut columns[0], comparison, (case, choice, units));
+        clicked = cases_ui(&mut columns[0], comparison, case, choice, units);
         if let Some(figure) = compared_case_figure(comparison, &case.name, choice, units) {
             let figure = figure.with_caveats(&report.caveats);
             let options = FigureOptions {
@@ -190,7 +190,7 @@ pub fn browser_ui(
                 reset: reset || clicked.is_some(),
                 ..FigureOptions::default()
             };
-            figure_frame(&mut columns[1], (&figure.title, &figure), &options, commands);
+            figure_frame(&mut columns[1], &figure.title, &figure, &options, commands);
         }
     });
     if clicked.is_some() {
@@ -207,7 +207,9 @@ pub fn browser_ui(
 fn cases_ui(
     ui: &mut Ui,
     comparison: &Comparison,
-    (chosen, choice, units): (&TestCase, u64, UnitSystem),
+    chosen: &TestCase,
+    choice: u64,
+    units: UnitSystem,
 ) -> Option<String> {
     let unit = Quantity::Length.display_unit(units);
     let mut clicked = None;

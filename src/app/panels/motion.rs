@@ -34,11 +34,11 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let height = (ui.available_height() / rows - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
     let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
     let mut plot = |ui: &mut Ui, channel| {
-        let mut figure = analysis_motion_figure((analysis, &caveats), channel, view.units);
+        let mut figure = analysis_motion_figure(analysis, &caveats, channel, view.units);
         for (i, (name, other)) in other_simulations(variants).enumerate() {
-            let shown = (&other.analysis, &other.report.caveats);
-            let other = analysis_motion_figure(shown, channel, view.units);
-            figure.overlay((name, i), &other);
+            let other =
+                analysis_motion_figure(&other.analysis, &other.report.caveats, channel, view.units);
+            figure.overlay(name, i, &other);
         }
         if let Some((name, series, offset_s)) = &recording {
             let line = recording_line(name, series, *offset_s, channel, view.units);
@@ -54,7 +54,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             ..FigureOptions::default()
         };
         let heading = analysis_readout(analysis, channel, session.playback.time_s, view.units);
-        let response = time_figure(ui, (&heading, &figure), options, between, commands);
+        let response = time_figure(ui, &heading, &figure, options, between, commands);
         if let Some(time_s) = response.picked_x {
             let last = figure_end(&figure);
             commands.push(Command::SetTime(time_s.clamp(0.0, last)));

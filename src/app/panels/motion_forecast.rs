@@ -15,6 +15,7 @@ use crate::app::panels::model_row::{model_row_ui, no_model_ui};
 use crate::app::panels::scene::clock_ui;
 use crate::app::panels::vehicle::until_rest_ui;
 use crate::app::panes::PaneContext;
+use crate::app::playback::Playback;
 use crate::app::project::Project;
 use crate::app::response::{
     DensityAnswer, DensityChoice, MotionAnswer, ResponseSession, ResponseView,
@@ -93,7 +94,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                             theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
                         ui.colored_label(color, COARSE);
                     }
-                    figures_ui(ui, (shown.answer, session, variants), view, commands);
+                    figures_ui(ui, shown.answer, session, variants, view, commands);
                 });
             }
             match &session.response.forecast.answer {
@@ -251,7 +252,9 @@ fn shown_ui(ui: &mut Ui, view: &mut ResponseView, session: &Session, commands: &
 /// Draws the clock, the plan view with the density, and the bands of each quantity over time.
 fn figures_ui(
     ui: &mut Ui,
-    (answer, session, variants): (&Arc<MotionAnswer>, &Session, &[AnsweredVariant]),
+    answer: &Arc<MotionAnswer>,
+    session: &Session,
+    variants: &[AnsweredVariant],
     view: &View,
     commands: &mut Vec<Command>,
 ) {
@@ -278,20 +281,19 @@ fn figures_ui(
         components: choice.components,
         reference: analysis.reference.as_ref().filter(|_| choice.reference),
         simulation: motion_of(analysis).filter(|_| choice.simulation),
-        ..bare_figure((answer, &caveats), (time_s, view.units))
+        ..bare_figure(answer, &caveats, time_s, view.units)
     };
     let others: Vec<_> = other_forecasts(variants)
         .map(|(name, answer)| {
-            let shown = (answer, &answer.answer.report.caveats);
-            (name, bare_figure(shown, (time_s, view.units)))
+            (name, bare_figure(answer, &answer.answer.report.caveats, time_s, view.units))
         })
         .collect();
-    let playback = (session.playback.is_playing, view.playback_speed);
-    clock_ui(ui, (time_s, answer.end_s()), playback, commands);
+    let playback = Playback { time_s, ..session.playback };
+    clock_ui(ui, &playback, answer.end_s(), view.playback_speed, commands);
     let all = ui.available_height();
     let mut scene = forecast_scene_figure(&input);
     for (i, (name, other)) in others.iter().enumerate() {
-        scene.overlay((name, i), &forecast_scene_figure(other));
+        scene.overlay(name, i, &forecast_scene_figure(other));
     }
     let options = FigureOptions {
         view: choice.follow.then(|| forecast_surroundings(&input)),
@@ -300,7 +302,7 @@ fn figures_ui(
         reset: session.fit_plots,
         ..FigureOptions::default()
     };
-    figure_frame(ui, (&scene.title, &scene), &options, commands);
+    figure_frame(ui, &scene.title, &scene, &options, commands);
     ui.weak("Bands hold 50 and 90 %. Numbers at the cursor: central path, and from where to where 90 %.");
     let n_columns = ((ui.available_width() / MIN_PLOT_WIDTH) as usize).clamp(1, MAX_COLUMNS);
     let n_rows = FORECAST_CHANNELS.len().div_ceil(n_columns) as f32;
@@ -311,7 +313,7 @@ fn figures_ui(
                 for (ui, &channel) in columns.iter_mut().zip(channels) {
                     let mut figure = forecast_channel_figure(&input, channel);
                     for (i, (name, other)) in others.iter().enumerate() {
-                        figure.overlay((name, i), &forecast_channel_figure(other, channel));
+                        figure.overlay(name, i, &forecast_channel_figure(other, channel));
                     }
                     let options = FigureOptions {
                         id: format!("forecast of {}", channel.channel.label()),
@@ -324,7 +326,7 @@ fn figures_ui(
                         ..FigureOptions::default()
                     };
                     let heading = forecast_readout(&input, channel);
-                    let response = figure_frame(ui, (&heading, &figure), &options, commands);
+                    let response = figure_frame(ui, &heading, &figure, &options, commands);
                     if let Some(picked_s) = response.picked_x {
                         commands.push(Command::SetTime(picked_s.clamp(0.0, answer.end_s())));
                     }
@@ -336,10 +338,12 @@ fn figures_ui(
 
 /// The figure of a forecast by itself.
 fn bare_figure<'a>(
-    (answer, caveats): (&'a MotionAnswer, &'a Caveats),
-    shown: (f64, UnitSystem),
+    answer: &'a MotionAnswer,
+    caveats: &'a Caveats,
+    time_s: f64,
+    units: UnitSystem,
 ) -> MotionForecastFigure<'a> {
-    MotionForecastFigure::new(&answer.answer, (&answer.bands, caveats), shown)
+    MotionForecastFigure::new(&answer.answer, &answer.bands, caveats, time_s, units)
 }
 
 /// The motion by the 4DOF model, if there is one.

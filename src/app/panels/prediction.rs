@@ -37,7 +37,7 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     left.show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             model_ui(ui, &session.force, commands);
-            form_ui(ui, (project, view), session, commands);
+            form_ui(ui, project, view, session, commands);
             if let Some(answer) = session.force.forecast.ok() {
                 ui.separator();
                 let is_late = session.force.forecast.is_late();
@@ -187,7 +187,7 @@ fn plots_ui(ui: &mut Ui, shown: Shown<'_>, view: &View, commands: &mut Vec<Comma
                 legend: rank == 0,
                 ..FigureOptions::default()
             };
-            figure_frame(ui, (&figure.title, &figure), &options, commands);
+            figure_frame(ui, &figure.title, &figure, &options, commands);
         }
     });
 }

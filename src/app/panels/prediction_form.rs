@@ -28,13 +28,14 @@ const COLLISION_NOT_KNOWN: &str =
 /// Draws the origin of the collision, its numbers, and which of them are open.
 pub fn form_ui(
     ui: &mut Ui,
-    (project, view): (&mut Project, &mut View),
+    project: &mut Project,
+    view: &mut View,
     session: &Session,
     commands: &mut Vec<Command>,
 ) {
     let force = &session.force;
     let collision = collision_of(&project.predict_force, &session.sources);
-    start_ui(ui, (collision.as_ref(), view), force, commands);
+    start_ui(ui, collision.as_ref(), view, force, commands);
     let Some(collision) = collision else {
         ui.weak(COLLISION_NOT_KNOWN);
         return;
@@ -70,7 +71,8 @@ pub fn form_ui(
 /// whether the model was trained on the recorded case.
 fn start_ui(
     ui: &mut Ui,
-    (collision, view): (Option<&NamedCollision>, &mut View),
+    collision: Option<&NamedCollision>,
+    view: &mut View,
     force: &ForceSession,
     commands: &mut Vec<Command>,
 ) {

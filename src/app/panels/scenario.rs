@@ -44,9 +44,8 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         });
         let answer = session.impact.answer.as_ref();
         let solved = answer.and_then(|answer| answer.as_deref().ok());
-        let plan = (solved, view.units, session.fit_plots);
         if let Some(scenario) = project.scenario_mut() {
-            scenario_plan_ui(ui, scenario, plan, commands);
+            scenario_plan_ui(ui, scenario, solved, view.units, session.fit_plots, commands);
         }
         match answer {
             Some(Ok(answer)) => {
@@ -64,11 +63,11 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let mut pulse = *project.pulse_mut();
         let Project { impact, beside, .. } = &mut **project;
         let Some(scenario) = impact.scenario.inline_mut() else { return };
-        contact_form(ui, (&mut scenario.contact, &mut pulse), view.units);
+        contact_form(ui, &mut scenario.contact, &mut pulse, view.units);
         let Scenario { ending, striking_ending, .. } = scenario;
         for (vehicle, ending) in [("struck vehicle", ending), ("striking vehicle", striking_ending)]
         {
-            ending_form(ui, vehicle, (ending, &mut beside.steering_ratio), view.units);
+            ending_form(ui, vehicle, ending, &mut beside.steering_ratio, view.units);
         }
         vehicles_form(ui, scenario, view.units);
         *project.pulse_mut() = pulse;
@@ -91,8 +90,8 @@ fn vehicle_form(ui: &mut Ui, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
     let mut course_rad = vehicle.vy_world_m_s.atan2(vehicle.vx_world_m_s);
     // The course says which way.
     let forwards = SPEED.within([0.0, f64::INFINITY]);
-    let mut moved = quantity_field(ui, "Speed", &mut speed_m_s, (&forwards, units));
-    moved |= quantity_field(ui, "Course (of velocity)", &mut course_rad, (&HEADING, units));
+    let mut moved = quantity_field(ui, "Speed", &mut speed_m_s, &forwards, units);
+    moved |= quantity_field(ui, "Course (of velocity)", &mut course_rad, &HEADING, units);
     if moved {
         vehicle.vx_world_m_s = speed_m_s * course_rad.cos();
         vehicle.vy_world_m_s = speed_m_s * course_rad.sin();
@@ -106,15 +105,15 @@ fn vehicle_form(ui: &mut Ui, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
         ("Width", &mut vehicle.width_m, BODY_WIDTH),
     ];
     for (label, value, range) in fields {
-        quantity_field(ui, label, value, (&range, units));
+        quantity_field(ui, label, value, &range, units);
     }
     let range = BODY_CG.at_most(vehicle.length_m);
-    quantity_field(ui, "CG behind front", &mut vehicle.cg_from_front_m, (&range, units));
+    quantity_field(ui, "CG behind front", &mut vehicle.cg_from_front_m, &range, units);
 }
 
 /// Draws the fields of restitution and friction.
 fn surface_form(ui: &mut Ui, contact: &mut ScenarioContact, units: UnitSystem) {
-    quantity_field(ui, "Restitution e", &mut contact.restitution, (&RESTITUTION, units));
+    quantity_field(ui, "Restitution e", &mut contact.restitution, &RESTITUTION, units);
     let name = ui.label("Restitution acts");
     ComboBox::from_id_salt("restitution form")
         .selected_text(contact.restitution_form.label())
@@ -137,11 +136,11 @@ fn surface_form(ui: &mut Ui, contact: &mut ScenarioContact, units: UnitSystem) {
     ui.end_row();
     match &mut contact.friction_of_critical {
         Some(share) => {
-            quantity_field(ui, "Share of critical ratio", share, (&FRICTION_OF_CRITICAL, units));
+            quantity_field(ui, "Share of critical ratio", share, &FRICTION_OF_CRITICAL, units);
         }
         None => {
             let limit = &mut contact.friction_limit;
-            quantity_field(ui, "Friction limit μ_c", limit, (&FRICTION_LIMIT, units));
+            quantity_field(ui, "Friction limit μ_c", limit, &FRICTION_LIMIT, units);
         }
     }
 }
@@ -150,7 +149,8 @@ fn surface_form(ui: &mut Ui, contact: &mut ScenarioContact, units: UnitSystem) {
 /// the impulse is spread in the simulation.
 fn contact_form(
     ui: &mut Ui,
-    (contact, pulse): (&mut ScenarioContact, &mut PulseSetup),
+    contact: &mut ScenarioContact,
+    pulse: &mut PulseSetup,
     units: UnitSystem,
 ) {
     egui::CollapsingHeader::new("Contact").default_open(true).show(ui, |ui| {
@@ -162,7 +162,7 @@ fn contact_form(
                 ("Height above ground", &mut pulse.contact_height_m, CONTACT_HEIGHT),
             ];
             for (label, value, range) in fields {
-                quantity_field(ui, label, value, (&range, units));
+                quantity_field(ui, label, value, &range, units);
             }
             let name = ui.label("Pulse shape");
             ComboBox::from_id_salt("pulse shape")
@@ -182,7 +182,7 @@ fn contact_form(
 /// Draws the fields of the contact location, in the way in which the scenario specifies it.
 fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem) {
     let length = |ui: &mut Ui, label: &str, value: &mut f64, range: &Range| {
-        quantity_field(ui, label, value, (range, units));
+        quantity_field(ui, label, value, range, units);
     };
     match location {
         ContactLocation::Side { side, offset_m } => {
@@ -212,7 +212,7 @@ fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem)
         } => {
             length(ui, "Contact ahead of CG", x_body_m, &CONTACT_COORDINATE);
             length(ui, "Contact left of CG", y_body_m, &CONTACT_COORDINATE);
-            quantity_field(ui, "Normal", normal_body_rad, (&HEADING, units));
+            quantity_field(ui, "Normal", normal_body_rad, &HEADING, units);
             length(ui, "Striking CG, X", striking_x_world_m, &POSITION);
             length(ui, "Striking CG, Y", striking_y_world_m, &POSITION);
         }

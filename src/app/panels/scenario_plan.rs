@@ -48,7 +48,9 @@ struct Drag {
 pub fn scenario_plan_ui(
     ui: &mut Ui,
     scenario: &mut Scenario,
-    (solved, units, reset): (Option<&ImpactAnswer>, UnitSystem, bool),
+    solved: Option<&ImpactAnswer>,
+    units: UnitSystem,
+    reset: bool,
     commands: &mut Vec<Command>,
 ) {
     let id = Id::unique("scenario drag");
@@ -69,7 +71,7 @@ pub fn scenario_plan_ui(
         pans: false,
         ..FigureOptions::default()
     };
-    let response = figure_frame(ui, (&figure.title, &figure), &options, commands);
+    let response = figure_frame(ui, &figure.title, &figure, &options, commands);
     ui.weak("Drag a dot: the middle moves the car, its front turns it, the arrow is its speed.");
     let unit = figure.x.unit;
     let si = |point: [f64; 2]| point.map(|value| unit.to_si(value));
@@ -225,8 +227,8 @@ fn outlines_figure(scenario: &Scenario, units: UnitSystem) -> Figure {
     ];
     let placed = vehicles.into_iter().zip(poses(scenario));
     let elements = placed.filter_map(|((name, role, vehicle), pose)| {
-        let appearance = (name, role, LineStyle::Solid);
-        Some(vehicle_outline(appearance, (&vehicle.footprint(), &pose?), x.unit))
+        let (style, footprint) = (LineStyle::Solid, vehicle.footprint());
+        Some(vehicle_outline(name, role, style, &footprint, &pose?, x.unit))
     });
     let elements = elements.flatten().collect();
     let title = format!("{}: no solution here", scenario.name);

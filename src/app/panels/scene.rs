@@ -16,6 +16,7 @@ use crate::app::panels::scene_ground::{
     ground_menu_ui, measure_bar_ui, measure_menu_ui, measured_ui,
 };
 use crate::app::panes::PaneContext;
+use crate::app::playback::Playback;
 use crate::app::recording::overlaid;
 use crate::app::scene::{SceneSession, SceneSettings, SceneSource};
 use crate::app::state::{Session, State};
@@ -50,12 +51,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         return;
     };
     let end_s = series.time_s().last().copied().unwrap_or(0.0);
-    clock_ui(
-        ui,
-        (session.playback.time_s, end_s),
-        (session.playback.is_playing, view.playback_speed),
-        commands,
-    );
+    clock_ui(ui, &session.playback, end_s, view.playback_speed, commands);
     restrictions_ui(ui, &report.caveats);
     if let Some(rest) = &report.rest {
         let distance = Quantity::Length.shown(rest.distance_m, view.units);
@@ -83,10 +79,11 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let scene = session.scene.scene(source, &session.sources);
     let time_s = session.playback.time_s;
     let numbers = || {
-        let mut figure = analysis_scene_figure((analysis, &caveats), time_s, view.units);
+        let mut figure = analysis_scene_figure(analysis, &caveats, time_s, view.units);
         for (i, (name, other)) in other_simulations(variants).enumerate() {
-            let shown = (&other.analysis, &other.report.caveats);
-            figure.overlay((name, i), &analysis_scene_figure(shown, time_s, view.units));
+            let (analysis, caveats) = (&other.analysis, &other.report.caveats);
+            let other = analysis_scene_figure(analysis, caveats, time_s, view.units);
+            figure.overlay(name, i, &other);
         }
         if let Some((name, series, _)) =
             overlaid(project.beside.recording.as_ref(), &session.sources)
@@ -98,8 +95,10 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let (placed, measured) = (session.scene.view.camera(), session.scene.measuring.clone());
     scene_heading_ui(
         ui,
-        (&scene, time_s),
-        (&mut view.scene, Some((&session.ground, &mut session.scene.measuring))),
+        &scene,
+        time_s,
+        &mut view.scene,
+        Some((&session.ground, &mut session.scene.measuring)),
         |settings| {
             let picture = ScenePicture {
                 scene: measured.added_to(&scene),
@@ -123,7 +122,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let response =
         scene_view_ui(ui, &scene, time_s, &mut session.scene.view, camera, *follow, height);
     let SceneSession { view: drawn, measuring, .. } = &mut session.scene;
-    measured_ui(ui, (&response, drawn), measuring, view.units);
+    measured_ui(ui, &response, drawn, measuring, view.units);
 }
 
 /// Draws the choice whether the forecast is shown.
@@ -148,8 +147,10 @@ fn forecast_choice_ui(ui: &mut Ui, shows_forecast: &mut bool, session: &Session)
 /// - `exported`: picture and numbers, which are made only when they are wanted.
 pub fn scene_heading_ui(
     ui: &mut Ui,
-    (scene, time_s): (&Scene, f64),
-    (settings, on_ground): (&mut SceneSettings, Option<(&GroundSession, &mut Measuring)>),
+    scene: &Scene,
+    time_s: f64,
+    settings: &mut SceneSettings,
+    on_ground: Option<(&GroundSession, &mut Measuring)>,
     exported: impl Fn(&SceneSettings) -> (ScenePicture, Figure),
     commands: &mut Vec<Command>,
 ) {
@@ -164,7 +165,7 @@ pub fn scene_heading_ui(
                 .on_disabled_hover_text(OUTDATED);
             });
             if let Some((ground, measuring)) = on_ground {
-                ground_menu_ui(ui, (ground, scene), commands);
+                ground_menu_ui(ui, ground, scene, commands);
                 let has_photo = scene.ground.as_ref().is_some_and(|ground| ground.has_picture());
                 measure_menu_ui(ui, measuring, has_photo);
             }
@@ -234,13 +235,13 @@ fn export_menu_ui(
 
 /// Draws the button that plays or pauses the motion, and the slider of the time.
 ///
-/// - `time_s`: the present time, s.
 /// - `end_s`: the end of the motion and of the slider, s; the slider starts at 0.
 /// - `speed`: seconds of the motion that are played in a second.
 pub fn clock_ui(
     ui: &mut Ui,
-    (time_s, end_s): (f64, f64),
-    (is_playing, speed): (bool, f64),
+    &Playback { time_s, is_playing }: &Playback,
+    end_s: f64,
+    speed: f64,
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {

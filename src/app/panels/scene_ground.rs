@@ -16,7 +16,8 @@ use impactlab_draw::scene::{SceneView, draw_measure, draw_measure_text, measure_
 /// - `scene`: below which it lies.
 pub fn ground_menu_ui(
     ui: &mut Ui,
-    (ground, scene): (&GroundSession, &Scene),
+    ground: &GroundSession,
+    scene: &Scene,
     commands: &mut Vec<Command>,
 ) {
     let menu = ui.menu_button((icon(Icon::Map), "Ground"), |ui| {
@@ -92,7 +93,7 @@ pub fn measure_bar_ui(
     ui.horizontal_wrapped(|ui| {
         ui.strong(measure.label());
         match measuring.scale_ends_m() {
-            Some(ends_m) => scale_ui(ui, measuring, (ends_m, units), commands),
+            Some(ends_m) => scale_ui(ui, measuring, ends_m, units, commands),
             None => drop(ui.weak(measure.hint())),
         }
         if ui.button("Done").on_hover_text("Stop measuring; what was measured stays").clicked() {
@@ -105,7 +106,8 @@ pub fn measure_bar_ui(
 fn scale_ui(
     ui: &mut Ui,
     measuring: &mut Measuring,
-    (ends_m, units): ([[f64; 2]; 2], UnitSystem),
+    ends_m: [[f64; 2]; 2],
+    units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
     let unit = Quantity::Length.display_unit(units);
@@ -124,7 +126,8 @@ fn scale_ui(
 /// Takes clicks and keys for what is measured, and draws it over the scene.
 pub fn measured_ui(
     ui: &Ui,
-    (response, view): (&Response, &SceneView),
+    response: &Response,
+    view: &SceneView,
     measuring: &mut Measuring,
     units: UnitSystem,
 ) {

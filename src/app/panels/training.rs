@@ -35,13 +35,13 @@ fn force_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         no_dataset_ui(ui, DatasetKind::Force);
     }
     if has_data && !session.force.training.run.is_running() {
-        cost_ui(ui, &mut session.costs, (CostPlace::ForceTraining, "Training"));
+        cost_ui(ui, &mut session.costs, CostPlace::ForceTraining, "Training");
     }
     let reset = session.fit_plots;
     let view =
         LossView { terms: &mut view.force.loss_terms, log: &mut view.force.log_losses, reset };
     let force = &mut session.force;
-    network_training_ui(ui, has_data, (&force.training, &mut force.model), (view, commands));
+    network_training_ui(ui, has_data, &force.training, &mut force.model, view, commands);
 }
 
 fn response_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -51,10 +51,10 @@ fn response_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         no_dataset_ui(ui, DatasetKind::Trajectory);
     }
     if has_data && !session.response.training.run.is_running() {
-        cost_ui(ui, &mut session.costs, (CostPlace::ResponseTraining, "Training"));
+        cost_ui(ui, &mut session.costs, CostPlace::ResponseTraining, "Training");
     }
     let (reset, view) = (session.fit_plots, &mut view.response);
     let view = LossView { terms: &mut view.loss_terms, log: &mut view.log_losses, reset };
     let response = &mut session.response;
-    network_training_ui(ui, has_data, (&response.training, &mut response.model), (view, commands));
+    network_training_ui(ui, has_data, &response.training, &mut response.model, view, commands);
 }

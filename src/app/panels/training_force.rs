@@ -26,7 +26,7 @@ pub fn force_form_ui(ui: &mut Ui, form: &mut ForceTrainingForm, sources: &[Sourc
         });
         ui.end_row();
         let name = ui.label("Epochs");
-        optional_number_ui(ui, &mut form.epochs, ("as configured", &EPOCHS))
+        optional_number_ui(ui, &mut form.epochs, "as configured", &EPOCHS)
             .labelled_by(name.id)
             .on_hover_text("At most; 0 for what the settings say. Training stops before when the validation loss stops falling");
         ui.end_row();
@@ -35,11 +35,7 @@ pub fn force_form_ui(ui: &mut Ui, form: &mut ForceTrainingForm, sources: &[Sourc
             .labelled_by(name.id)
             .on_hover_text("Of the split and of every random number: same seed, same weights");
         ui.end_row();
-        settings_rows_ui(
-            ui,
-            "network, loss, training, crush",
-            (&mut form.config, &mut form.bad_cases),
-        );
+        settings_rows_ui(ui, "network, loss, training, crush", &mut form.config, &mut form.bad_cases);
     });
     !datasets.is_empty()
 }

@@ -36,12 +36,15 @@ pub struct LossView<'a> {
 pub fn losses_ui(
     ui: &mut Ui,
     network: Network,
-    (title, history, best_epoch): (&str, &[EpochSummary], Option<usize>),
-    (view, commands): (LossView<'_>, &mut Vec<Command>),
+    title: &str,
+    history: &[EpochSummary],
+    best_epoch: Option<usize>,
+    view: LossView<'_>,
+    commands: &mut Vec<Command>,
 ) {
     let Some(first) = history.first() else { return };
     let names: Vec<&'static str> = first.losses.iter().map(|loss| loss.name).collect();
-    loss_choice_ui(ui, &names, (view.terms, view.log));
+    loss_choice_ui(ui, &names, view.terms, view.log);
     let losses = loss_figure(
         title,
         &curves(history, &names, view.terms),
@@ -61,7 +64,7 @@ pub fn losses_ui(
             reset: view.reset,
             ..FigureOptions::default()
         };
-        figure_frame(ui, (&figure.title, figure), &options, commands);
+        figure_frame(ui, &figure.title, figure, &options, commands);
     };
     match balance(history) {
         None => plot(ui, &losses, "losses"),
@@ -134,11 +137,7 @@ fn last_epoch_ui(ui: &mut Ui, last: &EpochSummary, best_epoch: Option<usize>) {
 /// Draws the choice of the loss terms and of the logarithmic axis.
 ///
 /// - `selected`: names of the chosen terms.
-fn loss_choice_ui(
-    ui: &mut Ui,
-    names: &[&'static str],
-    (selected, log): (&mut Vec<String>, &mut bool),
-) {
+fn loss_choice_ui(ui: &mut Ui, names: &[&'static str], selected: &mut Vec<String>, log: &mut bool) {
     ui.horizontal_wrapped(|ui| {
         ui.label("Losses");
         for name in names {

@@ -26,12 +26,15 @@ use impactlab_study::BadCases;
 pub fn network_training_ui<M: TrainedModel>(
     ui: &mut Ui,
     can_start: bool,
-    (status, model): (&TrainingStatus<M>, &mut ModelStatus<M>),
-    (view, commands): (LossView<'_>, &mut Vec<Command>),
+    status: &TrainingStatus<M>,
+    model: &mut ModelStatus<M>,
+    view: LossView<'_>,
+    commands: &mut Vec<Command>,
 ) {
     run_buttons_ui(ui, can_start, status, commands);
     if status.run.is_running() {
-        run_progress_ui(ui, &status.doing(), status.progress());
+        let (fraction, left) = status.progress();
+        run_progress_ui(ui, &status.doing(), fraction, left);
     }
     let notes = status.report.as_ref().map(M::notes);
     run_record_ui(ui, status.problem.as_deref(), notes, commands);
@@ -40,17 +43,12 @@ pub fn network_training_ui<M: TrainedModel>(
     match &model.current {
         _ if !status.history.is_empty() => {
             let title = format!("Losses while training on {}", status.data);
-            losses_ui(
-                ui,
-                M::NETWORK,
-                (&title, &status.history, status.best_epoch),
-                (view, commands),
-            );
+            losses_ui(ui, M::NETWORK, &title, &status.history, status.best_epoch, view, commands);
         }
         Some(current) => {
             let (of, data) = (&current.model, current.model.data());
             let title = format!("Losses while training on {data} (model {})", current.name);
-            losses_ui(ui, M::NETWORK, (&title, &of.history(), of.best_epoch()), (view, commands));
+            losses_ui(ui, M::NETWORK, &title, &of.history(), of.best_epoch(), view, commands);
         }
         None => drop(ui.weak("The losses of every epoch are drawn here.")),
     }
@@ -59,11 +57,7 @@ pub fn network_training_ui<M: TrainedModel>(
 /// Draws two rows of a two-column grid: the settings file, and whether unusable cases are left out.
 ///
 /// - `parts`: the sections that the settings file may have, shown as a hint.
-pub fn settings_rows_ui(
-    ui: &mut Ui,
-    parts: &str,
-    (config, bad_cases): (&mut String, &mut BadCases),
-) {
+pub fn settings_rows_ui(ui: &mut Ui, parts: &str, config: &mut String, bad_cases: &mut BadCases) {
     let name = ui.label("Settings file");
     let field = egui::TextEdit::singleline(config).desired_width(320.0);
     ui.add(field.hint_text(format!("TOML, optional: {parts}")))
@@ -83,7 +77,8 @@ pub fn settings_rows_ui(
 pub fn optional_number_ui(
     ui: &mut Ui,
     value: &mut Option<usize>,
-    (open, range): (&str, &Range),
+    open: &str,
+    range: &Range,
 ) -> Response {
     let most = range.high as usize;
     let mut number = value.unwrap_or(0);
@@ -128,7 +123,7 @@ fn run_buttons_ui<M: TrainedModel>(
 /// - `what`: what the training is doing.
 /// - `fraction`: the share that is done, 0 to 1.
 /// - `left`: the estimated remaining time.
-pub fn run_progress_ui(ui: &mut Ui, what: &str, (fraction, left): (Option<f32>, Option<Duration>)) {
+pub fn run_progress_ui(ui: &mut Ui, what: &str, fraction: Option<f32>, left: Option<Duration>) {
     let left = left.map_or(String::new(), |left| format!(", {} left", duration_text(left)));
     match fraction {
         Some(fraction) => {

@@ -53,14 +53,14 @@ fn log_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &[Source]) -> b
     }
     let hint = "Learn from a log of one impact instead of a data set: a file that is open, with \
                 time, x, y, yaw. The vehicle is that of the Vehicle pane";
-    file_list_ui(ui, ("Log", "none, from a data set", hint), (&mut form.log, &logs));
+    file_list_ui(ui, "Log", "none, from a data set", hint, &mut form.log, &logs);
     ui.end_row();
     let is_of_log = form.log.as_ref().is_some_and(|log| logs.contains(log));
     if is_of_log {
         let forces = open_files(sources, FileKind::Force);
         let hint = "On the clock of the log, at the contact point of the Vehicle pane";
         let open = "estimated from the motion";
-        file_list_ui(ui, ("Force of the log", open, hint), (&mut form.log_force, &forces));
+        file_list_ui(ui, "Force of the log", open, hint, &mut form.log_force, &forces);
         ui.end_row();
     }
     is_of_log
@@ -73,7 +73,7 @@ fn numbers_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, is_of_log: bool) {
     let name = ui.label("Trajectories");
     let hint = "To learn from, spinning and others as they occur; 0 for all that are not kept for the test";
     ui.add_enabled_ui(is_fine_tuning, |ui| {
-        optional_number_ui(ui, &mut form.n_trajectories, ("all", &TRAJECTORIES))
+        optional_number_ui(ui, &mut form.n_trajectories, "all", &TRAJECTORIES)
             .labelled_by(name.id)
             .on_hover_text(hint);
     });
@@ -96,6 +96,7 @@ fn numbers_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, is_of_log: bool) {
     settings_rows_ui(
         ui,
         "network, single_steps, rollouts, physics, …",
-        (&mut form.config, &mut form.bad_cases),
+        &mut form.config,
+        &mut form.bad_cases,
     );
 }

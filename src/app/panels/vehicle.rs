@@ -35,23 +35,24 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         Grid::new("vehicle choice").num_columns(2).show(ui, |ui| {
             choice_ui(ui, project, commands);
             let equations = [None, Some(Equations::Corrected), Some(Equations::Paper)];
-            list_ui(
-                ui,
-                "Equations",
-                &mut project.simulate.equations,
-                (&equations, equations_label),
-            );
+            list_ui(ui, "Equations", &mut project.simulate.equations, &equations, equations_label);
             let integrators = [Integrator::Rk4, Integrator::Euler];
             list_ui(
                 ui,
                 "Integration",
                 &mut project.simulate.integrator,
-                (&integrators, integrator_label),
+                &integrators,
+                integrator_label,
             );
-            let range = (&SIMULATED_DURATION, view.units);
             let label =
                 if project.simulate.until_rest { "At the latest after" } else { "Duration" };
-            quantity_field(ui, label, &mut project.simulate.duration_s, range);
+            quantity_field(
+                ui,
+                label,
+                &mut project.simulate.duration_s,
+                &SIMULATED_DURATION,
+                view.units,
+            );
             until_rest_ui(ui, project);
             ui.end_row();
         });
@@ -61,7 +62,7 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ] {
             if let VehicleChoice::Sheet(sheet) = choice {
                 ui.separator();
-                vehicle_form_ui(ui, (title, sheet), view.units, commands);
+                vehicle_form_ui(ui, title, sheet, view.units, commands);
             }
         }
         ui.separator();
@@ -109,8 +110,11 @@ fn choice_ui(ui: &mut Ui, project: &mut Project, commands: &mut Vec<Command>) {
     let default = DEFAULT_VEHICLE.parameters();
     vehicle_choice_ui(
         ui,
-        ("Struck vehicle", hint),
-        (&mut project.simulate.vehicle, &open, &default),
+        "Struck vehicle",
+        hint,
+        &mut project.simulate.vehicle,
+        &open,
+        &default,
         commands,
     );
     let open = format!("not known, assumed to be {}", DEFAULT_STRIKING.id());
@@ -118,8 +122,11 @@ fn choice_ui(ui: &mut Ui, project: &mut Project, commands: &mut Vec<Command>) {
     let default = DEFAULT_STRIKING.parameters();
     vehicle_choice_ui(
         ui,
-        ("Striking vehicle", hint),
-        (&mut project.simulate.striking, &open, &default),
+        "Striking vehicle",
+        hint,
+        &mut project.simulate.striking,
+        &open,
+        &default,
         commands,
     );
 }
@@ -130,13 +137,16 @@ fn choice_ui(ui: &mut Ui, project: &mut Project, commands: &mut Vec<Command>) {
 /// - `open`, `default`: which vehicle is used if the user chooses none, as text and itself.
 fn vehicle_choice_ui(
     ui: &mut Ui,
-    (title, hint): (&str, &str),
-    (choice, open, default): (&mut VehicleChoice, &str, &VehicleParameters),
+    title: &str,
+    hint: &str,
+    choice: &mut VehicleChoice,
+    open: &str,
+    default: &VehicleParameters,
     commands: &mut Vec<Command>,
 ) {
     let name = ui.label(title);
     let label = chosen_label(choice, open);
-    choice_list_ui(ui, (title, &name, hint), (choice, open, &[]), &label);
+    choice_list_ui(ui, title, &name, hint, choice, open, &[], &label);
     ui.end_row();
     if matches!(choice, VehicleChoice::Sheet(_)) {
         return;
@@ -168,7 +178,7 @@ pub(in crate::app) fn file_vehicle_ui(ui: &mut Ui, choice: &mut VehicleChoice) {
     let open = format!("{} (assumed)", DEFAULT_VEHICLE.id());
     let label = chosen_label(choice, &open);
     let hint = "Its mass, inertia and tires: the file does not say them";
-    choice_list_ui(ui, ("vehicle of the file", &name, hint), (choice, &open, &[]), &label);
+    choice_list_ui(ui, "vehicle of the file", &name, hint, choice, &open, &[], &label);
     ui.end_row();
 }
 
@@ -178,7 +188,8 @@ pub(in crate::app) fn file_vehicle_ui(ui: &mut Ui, choice: &mut VehicleChoice) {
 pub(super) fn evidence_vehicle_ui(
     ui: &mut Ui,
     title: &str,
-    (choice, own): (&mut VehicleChoice, &[VehicleChoice]),
+    choice: &mut VehicleChoice,
+    own: &[VehicleChoice],
 ) {
     let name = ui.label("Data sheet");
     let open = "none: estimated as of any car";
@@ -187,7 +198,7 @@ pub(super) fn evidence_vehicle_ui(
                 it is the vehicle of the case: open it, or drop it here";
     ui.scope(|ui| {
         ui.set_max_width(NARROW_LIST_WIDTH);
-        choice_list_ui(ui, (title, &name, hint), (choice, open, own), &label);
+        choice_list_ui(ui, title, &name, hint, choice, open, own, &label);
     });
     ui.end_row();
 }
@@ -204,8 +215,12 @@ fn edited_copy(choice: &VehicleChoice, default: &VehicleParameters) -> Result<Da
 /// Draws the list of the vehicles that come with the program, after those of the user.
 fn choice_list_ui(
     ui: &mut Ui,
-    (title, name, hint): (&str, &Response, &str),
-    (choice, open, own): (&mut VehicleChoice, &str, &[VehicleChoice]),
+    title: &str,
+    name: &Response,
+    hint: &str,
+    choice: &mut VehicleChoice,
+    open: &str,
+    own: &[VehicleChoice],
     label: &str,
 ) {
     let list = ComboBox::from_id_salt(title).selected_text(label).truncate().height(LIST_HEIGHT);
@@ -232,7 +247,8 @@ fn list_ui<T: Copy + PartialEq>(
     ui: &mut Ui,
     title: &str,
     value: &mut T,
-    (options, label): (&[T], fn(T) -> &'static str),
+    options: &[T],
+    label: fn(T) -> &'static str,
 ) {
     let name = ui.label(title);
     ComboBox::from_id_salt(title)

@@ -20,7 +20,8 @@ const LABEL_WIDTH: f32 = 165.0;
 /// - `title`: which vehicle it is.
 pub fn vehicle_form_ui(
     ui: &mut Ui,
-    (title, sheet): (&str, &mut DataSheet),
+    title: &str,
+    sheet: &mut DataSheet,
     units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
@@ -46,7 +47,7 @@ pub fn vehicle_form_ui(
         grid.max_col_width(LABEL_WIDTH).show(ui, |ui| {
             for &quantity in SheetQuantity::ALL {
                 let estimate = estimates.iter().find(|estimate| estimate.quantity == quantity);
-                quantity_ui(ui, sheet, (quantity, estimate), units);
+                quantity_ui(ui, sheet, quantity, estimate, units);
             }
         });
     });
@@ -94,7 +95,8 @@ fn head_ui(ui: &mut Ui, title: &str, sheet: &mut DataSheet) {
 fn quantity_ui(
     ui: &mut Ui,
     sheet: &mut DataSheet,
-    (quantity, estimate): (SheetQuantity, Option<&Estimate>),
+    quantity: SheetQuantity,
+    estimate: Option<&Estimate>,
     units: UnitSystem,
 ) {
     let range = quantity.range();
@@ -113,13 +115,13 @@ fn quantity_ui(
     }
     match (sheet.known(quantity), estimate) {
         (Some(mut value), _) => {
-            let (field, is_changed) = quantity_value(ui, &mut value, (&range, units));
+            let (field, is_changed) = quantity_value(ui, &mut value, &range, units);
             field.labelled_by(known.id);
             if is_changed {
                 sheet.set(quantity, value);
             }
         }
-        (None, Some(estimate)) => estimate_ui(ui, (estimate, &range), units),
+        (None, Some(estimate)) => estimate_ui(ui, estimate, &range, units),
         (None, None) => {
             ui.weak("follows from the stiffness or damping of its file");
         }
@@ -128,7 +130,7 @@ fn quantity_ui(
 }
 
 /// Draws an estimate with the range that holds it with a probability of 90 %.
-fn estimate_ui(ui: &mut Ui, (estimate, range): (&Estimate, &Range), units: UnitSystem) {
+fn estimate_ui(ui: &mut Ui, estimate: &Estimate, range: &Range, units: UnitSystem) {
     let format = NumberFormat::english(units);
     let text = format.estimate_in_words(range.quantity, &estimate.value);
     let hint =

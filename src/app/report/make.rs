@@ -53,8 +53,8 @@ pub(super) fn make_report(
         Event::Progress(progress) => tell(progress),
         Event::Training(_) | Event::Sampling(_) => std::ops::ControlFlow::Continue(()),
     };
-    let chosen = (case, origin.variants.as_slice());
-    let answered = report_case(chosen, &origin.settings, library, &mut observer);
+    let answered =
+        report_case(case, origin.variants.as_slice(), &origin.settings, library, &mut observer);
     let (document, report) = match answered.map_err(|error| error_chain(&error))? {
         Outcome::Complete(answered) => answered,
         Outcome::Cancelled => return Ok(Outcome::Cancelled),

@@ -52,7 +52,7 @@ impl State {
                 };
                 let draft = response.training.archive_note(&model, name.clone(), is_complete);
                 let used = is_complete.then_some(&mut self.project.predict_motion.response_model);
-                let taken = response.model.take_trained(model, name.clone(), (library, used));
+                let taken = response.model.take_trained(model, name.clone(), library, used);
                 let draft = draft.map(|draft| ArchiveEntry { name: taken.1, ..draft });
                 let ResponseSession { model: status, training, .. } = response;
                 keep_trained(status, training, taken.0, draft, archive.folder(), tasks);
@@ -115,14 +115,14 @@ impl State {
         let form = &self.project.response_training;
         if let Some(logs) = self.log_to_learn_from() {
             let name = logs.logs.first().map(|path| file_name(path)).unwrap_or_default();
-            let question = self.fine_tune_request((Vec::new(), Some(logs)));
+            let question = self.fine_tune_request(Vec::new(), Some(logs));
             return Ok((question.ok_or(NO_MODEL)?.into(), name));
         }
         let data = self.chosen_data(form.dataset.as_deref(), form.mode.data_kinds());
         let (data, name) = data.ok_or("open a data set to train on first")?;
         let question = match form.mode {
             TrainingMode::Pretrain => Some(self.train_response_request(data).into()),
-            _ => self.fine_tune_request((vec![data], None)).map(Request::from),
+            _ => self.fine_tune_request(vec![data], None).map(Request::from),
         };
         Ok((question.ok_or(NO_MODEL)?, name))
     }
@@ -131,7 +131,7 @@ impl State {
     fn start_response_training(&mut self, context: &Context) {
         match self.response_training() {
             Ok((question, data)) => {
-                self.start_training(question, (Network::Response, data), context);
+                self.start_training(question, Network::Response, data, context);
             }
             Err(problem) => self.say(Severity::Warning, problem),
         }

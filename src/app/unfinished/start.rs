@@ -19,7 +19,8 @@ impl State {
     pub(in crate::app) fn start_training(
         &mut self,
         mut question: Request,
-        (network, data): (Network, String),
+        network: Network,
+        data: String,
         context: &Context,
     ) {
         let checkpoint = self.session.unfinished.new_checkpoint(network);
@@ -27,7 +28,7 @@ impl State {
             options.checkpoint = checkpoint.clone();
         }
         let note = TrainingNote::new(network, question.clone(), data);
-        self.run_training(question, (checkpoint, note), context);
+        self.run_training(question, checkpoint, note, context);
     }
 
     /// Goes on with a training that has not ended.
@@ -49,13 +50,14 @@ impl State {
         }
         self.view.trained = note.network;
         self.session.unfinished.list.trainings.retain(|of| of.checkpoint != checkpoint);
-        self.run_training(question, (Some(checkpoint.to_owned()), note), context);
+        self.run_training(question, Some(checkpoint.to_owned()), note, context);
     }
 
     fn run_training(
         &mut self,
         question: Request,
-        (checkpoint, note): (Option<PathBuf>, TrainingNote),
+        checkpoint: Option<PathBuf>,
+        note: TrainingNote,
         context: &Context,
     ) {
         let data = note.data.clone();
@@ -63,13 +65,13 @@ impl State {
         let Session { force, response, library, .. } = &mut self.session;
         let started = match question {
             Request::TrainForce(question) => {
-                force.training.start((*question, diary), (data, library), wake(context))
+                force.training.start(*question, diary, data, library, wake(context))
             }
             Request::TrainResponse(question) => {
-                response.training.start((*question, diary), (data, library), wake(context))
+                response.training.start(*question, diary, data, library, wake(context))
             }
             Request::FineTune(question) => {
-                response.training.start((*question, diary), (data, library), wake(context))
+                response.training.start(*question, diary, data, library, wake(context))
             }
             _ => return,
         };

@@ -48,7 +48,8 @@ impl AnsweredVariant {
     pub(super) fn new(
         name: String,
         is_shown: bool,
-        (answers, is_waiting): (Option<Answers<'_>>, bool),
+        answers: Option<Answers<'_>>,
+        is_waiting: bool,
     ) -> Self {
         let problem = answers.and_then(|(simulation, forecast)| {
             simulation.problem().or(forecast.problem()).map(str::to_owned)

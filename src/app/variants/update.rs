@@ -54,7 +54,7 @@ impl State {
             if name == *shown {
                 let is_waiting = session.is_simulation_late() || session.is_motion_late();
                 let answers = (&session.analysis, &session.response.forecast);
-                return AnsweredVariant::new(name, true, (Some(answers), is_waiting));
+                return AnsweredVariant::new(name, true, Some(answers), is_waiting);
             }
             let answers = session.other_variants.get(&name);
             let is_waiting = match answers {
@@ -62,7 +62,7 @@ impl State {
                 None => self.view.shows_all_variants,
             };
             let answers = answers.map(|of| (&of.simulation, &of.forecast));
-            AnsweredVariant::new(name, false, (answers, is_waiting))
+            AnsweredVariant::new(name, false, answers, is_waiting)
         };
         self.case.file.variants.iter().map(answered).collect()
     }

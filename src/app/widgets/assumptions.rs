@@ -13,13 +13,13 @@ const MAX_OPEN: usize = 6;
 /// Lists the assumptions, one beside the other. Hovering over one shows the reason; a click shows
 /// the panel in which the user can set the value. An empty list draws nothing; a long one only their number, until it is opened.
 pub fn assumptions_ui(ui: &mut Ui, caveats: &Caveats, commands: &mut Vec<Command>) {
-    assumptions_at_ui(ui, (caveats, place), commands);
+    assumptions_at_ui(ui, caveats, place, commands);
 }
 
 /// The same for a reconstruction, whose evidence says all of them.
 pub fn evidence_assumptions_ui(ui: &mut Ui, caveats: &Caveats, commands: &mut Vec<Command>) {
     let place = |_| Some(("Click to say it in the Evidence pane", Pane::Evidence));
-    assumptions_at_ui(ui, (caveats, place), commands);
+    assumptions_at_ui(ui, caveats, place, commands);
 }
 
 /// Where a subject is set, as [`place`] says it.
@@ -27,7 +27,8 @@ type Place = Option<(&'static str, Pane)>;
 
 fn assumptions_at_ui(
     ui: &mut Ui,
-    (caveats, place): (&Caveats, fn(CaveatSubject) -> Place),
+    caveats: &Caveats,
+    place: fn(CaveatSubject) -> Place,
     commands: &mut Vec<Command>,
 ) {
     let assumptions: Vec<&Caveat> = caveats.assumptions().collect();
@@ -35,7 +36,7 @@ fn assumptions_at_ui(
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = looks::PART * 2.0;
             for assumption in &assumptions {
-                assumption_ui(ui, (assumption, assumption.subject.and_then(place)), commands);
+                assumption_ui(ui, assumption, assumption.subject.and_then(place), commands);
             }
         });
     };
@@ -49,7 +50,7 @@ fn assumptions_at_ui(
     header.show(ui, |ui| list_ui(ui, commands));
 }
 
-fn assumption_ui(ui: &mut Ui, (assumption, place): (&Caveat, Place), commands: &mut Vec<Command>) {
+fn assumption_ui(ui: &mut Ui, assumption: &Caveat, place: Place, commands: &mut Vec<Command>) {
     let text = format!("{}: {}", assumption.kind.label(), assumption.statement());
     let (hint, pane) = match place {
         Some((hint, pane)) => (format!("\n{hint}"), Some(pane)),

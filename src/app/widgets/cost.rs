@@ -11,7 +11,7 @@ const MOST_UNITS: f64 = 90.0;
 /// Draws how long the work of a form will take on this machine, and makes it be measured.
 ///
 /// - `label`: what the work is called, such as “Training”.
-pub fn cost_ui(ui: &mut Ui, costs: &mut Costs, (place, label): (CostPlace, &str)) {
+pub fn cost_ui(ui: &mut Ui, costs: &mut Costs, place: CostPlace, label: &str) {
     costs.see(place);
     ui.horizontal_wrapped(|ui| {
         if costs.is_measuring(place) {

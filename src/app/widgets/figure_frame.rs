@@ -22,7 +22,8 @@ pub const OUTDATED: &str = "This figure is not the answer to what is asked now: 
 /// - returns what the user did in the figure, such as the abscissa that was clicked.
 pub fn figure_frame(
     ui: &mut Ui,
-    (heading, figure): (&str, &Figure),
+    heading: &str,
+    figure: &Figure,
     options: &FigureOptions,
     commands: &mut Vec<Command>,
 ) -> FigureResponse {

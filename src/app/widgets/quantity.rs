@@ -30,10 +30,11 @@ pub fn quantity_field(
     ui: &mut Ui,
     label: &str,
     value_si: &mut f64,
-    (range, units): (&Range, UnitSystem),
+    range: &Range,
+    units: UnitSystem,
 ) -> bool {
     let name = ui.label(label);
-    let (response, is_changed) = quantity_value(ui, value_si, (range, units));
+    let (response, is_changed) = quantity_value(ui, value_si, range, units);
     response.labelled_by(name.id);
     ui.end_row();
     is_changed
@@ -45,14 +46,15 @@ pub fn quantity_field(
 pub fn quantity_value(
     ui: &mut Ui,
     value_si: &mut f64,
-    (range, units): (&Range, UnitSystem),
+    range: &Range,
+    units: UnitSystem,
 ) -> (Response, bool) {
     let unit = range.quantity.display_unit(units);
     let limits = [range.low, range.high].map(|limit| unit.from_si(limit));
     let expected = range.expected(&unit);
     let value = unit.from_si(*value_si);
     let (response, taken) =
-        bounded(ui, value, &significant(value), (limits, &expected), |ui, shown| {
+        bounded(ui, value, &significant(value), limits, &expected, |ui, shown| {
             let field = DragValue::new(shown)
                 .update_while_editing(false)
                 .speed(drag_speed(range, &unit))
@@ -83,7 +85,8 @@ pub fn optional_quantity(
     ui: &mut Ui,
     value_si: &mut Option<f64>,
     empty: EmptyField<'_>,
-    (range, units): (&Range, UnitSystem),
+    range: &Range,
+    units: UnitSystem,
 ) -> Response {
     let unit = range.quantity.display_unit(units);
     let limits = [range.low, range.high].map(|limit| unit.from_si(limit));
@@ -92,7 +95,7 @@ pub fn optional_quantity(
     let is_empty = value_si.is_none();
     let stays = if is_empty { empty.text.to_owned() } else { significant(start) };
     let is_cleared = Cell::new(false);
-    let (response, taken) = bounded(ui, start, &stays, (limits, &expected), |ui, shown| {
+    let (response, taken) = bounded(ui, start, &stays, limits, &expected, |ui, shown| {
         let mut is_entered = false;
         let get_set = |entered: Option<f64>| {
             if let Some(entered) = entered {
@@ -148,7 +151,8 @@ fn bounded(
     ui: &mut Ui,
     value: f64,
     stays: &str,
-    ([low, high], expected): ([f64; 2], &str),
+    [low, high]: [f64; 2],
+    expected: &str,
     control: impl FnOnce(&mut Ui, &mut f64) -> Response,
 ) -> (Response, Option<f64>) {
     let id = ui.next_auto_id().with("refused");
@@ -216,7 +220,8 @@ pub fn count_field<N: Numeric>(ui: &mut Ui, value: &mut N, range: &Range, speed:
         ui,
         value.to_f64(),
         &significant(value.to_f64()),
-        (limits, &expected),
+        limits,
+        &expected,
         |ui, shown| {
             let field = DragValue::new(shown).update_while_editing(false).speed(speed);
             ui.add(field.fixed_decimals(0))
@@ -269,9 +274,10 @@ pub fn quantity_slider(
     let [low, high] = [range.usual.start(), range.usual.end()].map(|end| unit.from_si(*end));
     let limits = [range.possible.low, range.possible.high];
     let expected = range.possible.expected(&unit);
-    let possible = (limits.map(|limit| unit.from_si(limit)), expected.as_str());
+    let possible = limits.map(|limit| unit.from_si(limit));
     let value = unit.from_si(value_si);
-    let (response, taken) = bounded(ui, value, &significant(value), possible, |ui, shown| {
+    let stays = significant(value);
+    let (response, taken) = bounded(ui, value, &stays, possible, &expected, |ui, shown| {
         let slider = Slider::new(shown, low..=high)
             .clamping(SliderClamping::Never)
             .max_decimals(if high - low > 200.0 { 0 } else { 2 })
@@ -325,7 +331,7 @@ mod tests {
         let mut harness = Harness::new_ui_state(
             |ui, mass_kg: &mut f64| {
                 Grid::new("grid").num_columns(2).show(ui, |ui| {
-                    quantity_field(ui, "Mass", mass_kg, (&BODY_MASS, UnitSystem::Si));
+                    quantity_field(ui, "Mass", mass_kg, &BODY_MASS, UnitSystem::Si);
                 });
             },
             4.5e6,

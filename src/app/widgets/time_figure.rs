@@ -18,16 +18,26 @@ const COLUMNS: [&str; 6] = ["Curve", "Mean", "Lowest", "Highest", "Change", "Int
 pub struct BetweenCursors {
     /// The times of the cursors, s; `None` if they are not set.
     pub span_s: Option<[f64; 2]>,
-    /// Figures that were drawn in this frame: quantity, units of ordinate and abscissa, and curves.
-    figures: Vec<(String, [&'static str; 2], Vec<CurveStatistics>)>,
+    /// Figures that were drawn in this frame.
+    figures: Vec<Measured>,
     /// What restricts them.
     restrictions: BTreeSet<String>,
+}
+
+/// The curves of a figure between the cursors.
+#[derive(Debug, Clone, PartialEq)]
+struct Measured {
+    quantity: String,
+    /// Of ordinate and abscissa.
+    units: [&'static str; 2],
+    curves: Vec<CurveStatistics>,
 }
 
 /// Draws a figure over time. A drag with Shift sets the two cursors.
 pub fn time_figure(
     ui: &mut Ui,
-    (heading, figure): (&str, &Figure),
+    heading: &str,
+    figure: &Figure,
     options: FigureOptions,
     between: &mut BetweenCursors,
     commands: &mut Vec<Command>,
@@ -35,11 +45,11 @@ pub fn time_figure(
     let unit = figure.x.unit;
     let span = between.span_s.map(|ends| ends.map(|time_s| unit.from_si(time_s)));
     let options = FigureOptions { span, ..options };
-    let mut response = figure_frame(ui, (heading, figure), &options, commands);
+    let mut response = figure_frame(ui, heading, figure, &options, commands);
     if let Some(span) = span {
         let units = [figure.y.unit.symbol, unit.symbol];
         let curves = curve_statistics(figure, span);
-        between.figures.push((figure.y.label.clone(), units, curves));
+        between.figures.push(Measured { quantity: figure.y.label.clone(), units, curves });
         between.restrictions.extend(figure.caveats.text());
     }
     let is_selecting = ui.input(|input| input.modifiers.matches_exact(Modifiers::SHIFT));
@@ -85,7 +95,7 @@ impl BetweenCursors {
 
 /// The rows of one figure, each number with its unit.
 fn rows(
-    (quantity, [of_y, of_x], curves): &(String, [&'static str; 2], Vec<CurveStatistics>),
+    Measured { quantity, units: [of_y, of_x], curves }: &Measured,
 ) -> Vec<[String; COLUMNS.len()]> {
     let with = |value: f64, unit: &str| format!("{} {unit}", significant(value));
     let row = |curve: &CurveStatistics| {
@@ -102,10 +112,7 @@ fn rows(
     curves.iter().map(row).collect()
 }
 
-fn table(
-    figures: &[(String, [&'static str; 2], Vec<CurveStatistics>)],
-    restrictions: &BTreeSet<String>,
-) -> String {
+fn table(figures: &[Measured], restrictions: &BTreeSet<String>) -> String {
     let rows = figures.iter().flat_map(rows).map(|row| row.join("\t"));
     let restriction_lines = restrictions.iter().map(|text| format!("Restrictions\t{text}"));
     let lines: Vec<String> =

@@ -122,7 +122,6 @@ fn write(args: &ExportArgs, (format, built): (FormatArg, &BuiltScene)) -> Result
     let BuiltScene { scene, analysis, .. } = built;
     let (path, existing) = (&args.out, args.overwrite.into());
     let restrictions = scene.caveats.text();
-    let case = (analysis, restrictions.as_deref());
     let mut bytes = Vec::new();
     match format {
         FormatArg::Dxf => {
@@ -133,8 +132,8 @@ fn write(args: &ExportArgs, (format, built): (FormatArg, &BuiltScene)) -> Result
             dxf(scene, &DxfOptions { outlines_s }, &mut bytes)?;
         }
         FormatArg::Glb => glb(scene, &mut bytes)?,
-        FormatArg::HvePulse => hve_pulse(case, &mut bytes)?,
-        FormatArg::HveMotion => hve_motion(case, &mut bytes)?,
+        FormatArg::HvePulse => hve_pulse(analysis, restrictions.as_deref(), &mut bytes)?,
+        FormatArg::HveMotion => hve_motion(analysis, restrictions.as_deref(), &mut bytes)?,
         FormatArg::Motion => {
             let simulated = analysis.simulation.as_ref().map(|motion| &motion.series);
             let unknown = || ExchangeError::Unknown { name: analysis.name.clone(), what: "motion" };

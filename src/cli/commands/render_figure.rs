@@ -63,7 +63,7 @@ pub(super) fn motion(
     console: &mut Console<'_>,
 ) -> Result<Noted, CliError> {
     let SimulateAnswer { report, analysis } = console.answer(request)?;
-    let figure = analysis_motion_figure((&analysis, &report.caveats), channel, units);
+    let figure = analysis_motion_figure(&analysis, &report.caveats, channel, units);
     if figure.elements.is_empty() {
         let (name, channel) = (request.source.name(), channel.header());
         return Err(CliError::NothingToShow { name, channel });

@@ -219,7 +219,7 @@ fn make(
     let made = match kind {
         FilmKind::Mp4 => under_bar(|observer| {
             let mut report = |progress| observer(Event::Progress(progress));
-            write_film(&film, (&args.out, existing), &mut report)
+            write_film(&film, &args.out, existing, &mut report)
         })?,
         FilmKind::Pictures => {
             let (folder, record) = console.begin_folder(&args.out, existing)?;

@@ -86,8 +86,7 @@ pub(super) fn figure(
     let input = MotionForecastFigure {
         density: Some(&density),
         components: true,
-        ..MotionForecastFigure::new(&answer, (&bands, caveats), (at_s, units))
-            .with_motions(analysis)
+        ..MotionForecastFigure::new(&answer, &bands, caveats, at_s, units).with_motions(analysis)
     };
     let channel = FORECAST_CHANNELS.into_iter().find(|of| Some(of.channel) == args.channel);
     let figure = match channel {

@@ -83,7 +83,7 @@ pub(super) fn figure(
     let figure = match (args.plot.quantity(), args.plot) {
         (Some(quantity), _) => {
             let prior = prior_values(&answer.target, quantity);
-            marginal_figure(answer, (quantity, &prior), caveats, units)
+            marginal_figure(answer, quantity, &prior, caveats, units)
         }
         (None, PlotArg::Budget) => budget_figure(answer, caveats, units),
         (None, _) => {
@@ -146,7 +146,7 @@ impl Reconstructed {
 
     fn cars(&self, paths: &ReconstructedPaths, units: UnitSystem) -> Scene {
         let parts =
-            ReconstructionParts::new((&self.answer, paths), units, &self.answer.report.caveats);
+            ReconstructionParts::new(&self.answer, paths, units, &self.answer.report.caveats);
         let built = reconstruction_scene(&parts);
         Scene { ground: self.ground.as_ref().map(|of| Arc::clone(&of.ground)), ..built }
     }

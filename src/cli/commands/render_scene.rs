@@ -159,7 +159,7 @@ pub(super) fn scene(
     let time_s = args.time;
     let BuiltScene { analysis, scene, notes } =
         build(&args.seen.case, Some(time_s), units, console)?;
-    let mut figure = analysis_scene_figure((&analysis, &scene.caveats), time_s, units);
+    let mut figure = analysis_scene_figure(&analysis, &scene.caveats, time_s, units);
     figure.elements.extend(drawn_paths(&scene, &figure));
     Ok((figure, notes, args.seen.shown(scene, time_s)))
 }

@@ -101,8 +101,9 @@ pub(in crate::cli) fn run(
     console.reads(std::slice::from_ref(&args.case))?;
     console.reads(&case.input_files())?;
     let settings = args.settings()?;
-    let chosen = (&case, args.variant.as_slice());
-    let outcome = under_bar(|observer| report_case(chosen, &settings, &console.library, observer))?;
+    let outcome = under_bar(|observer| {
+        report_case(&case, args.variant.as_slice(), &settings, &console.library, observer)
+    })?;
     let (document, report) = outcome.complete().ok_or(CliError::Cancelled)?;
     let bytes = document
         .bytes(format, DRAWING)

@@ -42,13 +42,12 @@ pub(in crate::cli) fn write_motion_prediction(
     let density = DensityTask::new(&forecast.distribution, window_s).on_cpu();
     write_density(&path(&map), &density, restrictions)?;
     let mut files = vec![trajectory, map];
-    let shown = (forecast.outcome.time_s, wanted.units);
     let input = MotionForecastFigure {
         title: &answer.report.scenario,
         density: Some(&density),
         components: true,
         reference: answer.analysis.reference.as_ref(),
-        ..MotionForecastFigure::new(answer, (&bands, &caveats), shown)
+        ..MotionForecastFigure::new(answer, &bands, &caveats, forecast.outcome.time_s, wanted.units)
     };
     let mut figures = vec![("scene".to_owned(), forecast_scene_figure(&input))];
     for channel in FORECAST_CHANNELS {

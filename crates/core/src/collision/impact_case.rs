@@ -94,7 +94,8 @@ impl ImpactCase {
     pub fn to_scenario(
         &self,
         [struck, striking]: [Footprint; 2],
-        (restitution, friction_limit): (f64, f64),
+        restitution: f64,
+        friction_limit: f64,
     ) -> Result<Scenario, ScenarioError> {
         let [x_body_m, y_body_m] = self.contact_m;
         let normal_body_rad = self.normal_rad()?;

@@ -268,7 +268,7 @@ fn load_columns(
                 series = time.map_err(|error| out_of_order(table, column, error))?;
                 check_steps(table, column, series.time_s())?;
             }
-            channel => insert(&mut series, (channel, values), table)?,
+            channel => insert(&mut series, channel, values, table)?,
         }
     }
     let read_as = settings.velocities.unwrap_or(VelocityAxes::Body);
@@ -280,8 +280,8 @@ fn load_columns(
             return Err(columns.missing(table, channel, needed));
         }
         if let Some([vx, vy]) = in_body_axes(&series) {
-            insert(&mut series, (Channel::Vx, vx), table)?;
-            insert(&mut series, (Channel::Vy, vy), table)?;
+            insert(&mut series, Channel::Vx, vx, table)?;
+            insert(&mut series, Channel::Vy, vy, table)?;
         }
     }
     let Columns { by_channel, mut notes } = columns;
@@ -299,7 +299,8 @@ fn load_columns(
 
 fn insert(
     series: &mut TimeSeries,
-    (channel, values): (Channel, Vec<f64>),
+    channel: Channel,
+    values: Vec<f64>,
     table: &Table,
 ) -> Result<(), DataError> {
     let path = || table.path().to_owned();

@@ -28,7 +28,7 @@ pub(super) struct Rows {
 impl Rows {
     /// Finds the rows in the text of a file. Blank lines and comments are omitted.
     ///
-    /// - `(body, first_line)`: the offset at which the rows begin, and the number of this line.
+    /// - `body`, `first_line`: the offset at which the rows begin, and the number of this line.
     ///
     /// # Errors
     /// [`DataError::RaggedRow`] if a row does not have `n_columns` fields, except for text to the
@@ -37,8 +37,10 @@ impl Rows {
     pub(super) fn read(
         path: &Path,
         text: String,
-        (body, first_line): (usize, u64),
-        (dialect, n_columns): (Dialect, usize),
+        body: usize,
+        first_line: u64,
+        dialect: Dialect,
+        n_columns: usize,
     ) -> Result<Self, DataError> {
         let source = text.get(body..).unwrap_or_default();
         let separator = dialect.separator;

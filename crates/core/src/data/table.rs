@@ -61,7 +61,7 @@ impl Table {
         let text = match read_text(path, MAX_TABLE_BYTES) {
             Err(DataError::NotText { .. }) if is_archive(path)? => {
                 let (text, sheet) = read_sheet(path, settings.sheet.as_ref())?;
-                let table = Self::parse(path, (text, Some(Separator::Tab)), settings);
+                let table = Self::parse(path, text, Some(Separator::Tab), settings);
                 let table = table.map_err(|error| in_sheet(path, &sheet.name, error))?;
                 return Ok(Self { sheet: Some(sheet), ..table });
             }
@@ -72,7 +72,7 @@ impl Table {
             return Err(DataError::NoSheet { path, wanted, found });
         }
         refuse_known_text(path, &text.text)?;
-        Self::parse(path, (text, None), settings)
+        Self::parse(path, text, None, settings)
     }
 
     /// Reads a table of cases. It is held cell by cell, so that its size has a lower limit.
@@ -80,12 +80,13 @@ impl Table {
     /// # Errors
     /// The same as for [`Table::read`].
     pub(crate) fn read_cases(path: &Path) -> Result<Self, DataError> {
-        Self::parse(path, (read_text(path, MAX_CASES_BYTES)?, None), &ReadSettings::default())
+        Self::parse(path, read_text(path, MAX_CASES_BYTES)?, None, &ReadSettings::default())
     }
 
     fn parse(
         path: &Path,
-        (Text { mut text, encoding }, separator): (Text, Option<Separator>),
+        Text { mut text, encoding }: Text,
+        separator: Option<Separator>,
         settings: &ReadSettings,
     ) -> Result<Self, DataError> {
         check_line_lengths(path, &text)?;
@@ -105,9 +106,9 @@ impl Table {
         let lines = first_lines(&text);
         check_fields(path, &lines, dialect.separator)?;
         let (header, body) = find_header(path, &lines, dialect, settings)?;
-        let body = body.map_or((text.len(), 0), |body| (body.start, body.number));
+        let (body, first_line) = body.map_or((text.len(), 0), |body| (body.start, body.number));
         let beginning = lines.iter().take(SHOWN_LINES).map(|line| shown_line(line)).collect();
-        let rows = Rows::read(path, text, body, (dialect, header.names.len()))?;
+        let rows = Rows::read(path, text, body, first_line, dialect, header.names.len())?;
         let (path, sheet) = (path.to_owned(), None);
         Ok(Self { path, encoding, dialect, header, rows, beginning, sheet })
     }

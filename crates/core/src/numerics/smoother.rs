@@ -122,7 +122,7 @@ impl MeasuredTrack<'_> {
             }
             let predicted = state;
             while let Some(sample) = samples.next_if(|sample| sample.time_s <= time_s) {
-                log_likelihood += update(&mut state, sample);
+                log_likelihood += update(&mut state.0, &mut state.1, sample);
             }
             while wanted.next_if(|at_s| *at_s <= time_s).is_some() {}
             nodes.push(Node { time_s, transition, predicted, filtered: state });
@@ -154,7 +154,7 @@ fn process_noise_over(step_s: f64) -> Matrix3<f64> {
 
 /// Updates mean and covariance by a sample, and returns the logarithm of the probability density of
 /// the sample before the update.
-fn update((mean, covariance): &mut (Vector3<f64>, Matrix3<f64>), sample: &TrackSample) -> f64 {
+fn update(mean: &mut Vector3<f64>, covariance: &mut Matrix3<f64>, sample: &TrackSample) -> f64 {
     let mut row = RowVector3::zeros();
     row[sample.order.min(2)] = 1.0;
     let variance = sample.std * sample.std;

@@ -102,7 +102,7 @@ pub fn read_drawing(file: &DrawingFile, origin: &SiteOrigin) -> Result<Drawing, 
     reader.hide(&drawing, frozen.as_deref().unwrap_or_default());
     reader.chord_error = CHORD_ERROR_M / unit_m;
     let whole = Placed { along: [1.0, 0.0], across: [0.0, 1.0], at: [0.0; 2] };
-    reader.entities(drawing.entities(), (&whole, None), 0);
+    reader.entities(drawing.entities(), &whole, None, 0);
     if reader.n_points > MAX_DRAWING_POINTS {
         return Err(SiteError::TooManyPoints { path: path.to_owned(), limit: MAX_DRAWING_POINTS });
     }
@@ -219,7 +219,8 @@ impl<'a> Reader<'a> {
     fn entities(
         &mut self,
         entities: impl Iterator<Item = &'a Entity>,
-        (placed, block_layer): (&Placed, Option<&'a str>),
+        placed: &Placed,
+        block_layer: Option<&'a str>,
         depth: usize,
     ) {
         for entity in entities {
@@ -230,7 +231,7 @@ impl<'a> Reader<'a> {
             let own = entity.common.layer.as_str();
             let layer = block_layer.filter(|_| own == "0").unwrap_or(own);
             if let EntityType::Insert(insert) = &entity.specific {
-                self.insert(insert, (placed, layer), depth);
+                self.insert(insert, placed, layer, depth);
                 continue;
             }
             match points_of(&entity.specific, self.chord_error / placed.scale()) {
@@ -252,7 +253,8 @@ impl<'a> Reader<'a> {
     fn insert(
         &mut self,
         insert: &'a dxf::entities::Insert,
-        (placed, layer): (&Placed, &'a str),
+        placed: &Placed,
+        layer: &'a str,
         depth: usize,
     ) {
         // Blocks of nothing but blocks are counted, too.
@@ -279,7 +281,7 @@ impl<'a> Reader<'a> {
         let at = placed.placed([own.at[0] + bx, own.at[1] + by]);
         let inner =
             Placed { along: placed.turned(own.along), across: placed.turned(own.across), at };
-        self.entities(block.entities.iter(), (&inner, Some(layer)), depth + 1);
+        self.entities(block.entities.iter(), &inner, Some(layer), depth + 1);
     }
 
     fn leave_out(&mut self, layer: &str, kind: String) {
@@ -338,8 +340,12 @@ fn points_of(entity: &EntityType, error: f64) -> Option<Vec<[f64; 2]>> {
         }
         EntityType::Spline(curve) => {
             let control: Vec<[f64; 2]> = curve.control_points.iter().map(flat).collect();
-            let knots = (curve.knot_values.as_slice(), curve.weight_values.as_slice());
-            spline(usize::try_from(curve.degree_of_curve).ok()?, knots, &control)?
+            spline(
+                usize::try_from(curve.degree_of_curve).ok()?,
+                curve.knot_values.as_slice(),
+                curve.weight_values.as_slice(),
+                &control,
+            )?
         }
         _ => return None,
     };

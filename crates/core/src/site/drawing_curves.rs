@@ -72,7 +72,8 @@ pub(super) fn bulged([from, to]: [[f64; 2]; 2], bulge: f64, error: f64) -> Vec<[
 /// - `weights`: of the control points; empty if all are 1.
 pub(super) fn spline(
     degree: usize,
-    (knots, weights): (&[f64], &[f64]),
+    knots: &[f64],
+    weights: &[f64],
     control: &[[f64; 2]],
 ) -> Option<Vec<[f64; 2]>> {
     let n = control.len();
@@ -169,9 +170,9 @@ mod tests {
     fn a_spline_of_one_span_is_a_bezier_curve() {
         let control = [[0.0, 0.0], [1.0, 2.0], [3.0, 2.0], [4.0, 0.0]];
         let knots = [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
-        let points = spline(3, (&knots, &[]), &control).unwrap();
+        let points = spline(3, &knots, &[], &control).unwrap();
         assert!(near(points[0], [0.0, 0.0]) && near(points[points.len() - 1], [4.0, 0.0]));
         assert!(near(points[points.len() / 2], [2.0, 1.5]), "{points:?}");
-        assert_eq!(spline(3, (&knots[..7], &[]), &control), None);
+        assert_eq!(spline(3, &knots[..7], &[], &control), None);
     }
 }

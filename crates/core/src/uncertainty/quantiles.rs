@@ -65,7 +65,7 @@ impl<'a> QuantileSolver<'a> {
             for (i, &z) in z.iter().enumerate() {
                 let ([one, two], probability) = (past[i], self.probabilities[i]);
                 let guess = mean + (2.0 * one - two) * std;
-                let value = self.quantile(&parts, (probability, z), guess);
+                let value = self.quantile(&parts, probability, z, guess);
                 past[i] = [(value - mean) / std, one];
                 rows[i].push(value);
             }
@@ -78,7 +78,7 @@ impl<'a> QuantileSolver<'a> {
     ///
     /// - `probability`, `z`: the probability and its quantile of the standard normal distribution.
     /// - `guess`: start of the iteration.
-    fn quantile(&self, parts: &[Part], (probability, z): (f64, f64), guess: f64) -> f64 {
+    fn quantile(&self, parts: &[Part], probability: f64, z: f64, guess: f64) -> f64 {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut sharpest: f64 = 0.0;
         for &Part { mean, std, inverse, .. } in parts {

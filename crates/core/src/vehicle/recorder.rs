@@ -105,7 +105,8 @@ impl<'a> Recorder<'a> {
     pub(super) fn record(
         &mut self,
         time_s: f64,
-        (x, u): (&VehicleState<f64>, &VehicleInput<f64>),
+        x: &VehicleState<f64>,
+        u: &VehicleInput<f64>,
         forces: &Forces<f64>,
     ) {
         let contact_arm_m =

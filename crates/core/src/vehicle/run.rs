@@ -124,7 +124,7 @@ impl<'a> Run<'a> {
         if !self.state.iter().all(|value| value.is_finite()) {
             return Err(SimulationError::Diverged { time_s });
         }
-        self.recorder.record(time_s, (&now, coming), forces);
+        self.recorder.record(time_s, &now, coming, forces);
         let is_pushed = coming.collision.is_some() || coming.is_driven();
         let share = self.energy.gain(self.vehicle, &now, is_pushed);
         let is_conserved = share <= MAX_ENERGY_GAIN; // not where it is NaN

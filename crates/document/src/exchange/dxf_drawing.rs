@@ -45,7 +45,7 @@ pub fn dxf(scene: &Scene, options: &DxfOptions, out: &mut dyn Write) -> Result<(
     let mut sheet = Sheet::default();
     for path in &scene.paths {
         let places = path.motion.states().iter().map(|state| [state.pose.x_m, state.pose.y_m]);
-        sheet.polyline((path.role, "PATH"), places, false);
+        sheet.polyline(path.role, "PATH", places, false);
     }
     for car in scene.cars.iter().filter(|car| !is_draw(car)) {
         options.outlines_s.iter().for_each(|time_s| sheet.outline(car, *time_s));
@@ -54,34 +54,34 @@ pub fn dxf(scene: &Scene, options: &DxfOptions, out: &mut dyn Write) -> Result<(
         let is_closed = line.points_m.len() > 2 && line.points_m.first() == line.points_m.last();
         let n = line.points_m.len() - usize::from(is_closed);
         let places = line.points_m.iter().take(n).copied();
-        sheet.polyline((line.role, "LINE"), places, is_closed);
+        sheet.polyline(line.role, "LINE", places, is_closed);
     }
     for piece in scene.marks.iter().flat_map(SceneMark::pieces) {
         let places = piece.iter().map(|point| point.place_m);
-        sheet.polyline((SceneRole::TireMark, "LINE"), places, false);
+        sheet.polyline(SceneRole::TireMark, "LINE", places, false);
     }
     for crush in &scene.crushes {
         let pose = crush.motion.at(crush.from_s).pose;
         let places = crush.outline_m.iter().map(|corner| pose.world_from_body(*corner));
-        sheet.polyline((SceneRole::Crush, "OUTLINE"), places, true);
+        sheet.polyline(SceneRole::Crush, "OUTLINE", places, true);
     }
     for point in &scene.points {
-        sheet.add((point.role, "POINT"), EntityType::ModelPoint(ModelPoint::new(at(point.at_m))));
-        sheet.text((point.role, "TEXT"), point.at_m, &point.name);
+        sheet.add(point.role, "POINT", EntityType::ModelPoint(ModelPoint::new(at(point.at_m))));
+        sheet.text(point.role, "TEXT", point.at_m, &point.name);
     }
     for arrow in &scene.arrows {
         let [from, to] = arrow.ends_m;
-        sheet.line((arrow.role, "LINE"), [from, to]);
-        sheet.text((arrow.role, "TEXT"), from, &arrow.name);
+        sheet.line(arrow.role, "LINE", [from, to]);
+        sheet.text(arrow.role, "TEXT", from, &arrow.name);
     }
     for cross in &scene.crosses {
         let [x, y] = cross.at_m;
         for slope in [1.0, -1.0] {
             let ends = [[x - CROSS_M, y - slope * CROSS_M], [x + CROSS_M, y + slope * CROSS_M]];
-            sheet.line((SceneRole::Evidence, "LINE"), ends);
+            sheet.line(SceneRole::Evidence, "LINE", ends);
         }
         let text = format!("{} from {:.3} s", cross.name, cross.time_s);
-        sheet.text((SceneRole::Evidence, "TEXT"), cross.at_m, &text);
+        sheet.text(SceneRole::Evidence, "TEXT", cross.at_m, &text);
     }
     sheet.notes(scene);
     sheet.save(out)
@@ -96,7 +96,7 @@ struct Sheet {
 }
 
 impl Sheet {
-    fn add(&mut self, (role, kind): (SceneRole, &str), specific: EntityType) {
+    fn add(&mut self, role: SceneRole, kind: &str, specific: EntityType) {
         self.add_to(format!("{}_{kind}", role_name(role)), role_aci(role), specific);
     }
 
@@ -110,7 +110,8 @@ impl Sheet {
     /// A line through places, without those that are not finite.
     fn polyline(
         &mut self,
-        layer: (SceneRole, &str),
+        role: SceneRole,
+        kind: &str,
         places_m: impl Iterator<Item = [f64; 2]>,
         is_closed: bool,
     ) {
@@ -120,17 +121,17 @@ impl Sheet {
         if vertices.len() > 1 {
             let mut line = LwPolyline { vertices, ..LwPolyline::default() };
             line.set_is_closed(is_closed);
-            self.add(layer, EntityType::LwPolyline(line));
+            self.add(role, kind, EntityType::LwPolyline(line));
         }
     }
 
-    fn line(&mut self, layer: (SceneRole, &str), [from, to]: [[f64; 2]; 2]) {
-        self.add(layer, EntityType::Line(Line::new(at(from), at(to))));
+    fn line(&mut self, role: SceneRole, kind: &str, [from, to]: [[f64; 2]; 2]) {
+        self.add(role, kind, EntityType::Line(Line::new(at(from), at(to))));
     }
 
-    fn text(&mut self, layer: (SceneRole, &str), place_m: [f64; 2], value: &str) {
+    fn text(&mut self, role: SceneRole, kind: &str, place_m: [f64; 2], value: &str) {
         if !value.is_empty() {
-            self.add(layer, EntityType::Text(text(place_m, value)));
+            self.add(role, kind, EntityType::Text(text(place_m, value)));
         }
     }
 
@@ -139,12 +140,16 @@ impl Sheet {
         let (pose, body) = (car.at(time_s).pose, &car.shape.body);
         let (front, rear, side) = (body.front_m, body.rear_m(), body.width_m / 2.0);
         let corners = [[front, side], [rear, side], [rear, -side], [front, -side]];
-        let layer = (car.role, "OUTLINE");
-        self.polyline(layer, corners.iter().map(|corner| pose.world_from_body(*corner)), true);
-        self.line(layer, [[0.0, 0.0], [front, 0.0]].map(|end| pose.world_from_body(end)));
+        let places = corners.iter().map(|corner| pose.world_from_body(*corner));
+        self.polyline(car.role, "OUTLINE", places, true);
+        self.line(
+            car.role,
+            "OUTLINE",
+            [[0.0, 0.0], [front, 0.0]].map(|end| pose.world_from_body(end)),
+        );
         let name = if car.tag.is_empty() { &car.name } else { &car.tag };
         let place = pose.world_from_body([front, side]);
-        self.text((car.role, "TEXT"), place, &format!("{name}, {time_s:.3} s"));
+        self.text(car.role, "TEXT", place, &format!("{name}, {time_s:.3} s"));
     }
 
     /// Title, units and what restricts the answer, below the drawing.

@@ -94,18 +94,20 @@ pub fn add_car(
     tracks.push((node, rotations(&states, |state| about_z(state.pose.yaw_rad))));
     for (target, values) in tracks {
         let output = builder.list(&values, None);
-        add_channel(animation, (target, Property::Rotation), (keys.times, output));
+        add_channel(animation, target, Property::Rotation, keys.times, output);
     }
     let places: Vec<[f32; 3]> = states.iter().map(|state| place(&keys.frame, state)).collect();
     let output = builder.list(&places, None);
-    add_channel(animation, (node, Property::Translation), (keys.times, output));
+    add_channel(animation, node, Property::Translation, keys.times, output);
     node
 }
 
 fn add_channel(
     animation: &mut Animation,
-    (node, path): (Index<Node>, Property),
-    (input, output): (Index<Accessor>, Index<Accessor>),
+    node: Index<Node>,
+    path: Property,
+    input: Index<Accessor>,
+    output: Index<Accessor>,
 ) {
     let sampler = Index::push(
         &mut animation.samplers,
@@ -147,9 +149,8 @@ fn car_mesh(builder: &mut GltfBuilder, car: &SceneCar, name: &str, shape: &CarMe
             corners.iter().flat_map(|triangle| [single(triangle_normal(*triangle)); 3]).collect();
         let rgb = surface.rgb(role_rgb(car.role));
         let title = format!("{} {surface:?}", role_name(car.role));
-        let of_material = material(builder, title, (rgb, opacity));
-        let lists = (positions.as_slice(), normals.as_slice());
-        parts.push(primitive(builder, lists, (of_material, Mode::Triangles)));
+        let of_material = material(builder, title, rgb, opacity);
+        parts.push(primitive(builder, &positions, &normals, of_material, Mode::Triangles));
     }
     mesh(builder, name.to_owned(), parts)
 }

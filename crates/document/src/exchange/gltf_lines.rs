@@ -22,21 +22,21 @@ pub fn add_lines(builder: &mut GltfBuilder, scene: &Scene, frame: &GltfFrame) ->
     let mut nodes = vec![ground(builder, scene, frame)];
     for path in &scene.paths {
         let places = path.motion.states().iter().map(|state| [state.pose.x_m, state.pose.y_m]);
-        nodes.extend(line((builder, frame), (&path.name, path.role), places));
+        nodes.extend(line(builder, frame, &path.name, path.role, places));
     }
     for scene_line in &scene.lines {
         let places = scene_line.points_m.iter().copied();
-        nodes.extend(line((builder, frame), (&scene_line.name, scene_line.role), places));
+        nodes.extend(line(builder, frame, &scene_line.name, scene_line.role, places));
     }
     for mark in &scene.marks {
         for piece in mark.pieces() {
             let places = piece.iter().map(|point| point.place_m);
-            nodes.extend(line((builder, frame), (&mark.name, SceneRole::TireMark), places));
+            nodes.extend(line(builder, frame, &mark.name, SceneRole::TireMark, places));
         }
     }
     for arrow in &scene.arrows {
         let ends = arrow.ends_m.into_iter();
-        nodes.extend(line((builder, frame), (&arrow.name, arrow.role), ends));
+        nodes.extend(line(builder, frame, &arrow.name, arrow.role, ends));
     }
     nodes
 }
@@ -47,7 +47,8 @@ pub fn add_lines(builder: &mut GltfBuilder, scene: &Scene, frame: &GltfFrame) ->
 pub fn material(
     builder: &mut GltfBuilder,
     name: String,
-    (rgb, opacity): ([u8; 3], f32),
+    rgb: [u8; 3],
+    opacity: f32,
 ) -> Index<Material> {
     let [r, g, b] = rgb.map(linear);
     builder.root.push(Material {
@@ -70,8 +71,10 @@ pub fn material(
 /// A part of a mesh with one material.
 pub fn primitive(
     builder: &mut GltfBuilder,
-    (positions, normals): (&[[f32; 3]], &[[f32; 3]]),
-    (material, mode): (Index<Material>, Mode),
+    positions: &[[f32; 3]],
+    normals: &[[f32; 3]],
+    material: Index<Material>,
+    mode: Mode,
 ) -> Primitive {
     let target = Some(buffer::Target::ArrayBuffer);
     let mut attributes = std::collections::BTreeMap::new();
@@ -104,8 +107,10 @@ pub fn mesh(builder: &mut GltfBuilder, name: String, primitives: Vec<Primitive>)
 }
 
 fn line(
-    (builder, frame): (&mut GltfBuilder, &GltfFrame),
-    (name, role): (&str, SceneRole),
+    builder: &mut GltfBuilder,
+    frame: &GltfFrame,
+    name: &str,
+    role: SceneRole,
     places_m: impl Iterator<Item = [f64; 2]>,
 ) -> Option<Index<Node>> {
     let finite = places_m.filter(|place| place.iter().all(|value| value.is_finite()));
@@ -115,8 +120,8 @@ fn line(
         return None;
     }
     let name = if name.is_empty() { role_name(role) } else { name.to_owned() };
-    let material = material(builder, format!("{} line", role_name(role)), (role_rgb(role), 1.0));
-    let part = primitive(builder, (&places, &[]), (material, Mode::LineStrip));
+    let material = material(builder, format!("{} line", role_name(role)), role_rgb(role), 1.0);
+    let part = primitive(builder, &places, &[], material, Mode::LineStrip);
     let mesh = mesh(builder, name.clone(), vec![part]);
     Some(builder.root.push(Node { mesh: Some(mesh), name: Some(name), ..Node::default() }))
 }
@@ -127,9 +132,9 @@ fn ground(builder: &mut GltfBuilder, scene: &Scene, frame: &GltfFrame) -> Index<
     let [x1, y1] = frame.place(high.map(|value| value + GROUND_ROOM_M));
     let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y0], [x1, y1], [x0, y1]];
     let places = corners.map(|[x, y]| [x, y, 0.0]);
-    let material = material(builder, "ground".to_owned(), (GROUND_RGB, 1.0));
+    let material = material(builder, "ground".to_owned(), GROUND_RGB, 1.0);
     let normals = [[0.0, 0.0, 1.0]; 6];
-    let part = primitive(builder, (&places, &normals), (material, Mode::Triangles));
+    let part = primitive(builder, &places, &normals, material, Mode::Triangles);
     let mesh = mesh(builder, "ground".to_owned(), vec![part]);
     let name = Some("ground".to_owned());
     builder.root.push(Node { mesh: Some(mesh), name, ..Node::default() })

@@ -41,14 +41,15 @@ const MOTION_COLUMNS: [&str; 8] = [
 /// # Errors
 /// [`ExchangeError::Unknown`] without a force; the error of the operating system.
 pub fn hve_pulse(
-    (analysis, restrictions): (&Analysis, Option<&str>),
+    analysis: &Analysis,
+    restrictions: Option<&str>,
     out: &mut dyn Write,
 ) -> Result<(), ExchangeError> {
     let unknown =
         || ExchangeError::Unknown { name: analysis.name.clone(), what: "contact force over time" };
     let force = analysis.force.as_ref().ok_or_else(unknown)?;
     let mass_kg = analysis.vehicle.mass.mass_kg;
-    head(out, (&analysis.name, "collision force on the struck vehicle"), restrictions)?;
+    head(out, &analysis.name, "collision force on the struck vehicle", restrictions)?;
     writeln!(out, "# mass {:.1} lb", to("lb", Quantity::Mass, mass_kg))?;
     writeln!(out, "# each row has {}", sampling_text(force.sampling))?;
     let moment = force.mz_n_m.as_ref();
@@ -78,12 +79,13 @@ pub fn hve_pulse(
 /// # Errors
 /// [`ExchangeError::Unknown`] without a motion; the error of the operating system.
 pub fn hve_motion(
-    (analysis, restrictions): (&Analysis, Option<&str>),
+    analysis: &Analysis,
+    restrictions: Option<&str>,
     out: &mut dyn Write,
 ) -> Result<(), ExchangeError> {
     let unknown = || ExchangeError::Unknown { name: analysis.name.clone(), what: "motion" };
     let series = motion(analysis).ok_or_else(unknown)?;
-    head(out, (&analysis.name, "motion of the struck vehicle, centre of gravity"), restrictions)?;
+    head(out, &analysis.name, "motion of the struck vehicle, centre of gravity", restrictions)?;
     writeln!(out, "{}", MOTION_COLUMNS.join("\t"))?;
     let value = |channel: Channel, idx: usize| {
         series.get(channel).and_then(|values| values.get(idx)).copied().unwrap_or(f64::NAN)
@@ -115,7 +117,8 @@ pub fn hve_motion(
 /// Says what a table is, its axes, and what restricts it.
 fn head(
     out: &mut dyn Write,
-    (name, what): (&str, &str),
+    name: &str,
+    what: &str,
     restrictions: Option<&str>,
 ) -> Result<(), ExchangeError> {
     writeln!(out, "# {}: {what}", one_line(name))?;

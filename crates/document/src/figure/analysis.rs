@@ -24,7 +24,8 @@ const CROSS_M: f64 = 0.6;
 /// # Errors
 /// [`FilterError`] if the channel class does not fit the sampling of the force.
 pub fn analysis_force_figure(
-    (analysis, caveats): (&Analysis, &Caveats),
+    analysis: &Analysis,
+    caveats: &Caveats,
     class: Option<ChannelClass>,
     pulses: &[(String, ForceHistory)],
     units: UnitSystem,
@@ -46,7 +47,8 @@ pub fn analysis_force_figure(
 
 /// One channel of the simulated and of the recorded motion over time.
 pub fn analysis_motion_figure(
-    (analysis, caveats): (&Analysis, &Caveats),
+    analysis: &Analysis,
+    caveats: &Caveats,
     channel: Channel,
     units: UnitSystem,
 ) -> Figure {
@@ -73,7 +75,8 @@ fn motions(analysis: &Analysis) -> [Option<&TimeSeries>; 2] {
 
 /// The scene from above: the paths of all vehicles, and their outlines at the time `time_s`, s.
 pub fn analysis_scene_figure(
-    (analysis, caveats): (&Analysis, &Caveats),
+    analysis: &Analysis,
+    caveats: &Caveats,
     time_s: f64,
     units: UnitSystem,
 ) -> Figure {

@@ -34,9 +34,12 @@ pub struct CoveragePoint {
 /// - `title`, `label`: title of the figure and name of the quantity.
 /// - `interval`: legend entry of the intervals, for example “90 % interval”.
 pub fn parity_figure(
-    (title, label, interval): (&str, &str, &str),
+    title: &str,
+    label: &str,
+    interval: &str,
     points: &[ParityPoint],
-    (quantity, units): (Quantity, UnitSystem),
+    quantity: Quantity,
+    units: UnitSystem,
 ) -> Figure {
     let x = Axis::shown(format!("{label}, observed"), quantity, units);
     let y = Axis::shown(format!("{label}, predicted"), quantity, units);
@@ -155,11 +158,13 @@ mod tests {
             is_clean: observed > 2000.0,
         };
         let points = [point(1000.0, 2000.0), point(3000.0, 2500.0)];
-        let shown_as = (Quantity::Impulse, UnitSystem::Si);
-        let figure = parity_figure(("t", "|P|", "90 % interval"), &points, shown_as);
+        let parity = |interval, points: &[ParityPoint]| {
+            parity_figure("t", "|P|", interval, points, Quantity::Impulse, UnitSystem::Si)
+        };
+        let figure = parity("90 % interval", &points);
         let FigureElement::Line(diagonal) = &figure.elements[0] else { unreachable!() };
         assert_eq!(diagonal.points, [[1.0, 1.0], [3.0, 3.0]]);
         assert_eq!(figure.elements.len(), 5);
-        assert!(parity_figure(("t", "|P|", ""), &[], shown_as).elements.is_empty());
+        assert!(parity("", &[]).elements.is_empty());
     }
 }

@@ -50,8 +50,8 @@ pub fn impact_figure(
     let mut elements = vec![FigureElement::dashed("contact surface", Role::Muted, surface)];
     for (name, role, footprint, pose, after) in vehicles {
         let vehicle = format!("{name} vehicle");
-        let appearance = (vehicle.as_str(), role, LineStyle::Solid);
-        elements.extend(vehicle_outline(appearance, (&footprint, &pose), x.unit));
+        let style = LineStyle::Solid;
+        elements.extend(vehicle_outline(&vehicle, role, style, &footprint, &pose, x.unit));
         let delta_v = scaled(after.delta_v_world_m_s, longest);
         elements.push(arrow(&format!("Δv {name}"), role, [pose.x_m, pose.y_m], delta_v));
     }

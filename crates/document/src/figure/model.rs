@@ -49,8 +49,8 @@ impl Figure {
     /// Draws what another variant of the case computes over this figure: the lines and outlines that are
     /// simulated or predicted, and the components of its force, with what restricts them.
     ///
-    /// - `(name, idx)`: name of the variant and its number among the others, which gives its colour.
-    pub fn overlay(&mut self, (name, idx): (&str, usize), other: &Self) {
+    /// - `name`, `idx`: name of the variant and its number among the others, which gives its colour.
+    pub fn overlay(&mut self, name: &str, idx: usize, other: &Self) {
         let is_computed = |role| {
             matches!(
                 role,

@@ -46,7 +46,7 @@ fn rows_figure<'a>(
 }
 
 /// A vertical line at x through the row, which extends by `half` to either side.
-fn vertical(name: &str, role: Role, x: f64, (row, half): (f64, f64)) -> FigureElement {
+fn vertical(name: &str, role: Role, x: f64, row: f64, half: f64) -> FigureElement {
     FigureElement::line(name, role, vec![[x, row - half], [x, row + half]])
 }
 
@@ -58,7 +58,9 @@ fn vertical(name: &str, role: Role, x: f64, (row, half): (f64, f64)) -> FigureEl
 /// - `of`: the metric of a model.
 pub fn ranking_figure(
     comparison: &Comparison,
-    (title, label, unit): (&str, &str, Unit),
+    title: &str,
+    label: &str,
+    unit: Unit,
     statistic: impl Fn(&ComparedModel) -> MeanStd,
 ) -> Figure {
     let mut models: Vec<&ComparedModel> = comparison.models.iter().collect();
@@ -72,7 +74,7 @@ pub fn ranking_figure(
         let [low, high] = [(mean - std).max(0.0), mean + std];
         vec![
             FigureElement::line(&name, role, vec![[low, row], [high, row]]),
-            vertical(&name, role, median, (row, TICK_HALF)),
+            vertical(&name, role, median, row, TICK_HALF),
             FigureElement::points(&name, role, vec![[mean, row]]),
         ]
     };
@@ -107,7 +109,7 @@ pub fn cluster_figure(comparison: &Comparison, cluster: usize, units: UnitSystem
             FigureElement::line(&name, role, vec![[least, row], [low, row]]),
             FigureElement::line(&name, role, vec![[high, row], [most, row]]),
             FigureElement::polygon(&name, role, outline),
-            vertical(&name, role, median, (row, BOX_HALF)),
+            vertical(&name, role, median, row, BOX_HALF),
         ]
     };
     let title = match comparison.clusters.get(cluster) {
@@ -171,7 +173,7 @@ pub fn compared_case_figure(
         let line = Series { name: name.to_owned(), role, style, points: points.collect() };
         let end = path.last().map(|&[x_m, y_m, yaw_rad]| Pose { x_m, y_m, yaw_rad });
         let outline =
-            end.map(|pose| vehicle_outline((name, role, style), (&case.footprint, &pose), x.unit));
+            end.map(|pose| vehicle_outline(name, role, style, &case.footprint, &pose, x.unit));
         std::iter::once(FigureElement::Line(line)).chain(outline.into_iter().flatten()).collect()
     };
     let mut elements = Vec::new();

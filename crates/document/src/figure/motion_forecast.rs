@@ -56,8 +56,10 @@ impl<'a> MotionForecastFigure<'a> {
     /// A forecast without density, components, recorded and simulated motion.
     pub fn new(
         answer: &'a PredictMotionAnswer,
-        (bands, caveats): (&'a MotionBands, &'a Caveats),
-        (time_s, units): (f64, UnitSystem),
+        bands: &'a MotionBands,
+        caveats: &'a Caveats,
+        time_s: f64,
+        units: UnitSystem,
     ) -> Self {
         let PredictMotionAnswer { analysis, forecast, .. } = answer;
         Self {
@@ -158,12 +160,14 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     elements.push(path(("central path", Role::Target), &central));
     if let Some(state) = input.central.get(at) {
         let pose = Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad };
-        let appearance = ("central path", Role::Target, LineStyle::Solid);
-        elements.extend(vehicle_outline(appearance, (&input.footprint, &pose), x.unit));
+        let (role, style) = (Role::Target, LineStyle::Solid);
+        let footprint = &input.footprint;
+        elements.extend(vehicle_outline("central path", role, style, footprint, &pose, x.unit));
     }
     if let Some(pose) = input.reference.and_then(|series| pose_at(series, at as f64 * STEP_S)) {
-        let appearance = ("recorded", Role::Reference, LineStyle::Dashed);
-        elements.extend(vehicle_outline(appearance, (&input.footprint, &pose), x.unit));
+        let (role, style) = (Role::Reference, LineStyle::Dashed);
+        let footprint = &input.footprint;
+        elements.extend(vehicle_outline("recorded", role, style, footprint, &pose, x.unit));
     }
     let title = format!("{}: position after {:.2} s", input.title, at as f64 * STEP_S);
     Figure::new(title, [x, y], elements).plan().with_caveats(input.caveats)

@@ -41,7 +41,8 @@ pub fn prior_values(target: &ReconstructionTarget, quantity: ReconstructedQuanti
 /// - `prior`: values of [`prior_values`].
 pub fn marginal_figure(
     answer: &ReconstructAnswer,
-    (quantity, prior): (ReconstructedQuantity, &[f64]),
+    quantity: ReconstructedQuantity,
+    prior: &[f64],
     caveats: &Caveats,
     units: UnitSystem,
 ) -> Figure {
@@ -140,7 +141,8 @@ fn band(name: &str, line: &[[f64; 2]]) -> Band {
 /// - `priors`: values of [`prior_values`] of both.
 pub fn pair_figure(
     answer: &ReconstructAnswer,
-    (quantities, priors): ([ReconstructedQuantity; 2], [&[f64]; 2]),
+    quantities: [ReconstructedQuantity; 2],
+    priors: [&[f64]; 2],
     caveats: &Caveats,
     units: UnitSystem,
 ) -> Figure {

@@ -91,8 +91,8 @@ pub fn reconstruction_scene_figure(
         elements.push(path((name, Role::Model), followed));
         if let Some(pose) = pose_on(followed, time_s) {
             let footprint = Footprint::from(&scene.cars.struck.parameters.geometry);
-            let named = (name, Role::Model, LineStyle::Solid);
-            elements.extend(vehicle_outline(named, (&footprint, &pose), x.unit));
+            let (role, style) = (Role::Model, LineStyle::Solid);
+            elements.extend(vehicle_outline(name, role, style, &footprint, &pose, x.unit));
         }
     }
     let title = format!("{}: where the struck car went", scene.evidence.case);
@@ -121,13 +121,14 @@ fn contact_elements(
     let footprint = Footprint::from(&cars.struck.parameters.geometry);
     let pose = Pose { x_m: 0.0, y_m: 0.0, yaw_rad: 0.0 };
     let unit = Quantity::Length.display_unit(units);
-    let named = ("struck car at first contact", Role::Target, LineStyle::Dashed);
+    let (name, style) = ("struck car at first contact", LineStyle::Dashed);
     let depth_m = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.side));
     let at = |along_m: f64| match damage.side {
         Side::Left | Side::Right => shown([along_m, depth_m]),
         Side::Front | Side::Rear => shown([depth_m, along_m]),
     };
-    let mut elements = Vec::from(vehicle_outline(named, (&footprint, &pose), unit));
+    let mut elements =
+        Vec::from(vehicle_outline(name, Role::Target, style, &footprint, &pose, unit));
     if let Some(Measured { value: along_m, sigma }) = damage.along() {
         let reach_m = 1.645 * sigma;
         let ends = vec![at(along_m - reach_m), at(along_m + reach_m)];
@@ -163,9 +164,9 @@ fn evidence_elements(
         elements.push(FigureElement::line(name, Role::Reference, ellipse));
         if let Some(pose) = rest.pose() {
             let unit = Quantity::Length.display_unit(units);
-            let named = (name, Role::Reference, LineStyle::Dashed);
             let footprint = Footprint::from(&car.parameters.geometry);
-            elements.extend(vehicle_outline(named, (&footprint, &pose), unit));
+            let (role, style) = (Role::Reference, LineStyle::Dashed);
+            elements.extend(vehicle_outline(name, role, style, &footprint, &pose, unit));
         }
     }
     elements

@@ -17,8 +17,11 @@ const CHEVRON_SHARE: f64 = 0.15;
 ///
 /// - `unit`: length unit of both axes.
 pub fn vehicle_outline(
-    (name, role, style): (&str, Role, LineStyle),
-    (footprint, pose): (&Footprint, &Pose),
+    name: &str,
+    role: Role,
+    style: LineStyle,
+    footprint: &Footprint,
+    pose: &Pose,
     unit: Unit,
 ) -> [FigureElement; 2] {
     let (front, half) = (footprint.cg_from_front_m, footprint.width_m / 2.0);
@@ -103,8 +106,8 @@ fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<
         }
     }
     if let Some(pose) = pose_at(motion, time_s) {
-        let appearance = (vehicle.name, vehicle.role, vehicle.style);
-        elements.extend(vehicle_outline(appearance, (&vehicle.footprint, &pose), unit));
+        let SceneVehicle { name, role, style, footprint, .. } = vehicle;
+        elements.extend(vehicle_outline(name, *role, *style, footprint, &pose, unit));
     }
     elements
 }

@@ -37,7 +37,8 @@ pub(super) struct VariantParts {
 /// # Errors
 /// [`CaseError::NoVariant`].
 pub fn report_case(
-    (case, variants): (&CaseFile, &[String]),
+    case: &CaseFile,
+    variants: &[String],
     settings: &ReportSettings,
     library: &Library,
     observer: &mut Observer<'_>,
@@ -149,7 +150,7 @@ impl Builder<'_> {
                         blocks.push(Block::notice(fill(words.no_answer, &[("error", &error)])));
                     }
                     Ok(part) => {
-                        blocks.extend(self.answer(level, (&variant.name, part), &mut written))
+                        blocks.extend(self.answer(level, &variant.name, part, &mut written))
                     }
                 }
             }
@@ -164,7 +165,8 @@ impl Builder<'_> {
     fn answer<'b>(
         &self,
         level: u8,
-        (variant, part): (&'b str, &'b Part),
+        variant: &'b str,
+        part: &'b Part,
         written: &mut Vec<(&'b str, &'b Part)>,
     ) -> Vec<Block> {
         let words = self.wording.words;
@@ -347,7 +349,7 @@ impl Builder<'_> {
                 answers.push((name, part.provenance.clone()));
             }
         }
-        provenance_blocks((self.case, self.report), &answers, (self.wording, self.paths))
+        provenance_blocks(self.case, self.report, &answers, self.wording, self.paths)
     }
 }
 

@@ -36,14 +36,16 @@ impl FlatRow {
 /// Every value in a JSON value that is not null, in its order.
 pub(super) fn flatten(value: &Value, wording: &Wording, paths: &ShownPaths) -> Vec<FlatRow> {
     let mut rows = Vec::new();
-    walk(value, (&mut Vec::new(), ""), (wording, paths), &mut rows);
+    walk(value, &mut Vec::new(), "", wording, paths, &mut rows);
     rows
 }
 
 fn walk(
     value: &Value,
-    (path, key): (&mut Vec<String>, &str),
-    (wording, paths): (&Wording, &ShownPaths),
+    path: &mut Vec<String>,
+    key: &str,
+    wording: &Wording,
+    paths: &ShownPaths,
     rows: &mut Vec<FlatRow>,
 ) {
     let is_plain = |value: &Value| !value.is_object() && !value.is_array();
@@ -54,7 +56,7 @@ fn walk(
                 path.push(key.to_owned());
             }
             for (name, field) in fields {
-                walk(field, (path, name), (wording, paths), rows);
+                walk(field, path, name, wording, paths, rows);
             }
             if !key.is_empty() {
                 path.pop();
@@ -77,7 +79,7 @@ fn walk(
         }
         Value::Array(items) => {
             for (idx, item) in items.iter().enumerate() {
-                walk(item, (path, &format!("{key} {}", idx + 1)), (wording, paths), rows);
+                walk(item, path, &format!("{key} {}", idx + 1), wording, paths, rows);
             }
         }
         plain_value => {

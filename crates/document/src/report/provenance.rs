@@ -29,9 +29,11 @@ pub(super) fn change_notice(
 ///
 /// - `answers`: each answer by its name, with its provenance.
 pub(super) fn provenance_blocks(
-    (case, report): (&CaseFile, &CaseReport),
+    case: &CaseFile,
+    report: &CaseReport,
     answers: &[(String, PartProvenance)],
-    (wording, paths): (&Wording, &ShownPaths),
+    wording: &Wording,
+    paths: &ShownPaths,
 ) -> Vec<Block> {
     let words = wording.words;
     let versions = [("version", case.program()), ("now", impactlab_core::program::version())];
@@ -50,14 +52,14 @@ pub(super) fn provenance_blocks(
     let rows = answers.iter().map(row).collect();
     let columns = [words.answer, words.version, words.seeds];
     blocks.push(Block::Table(Table::new(words.provenance_caption, columns, rows)));
-    blocks.push(files(case, (wording, paths)));
-    blocks.push(models(report, (wording, paths)));
+    blocks.push(files(case, wording, paths));
+    blocks.push(models(report, wording, paths));
     blocks.push(Block::paragraph(words.reproduce_text));
     blocks
 }
 
 /// The files as they are now, also those that were not there when the case was saved.
-fn files(case: &CaseFile, (wording, paths): (&Wording, &ShownPaths)) -> Block {
+fn files(case: &CaseFile, wording: &Wording, paths: &ShownPaths) -> Block {
     let words = wording.words;
     let saved = |path: &std::path::Path| case.files.iter().find(|file| file.path == *path);
     let mut all = case.used_paths();
@@ -92,7 +94,7 @@ fn files(case: &CaseFile, (wording, paths): (&Wording, &ShownPaths)) -> Block {
     Block::Table(Table::new(words.files_caption, columns, rows).numeric(&[1]))
 }
 
-fn models(report: &CaseReport, (wording, paths): (&Wording, &ShownPaths)) -> Block {
+fn models(report: &CaseReport, wording: &Wording, paths: &ShownPaths) -> Block {
     let words = wording.words;
     let models = report.models();
     let row = |model: &UsedModel| {

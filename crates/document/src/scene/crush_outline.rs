@@ -24,17 +24,19 @@ const STRUCK_SHARE: f64 = 0.5;
 pub(super) fn add_crush(scene: &mut Scene, analysis: &Analysis) {
     let contact = analysis.force.as_ref().and_then(contact_interval);
     let struck = scene.cars.iter().find(|car| car.role == SceneRole::Simulated);
-    let (Some(interval), Some(struck), Some(striking)) = (contact, struck, scene.striking()) else {
+    let (Some((start_s, end_s)), Some(struck), Some(striking)) =
+        (contact, struck, scene.striking())
+    else {
         return;
     };
     let cars = [struck, striking];
     let footprints = cars.map(|car| footprint(&car.shape.body));
-    let Some((time_s, poses)) = largest_overlap(cars, &footprints, interval) else { return };
+    let Some((time_s, poses)) = largest_overlap(cars, &footprints, start_s, end_s) else { return };
     let [of_struck, of_striking] = &footprints;
     let dented =
         DentedOutlines::new([(of_struck, &poses[0]), (of_striking, &poses[1])], STRUCK_SHARE);
     let Some(DentedOutlines { dent_m, outlines_m }) = dented else { return };
-    let when = match interval.1 - time_s > STEP_S / 2.0 {
+    let when = match end_s - time_s > STEP_S / 2.0 {
         true => format!("at the largest overlap, at {time_s:.3} s"),
         false => {
             format!("at the end of the force, at {time_s:.3} s, where the overlap still grows")
@@ -62,7 +64,8 @@ fn footprint(body: &CarBody) -> Footprint {
 fn largest_overlap(
     cars: [&SceneCar; 2],
     footprints: &[Footprint; 2],
-    (start_s, end_s): (f64, f64),
+    start_s: f64,
+    end_s: f64,
 ) -> Option<(f64, [Pose; 2])> {
     let n_steps = ((end_s - start_s) / STEP_S).ceil().clamp(1.0, MAX_STEPS) as usize;
     let mut largest: Option<(f64, f64, [Pose; 2])> = None;

@@ -63,8 +63,8 @@ pub fn add_forecast(scene: &mut Scene, input: &ForecastScene<'_>) {
         .map(|state| Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad })
         .collect();
     let motion = CarMotion::from_poses(&central, STEP_S, &shape.body);
-    let named = ("central path of the forecast", "forecast");
-    add(scene, (named, SceneRole::Forecast, CarLook::Ghost), (&shape, motion));
+    let named = ["central path of the forecast", "forecast"];
+    add(scene, named, SceneRole::Forecast, CarLook::Ghost, &shape, motion);
 }
 
 /// Adds a density and the edges of its regions.

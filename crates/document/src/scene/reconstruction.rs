@@ -41,7 +41,8 @@ pub struct ReconstructionParts<'a> {
 impl<'a> ReconstructionParts<'a> {
     /// What the scene of an answer shows, with a particle of median speed that drives.
     pub fn new(
-        (answer, paths): (&'a ReconstructAnswer, &'a ReconstructedPaths),
+        answer: &'a ReconstructAnswer,
+        paths: &'a ReconstructedPaths,
         units: UnitSystem,
         caveats: &'a Caveats,
     ) -> Self {
@@ -86,13 +87,13 @@ pub fn reconstruction_scene(input: &ReconstructionParts<'_>) -> Scene {
         (&evidence.rest, Arc::clone(&shape), ["struck car at rest, 90 % ellipse", "struck, found"]),
     ] {
         if let Some(rest) = rest {
-            add_rest(&mut scene, (rest, &shape), [name, tag]);
+            add_rest(&mut scene, rest, &shape, [name, tag]);
         }
     }
     if let Some((name, path)) = input.followed {
         let motion = motion_of(path, &shape.body);
-        let named = (name, "struck");
-        add(&mut scene, (named, SceneRole::Simulated, CarLook::Solid), (&shape, motion));
+        let named = [name, "struck"];
+        add(&mut scene, named, SceneRole::Simulated, CarLook::Solid, &shape, motion);
     }
     let solid = scene.cars.iter().filter(|car| car.look == CarLook::Solid);
     scene.end_s = solid.map(|car| car.motion.end_s()).fold(0.0, f64::max);
@@ -142,7 +143,7 @@ fn add_found(scene: &mut Scene, evidence: &Evidence) {
 }
 
 /// A car as it was found at rest, with the ellipse that holds its place with 90 %.
-fn add_rest(scene: &mut Scene, (rest, shape): (&RestPose, &Arc<CarShape>), [name, tag]: [&str; 2]) {
+fn add_rest(scene: &mut Scene, rest: &RestPose, shape: &Arc<CarShape>, [name, tag]: [&str; 2]) {
     let line = |name: &str, is_dashed, points_m| SceneLine {
         name: name.to_owned(),
         role: SceneRole::Evidence,

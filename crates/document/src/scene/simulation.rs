@@ -59,21 +59,21 @@ pub fn simulation_scene(input: &SimulationScene<'_>) -> Scene {
         let look = if analysis.simulation.is_some() { CarLook::Ghost } else { CarLook::Solid };
         let motion = CarMotion::from_series(series, &shape.body, None);
         let named =
-            ("recorded", if look == CarLook::Solid { "struck, recorded" } else { "recorded" });
-        add(&mut scene, (named, SceneRole::Recorded, look), (&shape, motion));
+            ["recorded", if look == CarLook::Solid { "struck, recorded" } else { "recorded" }];
+        add(&mut scene, named, SceneRole::Recorded, look, &shape, motion);
     }
     for other in others {
         let shape = other.of.map_or_else(|| Arc::clone(&shape), struck_shape);
         let motion = CarMotion::from_series(other.motion, &shape.body, None);
         let motion = motion.map(|motion| motion.later_by(other.offset_s));
-        add(&mut scene, ((other.name, ""), other.role, CarLook::Ghost), (&shape, motion));
+        add(&mut scene, [other.name, ""], other.role, CarLook::Ghost, &shape, motion);
     }
     if let Some(simulated) = &analysis.simulation {
         let controls = analysis.controlled();
         add_marks(&mut scene, &tire_marks(&simulated.series, controls));
         let motion = CarMotion::from_series(&simulated.series, &shape.body, Some(controls));
-        let named = ("4DOF simulation", "struck");
-        add(&mut scene, (named, SceneRole::Simulated, CarLook::Solid), (&shape, motion));
+        let named = ["4DOF simulation", "struck"];
+        add(&mut scene, named, SceneRole::Simulated, CarLook::Solid, &shape, motion);
     }
     add_crush(&mut scene, analysis);
     scene.end_s = scene.struck().map_or(0.0, |car| car.motion.end_s());
@@ -99,8 +99,8 @@ pub(super) fn add_striking(scene: &mut Scene, analysis: &Analysis) {
     add_marks(scene, &tire_marks(&track.motion, controls));
     let motion = CarMotion::from_series(&track.motion, &body, Some(controls));
     let shape = Arc::new(CarShape::new(body));
-    let named = ("striking vehicle", "striking");
-    add(scene, (named, SceneRole::Striking, CarLook::Solid), (&shape, motion));
+    let named = ["striking vehicle", "striking"];
+    add(scene, named, SceneRole::Striking, CarLook::Solid, &shape, motion);
 }
 
 /// Adds marks of tires that are computed.
@@ -113,11 +113,14 @@ pub(super) fn add_marks(scene: &mut Scene, marks: &[TireMark]) {
 
 /// Adds a car with its path and where it starts, if it has a motion.
 ///
-/// - `(name, tag)`: in the legend and beside the car.
+/// - `name`, `tag`: in the legend and beside the car.
 pub(super) fn add(
     scene: &mut Scene,
-    ((name, tag), role, look): ((&str, &str), SceneRole, CarLook),
-    (shape, motion): (&Arc<CarShape>, Option<CarMotion>),
+    [name, tag]: [&str; 2],
+    role: SceneRole,
+    look: CarLook,
+    shape: &Arc<CarShape>,
+    motion: Option<CarMotion>,
 ) {
     let Some(motion) = motion.map(Arc::new) else { return };
     if let Some(start) = motion.states().first().filter(|_| look == CarLook::Solid) {

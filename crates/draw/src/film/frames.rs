@@ -77,7 +77,7 @@ impl FrameRenderer {
         }
         let mut output = context.run_ui(input, |ui| {
             egui::Frame::new().inner_margin(MARGIN).show(ui, |ui| {
-                framed_ui(ui, (&picture.title(), &picture.scene.caveats), |ui, height| {
+                framed_ui(ui, &picture.title(), &picture.scene.caveats, |ui, height| {
                     let height = height.unwrap_or_else(|| ui.available_height());
                     if places_camera {
                         view.place(picture);

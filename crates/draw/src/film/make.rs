@@ -114,7 +114,8 @@ impl Film {
 /// [`FilmError`], before any work for a wrong size, wrong times or a path that cannot be written.
 pub fn write_film(
     film: &Film,
-    (path, existing): (&Path, Existing),
+    path: &Path,
+    existing: Existing,
     report: &mut ProgressCallback<'_>,
 ) -> Result<Outcome<()>, FilmError> {
     let instants = film.instants()?;

@@ -167,7 +167,7 @@ impl Camera {
 
     /// The camera nearer by a factor; the ground under the pointer stays there.
     #[must_use]
-    pub fn zoomed(self, size: [f64; 2], (pointer, factor): ([f64; 2], f64)) -> Self {
+    pub fn zoomed(self, size: [f64; 2], pointer: [f64; 2], factor: f64) -> Self {
         let near = Self { distance_m: self.distance_m / factor, ..self }.limited();
         let (before, after) = (Projection::new(&self, size), Projection::new(&near, size));
         match (before.ground_at(pointer), after.ground_at(pointer)) {
@@ -413,7 +413,7 @@ mod tests {
             let [x, y] = after.ground_at(to).unwrap();
             let off_m = (x - held[0]).hypot(y - held[1]);
             assert!(off_m < 1e-6 * camera.distance_m, "{camera:?}: {off_m}");
-            let near = Projection::new(&camera.zoomed(SIZE, (from, 1.7)), SIZE);
+            let near = Projection::new(&camera.zoomed(SIZE, from, 1.7), SIZE);
             let [x, y] = near.ground_at(from).unwrap();
             let off_m = (x - held[0]).hypot(y - held[1]);
             assert!(off_m < 1e-6 * camera.distance_m, "{camera:?}: {off_m}");

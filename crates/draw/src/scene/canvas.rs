@@ -125,7 +125,7 @@ impl SceneCanvas {
             }
             draw_strokes(&mut rows, below);
             for left in (0..width).step_by(TILE) {
-                tile.draw((&mut *pixels, width), [left, first], objects);
+                tile.draw(pixels, width, [left, first], objects);
             }
             draw_strokes(&mut Rows { pixels, width, first }, above);
         });

@@ -55,8 +55,8 @@ impl Ground<'_> {
         for (idx, row) in rows.pixels.chunks_mut(width).enumerate() {
             let py = (first + idx) as f32 + 0.5;
             let map = RowMap::new(grid.map, py);
-            underlay.fill_row(row, (py, &map), self.dark);
-            self.fill_row(row, (&map, &columns), &grid);
+            underlay.fill_row(row, py, &map, self.dark);
+            self.fill_row(row, &map, &columns, &grid);
         }
     }
 
@@ -74,7 +74,7 @@ impl Ground<'_> {
     /// Draws grid, density, haze and sky over a row of ground.
     ///
     /// - `columns`: that of [`Ground::covered_columns`].
-    fn fill_row(&self, row: &mut [Color32], (map, columns): (&RowMap, &[[f32; 2]]), grid: &Grid) {
+    fn fill_row(&self, row: &mut [Color32], map: &RowMap, columns: &[[f32; 2]], grid: &Grid) {
         let (sky, lines) = (sky_color(self.dark), grid_colors(self.dark));
         let is_parallel = self.projection.is_parallel();
         let opacity = self.grid_opacity();
@@ -203,7 +203,7 @@ impl Ground<'_> {
     /// Adds a line on the ground; over a picture, on a pale edge.
     pub fn line(&self, points_m: &[[f64; 2]], pen: Pen, strokes: &mut Vec<Stroke>) {
         let first = strokes.len();
-        self.line_at((points_m, 0.0), pen, strokes);
+        self.line_at(points_m, 0.0, pen, strokes);
         if self.has_picture() && pen.width >= LEAST_CASED {
             let edge = |stroke: &Stroke| Stroke {
                 half_width: stroke.half_width + (CASING_POINTS * self.points) as f32,
@@ -219,7 +219,8 @@ impl Ground<'_> {
     /// Adds a level line at a height above the ground, m.
     pub fn line_at(
         &self,
-        (points_m, height_m): (&[[f64; 2]], f64),
+        points_m: &[[f64; 2]],
+        height_m: f64,
         pen: Pen,
         strokes: &mut Vec<Stroke>,
     ) {

@@ -60,7 +60,7 @@ impl Labels<'_> {
         let mut taken = vec![self.scale_bar(painter, scene), self.axes(painter)];
         taken.extend(self.north(painter, scene));
         self.stamp(painter, scene, time_s, &mut taken);
-        self.names(painter, (scene, time_s), &mut taken);
+        self.names(painter, scene, time_s, &mut taken);
         self.arrows(painter, scene, &mut taken);
         self.zones(painter, scene, &mut taken);
         self.measures(painter, scene);
@@ -101,7 +101,9 @@ impl Labels<'_> {
         painter: &Painter,
         at: Pos2,
         align: Align2,
-        (text, size, color): (&str, f32, Color32),
+        text: &str,
+        size: f32,
+        color: Color32,
     ) -> Rect {
         let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(size), color);
         let rect = align.anchor_size(at, galley.size());
@@ -142,22 +144,16 @@ impl Labels<'_> {
                     room.y_range().contains(at.y)
                 };
                 if is_clear {
-                    self.tick(painter, (at, align), &label, taken);
+                    self.tick(painter, at, align, &label, taken);
                 }
             }
         }
         let corner = pos2(self.rect.left() + EDGE, self.rect.bottom() - 3.0);
-        self.tick(painter, (corner, Align2::LEFT_BOTTOM), unit.symbol, taken);
+        self.tick(painter, corner, Align2::LEFT_BOTTOM, unit.symbol, taken);
     }
 
     /// Draws a text along the grid, if there is room for it.
-    fn tick(
-        &self,
-        painter: &Painter,
-        (at, align): (Pos2, Align2),
-        label: &str,
-        taken: &mut Vec<Rect>,
-    ) {
+    fn tick(&self, painter: &Painter, at: Pos2, align: Align2, label: &str, taken: &mut Vec<Rect>) {
         let color = self.text_color();
         let galley = painter.layout_no_wrap(label.to_owned(), FontId::proportional(SMALL), color);
         let place = align.anchor_size(at, galley.size());
@@ -202,7 +198,7 @@ impl Labels<'_> {
                 *last = format!("{letter} {last} {}", unit.symbol);
             }
             for (at, label) in shown {
-                self.tick(painter, (at + vec2(0.0, 3.0), Align2::CENTER_TOP), &label, taken);
+                self.tick(painter, at + vec2(0.0, 3.0), Align2::CENTER_TOP, &label, taken);
             }
         }
     }
@@ -248,7 +244,7 @@ impl Labels<'_> {
             let galley = painter.layout_no_wrap(zone.name.clone(), font, color);
             let place = Align2::CENTER_CENTER.anchor_size(at, galley.size());
             let place = below_others(place, taken);
-            self.name((painter, place), (galley, color), taken);
+            self.name(painter, place, galley, color, taken);
         }
     }
 
@@ -314,7 +310,7 @@ impl Labels<'_> {
     }
 
     /// Short names beside cars, apart from each other.
-    fn names(&self, painter: &Painter, (scene, time_s): (&Scene, f64), taken: &mut Vec<Rect>) {
+    fn names(&self, painter: &Painter, scene: &Scene, time_s: f64, taken: &mut Vec<Rect>) {
         let solid_first = [CarLook::Solid, CarLook::Ghost];
         let named = solid_first.into_iter().flat_map(|look| {
             scene.cars.iter().rev().filter(move |car| car.look == look && !car.tag.is_empty())
@@ -346,15 +342,17 @@ impl Labels<'_> {
                 at.y = hit.top() - 4.0;
                 place = Align2::CENTER_BOTTOM.anchor_size(at, galley.size());
             }
-            self.name((painter, place), (galley, color), taken);
+            self.name(painter, place, galley, color, taken);
         }
     }
 
     /// Draws a name at a place, unless it would leave the picture or stand on another text.
     fn name(
         &self,
-        (painter, place): (&Painter, Rect),
-        (galley, color): (Arc<egui::Galley>, Color32),
+        painter: &Painter,
+        place: Rect,
+        galley: Arc<egui::Galley>,
+        color: Color32,
         taken: &mut Vec<Rect>,
     ) {
         let is_free = taken.iter().all(|other| !other.intersects(place));
@@ -376,7 +374,7 @@ impl Labels<'_> {
                 painter.layout_no_wrap(name.to_owned(), FontId::proportional(SMALL), color);
             let place = Align2::CENTER_TOP.anchor_size(at + vec2(0.0, 9.0), galley.size());
             let place = below_others(place, taken);
-            self.name((painter, place), (galley, color), taken);
+            self.name(painter, place, galley, color, taken);
         }
     }
 
@@ -387,15 +385,14 @@ impl Labels<'_> {
         let speed = speed.map_or(String::new(), |speed| format!("  × {speed}"));
         let text = format!("t = {time_s:.3} s{speed}");
         let color = self.text_color();
-        let mut place = self.text(painter, at, Align2::LEFT_TOP, (&text, USUAL + 1.0, color));
+        let mut place = self.text(painter, at, Align2::LEFT_TOP, &text, USUAL + 1.0, color);
         taken.push(place);
         let warnings = scene.caveats.iter().filter(|caveat| caveat.is_warning());
         let severity =
             crate::theme::severity_color(impactlab_core::data::Severity::Warning, self.dark);
         for caveat in warnings {
             let at = place.left_bottom() + vec2(0.0, 4.0);
-            place =
-                self.text(painter, at, Align2::LEFT_TOP, (caveat.kind.label(), SMALL, severity));
+            place = self.text(painter, at, Align2::LEFT_TOP, caveat.kind.label(), SMALL, severity);
             taken.push(place);
         }
     }

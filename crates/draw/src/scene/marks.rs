@@ -64,7 +64,7 @@ fn add_mark(ground: &Ground<'_>, mark: &SceneMark, timed: &mut Vec<(f64, Stroke)
             continue;
         }
         if before.darkness > 0.0 {
-            let half_width = half_width(ground, (before, point), way.map(|part| part / length));
+            let half_width = half_width(ground, before, point, way.map(|part| part / length));
             let share = SHARES[0] + (SHARES[1] - SHARES[0]) * before.darkness as f32;
             let (under, rubber) = colors_of(ground);
             let color = mixed(under, rubber, share);
@@ -93,7 +93,8 @@ fn in_picture(ground: &Ground<'_>, [x, y]: [f64; 2]) -> Option<[f32; 2]> {
 /// - `along`: that direction, of unit length.
 fn half_width(
     ground: &Ground<'_>,
-    (from, to): (&TireMarkPoint, &TireMarkPoint),
+    from: &TireMarkPoint,
+    to: &TireMarkPoint,
     along: [f32; 2],
 ) -> f32 {
     let least = LEAST_HALF_WIDTH * ground.points as f32;

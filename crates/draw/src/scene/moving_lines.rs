@@ -103,7 +103,7 @@ impl MovingLines {
             let lines = if is_parallel { &mut self.above } else { &mut self.below };
             ground.line(&outline, pen(1.3), lines);
             let dent = in_world(&crush.dent_m);
-            ground.line_at((&dent, BUMPER_HEIGHT_M), pen(3.2), &mut self.above);
+            ground.line_at(&dent, BUMPER_HEIGHT_M, pen(3.2), &mut self.above);
         }
     }
 

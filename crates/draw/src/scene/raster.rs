@@ -80,31 +80,26 @@ impl Tile {
     /// - `rows`: pixels of whole rows, `width` each, the first of them at the top of the tile;
     /// - `at`: left top of the tile in the picture;
     /// - `objects`: the opaque ones first, then the others from far to near.
-    pub fn draw(
-        &mut self,
-        (rows, width): (&mut [Color32], usize),
-        at: [usize; 2],
-        objects: &[Object],
-    ) {
+    pub fn draw(&mut self, rows: &mut [Color32], width: usize, at: [usize; 2], objects: &[Object]) {
         let mut touching = objects.iter().filter(|object| object.touches(at)).peekable();
         if touching.peek().is_none() {
             return;
         }
-        self.load((&*rows, width), at[0]);
+        self.load(rows, width, at[0]);
         for object in touching {
             if object.opacity >= 1.0 {
                 let (colors, depths) = (&mut self.colors, &mut self.depths);
                 for triangle in &object.triangles {
-                    fill((colors, depths), triangle, at);
+                    fill(colors, depths, triangle, at);
                 }
             } else {
                 self.draw_ghost(object, at);
             }
         }
-        self.store((rows, width), at[0]);
+        self.store(rows, width, at[0]);
     }
 
-    fn load(&mut self, (rows, width): (&[Color32], usize), left: usize) {
+    fn load(&mut self, rows: &[Color32], width: usize, left: usize) {
         self.depths.fill(f32::NEG_INFINITY);
         for (row, samples) in rows.chunks(width).zip(self.colors.chunks_mut(SIDE * SAMPLES)) {
             let pixels = row.get(left..).unwrap_or_default().iter().take(TILE);
@@ -117,7 +112,7 @@ impl Tile {
         }
     }
 
-    fn store(&self, (rows, width): (&mut [Color32], usize), left: usize) {
+    fn store(&self, rows: &mut [Color32], width: usize, left: usize) {
         for (row, samples) in rows.chunks_mut(width).zip(self.colors.chunks(SIDE * SAMPLES)) {
             let (first, second) = samples.split_at(SIDE);
             let pixels = row.get_mut(left..).unwrap_or_default().iter_mut().take(TILE);
@@ -140,8 +135,7 @@ impl Tile {
             self.ghost_depths[row * SIDE..][columns.clone()].fill(f32::NEG_INFINITY);
         }
         for triangle in &object.triangles {
-            let buffers = (&mut *self.ghost_colors, &mut *self.ghost_depths);
-            fill(buffers, triangle, at);
+            fill(&mut self.ghost_colors, &mut self.ghost_depths, triangle, at);
         }
         for row in rows {
             for column in columns.clone() {
@@ -165,7 +159,7 @@ fn mean(samples: [Color32; SAMPLES * SAMPLES]) -> Color32 {
 }
 
 /// Draws a triangle where it is nearer than what is there. A sample is covered if its middle is.
-fn fill((colors, depths): (&mut [Color32], &mut [f32]), triangle: &ScreenTriangle, at: [usize; 2]) {
+fn fill(colors: &mut [Color32], depths: &mut [f32], triangle: &ScreenTriangle, at: [usize; 2]) {
     let to_samples = |[x, y, depth]: [f32; 3]| {
         let sample_place =
             |value: f32, origin: usize| (value - origin as f32) * SAMPLES as f32 - 0.5;
@@ -239,8 +233,8 @@ mod tests {
     fn drawn(objects: &[Object]) -> Vec<Color32> {
         let mut pixels = vec![Color32::BLACK; 100 * TILE];
         let mut tile = Tile::default();
-        tile.draw((&mut pixels, 100), [0, 0], objects);
-        tile.draw((&mut pixels, 100), [64, 0], objects);
+        tile.draw(&mut pixels, 100, [0, 0], objects);
+        tile.draw(&mut pixels, 100, [64, 0], objects);
         pixels
     }
 

@@ -71,13 +71,13 @@ impl<'a> Underlay<'a> {
     }
 
     /// Fills a row with the ground.
-    pub fn fill_row(&self, row: &mut [Color32], (py, map): (f32, &RowMap), dark: bool) {
+    pub fn fill_row(&self, row: &mut [Color32], py: f32, map: &RowMap, dark: bool) {
         row.fill(ground_color(dark));
         if let Some(picture) = &self.picture {
             picture.fill_row(row, map);
         }
         for area in &self.areas {
-            area.fill_row(row, (f64::from(py), map));
+            area.fill_row(row, f64::from(py), map);
         }
     }
 }
@@ -141,7 +141,7 @@ impl SeenArea {
         Some(Self { corners, rows, color, hatch })
     }
 
-    fn fill_row(&self, row: &mut [Color32], (py, map): (f64, &RowMap)) {
+    fn fill_row(&self, row: &mut [Color32], py: f64, map: &RowMap) {
         let [first, end] = self.rows;
         if !(first..end).contains(&py) {
             return;

@@ -193,7 +193,7 @@ pub fn scene_view_ui(
     if response.double_clicked() && !view.takes_clicks {
         camera = fitted_clear(*usual, scene, rect, points);
     }
-    camera = keyed(ui, &response, moved(ui, &response, (camera, rect), size), size);
+    camera = keyed(ui, &response, moved(ui, &response, camera, rect, size), size);
     if let Some(target_m) = follow.target_m(scene, time_s) {
         camera.target_m = target_m;
     }
@@ -205,7 +205,7 @@ pub fn scene_view_ui(
     view.area_px = [left, top, size_px[0], size_px[1]];
     match view.is_underlaid {
         true => drop(view.canvas.draw(scene, &look, time_s)),
-        false => paint(ui, (rect, view), (scene, time_s), &look),
+        false => paint(ui, rect, view, scene, time_s, &look),
     }
     let projection = look.projection();
     let labels = Labels { rect, projection: &projection, points, dark, speed: view.speed };
@@ -240,8 +240,10 @@ fn fitted_clear(usual: Camera, scene: &Scene, rect: Rect, points: f32) -> Camera
 /// time on that it refuses.
 fn paint(
     ui: &Ui,
-    (rect, view): (Rect, &mut SceneView),
-    (scene, time_s): (&Arc<Scene>, f64),
+    rect: Rect,
+    view: &mut SceneView,
+    scene: &Arc<Scene>,
+    time_s: f64,
     look: &SceneLook,
 ) {
     if let Some(on_gpu) = &mut view.on_gpu {
@@ -295,7 +297,7 @@ fn paint_from_cpu(
 
 /// The camera after what the mouse does: from above, a drag moves it; in perspective, the primary button
 /// turns it and the secondary or the middle one moves it; the wheel zooms about the pointer.
-fn moved(ui: &Ui, response: &Response, (camera, rect): (Camera, Rect), size: [f64; 2]) -> Camera {
+fn moved(ui: &Ui, response: &Response, camera: Camera, rect: Rect, size: [f64; 2]) -> Camera {
     let points = f64::from(ui.ctx().pixels_per_point());
     let in_picture = |at: egui::Pos2| {
         let at = at - rect.min;
@@ -324,7 +326,7 @@ fn moved(ui: &Ui, response: &Response, (camera, rect): (Camera, Rect), size: [f6
         });
         let factor = (f64::from(turned) * ZOOM_PER_POINT).exp() * f64::from(pinched);
         if factor != 1.0 {
-            camera = camera.zoomed(size, (in_picture(pointer), factor));
+            camera = camera.zoomed(size, in_picture(pointer), factor);
         }
     }
     camera
@@ -359,7 +361,7 @@ fn keyed(ui: &Ui, response: &Response, camera: Camera, size: [f64; 2]) -> Camera
         };
     }
     if zoom != 0.0 {
-        camera = camera.zoomed(size, (middle, ZOOM_PER_KEY.powf(zoom)));
+        camera = camera.zoomed(size, middle, ZOOM_PER_KEY.powf(zoom));
     }
     camera
 }

@@ -129,8 +129,13 @@ impl ForceModel {
         let centres: Vec<CentreCurve> =
             variants.par_iter().map(centre).collect::<Result<_, _>>()?;
         let row = |(centre, variant): (&CentreCurve, &Variant)| {
-            let known = (variant.contact_m, variant.body_idx, n_bodies);
-            self.standardisation.apply(&features(canonical, centre, known))
+            self.standardisation.apply(&features(
+                canonical,
+                centre,
+                variant.contact_m,
+                variant.body_idx,
+                n_bodies,
+            ))
         };
         let rows = centres.iter().zip(variants).map(row).collect();
         let input =

@@ -197,7 +197,8 @@ impl AdamW {
                 moments.update(
                     &entry.variable,
                     gradient,
-                    (&self.config, Rates { decay, ..rates }),
+                    &self.config,
+                    Rates { decay, ..rates },
                 )?;
             }
         }
@@ -280,7 +281,8 @@ impl Moments {
         &mut self,
         variable: &Var,
         gradient: &Tensor,
-        (config, rates): (&AdamWConfig, Rates),
+        config: &AdamWConfig,
+        rates: Rates,
     ) -> Result<(), NnError> {
         let mean = |old: &Tensor, new: &Tensor, beta: f64| (old * beta)? + (new * (1.0 - beta))?;
         let gradient = (gradient * rates.clip)?;

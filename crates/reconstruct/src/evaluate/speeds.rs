@@ -117,10 +117,11 @@ fn normal(measured: Measured) -> Option<NormalMixture> {
 impl SpeedEstimates {
     /// The speeds of particles.
     ///
-    /// - `(ess, n_simulations)`: their effective sample size, and the motions that they have cost.
+    /// - `ess`, `n_simulations`: their effective sample size, and the motions that they have cost.
     pub fn from_posterior(
         posterior: &Posterior,
-        (ess, n_simulations): (f64, usize),
+        ess: f64,
+        n_simulations: usize,
         seconds: f64,
     ) -> Self {
         let method = ReconstructionMethod::Reconstruction;
@@ -152,11 +153,12 @@ impl SpeedEstimates {
     /// The speeds of the most probable point, by draws from the normal distribution about it; none
     /// where the evidence is impossible wherever the swarm has looked.
     ///
-    /// - `(n_draws, seed)`: number and seed of the draws.
+    /// - `n_draws`, `seed`: number and seed of the draws.
     pub fn by_swarm(
         struck: &ReconstructionTarget,
         found: Option<&PointOptimum>,
-        (n_draws, seed): (usize, u64),
+        n_draws: usize,
+        seed: u64,
         seconds: f64,
     ) -> Self {
         let drawn = found.and_then(|found| found.draws(n_draws, seed));

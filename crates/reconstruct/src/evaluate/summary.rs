@@ -61,12 +61,13 @@ impl MethodSummary {
     pub fn from_scores(scores: &[CaseScore]) -> Vec<Self> {
         let methods = |known| ReconstructionMethod::ALL.map(|method| (known, method));
         let pairs = KnownEvidence::ALL.into_iter().flat_map(methods);
-        pairs.filter_map(|pair| Self::for_method(scores, pair)).collect()
+        pairs.filter_map(|(known, method)| Self::for_method(scores, known, method)).collect()
     }
 
     fn for_method(
         scores: &[CaseScore],
-        (known, method): (KnownEvidence, ReconstructionMethod),
+        known: KnownEvidence,
+        method: ReconstructionMethod,
     ) -> Option<Self> {
         let is_of = |score: &&CaseScore| score.known == known && score.method == method;
         let scores: Vec<&CaseScore> = scores.iter().filter(is_of).collect();

@@ -28,7 +28,8 @@ pub const STRIKING: Section = Section { key: "striking_car", title: "striking ca
 
 const MASS: Field = Field::new("mass", "mass", VEHICLE_MASS);
 const SIGMA: Sigma = Sigma::share(
-    ("mass_sigma", "±"),
+    "mass_sigma",
+    "±",
     MASS_SIGMA,
     [DEFAULT_MASS_SHARE, 0.0],
     "kerb mass of the type with an estimate of the load",

@@ -22,7 +22,8 @@ pub const SECTION: Section = Section {
 const SIDE: Choice = Choice { key: "side", label: "struck side", is_required: true, none: "" };
 const ANGLE: Field = Field::new("angle", "angle of the cars", EVIDENCE_HEADING).turned();
 const ANGLE_SIGMA_FIELD: Sigma = Sigma::fixed(
-    ("angle_sigma", "±"),
+    "angle_sigma",
+    "±",
     ANGLE_SIGMA,
     0.17,
     "damage is bent by the turn of the cars during the contact; assumed",
@@ -72,7 +73,7 @@ fn is_flank(side: Side) -> bool {
 fn along_sigma(side: Side) -> Sigma {
     let key = if is_flank(side) { "x_sigma" } else { "y_sigma" };
     let source = "a third of the width of a usual dent; assumed";
-    Sigma::fixed((key, "±"), POSITION_SIGMA, 0.10, source)
+    Sigma::fixed(key, "±", POSITION_SIGMA, 0.10, source)
 }
 
 /// The coordinate at right angles to a side, on that side of the CG.

@@ -132,7 +132,8 @@ pub struct Sigma {
 impl Sigma {
     /// A standard deviation that is the same for every value where nobody states it.
     pub const fn fixed(
-        (key, label): (&'static str, &'static str),
+        key: &'static str,
+        label: &'static str,
         range: Range,
         default: f64,
         source: &'static str,
@@ -142,7 +143,8 @@ impl Sigma {
 
     /// A standard deviation that is a share of the value where nobody states it, and not below `least`.
     pub const fn share(
-        (key, label): (&'static str, &'static str),
+        key: &'static str,
+        label: &'static str,
         range: Range,
         [share, least]: [f64; 2],
         source: &'static str,
@@ -240,8 +242,8 @@ mod tests {
 
     #[test]
     fn a_standard_deviation_that_is_stated_stands_and_another_is_that_of_the_program() {
-        let fixed = Sigma::fixed(("sigma", "±"), POSITION_SIGMA, 0.1, "");
-        let share = Sigma::share(("sigma", "±"), MASS_SIGMA, [0.03, 10.0], "");
+        let fixed = Sigma::fixed("sigma", "±", POSITION_SIGMA, 0.1, "");
+        let share = Sigma::share("sigma", "±", MASS_SIGMA, [0.03, 10.0], "");
         let stated = |value, sigma| Some(Stated { value, sigma });
         let sigma = |of: Sigma, stated| of.resolve(stated).map(|of| of.sigma);
         assert_eq!(sigma(fixed, stated(Some(5.0), None)), Some(0.1));

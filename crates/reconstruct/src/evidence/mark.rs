@@ -37,7 +37,8 @@ const KIND: Choice =
     Choice { key: "kind", label: "left by", is_required: false, none: "cannot be told" };
 const POINTS: Field = Field::new("points", "points", EVIDENCE_POSITION);
 const SIGMA: Sigma = Sigma::fixed(
-    ("sigma", "± of a point"),
+    "sigma",
+    "± of a point",
     POSITION_SIGMA,
     0.10,
     "half the width of the tread of a tire; assumed",
@@ -143,7 +144,7 @@ impl Mark {
             let expected_m = expected_m.unwrap_or(at.travelled_m + NEVER_M);
             let numbers = [expected_m, at.travelled_m];
             let name = format!("{name}, {end} along the path");
-            comparison.add_single(&name, "m", numbers, (sigma_m, common));
+            comparison.add_single(&name, "m", numbers, sigma_m, common);
         }
         if let Some(kind) = self.kind {
             let share = onset.locked_share(&wheel, first.idx, last.idx);

@@ -19,7 +19,7 @@ pub const SECTION: Section = Section {
 const TIME: Field = Field::new("time", "time", EVIDENCE_TIME).required();
 const X: Field = Field::new("x", "X of the CG", EVIDENCE_POSITION).required();
 const Y: Field = Field::new("y", "Y of the CG", EVIDENCE_POSITION).required().turned();
-const SIGMA: Sigma = Sigma::fixed(("sigma", "± along each axis"), POSITION_SIGMA, 0.30, "assumed");
+const SIGMA: Sigma = Sigma::fixed("sigma", "± along each axis", POSITION_SIGMA, 0.30, "assumed");
 
 /// Position of the struck car at a time.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

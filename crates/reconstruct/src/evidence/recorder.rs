@@ -22,7 +22,8 @@ pub const SECTION: Section = Section {
 
 const SPEED_BEFORE: Field = Field::new("speed_before", "speed before the impact", EVIDENCE_SPEED);
 const SPEED_BEFORE_SIGMA: Sigma = Sigma::share(
-    ("speed_before_sigma", "±"),
+    "speed_before_sigma",
+    "±",
     SPEED_SIGMA,
     [0.04, 0.3],
     "4 %, the accuracy that 49 CFR 563 asks for, and at least the rounding of the record",

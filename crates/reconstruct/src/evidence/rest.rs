@@ -32,7 +32,8 @@ pub const STRIKING: Section =
 const X: Field = Field::new("x", "X of the CG", EVIDENCE_POSITION).required();
 const Y: Field = Field::new("y", "Y of the CG", EVIDENCE_POSITION).required().turned();
 const SIGMA: Sigma = Sigma::fixed(
-    ("position_sigma", "± along each axis"),
+    "position_sigma",
+    "± along each axis",
     POSITION_SIGMA,
     0.15,
     // A total station or GNSS rover is far better. `Brach2011`, uncertainty of measurements at the scene.
@@ -40,7 +41,8 @@ const SIGMA: Sigma = Sigma::fixed(
 );
 const HEADING: Field = Field::new("heading", "heading", EVIDENCE_HEADING).turned();
 const HEADING_SIGMA: Sigma = Sigma::fixed(
-    ("heading_sigma", "±"),
+    "heading_sigma",
+    "±",
     ANGLE_SIGMA,
     0.035,
     "2°, read off a sketch to scale or a photograph from above; assumed",

@@ -25,7 +25,8 @@ pub const SECTION: Section = Section {
 
 const FRICTION: Field = Field::new("friction", "peak friction", ROAD_FRICTION);
 const SIGMA: Sigma = Sigma::fixed(
-    ("friction_sigma", "±"),
+    "friction_sigma",
+    "±",
     FRICTION_SIGMA,
     DEFAULT_FRICTION_SIGMA,
     "dry and wet asphalt together",

@@ -124,7 +124,8 @@ impl<'a> Comparison<'a> {
         name: &str,
         unit: &'static str,
         [expected, found]: [f64; 2],
-        (sigma, weight): (f64, f64),
+        sigma: f64,
+        weight: f64,
     ) {
         let distance = ((found - expected) / sigma).powi(2);
         let density = student(distance, 1.0, SINGLE_DEGREES_OF_FREEDOM) - sigma.ln();

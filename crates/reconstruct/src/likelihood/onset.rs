@@ -30,7 +30,7 @@ impl Onset {
                 let efforts = efforts.unwrap_or([WheelEffort::FREE; 4]);
                 let speed = u.hypot(w);
                 let along = u.abs() / (speed + 1e-6);
-                let is_locked = locks((&motion.vehicle, friction), wheel, &efforts, along);
+                let is_locked = locks(&motion.vehicle, friction, wheel, &efforts, along);
                 (leaves_mark([u, w], is_locked), is_locked)
             })
             .unzip();
@@ -94,7 +94,8 @@ impl Onset {
 /// - `friction`: peak friction of the ground under the wheel;
 /// - `along`: share of the velocity of the wheel that is in its plane.
 fn locks(
-    (vehicle, friction): (&VehicleParameters, f64),
+    vehicle: &VehicleParameters,
+    friction: f64,
     wheel: Wheel,
     efforts: &[WheelEffort<f64>; 4],
     along: f64,

@@ -33,7 +33,7 @@ pub fn finished_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     for entry in &archive.list.entries {
         Frame::group(ui.style()).show(ui, |ui| {
             ui.set_width(ui.available_width());
-            entry_ui(ui, entry, (project, folder), commands);
+            entry_ui(ui, entry, project, folder, commands);
         });
     }
     if archive.list.entries.is_empty() && !archive.is_reading() {
@@ -81,7 +81,8 @@ fn problem_ui(ui: &mut Ui, problem: &ArchiveProblem, commands: &mut Vec<Command>
 fn entry_ui(
     ui: &mut Ui,
     entry: &ArchiveEntry,
-    (project, folder): (&Project, &ArchiveFolder),
+    project: &Project,
+    folder: &ArchiveFolder,
     commands: &mut Vec<Command>,
 ) {
     let path = folder.path_of(entry);
@@ -111,7 +112,7 @@ fn entry_ui(
         let main: Vec<String> = entry.figures.iter().take(N_MAIN_FIGURES).map(text).collect();
         ui.weak(main.join(" · "));
     });
-    ui.horizontal_wrapped(|ui| buttons_ui(ui, entry, (is_in_use, folder), commands));
+    ui.horizontal_wrapped(|ui| buttons_ui(ui, entry, is_in_use, folder, commands));
     let id = ("kept", &entry.sha256);
     egui::CollapsingHeader::new("Figures and settings").id_salt(id).show(ui, |ui| {
         facts_ui(ui, (id, "figures"), &entry.figures);
@@ -127,7 +128,8 @@ fn entry_ui(
 fn buttons_ui(
     ui: &mut Ui,
     entry: &ArchiveEntry,
-    (is_in_use, folder): (bool, &ArchiveFolder),
+    is_in_use: bool,
+    folder: &ArchiveFolder,
     commands: &mut Vec<Command>,
 ) {
     let path = folder.path_of(entry);

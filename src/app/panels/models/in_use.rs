@@ -24,15 +24,16 @@ pub fn in_use_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             true => "Answers the force prediction, and gives the motion forecast its force.",
             false => "Answers the force prediction. The motion forecast takes the given force.",
         };
-        network_ui(left, (force, use_of_it), archive, commands);
+        network_ui(left, force, use_of_it, archive, commands);
         let use_of_it = "Answers the motion forecast and the outcome.";
-        network_ui(right, (response, use_of_it), archive, commands);
+        network_ui(right, response, use_of_it, archive, commands);
     });
 }
 
 fn network_ui<M: TrainedModel>(
     ui: &mut Ui,
-    (model, use_of_it): (&ModelStatus<M>, &str),
+    model: &ModelStatus<M>,
+    use_of_it: &str,
     archive: &ArchiveStatus,
     commands: &mut Vec<Command>,
 ) {

@@ -19,14 +19,21 @@ pub fn running_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     if let Some(job) = session.force.evaluation.job() {
         is_idle = false;
         let what = "Evaluation of the force model";
-        let work = (job.progress(), job.elapsed());
-        work_ui(ui, what, work, (Command::CancelEvaluation, Pane::Evaluation), commands);
+        work_ui(
+            ui,
+            what,
+            job.progress(),
+            job.elapsed(),
+            Command::CancelEvaluation,
+            Pane::Evaluation,
+            commands,
+        );
     }
     if let Some((what, progress, elapsed)) = session.response.comparison.progress() {
         is_idle = false;
         let what = format!("{what} response models");
         let cancel = Command::Compare(ComparisonCommand::Cancel);
-        work_ui(ui, &what, (progress, elapsed), (cancel, Pane::ModelComparison), commands);
+        work_ui(ui, &what, progress, elapsed, cancel, Pane::ModelComparison, commands);
     }
     if is_idle {
         ui.horizontal_wrapped(|ui| {
@@ -72,7 +79,8 @@ fn training_ui<M: TrainedModel>(
             commands.push(Command::ShowTraining(M::NETWORK));
         }
     });
-    run_progress_ui(ui, &status.doing(), status.progress());
+    let (fraction, left) = status.progress();
+    run_progress_ui(ui, &status.doing(), fraction, left);
     true
 }
 
@@ -80,8 +88,10 @@ fn training_ui<M: TrainedModel>(
 fn work_ui(
     ui: &mut Ui,
     what: &str,
-    (progress, elapsed): (&Progress, Duration),
-    (cancel, pane): (Command, Pane),
+    progress: &Progress,
+    elapsed: Duration,
+    cancel: Command,
+    pane: Pane,
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {
@@ -94,5 +104,5 @@ fn work_ui(
         }
     });
     let message = if progress.message.is_empty() { "preparing" } else { &progress.message };
-    run_progress_ui(ui, message, (progress.fraction(), progress.time_left(elapsed)));
+    run_progress_ui(ui, message, progress.fraction(), progress.time_left(elapsed));
 }

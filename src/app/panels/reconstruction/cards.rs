@@ -28,8 +28,10 @@ pub struct SheetChoices<'a> {
 /// - returns what the user asks for beside the edits.
 pub fn cards_ui(
     ui: &mut Ui,
-    (evidence, sheets): (&mut Evidence, SheetChoices<'_>),
-    (adds_to, units): (Option<usize>, UnitSystem),
+    evidence: &mut Evidence,
+    sheets: SheetChoices<'_>,
+    adds_to: Option<usize>,
+    units: UnitSystem,
 ) -> Option<ReconstructionCommand> {
     ui.menu_button((looks::icon(Icon::Plus), "Add evidence"), |ui| {
         evidence.items(&mut AddMenu { ui });
@@ -118,7 +120,7 @@ impl Cards<'_, '_> {
                 };
                 CollapsingHeader::new(header).id_salt(("dimensions", section.key)).show(ui, |ui| {
                     grid("dimensions").num_columns(2).show(ui, |ui| {
-                        evidence_vehicle_ui(ui, &title, (sheet, sheets.own));
+                        evidence_vehicle_ui(ui, &title, sheet, sheets.own);
                         let mut rows = FieldRows::new(ui, *units, (section.key, idx));
                         rows.shown = ShownFields::Plain;
                         item.fields(&mut rows);

@@ -27,20 +27,19 @@ pub fn evidence_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let (request, session) = (&mut project.reconstruct, &session.reconstruction);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let (Some(preview), Some(request)) = (&session.preview, &mut *request) else {
-            return start_ui(ui, (request.as_ref(), session), commands);
+            return start_ui(ui, request.as_ref(), session, commands);
         };
         let mut evidence = preview.evidence.clone();
-        case_ui(ui, (&mut evidence, request), commands);
-        run_ui(ui, (request, session, preview), commands);
+        case_ui(ui, &mut evidence, request, commands);
+        run_ui(ui, request, session, preview, commands);
         ui.separator();
         let chosen = [&mut request.vehicle, &mut request.striking];
         let sheets = SheetChoices { chosen, own: &own };
-        let shown = (session.adds_to, view.units);
-        let command = cards_ui(ui, (&mut evidence, sheets), shown);
+        let command = cards_ui(ui, &mut evidence, sheets, session.adds_to, view.units);
         commands.extend(command.map(Command::Reconstruct));
         ui.add_space(looks::PART);
         prior_ranges_ui(ui, &mut evidence.prior, view.units);
-        priors_ui(ui, (preview, request, session), view.units);
+        priors_ui(ui, preview, request, session, view.units);
         if evidence != preview.evidence {
             request.evidence = EvidenceChoice::Inline(Box::new(evidence));
         }
@@ -50,7 +49,8 @@ pub fn evidence_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 /// Says what can be done without evidence, or what is wrong with its file.
 fn start_ui(
     ui: &mut Ui,
-    (request, session): (Option<&ReconstructRequest>, &ReconstructionSession),
+    request: Option<&ReconstructRequest>,
+    session: &ReconstructionSession,
     commands: &mut Vec<Command>,
 ) {
     let evidence = request.map(|request| &request.evidence);
@@ -95,7 +95,8 @@ fn start_ui(
 /// Draws the name of the case, where its evidence comes from, and the way to other evidence.
 fn case_ui(
     ui: &mut Ui,
-    (evidence, request): (&mut Evidence, &ReconstructRequest),
+    evidence: &mut Evidence,
+    request: &ReconstructRequest,
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal_wrapped(|ui| {
@@ -129,11 +130,9 @@ fn case_ui(
 /// Draws the settings of the run, the button that starts it, and its progress.
 fn run_ui(
     ui: &mut Ui,
-    (request, session, preview): (
-        &mut ReconstructRequest,
-        &ReconstructionSession,
-        &EvidencePreview,
-    ),
+    request: &mut ReconstructRequest,
+    session: &ReconstructionSession,
+    preview: &EvidencePreview,
     commands: &mut Vec<Command>,
 ) {
     let mut command = |command| commands.push(Command::Reconstruct(command));

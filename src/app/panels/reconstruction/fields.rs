@@ -63,7 +63,7 @@ impl<'u> FieldRows<'u> {
         empty: EmptyField<'_>,
         range: &Range,
     ) -> Response {
-        optional_quantity(self.ui, value, empty, (range, self.units))
+        optional_quantity(self.ui, value, empty, range, self.units)
     }
 
     /// A standard deviation: an empty field has that of the program in parentheses.

@@ -23,7 +23,8 @@ const AXIS_HEIGHT: f32 = 70.0;
 /// - `shown`: the one that is shown alone.
 pub fn modes_ui(
     ui: &mut Ui,
-    (report, shown): (&ReconstructReport, Option<usize>),
+    report: &ReconstructReport,
+    shown: Option<usize>,
     units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
@@ -51,7 +52,8 @@ pub fn modes_ui(
 pub fn budget_ui(
     ui: &mut Ui,
     answer: &ReconstructAnswer,
-    (caveats, units): (&Caveats, UnitSystem),
+    caveats: &Caveats,
+    units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
     heading(ui, "What further evidence would bring");
@@ -70,7 +72,8 @@ pub fn budget_ui(
     };
     figure_frame(
         ui,
-        ("Half of the 90 % interval of the struck car's speed", &figure),
+        "Half of the 90 % interval of the struck car's speed",
+        &figure,
         &options,
         commands,
     );

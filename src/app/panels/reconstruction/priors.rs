@@ -31,7 +31,9 @@ pub fn prior_ranges_ui(ui: &mut Ui, ranges: &mut PriorRanges, units: UnitSystem)
 /// an answer.
 pub fn priors_ui(
     ui: &mut Ui,
-    (preview, request, session): (&EvidencePreview, &ReconstructRequest, &ReconstructionSession),
+    preview: &EvidencePreview,
+    request: &ReconstructRequest,
+    session: &ReconstructionSession,
     units: UnitSystem,
 ) {
     let answer = session.answer().filter(|_| !session.is_outdated(Some(request)));
@@ -43,7 +45,7 @@ pub fn priors_ui(
         ui.weak("90 % of each quantity: grey before, blue after the motion was compared.");
         for (idx, component) in preview.priors.iter().enumerate() {
             let after = answer.and_then(|of| of.intervals_90.get(idx).copied().flatten());
-            prior_row(ui, component, (after, units));
+            prior_row(ui, component, after, units);
         }
     });
 }
@@ -51,7 +53,8 @@ pub fn priors_ui(
 fn prior_row(
     ui: &mut Ui,
     PriorComponent { latent, distribution, .. }: &PriorComponent,
-    (after, units): (Option<[f64; 2]>, UnitSystem),
+    after: Option<[f64; 2]>,
+    units: UnitSystem,
 ) {
     let unit = latent.quantity().display_unit(units);
     let before = [-Z_95, Z_95].map(|z| distribution.at(z));

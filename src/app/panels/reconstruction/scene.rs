@@ -50,9 +50,8 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
     if let Some(live) = live {
         live_ui(ui, live, view.units);
     } else if let Some(answer) = answer {
-        play_ui(ui, (answer, of.mode, of.followed), commands);
-        let clock = (session.playback.time_s, of.end_time_s());
-        clock_ui(ui, clock, (session.playback.is_playing, view.playback_speed), commands);
+        play_ui(ui, answer, of.mode, of.followed, commands);
+        clock_ui(ui, &session.playback, of.end_time_s(), view.playback_speed, commands);
         restrictions_ui(ui, &answer.answer.report.caveats);
     } else if is_outdated {
         notice_ui(ui, Severity::Warning, OUTDATED);
@@ -80,8 +79,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         reconstruction_scene_figure(&scene, &caveats, view.units)
     };
     if !view.reconstruction.shows_cars {
-        let seen = (preview, of.adds_to, session.fit_plots);
-        let moved = plan_ui(ui, seen, figure, commands);
+        let moved = plan_ui(ui, preview, of.adds_to, session.fit_plots, figure, commands);
         if let (Some(evidence), Some(request)) = (moved, &mut project.reconstruct) {
             request.evidence = EvidenceChoice::Inline(Box::new(evidence));
         }
@@ -113,7 +111,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         cars.view.fit();
     }
     let settings = &mut view.reconstruction.scene;
-    cars_ui(ui, (&scene, session.playback.time_s, figure), (&mut cars.view, settings), commands);
+    cars_ui(ui, &scene, session.playback.time_s, figure, &mut cars.view, settings, commands);
 }
 
 /// Draws the choice between the plan and the cars.
@@ -131,12 +129,14 @@ fn kind_ui(ui: &mut Ui, shows_cars: &mut bool) {
 /// Draws the plan; returns the evidence if it was changed in it.
 fn plan_ui(
     ui: &mut Ui,
-    (preview, adds_to, resets): (&EvidencePreview, Option<usize>, bool),
+    preview: &EvidencePreview,
+    adds_to: Option<usize>,
+    resets: bool,
     mut figure: Figure,
     commands: &mut Vec<Command>,
 ) -> Option<Evidence> {
     let mut evidence = preview.evidence.clone();
-    let mut edit = SceneEdit::begin(ui, (&preview.cars, adds_to));
+    let mut edit = SceneEdit::begin(ui, &preview.cars, adds_to);
     figure.elements.extend(edit.handles(&evidence, figure.x.unit));
     let height = ui.available_height() - TITLE_HEIGHT - edit.hint_height();
     let height = height.max(MIN_PLOT_HEIGHT);
@@ -148,8 +148,8 @@ fn plan_ui(
         height: Some(height),
         ..FigureOptions::default()
     };
-    let shown = figure_frame(ui, (&figure.title, &figure), &options, commands);
-    edit.apply(ui, (&shown, figure.x.unit), &mut evidence);
+    let shown = figure_frame(ui, &figure.title, &figure, &options, commands);
+    edit.apply(ui, &shown, figure.x.unit, &mut evidence);
     ui.weak(edit.hint());
     (evidence != preview.evidence).then_some(evidence)
 }
@@ -157,8 +157,11 @@ fn plan_ui(
 /// Draws the cars at a time.
 fn cars_ui(
     ui: &mut Ui,
-    (scene, time_s, figure): (&Arc<Scene>, f64, Figure),
-    (shown, settings): (&mut SceneView, &mut SceneSettings),
+    scene: &Arc<Scene>,
+    time_s: f64,
+    figure: Figure,
+    shown: &mut SceneView,
+    settings: &mut SceneSettings,
     commands: &mut Vec<Command>,
 ) {
     // The motion ends where the car is at rest.
@@ -175,7 +178,7 @@ fn cars_ui(
         };
         (picture, figure.clone())
     };
-    scene_heading_ui(ui, (scene, time_s), (settings, None), exported, commands);
+    scene_heading_ui(ui, scene, time_s, settings, None, exported, commands);
     let SceneSettings { camera, follow, .. } = settings;
     let height = ui.available_height();
     scene_view_ui(ui, scene, time_s, shown, camera, *follow, height);
@@ -200,7 +203,9 @@ fn live_ui(ui: &mut Ui, live: &LiveParticles, units: UnitSystem) {
 /// Draws the choice of the course of events, and what is played.
 fn play_ui(
     ui: &mut Ui,
-    (answer, mode, followed): (&PreparedReconstruction, Option<usize>, FollowedParticle),
+    answer: &PreparedReconstruction,
+    mode: Option<usize>,
+    followed: FollowedParticle,
     commands: &mut Vec<Command>,
 ) {
     let mut command = |command| commands.push(Command::Reconstruct(command));

@@ -53,7 +53,7 @@ impl SceneEdit {
     /// What is being edited in this frame.
     ///
     /// - `adds_to`: the mark to which clicks add points.
-    pub fn begin(ui: &Ui, (cars, adds_to): (&Cars, Option<usize>)) -> Self {
+    pub fn begin(ui: &Ui, cars: &Cars, adds_to: Option<usize>) -> Self {
         let id = Id::unique("edit of the reconstructed scene");
         let front = |car: &impactlab_reconstruct::Car| {
             Footprint::from(&car.parameters.geometry).cg_from_front_m
@@ -101,12 +101,7 @@ impl SceneEdit {
     }
 
     /// Changes the evidence as the user drags and clicks.
-    pub fn apply(
-        &mut self,
-        ui: &Ui,
-        (shown, unit): (&FigureResponse, Unit),
-        evidence: &mut Evidence,
-    ) {
+    pub fn apply(&mut self, ui: &Ui, shown: &FigureResponse, unit: Unit, evidence: &mut Evidence) {
         let si = |point: [f64; 2]| point.map(|value| unit.to_si(value));
         let reach_m = unit.to_si(shown.x_per_point * REACH);
         let near = shown.pointer.and_then(|at| self.nearest(evidence, si(at), reach_m));
@@ -257,9 +252,9 @@ mod tests {
         let cars = Cars::new(&evidence, None, None);
         for shown in frames {
             let _ = context.run_ui(RawInput::default(), |ui| {
-                let mut edit = SceneEdit::begin(ui, (&cars, adds_to));
+                let mut edit = SceneEdit::begin(ui, &cars, adds_to);
                 let unit = Quantity::Length.display_unit(UnitSystem::Us);
-                edit.apply(ui, (shown, unit), &mut evidence);
+                edit.apply(ui, shown, unit, &mut evidence);
             });
         }
         evidence

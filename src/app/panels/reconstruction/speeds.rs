@@ -57,14 +57,21 @@ pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             };
             let marginal = options("marginal", MARGINAL_HEIGHT);
             let pair = options("pair", PAIR_HEIGHT);
-            let drawn = (answer, &caveats, units);
-            plots_ui(ui, drawn, (&mut view.reconstruction, [marginal, pair]), commands);
+            plots_ui(
+                ui,
+                answer,
+                &caveats,
+                units,
+                &mut view.reconstruction,
+                [marginal, pair],
+                commands,
+            );
             let found = [Some(report.fit_table()), report.mark_table()];
             let found: Vec<FactTable> = found.into_iter().flatten().collect();
             ui.add_space(looks::PART);
             facts_ui(ui, "evidence", &found, units);
-            modes_ui(ui, (report, of.mode), units, commands);
-            budget_ui(ui, &answer.answer, (&caveats, units), commands);
+            modes_ui(ui, report, of.mode, units, commands);
+            budget_ui(ui, &answer.answer, &caveats, units, commands);
         });
     });
 }
@@ -84,21 +91,29 @@ fn numbers_ui(
 /// Draws the distribution of one quantity, and of two against each other.
 fn plots_ui(
     ui: &mut Ui,
-    (answer, caveats, units): (&PreparedReconstruction, &Caveats, UnitSystem),
-    (view, [marginal, pair]): (&mut ReconstructionView, [FigureOptions; 2]),
+    answer: &PreparedReconstruction,
+    caveats: &Caveats,
+    units: UnitSystem,
+    view: &mut ReconstructionView,
+    [marginal, pair]: [FigureOptions; 2],
     commands: &mut Vec<Command>,
 ) {
     ui.add_space(looks::PART);
     quantity_ui(ui, "Distribution of", &mut view.quantity);
-    let shown = (view.quantity, answer.prior_of(view.quantity));
-    let figure = marginal_figure(&answer.answer, shown, caveats, units);
-    figure_frame(ui, ("Before and after the evidence", &figure), &marginal, commands);
+    let figure = marginal_figure(
+        &answer.answer,
+        view.quantity,
+        answer.prior_of(view.quantity),
+        caveats,
+        units,
+    );
+    figure_frame(ui, "Before and after the evidence", &figure, &marginal, commands);
     ui.add_space(looks::PART);
     quantity_ui(ui, "The same over", &mut view.against);
     let quantities = [view.against, view.quantity];
     let priors = quantities.map(|of| answer.prior_of(of));
-    let figure = pair_figure(&answer.answer, (quantities, priors), caveats, units);
-    figure_frame(ui, ("Two quantities of each particle", &figure), &pair, commands);
+    let figure = pair_figure(&answer.answer, quantities, priors, caveats, units);
+    figure_frame(ui, "Two quantities of each particle", &figure, &pair, commands);
 }
 
 fn quantity_ui(ui: &mut Ui, label: &str, chosen: &mut ReconstructedQuantity) {

@@ -54,7 +54,7 @@ pub fn report_pages_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                         if wanted == Some(section.kind) {
                             heading.scroll_to_me(Some(Align::TOP));
                         }
-                        section_ui(ui, section, (report, &mut idx));
+                        section_ui(ui, section, report, &mut idx);
                     }
                 });
             });
@@ -73,11 +73,7 @@ fn heading_ui(ui: &mut Ui, text: &str, size: f32) -> egui::Response {
 /// Draws the blocks of a section.
 ///
 /// - `n_before`: how many pictures stand before it; those of the section are added.
-fn section_ui(
-    ui: &mut Ui,
-    section: &Section,
-    (report, n_before): (&mut ReportSession, &mut usize),
-) {
+fn section_ui(ui: &mut Ui, section: &Section, report: &mut ReportSession, n_before: &mut usize) {
     for (idx, block) in section.blocks.iter().enumerate() {
         match block {
             Block::Heading { level, text } => {

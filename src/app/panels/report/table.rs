@@ -24,9 +24,9 @@ pub(super) fn table_ui(ui: &mut Ui, table: &Table, id: (&str, usize)) {
     let titles: Vec<String> = table.columns.iter().map(|column| column.title.clone()).collect();
     ui.push_id(id, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        row_ui(ui, (table, &widths), &titles, true);
+        row_ui(ui, table, &widths, &titles, true);
         for row in &table.rows {
-            row_ui(ui, (table, &widths), row, false);
+            row_ui(ui, table, &widths, row, false);
         }
     });
 }
@@ -57,7 +57,7 @@ fn galley(ui: &Ui, text: &str, width: f32) -> Arc<Galley> {
     ui.fonts_mut(|fonts| fonts.layout_job(job))
 }
 
-fn row_ui(ui: &mut Ui, (table, widths): (&Table, &[f32]), cells: &[String], is_header: bool) {
+fn row_ui(ui: &mut Ui, table: &Table, widths: &[f32], cells: &[String], is_header: bool) {
     let high = |(text, width): (&String, &f32)| {
         galley(ui, text, (width - 2.0 * PADDING.x).max(1.0)).size().y
     };

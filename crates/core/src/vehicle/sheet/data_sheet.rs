@@ -199,7 +199,7 @@ impl DataSheet {
             let value = match self.known(quantity) {
                 Some(value) => value,
                 None => {
-                    let rule = Rule::new(quantity, (self.class, self.drive), &values);
+                    let rule = Rule::new(quantity, self.class, self.drive, &values);
                     report(quantity, &rule);
                     let latent = self.latents.get(&quantity).copied().unwrap_or(0.0);
                     bounded(quantity, rule.at(latent))

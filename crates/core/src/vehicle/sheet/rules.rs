@@ -69,7 +69,8 @@ impl Rule {
     /// - `values`: the quantities before it, known or estimated.
     pub(super) fn new(
         quantity: SheetQuantity,
-        (class, drive): (VehicleClass, Option<Drive>),
+        class: VehicleClass,
+        drive: Option<Drive>,
         values: &SheetValues<'_>,
     ) -> Self {
         use SheetQuantity as Q;

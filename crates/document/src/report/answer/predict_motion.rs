@@ -78,9 +78,9 @@ fn pictures(
     let density = Arc::new(DensityTask::new(&forecast.distribution, [at_s; 2]).on_cpu());
     let bands = MotionBands::new(&forecast.distribution, BAND_STRIDE);
     let caveats = &report.caveats;
-    let still = forecast_still((request, answer), (&density, caveats), context);
-    let shown = (at_s, wording.units);
-    let input = MotionForecastFigure::new(answer, (&bands, caveats), shown).with_motions(analysis);
+    let still = forecast_still(request, answer, &density, caveats, context);
+    let input = MotionForecastFigure::new(answer, &bands, caveats, at_s, wording.units)
+        .with_motions(analysis);
     let yaw = FORECAST_CHANNELS.into_iter().find(|of| of.channel == Channel::Yaw);
     let yaw = yaw.map(|channel| {
         let caption = fill(words.forecast_yaw_picture, &[("name", &report.scenario)]);

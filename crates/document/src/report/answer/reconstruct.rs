@@ -82,14 +82,14 @@ fn pictures(
         fill(words.reconstruction_picture, &[name]),
         reconstruction_scene_figure(&scene, caveats, units),
     );
-    let still = reconstruction_still((answer, &paths), site, caveats, context);
+    let still = reconstruction_still(answer, &paths, site, caveats, context);
     let mut pictures: Vec<PartPicture> = still.into_iter().chain([plan]).collect();
     for quantity in DRAWN {
         let prior = prior_values(&answer.target, quantity);
         let label = wording.term(quantity.label());
         pictures.push(PartPicture::figure(
             fill(words.marginal_picture, &[name, ("quantity", &label)]),
-            marginal_figure(answer, (quantity, &prior), caveats, units),
+            marginal_figure(answer, quantity, &prior, caveats, units),
         ));
     }
     if report.budget.iter().any(|item| item.believable) {

@@ -73,10 +73,10 @@ fn pictures(
     let has_motion = analysis.simulation.is_some() || analysis.reference.is_some();
     let contact_end_s = report.force.as_ref().and_then(|force| force.contact_end_s);
     let moments = [contact_end_s.filter(|_| has_motion), has_motion.then_some(end_s)];
-    let mut pictures = simulation_stills((analysis, caveats), site, moments, context);
-    let force = analysis_force_figure((analysis, caveats), None, &[], units).ok().flatten();
+    let mut pictures = simulation_stills(analysis, caveats, site, moments, context);
+    let force = analysis_force_figure(analysis, caveats, None, &[], units).ok().flatten();
     pictures.extend(force.map(|figure| picture(words.force_picture, figure)));
-    let yaw_rate = analysis_motion_figure((analysis, caveats), Channel::YawRate, units);
+    let yaw_rate = analysis_motion_figure(analysis, caveats, Channel::YawRate, units);
     if !yaw_rate.elements.is_empty() {
         pictures.push(picture(words.yaw_rate_picture, yaw_rate));
     }

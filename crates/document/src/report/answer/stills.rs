@@ -31,7 +31,8 @@ const NEAR_M: f64 = 16.0;
 /// - `site`: file of the ground below it;
 /// - `[contact_end_s, end_s]`: the moments, s; no contact if it is `None`.
 pub(super) fn simulation_stills(
-    (analysis, caveats): (&Analysis, &Caveats),
+    analysis: &Analysis,
+    caveats: &Caveats,
     site: Option<&Path>,
     [contact_end_s, end_s]: [Option<f64>; 2],
     context: Context<'_>,
@@ -53,8 +54,10 @@ pub(super) fn simulation_stills(
 
 /// The still of a forecast from above: its draws as ghosts, density and regions at a moment.
 pub(super) fn forecast_still(
-    (request, answer): (&PredictMotionRequest, &PredictMotionAnswer),
-    (density, caveats): (&Arc<DensityMap>, &Caveats),
+    request: &PredictMotionRequest,
+    answer: &PredictMotionAnswer,
+    density: &Arc<DensityMap>,
+    caveats: &Caveats,
     context: Context<'_>,
 ) -> PartPicture {
     let Context { wording, .. } = context;
@@ -83,14 +86,15 @@ pub(super) fn forecast_still(
 ///
 /// - `site`: file of the ground below it.
 pub(super) fn reconstruction_still(
-    (answer, paths): (&ReconstructAnswer, &ReconstructedPaths),
+    answer: &ReconstructAnswer,
+    paths: &ReconstructedPaths,
     site: Option<&Path>,
     caveats: &Caveats,
     context: Context<'_>,
 ) -> Option<PartPicture> {
     paths.median.as_ref()?;
     let Context { wording, .. } = context;
-    let parts = ReconstructionParts::new((answer, paths), wording.units, caveats);
+    let parts = ReconstructionParts::new(answer, paths, wording.units, caveats);
     let scene = reconstruction_scene(&parts);
     let caption = fill(wording.words.reconstruction_cars, &[("name", &answer.report.case)]);
     let (scene, note) = on_ground(scene, site, context);

@@ -2,6 +2,8 @@
 
 use eframe::wgpu;
 
+use crate::scene::gpu::SceneDevice;
+
 /// A buffer that is at least as large as what was written last.
 #[derive(Debug)]
 pub struct GrowingBuffer {
@@ -25,11 +27,7 @@ impl GrowingBuffer {
     /// Replaces what is in the buffer.
     ///
     /// - returns whether the buffer is another one than before.
-    pub fn write<T: bytemuck::NoUninit>(
-        &mut self,
-        (device, queue): (&wgpu::Device, &wgpu::Queue),
-        items: &[T],
-    ) -> bool {
+    pub fn write<T: bytemuck::NoUninit>(&mut self, on: &SceneDevice, items: &[T]) -> bool {
         let bytes: &[u8] = bytemuck::cast_slice(items);
         self.n = items.len() as u32;
         let needed = (bytes.len() as u64).max(1);
@@ -39,10 +37,10 @@ impl GrowingBuffer {
             let (label, usage) = (Some(self.label), self.usage);
             let descriptor =
                 wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false };
-            self.buffer = Some(device.create_buffer(&descriptor));
+            self.buffer = Some(on.device.create_buffer(&descriptor));
         }
         if let (Some(buffer), false) = (&self.buffer, bytes.is_empty()) {
-            queue.write_buffer(buffer, 0, bytes);
+            on.queue.write_buffer(buffer, 0, bytes);
         }
         is_new
     }

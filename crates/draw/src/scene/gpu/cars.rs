@@ -9,6 +9,7 @@ use eframe::wgpu;
 use crate::scene::Projection;
 use crate::scene::camera::NEAR_M;
 use crate::scene::cars::{PartKind, Placed, SeenCar};
+use crate::scene::gpu::SceneDevice;
 use crate::scene::gpu::buffers::GrowingBuffer;
 use crate::scene::shade::SUN;
 use impactlab_document::scene::{CarShape, Mesh, Surface, triangle_normal};
@@ -54,7 +55,7 @@ impl Meshes {
     }
 
     /// Sends the meshes of cars, unless they are there.
-    pub fn update(&mut self, device: (&wgpu::Device, &wgpu::Queue), shapes: &[&Arc<CarShape>]) {
+    pub fn update(&mut self, on: &SceneDevice, shapes: &[&Arc<CarShape>]) {
         let is_held = |shape: &&&Arc<CarShape>| {
             self.shapes.iter().any(|held| Arc::ptr_eq(&held.shape, shape))
         };
@@ -70,7 +71,7 @@ impl Meshes {
                 self.shapes.push(HeldShape { shape: Arc::clone(shape), ranges });
             }
         }
-        self.vertices.write(device, &vertices);
+        self.vertices.write(on, &vertices);
     }
 
     /// The corners of all meshes.
@@ -137,9 +138,10 @@ impl CarParts {
     /// - `seen`: opaque ones, then ghosts from far to near.
     pub fn update(
         &mut self,
-        device: (&wgpu::Device, &wgpu::Queue),
+        on: &SceneDevice,
         meshes: &Meshes,
-        (seen, projection): (&[SeenCar<'_>], &Projection),
+        seen: &[SeenCar<'_>],
+        projection: &Projection,
     ) {
         self.opaque.clear();
         self.ghosts.clear();
@@ -166,7 +168,7 @@ impl CarParts {
             }
             self.bounds = joined(self.bounds, bounds_of(car, projection));
         }
-        self.parts.write(device, &instances);
+        self.parts.write(on, &instances);
     }
 }
 

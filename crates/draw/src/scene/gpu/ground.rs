@@ -6,8 +6,8 @@ use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;
 
 use crate::gpu::{GpuError, check_limit};
+use crate::scene::gpu::SceneDevice;
 use crate::scene::gpu::buffers::GrowingBuffer;
-use crate::scene::gpu::pipelines::Pipelines;
 use crate::scene::ground::Ground;
 use crate::scene::underlay::seen_areas;
 use impactlab_document::scene::{GroundPicture, PictureLevel, Scene, TILE};
@@ -52,18 +52,13 @@ impl GroundResources {
     ///
     /// # Errors
     /// [`GpuError::Limit`] for a density or a picture that is too large for the device.
-    pub fn update(
-        &mut self,
-        (device, queue): (&wgpu::Device, &wgpu::Queue),
-        pipelines: &Pipelines,
-        ground: &Ground<'_>,
-    ) -> Result<(), GpuError> {
-        self.update_density(device, queue, ground.scene)?;
-        self.update_picture(device, queue, ground.scene)?;
-        self.update_areas((device, queue), ground);
+    pub fn update(&mut self, on: &SceneDevice, ground: &Ground<'_>) -> Result<(), GpuError> {
+        self.update_density(on, ground.scene)?;
+        self.update_picture(on, ground.scene)?;
+        self.update_areas(on, ground);
         if let (Some(corners), None) = (self.corners.buffer(), &self.group) {
             let views = [&self.density.1, &self.picture.1];
-            self.group = Some(pipelines.ground_group(device, views, corners));
+            self.group = Some(on.pipelines.ground_group(&on.device, views, corners));
         }
         Ok(())
     }
@@ -75,8 +70,7 @@ impl GroundResources {
 
     fn update_density(
         &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
+        SceneDevice { device, queue, .. }: &SceneDevice,
         scene: &Scene,
     ) -> Result<(), GpuError> {
         let map = scene.density.as_ref().map(|density| &density.map);
@@ -103,8 +97,7 @@ impl GroundResources {
 
     fn update_picture(
         &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
+        SceneDevice { device, queue, .. }: &SceneDevice,
         scene: &Scene,
     ) -> Result<(), GpuError> {
         let picture = scene.ground.as_ref().and_then(|site| site.picture.as_ref());
@@ -134,7 +127,7 @@ impl GroundResources {
         Ok(())
     }
 
-    fn update_areas(&mut self, device: (&wgpu::Device, &wgpu::Queue), ground: &Ground<'_>) {
+    fn update_areas(&mut self, on: &SceneDevice, ground: &Ground<'_>) {
         let mut corners: Vec<[f32; 2]> = Vec::new();
         let mut areas = Vec::new();
         for area in seen_areas(ground) {
@@ -147,8 +140,8 @@ impl GroundResources {
                 color: area.color.to_array(),
             });
         }
-        self.areas.write(device, &areas);
-        if self.corners.write(device, &corners) {
+        self.areas.write(on, &areas);
+        if self.corners.write(on, &corners) {
             self.group = None;
         }
     }

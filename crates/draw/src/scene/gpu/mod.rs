@@ -81,10 +81,6 @@ impl SceneDevice {
     pub fn device(&self) -> &wgpu::Device {
         &self.device
     }
-
-    fn parts(&self) -> (&wgpu::Device, &wgpu::Queue) {
-        (&self.device, &self.queue)
-    }
 }
 
 /// Draws scenes on a graphics device, and keeps what it can of the last picture.
@@ -160,7 +156,7 @@ impl GpuCanvas {
             return Ok(false);
         }
         let on = Arc::clone(&self.on);
-        checked(&on.device, || self.encode(scene, look, (time_s, is_drawn)))??;
+        checked(&on.device, || self.encode(scene, look, time_s, is_drawn))??;
         self.drawn = Some((Arc::clone(scene), *look));
         self.time_s = Some(time_s);
         Ok(true)
@@ -176,14 +172,15 @@ impl GpuCanvas {
     /// # Errors
     /// [`GpuError::NoValues`], for example if the device was lost.
     pub fn read(&self, pixels: &mut Vec<Color32>) -> Result<(), GpuError> {
-        self.targets.as_ref().map_or(Ok(()), |targets| targets.read(self.on.parts(), pixels))
+        self.targets.as_ref().map_or(Ok(()), |targets| targets.read(&self.on, pixels))
     }
 
     fn encode(
         &mut self,
         scene: &Arc<Scene>,
         look: &SceneLook,
-        (time_s, is_drawn): (f64, bool),
+        time_s: f64,
+        is_drawn: bool,
     ) -> Result<(), GpuError> {
         let on = Arc::clone(&self.on);
         let projection = look.projection();
@@ -225,12 +222,12 @@ impl GpuCanvas {
         let numbers = uniforms(ground, size);
         on.queue.write_buffer(&self.scene_buffer, 0, bytemuck::cast_slice(&numbers));
         let shapes: Vec<_> = ground.scene.cars.iter().map(|car| &car.shape).collect();
-        self.meshes.update(on.parts(), &shapes);
+        self.meshes.update(&on, &shapes);
         self.marks = MarkStrokes::new(ground);
-        self.mark_strokes.write(on.parts(), &stroke_instances(self.marks.all(), size));
-        match self.ground.update(on.parts(), &on.pipelines, ground) {
+        self.mark_strokes.write(&on, &stroke_instances(self.marks.all(), size));
+        match self.ground.update(&on, ground) {
             Ok(()) => {
-                self.ground_strokes.write(on.parts(), &stroke_instances(&ground.strokes(), size));
+                self.ground_strokes.write(&on, &stroke_instances(&ground.strokes(), size));
                 self.encode_ground(encoder, targets, ground_color(ground.dark));
             }
             // A picture that is too large for the device is drawn here, which takes longer.
@@ -267,9 +264,9 @@ impl GpuCanvas {
 
     /// Sends what changes with time.
     fn update_frame(&mut self, ground: &Ground<'_>, size: [usize; 2], time_s: f64) {
-        let (on, projection) = (self.on.parts(), ground.projection);
+        let (on, projection) = (&self.on, ground.projection);
         let seen = seen_cars(ground, time_s);
-        self.cars.update(on, &self.meshes, (&seen, projection));
+        self.cars.update(on, &self.meshes, &seen, projection);
         let target = projection.target_m();
         let shadows = seen.iter().filter_map(|car| Shadow::new(car, projection));
         let shadows: Vec<_> = shadows.map(|shadow| shadow_instance(&shadow, target)).collect();

@@ -115,7 +115,7 @@ impl Pipelines {
     /// Binds the numbers of a scene.
     pub fn scene_group(&self, device: &wgpu::Device, scene: &wgpu::Buffer) -> wgpu::BindGroup {
         let entries = [entry(0, scene.as_entire_binding())];
-        group(device, ("scene", &self.scene_layout), &entries)
+        group(device, "scene", &self.scene_layout, &entries)
     }
 
     /// Binds what the ground is drawn from.
@@ -131,13 +131,13 @@ impl Pipelines {
             entry(2, wgpu::BindingResource::Sampler(&self.sampler)),
             entry(3, corners.as_entire_binding()),
         ];
-        group(device, ("ground", &self.ground_layout), &entries)
+        group(device, "ground", &self.ground_layout, &entries)
     }
 
     /// Binds a picture that is read.
     pub fn image_group(&self, device: &wgpu::Device, image: &wgpu::TextureView) -> wgpu::BindGroup {
         let entries = [entry(0, wgpu::BindingResource::TextureView(image))];
-        group(device, ("image", &self.image_layout), &entries)
+        group(device, "image", &self.image_layout, &entries)
     }
 }
 
@@ -147,7 +147,8 @@ fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEn
 
 fn group(
     device: &wgpu::Device,
-    (label, layout): (&str, &wgpu::BindGroupLayout),
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
     entries: &[wgpu::BindGroupEntry<'_>],
 ) -> wgpu::BindGroup {
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })

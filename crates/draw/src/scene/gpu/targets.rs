@@ -4,6 +4,7 @@ use eframe::wgpu;
 use egui::Color32;
 
 use crate::gpu::{GpuError, read_buffer};
+use crate::scene::gpu::SceneDevice;
 use crate::scene::gpu::pipelines::{COLORS, DEPTHS, Pipelines};
 
 /// Samples along the side of a pixel, as on the CPU.
@@ -93,7 +94,7 @@ impl Targets {
     /// [`GpuError::NoValues`], for example if the device was lost.
     pub fn read(
         &self,
-        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        SceneDevice { device, queue, .. }: &SceneDevice,
         pixels: &mut Vec<Color32>,
     ) -> Result<(), GpuError> {
         let [width, height] = self.size;

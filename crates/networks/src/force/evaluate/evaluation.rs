@@ -69,7 +69,8 @@ impl FittedBaselines {
 /// [`EvaluationError`].
 pub fn evaluate(
     model: &str,
-    (train, test): (&[&ForceCase], &[&ForceCase]),
+    train: &[&ForceCase],
+    test: &[&ForceCase],
     predictions: &[CurvePrediction],
     settings: &EvaluationSettings,
     report: &mut ProgressCallback<'_>,
@@ -117,7 +118,7 @@ pub fn evaluate(
             nearest: metrics(&nearest)?,
             statistical: metrics(&statistical)?,
         },
-        clusters: cluster_metrics(test, &clusters, (&scored, &statistical)),
+        clusters: cluster_metrics(test, &clusters, &scored, &statistical),
         cases: case_errors(test, &clusters, all),
         problems,
     };
@@ -181,7 +182,8 @@ fn cluster(train: &[&ForceCase], seed: u64) -> Result<ImpulseClusters, ClusterEr
 fn cluster_metrics(
     test: &[&ForceCase],
     clusters: &ImpulseClusters,
-    (model, statistical): (&Scored, &Scored),
+    model: &Scored,
+    statistical: &Scored,
 ) -> Vec<ClusterMetrics> {
     let of = |number: usize| {
         let is_in =

@@ -95,7 +95,7 @@ pub fn evaluate_model(
     let predictions = predictions(model, test, settings)?;
     let train: Vec<&ForceCase> = model.training_cases().iter().collect();
     let test: Vec<&ForceCase> = test.iter().collect();
-    Ok(evaluate("force network", (&train, &test), &predictions, settings, report)?)
+    Ok(evaluate("force network", &train, &test, &predictions, settings, report)?)
 }
 
 fn predictions(

@@ -79,7 +79,9 @@ impl OutsideTraining {
 pub(crate) fn features(
     scenario: &ForceScenario,
     centre: &CentreCurve,
-    (contact_m, body_idx, n_bodies): ([f64; 2], usize, usize),
+    contact_m: [f64; 2],
+    body_idx: usize,
+    n_bodies: usize,
 ) -> Vec<f64> {
     let numbers = scenario_numbers(scenario, contact_m);
     let [px, py] = centre.impulse_n_s;

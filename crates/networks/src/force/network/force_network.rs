@@ -204,7 +204,7 @@ impl ForceNetwork {
         let whole = layers.whole.forward(&pooled)?;
         let duration_s = self.duration_s(&whole, &input.whole)?;
         let impulse = self.impulse(&whole, &input.whole)?;
-        let base = self.base(layers, input, (&hidden, &impulse, &duration_s))?;
+        let base = self.base(layers, input, &hidden, &impulse, &duration_s)?;
 
         let (k, q) = (self.config.components, self.config.factors);
         let number_type = self.parameters.number_type();
@@ -241,7 +241,7 @@ impl ForceNetwork {
         let variance = (&input.variance * (change * (2.0 * STD_LOG_CHANGE))?.exp()?)?;
         let variance = (variance + self.config.min_std.powi(2))?;
         let sizes = per_component.narrow(2, 3, q)?;
-        let factors = self.factors(layers, input, (&hidden, &sizes))?;
+        let factors = self.factors(layers, input, &hidden, &sizes)?;
         let logits = logits.to_dtype(number_type)?;
         let lag_correlation = input.lag_correlation.clone();
         Ok(NetworkOutput { logits, mean, variance, lag_correlation, factors, impulse, duration_s })
@@ -260,7 +260,8 @@ impl ForceNetwork {
         &self,
         layers: &Layers,
         input: &NetworkInput,
-        (hidden, sizes): (&Tensor, &Tensor),
+        hidden: &Tensor,
+        sizes: &Tensor,
     ) -> Result<Option<Tensor>, ForceError> {
         let Some(start) = &input.factors else { return Ok(None) };
         let (n_cases, k, n_values, q) = start.dims4()?;
@@ -335,7 +336,9 @@ impl ForceNetwork {
         &self,
         layers: &Layers,
         input: &NetworkInput,
-        (hidden, impulse, duration_s): (&Tensor, &Tensor, &Tensor),
+        hidden: &Tensor,
+        impulse: &Tensor,
+        duration_s: &Tensor,
     ) -> Result<Tensor, ForceError> {
         let (n_cases, n_instants, _) = input.instants.dims3()?;
         let shape = layers.shape.forward(hidden)?.transpose(1, 2)?.contiguous()?;

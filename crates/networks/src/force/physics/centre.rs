@@ -158,7 +158,8 @@ impl CentreModel {
     /// [`ForceError::Impact`].
     pub fn fit(
         cases: &[ForceCase],
-        (kind, config): (Centre, CrushConfig),
+        kind: Centre,
+        config: CrushConfig,
         seed: u64,
         report: &mut dyn FnMut(CentreFit) -> ControlFlow<()>,
     ) -> Result<(Self, Vec<CentreCurve>), ForceError> {
@@ -179,12 +180,12 @@ impl CentreModel {
             momentum: MomentumModel::fit(&plain, true),
         };
         let folds = folds(cases, config.folds, seed);
-        model.laws = fit_laws((cases, &folds), (kind, config), report)?;
+        model.laws = fit_laws(cases, &folds, kind, config, report)?;
         let mut histories = model.unseen_histories(cases, &folds)?;
         if kind == Centre::Committee {
             let crush: Vec<ForceCurve> = histories.iter().map(|of| of.curve.clone()).collect();
             let mut on_fit = |fit, n_fits| report(CentreFit::Regression { fit, n_fits });
-            let fitted = Committee::fit((cases, &folds), &crush, seed, &mut on_fit)?;
+            let fitted = Committee::fit(cases, &folds, &crush, seed, &mut on_fit)?;
             if let Some((committee, curves)) = fitted {
                 model.committee = Some(committee);
                 for (history, curve) in histories.iter_mut().zip(curves) {
@@ -261,7 +262,7 @@ impl CentreModel {
         body_idx: usize,
     ) -> Result<CentreCurve, ForceError> {
         let laws: Vec<&CrushLaw> = self.laws.iter().collect();
-        let mut history = self.history(&laws, scenario, (contact_m, body_idx))?;
+        let mut history = self.history(&laws, scenario, contact_m, body_idx)?;
         if let Some(committee) = &self.committee {
             let body = self.laws.first().and_then(|law| law.bodies.get(body_idx));
             let name = body.map(|body| body.name.clone()).filter(|name| name != NO_NAME);
@@ -301,7 +302,8 @@ impl CentreModel {
         };
         let history = |(idx, case): (usize, &ForceCase)| {
             let laws: Vec<&CrushLaw> = law_of(idx).into_iter().collect();
-            self.history(&laws, &case.scenario, self.known(&case.scenario))
+            let (contact_m, body_idx) = self.known(&case.scenario);
+            self.history(&laws, &case.scenario, contact_m, body_idx)
         };
         cases.iter().enumerate().map(history).collect()
     }
@@ -317,7 +319,8 @@ impl CentreModel {
         &self,
         laws: &[&CrushLaw],
         scenario: &ForceScenario,
-        (contact_m, body_idx): ([f64; 2], usize),
+        contact_m: [f64; 2],
+        body_idx: usize,
     ) -> Result<CentreHistory, ForceError> {
         Ok(match self.kind {
             Centre::Committee | Centre::Crush => {

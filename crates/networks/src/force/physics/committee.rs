@@ -46,7 +46,8 @@ impl Committee {
     /// # Errors
     /// [`ForceError::Regression`].
     pub(super) fn fit(
-        (cases, folds): (&[ForceCase], &[Split]),
+        cases: &[ForceCase],
+        folds: &[Split],
         crush: &[ForceCurve],
         seed: u64,
         report: &mut dyn FnMut(usize, usize) -> ControlFlow<()>,

@@ -88,8 +88,10 @@ fn nose_contact(scenario: &ForceScenario) -> Option<(f64, [f64; 2])> {
 /// One crush law for each fold, fitted to the cases outside of it; none is fitted, and the prior
 /// stands alone, if the kind of centre has no crush model.
 pub(super) fn fit_laws(
-    (cases, folds): (&[ForceCase], &[Split]),
-    (kind, config): (Centre, CrushConfig),
+    cases: &[ForceCase],
+    folds: &[Split],
+    kind: Centre,
+    config: CrushConfig,
     report: &mut dyn FnMut(CentreFit) -> ControlFlow<()>,
 ) -> Result<Vec<CrushLaw>, ForceError> {
     let prior = prior_law(cases);

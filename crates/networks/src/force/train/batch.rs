@@ -75,9 +75,11 @@ impl CaseTensors {
     /// [`ForceError::Learning`] if a tensor operation fails.
     pub(crate) fn new(
         cases: &[&ForceCase],
-        (centres, residuals): (&[CentreCurve], &ResidualModel),
+        centres: &[CentreCurve],
+        residuals: &ResidualModel,
         features: Vec<Vec<f32>>,
-        (config, number_type): (&NetworkConfig, DType),
+        config: &NetworkConfig,
+        number_type: DType,
     ) -> Result<Self, ForceError> {
         let n = cases.len();
         let tensor = |data: Vec<f64>, shape: &[usize]| -> Result<Tensor, ForceError> {

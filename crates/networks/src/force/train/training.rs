@@ -78,12 +78,12 @@ pub fn train(
                 is_cut |= flow.is_break();
                 flow
             };
-            let physics = fit_physics(set, settings, &mut on_fit)?;
+            let (centre, centres) = fit_physics(set, settings, &mut on_fit)?;
             if is_cut {
                 // A later training must not be resumed from physics whose fit was interrupted.
                 file.disable();
             }
-            ForceTrainingRun::around(set, settings, physics)?
+            ForceTrainingRun::around(set, settings, centre, centres)?
         }
     };
     file.named(was_resumed, search(training, set, &file, report))
@@ -106,7 +106,8 @@ pub fn train_around(
 ) -> Result<ForceModel, ForceError> {
     settings.config.check()?;
     settings.config.check_memory(set.train.len())?;
-    let training = ForceTrainingRun::around(set, settings, physics)?;
+    let (centre, centres) = physics;
+    let training = ForceTrainingRun::around(set, settings, centre, centres)?;
     search(training, set, &training_file(set, settings), report)
 }
 
@@ -129,7 +130,7 @@ pub fn fit_physics(
         let (done, n_fits) = fit.progress();
         report(&TrainingReport::Fit { what: fit.to_string(), done, n_fits })
     };
-    CentreModel::fit(&set.train, (kind, crush), settings.seed, &mut on_fit)
+    CentreModel::fit(&set.train, kind, crush, settings.seed, &mut on_fit)
 }
 
 /// Runs the epochs that are left and builds the model.
@@ -223,7 +224,8 @@ impl<'a> ForceTrainingRun<'a> {
     fn around(
         set: &ForceTrainingSet,
         settings: &'a ForceTrainSettings,
-        (centre, centres): (CentreModel, Vec<CentreCurve>),
+        centre: CentreModel,
+        centres: Vec<CentreCurve>,
     ) -> Result<Self, ForceError> {
         let config = &settings.config;
         let bodies = centre.bodies();
@@ -239,8 +241,8 @@ impl<'a> ForceTrainingRun<'a> {
         let rows = rows.iter().map(|row| standardisation.apply(row)).collect();
         let cases: Vec<&ForceCase> = set.train.iter().collect();
         let residuals = ResidualModel::fit(&set.train, &centres, config.network.factors);
-        let number_type = (&config.network, DType::F32);
-        let tensors = CaseTensors::new(&cases, (&centres, &residuals), rows, number_type)?;
+        let tensors =
+            CaseTensors::new(&cases, &centres, &residuals, rows, &config.network, DType::F32)?;
         let mut rng = random_stream(settings.seed, "force network", 0);
         let network = {
             let parameters = Parameters::new(DType::F32);
@@ -272,7 +274,7 @@ impl<'a> ForceTrainingRun<'a> {
         saved: SavedForceTraining,
     ) -> Result<Self, ForceError> {
         saved.check(set.train.len())?;
-        let mut training = Self::around(set, settings, (saved.centre, saved.centres))?;
+        let mut training = Self::around(set, settings, saved.centre, saved.centres)?;
         // Parameters that are finite may still predict what is not.
         for parameters in [&saved.best_parameters, &saved.common.parameters] {
             training.network.parameters().import(parameters)?;
@@ -461,7 +463,7 @@ fn case_features(case: &ForceCase, centre: &CentreCurve, bodies: &[String]) -> V
     let name = case.scenario.striking_body.as_deref().unwrap_or_default();
     let body_idx = bodies.iter().position(|body| body == name).unwrap_or(0);
     let contact = case.scenario.contact_m.unwrap_or_default();
-    features(&case.scenario, centre, (contact, body_idx, bodies.len()))
+    features(&case.scenario, centre, contact, body_idx, bodies.len())
 }
 
 fn optimizer_config(config: &ForceConfig) -> AdamWConfig {

@@ -54,7 +54,7 @@ pub fn compare_models(
     let clusters = clusters(&test, settings.seed);
     let mut work = Work::new(settings, report);
     let Some(starts) = work.pretrained(&all, start)? else { return Ok(None) };
-    let mut rows = answers((&MotionModel::Untuned, 0, settings.seed), &test, &clusters)?;
+    let mut rows = answers(&MotionModel::Untuned, 0, settings.seed, &test, &clusters)?;
     let mut times = Vec::new();
     for &n in &settings.trajectories {
         for choice in settings.seed..settings.seed + settings.n_choices {
@@ -62,11 +62,11 @@ pub fn compare_models(
             let Some(models) = work.trained(&set, &starts, choice)? else { return Ok(None) };
             for (model, seconds) in models {
                 times.push((model.kind(), n, seconds));
-                rows.extend(answers((&model, n, choice), &test, &clusters)?);
+                rows.extend(answers(&model, n, choice, &test, &clusters)?);
             }
         }
     }
-    Ok(Some(Comparison::new((name, settings), &test, &clusters, rows, &times)))
+    Ok(Some(Comparison::new(name, settings, &test, &clusters, rows, &times)))
 }
 
 /// One model on trajectories, as a comparison of one.
@@ -81,14 +81,14 @@ pub fn evaluate_motion_model(
     seed: u64,
 ) -> Result<Comparison, LearningError> {
     let clusters = clusters(cases, seed);
-    let rows = answers((model, trajectories, seed), cases, &clusters)?;
+    let rows = answers(model, trajectories, seed, cases, &clusters)?;
     let settings = ComparisonSettings {
         config: ResponseConfig::default(),
         trajectories: vec![trajectories],
         n_choices: 1,
         seed,
     };
-    Ok(Comparison::new((name, &settings), cases, &clusters, rows, &[]))
+    Ok(Comparison::new(name, &settings, cases, &clusters, rows, &[]))
 }
 
 /// Cluster of each trajectory, and the clusters, if there are any.
@@ -112,7 +112,9 @@ pub(super) fn clusters(cases: &[&ResponseCase], seed: u64) -> CaseClusters {
 
 /// What a model says of trajectories.
 pub(super) fn answers(
-    (model, trajectories, choice): (&MotionModel, usize, u64),
+    model: &MotionModel,
+    trajectories: usize,
+    choice: u64,
     cases: &[&ResponseCase],
     clusters: &CaseClusters,
 ) -> Result<Vec<ComparedCase>, LearningError> {

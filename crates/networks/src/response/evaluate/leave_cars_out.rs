@@ -66,7 +66,7 @@ pub fn compare_on_unseen_cars(
     let ComparedCars { test, rows, .. } = compared;
     let test: Vec<&ResponseCase> = test.iter().collect();
     let clusters = clusters(&test, settings.seed);
-    Ok(Some(Comparison::new((&set.name, settings), &test, &clusters, rows, &[])))
+    Ok(Some(Comparison::new(&set.name, settings, &test, &clusters, rows, &[])))
 }
 
 /// The answers of every model about cars that were left out.
@@ -91,12 +91,12 @@ impl ComparedCars<'_> {
         let is_test = |case: &&ResponseCase| all.test.iter().any(|id| id.digest == case.digest);
         let test: Vec<&ResponseCase> = cases.iter().filter(is_test).collect();
         let clusters = clusters(&test, seed);
-        let mut add = |of: (&MotionModel, usize, u64)| -> Result<(), LearningError> {
-            self.rows.extend(answers(of, &test, &clusters)?);
+        let mut add = |model: &MotionModel, n: usize, choice: u64| -> Result<(), LearningError> {
+            self.rows.extend(answers(model, n, choice, &test, &clusters)?);
             Ok(())
         };
-        add((&MotionModel::Untuned, 0, seed))?;
-        add((&MotionModel::Network(Box::new(model.copied()?)), 0, seed))?;
+        add(&MotionModel::Untuned, 0, seed)?;
+        add(&MotionModel::Network(Box::new(model.copied()?)), 0, seed)?;
         for &n in &self.settings.trajectories {
             for choice in seed..seed + self.settings.n_choices {
                 let set = all.clone().choose(Some(n), choice)?;
@@ -105,8 +105,8 @@ impl ComparedCars<'_> {
                     Tuning::fit(&learned, self.settings.config.tuning, choice, &mut |_, _| {
                         ControlFlow::Continue(())
                     });
-                add((&MotionModel::Tuned(tuning), n, choice))?;
-                add((&MotionModel::Network(Box::new(condition(model, &set)?)), n, choice))?;
+                add(&MotionModel::Tuned(tuning), n, choice)?;
+                add(&MotionModel::Network(Box::new(condition(model, &set)?)), n, choice)?;
             }
         }
         self.test.extend(test.into_iter().cloned());

@@ -128,7 +128,8 @@ pub struct Comparison {
 
 impl Comparison {
     pub(super) fn new(
-        (name, settings): (&str, &ComparisonSettings),
+        name: &str,
+        settings: &ComparisonSettings,
         test: &[&ResponseCase],
         clusters: &CaseClusters,
         cases: Vec<ComparedCase>,
@@ -192,11 +193,12 @@ impl Comparison {
         if endings.iter().any(|row| row.n == 0) {
             endings.clear();
         }
+        let tested = test.iter().zip(&clusters.of_case);
         Self {
             data: name.to_owned(),
             seed: settings.seed,
             n_choices: settings.n_choices,
-            test: test.iter().zip(&clusters.of_case).map(TestCase::new).collect(),
+            test: tested.map(|(case, &cluster)| TestCase::new(case, cluster)).collect(),
             models,
             clusters: (0..n_clusters).map(cluster).filter(|row| row.n > 0).collect(),
             endings,
@@ -222,10 +224,10 @@ impl Comparison {
 }
 
 impl TestCase {
-    fn new((case, cluster): (&&ResponseCase, &usize)) -> Self {
+    fn new(case: &ResponseCase, cluster: usize) -> Self {
         Self {
             name: case.name.clone(),
-            cluster: *cluster,
+            cluster,
             spins: case.spins,
             footprint: Footprint::from(&case.vehicle.geometry),
             path: path_of(&case.states),

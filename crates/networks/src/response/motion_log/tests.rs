@@ -42,11 +42,7 @@ fn simulated(
 }
 
 /// Every `stride`-th sample with noise.
-fn log(
-    motion: &TimeSeries,
-    (stride, seed): (usize, u64),
-    channels: &[(Channel, f64)],
-) -> MotionLog {
+fn log(motion: &TimeSeries, stride: usize, seed: u64, channels: &[(Channel, f64)]) -> MotionLog {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let time_s = motion.time_s().iter().copied().step_by(stride).collect();
     let mut series = TimeSeries::new(time_s).unwrap();
@@ -100,7 +96,7 @@ fn smoothed_states_are_nearer_the_truth_than_the_samples() {
     {
         let motion = simulated(&truth_vehicle(), Some(load()), duration_s);
         for seed in 0..5 {
-            let log = log(&motion, (stride, seed), &gnss_imu());
+            let log = log(&motion, stride, seed, &gnss_imu());
             assert_eq!(log.series.n_samples(), 100);
             let found = LoggedImpact::from_log(&log, None, &settings()).unwrap();
             let [position, velocity, yaw, yaw_rate] = errors(&found, &motion);
@@ -121,9 +117,9 @@ fn velocities_are_of_use() {
     let motion = simulated(&truth_vehicle(), Some(load()), 0.99);
     let mut channels = gnss_imu();
     let without =
-        LoggedImpact::from_log(&log(&motion, (1, 0), &channels), None, &settings()).unwrap();
+        LoggedImpact::from_log(&log(&motion, 1, 0, &channels), None, &settings()).unwrap();
     channels.extend([(Channel::Vx, 0.03), (Channel::Vy, 0.03)]);
-    let with = LoggedImpact::from_log(&log(&motion, (1, 0), &channels), None, &settings()).unwrap();
+    let with = LoggedImpact::from_log(&log(&motion, 1, 0, &channels), None, &settings()).unwrap();
     let [without_m_s, with_m_s] = [&without, &with].map(|found| errors(found, &motion)[1]);
     assert!(with_m_s < 0.02 && with_m_s < 0.5 * without_m_s, "{with_m_s} {without_m_s}");
     let noise_m_s = with.noise.velocity_m_s.unwrap();
@@ -138,7 +134,7 @@ fn contact_is_found_where_it_was_and_nowhere_else() {
     let truth = truth_vehicle();
     for seed in 0..5 {
         let motion = simulated(&truth, Some(load()), 1.5);
-        let struck = log(&motion, (1, seed), &gnss_imu());
+        let struck = log(&motion, 1, seed, &gnss_imu());
         let found = LoggedImpact::from_log(&struck, None, &settings()).unwrap();
         assert_eq!(found.force, ForceOrigin::Estimated);
         let [start_s, end_s] = found.contact_s.unwrap();
@@ -148,7 +144,7 @@ fn contact_is_found_where_it_was_and_nowhere_else() {
         );
         let known = LogSettings { impact_s: Some(0.21), ..settings() };
         assert_eq!(LoggedImpact::from_log(&struck, None, &known).unwrap().start_s, 0.21);
-        let free = log(&simulated(&truth, None, 1.5), (1, seed), &gnss_imu());
+        let free = log(&simulated(&truth, None, 1.5), 1, seed, &gnss_imu());
         let found = LoggedImpact::from_log(&free, None, &settings()).unwrap();
         assert_eq!((found.force, found.contact_s, found.start_s), (ForceOrigin::None, None, 0.0));
         assert!(found.case.inputs.iter().all(|input| input.collision.is_none()));
@@ -158,7 +154,7 @@ fn contact_is_found_where_it_was_and_nowhere_else() {
 #[test]
 fn a_recorded_force_keeps_its_impulse_and_its_clock() {
     let motion = simulated(&truth_vehicle(), Some(load()), 1.5);
-    let log = log(&motion, (4, 0), &gnss_imu());
+    let log = log(&motion, 4, 0, &gnss_imu());
     let found = LoggedImpact::from_log(&log, Some(load()), &settings()).unwrap();
     assert_eq!(found.force, ForceOrigin::Recorded);
     assert!((found.start_s - CONTACT_S).abs() < 2e-3, "{}", found.start_s);
@@ -175,7 +171,7 @@ fn roll_is_the_models_where_it_was_not_recorded() {
     let motion = simulated(&Preset::ScaledStruck.parameters(), Some(load()), 1.5);
     let mut channels = gnss_imu();
     let of = |channels: &[(Channel, f64)]| {
-        let log = log(&motion, (1, 0), channels);
+        let log = log(&motion, 1, 0, channels);
         LoggedImpact::from_log(&log, Some(load()), &settings()).unwrap()
     };
     let roll = |found: &LoggedImpact| {
@@ -195,7 +191,7 @@ fn roll_is_the_models_where_it_was_not_recorded() {
 #[test]
 fn what_cannot_be_used_is_said() {
     let motion = simulated(&truth_vehicle(), Some(load()), 0.5);
-    let log = log(&motion, (1, 0), &gnss_imu());
+    let log = log(&motion, 1, 0, &gnss_imu());
     let error = |settings: LogSettings| {
         LoggedImpact::from_log(&log, None, &settings).unwrap_err().to_string()
     };

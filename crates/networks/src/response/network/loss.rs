@@ -148,7 +148,9 @@ pub(crate) fn huber_of_squares(squares: &Tensor) -> Result<Tensor, NnError> {
 pub(crate) fn single_step_terms(
     output: &ResponseOutput,
     targets: &Tensor,
-    (unit, change, min_std): ([f64; N_RESIDUAL], f64, f64),
+    unit: [f64; N_RESIDUAL],
+    change: f64,
+    min_std: f64,
 ) -> Result<[Tensor; 2], NnError> {
     let device = output.residual.device();
     let weights = softmax(&output.logits, 1.0)?;

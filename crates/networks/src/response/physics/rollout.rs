@@ -19,8 +19,13 @@ pub fn rollout(
     states.push(state);
     for (i, input) in inputs.iter().enumerate() {
         let now = model.constants.evaluate(&state, input);
-        let at = (&state, input, &now.derivative);
-        state = Correction::Acceleration.step_from(&model, at, residual(i, &state));
+        state = Correction::Acceleration.step_from(
+            &model,
+            &state,
+            input,
+            &now.derivative,
+            residual(i, &state),
+        );
         states.push(state);
     }
     states

@@ -68,7 +68,7 @@ impl Correction {
         value: [T; N_RESIDUAL],
     ) -> VehicleState<T> {
         let model = StepModel::new(vehicle);
-        self.step_from(&model, (x, u, &model.constants.evaluate(x, u).derivative), value)
+        self.step_from(&model, x, u, &model.constants.evaluate(x, u).derivative, value)
     }
 
     /// [`Correction::step`] where the time derivative by the 4DOF model at the beginning is known.
@@ -78,14 +78,16 @@ impl Correction {
     pub(crate) fn step_from<P: Copy, T: Lanes + LanesOver<P>>(
         self,
         model: &StepModel<P>,
-        (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &VehicleState<T>),
+        x: &VehicleState<T>,
+        u: &VehicleInput<T>,
+        now: &VehicleState<T>,
         value: [T; N_RESIDUAL],
     ) -> VehicleState<T> {
         match self {
-            Self::Acceleration => step_from(model, (x, u, now), value),
+            Self::Acceleration => step_from(model, x, u, now, value),
             Self::StateOffset => {
                 let none = [x.vx_body_m_s.constant(0.0); N_RESIDUAL];
-                let mut next = step_from(model, (x, u, now), none);
+                let mut next = step_from(model, x, u, now, none);
                 let [vx, vy, yaw, roll] = value;
                 next.vx_body_m_s += vx;
                 next.vy_body_m_s += vy;
@@ -129,7 +131,9 @@ pub fn step<T: Lanes>(
 #[inline(always)]
 fn step_from<P: Copy, T: Lanes + LanesOver<P>>(
     model: &StepModel<P>,
-    (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &VehicleState<T>),
+    x: &VehicleState<T>,
+    u: &VehicleInput<T>,
+    now: &VehicleState<T>,
     residual: [T; N_RESIDUAL],
 ) -> VehicleState<T> {
     let StepModel { constants, n_substeps } = model;

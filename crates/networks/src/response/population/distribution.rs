@@ -182,7 +182,8 @@ impl StrengthPopulation {
     /// [`NnError`] if a tensor cannot be read.
     pub(crate) fn with_learned_car(
         mut self,
-        (network, widths): (&ResponseNetwork, Widths),
+        network: &ResponseNetwork,
+        widths: Widths,
         cases: &[&ResponseCase],
     ) -> Result<Self, NnError> {
         let Some(first) = cases.first() else { return Ok(self) };

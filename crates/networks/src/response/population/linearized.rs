@@ -80,7 +80,7 @@ impl<'a> Predicted<'a> {
         let mut path = vec![initial];
         let mut x = initial;
         for (i, u) in self.case.inputs[..n].iter().enumerate() {
-            x = self.step((&x, u, i as f64 * STEP_S), &strengths, &mut work);
+            x = self.step(&x, u, i as f64 * STEP_S, &strengths, &mut work);
             path.push(x);
         }
         average_error_m(&path, &self.case.states[..self.case.states.len().min(n + 1)])
@@ -89,7 +89,9 @@ impl<'a> Predicted<'a> {
     /// One step with strengths added, in the mean over the components.
     fn step(
         &self,
-        (x, u, time_s): (&VehicleState<f64>, &VehicleInput<f64>, f64),
+        x: &VehicleState<f64>,
+        u: &VehicleInput<f64>,
+        time_s: f64,
         strengths: &[f64; N_EFFECTS],
         work: &mut Workspace,
     ) -> VehicleState<f64> {
@@ -107,7 +109,9 @@ impl<'a> Predicted<'a> {
         }
         self.network.correction().step_from(
             &self.model,
-            (x, u, &now.derivative),
+            x,
+            u,
+            &now.derivative,
             self.network.bounded(free),
         )
     }
@@ -150,7 +154,7 @@ impl<'a> Predicted<'a> {
             let mut x = state(0);
             for (i, u) in self.case.inputs[start..end].iter().enumerate() {
                 let time_s = (start + i) as f64 * STEP_S;
-                x = self.step((&x, u, time_s), &strengths, &mut work);
+                x = self.step(&x, u, time_s, &strengths, &mut work);
                 for (k, _) in at.iter().enumerate().filter(|(_, at)| **at == i + 1) {
                     seen.rows_mut(k * N_OBSERVED, N_OBSERVED).copy_from_slice(&x.planar());
                 }

@@ -100,8 +100,11 @@ impl<'a> Dynamics<'a> {
     /// One step at given latent factors.
     pub(crate) fn step(
         &self,
-        (component, latents): (usize, &[f64; N_LATENTS]),
-        (x, u, time_s): (&VehicleState<f64>, &VehicleInput<f64>, f64),
+        component: usize,
+        latents: &[f64; N_LATENTS],
+        x: &VehicleState<f64>,
+        u: &VehicleInput<f64>,
+        time_s: f64,
         batch: &mut NetworkBatch,
     ) -> VehicleState<f64> {
         let now = self.model.constants.evaluate(x, u);
@@ -113,7 +116,7 @@ impl<'a> Dynamics<'a> {
             self.add_remainder(&mut terms, batch, [0, component]);
         }
         let correction = self.network.bounded(self.free_correction(&terms, latents));
-        self.network.correction().step_from(&self.model, (x, u, &now.derivative), correction)
+        self.network.correction().step_from(&self.model, x, u, &now.derivative, correction)
     }
 
     /// The known effects of a component.

@@ -40,11 +40,7 @@ pub(super) type Covariance = SMatrix<f64, N_JOINT, N_JOINT>;
 /// - `[dx, dy]`: displacement in that step, m;
 /// - `pose`: offset of the point's pose from the mean's, with sine and cosine of its heading.
 #[inline]
-pub(super) fn turned(
-    offset: &Mean,
-    [dx, dy]: [f64; 2],
-    (pose, [sin, cos]): (&Mean, [f64; 2]),
-) -> Mean {
+pub(super) fn turned(offset: &Mean, [dx, dy]: [f64; 2], pose: &Mean, [sin, cos]: [f64; 2]) -> Mean {
     let mut offset = offset + pose;
     offset[X] += cos * dx - sin * dy - dx;
     offset[Y] += sin * dx + cos * dy - dy;

@@ -183,8 +183,7 @@ impl Predictor {
     ) -> Vec<ComponentPath> {
         let (dynamics, mut batch) = (self.dynamics(), NetworkBatch::default());
         let mut none = |std: &mut [f64; N_RESIDUAL]| *std = [0.0; N_RESIDUAL];
-        let of =
-            |j: usize| path(&dynamics, (j, &latents(j), &mut none), (initial, inputs), &mut batch);
+        let of = |j: usize| path(&dynamics, j, &latents(j), &mut none, initial, inputs, &mut batch);
         let mut paths: Vec<ComponentPath> = (0..self.n_components()).map(of).collect();
         let sum: f64 = paths.iter().map(|path| path.weight).sum();
         paths.iter_mut().for_each(|path| path.weight /= sum);
@@ -227,7 +226,7 @@ impl Predictor {
     ) -> MotionDistribution {
         let of = self.fitted_to(initial, inputs);
         let dynamics = of.dynamics();
-        let component = |j| dynamics.motion((j, self.unscented), initial, inputs);
+        let component = |j| dynamics.motion(j, self.unscented, initial, inputs);
         MotionDistribution::new((0..self.n_components()).map(component).collect())
     }
 
@@ -237,8 +236,10 @@ impl Predictor {
     /// - `n`: how many; `seed`: of the draws.
     pub fn sample(
         &self,
-        (initial, inputs): (&VehicleState<f64>, &[VehicleInput<f64>]),
-        (n, seed): (usize, u64),
+        initial: &VehicleState<f64>,
+        inputs: &[VehicleInput<f64>],
+        n: usize,
+        seed: u64,
     ) -> Vec<Vec<VehicleState<f64>>> {
         let of = self.fitted_to(initial, inputs);
         let dynamics = of.dynamics();
@@ -256,7 +257,7 @@ impl Predictor {
                 std.iter_mut().for_each(|std| *std *= width * normal(&mut rng));
             };
             let mut batch = NetworkBatch::default();
-            path(&dynamics, (j, &latents, &mut noise), (initial, inputs), &mut batch).states
+            path(&dynamics, j, &latents, &mut noise, initial, inputs, &mut batch).states
         };
         (0..n).into_par_iter().map(draw).collect()
     }
@@ -291,8 +292,11 @@ type Noise<'a> = dyn FnMut(&mut [f64; N_RESIDUAL]) + 'a;
 /// One path.
 fn path(
     dynamics: &Dynamics<'_>,
-    (component, latents, noise): (usize, &[f64; N_LATENTS], &mut Noise<'_>),
-    (initial, inputs): (&VehicleState<f64>, &[VehicleInput<f64>]),
+    component: usize,
+    latents: &[f64; N_LATENTS],
+    noise: &mut Noise<'_>,
+    initial: &VehicleState<f64>,
+    inputs: &[VehicleInput<f64>],
     batch: &mut NetworkBatch,
 ) -> ComponentPath {
     let mut states = Vec::with_capacity(inputs.len() + 1);
@@ -300,8 +304,7 @@ fn path(
     states.push(state);
     let mut weight = 0.0;
     for (i, u) in inputs.iter().enumerate() {
-        let at = (&state, u, i as f64 * STEP_S);
-        let next = dynamics.step((component, latents), at, batch);
+        let next = dynamics.step(component, latents, &state, u, i as f64 * STEP_S, batch);
         weight += dynamics.weight(component, batch) / inputs.len() as f64;
         state = next;
         let mut off = dynamics.noise(component, batch);

@@ -124,6 +124,16 @@ struct ReusePlan {
     depends_on_pose: bool,
 }
 
+/// A step of the distribution of a component.
+#[derive(Clone, Copy)]
+struct PropagatedStep<'a> {
+    component: usize,
+    /// What acts during the step, which begins at `time_s`.
+    u: &'a VehicleInput<f64>,
+    time_s: f64,
+    plan: ReusePlan,
+}
+
 impl ReusePlan {
     fn new(u: &VehicleInput<f64>, is_free: bool, ignored: [bool; N_LATENTS]) -> Self {
         let in_world = u.collision.is_some_and(|collision| collision.in_world_axes);
@@ -161,7 +171,8 @@ impl Dynamics<'_> {
     /// The distribution of a component's motion.
     pub(crate) fn motion(
         &self,
-        (component, unscented): (usize, Unscented),
+        component: usize,
+        unscented: Unscented,
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> ComponentMotion {
@@ -185,9 +196,9 @@ impl Dynamics<'_> {
             if i == n_struck {
                 forget(&mut covariance);
             }
-            let at = (u, i as f64 * STEP_S, i >= n_struck);
-            (mean, covariance) =
-                self.propagate((component, &weights), (&mean, &covariance), at, &mut buffers);
+            let plan = ReusePlan::new(u, i >= n_struck, self.ignored());
+            let step = PropagatedStep { component, u, time_s: i as f64 * STEP_S, plan };
+            (mean, covariance) = self.propagate(step, &weights, &mean, &covariance, &mut buffers);
             weight += self.weight(component, &buffers.batch) / inputs.len() as f64;
             states.push(StateDistribution::new(&mean, &covariance, shared_out));
         }
@@ -195,20 +206,19 @@ impl Dynamics<'_> {
     }
 
     /// Mean and covariance after a step.
-    ///
-    /// - `is_free`: whether no force will act any more.
     fn propagate(
         &self,
-        (component, weights): (usize, &UnscentedWeights),
-        (mean, covariance): (&Mean, &Covariance),
-        (u, time_s, is_free): (&VehicleInput<f64>, f64, bool),
+        step: PropagatedStep<'_>,
+        weights: &UnscentedWeights,
+        mean: &Mean,
+        covariance: &Covariance,
         buffers: &mut StepBuffers,
     ) -> (Mean, Covariance) {
-        let plan = ReusePlan::new(u, is_free, self.ignored());
+        let PropagatedStep { component, plan, .. } = step;
         let root = root_of(covariance) * weights.reach;
         let columns: [Mean; N] = std::array::from_fn(|i| root.column(i).into_owned());
-        self.evaluate_points(component, (mean, &columns, plan), (u, time_s), buffers);
-        self.advance_points((mean, &columns, plan), u, buffers);
+        self.evaluate_points(step, mean, &columns, buffers);
+        self.advance_points(step, mean, &columns, buffers);
         let StepBuffers { batch, ends, .. } = buffers;
         let of_mean = ends[0];
         let centre = mean_of(&of_mean, &latents_of(mean));
@@ -226,7 +236,7 @@ impl Dynamics<'_> {
             for ((offset, end), side) in offsets.iter_mut().zip(&ends).zip(SIDES) {
                 let next = mean_of(end, &latents_of(&(mean + column * side)));
                 let way = [next[X] - mean[X], next[Y] - mean[Y]];
-                *offset = turned(&(next - centre), way, (&(pose * side), [sin * side, cos]));
+                *offset = turned(&(next - centre), way, &(pose * side), [sin * side, cos]);
             }
         }
         let (shift, mut covariance) = moments(offsets, weights);
@@ -243,9 +253,9 @@ impl Dynamics<'_> {
     /// the mean sees.
     fn evaluate_points(
         &self,
-        component: usize,
-        (mean, columns, plan): (&Mean, &[Mean; N], ReusePlan),
-        (u, time_s): (&VehicleInput<f64>, f64),
+        PropagatedStep { component, u, time_s, plan }: PropagatedStep<'_>,
+        mean: &Mean,
+        columns: &[Mean; N],
         buffers: &mut StepBuffers,
     ) {
         let StepBuffers { batch, states, points, .. } = buffers;
@@ -278,8 +288,9 @@ impl Dynamics<'_> {
     /// Takes the steps of the mean and of the points that do not reuse that of the mean.
     fn advance_points(
         &self,
-        (mean, columns, plan): (&Mean, &[Mean; N], ReusePlan),
-        u: &VehicleInput<f64>,
+        PropagatedStep { u, plan, .. }: PropagatedStep<'_>,
+        mean: &Mean,
+        columns: &[Mean; N],
         buffers: &mut StepBuffers,
     ) {
         let StepBuffers { points, starts, ends, .. } = buffers;

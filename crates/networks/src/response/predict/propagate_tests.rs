@@ -53,7 +53,7 @@ fn it_agrees_with_ten_thousand_coherent_draws() {
         predictor.latents.tail_ratio = tail_ratio;
         let inputs = released(n);
         let motion = predictor.motion(&start, &inputs);
-        let draws = predictor.sample((&start, &inputs), (10_000, 5));
+        let draws = predictor.sample(&start, &inputs, 10_000, 5);
         for at in [100, n] {
             let positions: Vec<[f64; 3]> = draws
                 .iter()

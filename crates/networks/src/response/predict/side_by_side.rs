@@ -105,7 +105,7 @@ impl WithSimd for Advance<'_, '_> {
             let correction = Packed::columns(simd, &corrections[..n]);
             let correction = dynamics.network.bounded(correction);
             let method = dynamics.network.correction();
-            let next = method.step_from(&dynamics.model, (&x, &u, &now), correction);
+            let next = method.step_from(&dynamics.model, &x, &u, &now, correction);
             for end in &Packed::rows(&next.to_array())[..n] {
                 ends.push(VehicleState::from_array(*end));
             }

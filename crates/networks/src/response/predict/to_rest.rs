@@ -81,7 +81,7 @@ impl Predictor {
             let resisted = with_resistance(&of.vehicle, [rolling, air]);
             let beyond = Dynamics::new(&resisted, &of.network, &of.latents);
             let draw = MotionDraw { component, latents };
-            follow([&dynamics, &beyond], &draw, (initial, inputs), || width * normal(&mut rng))
+            follow([&dynamics, &beyond], &draw, initial, inputs, || width * normal(&mut rng))
         };
         draws.par_iter().map(draw).collect()
     }
@@ -97,7 +97,7 @@ impl Predictor {
         let dynamics = of.dynamics();
         let path = |component| {
             let draw = MotionDraw { component, latents: [0.0; N_LATENTS] };
-            follow([&dynamics; 2], &draw, (initial, inputs), || 0.0)
+            follow([&dynamics; 2], &draw, initial, inputs, || 0.0)
         };
         (0..self.n_components()).map(path).collect()
     }
@@ -119,7 +119,8 @@ fn with_resistance(vehicle: &VehicleParameters, [rolling, air]: [f64; 2]) -> Veh
 fn follow(
     dynamics: [&Dynamics<'_>; 2],
     draw: &MotionDraw,
-    (initial, inputs): (&VehicleState<f64>, &[VehicleInput<f64>]),
+    initial: &VehicleState<f64>,
+    inputs: &[VehicleInput<f64>],
     mut normal: impl FnMut() -> f64,
 ) -> SettledMotion {
     let changes = |pair: &[VehicleInput<f64>]| pair[0] != pair[1];
@@ -134,8 +135,7 @@ fn follow(
             break;
         }
         let dynamics = dynamics[usize::from(time_s >= within.network.learned_s())];
-        let at = (&state, u, time_s);
-        state = dynamics.step((draw.component, &draw.latents), at, &mut batch);
+        state = dynamics.step(draw.component, &draw.latents, &state, u, time_s, &mut batch);
         let [vx, vy, yaw, roll] = dynamics.noise(draw.component, &batch).map(|std| std * normal());
         state.vx_body_m_s += vx;
         state.vy_body_m_s += vy;

@@ -252,7 +252,7 @@ pub fn learn_population(
         };
         let is_well_known = unseen.iter().flat_map(|of| &of.motions).any(is_of_car);
         let widths = if is_well_known { well_known } else { population.widths() };
-        population = population.with_learned_car((model.network(), widths), &cases)?;
+        population = population.with_learned_car(model.network(), widths, &cases)?;
     }
     model.set_domain(MotionDomain::from_cases(train));
     model.set_population(population);
@@ -285,7 +285,7 @@ fn well_known_widths(
                 cases.first().is_some_and(|case| is_same_car(&case.vehicle, &other.vehicle))
             };
             if of.motions.iter().any(is_of_car) {
-                known = known.with_learned_car((of.model.network(), Widths::NORMAL), &cases)?;
+                known = known.with_learned_car(of.model.network(), Widths::NORMAL, &cases)?;
             }
         }
         let cases = of.motions.clone();

@@ -41,7 +41,8 @@ impl PhysicsPoints {
     pub(crate) fn about(
         data: &OneStepData,
         records: &[ImpactRecord],
-        (config, seed): (&ResponseConfig, u64),
+        config: &ResponseConfig,
+        seed: u64,
     ) -> Self {
         let motions = simulate(records, N_MOTIONS, false, seed);
         let (mut at, mut motion_idx) = (Vec::new(), Vec::new());

@@ -52,7 +52,7 @@ pub fn pretrain(
     let set = ResponseTrainingSet { name: name.to_owned(), ..ResponseTrainingSet::default() };
     let plan =
         vec![Planned { stage: ResponseStage::Pretraining, n_epochs: config.pretraining.epochs }];
-    let training = TrainingRun::new(settings, (network, data, plan), Vec::new())?;
+    let training = TrainingRun::new(settings, network, data, plan, Vec::new())?;
     let (network, history) = run(training, settings, identity.clone(), report)?;
     let detail = ResponseTraining { n_simulated: motions.len(), keeps_latents: false };
     let record = ResponseRecord {
@@ -191,7 +191,7 @@ pub(super) fn fine_tune_once(
     }));
     let start_digest = start.map_or(String::new(), |start| start.record().data_digest.clone());
     let identity = sha256_hex([set.digest().as_bytes(), start_digest.as_bytes()]);
-    let training = TrainingRun::new(settings, (network, data, plan), history)?;
+    let training = TrainingRun::new(settings, network, data, plan, history)?;
     let (network, history) = run(training, settings, identity, report)?;
     let detail = ResponseTraining { n_simulated, keeps_latents: false };
     let record = ResponseRecord::new(set, settings, detail, history);

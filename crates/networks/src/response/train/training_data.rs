@@ -38,7 +38,7 @@ impl<'a> TrainingData<'a> {
         let instants = OneStepData::from_motions(&views, &config.network);
         let records: Vec<ImpactRecord> = cases.iter().filter_map(ResponseCase::impact).collect();
         let physics_points = (config.loss.physics > 0.0 && config.physics.batch_instants > 0)
-            .then(|| PhysicsPoints::about(&instants, &records, (config, seed)));
+            .then(|| PhysicsPoints::about(&instants, &records, config, seed));
         let rollouts = cases
             .iter()
             .map(|case| RolloutCase { case, vehicle: case.vehicle.clone().into() })

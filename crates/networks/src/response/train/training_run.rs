@@ -57,7 +57,9 @@ impl<'a> TrainingRun<'a> {
     /// - `history`: epochs of the training from which this one starts.
     pub(super) fn new(
         settings: &'a ResponseTrainSettings,
-        (network, data, plan): (ResponseNetwork, TrainingData<'a>, Vec<Planned>),
+        network: ResponseNetwork,
+        data: TrainingData<'a>,
+        plan: Vec<Planned>,
         history: Vec<EpochRecord<ResponseEpoch>>,
     ) -> Result<Self, LearningError> {
         let optimizer = AdamW::new(AdamWConfig::default(), network.parameters())?;
@@ -236,8 +238,8 @@ impl<'a> TrainingRun<'a> {
         let output = self.network.forward(gradients, [&features, &batch.tokens, &effects])?;
         let network = &config.network;
         let change = network.correction.change_per_unit();
-        let scales = (network.unit, change, network.min_std);
-        let [data, likelihood] = single_step_terms(&output, &batch.targets, scales)?;
+        let [data, likelihood] =
+            single_step_terms(&output, &batch.targets, network.unit, change, network.min_std)?;
         let factor = config.physics.quality_factor(1.0);
         let mut physics = (output.remainder.sqr()?.mean_all()? * factor)?;
         if let Some(points) =

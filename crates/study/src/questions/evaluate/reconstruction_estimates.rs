@@ -92,8 +92,12 @@ impl Asked<'_> {
         if is_stopped {
             return Ok(Outcome::Cancelled);
         }
-        let cost = (answer.report.ess, answer.report.n_simulations);
-        let ours = SpeedEstimates::from_posterior(&answer.posterior, cost, seconds());
+        let ours = SpeedEstimates::from_posterior(
+            &answer.posterior,
+            answer.report.ess,
+            answer.report.n_simulations,
+            seconds(),
+        );
         let started = Instant::now();
         let hand = HandCalculation::new(evidence, answer.target.model().cars(), &[]);
         let by_hand = SpeedEstimates::by_hand(hand.as_ref(), started.elapsed().as_secs_f64());
@@ -103,8 +107,13 @@ impl Asked<'_> {
             let settings = OptimumSettings { seed: of.seed, ..OptimumSettings::default() };
             let found = PointOptimum::find(&answer.target, settings);
             let seconds = started.elapsed().as_secs_f64();
-            let draws = (SWARM_DRAWS, of.seed);
-            methods.push(SpeedEstimates::by_swarm(&answer.target, found.as_ref(), draws, seconds));
+            methods.push(SpeedEstimates::by_swarm(
+                &answer.target,
+                found.as_ref(),
+                SWARM_DRAWS,
+                of.seed,
+                seconds,
+            ));
         }
         let (case, known) = (self.case.to_owned(), self.known);
         Ok(Outcome::Complete(CaseEstimates { case, known, methods }))

@@ -293,7 +293,7 @@ impl Question for ReconstructRequest {
             quantities,
             modes: posterior.modes(&particles, &turned_rad),
             fit,
-            budget: posterior.budget((particles.ess, self.seed)),
+            budget: posterior.budget(particles.ess, self.seed),
             ess: particles.ess,
             n_simulations: particles.n_evaluations + particles.z.len(),
             n_particles: particles.z.len(),

@@ -127,7 +127,7 @@ impl Drawn<'_> {
             match item {
                 Item::Text { at_pt, size_pt, ink, is_bold, text, owner } => {
                     self.tagged(surface, *owner, |this, surface| {
-                        this.text(surface, (text, *at_pt), (*size_pt, *ink, *is_bold));
+                        this.text(surface, text, *at_pt, *size_pt, *ink, *is_bold);
                     });
                 }
                 Item::Fill { rect_pt, ink } => {
@@ -165,8 +165,11 @@ impl Drawn<'_> {
     fn text(
         &self,
         surface: &mut Surface<'_>,
-        (text, [mut x_pt, y_pt]): (&str, [f32; 2]),
-        (size_pt, ink, is_bold): (f32, Ink, bool),
+        text: &str,
+        [mut x_pt, y_pt]: [f32; 2],
+        size_pt: f32,
+        ink: Ink,
+        is_bold: bool,
     ) {
         let color = color(ink);
         surface.set_fill(Some(Fill { paint: color.into(), ..Fill::default() }));
@@ -214,7 +217,7 @@ impl Drawn<'_> {
                 let text = fill(words.not_drawn, &[("caption", &caption)]);
                 let text = self.cut(&text, width - 16.0);
                 let at = [left + 8.0, top + 0.5 * height];
-                self.text(surface, (&text, at), (SMALL_PT, Ink::Muted, false));
+                self.text(surface, &text, at, SMALL_PT, Ink::Muted, false);
             }
         }
     }
@@ -240,7 +243,7 @@ impl Drawn<'_> {
         ];
         for (text, at) in texts {
             self.tagged(surface, None, |this, surface| {
-                this.text(surface, (&text, at), (SMALL_PT, Ink::Muted, false));
+                this.text(surface, &text, at, SMALL_PT, Ink::Muted, false);
             });
         }
         for y_pt in [top_pt + 5.0, bottom_pt - 11.0] {

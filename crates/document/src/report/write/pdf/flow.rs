@@ -72,10 +72,10 @@ impl<'a> Flow<'a> {
         let size_pt = document.paper.size_pt();
         let (pages, parts, outline) = (vec![PageItems::default()], Vec::new(), Vec::new());
         let mut flow = Self { fonts, size_pt, pages, parts, outline, y_pt: HIGH_MARGIN_PT };
-        flow.heading((1, 19.0), (&document.title, &[]));
+        flow.heading(1, 19.0, &document.title, &[]);
         for section in &document.sections {
             flow.space(10.0);
-            flow.heading((1, 14.0), (&section.title, &section.blocks));
+            flow.heading(1, 14.0, &section.title, &section.blocks);
             for (idx, block) in section.blocks.iter().enumerate() {
                 flow.block(block, section.blocks.get(idx + 1..).unwrap_or_default());
             }
@@ -135,7 +135,7 @@ impl<'a> Flow<'a> {
     pub fn text(&mut self, text: &str, style: Style, owner: Owner) {
         let width_pt = self.size_pt[0] - MARGIN_PT - style.left_pt;
         let step_pt = style.size_pt * LEADING;
-        for line in lines(text, (self.fonts, style.size_pt), width_pt) {
+        for line in lines(text, self.fonts, style.size_pt, width_pt) {
             self.need(step_pt);
             self.line(&line, style, owner);
             self.y_pt += step_pt;
@@ -157,7 +157,7 @@ impl<'a> Flow<'a> {
     }
 
     /// A heading, which stays with what follows it.
-    fn heading(&mut self, (level, size_pt): (u8, f32), (text, behind): (&str, &[Block])) {
+    fn heading(&mut self, level: u8, size_pt: f32, text: &str, behind: &[Block]) {
         self.need(size_pt * LEADING + self.below_heading_pt(behind));
         let page = self.pages.len() - 1;
         let entry = OutlineEntry { level, text: text.to_owned(), page, y_pt: self.y_pt };
@@ -179,7 +179,7 @@ impl<'a> Flow<'a> {
 
     fn picture_pt(&self, picture: &Picture) -> f32 {
         let width_pt = self.width_pt();
-        let n = lines(&picture.caption, (self.fonts, CAPTION_PT), width_pt).len();
+        let n = lines(&picture.caption, self.fonts, CAPTION_PT, width_pt).len();
         width_pt * PICTURE_ASPECT + 4.0 + n as f32 * CAPTION_PT * LEADING
     }
 
@@ -189,7 +189,7 @@ impl<'a> Flow<'a> {
             Block::Heading { level, text } => {
                 self.space(6.0);
                 let size_pt = if *level <= 2 { 11.5 } else { 10.0 };
-                self.heading((*level, size_pt), (text, behind));
+                self.heading(*level, size_pt, text, behind);
             }
             Block::Paragraph { text } => {
                 let owner = self.part(Role::Paragraph, None);
@@ -214,7 +214,7 @@ impl<'a> Flow<'a> {
         let step_pt = style.size_pt * LEADING;
         let width_pt = self.width_pt();
         self.space(2.0);
-        for line in lines(text, (self.fonts, style.size_pt), width_pt - 16.0) {
+        for line in lines(text, self.fonts, style.size_pt, width_pt - 16.0) {
             self.need(step_pt);
             let rect_pt = [MARGIN_PT, self.y_pt, width_pt, step_pt];
             self.push(Item::Fill { rect_pt, ink: Ink::WarningShade });

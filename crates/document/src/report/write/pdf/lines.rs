@@ -9,13 +9,13 @@ const SOFT_BREAKS: [char; 6] = ['/', '-', '_', ',', ';', '\\'];
 ///
 /// - `size_pt`: size of the font;
 /// - `width_pt`: largest width of a line; a single letter may be wider.
-pub(super) fn lines(text: &str, (fonts, size_pt): (&Fonts, f32), width_pt: f32) -> Vec<String> {
+pub(super) fn lines(text: &str, fonts: &Fonts, size_pt: f32, width_pt: f32) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let mut line = String::new();
     let mut used_pt = 0.0;
     let space_pt = size_pt * fonts.width(" ");
     for word in text.split_whitespace() {
-        for (idx, piece) in pieces(word, (fonts, size_pt), width_pt).into_iter().enumerate() {
+        for (idx, piece) in pieces(word, fonts, size_pt, width_pt).into_iter().enumerate() {
             let piece_pt = size_pt * fonts.width(&piece);
             let is_joined = idx == 0 && !line.is_empty();
             let gap_pt = if is_joined { space_pt } else { 0.0 };
@@ -38,7 +38,7 @@ pub(super) fn lines(text: &str, (fonts, size_pt): (&Fonts, f32), width_pt: f32) 
 }
 
 /// A word, cut where it is wider than a line.
-fn pieces(word: &str, (fonts, size_pt): (&Fonts, f32), width_pt: f32) -> Vec<String> {
+fn pieces(word: &str, fonts: &Fonts, size_pt: f32, width_pt: f32) -> Vec<String> {
     if size_pt * fonts.width(word) <= width_pt {
         return vec![word.to_owned()];
     }
@@ -63,7 +63,7 @@ fn pieces(word: &str, (fonts, size_pt): (&Fonts, f32), width_pt: f32) -> Vec<Str
 }
 
 /// Width of the widest word of a text, points.
-pub(super) fn widest_word_pt(text: &str, (fonts, size_pt): (&Fonts, f32)) -> f32 {
+pub(super) fn widest_word_pt(text: &str, fonts: &Fonts, size_pt: f32) -> f32 {
     let widths = text.split_whitespace().map(|word| size_pt * fonts.width(word));
     widths.fold(0.0, f32::max)
 }
@@ -83,7 +83,7 @@ mod tests {
             "",
         ] {
             for width_pt in [20.0, 60.0, 400.0] {
-                let lines = lines(text, (&fonts, 9.0), width_pt);
+                let lines = lines(text, &fonts, 9.0, width_pt);
                 for line in &lines {
                     assert!(9.0 * fonts.width(line) <= width_pt + 0.01, "{line} in {width_pt}");
                 }

@@ -59,7 +59,7 @@ impl Setting<'_> {
     fn cells(&self, row: &[String], fonts: &Fonts) -> Cells {
         let cells = row.iter().zip(&self.columns);
         cells
-            .map(|(cell, [_, width])| lines(cell, (fonts, CELL_PT), width - 2.0 * PADDING_PT))
+            .map(|(cell, [_, width])| lines(cell, fonts, CELL_PT, width - 2.0 * PADDING_PT))
             .collect()
     }
 
@@ -74,7 +74,7 @@ impl Setting<'_> {
             .map(|_| if is_first { flow.part(Role::HeaderCell, row) } else { None })
             .collect();
         let all = cells.iter().map(Vec::len).max().unwrap_or(0);
-        self.slice(flow, (cells, &owners), (0, all), true);
+        self.slice(flow, cells, &owners, 0, all, true);
     }
 
     fn row(&self, flow: &mut Flow<'_>, row: &[String], header: &Cells) {
@@ -100,7 +100,7 @@ impl Setting<'_> {
                 continue;
             }
             let take = left.min(fits);
-            self.slice(flow, (&cells, &owners), (done, take), false);
+            self.slice(flow, &cells, &owners, done, take, false);
             done += take;
         }
     }
@@ -109,8 +109,10 @@ impl Setting<'_> {
     fn slice(
         &self,
         flow: &mut Flow<'_>,
-        (cells, owners): (&Cells, &[Owner]),
-        (from, n): (usize, usize),
+        cells: &Cells,
+        owners: &[Owner],
+        from: usize,
+        n: usize,
         is_bold: bool,
     ) {
         let top_pt = flow.y_pt;
@@ -159,7 +161,7 @@ fn columns(table: &Table, fonts: &Fonts, width_pt: f32) -> Vec<[f32; 2]> {
         (0..n).map(|idx| padded(size(&|t| CELL_PT * fonts.width(t), idx))).collect();
     let widest = WIDEST_WORD * width_pt;
     let least: Vec<f32> = (0..n)
-        .map(|idx| padded(size(&|t| widest_word_pt(t, (fonts, CELL_PT)), idx)).min(widest))
+        .map(|idx| padded(size(&|t| widest_word_pt(t, fonts, CELL_PT), idx)).min(widest))
         .collect();
     let widths = column_widths(&wanted, &least, width_pt);
     let mut left_pt = MARGIN_PT;

@@ -22,7 +22,7 @@ pub(super) fn choose(
     let folds = case_folds(cases, seed);
     let tasks: Vec<_> = folds.iter().flat_map(|fold| [(fold, false), (fold, true)]).collect();
     let losses = tasks.par_iter().map(|((train, test), with_impulse)| {
-        fold_losses((train, test), columns, *with_impulse, seed)
+        fold_losses(train, test, columns, *with_impulse, seed)
     });
     let losses: Vec<Vec<(f64, CurveRegressionOptions)>> = losses.collect::<Result<_, _>>()?;
     let candidates = candidates().map(|options| {
@@ -51,7 +51,8 @@ fn candidates() -> impl Iterator<Item = CurveRegressionOptions> {
 /// Sum of the history errors over the cases left out, for all options with these inputs. Regressions
 /// that several options have in common are fitted once.
 fn fold_losses(
-    (train, test): (&[&ForceCase], &[&ForceCase]),
+    train: &[&ForceCase],
+    test: &[&ForceCase],
     columns: ColumnSet,
     with_impulse: bool,
     seed: u64,
@@ -64,8 +65,13 @@ fn fold_losses(
         let shapes = Shapes::fit(train, &scales, options)?;
         for n_components in N_COMPONENTS {
             let options = CurveRegressionOptions { n_components, ..options };
-            let parts = (scales.clone(), shapes.clone().truncated(n_components));
-            let model = CurveRegression::from_parts(train, parts, options, seed);
+            let model = CurveRegression::from_parts(
+                train,
+                scales.clone(),
+                shapes.clone().truncated(n_components),
+                options,
+                seed,
+            );
             let error = |case: &&ForceCase| history_error(case, model.point(&case.scenario));
             losses.push((mean(test.iter().map(error)) * test.len() as f64, options));
         }

@@ -115,12 +115,13 @@ impl CurveRegression {
     ) -> Result<Self, CurveFitError> {
         let scales = Scales::fit(cases, columns, options.with_impulse)?;
         let shapes = Shapes::fit(cases, &scales, options)?;
-        Ok(Self::from_parts(cases, (scales, shapes), options, seed))
+        Ok(Self::from_parts(cases, scales, shapes, options, seed))
     }
 
     pub(super) fn from_parts(
         cases: &[&ForceCase],
-        (scales, shapes): (Scales, Shapes),
+        scales: Scales,
+        shapes: Shapes,
         options: CurveRegressionOptions,
         seed: u64,
     ) -> Self {

@@ -38,7 +38,7 @@ impl Scales {
         let mut inputs = Vec::with_capacity(cases.len());
         let mut outputs: [Vec<Vec<f64>>; 3] = Default::default();
         for case in cases {
-            let (row, [mx, my]) = row(&momentum, (&features, with_impulse), &case.scenario)?;
+            let (row, [mx, my]) = row(&momentum, &features, with_impulse, &case.scenario)?;
             let [px, py] = case.impulse_n_s;
             inputs.push(row);
             outputs[0].push(vec![(px.hypot(py) / mx.hypot(my)).ln()]);
@@ -61,7 +61,7 @@ impl Scales {
         &self,
         scenario: &ForceScenario,
     ) -> Result<(Vec<f64>, [f64; 2]), CurveFitError> {
-        row(&self.momentum, (&self.features, self.with_impulse), scenario)
+        row(&self.momentum, &self.features, self.with_impulse, scenario)
     }
 
     pub(super) fn predict(&self, row: &[f64]) -> Result<[GaussianPrediction; 3], CurveFitError> {
@@ -72,7 +72,8 @@ impl Scales {
 
 fn row(
     momentum: &MomentumModel,
-    (features, with_impulse): (&FeatureMap, bool),
+    features: &FeatureMap,
+    with_impulse: bool,
     scenario: &ForceScenario,
 ) -> Result<(Vec<f64>, [f64; 2]), CurveFitError> {
     let solution = momentum.solve(scenario)?;
