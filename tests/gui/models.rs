@@ -284,9 +284,11 @@ fn an_interrupted_training_is_offered_after_a_restart_and_goes_on_to_its_end() {
     let entry = &entries(&harness)[0];
     let epochs = entry.figures.iter().find(|of| of.label == "Best epoch").expect("a figure");
     assert!(epochs.text.ends_with("of 60"), "{epochs:?}");
-    assert!(!checkpoint.exists() && killed.names("trainings").is_empty());
     step_until(&mut harness, "the end of it", |state| {
         state.session.unfinished.list.trainings.is_empty()
+    });
+    step_until(&mut harness, "a folder without its state", |_| {
+        !checkpoint.exists() && killed.names("trainings").is_empty()
     });
     assert!(!entry_is_cancelled(&harness));
 }

@@ -12,6 +12,9 @@ use impactlab_study::facts::{FactTable, FactWriter, TextRow, TextTable};
 /// Largest width of the names, points: a longer name goes on in the next line.
 const NAME_WIDTH: f32 = 150.0;
 
+/// Width that a value takes beside others, points.
+const VALUE_WIDTH: f32 = 150.0;
+
 /// Draws tables of facts below each other, with a button that copies them to the clipboard, separated
 /// by tabs.
 ///
@@ -28,48 +31,71 @@ pub fn facts_ui(ui: &mut Ui, name: &str, tables: &[FactTable], units: UnitSystem
                 ui.ctx().copy_text(copied(name, &tables));
             }
         });
+        let is_stacked = table.header.len() > 2 && ui.available_width() < width_beside(table);
         ScrollArea::horizontal()
             .id_salt(("facts", name, idx))
-            .show(ui, |ui| table_ui(ui, (name, idx), table));
+            .show(ui, |ui| table_ui(ui, (name, idx), table, is_stacked));
     }
 }
 
-fn table_ui(ui: &mut Ui, id: (&str, usize), table: &TextTable) {
-    Grid::new(("facts", id)).striped(true).num_columns(table.header.len()).show(ui, |ui| {
+/// The width that a table needs with its values beside each other, points.
+fn width_beside(table: &TextTable) -> f32 {
+    NAME_WIDTH + VALUE_WIDTH * (table.header.len() - 1) as f32
+}
+
+/// - `is_stacked`: the values of a row stand below each other, so that a narrow pane cuts off no
+///   interval.
+fn table_ui(ui: &mut Ui, id: (&str, usize), table: &TextTable, is_stacked: bool) {
+    let n_columns = if is_stacked { 2 } else { table.header.len() };
+    Grid::new(("facts", id)).striped(true).num_columns(n_columns).show(ui, |ui| {
         if !table.is_list() {
-            for (title, hint) in table.header.iter().zip(&table.header_hints) {
+            let titles = table.header.iter().zip(&table.header_hints).take(n_columns);
+            for (title, hint) in titles {
                 let title = ui.strong(title);
                 hint.map(|hint| title.on_hover_text(hint));
             }
             ui.end_row();
         }
         for row in &table.rows {
-            row_ui(ui, row);
+            name_ui(ui, row);
+            let values = row.cells.iter().enumerate().skip(1);
+            if is_stacked {
+                ui.vertical(|ui| {
+                    for (idx, cell) in values.filter(|(idx, cell)| *idx == 1 || !cell.is_empty()) {
+                        let title = (idx > 1).then(|| table.header[idx].as_str());
+                        ui.horizontal(|ui| {
+                            title.map(|title| ui.weak(title));
+                            cell_ui(ui, row, idx);
+                        });
+                    }
+                });
+            } else {
+                values.for_each(|(idx, _)| cell_ui(ui, row, idx));
+            }
             ui.end_row();
         }
     });
 }
 
-fn row_ui(ui: &mut Ui, row: &TextRow) {
-    let last = row.cells.len().saturating_sub(1);
-    for (idx, cell) in row.cells.iter().enumerate() {
-        match idx {
-            0 => {
-                ui.vertical(|ui| {
-                    ui.set_max_width(NAME_WIDTH);
-                    let name = ui.add(Label::new(cell).wrap());
-                    row.hint.map(|hint| name.on_hover_text(hint));
-                });
-            }
-            idx if idx == last && row.is_warning => {
-                let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-                ui.horizontal(|ui| {
-                    looks::icon_ui(ui, Icon::TriangleAlert, color);
-                    ui.colored_label(color, cell);
-                });
-            }
-            _ => value_ui(ui, cell),
-        }
+fn name_ui(ui: &mut Ui, row: &TextRow) {
+    ui.vertical(|ui| {
+        ui.set_max_width(NAME_WIDTH);
+        let name = ui.add(Label::new(row.cells.first().map_or("", String::as_str)).wrap());
+        row.hint.map(|hint| name.on_hover_text(hint));
+    });
+}
+
+/// A value of a row; the last one of a row to be looked at has the sign of a warning.
+fn cell_ui(ui: &mut Ui, row: &TextRow, idx: usize) {
+    let cell = row.cells.get(idx).map_or("", String::as_str);
+    if row.is_warning && idx + 1 == row.cells.len() {
+        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        ui.horizontal(|ui| {
+            looks::icon_ui(ui, Icon::TriangleAlert, color);
+            ui.colored_label(color, cell);
+        });
+    } else {
+        value_ui(ui, cell);
     }
 }
 

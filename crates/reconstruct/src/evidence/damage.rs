@@ -61,7 +61,7 @@ impl Item for Damage {
         ];
         let (along, depth) = if is_flank(*side) { (x, y) } else { (y, x) };
         visitor.measured(&along.required(), &along_sigma(*side), along_m);
-        visitor.number(&beyond_side(depth, *side).with_default("at the side of the car"), depth_m);
+        visitor.number(&beyond_side(depth, *side).with_default("at the side"), depth_m);
         visitor.measured(&ANGLE, &ANGLE_SIGMA_FIELD, angle_rad);
     }
 }

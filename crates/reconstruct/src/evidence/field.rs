@@ -141,6 +141,11 @@ impl Sigma {
         Self { field: Field::new(key, label, range), share: 0.0, least: default, source }
     }
 
+    /// The share of the value that it is where nobody states it; `None` for a fixed one.
+    pub fn relative(&self) -> Option<f64> {
+        (self.share > 0.0).then_some(self.share)
+    }
+
     /// A standard deviation that is a share of the value where nobody states it, and not below `least`.
     pub const fn share(
         key: &'static str,

@@ -6,7 +6,7 @@ use egui::{ComboBox, Response, Ui};
 use crate::app::reconstruction::ReconstructionCommand;
 use crate::app::widgets::{EmptyField, optional_quantity};
 use impactlab_core::ranges::Range;
-use impactlab_core::units::UnitSystem;
+use impactlab_core::units::{UnitSystem, percent};
 use impactlab_reconstruct::evidence::{
     Bounds, Choice, Field, Fields, PlaceMut, PointsMut, Sigma, Stated, Word,
 };
@@ -67,9 +67,13 @@ impl<'u> FieldRows<'u> {
     }
 
     /// A standard deviation: an empty field has that of the program in parentheses.
+    /// That is a share of the value for some, which is said where there is none yet.
     fn sigma(&mut self, sigma: &Sigma, value: Option<f64>, stated: &mut Option<f64>) -> Response {
         let start_si = sigma.default_at(value.unwrap_or(0.0));
-        let text = format!("({})", sigma.field.range.quantity.shown(start_si, self.units));
+        let text = match (value, sigma.relative()) {
+            (None, Some(share)) => format!("({} of it)", percent(share)),
+            _ => format!("({})", sigma.field.range.quantity.shown(start_si, self.units)),
+        };
         let empty = EmptyField { text: &text, start_si };
         let response = self.quantity(stated, empty, &sigma.field.range);
         let source = format!("One standard deviation. Where the field is empty: {}", sigma.source);

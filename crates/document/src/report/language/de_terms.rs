@@ -190,7 +190,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("struck side", "gestoßene Seite"),
     ("contact ahead of the CG", "Kontakt vor dem Schwerpunkt"),
     ("contact to the left of the CG", "Kontakt links vom Schwerpunkt"),
-    ("at the side of the car", "an der Seite des Fahrzeugs"),
+    ("at the side", "an der Seite"),
     ("angle of the cars", "Winkel zwischen den Fahrzeugen nach dem Schaden"),
     ("event data recorder", "Unfalldatenspeicher (EDR)"),
     ("Δv ahead", "Δv nach vorn"),
