@@ -61,7 +61,7 @@ fn table_ui(ui: &mut Ui, id: (&str, usize), table: &TextTable, is_stacked: bool)
             let values = row.cells.iter().enumerate().skip(1);
             if is_stacked {
                 ui.vertical(|ui| {
-                    for (idx, cell) in values.filter(|(idx, cell)| *idx == 1 || !cell.is_empty()) {
+                    for (idx, _) in values.filter(|(idx, cell)| *idx == 1 || !cell.is_empty()) {
                         let title = (idx > 1).then(|| table.header[idx].as_str());
                         ui.horizontal(|ui| {
                             title.map(|title| ui.weak(title));

@@ -36,7 +36,7 @@ const SENSOR_Y: Field = Field::new("sensor_y", "sensor to the left of the CG", C
     .turned()
     .with_default("at the CG");
 const ENDS: Field =
-    Field::new("ends", "end of the record", PULSE_END).with_default("the end of the contact");
+    Field::new("ends", "end of the record", PULSE_END).with_default("end of contact");
 
 /// Record of an event data recorder in the struck car.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -310,7 +310,7 @@ mod tests {
             ("event data recorder", "Δv ahead", "3.6 km/h to 7.2 km/h"),
             ("event data recorder", "sensor ahead of the CG", "0.37 m"),
             ("event data recorder", "sensor to the left of the CG", "at the CG"),
-            ("event data recorder", "end of the record", "the end of the contact"),
+            ("event data recorder", "end of the record", "end of contact"),
             ("struck car", "track width", "1.51 m"),
             ("damage of the struck car", "contact to the left of the CG", "0.91 m"),
             ("position in a video", "1: time", "1.23 s"),

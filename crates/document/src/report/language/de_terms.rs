@@ -199,7 +199,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("sensor to the left of the CG", "Sensor links vom Schwerpunkt"),
     ("at the CG", "am Schwerpunkt"),
     ("end of the record", "Ende der Aufzeichnung"),
-    ("the end of the contact", "Ende des Kontakts"),
+    ("end of contact", "Ende des Kontakts"),
     ("position in a video", "Lage im Video"),
     ("after the impact", "nach dem Stoß"),
     ("driver braked", "Fahrer bremste"),
