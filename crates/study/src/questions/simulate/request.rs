@@ -168,6 +168,23 @@ impl SimulateRequest {
 /// Makes the analysis with given vehicles and settings.
 type Analyse<'a> = dyn Fn(&Settings) -> Result<Analysis, AnalysisError> + Sync + 'a;
 
+impl SimulateRequest {
+    /// What restricts the answer.
+    ///
+    /// - `overlap`: that the outlines of the scenario overlap, if they do.
+    fn restrictions(
+        &self,
+        report: &SimulateReport,
+        analysis: &Analysis,
+        overlap: Option<Caveat>,
+    ) -> impl Iterator<Item = Caveat> {
+        let recorded = analysis.force.as_ref().filter(|_| self.source.is_recorded());
+        let cut = recorded.and_then(restrictions::cut_record_caveat);
+        let simulated = restrictions::simulation_caveats(report, self.until_rest);
+        simulated.into_iter().chain(overlap).chain(cut)
+    }
+}
+
 impl Question for SimulateRequest {
     type Answer = SimulateAnswer;
     type Report = Answer<SimulateReport>;
@@ -267,10 +284,7 @@ impl Question for SimulateRequest {
             Some(_) => Provenance::of_seed(self.seed),
             None => Provenance::default(),
         };
-        caveats.extend(restrictions::simulation_caveats(&report, self.until_rest));
-        caveats.extend(overlap);
-        let recorded = analysis.force.as_ref().filter(|_| self.source.is_recorded());
-        caveats.extend(recorded.and_then(restrictions::cut_record_caveat));
+        caveats.extend(self.restrictions(&report, &analysis, overlap));
         let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
     }
