@@ -124,7 +124,7 @@ impl State {
                     _ => FileKind::Force,
                 };
                 let file = open.map_or_else(|| SeriesFile::new(&path), Source::series_file);
-                MotionSource::of_file(file, kind, project.beside.start.clone())
+                MotionSource::from_file(file, kind, project.beside.start.clone())
             }
             Subject::Manoeuvre => project.simulate.source.clone(),
             Subject::Scenario => MotionSource::Scenario {
@@ -156,7 +156,7 @@ impl State {
             if kind == FileKind::Trajectory {
                 self.project.beside.start.clone_from(&start);
             }
-            self.project.simulate.source = MotionSource::of_file(file, kind, start);
+            self.project.simulate.source = MotionSource::from_file(file, kind, start);
         }
         self.project.keep_in_step();
     }

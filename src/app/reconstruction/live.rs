@@ -49,6 +49,6 @@ fn particles(sampling: &Sampling<'_>) -> LiveParticles {
         [Some(low), Some(high)] => Some([low, high]),
         _ => None,
     };
-    let paths = ReconstructedPaths::of_particles(target, z);
+    let paths = ReconstructedPaths::from_particles(target, z);
     LiveParticles { paths, temperature, speeds_m_s }
 }

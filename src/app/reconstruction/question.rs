@@ -92,8 +92,10 @@ impl Question for ReconstructionQuestion {
             let quantities = ReconstructedQuantity::ALL.iter();
             let components = answer.target.model().prior().components().iter();
             PreparedReconstruction {
-                paths: ReconstructedPaths::of(&answer),
-                mode_paths: modes.map(|mode| ReconstructedPaths::of_mode(&answer, mode)).collect(),
+                paths: ReconstructedPaths::from_answer(&answer),
+                mode_paths: modes
+                    .map(|mode| ReconstructedPaths::from_mode(&answer, mode))
+                    .collect(),
                 priors: quantities.map(|of| prior_values(&answer.target, *of)).collect(),
                 intervals_90: components
                     .map(|component| answer.posterior.interval_90_of(component.latent))

@@ -87,7 +87,7 @@ pub(super) fn figure(
         }
         (None, PlotArg::Budget) => budget_figure(answer, caveats, units),
         (None, _) => {
-            let paths = ReconstructedPaths::of(answer);
+            let paths = ReconstructedPaths::from_answer(answer);
             let view = match args.plot {
                 PlotArg::CarsAbove => Some(ViewArg::Above),
                 PlotArg::CarsPerspective => Some(ViewArg::Perspective),
@@ -113,7 +113,7 @@ pub(super) fn cars_scene(
     console: &mut Console<'_>,
 ) -> Result<(Scene, Vec<String>), CliError> {
     let of = Reconstructed::new(request, console)?;
-    let scene = of.cars(&ReconstructedPaths::of(&of.answer), units);
+    let scene = of.cars(&ReconstructedPaths::from_answer(&of.answer), units);
     let notes = of.notes().into_iter().chain(of.far_notes(&scene)).collect();
     Ok((scene, notes))
 }

@@ -56,7 +56,7 @@ impl SourceArgs {
             }
             let file = SeriesFile { path, map: self.map.clone() };
             let kind: FileKind = library.series(&file)?.kind;
-            return Ok(MotionSource::of_file(file, kind, start));
+            return Ok(MotionSource::from_file(file, kind, start));
         }
         if self.map.is_some() {
             return Err(StudyError::MapOfFolder { path }.into());

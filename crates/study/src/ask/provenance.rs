@@ -41,7 +41,7 @@ impl Default for Provenance {
 
 impl Provenance {
     /// An answer with draws.
-    pub(crate) fn of_seed(seed: u64) -> Self {
+    pub(crate) fn from_seed(seed: u64) -> Self {
         Self { seed: Some(seed), ..Self::default() }
     }
 

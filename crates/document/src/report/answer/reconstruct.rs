@@ -76,7 +76,7 @@ fn pictures(
     let (words, units, report) = (wording.words, wording.units, &answer.report);
     let caveats = &report.caveats;
     let name = ("name", &*report.case);
-    let paths = ReconstructedPaths::of(answer);
+    let paths = ReconstructedPaths::from_answer(answer);
     let scene = ReconstructionScene::new(answer, &paths);
     let plan = PartPicture::figure(
         fill(words.reconstruction_picture, &[name]),

@@ -160,7 +160,7 @@ impl EvaluateForceRequest {
         cost.add("evaluation", 1.0, evaluation.as_secs_f64());
         if self.for_figures {
             let (watch, n) = (Watch::start(), MEASURED_CASES.min(test.len()));
-            EvaluatedForceCases::of(&model, &test[..n], self.seed, observer)?;
+            EvaluatedForceCases::evaluate(&model, &test[..n], self.seed, observer)?;
             cost.add("curves of cases", test.len() as f64, watch.seconds() / n.max(1) as f64);
         }
         Ok(Outcome::Complete(cost))

@@ -227,7 +227,7 @@ impl DatasetReport {
 
 impl RecordedForceReport {
     /// Impulse, peak and contact of a file's force; `None` if it has none.
-    fn of(loaded: &Loaded) -> Option<Self> {
+    fn from_loaded(loaded: &Loaded) -> Option<Self> {
         let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling()).ok()?;
         let sizes = force.time_s.iter().zip(force.fx_n.iter().zip(&force.fy_n));
         let sizes = sizes.map(|(time_s, (fx, fy))| (*time_s, fx.hypot(*fy)));
@@ -269,7 +269,7 @@ impl FileReport {
             decimal_comma: loaded.dialect.decimal_comma,
             force_sampling: has_force.then(|| word(&loaded.force_sampling())),
             columns: loaded.columns.iter().map(column).collect(),
-            force: RecordedForceReport::of(loaded),
+            force: RecordedForceReport::from_loaded(loaded),
             notes: loaded.notes.iter().map(ToString::to_string).collect(),
             flags,
         }
@@ -294,7 +294,7 @@ impl CaseFlag {
 
 impl ProposedColumn {
     /// What is told of a column.
-    pub fn of(column: &ColumnProposal) -> Self {
+    pub fn from_proposal(column: &ColumnProposal) -> Self {
         Self {
             column: column.number,
             name: column.name.clone(),

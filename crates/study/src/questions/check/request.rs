@@ -209,6 +209,6 @@ fn problem(path: &Path, kind: InputKind, error: &DataError) -> PathProblem {
         kind,
         message: InputError::new(kind, error).to_string(),
         map: columns.as_deref().and_then(ProposedColumn::map),
-        columns: columns.map(|columns| columns.iter().map(ProposedColumn::of).collect()),
+        columns: columns.map(|columns| columns.iter().map(ProposedColumn::from_proposal).collect()),
     }
 }

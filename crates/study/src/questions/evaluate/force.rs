@@ -172,7 +172,7 @@ impl Question for EvaluateForceRequest {
     ) -> Result<Outcome<EvaluateForceAnswer>, StudyError> {
         let model = library.force_model(&self.model)?;
         let digest = library.force_model_digest(&self.model)?;
-        let provenance = Provenance::of_seed(self.seed).with_models([digest]);
+        let provenance = Provenance::from_seed(self.seed).with_models([digest]);
         let settings = EvaluationSettings {
             columns: self.columns,
             seed: self.seed,
@@ -203,7 +203,7 @@ impl Question for EvaluateForceRequest {
         let evaluated = evaluate_model(&model, &test, &settings, &mut progress_of(observer))?;
         let Outcome::Complete(evaluation) = evaluated else { return Ok(Outcome::Cancelled) };
         let cases = if self.for_figures {
-            match EvaluatedForceCases::of(&model, &test, self.seed, observer)? {
+            match EvaluatedForceCases::evaluate(&model, &test, self.seed, observer)? {
                 Outcome::Complete(cases) => Some(cases),
                 Outcome::Cancelled => return Ok(Outcome::Cancelled),
             }
@@ -232,7 +232,7 @@ impl Question for EvaluateForceRequest {
 
 impl EvaluatedForceCases {
     /// Draws curves of all cases and computes the bands of some.
-    pub(crate) fn of(
+    pub(crate) fn evaluate(
         model: &ForceModel,
         cases: &[ForceCase],
         seed: u64,

@@ -150,7 +150,7 @@ impl EvaluateReconstructionRequest {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Estimated, StudyError> {
-        let finished = FinishedCases::of(self.finished.as_deref())?;
+        let finished = FinishedCases::from_folder(self.finished.as_deref())?;
         let mut all = Estimated::default();
         let known = || self.known.iter().copied();
         let pairs = cases.iter().flat_map(|case| known().map(move |known| (case, known)));
@@ -248,7 +248,7 @@ impl Question for EvaluateReconstructionRequest {
         let report = Answer {
             report,
             caveats: missing.into_iter().collect(),
-            provenance: Provenance::of_seed(self.seed),
+            provenance: Provenance::from_seed(self.seed),
         };
         Ok(Outcome::Complete(EvaluateReconstructionAnswer { report }))
     }

@@ -122,7 +122,7 @@ impl Asked<'_> {
 
 impl<'a> FinishedCases<'a> {
     /// The files in a folder, which is made if it is not there; none without a folder.
-    pub(crate) fn of(folder: Option<&'a Path>) -> Result<Self, StudyError> {
+    pub(crate) fn from_folder(folder: Option<&'a Path>) -> Result<Self, StudyError> {
         if let Some(folder) = folder {
             fs::create_dir_all(folder).map_err(|source| DataError::io(folder, source))?;
         }

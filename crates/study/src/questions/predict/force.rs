@@ -252,11 +252,11 @@ impl Question for PredictForceRequest {
         let settings = ForecastSettings { n_curves: self.samples, seed: self.seed };
         let forecast =
             ForceForecast::new(&prediction.mixture, settings).map_err(ForceError::from)?;
-        let provenance =
-            Provenance::of_seed(self.seed).with_models([library.force_model_digest(&self.model)?]);
-        let mut report = PredictForceReport::of(name, &self.model, (&prediction, &forecast));
+        let provenance = Provenance::from_seed(self.seed)
+            .with_models([library.force_model_digest(&self.model)?]);
+        let mut report = PredictForceReport::new(name, &self.model, (&prediction, &forecast));
         report.implied_contact = impact.and_then(|(impact, heading_rad)| {
-            ImpliedContactReport::of(&prediction, (&impact, heading_rad), self.seed)
+            ImpliedContactReport::from_prediction(&prediction, (&impact, heading_rad), self.seed)
         });
         let restrictions = restrictions::predicted_force_caveats(&report, &prediction.caveats);
         let caveats = restrictions.into_iter().chain(unused).chain(overlap).collect();
@@ -266,7 +266,7 @@ impl Question for PredictForceRequest {
 }
 
 impl PredictForceReport {
-    fn of(
+    fn new(
         scenario: String,
         model: &ModelChoice,
         (prediction, forecast): (&ForcePrediction, &ForceForecast),

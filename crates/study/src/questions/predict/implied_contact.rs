@@ -63,7 +63,7 @@ impl MomentumReport {
     /// The solution of an impact; `None` if it has none.
     ///
     /// - `heading_rad`: world angle of the x axis of the impulse.
-    pub(crate) fn of(impact: &Impact, heading_rad: f64) -> Option<Self> {
+    pub(crate) fn from_impact(impact: &Impact, heading_rad: f64) -> Option<Self> {
         let solution = impact.solve().ok()?;
         let surface = &impact.surface;
         Some(Self {
@@ -84,7 +84,7 @@ impl ImpliedContactReport {
     /// - `impact`: the impact in world axes;
     /// - `heading_rad`: heading of the struck vehicle, along which x of the predicted force lies;
     /// - `seed`: of the draws.
-    pub(crate) fn of(
+    pub(crate) fn from_prediction(
         prediction: &ForcePrediction,
         (impact, heading_rad): (&Impact, f64),
         seed: u64,
@@ -106,7 +106,7 @@ impl ImpliedContactReport {
             p_rigid,
             p_energy_gain,
             warning: warning(p_rigid, p_energy_gain),
-            momentum: MomentumReport::of(impact, heading_rad)?,
+            momentum: MomentumReport::from_impact(impact, heading_rad)?,
         })
     }
 }
@@ -155,7 +155,9 @@ mod tests {
             let prediction = model.predict(&numbers).unwrap();
             let mut impact = scenario.impact().unwrap();
             let heading_rad = scenario.struck.heading_rad;
-            let report = ImpliedContactReport::of(&prediction, (&impact, heading_rad), 0).unwrap();
+            let report =
+                ImpliedContactReport::from_prediction(&prediction, (&impact, heading_rad), 0)
+                    .unwrap();
             assert!((report.momentum.restitution - scenario.contact.restitution).abs() < 1e-12);
             impact.surface.restitution = report.restitution.median;
             impact.surface.friction_limit = report.impulse_ratio.median.abs();

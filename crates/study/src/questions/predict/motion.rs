@@ -324,7 +324,7 @@ impl PredictMotionRequest {
         let scenario = choice.load()?;
         let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
         let at = (&impact, scenario.struck.heading_rad);
-        Ok(ImpliedContactReport::of(prediction, at, self.seed))
+        Ok(ImpliedContactReport::from_prediction(prediction, at, self.seed))
     }
 
     /// Whether the motion of the source is a recorded one.
@@ -369,7 +369,7 @@ impl PredictMotionRequest {
             ForceSource::Given | ForceSource::File(_) => None,
         };
         let response = library.response_model_digest(&self.response_model)?;
-        Ok(Provenance::of_seed(self.seed).with_models(force.into_iter().chain([response])))
+        Ok(Provenance::from_seed(self.seed).with_models(force.into_iter().chain([response])))
     }
 
     fn report(

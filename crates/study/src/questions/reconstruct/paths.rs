@@ -23,18 +23,18 @@ impl ReconstructedPaths {
     pub const MEDIAN: &str = "a particle of median speed";
 
     /// Simulates paths of an answer's particles.
-    pub fn of(answer: &ReconstructAnswer) -> Self {
+    pub fn from_answer(answer: &ReconstructAnswer) -> Self {
         let all: Vec<usize> = (0..answer.particles.z.len()).collect();
         Self::among(answer, &all, &answer.report.quantities)
     }
 
     /// Simulates paths of the particles of one course of events.
-    pub fn of_mode(answer: &ReconstructAnswer, mode: &Mode) -> Self {
+    pub fn from_mode(answer: &ReconstructAnswer, mode: &Mode) -> Self {
         Self::among(answer, &mode.members, &mode.quantities)
     }
 
     /// Simulates paths of particles that are still moving, of which there is no median.
-    pub fn of_particles(target: &ReconstructionTarget, z: &[Vec<f64>]) -> Self {
+    pub fn from_particles(target: &ReconstructionTarget, z: &[Vec<f64>]) -> Self {
         let every = z.len().div_ceil(N_PATHS).max(1);
         let chosen: Vec<Vec<f64>> = z.iter().step_by(every).cloned().collect();
         let drawn = target.model().motions(&chosen, |motion| motion.path);

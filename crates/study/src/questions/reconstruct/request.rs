@@ -258,7 +258,7 @@ impl Question for ReconstructRequest {
         })?;
         let outside = outside_domain(&evidence, cars, model.zones());
         let checkpoint = self.checkpoint(&evidence, &model)?;
-        let friction_zones = model.zones().iter().map(FrictionZoneReport::of).collect();
+        let friction_zones = model.zones().iter().map(FrictionZoneReport::from_zone).collect();
         let target = ReconstructionTarget::new(evidence, model, Discrepancy::default());
         let settings = self.settings();
         let mut before = None;
@@ -302,7 +302,7 @@ impl Question for ReconstructRequest {
             friction_zones,
             priors: target.model().prior().components().to_vec(),
         };
-        let report = Answer { report, caveats, provenance: Provenance::of_seed(self.seed) };
+        let report = Answer { report, caveats, provenance: Provenance::from_seed(self.seed) };
         Ok(Outcome::Complete(ReconstructAnswer { report, target, particles, posterior }))
     }
 }

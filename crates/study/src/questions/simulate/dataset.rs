@@ -134,7 +134,7 @@ impl Question for SimulateDatasetRequest {
         let summary =
             |choose: fn(&Replay) -> bool| ErrorSummary::from_replays(&replay.cases, choose);
         let cases: Vec<ReplayedCaseReport> =
-            replay.cases.iter().map(ReplayedCaseReport::of).collect();
+            replay.cases.iter().map(ReplayedCaseReport::from_replay).collect();
         let failures: Vec<String> = problems.chain(failed).collect();
         let flagged = restrictions::flagged_cases_caveats(&cases).into_iter();
         let left_out = restrictions::left_out_caveat(failures.len(), "cases");
@@ -165,7 +165,7 @@ impl Answer<SimulateDatasetReport> {
 }
 
 impl ReplayedCaseReport {
-    fn of(replay: &Replay) -> Self {
+    fn from_replay(replay: &Replay) -> Self {
         Self {
             case: replay.case.clone(),
             spin: replay.spin,

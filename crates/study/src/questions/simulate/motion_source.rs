@@ -62,7 +62,7 @@ impl MotionSource {
     /// The source of a file that was opened, by what the file is about.
     ///
     /// - `start`: speed and contact point that the user gave; the file is filled in here.
-    pub fn of_file(file: SeriesFile, kind: FileKind, start: Drive) -> Self {
+    pub fn from_file(file: SeriesFile, kind: FileKind, start: Drive) -> Self {
         match kind {
             FileKind::Trajectory => Self::Trajectory { file, contact: start.contact },
             FileKind::Force => Self::Drive(Drive { force: Some(file), ..start }),

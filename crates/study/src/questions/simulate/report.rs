@@ -26,7 +26,7 @@ pub struct FrictionZoneReport {
 }
 
 impl FrictionZoneReport {
-    pub(crate) fn of(zone: &FrictionZone) -> Self {
+    pub(crate) fn from_zone(zone: &FrictionZone) -> Self {
         Self { name: zone.name.clone(), friction: zone.friction }
     }
 
@@ -149,7 +149,7 @@ pub struct EndState {
 
 impl SimulateReport {
     /// What follows from an analysis.
-    pub(crate) fn of(request: &SimulateRequest, analysis: &Analysis) -> Result<Self, SeriesError> {
+    pub(crate) fn new(request: &SimulateRequest, analysis: &Analysis) -> Result<Self, SeriesError> {
         let motion = analysis.simulation.as_ref();
         let series = motion.map(|motion| &motion.series);
         let interval = analysis.force.as_ref().and_then(contact_interval);
@@ -165,15 +165,19 @@ impl SimulateReport {
             equations: word(&analysis.vehicle.equations),
             integrator: word(&request.integrator),
             friction: analysis.vehicle.tires.friction,
-            friction_zones: analysis.friction_zones.iter().map(FrictionZoneReport::of).collect(),
+            friction_zones: analysis
+                .friction_zones
+                .iter()
+                .map(FrictionZoneReport::from_zone)
+                .collect(),
             duration_s: recorded_s.or(end_s).unwrap_or(request.duration_s),
-            force: ForceReport::of(request, analysis),
+            force: ForceReport::from_analysis(request, analysis),
             momentum: None,
             delta_v_m_s: delta_v,
             delta_v_magnitude_m_s: delta_v.map(|[x, y]| x.hypot(y)),
-            end: series.map(EndState::of).transpose()?,
+            end: series.map(EndState::from_series).transpose()?,
             distance_m: series.map(distance_m).transpose()?,
-            rest: motion.map(RestState::of).transpose()?.flatten(),
+            rest: motion.map(RestState::from_motion).transpose()?.flatten(),
             largest_yaw_change_rad: series.map(largest_yaw_change_rad).transpose()?,
             tire_marks: TireMarkReport::all(analysis),
             error: analysis.error.clone(),
@@ -188,7 +192,7 @@ impl SimulateReport {
 }
 
 impl ForceReport {
-    fn of(request: &SimulateRequest, analysis: &Analysis) -> Option<Self> {
+    fn from_analysis(request: &SimulateRequest, analysis: &Analysis) -> Option<Self> {
         let force = analysis.force.as_ref()?;
         let interval = contact_interval(force);
         let (peak_n, peak_time_s) = force.peak()?;
@@ -238,7 +242,7 @@ fn path_length_m(x: &[f64], y: &[f64]) -> f64 {
 }
 
 impl RestState {
-    fn of(motion: &Motion) -> Result<Option<Self>, SeriesError> {
+    fn from_motion(motion: &Motion) -> Result<Option<Self>, SeriesError> {
         let Some(time_s) = motion.rest_s else { return Ok(None) };
         let series = &motion.series;
         let n_before = series.time_s().partition_point(|&t| t <= time_s + 1e-9);
@@ -260,8 +264,8 @@ impl RestState {
 
 /// Where a simulated motion ends: at rest, or at its last sample.
 pub(crate) fn motion_end(motion: &Motion) -> Result<MotionEnd, SeriesError> {
-    let end = EndState::of(&motion.series)?;
-    let rest = RestState::of(motion)?;
+    let end = EndState::from_series(&motion.series)?;
+    let rest = RestState::from_motion(motion)?;
     let last_s = motion.series.time_s().last().copied().unwrap_or(0.0);
     let pose = rest.map_or([end.x_m, end.y_m, end.yaw_rad], |at| [at.x_m, at.y_m, at.yaw_rad]);
     let [x_m, y_m, yaw_rad] = pose;
@@ -281,7 +285,7 @@ pub(crate) fn motion_end(motion: &Motion) -> Result<MotionEnd, SeriesError> {
 }
 
 impl EndState {
-    pub(crate) fn of(series: &TimeSeries) -> Result<Self, SeriesError> {
+    pub(crate) fn from_series(series: &TimeSeries) -> Result<Self, SeriesError> {
         let last = |channel| -> Result<f64, SeriesError> {
             let values = series.require(channel)?;
             Ok(values.last().copied().unwrap_or(f64::NAN))

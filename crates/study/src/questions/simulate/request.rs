@@ -275,13 +275,13 @@ impl Question for SimulateRequest {
         caveats.extend(assumed::estimates(&analysis.vehicle));
         let notes = analysis.notes.iter().map(|text| Caveat::new(CaveatKind::Note, text));
         caveats.extend(notes);
-        let mut report = SimulateReport::of(self, &analysis)
+        let mut report = SimulateReport::new(self, &analysis)
             .map_err(|source| failed(AnalysisError::Series(source)))?;
         report.momentum = momentum;
         let asked = (self.vehicle_draws, self.seed);
         report.uncertainty = vehicle_uncertainty(asked, (&settings, &analysis), &analyse);
         let provenance = match report.uncertainty {
-            Some(_) => Provenance::of_seed(self.seed),
+            Some(_) => Provenance::from_seed(self.seed),
             None => Provenance::default(),
         };
         caveats.extend(self.restrictions(&report, &analysis, overlap));
@@ -301,7 +301,7 @@ fn contact_of(
     let overlap = geometry.as_ref().and_then(restrictions::overlap_caveat);
     let Ok(impact) = scenario.impact() else { return (None, overlap) };
     caveats.extend(assumed::contact_default(scenario, &impact));
-    (MomentumReport::of(&impact, 0.0), overlap)
+    (MomentumReport::from_impact(&impact, 0.0), overlap)
 }
 
 /// Refuses a force that acts at a point far off the struck vehicle.

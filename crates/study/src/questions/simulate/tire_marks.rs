@@ -38,12 +38,12 @@ impl TireMarkReport {
             .into_iter()
             .flat_map(|(vehicle, marks)| {
                 let marks = marks.unwrap_or_default();
-                marks.into_iter().filter_map(move |mark| Self::of(vehicle, &mark))
+                marks.into_iter().filter_map(move |mark| Self::new(vehicle, &mark))
             })
             .collect()
     }
 
-    fn of(vehicle: &'static str, mark: &TireMark) -> Option<Self> {
+    fn new(vehicle: &'static str, mark: &TireMark) -> Option<Self> {
         let [first, last] = mark.ends()?;
         Some(Self {
             vehicle,

@@ -66,7 +66,7 @@ pub(crate) fn vehicle_uncertainty(
         let analysis = analyse(&Settings { struck, ..settings.clone() }).ok()?;
         let motion = analysis.simulation?;
         Some(DrawnEnd {
-            state: EndState::of(&motion.series).ok()?,
+            state: EndState::from_series(&motion.series).ok()?,
             end: motion_end(&motion).ok()?,
             has_met: analysis.second_contact.is_some(),
         })

@@ -208,7 +208,7 @@ impl Question for FineTuneRequest {
         };
         let started = Instant::now();
         let model = self.learned(start.as_deref(), &set, &settings, observer)?;
-        let answer = ResponseTrainingAnswer::of(model, started.elapsed().as_secs_f64(), notes)?;
+        let answer = ResponseTrainingAnswer::new(model, started.elapsed().as_secs_f64(), notes)?;
         Ok(Outcome::Complete(answer))
     }
 }

@@ -146,11 +146,11 @@ impl Question for TrainForceRequest {
         let started = Instant::now();
         let model = train(&set, &settings, &mut |told| observer(Event::Training(told)))?;
         let seconds = started.elapsed().as_secs_f64();
-        let provenance = Provenance::of_seed(self.training.seed);
+        let provenance = Provenance::from_seed(self.training.seed);
         let provenance = provenance.with_trained(FORCE_NETWORK, &model)?;
         let left_out_cases = restrictions::left_out_caveat(left_out.len(), "cases");
         let report = Answer {
-            report: TrainForceReport::of(&model, seconds, left_out),
+            report: TrainForceReport::new(&model, seconds, left_out),
             caveats: left_out_cases.into_iter().collect(),
             provenance,
         };
@@ -159,7 +159,7 @@ impl Question for TrainForceRequest {
 }
 
 impl TrainForceReport {
-    fn of(model: &ForceModel, seconds: f64, left_out: Vec<String>) -> Self {
+    fn new(model: &ForceModel, seconds: f64, left_out: Vec<String>) -> Self {
         let record = model.record();
         let best = record.detail.best_epoch.checked_sub(1).and_then(|idx| record.history.get(idx));
         Self {

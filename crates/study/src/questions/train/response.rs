@@ -190,13 +190,13 @@ impl Question for TrainResponseRequest {
         let (started, name) = (Instant::now(), data_name(&self.data));
         let model =
             pretrain(&name, &records, &settings, &mut |told| observer(Event::Training(told)))?;
-        let answer = ResponseTrainingAnswer::of(model, started.elapsed().as_secs_f64(), notes)?;
+        let answer = ResponseTrainingAnswer::new(model, started.elapsed().as_secs_f64(), notes)?;
         Ok(Outcome::Complete(answer))
     }
 }
 
 impl ResponseTrainingAnswer {
-    pub(crate) fn of(
+    pub(crate) fn new(
         model: ResponseModel,
         seconds: f64,
         notes: TrainingNotes,
