@@ -263,7 +263,7 @@ fn simulate_dataset(
     let report = &answer.report;
     let printed = PrintedSimulation { report, out };
     console
-        .print(&printed, |text| print_dataset_simulation(text, (report, out), args.units.into()))?;
+        .print(&printed, |text| print_dataset_simulation(text, report, out, args.units.into()))?;
     Ok(Verdict::from_problems(!report.failures.is_empty()))
 }
 

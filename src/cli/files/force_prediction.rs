@@ -20,7 +20,7 @@ pub(in crate::cli) fn write_force_prediction(
     let forecast = &answer.forecast;
     let restrictions = answer.report.caveats.text();
     let restrictions = restrictions.as_deref();
-    write_bands(&path.join("bands.csv"), (&forecast.mean, &forecast.bands), restrictions)?;
+    write_bands(&path.join("bands.csv"), &forecast.mean, &forecast.bands, restrictions)?;
     let write_curve = |name: String, curve: &ForceCurve| -> Result<(), CliError> {
         let path = path.join(name);
         let unwritable = |source| StudyError::Series { path: path.clone(), source };
@@ -41,7 +41,8 @@ pub(in crate::cli) fn write_force_prediction(
 /// One row per instant: time, then mean and edges of each force.
 fn write_bands(
     path: &Path,
-    (mean, bands): (&ForceCurve, &CurveBands),
+    mean: &ForceCurve,
+    bands: &CurveBands,
     restrictions: Option<&str>,
 ) -> Result<(), CliError> {
     let magnitude = mean.magnitude_n();

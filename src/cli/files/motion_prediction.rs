@@ -37,7 +37,7 @@ pub(in crate::cli) fn write_motion_prediction(
     let caveats = answer.report.caveats.clone();
     let restrictions = caveats.text();
     let restrictions = restrictions.as_deref();
-    write_trajectory(&path(&trajectory), (forecast, &bands), restrictions)?;
+    write_trajectory(&path(&trajectory), forecast, &bands, restrictions)?;
     let window_s = wanted.window_s.unwrap_or([forecast.outcome.time_s; 2]);
     let density = DensityTask::new(&forecast.distribution, window_s).on_cpu();
     write_density(&path(&map), &density, restrictions)?;
@@ -75,7 +75,8 @@ fn write_png(figure: &Figure, path: &Path) -> Result<(), CliError> {
 
 fn write_trajectory(
     path: &Path,
-    (forecast, bands): (&MotionForecast, &MotionBands),
+    forecast: &MotionForecast,
+    bands: &MotionBands,
     restrictions: Option<&str>,
 ) -> Result<(), CliError> {
     let mut header = vec!["time_s".to_owned()];

@@ -13,7 +13,8 @@ use impactlab_study::{Answer, ReplayedCaseReport, SimulateDatasetReport};
 /// - `folder`: where the motions were written.
 pub(in crate::cli) fn print_dataset_simulation(
     out: &mut dyn Write,
-    (report, folder): (&Answer<SimulateDatasetReport>, Option<&Path>),
+    report: &Answer<SimulateDatasetReport>,
+    folder: Option<&Path>,
     units: UnitSystem,
 ) -> io::Result<()> {
     let length = Quantity::Length.display_unit(units);

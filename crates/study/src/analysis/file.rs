@@ -53,7 +53,7 @@ pub fn analyse_drive(
     Ok(Analysis {
         simulation,
         notes,
-        ..not_simulated(name, (Some(initial), controls), load, settings)
+        ..not_simulated(name, Some(initial), controls, load, settings)
     })
 }
 
@@ -95,7 +95,7 @@ pub fn analyse_recording(
     let error = simulation.as_ref().map(between).transpose()?;
     let reference = Some(file.series.clone());
     let controls = settings.ending.controls(&settings.struck);
-    let analysis = not_simulated(name, (initial, controls), load, settings);
+    let analysis = not_simulated(name, initial, controls, load, settings);
     Ok(Analysis { simulation, reference, error, notes, ..analysis })
 }
 
@@ -126,7 +126,8 @@ fn simulate(
 /// The analysis before anything is simulated.
 fn not_simulated(
     name: &str,
-    (initial, controls): (Option<VehicleState<f64>>, Controls),
+    initial: Option<VehicleState<f64>>,
+    controls: Controls,
     load: Option<ActingForce>,
     settings: &Settings,
 ) -> Analysis {

@@ -249,7 +249,7 @@ pub fn forecast_forces(
     };
     let motion = match settings.until_rest {
         true => whole_motions.settle().map(ForecastMotion::from_settled),
-        false => propagated((forces, &predictors), struck, settings)
+        false => propagated(forces, &predictors, struck, settings)
             .filter(|motion| motion.is_followed_by_moments())
             .or_else(|| whole_motions.settle()?.timed(forces, settings.seed)),
     };
@@ -307,14 +307,15 @@ impl ForecastMotion {
 impl Settled {
     /// The same motion with its outcome at the end of the forecast, or where it has come to rest.
     fn timed(self, forces: &[ForceHistory], seed: u64) -> Option<ForecastMotion> {
-        let outcome = timed_outcome((&self.distribution, &self.paths), forces, seed)?;
+        let outcome = timed_outcome(&self.distribution, &self.paths, forces, seed)?;
         Some(ForecastMotion { outcome, rest: None, ..ForecastMotion::from_settled(self) })
     }
 }
 
 /// The outcome of a motion that is followed for a given time.
 fn timed_outcome(
-    (distribution, paths): (&MotionDistribution, &[Vec<VehicleState<f64>>]),
+    distribution: &MotionDistribution,
+    paths: &[Vec<VehicleState<f64>>],
     forces: &[ForceHistory],
     seed: u64,
 ) -> Option<MotionOutcome> {
@@ -327,7 +328,8 @@ fn timed_outcome(
 /// The motion over the duration, by propagation of the moments of the state; `None` where it is not
 /// finite.
 fn propagated(
-    (forces, predictors): (&[ForceHistory], &[Predictor]),
+    forces: &[ForceHistory],
+    predictors: &[Predictor],
     struck: &StruckVehicle,
     settings: &MotionForecastSettings,
 ) -> Option<ForecastMotion> {
@@ -347,7 +349,7 @@ fn propagated(
     let (parts, paths): (Vec<MotionDistribution>, Vec<Vec<VehicleState<f64>>>) =
         parts.into_iter().map(|part| (part.motion, part.path)).unzip();
     let distribution = MotionDistribution::mixed(parts);
-    let outcome = timed_outcome((&distribution, &paths), forces, settings.seed)?;
+    let outcome = timed_outcome(&distribution, &paths, forces, settings.seed)?;
     Some(ForecastMotion { distribution, paths, outcome, rest: None, applicabilities })
 }
 

@@ -38,7 +38,7 @@ pub(super) fn striking_track(
     let [_, yaw_inertia] = attributes.yaw_inertia_kg_m2;
     let vehicle = settings.striking.clone().with_mass(mass_kg, yaw_inertia);
     let footprint = Footprint::from(&vehicle.geometry);
-    let motion = append_coasting(&case.series, yaw_rad, recorded, (&vehicle, settings))?;
+    let motion = append_coasting(&case.series, yaw_rad, recorded, &vehicle, settings)?;
     let yaw_rad = yaw_rad.first().copied().unwrap_or(attributes.theta_b_rad);
     let pose = Pose { x_m: x, y_m: y, yaw_rad };
     // The struck vehicle heads along X from the origin.
@@ -96,7 +96,8 @@ fn append_coasting(
     series: &TimeSeries,
     yaw_rad: &[f64],
     recorded: Recorded,
-    (vehicle, settings): (&VehicleParameters, &Settings),
+    vehicle: &VehicleParameters,
+    settings: &Settings,
 ) -> Result<TimeSeries, AnalysisError> {
     let recorded_end_s = series.time_s().last().copied().unwrap_or(0.0);
     let manoeuvre = Manoeuvre {

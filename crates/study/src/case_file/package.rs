@@ -167,7 +167,7 @@ pub fn unpack(package: &Path, folder: &Path) -> Result<PathBuf, CaseError> {
         tempfile::Builder::new().prefix(".impactlab-").tempdir_in(parent).map_err(io(parent))?;
     let mut left = MAX_BYTES;
     for i in 0..archive.len() {
-        extract(&mut archive, i, (staging.path(), &mut left), package)?;
+        extract(&mut archive, i, staging.path(), &mut left, package)?;
     }
     CaseFile::load(&staging.path().join(&case))?;
     let staged = staging.keep();
@@ -185,7 +185,8 @@ pub fn unpack(package: &Path, folder: &Path) -> Result<PathBuf, CaseError> {
 fn extract(
     archive: &mut ZipArchive<impl Read + Seek>,
     i: usize,
-    (folder, left): (&Path, &mut u64),
+    folder: &Path,
+    left: &mut u64,
     package: &Path,
 ) -> Result<(), CaseError> {
     let path = || package.to_owned();

@@ -186,7 +186,8 @@ pub(crate) fn contact_caveat(implied: &ImpliedContactReport) -> Option<Caveat> {
 /// - `has_same_force`: whether the simulation has the force of the forecast; else that of the momentum
 ///   solution.
 pub(crate) fn disagreement_caveat(
-    (forecast, simulated): (&MotionForecast, &Analysis),
+    forecast: &MotionForecast,
+    simulated: &Analysis,
     has_same_force: bool,
 ) -> Option<Caveat> {
     let motion = &simulated.simulation.as_ref()?.series;

@@ -98,7 +98,8 @@ fn pretraining_cost(
 fn fine_tuning_cost(
     start: Option<&ResponseModel>,
     set: &ResponseTrainingSet,
-    (config, seed): (&ResponseConfig, u64),
+    config: &ResponseConfig,
+    seed: u64,
     observer: &mut Observer<'_>,
 ) -> Result<Option<Cost>, StudyError> {
     let settings = ResponseTrainSettings::unsaved(measured(config), seed);
@@ -148,7 +149,7 @@ impl FineTuneRequest {
             (Learning::Fleet, _) => return Ok(Outcome::Complete(None)),
             (Learning::Network, start) => {
                 let seed = self.choice.unwrap_or(self.training.seed);
-                fine_tuning_cost(start, &set, (&config, seed), observer)?
+                fine_tuning_cost(start, &set, &config, seed, observer)?
             }
             (Learning::Strengths, Some(start)) => Some(conditioning_cost(start, set)?),
             (Learning::Strengths, None) => return Err(StudyError::NoStart),
@@ -228,7 +229,7 @@ impl CompareRequest {
             let n_moves = self.choices * (config.tuning.iterations + 1);
             cost.add(format!("4DOF tuned on {n}, moves"), n_moves as f64, move_s);
             for (label, config, start) in &starts {
-                let of_one = fine_tuning_cost(Some(start), &set, (config, self.seed), observer)?;
+                let of_one = fine_tuning_cost(Some(start), &set, config, self.seed, observer)?;
                 let Some(of_one) = of_one else { return Ok(Outcome::Cancelled) };
                 cost.add_all(&format!("{label} on {n}"), &of_one, self.choices as f64);
             }

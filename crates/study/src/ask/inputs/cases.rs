@@ -59,7 +59,8 @@ pub(crate) struct UsableCases<T> {
 pub(crate) fn force_cases(
     root: &Path,
     bad_cases: BadCases,
-    (library, observer): (&Library, &mut Observer<'_>),
+    library: &Library,
+    observer: &mut Observer<'_>,
 ) -> Result<Outcome<UsableCases<ForceCase>>, StudyError> {
     let Outcome::Complete(dataset) = library.dataset(root, observer)? else {
         return Ok(Outcome::Cancelled);

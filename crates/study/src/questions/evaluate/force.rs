@@ -84,7 +84,7 @@ impl EvaluateForceRequest {
         model: &ForceModel,
         (library, observer): (&Library, &mut Observer<'_>),
     ) -> Result<Outcome<UsableCases<ForceCase>>, StudyError> {
-        let cases = force_cases(&self.data, self.bad_cases, (library, observer))?;
+        let cases = force_cases(&self.data, self.bad_cases, library, observer)?;
         let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
         let is_wanted =
             |case: &ForceCase| self.split == EvaluatedCases::All || !model.is_trained_on(case);

@@ -255,7 +255,7 @@ impl Question for PredictMotionRequest {
                 forecast_forces(std::slice::from_ref(own_force), &model, struck, &settings)
             }
             ForceSource::File(path) => {
-                let force = given_force(path, (struck, settings.duration_s), library)?;
+                let force = given_force(path, struck, settings.duration_s, library)?;
                 cut = restrictions::cut_record_caveat(&force);
                 forecast_forces(&[force], &model, struck, &settings)
             }
@@ -281,7 +281,7 @@ impl Question for PredictMotionRequest {
         };
         caveats.extend(restrictions::predicted_motion_caveats(&report, predicted));
         let has_same_force = self.force == ForceSource::Given;
-        let apart = restrictions::disagreement_caveat((&forecast, &analysis), has_same_force);
+        let apart = restrictions::disagreement_caveat(&forecast, &analysis, has_same_force);
         caveats.extend(apart.into_iter().chain(cut));
         let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
@@ -293,7 +293,8 @@ impl Question for PredictMotionRequest {
 /// - `duration_s`: duration of the motion, s, within which the contact lies.
 fn given_force(
     path: &Path,
-    (struck, duration_s): (&StruckVehicle, f64),
+    struck: &StruckVehicle,
+    duration_s: f64,
     library: &Library,
 ) -> Result<ForceHistory, StudyError> {
     let loaded = library.series(&SeriesFile::new(path))?;

@@ -85,7 +85,7 @@ impl Drive {
                 let loaded = library.series(file)?;
                 notes.extend(loaded.notes.iter().map(ToString::to_string));
                 let force = force_of(&loaded, self.sampling, file)?;
-                Some(acting_force(force, (self.contact, &settings.struck), caveats))
+                Some(acting_force(force, self.contact, &settings.struck, caveats))
             }
             None => None,
         };

@@ -144,7 +144,8 @@ pub(crate) fn recorded_force(
 /// without either, the contact point is assumed.
 pub(crate) fn acting_force(
     mut force: ForceHistory,
-    (contact, vehicle): (Option<ContactPoint>, &VehicleParameters),
+    contact: Option<ContactPoint>,
+    vehicle: &VehicleParameters,
     caveats: &mut Caveats,
 ) -> (ForceHistory, ContactPoint) {
     if let Some(contact) = contact {

@@ -236,7 +236,7 @@ impl Question for SimulateRequest {
                 }
                 let load = force.map(|force| {
                     let vehicle = &settings.struck;
-                    acting_force(force, (*contact, vehicle), &mut caveats)
+                    acting_force(force, *contact, vehicle, &mut caveats)
                 });
                 let title = file.title();
                 let analyse = move |settings: &Settings| {

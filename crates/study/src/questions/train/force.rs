@@ -98,11 +98,11 @@ impl TrainForceRequest {
         &self,
         (library, observer): (&Library, &mut Observer<'_>),
     ) -> Result<Outcome<(ForceTrainingSet, Vec<String>)>, StudyError> {
-        let cases = force_cases(&self.data, self.training.bad_cases, (library, observer))?;
+        let cases = force_cases(&self.data, self.training.bad_cases, library, observer)?;
         let Outcome::Complete(mut usable) = cases else { return Ok(Outcome::Cancelled) };
         let mut extra = Vec::new();
         for root in &self.extra {
-            let cases = force_cases(root, self.training.bad_cases, (library, observer))?;
+            let cases = force_cases(root, self.training.bad_cases, library, observer)?;
             let Outcome::Complete(more) = cases else { return Ok(Outcome::Cancelled) };
             extra.extend(more.cases);
             usable.left_out.extend(more.left_out);

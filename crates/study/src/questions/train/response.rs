@@ -123,7 +123,7 @@ impl TrainResponseRequest {
             struck_vehicle(&self.vehicle, &OpenVehicle::OfDataset(None), &mut notes.caveats)?;
         let medians = assumed::medians(CaveatSubject::VehicleParameter, &vehicle);
         notes.caveats.extend(medians);
-        let cases = force_cases(&self.data, self.training.bad_cases, (library, observer))?;
+        let cases = force_cases(&self.data, self.training.bad_cases, library, observer)?;
         Ok(cases.map(|usable| {
             notes.left_out = usable.left_out;
             let kept = self.learned_from(&usable.cases);
