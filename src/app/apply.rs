@@ -83,19 +83,6 @@ impl State {
                     self.session.tasks.cancel(&TaskKey::Film(path.to_owned()));
                 }
             }
-            Command::Opened(path, result) => self.take_opened(&path, result),
-            Command::Written(result) => self.say_of_file(result),
-            Command::FilmEnded(path, result) => self.say_of_film(&path, result),
-            Command::CaseSaved(result) => self.take_saved_case(result),
-            Command::ImportRead(path, result) => {
-                let dialog = self.session.dialogs.import_mut();
-                if let Some(dialog) = dialog.filter(|dialog| dialog.path() == path) {
-                    dialog.receive(result.map(Found::take));
-                }
-            }
-            Command::Measured(place, question, result) => {
-                self.session.costs.take(place, *question, result);
-            }
             Command::ForceModel(event) => self.take_force_model(&event),
             Command::ResponseModel(event) => self.take_response_model(&event),
             Command::Archive(event) => self.take_archive_event(event.take(), context),
@@ -112,6 +99,26 @@ impl State {
             Command::Ground(command) => self.change_ground(command),
             Command::Reconstruct(command) => self.reconstruct(command, context),
             Command::Report(command) => self.report(command),
+            command => self.apply_result(command),
+        }
+    }
+
+    /// Carries out a command that says what has come of work on another thread.
+    fn apply_result(&mut self, command: Command) {
+        match command {
+            Command::Opened(path, result) => self.take_opened(&path, result),
+            Command::Written(result) => self.say_of_file(result),
+            Command::FilmEnded(path, result) => self.say_of_film(&path, result),
+            Command::CaseSaved(result) => self.take_saved_case(result),
+            Command::ImportRead(path, result) => {
+                let dialog = self.session.dialogs.import_mut();
+                if let Some(dialog) = dialog.filter(|dialog| dialog.path() == path) {
+                    dialog.receive(result.map(Found::take));
+                }
+            }
+            Command::Measured(place, question, result) => {
+                self.session.costs.take(place, *question, result);
+            }
             command => self.apply_to_view(command),
         }
     }

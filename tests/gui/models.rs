@@ -105,6 +105,11 @@ fn in_use(harness: &Harness<'_, App>) -> (ModelChoice, String) {
     (current.choice.clone(), current.name.clone())
 }
 
+/// Whether the force model of a name has been read and is used.
+fn is_in_use(name: &str) -> impl Fn(&State) -> bool {
+    move |state| state.session.force.model.current.as_ref().is_some_and(|model| model.name == name)
+}
+
 fn show_models(harness: &mut Harness<'_, App>) {
     apply(harness, Command::Show(Pane::Models));
     harness.run_steps(4);
@@ -142,9 +147,7 @@ fn a_finished_training_is_kept_named_and_used_after_a_restart() {
     });
     assert_eq!(entries(&harness), std::slice::from_ref(&entry));
     apply(&mut harness, Command::UseModel(Network::Force, None));
-    step_until(&mut harness, "the shipped model", |state| {
-        state.session.force.model.current.as_ref().is_some_and(|of| of.name == "shipped")
-    });
+    step_until(&mut harness, "the shipped model", is_in_use("shipped"));
     desk.store(&mut harness);
     drop(harness);
 
@@ -165,9 +168,7 @@ fn a_finished_training_is_kept_named_and_used_after_a_restart() {
     });
     harness.get_by_label("Use").click();
     harness.run_steps(2);
-    step_until(&mut harness, "the kept model", |state| {
-        state.session.force.model.current.as_ref().is_some_and(|of| of.name == "my PIT model")
-    });
+    step_until(&mut harness, "the kept model", is_in_use("my PIT model"));
     assert_eq!(in_use(&harness).0, ModelChoice::file(&path));
     let copy = desk.path("copy.safetensors");
     apply(&mut harness, Command::SaveArchived(path.clone(), copy.clone()));
@@ -180,9 +181,7 @@ fn a_finished_training_is_kept_named_and_used_after_a_restart() {
     // It is in use after the next restart too. It is not removed while it is; another one is, after
     // a question.
     let mut harness = desk.open(&[]);
-    step_until(&mut harness, "the name", |state| {
-        state.session.force.model.current.as_ref().is_some_and(|of| of.name == "my PIT model")
-    });
+    step_until(&mut harness, "the name", is_in_use("my PIT model"));
     show_models(&mut harness);
     let is_disabled = |harness: &Harness<'_, App>| {
         harness.query_all_by_label("Remove…").last().expect("one").accesskit_node().is_disabled()

@@ -22,10 +22,11 @@ use crate::app::scene::{SceneSession, SceneSettings, SceneSource};
 use crate::app::state::{Session, State};
 use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{OUTDATED, restrictions_ui};
-use impactlab_core::units::Quantity;
+use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_document::figure::{Figure, analysis_scene_figure, recording_path};
 use impactlab_document::scene::{FilmTiming, Scene};
 use impactlab_draw::scene::{Follow, ScenePicture, ViewKind, scene_view_ui};
+use impactlab_study::RestState;
 
 /// Seconds of the motion that can be played in a second.
 const SPEEDS: [f64; 5] = [0.05, 0.1, 0.25, 0.5, 1.0];
@@ -53,11 +54,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let end_s = series.time_s().last().copied().unwrap_or(0.0);
     clock_ui(ui, &session.playback, end_s, view.playback_speed, commands);
     restrictions_ui(ui, &report.caveats);
-    if let Some(rest) = &report.rest {
-        let distance = Quantity::Length.shown(rest.distance_m, view.units);
-        let position = Quantity::Length.shown_vector([rest.x_m, rest.y_m], view.units);
-        ui.label(format!("At rest after {:.2} s and {distance}, at {position}", rest.time_s));
-    }
+    rest_ui(ui, report.rest.as_ref(), view.units);
     let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
     let recorded = overlaid(project.beside.recording.as_ref(), &session.sources);
     let n_recorded = recorded.as_ref().map_or(0, |(_, series, _)| series.n_samples());
@@ -123,6 +120,14 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         scene_view_ui(ui, &scene, time_s, &mut session.scene.view, camera, *follow, height);
     let SceneSession { view: drawn, measuring, .. } = &mut session.scene;
     measured_ui(ui, &response, drawn, measuring, view.units);
+}
+
+/// Draws when and where the vehicle comes to rest, if it does.
+fn rest_ui(ui: &mut Ui, rest: Option<&RestState>, units: UnitSystem) {
+    let Some(rest) = rest else { return };
+    let distance = Quantity::Length.shown(rest.distance_m, units);
+    let position = Quantity::Length.shown_vector([rest.x_m, rest.y_m], units);
+    ui.label(format!("At rest after {:.2} s and {distance}, at {position}", rest.time_s));
 }
 
 /// Draws the choice whether the forecast is shown.

@@ -170,7 +170,7 @@ struct AddMenu<'u> {
 
 impl AddMenu<'_> {
     fn is_clicked(&mut self, section: &Section) -> bool {
-        let button = icon_button(icon(section), &sentence_case(section.title));
+        let button = icon_button(icon(section), sentence_case(section.title));
         self.ui.add(button).clicked()
     }
 }

@@ -80,7 +80,7 @@ impl From<TextTable> for Table {
         let columns = table.header.iter().enumerate().map(column).collect();
         Self {
             caption: table.title,
-            columns: columns,
+            columns,
             rows: table.rows.into_iter().map(|row| row.cells).collect(),
         }
     }
