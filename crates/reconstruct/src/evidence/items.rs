@@ -15,7 +15,7 @@ use crate::evidence::{
 use crate::likelihood::{Comparison, Discrepancy, EvidenceTerm, PathResidual, Track};
 
 /// Everything that is found. Each item is shown to what reads, writes, draws and tells the evidence by
-/// [`Evidence::items`], and is compared with a motion by [`Evidence::compared`].
+/// [`Evidence::items`], and is compared with a motion by `Evidence::compared`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Evidence {
