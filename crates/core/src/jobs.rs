@@ -7,7 +7,7 @@
 //! to go on:
 //!
 //! ```
-//! use crate::jobs::{Job, Progress, Update};
+//! use impactlab_core::jobs::{Job, Progress, Update};
 //! use std::ops::ControlFlow;
 //!
 //! let mut job = Job::spawn("sum", || {}, |report| {

@@ -11,14 +11,14 @@
 //! use std::ops::ControlFlow;
 //! use std::path::PathBuf;
 //!
-//! use crate::{ImpactRequest, Library, Question, ScenarioChoice};
+//! use impactlab_study::{ImpactRequest, Library, Question, ScenarioChoice};
 //!
-//! let scenario = PathBuf::from("assets/scenarios/pit_right_rear.toml");
+//! let scenario = PathBuf::from("pit-right-rear");
 //! let request = ImpactRequest { scenario: ScenarioChoice::File(scenario), paper: false };
 //! let answer = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()))?;
 //! let report = answer.complete().expect("nobody cancelled").report;
 //! assert!(report.struck.delta_v_magnitude_m_s > 1.0);
-//! # Ok::<(), crate::StudyError>(())
+//! # Ok::<(), impactlab_study::StudyError>(())
 //! ```
 
 pub mod analysis;

@@ -12,14 +12,14 @@
 //! - `impulse_clusters`: groups of collisions of similar impulse.
 //!
 //! ```
-//! use crate::collision::{Pulse, PulseShape, Scenario};
+//! use impactlab_core::collision::{Pulse, PulseShape, Scenario};
 //!
 //! let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenarios/pit_right_rear.toml");
 //! let scenario = Scenario::load(file.as_ref())?;
 //! let solution = scenario.solve()?;
 //! assert!(solution.struck.yaw_rate_rad_s < 0.0, "the tail goes left, the nose right");
 //!
-//! let pulse = Pulse::new(PulseShape::Haversine, solution.impulse_n_s, 0.0, 0.1)?;
+//! let pulse = Pulse::new(PulseShape::Haversine, solution.impulse_world_n_s, 0.0, 0.1)?;
 //! let force = pulse.to_history(0.001)?;
 //! assert_eq!(force.time_s.len(), 100);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -52,12 +52,12 @@ pub struct ColumnSource {
 /// suggest.
 ///
 /// ```
-/// use crate::data::{Channel, ColumnMap};
+/// use impactlab_core::data::{Channel, ColumnMap};
 ///
 /// let map: ColumnMap = "time=1:ms, fx=Kraft X:kN, fy=Kraft Y:kN".parse()?;
 /// assert_eq!(map.get(Channel::Fx).and_then(|fx| fx.unit).map(|unit| unit.symbol), Some("kN"));
 /// assert_eq!(map.to_string(), "time=1:ms,fx=Kraft X:kN,fy=Kraft Y:kN");
-/// # Ok::<(), crate::data::MapError>(())
+/// # Ok::<(), impactlab_core::data::MapError>(())
 /// ```
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "String", into = "String")]

@@ -8,7 +8,7 @@
 /// - returns `None` if the grid is empty or a value that is needed is missing.
 ///
 /// ```
-/// # use crate::numerics::interpolate;
+/// # use impactlab_core::numerics::interpolate;
 /// assert_eq!(interpolate(&[0.0, 2.0], &[10.0, 20.0], 0.5), Some(12.5));
 /// assert_eq!(interpolate(&[0.0, 2.0], &[10.0, 20.0], 9.0), Some(20.0));
 /// ```

@@ -51,7 +51,7 @@ impl Summary {
 /// - returns `None` if there are no values.
 ///
 /// ```
-/// # use crate::numerics::quantile_of_sorted;
+/// # use impactlab_core::numerics::quantile_of_sorted;
 /// assert_eq!(quantile_of_sorted(&[1.0, 2.0, 4.0], 0.75), Some(3.0));
 /// ```
 pub fn quantile_of_sorted(values: &[f64], probability: f64) -> Option<f64> {
@@ -72,7 +72,7 @@ pub fn quantile_of_sorted(values: &[f64], probability: f64) -> Option<f64> {
 /// - returns `None` if no value has a weight.
 ///
 /// ```
-/// # use crate::numerics::quantile_of_weighted;
+/// # use impactlab_core::numerics::quantile_of_weighted;
 /// assert_eq!(quantile_of_weighted(&[1.0, 2.0, 4.0], &[1.0, 1.0, 1.0], 0.75), Some(3.0));
 /// assert_eq!(quantile_of_weighted(&[1.0, 2.0, 4.0], &[1.0, 0.0, 1.0], 0.5), Some(2.5));
 /// ```

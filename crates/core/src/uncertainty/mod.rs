@@ -4,7 +4,7 @@
 //! it rests on.
 //!
 //! ```
-//! use crate::uncertainty::{CurveComponent, CurveMixture};
+//! use impactlab_core::uncertainty::{CurveComponent, CurveMixture};
 //! use nalgebra::DMatrix;
 //! use rand::SeedableRng;
 //!
@@ -20,7 +20,7 @@
 //! assert!(low < 30.0 && 30.0 < high);
 //! let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
 //! assert_eq!(mixture.sample(20, &mut rng).len(), 20);
-//! # Ok::<(), crate::uncertainty::MixtureError>(())
+//! # Ok::<(), impactlab_core::uncertainty::MixtureError>(())
 //! ```
 
 mod error;

@@ -8,7 +8,7 @@
 //!
 //! ```
 //! use candle_core::{DType, Device, Tensor};
-//! use crate::nn::{Activation, AdamW, AdamWConfig, Mlp, Parameters};
+//! use impactlab_networks::nn::{Activation, AdamW, AdamWConfig, Mlp, Parameters};
 //! use impactlab_core::numerics::{random_stream};
 //!
 //! let mut parameters = Parameters::new(DType::F32);
@@ -21,7 +21,7 @@
 //! let loss = trunk.forward(&x)?.sqr()?.mean_all()?;
 //! optimizer.step(&parameters, &loss.backward()?)?;
 //! assert_eq!(parameters.n_values(), 3 * 8 + 8 + 8 + 1);
-//! # Ok::<(), crate::nn::NnError>(())
+//! # Ok::<(), impactlab_networks::nn::NnError>(())
 //! ```
 
 mod activation;
