@@ -111,6 +111,31 @@ impl OpenCase {
 }
 
 fn fingerprint_of(file: &CaseFile) -> String {
-    let variants = serde_json::to_string(&file.variants).unwrap_or_default();
+    // What JSON cannot hold, such as a file name that is not Unicode, is seen all the same.
+    let variants = serde_json::to_string(&file.variants);
+    let variants = variants.unwrap_or_else(|_| format!("{:?}", file.variants));
     sha256_hex(format!("{}\n{}\n{variants}", file.name, file.notes).as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_change_is_seen_where_a_file_name_is_not_unicode() {
+        use std::ffi::OsStr;
+        use std::os::unix::ffi::OsStrExt;
+        use std::path::PathBuf;
+
+        use impactlab_study::{ImpactRequest, ScenarioChoice};
+
+        let path = PathBuf::from(OsStr::from_bytes(b"caf\xe9.toml"));
+        let file = |paper| {
+            let scenario = ScenarioChoice::File(path.clone());
+            let questions = vec![ImpactRequest { scenario, paper }.into()];
+            CaseFile::new("case", Variant { questions, ..Variant::default() })
+        };
+        assert_ne!(fingerprint_of(&file(false)), fingerprint_of(&file(true)));
+    }
 }

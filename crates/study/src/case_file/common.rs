@@ -19,7 +19,8 @@
 //! In memory each question is whole, so that nothing but this file knows of it.
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::ser::Error;
+use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Map, Value};
 
 use crate::Request;
@@ -71,17 +72,25 @@ struct QuestionText {
     fields: Map<String, Value>,
 }
 
-impl From<Variant> for VariantText {
-    fn from(variant: Variant) -> Self {
-        let Variant { name, questions, unasked, view, forms } = variant;
+impl Serialize for Variant {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        VariantText::from_variant(self).map_err(S::Error::custom)?.serialize(serializer)
+    }
+}
+
+impl VariantText {
+    /// # Errors
+    /// The name of a file is not Unicode, which JSON cannot hold.
+    fn from_variant(variant: &Variant) -> Result<Self, serde_json::Error> {
+        let Variant { name, questions, unasked, view, forms } = variant.clone();
         let n_questions = questions.len();
-        let value = |request: &Request| serde_json::to_value(request).unwrap_or_default();
-        let mut questions: Vec<Value> = questions.iter().chain(&unasked).map(value).collect();
+        let questions = questions.iter().chain(&unasked).map(serde_json::to_value::<&Request>);
+        let mut questions = questions.collect::<Result<Vec<Value>, _>>()?;
         let common = take_common(&mut questions);
         let mut questions: Vec<QuestionText> =
             questions.into_iter().map(QuestionText::from_value).collect();
         let unasked = questions.split_off(n_questions);
-        Self { name, common, questions, unasked, view, forms }
+        Ok(Self { name, common, questions, unasked, view, forms })
     }
 }
 

@@ -18,6 +18,15 @@ pub enum CaseError {
         /// What is wrong.
         source: serde_json::Error,
     },
+    /// A question names a file whose name is not Unicode, so that it can be neither written to a case
+    /// nor listed in a report.
+    #[error("variant {variant:?}: the name of a file is not Unicode; rename it")]
+    NotUnicode {
+        /// The variant.
+        variant: String,
+        /// What is wrong.
+        source: serde_json::Error,
+    },
     /// The file is JSON, but of another kind.
     #[error("{}: is no case: format is {got:?}, expected \"impactlab case\"", path.display())]
     Format {

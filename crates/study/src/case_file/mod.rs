@@ -70,8 +70,9 @@ pub struct CaseFile {
 }
 
 /// One way in which it may have happened.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(try_from = "common::VariantText", into = "common::VariantText")]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(try_from = "common::VariantText")]
+#[schemars(into = "common::VariantText")]
 pub struct Variant {
     /// What it is called.
     pub name: String,

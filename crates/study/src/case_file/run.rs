@@ -67,7 +67,7 @@ impl CaseFile {
     /// The same, and tells of each answer, with what it was made from, before the next question is
     /// asked.
     ///
-    /// - `told`: is called with the variant, the question, and its answer or why there is none.
+    /// - `listener`: is called with the variant, the question, and its answer or why there is none.
     ///
     /// # Errors
     /// As for [`CaseFile::ask`].
@@ -82,6 +82,7 @@ impl CaseFile {
         }
         let is_chosen =
             |variant: &&Variant| variants.is_empty() || variants.contains(&variant.name);
+        self.check_writable()?;
         let mut reports = Vec::new();
         for variant in self.variants.iter().filter(is_chosen) {
             let mut answers = Vec::new();
@@ -185,5 +186,24 @@ mod tests {
         let change = Change::Model { network: used.network.clone(), name: used.name.clone() };
         case.models = vec![UsedModel { sha256: "another".into(), ..used }];
         assert_eq!(ask(&case).changes, [change]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_whose_name_is_not_unicode_is_refused_and_not_left_out_of_a_report() {
+        use std::ffi::OsStr;
+        use std::os::unix::ffi::OsStrExt;
+
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(OsStr::from_bytes(b"caf\xe9.toml"));
+        std::fs::write(&path, PIT).unwrap();
+        let question = ImpactRequest { scenario: ScenarioChoice::File(path), paper: false };
+        let variant =
+            Variant { name: "one".into(), questions: vec![question.into()], ..Variant::default() };
+        let case = CaseFile::new("case", variant);
+        let answered = case.ask(&[], &Library::default(), &mut |_| ControlFlow::Continue(()));
+        let error = answered.unwrap_err().to_string();
+        assert_eq!(error, "variant \"one\": the name of a file is not Unicode; rename it");
+        assert!(case.to_text(&folder.path().join("a.impactlab")).is_err());
     }
 }

@@ -66,6 +66,7 @@ impl CaseFile {
     /// # Errors
     /// [`CaseError::Syntax`] if a number is not finite.
     pub fn to_text(&self, path: &Path) -> Result<String, CaseError> {
+        self.check_writable()?;
         let wrong = |source| CaseError::Syntax { path: path.to_owned(), source };
         let (folder, used) = (folder_of(path), self.used_paths());
         let to_relative = |text: &str| {

@@ -184,6 +184,15 @@ impl CaseFile {
         paths
     }
 
+    /// Refuses a case that JSON cannot hold: its files would be missing where they are listed.
+    pub(super) fn check_writable(&self) -> Result<(), CaseError> {
+        self.variants.iter().try_for_each(|variant| {
+            serde_json::to_value(variant)
+                .map(drop)
+                .map_err(|source| CaseError::NotUnicode { variant: variant.name.clone(), source })
+        })
+    }
+
     /// Refuses a case in which two variants have the same name, or that shows none of them.
     pub(super) fn check_names(&self, path: &Path) -> Result<(), CaseError> {
         for (i, variant) in self.variants.iter().enumerate() {
