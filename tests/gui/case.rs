@@ -1,5 +1,8 @@
 //! A case in the window: variants, saving, opening, and what is asked before it is left.
 
+mod example;
+mod killed;
+
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -396,117 +399,6 @@ fn without_a_file_dialog_a_path_is_asked_for_in_the_window() {
     step_until(&mut harness, "the case", |state| state.case.path.is_some());
     assert_eq!(state(&harness).case.path.as_ref(), Some(&written));
     assert!(CaseFile::load(&written).is_ok());
-}
-
-/// The example case as the window makes it: the PIT, with a driver who brakes, and with a lighter car.
-fn example(harness: &mut Harness<'_, App>) {
-    let answered = |harness: &mut Harness<'_, App>| {
-        harness.run_steps(2);
-        step_until(harness, "the forecast", is_answered);
-    };
-    variant(harness, VariantCommand::Rename("coasts".to_owned()));
-    variant(harness, VariantCommand::Duplicate);
-    variant(harness, VariantCommand::Rename("driver brakes".to_owned()));
-    let brake = Braking::new(0.7, 0.8, 0.2);
-    let ending = Ending { brake: Some(brake), ..Ending::default() };
-    scenario(harness).ending = Some(ending);
-    answered(harness);
-    variant(harness, VariantCommand::Show("coasts".to_owned()));
-    answered(harness);
-    variant(harness, VariantCommand::Duplicate);
-    variant(harness, VariantCommand::Rename("struck vehicle of 1500 kg".to_owned()));
-    let struck = &mut scenario(harness).struck;
-    struck.yaw_inertia_kg_m2 *= 1500.0 / struck.mass_kg;
-    struck.mass_kg = 1500.0;
-    answered(harness);
-    variant(harness, VariantCommand::Show("coasts".to_owned()));
-    answered(harness);
-    let notes =
-        "A PIT at 54 km/h: does it matter whether the driver brakes, and how heavy the car is?";
-    harness.state_mut().state_mut().case.file.notes = notes.to_owned();
-}
-
-#[test]
-fn the_example_case_is_what_the_window_saves_and_has_an_answer_to_every_question() {
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/examples/pit.impactlab");
-    let mut harness = open(&[SCENARIO]);
-    step_until(&mut harness, "the forecast", is_answered);
-    example(&mut harness);
-    if std::env::var_os("UPDATE_EXAMPLES").is_some() {
-        apply(&mut harness, Command::SaveCaseAs(shipped.clone()));
-        apply(&mut harness, Command::Replace(Box::new(Command::SaveCaseAs(shipped.clone()))));
-        step_until(&mut harness, "the example", |state| {
-            !state.session.tasks.is_running(&TaskKey::SaveCase)
-        });
-    }
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("pit.impactlab");
-    save_as(&mut harness, &path);
-    let [made, found] = [&path, &shipped].map(|path| CaseFile::load(path).expect("a case"));
-    assert_eq!(found.variants, made.variants, "UPDATE_EXAMPLES=1 writes it anew");
-    assert_eq!((&found.models, &found.notes), (&made.models, &made.notes));
-    let answers = answers_of(&shipped);
-    assert_eq!(answers.len(), 3);
-    assert!(answers.iter().all(|(_, reports)| reports.len() == 4), "{answers:?}");
-}
-
-/// Says to a child process of this test where it stores its state.
-const KILLED_STATE: &str = "IMPACTLAB_TEST_KILLED_STATE";
-/// How often the child is killed; 3 times if this is not set.
-const KILLS: &str = "IMPACTLAB_TEST_KILLS";
-/// Frames in two seconds.
-const TWO_SECONDS: usize = 120;
-
-/// The child: changes a case in every frame, and says beside its state which frame it was.
-#[test]
-fn change_a_case_until_killed() {
-    let Some(store) = std::env::var_os(KILLED_STATE).map(PathBuf::from) else { return };
-    let mut harness = open_with(&[SCENARIO], Some(store.clone()));
-    for frame in 0_usize.. {
-        harness.state_mut().state_mut().case.file.notes = format!("frame {frame}");
-        harness.step();
-        fs::write(store.with_extension("frame"), frame.to_string()).expect("written");
-        std::thread::sleep(Duration::from_millis(16));
-    }
-}
-
-/// The frame that a stored state is of, which is read as the window reads it.
-fn stored_frame(text: &str) -> usize {
-    let (state, _) = State::restore(text).expect("a whole state");
-    let notes = state.case.file.notes;
-    notes.strip_prefix("frame ").and_then(|frame| frame.parse().ok()).expect("a frame")
-}
-
-#[test]
-fn a_kill_at_any_moment_loses_two_seconds_at_the_most() {
-    let n_kills = std::env::var(KILLS).ok().and_then(|n| n.parse().ok()).unwrap_or(3);
-    let folder = tempfile::tempdir().expect("a folder");
-    let store = folder.path().join("state.json");
-    for kill in 0..n_kills {
-        let _ = fs::remove_file(&store);
-        let mut child = std::process::Command::new(std::env::current_exe().expect("this test"))
-            .args(["--exact", "case::change_a_case_until_killed"])
-            .env(KILLED_STATE, &store)
-            .stdout(std::process::Stdio::null())
-            .spawn()
-            .expect("a child");
-        while !store.exists() {
-            std::thread::sleep(Duration::from_millis(10));
-            assert!(child.try_wait().expect("a child").is_none(), "the child has ended");
-        }
-        // A golden ratio spreads the moments evenly over the second between two writes.
-        let after_s = 0.3 + (kill as f64 * 0.618_034).fract();
-        std::thread::sleep(Duration::from_secs_f64(after_s));
-        child.kill().expect("killed");
-        child.wait().expect("ended");
-        let text = fs::read_to_string(&store).expect("a state");
-        let last = fs::read_to_string(store.with_extension("frame")).expect("a frame");
-        // The frame file itself may be cut by the kill.
-        if let Ok(last) = last.parse::<usize>() {
-            let stored = stored_frame(&text);
-            assert!(last - stored.min(last) <= TWO_SECONDS, "{stored} of {last}");
-        }
-    }
 }
 
 #[test]
