@@ -116,20 +116,24 @@ struct WrittenEstimate {
     #[serde(flatten)]
     estimate: Estimate,
     /// Former key: ends of the interval of 50 %.
-    interval_50: [f64; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interval_50: Option<[f64; 2]>,
     /// Former key: ends of the interval of 80 %.
-    interval_80: [f64; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interval_80: Option<[f64; 2]>,
     /// Former key: ends of the interval of 90 %.
-    interval_90: [f64; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interval_90: Option<[f64; 2]>,
     /// Former key: ends of the interval of 95 %.
-    interval_95: [f64; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interval_95: Option<[f64; 2]>,
 }
 
 impl From<QuantityEstimate> for WrittenEstimate {
-    fn from(of: QuantityEstimate) -> Self {
-        let ends = |level| of.estimate.interval(level).unwrap_or([of.estimate.median; 2]);
-        let [interval_50, interval_80, interval_90, interval_95] = LEVELS.map(ends);
-        let QuantityEstimate { name, unit, estimate } = of;
+    fn from(quantity: QuantityEstimate) -> Self {
+        let QuantityEstimate { name, unit, estimate } = quantity;
+        let [interval_50, interval_80, interval_90, interval_95] =
+            LEVELS.map(|level| estimate.interval(level));
         Self { name, unit, estimate, interval_50, interval_80, interval_90, interval_95 }
     }
 }

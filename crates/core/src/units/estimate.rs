@@ -77,14 +77,15 @@ impl Estimate {
         self.intervals.iter().find(|interval| interval.level == level).map(Interval::ends)
     }
 
-    /// Ends of the interval that holds 50 %; the median twice if there is none.
+    /// Ends of the interval that holds 50 %; not numbers if there is none, so that nothing looks certain
+    /// of which no interval is known.
     pub fn half(&self) -> [f64; 2] {
-        self.interval(0.5).unwrap_or([self.median; 2])
+        self.interval(0.5).unwrap_or([f64::NAN; 2])
     }
 
-    /// Ends of the interval that holds 90 %; the median twice if there is none.
+    /// Ends of the interval that holds 90 %; not numbers if there is none.
     pub fn ninety(&self) -> [f64; 2] {
-        self.interval(0.9).unwrap_or([self.median; 2])
+        self.interval(0.9).unwrap_or([f64::NAN; 2])
     }
 
     /// The same estimate in another unit.
@@ -117,6 +118,12 @@ impl From<Estimate> for WrittenEstimate {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_interval_that_is_not_known_is_not_narrow() {
+        let estimate = Estimate { median: 3.0, intervals: Vec::new() };
+        assert!(estimate.ninety().iter().chain(&estimate.half()).all(|end| end.is_nan()));
+    }
 
     #[test]
     fn every_interval_is_spelt_alike_and_former_keys_are_still_written() {
