@@ -124,6 +124,8 @@ pub struct App {
     state: State,
     undoer: Undoer<Project>,
     store: Option<Store>,
+    /// Whether the state could be written as JSON when it was last to be stored.
+    is_storable: bool,
 }
 
 /// Opens the window and returns when the user closes it.
@@ -200,7 +202,7 @@ impl App {
         if state.project.subject().is_some() {
             state.session.select_when_loaded = None; // The subject of the last run stays.
         }
-        Self { state, undoer: Undoer::default(), store }
+        Self { state, undoer: Undoer::default(), store, is_storable: true }
     }
 
     /// Returns the state of the application.
@@ -255,11 +257,7 @@ impl eframe::App for App {
         }
         let now = context.input(|input| input.time);
         self.undoer.feed_state(now, &self.state.project);
-        if let (Some(store), Some(text)) = (&mut self.store, self.state.save())
-            && let Some(failure) = store.keep(text, context)
-        {
-            self.state.say(Severity::Error, failure);
-        }
+        self.keep_state(context);
     }
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
@@ -286,13 +284,32 @@ impl eframe::App for App {
     }
 
     fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
-        if let (Some(store), Some(text)) = (&mut self.store, self.state.save()) {
+        if let (Some(store), Ok(text)) = (&mut self.store, self.state.save()) {
             store.finish(&text);
         }
     }
 }
 
 impl App {
+    /// Stores the state for the next start, and says once if it cannot be stored.
+    fn keep_state(&mut self, context: &Context) {
+        let Some(store) = &mut self.store else { return };
+        let saved = self.state.save();
+        let was_storable = std::mem::replace(&mut self.is_storable, saved.is_ok());
+        match saved {
+            Ok(text) => {
+                if let Some(failure) = store.keep(text, context) {
+                    self.state.say(Severity::Error, failure);
+                }
+            }
+            Err(error) if was_storable => {
+                let text = format!("what is changed in this window will not be kept ({error})");
+                self.state.say(Severity::Warning, text);
+            }
+            Err(_) => {}
+        }
+    }
+
     fn panes_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let frame = egui::Frame::new().fill(ui.visuals().panel_fill);
         let central = egui::CentralPanel::no_frame().frame(frame);

@@ -70,7 +70,7 @@ fn states_of_the_window() {
         };
         match impactlab::app::State::restore(&text) {
             Ok((state, sources)) => {
-                assert!(state.save().is_some(), "a state that was read cannot be written");
+                assert!(state.save().is_ok(), "a state that was read cannot be written");
                 Answer::accepted(&(&state.project, &state.view.filter, sources))
             }
             Err(error) => Answer::refused(&error),

@@ -67,9 +67,11 @@ impl RestoreError {
 }
 
 impl State {
-    /// Returns the project, the view and the opened paths as JSON; `None` if they cannot be written
-    /// as such.
-    pub fn save(&self) -> Option<String> {
+    /// Returns the project, the view and the opened paths as JSON.
+    ///
+    /// # Errors
+    /// A file has a name that is not Unicode, which JSON cannot hold.
+    pub fn save(&self) -> Result<String, serde_json::Error> {
         let saved = Saved {
             version: SAVED_VERSION,
             project: self.project.clone(),
@@ -77,7 +79,7 @@ impl State {
             view: self.view.clone(),
             sources: self.session.sources.iter().map(|source| source.opened.clone()).collect(),
         };
-        serde_json::to_string(&saved).ok()
+        serde_json::to_string(&saved)
     }
 
     /// Reads the state that [`save`](Self::save) has written and returns it with the paths that
