@@ -299,8 +299,8 @@ fn figure(args: &FigureArgs, console: &mut Console<'_>) -> Result<Verdict, CliEr
         let answer = RenderedFigure {
             out: &output.out,
             title: &figure.title,
-            x_axis: figure.x.text(),
-            y_axis: figure.y.text(),
+            x_axis: figure.x.column(),
+            y_axis: figure.y.column(),
             notes: &notes,
         };
         print_json(console.out, &answer)?;

@@ -78,7 +78,7 @@ impl<W: Write> FigureTable<W> {
             [("Time", Quantity::Time), ("Heading", Quantity::Angle)]
                 .map(|(label, quantity)| Axis::shown(label, quantity, UnitSystem::Si))
         });
-        let mut header = vec!["series".to_owned(), figure.x.text(), figure.y.text()];
+        let mut header = vec!["series".to_owned(), figure.x.column(), figure.y.column()];
         header.extend(path_axes.iter().flatten().map(Axis::text));
         let text = figure.caveats.text();
         header.extend(text.is_some().then(|| RESTRICTIONS_COLUMN.to_owned()));

@@ -30,7 +30,7 @@ const AFTER_CONTACT: f64 = 0.3;
 /// F_x, F_y and |F| over time in ms, with markers where contact starts and ends.
 pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
     let x = Axis::new("Time", milliseconds());
-    let y = Axis::shown("Force", Quantity::Force, input.units);
+    let y = Axis::shown("Force", Quantity::Force, input.units).with_acts_on("the struck vehicle");
     let axes = match input.force.axes {
         ForceAxes::World => "world axes",
         ForceAxes::Body => "heading axes",

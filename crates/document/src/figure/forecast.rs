@@ -108,7 +108,8 @@ impl ForceComponent {
 /// One component of a predicted force over time in ms.
 pub fn forecast_figure(component: ForceComponent, input: &ForecastFigure<'_>) -> Figure {
     let x = Axis::new("Time", milliseconds());
-    let y = Axis::shown(component.label(), Quantity::Force, input.units);
+    let y = Axis::shown(component.label(), Quantity::Force, input.units)
+        .with_acts_on("the struck vehicle");
     let n_shown =
         (shown_until_s(input) / impactlab_core::uncertainty::CURVE_INTERVAL_S).round() as usize;
     let time: Vec<f64> =

@@ -89,6 +89,8 @@ impl Figure {
 pub struct Axis {
     /// Quantity that the axis shows.
     pub label: String,
+    /// What the quantity acts on, which the title of a picture says: “the struck vehicle”.
+    pub acts_on: Option<&'static str>,
     /// Unit of the numbers along the axis.
     pub unit: Unit,
     /// Names at the positions 0, 1, 2, … instead of numbers; empty for an axis of numbers.
@@ -98,7 +100,7 @@ pub struct Axis {
 impl Axis {
     /// An axis of numbers in a given unit.
     pub fn new(label: impl Into<String>, unit: Unit) -> Self {
-        Self { label: label.into(), unit, names: Vec::new() }
+        Self { label: label.into(), acts_on: None, unit, names: Vec::new() }
     }
 
     /// An axis in the unit in which the system of units shows the quantity.
@@ -112,12 +114,27 @@ impl Axis {
         Self { names, ..Self::new(label, unit) }
     }
 
+    /// Adds what the quantity acts on.
+    pub fn with_acts_on(self, acts_on: &'static str) -> Self {
+        Self { acts_on: Some(acts_on), ..self }
+    }
+
     /// The text beside the axis: “Label [unit]”, without the bracket for a unit that has no symbol.
     pub fn text(&self) -> String {
-        match self.unit.symbol {
-            "" => self.label.clone(),
-            symbol => format!("{} [{symbol}]", self.label),
-        }
+        with_unit(self.label.clone(), self.unit)
+    }
+
+    /// The name of its column in a table, which has no title beside it: “Label on … [unit]”.
+    pub fn column(&self) -> String {
+        let acts_on = self.acts_on.map(|whom| format!(" on {whom}"));
+        with_unit(format!("{}{}", self.label, acts_on.unwrap_or_default()), self.unit)
+    }
+}
+
+fn with_unit(label: String, unit: Unit) -> String {
+    match unit.symbol {
+        "" => label,
+        symbol => format!("{label} [{symbol}]"),
     }
 }
 
