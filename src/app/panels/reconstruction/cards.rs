@@ -4,7 +4,7 @@ use egui::{CollapsingHeader, Grid, Ui};
 
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::panels::reconstruction::fields::{
-    FieldRows, N_COLUMNS, ShownFields, sentence_case,
+    FieldRows, ShownFields, is_narrow, sentence_case,
 };
 use crate::app::panels::vehicle::{chosen_label, evidence_vehicle_ui};
 use crate::app::reconstruction::ReconstructionCommand;
@@ -104,8 +104,10 @@ impl Cards<'_, '_> {
                 });
             });
             let grid = |name: &str| Grid::new((name, section.key, idx)).min_col_width(10.0);
-            grid("fields").num_columns(N_COLUMNS).show(ui, |ui| {
+            let is_narrow = is_narrow(ui);
+            grid("fields").show(ui, |ui| {
                 let mut rows = FieldRows::new(ui, *units, (section.key, idx));
+                rows.is_narrow = is_narrow;
                 rows.adds_to = *adds_to;
                 if chosen.is_some() {
                     rows.shown = ShownFields::Measured;

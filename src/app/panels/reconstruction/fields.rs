@@ -1,5 +1,5 @@
-//! The rows of a card of the evidence: one for each field, in a grid of four columns. A field that is empty
-//! is not known.
+//! The rows of a card of the evidence: one for each field, in a grid of four columns, or of two where the
+//! pane is narrow. A field that is empty is not known.
 
 use egui::{ComboBox, Response, Ui};
 
@@ -11,8 +11,8 @@ use impactlab_reconstruct::evidence::{
     Bounds, Choice, Field, Fields, PlaceMut, PointsMut, Sigma, Stated, Word,
 };
 
-/// Number of columns of the grid.
-pub const N_COLUMNS: usize = 4;
+/// Width of a card below which the second number of a row stands in a row of its own, points.
+const NARROW: f32 = 290.0;
 /// Width of a list of words, points.
 const LIST_WIDTH: f32 = 84.0;
 /// What an empty field says.
@@ -39,10 +39,17 @@ pub struct FieldRows<'u> {
     pub item: (&'static str, Option<usize>),
     /// Which are drawn.
     pub shown: ShownFields,
+    /// Whether the second number of a row stands below the first.
+    pub is_narrow: bool,
     /// The item to which clicks in the scene add points.
     pub adds_to: Option<usize>,
     /// What the user asks for beside the edits.
     pub command: Option<ReconstructionCommand>,
+}
+
+/// Whether the rows of a card are as narrow as this place.
+pub fn is_narrow(ui: &Ui) -> bool {
+    ui.available_width() < NARROW
 }
 
 /// A label as the beginning of a row.
@@ -54,7 +61,15 @@ pub fn sentence_case(text: &str) -> String {
 impl<'u> FieldRows<'u> {
     /// All fields of an item.
     pub fn new(ui: &'u mut Ui, units: UnitSystem, item: (&'static str, Option<usize>)) -> Self {
-        Self { ui, units, item, shown: ShownFields::All, adds_to: None, command: None }
+        let shown = ShownFields::All;
+        Self { ui, units, item, shown, is_narrow: false, adds_to: None, command: None }
+    }
+
+    /// Begins the second half of a row.
+    fn second_half(&mut self) {
+        if self.is_narrow {
+            self.ui.end_row();
+        }
     }
 
     fn quantity(
@@ -112,6 +127,7 @@ impl Fields for FieldRows<'_> {
         let name = self.ui.label(sentence_case(field.label));
         let empty = EmptyField { text: NOT_KNOWN, start_si: 0.0 };
         self.quantity(&mut parts.value, empty, &field.range).labelled_by(name.id);
+        self.second_half();
         let sign = self.ui.label("±");
         self.sigma(sigma, parts.value, &mut parts.sigma).labelled_by(sign.id);
         self.ui.end_row();
@@ -135,6 +151,7 @@ impl Fields for FieldRows<'_> {
         let is_adding = idx.is_some() && self.adds_to == idx;
         let hint = "Then click along the mark in the scene, from where it starts";
         let adds = self.ui.selectable_label(is_adding, "Add points").on_hover_text(hint);
+        self.second_half();
         self.ui.label("");
         let last = egui::Button::new("Undo last").small();
         if self.ui.add_enabled(!points_m.is_empty(), last).clicked() {
@@ -152,6 +169,7 @@ impl Fields for FieldRows<'_> {
         let empty = EmptyField { text: NOT_KNOWN, start_si: 0.0 };
         let up_to = field.range.at_most(high.unwrap_or(field.range.high));
         self.quantity(&mut low, empty, &up_to).labelled_by(name.id);
+        self.second_half();
         self.ui.label("to");
         let from = field.range.within([low.unwrap_or(field.range.low), field.range.high]);
         self.quantity(&mut high, empty, &from).labelled_by(name.id);
