@@ -3,7 +3,7 @@
 
 use egui::{CollapsingHeader, Grid, Sense, Ui, vec2};
 
-use crate::app::panels::reconstruction::fields::{FieldRows, N_COLUMNS};
+use crate::app::panels::reconstruction::fields::{FieldRows, is_narrow};
 use crate::app::reconstruction::{EvidencePreview, ReconstructionSession};
 use impactlab_core::units::{UnitSystem, significant};
 use impactlab_document::figure::Role;
@@ -14,15 +14,20 @@ use impactlab_study::ReconstructRequest;
 
 /// Standard normal variable below which 95 % lie.
 const Z_95: f64 = 1.645;
-/// Width and height of a bar, points.
+/// Largest width of a bar and its height, points.
 const BAR: [f32; 2] = [110.0, 14.0];
+/// Room for the text beside a bar, points.
+const BESIDE_BAR: f32 = 140.0;
 
 /// Draws the ranges that the user gives instead of the defaults.
 pub fn prior_ranges_ui(ui: &mut Ui, ranges: &mut PriorRanges, units: UnitSystem) {
     CollapsingHeader::new("Ranges beforehand").show(ui, |ui| {
         ui.weak("Each value inside is equally likely; what is empty has a default.");
-        Grid::new("prior ranges").num_columns(N_COLUMNS).min_col_width(10.0).show(ui, |ui| {
-            ranges.fields(&mut FieldRows::new(ui, units, ("prior", None)));
+        let is_narrow = is_narrow(ui);
+        Grid::new("prior ranges").min_col_width(10.0).show(ui, |ui| {
+            let mut rows = FieldRows::new(ui, units, ("prior", None));
+            rows.is_narrow = is_narrow;
+            ranges.fields(&mut rows);
         });
     });
 }
@@ -66,7 +71,8 @@ fn prior_row(
     ui.horizontal(|ui| {
         let [low, high] = distribution.support();
         let share = |value: f64| ((value - low) / (high - low)).clamp(0.0, 1.0) as f32;
-        let (rect, response) = ui.allocate_exact_size(BAR.into(), Sense::hover());
+        let width = (ui.available_width() - BESIDE_BAR).clamp(BAR[0] / 2.0, BAR[0]);
+        let (rect, response) = ui.allocate_exact_size(vec2(width, BAR[1]), Sense::hover());
         let dark = ui.visuals().dark_mode;
         let bar = |[from, to]: [f64; 2], (height, role): (f32, Role)| {
             let [left, right] = [from, to].map(|end| rect.left() + share(end) * rect.width());
