@@ -140,7 +140,7 @@ fn main() {
     println!("| frame | median, ms | 90 % | 99 % | over 20 ms |\n| --- | --- | --- | --- | --- |");
     window.measure_all("at rest");
 
-    let form = &mut window.0.state_mut().state_mut().project.force_training;
+    let form = &mut window.0.state_mut().state_mut().project.networks.train_force;
     form.epochs = Some(100_000);
     window.apply(Command::Train(Network::Force, TrainingCommand::Start));
     let is_fitting = |state: &State| {

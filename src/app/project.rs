@@ -4,9 +4,8 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::force::ForceTrainingForm;
+use crate::app::network::NetworkQuestions;
 use crate::app::recording::OverlaidRecording;
-use crate::app::response::{ComparisonForm, ResponseTrainingForm};
 use crate::app::state::Subject;
 use impactlab_core::collision::{ChannelClass, Scenario};
 use impactlab_core::site::PixelMap;
@@ -41,12 +40,8 @@ pub struct Project {
     pub others: Vec<Request>,
     /// What the window keeps of the variant beside its questions.
     pub beside: Beside,
-    /// Settings of the training of the force network.
-    pub force_training: ForceTrainingForm,
-    /// Settings of the training of the response network.
-    pub response_training: ResponseTrainingForm,
-    /// Settings of the comparison of response models.
-    pub comparison: ComparisonForm,
+    /// Trainings, evaluations and the comparison.
+    pub networks: NetworkQuestions,
 }
 
 /// What the window keeps of a variant beside its questions: how it is drawn, and what was entered for
@@ -85,9 +80,7 @@ impl Default for Project {
             reconstruct: None,
             others: Vec::new(),
             beside: Beside::default(),
-            force_training: ForceTrainingForm::default(),
-            response_training: ResponseTrainingForm::default(),
-            comparison: ComparisonForm::default(),
+            networks: NetworkQuestions::default(),
         }
     }
 }
@@ -242,17 +235,12 @@ impl Project {
         variant
     }
 
-    /// The project with another variant. Trainings and comparison are not of a variant.
+    /// The project with another variant. The questions about networks are of none.
     ///
     /// # Errors
     /// What is wrong with what the window keeps beside the questions.
     pub fn with_variant(&self, variant: &Variant) -> Result<Self, serde_json::Error> {
-        let mut project = Self {
-            force_training: self.force_training.clone(),
-            response_training: self.response_training.clone(),
-            comparison: self.comparison.clone(),
-            ..Self::default()
-        };
+        let mut project = Self { networks: self.networks.clone(), ..Self::default() };
         if !variant.view.is_null() {
             project.beside = Beside::deserialize(&variant.view)?;
         }

@@ -6,19 +6,17 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::force::ForceTrainingForm;
-use crate::app::model::CurrentModel;
-use crate::app::response::{ComparisonForm, ResponseTrainingForm, TrainingMode};
-use crate::app::source::{Content, OpenDataset, Source};
+use crate::app::model::{CurrentModel, file_name};
+use crate::app::network::{NetworkQuestions, TrainingMode};
+use crate::app::source::{Content, OpenDataset, Source, chosen_dataset, open_datasets};
 use crate::app::state::{State, Subject};
 use impactlab_core::data::{DatasetKind, FileKind};
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{
-    CompareRequest, ConfigChoice, DEFAULT_LOG_DURATION_S, Drive, EvaluateForceRequest,
-    EvaluateResponseRequest, FineTuneRequest, ForceQuestion, ForceSource, ImpactRequest, Learning,
-    ModelChoice, MotionLogs, MotionSource, PredictForceRequest, PredictMotionRequest, SeriesFile,
+    CompareRequest, DEFAULT_LOG_DURATION_S, Drive, EvaluateForceRequest, EvaluateResponseRequest,
+    FineTuneRequest, ForceQuestion, ForceSource, ImpactRequest, Learning, ModelChoice, MotionLogs,
+    MotionSource, PredictForceRequest, PredictMotionRequest, Request, SeriesFile,
     SimulateDatasetRequest, SimulateRequest, TrainForceRequest, TrainResponseRequest,
-    TrainingOptions,
 };
 
 impl State {
@@ -161,54 +159,67 @@ impl State {
         self.project.keep_in_step();
     }
 
-    /// Returns the question that trains the force network.
-    ///
-    /// - `chosen`: the data set of which a part is kept for the test;
-    /// - `extra`: other data sets, from which all cases are used for training.
-    pub(in crate::app) fn train_force_request(
-        &self,
-        chosen: &OpenDataset<'_>,
-        extra: &[OpenDataset<'_>],
-    ) -> TrainForceRequest {
-        let form: &ForceTrainingForm = &self.project.force_training;
-        TrainForceRequest {
-            data: chosen.path.to_owned(),
-            extra: extra.iter().map(|of| of.path.to_owned()).collect(),
-            paper: false,
-            epochs: form.epochs,
-            training: TrainingOptions {
-                config: config(&form.config),
-                seed: form.seed,
-                bad_cases: form.bad_cases,
-                ..TrainingOptions::default() // The window chooses the checkpoint at the start.
-            },
-        }
+    /// Returns the question that trains the force network and the name of its data; `None` if no force
+    /// data set is open.
+    pub(in crate::app) fn train_force_request(&self) -> Option<(TrainForceRequest, String)> {
+        let NetworkQuestions { train_force, use_others, .. } = &self.project.networks;
+        let datasets = open_datasets(&self.session.sources, &[DatasetKind::Force]);
+        let chosen = chosen_dataset(&datasets, &train_force.data)?;
+        let is_extra = |of: &&OpenDataset<'_>| *use_others && of.path != chosen.path;
+        let extra: Vec<_> = datasets.iter().filter(is_extra).collect();
+        let names = std::iter::once(&chosen).chain(extra.iter().copied()).map(OpenDataset::name);
+        let name = names.collect::<Vec<_>>().join(" + ");
+        let extra = extra.iter().map(|of| of.path.to_owned()).collect();
+        let data = chosen.path.to_owned();
+        Some((TrainForceRequest { data, extra, ..train_force.clone() }, name))
     }
 
-    /// Returns the question that pre-trains the response network on simulations with the forces of
-    /// a data set.
-    pub(in crate::app) fn train_response_request(&self, data: PathBuf) -> TrainResponseRequest {
-        let form: &ResponseTrainingForm = &self.project.response_training;
-        TrainResponseRequest {
-            data,
-            vehicle: self.project.simulate.vehicle.clone(),
-            plain: false,
-            training: TrainingOptions {
-                config: config(&form.config),
-                seed: form.seed,
-                bad_cases: form.bad_cases,
-                ..TrainingOptions::default() // The window chooses the checkpoint at the start.
-            },
+    /// Returns the question that trains the response network and the name of its data.
+    ///
+    /// # Errors
+    /// What is missing, as a message for the user.
+    pub(in crate::app) fn train_response_request(&self) -> Result<(Request, String), &'static str> {
+        let NetworkQuestions { mode, fine_tune, .. } = &self.project.networks;
+        let logs = self.log_to_learn_from();
+        let (data, name) = match logs.as_ref().and_then(|logs| logs.logs.first()) {
+            Some(log) => (None, file_name(log)),
+            None => {
+                let wanted = fine_tune.data.first().map_or(Path::new(""), PathBuf::as_path);
+                let chosen = self.chosen_data(wanted, mode.data_kinds());
+                let (data, name) = chosen.ok_or("open a data set to train on first")?;
+                (Some(data), name)
+            }
+        };
+        let vehicle = self.project.simulate.vehicle.clone();
+        if let (TrainingMode::Pretrain, Some(data)) = (mode, &data) {
+            let (data, training) = (data.clone(), fine_tune.training.clone());
+            let request = TrainResponseRequest { data, vehicle, plain: false, training };
+            return Ok((request.into(), name));
         }
+        let learning = match mode {
+            TrainingMode::Condition => Learning::Strengths,
+            _ => Learning::Network,
+        };
+        let data = data.into_iter().collect();
+        let model = match mode {
+            TrainingMode::FineTuneShipped => Some(ModelSource::ShippedPretrained.into()),
+            TrainingMode::FineTuneCurrent | TrainingMode::Condition => {
+                let current = choice(self.session.response.model.current.as_ref());
+                Some(current.ok_or("there is no current response model")?)
+            }
+            TrainingMode::FromScratch | TrainingMode::Pretrain => None,
+        };
+        let request = FineTuneRequest { learning, model, data, logs, vehicle, ..fine_tune.clone() };
+        Ok((request.into(), name))
     }
 
     /// The log that the response network is to learn from instead of a data set; `None` if none is
     /// chosen, or if its file is not open any more.
     pub(in crate::app) fn log_to_learn_from(&self) -> Option<MotionLogs> {
-        let form = &self.project.response_training;
-        let source_of = |path: &PathBuf| self.session.sources.iter().find(|of| of.path == *path);
-        let log = form.log.as_ref().filter(|_| form.mode.takes_log()).and_then(source_of)?;
-        let force = form.log_force.as_ref().and_then(source_of);
+        let NetworkQuestions { mode, log, log_force, .. } = &self.project.networks;
+        let log =
+            log.as_ref().filter(|_| mode.takes_log()).and_then(|path| self.open_source(path))?;
+        let force = log_force.as_ref().and_then(|path| self.open_source(path));
         Some(MotionLogs {
             logs: vec![log.path.clone()],
             forces: force.map(|source| source.path.clone()).into_iter().collect(),
@@ -219,123 +230,51 @@ impl State {
         })
     }
 
-    /// Returns the question that fine-tunes the response network on data sets or a log; `None` if the
-    /// current model is to be fine-tuned and there is none.
-    pub(in crate::app) fn fine_tune_request(
-        &self,
-        data: Vec<PathBuf>,
-        logs: Option<MotionLogs>,
-    ) -> Option<FineTuneRequest> {
-        let form: &ResponseTrainingForm = &self.project.response_training;
-        let model = match form.mode {
-            TrainingMode::FineTuneShipped => Some(ModelSource::ShippedPretrained.into()),
-            TrainingMode::FineTuneCurrent | TrainingMode::Condition => {
-                Some(choice(self.session.response.model.current.as_ref())?)
-            }
-            TrainingMode::FromScratch | TrainingMode::Pretrain => None,
-        };
-        let learning = match form.mode {
-            TrainingMode::Condition => Learning::Strengths,
-            _ => Learning::Network,
-        };
-        Some(FineTuneRequest {
-            learning,
-            model,
-            data,
-            logs,
-            trajectories: form.n_trajectories,
-            vehicle: self.project.simulate.vehicle.clone(),
-            choice: form.choice,
-            training: TrainingOptions {
-                config: config(&form.config),
-                seed: form.seed,
-                bad_cases: form.bad_cases,
-                ..TrainingOptions::default() // The window chooses the checkpoint at the start.
-            },
-            ..FineTuneRequest::default()
-        })
-    }
-
-    /// Returns the question that evaluates the current force model on a data set; `None` if no
-    /// model is loaded.
-    pub(in crate::app) fn evaluate_force_request(
-        &self,
-        data: PathBuf,
-    ) -> Option<EvaluateForceRequest> {
-        let view = &self.view.force;
+    /// Returns the question that evaluates the current force model; `None` if there is no model or no
+    /// force data set is open.
+    pub(in crate::app) fn evaluate_force_request(&self) -> Option<EvaluateForceRequest> {
+        let request = &self.project.networks.evaluate_force;
+        let (data, _) = self.chosen_data(&request.data, &[DatasetKind::Force])?;
         let model = choice(self.session.force.model.current.as_ref())?;
-        Some(EvaluateForceRequest {
-            split: view.evaluated_cases,
-            bad_cases: view.bad_cases,
-            for_figures: true,
-            ..EvaluateForceRequest::new(model, data)
-        })
+        Some(EvaluateForceRequest { model, data, ..request.clone() })
     }
 
-    /// Returns the question that evaluates the current response model on a data set; `None` if no
-    /// model is loaded.
-    pub(in crate::app) fn evaluate_response_request(
-        &self,
-        data: PathBuf,
-    ) -> Option<EvaluateResponseRequest> {
-        let form: &ComparisonForm = &self.project.comparison;
-        Some(EvaluateResponseRequest {
-            model: choice(self.session.response.model.current.as_ref())?,
-            data,
-            split: form.evaluated_cases,
-            vehicle: self.project.simulate.vehicle.clone(),
-            seed: form.seed,
-            bad_cases: form.bad_cases,
-        })
-    }
-
-    /// Returns the question that compares response models on a data set.
+    /// Returns the question that evaluates the current response model.
     ///
     /// # Errors
-    /// A message for the user, if the form does not list positive numbers of trajectories.
-    pub(in crate::app) fn compare_request(&self, data: PathBuf) -> Result<CompareRequest, String> {
-        let form: &ComparisonForm = &self.project.comparison;
-        Ok(CompareRequest {
-            trajectories: trajectories(&form.trajectories)?,
-            choices: form.n_choices,
-            seed: form.seed,
-            vehicle: self.project.simulate.vehicle.clone(),
-            config: config(&form.config),
-            bad_cases: form.bad_cases,
-            ..CompareRequest::new(data)
-        })
+    /// What is missing, as a message for the user.
+    pub(in crate::app) fn evaluate_response_request(
+        &self,
+    ) -> Result<EvaluateResponseRequest, &'static str> {
+        let CompareRequest { data, vehicle, seed, bad_cases, .. } = self.compare_request()?;
+        let model = choice(self.session.response.model.current.as_ref());
+        let model = model.ok_or("there is no response model to evaluate")?;
+        let split = self.project.networks.response_cases;
+        Ok(EvaluateResponseRequest { model, data, split, vehicle, seed, bad_cases })
+    }
+
+    /// Returns the question that compares response models.
+    ///
+    /// # Errors
+    /// What is missing, as a message for the user.
+    pub(in crate::app) fn compare_request(&self) -> Result<CompareRequest, &'static str> {
+        let request = &self.project.networks.compare;
+        let chosen = self.chosen_data(&request.data, &[DatasetKind::Trajectory]);
+        let (data, _) = chosen.ok_or("open a trajectory data set first")?;
+        let vehicle = self.project.simulate.vehicle.clone();
+        Ok(CompareRequest { data, vehicle, ..request.clone() })
+    }
+
+    /// Returns the folder and the name of the wanted data set, or of the first open one of the
+    /// given kinds if the wanted one is not open; `None` if none is open.
+    fn chosen_data(&self, wanted: &Path, kinds: &[DatasetKind]) -> Option<(PathBuf, String)> {
+        let datasets = open_datasets(&self.session.sources, kinds);
+        let chosen = chosen_dataset(&datasets, wanted)?;
+        Some((chosen.path.to_owned(), chosen.name()))
     }
 }
 
 /// Returns the reference to the current model in questions.
 fn choice<M>(current: Option<&CurrentModel<M>>) -> Option<ModelChoice> {
     current.map(|current| current.choice.clone())
-}
-
-/// Returns the settings file whose path the user typed. An empty text means the settings of the
-/// model that is trained on, or the defaults.
-fn config(typed: &str) -> ConfigChoice {
-    let path = typed.trim();
-    (!path.is_empty()).then(|| PathBuf::from(path)).into()
-}
-
-/// Reads a list of positive numbers separated by commas, such as `5, 20`.
-fn trajectories(text: &str) -> Result<Vec<usize>, String> {
-    let number = |part: &str| match part.trim().parse::<usize>() {
-        Ok(n) if n > 0 => Ok(n),
-        _ => Err(format!("{part:?} is no number of trajectories, expected such as 5, 20")),
-    };
-    text.split(',').map(number).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_of_trajectories_are_read_or_refused() {
-        assert_eq!(trajectories("5, 20"), Ok(vec![5, 20]));
-        assert!(trajectories("5, x").unwrap_err().contains("\" x\""));
-        assert!(trajectories("0").is_err() && trajectories("").is_err());
-    }
 }

@@ -67,11 +67,8 @@ pub fn open_datasets<'a>(sources: &'a [Source], kinds: &[DatasetKind]) -> Vec<Op
 }
 
 /// Returns the data set at the wanted path, or the first data set if that one is not among them.
-pub fn chosen_dataset<'a>(
-    datasets: &[OpenDataset<'a>],
-    wanted: Option<&Path>,
-) -> Option<OpenDataset<'a>> {
-    let chosen = datasets.iter().find(|of| Some(of.path) == wanted);
+pub fn chosen_dataset<'a>(datasets: &[OpenDataset<'a>], wanted: &Path) -> Option<OpenDataset<'a>> {
+    let chosen = datasets.iter().find(|of| of.path == wanted);
     chosen.or(datasets.first()).copied()
 }
 

@@ -32,6 +32,22 @@ fn project_and_view_survive_a_restart() {
     assert_eq!(sources, [PathBuf::from("a.csv")]);
 }
 
+/// Trainings and comparisons had settings of their own, which no question has.
+#[test]
+fn a_state_with_the_settings_of_earlier_trainings_is_read() {
+    let mut state = State::default();
+    state.project.simulate.duration_s = 2.5;
+    state.project.keep_in_step();
+    let mut saved: serde_json::Value = serde_json::from_str(&state.save().unwrap()).unwrap();
+    let project = saved["project"].as_object_mut().unwrap();
+    assert!(project.remove("networks").is_some());
+    let training = serde_json::json!({ "dataset": null, "seed": 7, "config": "" });
+    project.insert("force_training".to_owned(), training);
+    project.insert("comparison".to_owned(), serde_json::json!({ "trajectories": "5, x" }));
+    let (restored, _) = State::restore(&saved.to_string()).unwrap();
+    assert_eq!(restored.project, state.project);
+}
+
 #[test]
 fn a_layout_without_the_newer_panes_is_put_back() {
     let mut state = State::default();

@@ -10,7 +10,7 @@ use impactlab::app::{
     App, Command, ComparisonCommand, Latest, Network, Pane, QuestionJob, ReconstructionCommand,
     State, Subject, TrainingCommand, TrainingMode,
 };
-use impactlab_study::{ForceSource, ModelChoice, Question, Request, SimulateAnswer};
+use impactlab_study::{ConfigChoice, ForceSource, ModelChoice, Question, Request, SimulateAnswer};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -361,8 +361,9 @@ fn a_force_network_is_trained_and_evaluated_alike() {
     let model = folder.path().join("force.safetensors").display().to_string();
     let mut harness = open_on(FORCES);
     {
-        let form = &mut harness.state_mut().state_mut().project.force_training;
-        (form.config, form.epochs, form.seed) = (config.clone(), Some(2), 3);
+        let form = &mut harness.state_mut().state_mut().project.networks.train_force;
+        (form.epochs, form.training.seed) = (Some(2), 3);
+        form.training.config = ConfigChoice::File(config.clone().into());
     }
     train(&mut harness, Network::Force);
     let training = &state(&harness).session.force.training;
@@ -398,9 +399,10 @@ fn a_response_network_is_trained_fine_tuned_and_evaluated_alike() {
     let mut harness = open(&[FORCES, TRAJECTORIES]);
     step_until(&mut harness, "the data", is_idle);
     {
-        let form = &mut harness.state_mut().state_mut().project.response_training;
-        (form.mode, form.dataset) = (TrainingMode::Pretrain, Some(FORCES.into()));
-        (form.config, form.seed) = (config.clone(), 1);
+        let form = &mut harness.state_mut().state_mut().project.networks;
+        (form.mode, form.fine_tune.data) = (TrainingMode::Pretrain, vec![FORCES.into()]);
+        form.fine_tune.training.config = ConfigChoice::File(config.clone().into());
+        form.fine_tune.training.seed = 1;
     }
     train(&mut harness, Network::Response);
     let training = &state(&harness).session.response.training;
@@ -421,9 +423,9 @@ fn a_response_network_is_trained_fine_tuned_and_evaluated_alike() {
     apply(&mut harness, Command::Open(vec![PathBuf::from(&pretrained)]));
     step_until(&mut harness, "the pre-trained model", has_model(pretrained.clone()));
     {
-        let form = &mut harness.state_mut().state_mut().project.response_training;
-        (form.mode, form.dataset) = (TrainingMode::FineTuneCurrent, None);
-        (form.n_trajectories, form.choice) = (Some(3), Some(2));
+        let form = &mut harness.state_mut().state_mut().project.networks;
+        (form.mode, form.fine_tune.data) = (TrainingMode::FineTuneCurrent, Vec::new());
+        (form.fine_tune.trajectories, form.fine_tune.choice) = (Some(3), Some(2));
     }
     train(&mut harness, Network::Response);
     let training = &state(&harness).session.response.training;
@@ -452,8 +454,9 @@ fn models_are_compared_alike() {
     let config = write(folder.path(), "tiny.toml", SMALL_RESPONSE);
     let mut harness = open_on(TRAJECTORIES);
     {
-        let form = &mut harness.state_mut().state_mut().project.comparison;
-        (form.config, form.trajectories, form.n_choices) = (config.clone(), "3".to_owned(), 1);
+        let form = &mut harness.state_mut().state_mut().project.networks.compare;
+        form.config = ConfigChoice::File(config.clone().into());
+        (form.trajectories, form.choices) = (vec![3], 1);
     }
     apply(&mut harness, Command::Compare(ComparisonCommand::Start));
     let is_over = |state: &State| !state.session.response.comparison.is_running();

@@ -204,7 +204,6 @@ fn a_case_of_version_1_is_its_questions_and_what_only_its_forms_say() {
     assert_eq!(project.scenario().expect("a scenario").contact.restitution, 0.35);
     assert_eq!(project.beside.channel_class, Some(ChannelClass::Cfc60));
     assert_eq!(project.beside.start.speed_m_s, Some(12.5));
-    assert_eq!(project.force_training.seed, 7);
     assert_eq!(questions_in(&new), questions_in(&old));
     let text = fs::read_to_string(&new).expect("a case");
     assert!(text.contains("\"version\": 2") && !text.contains("\"forms\""), "{text}");

@@ -116,14 +116,14 @@ fn a_log_narrows_the_bands_of_a_car_that_the_network_does_not_know() {
     let before = interval_m(&harness);
 
     apply(&mut harness, Command::ShowTraining(Network::Response));
-    let form = &mut harness.state_mut().state_mut().project.response_training;
+    let form = &mut harness.state_mut().state_mut().project.networks;
     form.mode = TrainingMode::Condition;
     harness.run_steps(3);
     harness.get_by_label("Log").click();
     harness.run_steps(3);
     harness.get_by_label("drive.csv").click();
     harness.run_steps(3);
-    let form = &mut harness.state_mut().state_mut().project.response_training;
+    let form = &mut harness.state_mut().state_mut().project.networks;
     assert_eq!(form.log.as_deref(), Some(log.as_path()));
     form.log_force = Some(log_force);
     harness.run_steps(3);

@@ -12,7 +12,7 @@ use impactlab::app::{
 use impactlab_core::data::{Dataset, Existing, Severity};
 use impactlab_networks::force::{ForceCase, ForceConfig, ForceScenario, train};
 use impactlab_networks::learning::{ModelFile, TrainSettings, TrainingSet};
-use impactlab_study::ForceEvaluation;
+use impactlab_study::{ConfigChoice, ForceEvaluation};
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 use crate::pictures::save;
@@ -197,8 +197,9 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Show(Pane::Training));
     {
-        let form = &mut harness.state_mut().state_mut().project.force_training;
-        (form.epochs, form.config) = (Some(100_000), small().config().display().to_string());
+        let form = &mut harness.state_mut().state_mut().project.networks.train_force;
+        form.epochs = Some(100_000);
+        form.training.config = ConfigChoice::File(small().config());
     }
     harness.run_steps(2);
     harness.get_by_label("Train").click();
@@ -259,7 +260,8 @@ fn a_bad_model_and_bad_settings_say_what_is_wrong() {
             .iter()
             .any(|m| m.severity == Severity::Error && m.text.contains("no/such.safetensors"))
     });
-    harness.state_mut().state_mut().project.force_training.config = "Cargo.toml".to_owned();
+    let form = &mut harness.state_mut().state_mut().project.networks.train_force;
+    form.training.config = ConfigChoice::File("Cargo.toml".into());
     apply(&mut harness, Command::Train(Network::Force, TrainingCommand::Start));
     step_until(&mut harness, "the problem", |state| !state.session.force.training.run.is_running());
     let problem = state(&harness).session.force.training.problem.clone().expect("a problem");

@@ -10,7 +10,7 @@ use impactlab::app::{
     App, ArchiveEntry, ArchiveKind, Command, ComparisonCommand, CostPlace, Leaving, Network, Pane,
     State, TrainingCommand, TrainingMode,
 };
-use impactlab_study::ModelChoice;
+use impactlab_study::{ConfigChoice, ModelChoice};
 
 use crate::harness::{apply, is_idle, open_with, step_until};
 use crate::pictures::save;
@@ -62,8 +62,9 @@ impl Desk {
     /// Opens the window on the force data, with the training form filled in.
     fn open_to_train(&self, epochs: usize) -> Harness<'static, App> {
         let mut harness = self.open(&[FORCES]);
-        let form = &mut harness.state_mut().state_mut().project.force_training;
-        (form.epochs, form.config) = (Some(epochs), self.path("force.toml").display().to_string());
+        let form = &mut harness.state_mut().state_mut().project.networks.train_force;
+        form.epochs = Some(epochs);
+        form.training.config = ConfigChoice::File(self.path("force.toml"));
         harness
     }
 
@@ -302,9 +303,9 @@ fn comparisons_and_evaluations_are_opened_again_after_a_restart() {
     let mut harness = desk.open(&[MOTIONS, FORCES]);
     step_until(&mut harness, "the data", is_idle);
     {
-        let form = &mut harness.state_mut().state_mut().project.comparison;
-        form.config = desk.path("response.toml").display().to_string();
-        (form.trajectories, form.n_choices) = ("3".to_owned(), 1);
+        let form = &mut harness.state_mut().state_mut().project.networks.compare;
+        form.config = ConfigChoice::File(desk.path("response.toml"));
+        (form.trajectories, form.choices) = (vec![3], 1);
     }
     let n_archived = |n: usize| move |state: &State| state.session.archive.list.entries.len() == n;
     apply(&mut harness, Command::Compare(ComparisonCommand::Start));
@@ -355,7 +356,7 @@ fn a_damaged_kept_file_is_named_and_the_others_are_there() {
     let desk = Desk::new();
     let mut harness = desk.open_to_train(2);
     train(&mut harness);
-    harness.state_mut().state_mut().project.force_training.seed = 1;
+    harness.state_mut().state_mut().project.networks.train_force.training.seed = 1;
     train(&mut harness);
     apply(&mut harness, Command::UseModel(Network::Force, None));
     desk.store(&mut harness);
@@ -386,9 +387,9 @@ fn the_pane_shows_what_is_in_use_running_and_finished() {
     let mut harness = desk.open_to_train(3);
     train(&mut harness);
     {
-        let form = &mut harness.state_mut().state_mut().project.response_training;
-        (form.mode, form.n_trajectories) = (TrainingMode::FromScratch, Some(3));
-        form.config = desk.path("response.toml").display().to_string();
+        let form = &mut harness.state_mut().state_mut().project.networks;
+        (form.mode, form.fine_tune.trajectories) = (TrainingMode::FromScratch, Some(3));
+        form.fine_tune.training.config = ConfigChoice::File(desk.path("response.toml"));
     }
     apply(&mut harness, Command::Open(vec![MOTIONS.into()]));
     step_until(&mut harness, "the trajectories", is_idle);
@@ -396,7 +397,7 @@ fn the_pane_shows_what_is_in_use_running_and_finished() {
     step_until(&mut harness, "the response model", |state| {
         state.session.archive.list.entries.len() == 2
     });
-    let form = &mut harness.state_mut().state_mut().project.force_training;
+    let form = &mut harness.state_mut().state_mut().project.networks.train_force;
     form.epochs = Some(100_000);
     apply(&mut harness, Command::Train(Network::Force, TrainingCommand::Start));
     step_until(&mut harness, "epochs", |state| state.session.force.training.history.len() > 2);
@@ -429,15 +430,15 @@ fn a_form_says_what_its_work_will_take_and_measures_again_when_it_changes() {
     step_until(&mut harness, "a measurement", |state| n_of(state, place, "epochs") == Some(50.0));
     harness.get_by_label_contains("Training: at most about");
     assert!(!state(&harness).session.force.training.run.is_running());
-    let form = &mut harness.state_mut().state_mut().project.force_training;
+    let form = &mut harness.state_mut().state_mut().project.networks.train_force;
     form.epochs = Some(5000);
     harness.run_steps(2);
     assert!(state(&harness).session.costs.get(place).is_none(), "it is of other settings");
     step_until(&mut harness, "a measurement", |state| n_of(state, place, "epochs") == Some(5000.0));
     save(&mut harness, "training-cost.png");
     // Settings that cannot be read are said instead.
-    let form = &mut harness.state_mut().state_mut().project.force_training;
-    form.config = "no/such.toml".to_owned();
+    let form = &mut harness.state_mut().state_mut().project.networks.train_force;
+    form.training.config = ConfigChoice::File("no/such.toml".into());
     step_until(&mut harness, "the problem", |state| {
         state.session.costs.get(place).is_some_and(Result::is_err)
     });
@@ -451,13 +452,12 @@ fn the_forms_of_the_response_network_say_what_their_work_will_take() {
     let mut harness = desk.open(&[MOTIONS]);
     step_until(&mut harness, "the data", is_idle);
     {
-        let project = &mut harness.state_mut().state_mut().project;
-        let (training, comparison) = (&mut project.response_training, &mut project.comparison);
-        training.n_trajectories = Some(3);
-        training.mode = TrainingMode::FromScratch;
-        training.config = desk.path("response.toml").display().to_string();
-        comparison.config = training.config.clone();
-        (comparison.trajectories, comparison.n_choices) = ("3, 6".to_owned(), 2);
+        let form = &mut harness.state_mut().state_mut().project.networks;
+        let config = ConfigChoice::File(desk.path("response.toml"));
+        (form.mode, form.fine_tune.trajectories) = (TrainingMode::FromScratch, Some(3));
+        form.fine_tune.training.config = config.clone();
+        form.compare.config = config;
+        (form.compare.trajectories, form.compare.choices) = (vec![3, 6], 2);
     }
     apply(&mut harness, Command::ShowTraining(Network::Response));
     let part = "epochs of rollouts of 5 steps";

@@ -1,12 +1,13 @@
 //! Tests of the response network in the window: forecasts by the shipped model, a small training
 //! and a small comparison.
 
+use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{
     App, Command, ComparisonCommand, DensityChoice, Network, Pane, State, Subject, TrainingMode,
 };
-use impactlab_study::{ForceSource, ModelChoice};
+use impactlab_study::{ConfigChoice, ForceSource, ModelChoice};
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 use crate::pictures::save;
@@ -133,9 +134,9 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::ShowTraining(Network::Response));
     {
-        let form = &mut harness.state_mut().state_mut().project.response_training;
-        (form.mode, form.n_trajectories) = (TrainingMode::FromScratch, Some(3));
-        form.config = config.display().to_string();
+        let form = &mut harness.state_mut().state_mut().project.networks;
+        (form.mode, form.fine_tune.trajectories) = (TrainingMode::FromScratch, Some(3));
+        form.fine_tune.training.config = ConfigChoice::File(config);
     }
     harness.run_steps(2);
     harness.get_by_label("Train").click();
@@ -178,6 +179,15 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     assert_eq!(state(&harness).project.predict_force.model, ModelChoice::default());
 }
 
+/// Types into the field of the numbers of trajectories in the place of what it holds.
+fn type_numbers(harness: &mut Harness<'_, App>, numbers: &str) {
+    harness.get_by_role_and_label(Role::TextInput, "trajectories").focus();
+    harness.run_steps(2);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    harness.get_by_role_and_label(Role::TextInput, "trajectories").type_text(numbers);
+    harness.run_steps(2);
+}
+
 #[test]
 fn models_are_compared_saved_and_opened_again() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -187,17 +197,18 @@ fn models_are_compared_saved_and_opened_again() {
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Show(Pane::ModelComparison));
     {
-        let form = &mut harness.state_mut().state_mut().project.comparison;
-        form.config = config.display().to_string();
-        (form.trajectories, form.n_choices) = ("three".to_owned(), 1);
+        let form = &mut harness.state_mut().state_mut().project.networks.compare;
+        form.config = ConfigChoice::File(config);
+        form.choices = 1;
     }
     harness.run_steps(2);
-    let is_over = |state: &State| !state.session.response.comparison.is_running();
-    harness.get_by_label("Compare").click();
-    harness.run_steps(2);
-    step_until(&mut harness, "the refusal", is_over);
+    type_numbers(&mut harness, "three");
     harness.get_by_label_contains("\"three\" is no number of trajectories");
-    harness.state_mut().state_mut().project.comparison.trajectories = "3, 6".to_owned();
+    assert!(harness.get_by_label("Compare").accesskit_node().is_disabled());
+    assert_eq!(state(&harness).project.networks.compare.trajectories, [5, 20]);
+    type_numbers(&mut harness, "3, 6");
+    assert_eq!(state(&harness).project.networks.compare.trajectories, [3, 6]);
+    let is_over = |state: &State| !state.session.response.comparison.is_running();
     harness.get_by_label("Compare").click();
     harness.run_steps(2);
     step_until(&mut harness, "the comparison", is_over);

@@ -47,19 +47,12 @@ impl Default for OpenCase {
 
 impl OpenCase {
     /// A case that was read, with what was wrong with the forms of its variants, if it is of version 1.
-    ///
-    /// - `project`: takes the settings of trainings that the variant that is shown has in its forms.
-    fn from_file(mut file: CaseFile, project: &mut Project) -> (Self, Vec<String>) {
+    fn from_file(mut file: CaseFile) -> (Self, Vec<String>) {
         let mut problems = Vec::new();
         for variant in &mut file.variants {
-            let mut of_variant = project.clone();
-            match version_1::take_forms(variant, &mut of_variant) {
-                Ok(()) if variant.name == file.shown => *project = of_variant,
-                Ok(()) => {}
-                Err(error) => {
-                    let name = &variant.name;
-                    problems.push(format!("the forms of variant {name:?} are not used: {error}"));
-                }
+            if let Err(error) = version_1::take_forms(variant) {
+                let name = &variant.name;
+                problems.push(format!("the forms of variant {name:?} are not used: {error}"));
             }
         }
         (Self { file, path: None, on_disk: None, saved: None }, problems)

@@ -198,12 +198,8 @@ impl State {
     /// Begins a case with nothing in it.
     pub(in crate::app) fn new_case(&mut self) {
         self.case = OpenCase::default();
-        let mut project = Project {
-            force_training: self.project.force_training.clone(),
-            response_training: self.project.response_training.clone(),
-            comparison: self.project.comparison.clone(),
-            ..Project::default()
-        };
+        let networks = self.project.networks.clone();
+        let mut project = Project { networks, ..Project::default() };
         let (scenario, pulse) = (project.impact.scenario.clone(), project.beside.pulse);
         project.simulate.source = MotionSource::Scenario { scenario, pulse };
         project.keep_in_step();
@@ -232,7 +228,7 @@ impl State {
 
     /// Puts a case that was read in the place of the one that is open.
     fn take_file(&mut self, file: CaseFile) {
-        let (case, problems) = OpenCase::from_file(file, &mut self.project);
+        let (case, problems) = OpenCase::from_file(file);
         self.case = case;
         problems.into_iter().for_each(|problem| self.say(Severity::Warning, problem));
     }

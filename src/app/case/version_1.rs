@@ -6,10 +6,8 @@ use std::path::PathBuf;
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::app::force::ForceTrainingForm;
-use crate::app::project::{Beside, Project};
+use crate::app::project::Beside;
 use crate::app::recording::OverlaidRecording;
-use crate::app::response::{ComparisonForm, ResponseTrainingForm};
 use impactlab_core::collision::{ChannelClass, Scenario};
 use impactlab_core::site::PixelMap;
 use impactlab_core::vehicle::{ContactPoint, Ending};
@@ -83,7 +81,6 @@ struct FormsForce {
     name: String,
     scenario: Option<Box<ForceScenario>>,
     model: Option<PathBuf>,
-    training: ForceTrainingForm,
 }
 
 #[derive(Default, Deserialize)]
@@ -91,8 +88,6 @@ struct FormsForce {
 struct FormsResponse {
     model: Option<PathBuf>,
     forecast: FormsForecast,
-    training: ResponseTrainingForm,
-    comparison: ComparisonForm,
 }
 
 #[derive(Default, Deserialize)]
@@ -110,18 +105,13 @@ enum FormsForceChoice {
     Predicted,
 }
 
-/// Takes from the forms of a variant of version 1 what its questions do not say: how it is drawn, what was
-/// entered for subjects that are not selected, and the settings of trainings. A variant without forms
-/// stays as it is, and so does one with forms that cannot be read.
-///
-/// - `project`: takes the settings of trainings.
+/// Takes from the forms of a variant of version 1 what its questions do not say: how it is drawn, and what
+/// was entered for subjects that are not selected. The settings of trainings are of no variant and are
+/// left. A variant without forms stays as it is, and so does one with forms that cannot be read.
 ///
 /// # Errors
 /// What is wrong with the forms.
-pub(super) fn take_forms(
-    variant: &mut Variant,
-    project: &mut Project,
-) -> Result<(), serde_json::Error> {
+pub(super) fn take_forms(variant: &mut Variant) -> Result<(), serde_json::Error> {
     let forms = variant.forms.clone();
     if forms.is_null() {
         return Ok(());
@@ -169,9 +159,6 @@ pub(super) fn take_forms(
         ending: shown.ending,
     };
     variant.view = serde_json::to_value(beside)?;
-    project.force_training = shown.force.training;
-    project.response_training = shown.response.training;
-    project.comparison = shown.response.comparison;
     variant.forms = Value::Null;
     Ok(())
 }

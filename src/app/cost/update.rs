@@ -63,14 +63,12 @@ impl State {
     /// Returns the question that a form asks; `None` if something is missing.
     fn question_of(&self, place: CostPlace) -> Option<Request> {
         match place {
-            CostPlace::ForceTraining => Some(self.force_training()?.0),
-            CostPlace::ResponseTraining => Some(self.response_training().ok()?.0),
-            CostPlace::ForceEvaluation => self.force_evaluation().map(Request::from),
-            CostPlace::Comparison => {
-                self.compare_request(self.data_to_compare()?).ok().map(Request::from)
-            }
+            CostPlace::ForceTraining => Some(self.train_force_request()?.0.into()),
+            CostPlace::ResponseTraining => Some(self.train_response_request().ok()?.0),
+            CostPlace::ForceEvaluation => self.evaluate_force_request().map(Request::from),
+            CostPlace::Comparison => self.compare_request().ok().map(Request::from),
             CostPlace::ResponseEvaluation => {
-                self.evaluate_response_request(self.data_to_compare()?).map(Request::from)
+                self.evaluate_response_request().ok().map(Request::from)
             }
         }
     }

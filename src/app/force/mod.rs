@@ -12,7 +12,7 @@ pub use edit::{
     forget_contact, know_contact, set_contact_x, set_mass, set_side, set_striking_heading,
 };
 pub use recorded::RecordedCase;
-pub use settings::{ForceTrainingForm, ForceView, Statistic};
+pub use settings::{ForceView, Statistic};
 
 use crate::app::latest::Latest;
 use crate::app::model::ModelStatus;

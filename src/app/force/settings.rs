@@ -1,30 +1,8 @@
 //! The settings of the force network, which are saved between runs.
 
-use std::path::PathBuf;
-
 use serde::{Deserialize, Serialize};
 
 use impactlab_document::figure::ForceComponent;
-use impactlab_study::{BadCases, EvaluatedCases};
-
-/// Settings of a training of the force network.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct ForceTrainingForm {
-    /// Folder of the force data set to train on, of which some cases are kept for the test; `None`
-    /// takes the first one that is open.
-    pub dataset: Option<PathBuf>,
-    /// Whether all cases of the other open force data sets are used for training too.
-    pub use_others: bool,
-    /// Largest number of epochs; `None` takes the configured number.
-    pub epochs: Option<usize>,
-    /// Seed of the split into training and test cases and of the training.
-    pub seed: u64,
-    /// Path of a file with further settings; empty for the default settings.
-    pub config: String,
-    /// How cases that cannot be used are treated.
-    pub bad_cases: BadCases,
-}
 
 /// How the force network is shown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -48,13 +26,6 @@ pub struct ForceView {
     pub loss_terms: Vec<String>,
     /// Whether the axis of the losses is logarithmic.
     pub log_losses: bool,
-    /// Folder of the data set on which the model is evaluated; `None` takes the first one that is
-    /// open.
-    pub evaluated: Option<PathBuf>,
-    /// The cases of that data set on which the model is evaluated.
-    pub evaluated_cases: EvaluatedCases,
-    /// How cases that cannot be used in the evaluation are treated.
-    pub bad_cases: BadCases,
     /// The statistic over the cases that the tables of errors show.
     pub statistic: Statistic,
     /// The component of the force that is drawn for the sample cases of an evaluation.
@@ -98,9 +69,6 @@ impl Default for ForceView {
             follow_case: true,
             loss_terms: vec!["total".to_owned()],
             log_losses: true,
-            evaluated: None,
-            evaluated_cases: EvaluatedCases::default(),
-            bad_cases: BadCases::default(),
             statistic: Statistic::default(),
             sample_component: ForceComponent::Magnitude,
         }

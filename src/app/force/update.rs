@@ -10,12 +10,12 @@ use crate::app::command::{TrainingCommand, wake};
 use crate::app::force::ForceSession;
 use crate::app::force::recorded::RecordedCase;
 use crate::app::network::Network;
-use crate::app::source::{OpenDataset, Source, chosen_dataset, open_datasets};
+use crate::app::source::Source;
 use crate::app::state::{Session, State, Subject};
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::error_chain;
 use impactlab_networks::force::{ForceCase, ForceScenario};
-use impactlab_study::{EvaluateForceRequest, ForceQuestion, PredictForceAnswer, Request};
+use impactlab_study::{ForceQuestion, PredictForceAnswer};
 
 impl State {
     /// Receives the results of the loader, the training, the evaluation and the forecast, and asks
@@ -125,39 +125,19 @@ impl State {
         }
     }
 
-    /// Returns the question of the training form and the name of its data; `None` if no force data
-    /// set is open.
-    pub(in crate::app) fn force_training(&self) -> Option<(Request, String)> {
-        let form = &self.project.force_training;
-        let datasets = open_datasets(&self.session.sources, &[DatasetKind::Force]);
-        let chosen = chosen_dataset(&datasets, form.dataset.as_deref())?;
-        let is_extra = |of: &OpenDataset<'_>| form.use_others && of.path != chosen.path;
-        let extra: Vec<_> = datasets.iter().copied().filter(is_extra).collect();
-        let names = std::iter::once(&chosen).chain(&extra).map(OpenDataset::name);
-        let data = names.collect::<Vec<_>>().join(" + ");
-        Some((self.train_force_request(&chosen, &extra).into(), data))
-    }
-
     /// Starts a training on the chosen data set.
     fn start_force_training(&mut self, context: &Context) {
-        match self.force_training() {
+        match self.train_force_request() {
             Some((question, data)) => {
-                self.start_training(question, Network::Force, data, context);
+                self.start_training(question.into(), Network::Force, data, context);
             }
             None => self.say(Severity::Warning, "open a force data set to train on first"),
         }
     }
 
-    /// Returns the question of the evaluation form; `None` if there is no model or no data set.
-    pub(in crate::app) fn force_evaluation(&self) -> Option<EvaluateForceRequest> {
-        let datasets = open_datasets(&self.session.sources, &[DatasetKind::Force]);
-        let chosen = chosen_dataset(&datasets, self.view.force.evaluated.as_deref())?;
-        self.evaluate_force_request(chosen.path.to_owned())
-    }
-
     /// Starts an evaluation of the current force model on the chosen data set.
     pub(in crate::app) fn evaluate(&mut self, context: &Context) {
-        let Some(request) = self.force_evaluation() else {
+        let Some(request) = self.evaluate_force_request() else {
             self.say(Severity::Warning, "an evaluation needs a force model and a force data set");
             return;
         };

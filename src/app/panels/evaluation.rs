@@ -5,7 +5,7 @@ use egui::{ProgressBar, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::cost::CostPlace;
-use crate::app::force::{ForceSession, ForceView};
+use crate::app::force::ForceSession;
 use crate::app::model::file_name;
 use crate::app::panels::evaluation_plots::plots_ui;
 use crate::app::panels::evaluation_tables::tables_ui;
@@ -15,15 +15,15 @@ use crate::app::widgets::{bad_cases_ui, cost_ui, dataset_choice, no_dataset_ui, 
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_draw::theme;
-use impactlab_study::{EvaluateForceReport, EvaluatedCases, ForceEvaluation};
+use impactlab_study::{EvaluateForceReport, EvaluateForceRequest, EvaluatedCases, ForceEvaluation};
 
 /// Draws the choice of the data set and of its cases, and the tables and plots of the last
 /// evaluation.
 pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { view, session, commands, .. } = pane;
+    let PaneContext { project, view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let force = &session.force;
-        start_ui(ui, &mut view.force, force, &session.sources, commands);
+        start_ui(ui, &mut project.networks.evaluate_force, force, &session.sources, commands);
         if force.model.current.is_some() && !force.evaluation.is_running() {
             cost_ui(ui, &mut session.costs, CostPlace::ForceEvaluation, "Evaluation");
         }
@@ -59,7 +59,7 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 /// the progress while it runs.
 fn start_ui(
     ui: &mut Ui,
-    view: &mut ForceView,
+    form: &mut EvaluateForceRequest,
     force: &ForceSession,
     sources: &[Source],
     commands: &mut Vec<Command>,
@@ -77,13 +77,13 @@ fn start_ui(
         ui.strong("Model");
         ui.label(&current.name);
         let name = ui.label("on");
-        dataset_choice(ui, "evaluated data", &datasets, &mut view.evaluated).labelled_by(name.id);
-        let cases = &mut view.evaluated_cases;
+        dataset_choice(ui, "evaluated data", &datasets, &mut form.data).labelled_by(name.id);
+        let cases = &mut form.split;
         ui.radio_value(cases, EvaluatedCases::Test, "cases it has not seen")
             .on_hover_text("By content: a training case under another name is recognised");
         ui.radio_value(cases, EvaluatedCases::All, "all cases")
             .on_hover_text("Those that it has learned from too: flatters the model");
-        bad_cases_ui(ui, &mut view.bad_cases);
+        bad_cases_ui(ui, &mut form.bad_cases);
         let is_idle = !force.evaluation.is_running();
         if ui.add_enabled(is_idle, egui::Button::new("Evaluate")).clicked() {
             commands.push(Command::Evaluate);

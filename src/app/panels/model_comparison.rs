@@ -6,12 +6,14 @@ use egui::{DragValue, Grid, ProgressBar, ScrollArea, Ui};
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::cost::CostPlace;
 use crate::app::dialog::Purpose;
+use crate::app::network::NetworkQuestions;
 use crate::app::panels::model_comparison_plots::{browser_ui, overview_ui};
 use crate::app::panes::PaneContext;
-use crate::app::response::{ComparisonForm, ComparisonStatus};
+use crate::app::response::ComparisonStatus;
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{
-    bad_cases_ui, caveats_ui, cost_ui, count_field, dataset_choice, duration_text, no_dataset_ui,
+    bad_cases_ui, caveats_ui, config_field, cost_ui, count_field, dataset_choice, duration_text,
+    no_dataset_ui, written_field,
 };
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::ranges::CHOICES;
@@ -27,9 +29,9 @@ use impactlab_study::{Answer, CompareReport, EvaluatedCases};
 pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        let has_data = form_ui(ui, &mut project.comparison, &session.sources);
+        let [can_compare, has_data] = form_ui(ui, &mut project.networks, &session.sources);
         let response = &mut session.response;
-        let can_start = [has_data, has_data && response.model.current.is_some()];
+        let can_start = [can_compare, has_data && response.model.current.is_some()];
         buttons_ui(ui, &mut response.comparison, can_start, commands);
         if !response.comparison.is_running() {
             for (can, place, label) in [
@@ -63,21 +65,28 @@ pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     });
 }
 
-/// Draws the settings of a comparison and returns whether a trajectory data set is open.
-fn form_ui(ui: &mut Ui, form: &mut ComparisonForm, sources: &[Source]) -> bool {
+/// Draws the settings of a comparison. Returns whether it can be asked for as it stands in the form, and
+/// whether a trajectory data set is open.
+fn form_ui(ui: &mut Ui, questions: &mut NetworkQuestions, sources: &[Source]) -> [bool; 2] {
+    let NetworkQuestions { compare: form, response_cases: cases, .. } = questions;
     let datasets = open_datasets(sources, &[DatasetKind::Trajectory]);
     if datasets.is_empty() {
         no_dataset_ui(ui, DatasetKind::Trajectory);
     }
-    ui.horizontal_wrapped(|ui| {
+    let is_read = ui.horizontal_wrapped(|ui| {
         let name = ui.label("On");
-        dataset_choice(ui, "compared data", &datasets, &mut form.dataset).labelled_by(name.id);
+        dataset_choice(ui, "compared data", &datasets, &mut form.data).labelled_by(name.id);
         let name = ui.label("trajectories");
-        ui.add(egui::TextEdit::singleline(&mut form.trajectories).desired_width(70.0))
-            .labelled_by(name.id)
-            .on_hover_text("Numbers to fine-tune on, with commas between them");
+        let write = |numbers: &Vec<usize>| {
+            numbers.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
+        };
+        let numbers = &mut form.trajectories;
+        let (field, is_read) =
+            written_field(ui, numbers, write, read_numbers, |field| field.desired_width(70.0));
+        let hint = "Numbers to fine-tune on, with commas between them";
+        field.labelled_by(name.id).on_hover_text(hint);
         let name = ui.label("choices");
-        count_field(ui, &mut form.n_choices, &CHOICES, 0.05)
+        count_field(ui, &mut form.choices, &CHOICES, 0.05)
             .labelled_by(name.id)
             .on_hover_text("Of the trajectories, for each number: how much the choice matters");
         let name = ui.label("seed");
@@ -85,20 +94,32 @@ fn form_ui(ui: &mut Ui, form: &mut ComparisonForm, sources: &[Source]) -> bool {
             .labelled_by(name.id)
             .on_hover_text("Of the split into training and test, and of the first choice");
         let name = ui.label("settings");
-        let field = egui::TextEdit::singleline(&mut form.config).desired_width(160.0);
-        ui.add(field.hint_text("TOML, optional")).labelled_by(name.id);
+        config_field(ui, &mut form.config, |field| {
+            field.desired_width(160.0).hint_text("TOML, optional")
+        })
+        .labelled_by(name.id);
         bad_cases_ui(ui, &mut form.bad_cases);
+        is_read
     });
     ui.horizontal_wrapped(|ui| {
         ui.label("The current model alone is evaluated on");
-        let cases = &mut form.evaluated_cases;
         ui.radio_value(cases, EvaluatedCases::Test, "cases it has not seen").on_hover_text(
             "Those that were kept for its test; of other data, all that it was not trained on",
         );
         ui.radio_value(cases, EvaluatedCases::All, "all cases")
             .on_hover_text("Those that it has learned from too: flatters the model");
     });
-    !datasets.is_empty()
+    let has_data = !datasets.is_empty();
+    [has_data && is_read.inner, has_data]
+}
+
+/// Reads a list of positive numbers separated by commas, such as `5, 20`.
+fn read_numbers(text: &str) -> Result<Vec<usize>, String> {
+    let number = |part: &str| match part.trim().parse::<usize>() {
+        Ok(n) if n > 0 => Ok(n),
+        _ => Err(format!("{part:?} is no number of trajectories, expected such as 5, 20")),
+    };
+    text.split(',').map(number).collect()
 }
 
 /// Draws the buttons that start, open and save a comparison, and the progress while one runs.
@@ -221,4 +242,16 @@ fn table_ui(ui: &mut Ui, id: &str, table: &ComparisonTable, restrictions: Option
             }
         });
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_trajectories_are_read_or_refused() {
+        assert_eq!(read_numbers("5, 20"), Ok(vec![5, 20]));
+        assert!(read_numbers("5, x").unwrap_err().contains("\" x\""));
+        assert!(read_numbers("0").is_err() && read_numbers("").is_err());
+    }
 }

@@ -30,7 +30,7 @@ pub fn training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 fn force_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
-    let has_data = force_form_ui(ui, &mut project.force_training, &session.sources);
+    let has_data = force_form_ui(ui, &mut project.networks, &session.sources);
     if !has_data {
         no_dataset_ui(ui, DatasetKind::Force);
     }
@@ -46,7 +46,7 @@ fn force_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 fn response_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
-    let has_data = response_form_ui(ui, &mut project.response_training, &session.sources);
+    let has_data = response_form_ui(ui, &mut project.networks, &session.sources);
     if !has_data {
         no_dataset_ui(ui, DatasetKind::Trajectory);
     }

@@ -2,7 +2,7 @@
 
 use egui::{Grid, Ui};
 
-use crate::app::force::ForceTrainingForm;
+use crate::app::network::NetworkQuestions;
 use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::dataset_choice;
@@ -10,18 +10,19 @@ use impactlab_core::data::DatasetKind;
 use impactlab_core::ranges::EPOCHS;
 
 /// Draws the form and returns whether a force data set is open to train on.
-pub fn force_form_ui(ui: &mut Ui, form: &mut ForceTrainingForm, sources: &[Source]) -> bool {
+pub fn force_form_ui(ui: &mut Ui, questions: &mut NetworkQuestions, sources: &[Source]) -> bool {
+    let NetworkQuestions { train_force: form, use_others, .. } = questions;
     let datasets = open_datasets(sources, &[DatasetKind::Force]);
     Grid::new("training form").num_columns(2).show(ui, |ui| {
         let hint = "Some of its cases are kept for the test, chosen by the seed";
         let name = ui.label("Force data set").on_hover_text(hint);
-        dataset_choice(ui, "training data", &datasets, &mut form.dataset)
+        dataset_choice(ui, "training data", &datasets, &mut form.data)
             .labelled_by(name.id)
             .on_hover_text(hint);
         ui.end_row();
         ui.label("");
         ui.add_enabled_ui(datasets.len() > 1, |ui| {
-            ui.checkbox(&mut form.use_others, "learn from the other open force data too")
+            ui.checkbox(use_others, "learn from the other open force data too")
                 .on_hover_text("From all their cases, except those that are kept for the test");
         });
         ui.end_row();
@@ -31,11 +32,11 @@ pub fn force_form_ui(ui: &mut Ui, form: &mut ForceTrainingForm, sources: &[Sourc
             .on_hover_text("At most; 0 for what the settings say. Training stops before when the validation loss stops falling");
         ui.end_row();
         let name = ui.label("Seed");
-        ui.add(egui::DragValue::new(&mut form.seed).speed(0.2))
+        ui.add(egui::DragValue::new(&mut form.training.seed).speed(0.2))
             .labelled_by(name.id)
             .on_hover_text("Of the split and of every random number: same seed, same weights");
         ui.end_row();
-        settings_rows_ui(ui, "network, loss, training, crush", &mut form.config, &mut form.bad_cases);
+        settings_rows_ui(ui, "network, loss, training, crush", &mut form.training);
     });
     !datasets.is_empty()
 }

@@ -12,11 +12,11 @@ use crate::app::network::TrainedModel;
 use crate::app::panels::model_row::save_model_ui;
 use crate::app::panels::training_losses::{LossView, losses_ui};
 use crate::app::training_status::TrainingStatus;
-use crate::app::widgets::{assumptions_ui, bad_cases_ui, duration_text};
+use crate::app::widgets::{assumptions_ui, bad_cases_ui, config_field, duration_text};
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::Range;
 use impactlab_draw::theme;
-use impactlab_study::BadCases;
+use impactlab_study::TrainingOptions;
 
 /// Draws the buttons and the progress of a training, the current model, and the losses. The losses
 /// are those of the latest training of this session, or, if there is none, those of the training
@@ -57,15 +57,15 @@ pub fn network_training_ui<M: TrainedModel>(
 /// Draws two rows of a two-column grid: the settings file, and whether unusable cases are left out.
 ///
 /// - `parts`: the sections that the settings file may have, shown as a hint.
-pub fn settings_rows_ui(ui: &mut Ui, parts: &str, config: &mut String, bad_cases: &mut BadCases) {
+pub fn settings_rows_ui(ui: &mut Ui, parts: &str, training: &mut TrainingOptions) {
     let name = ui.label("Settings file");
-    let field = egui::TextEdit::singleline(config).desired_width(320.0);
-    ui.add(field.hint_text(format!("TOML, optional: {parts}")))
+    let hint = format!("TOML, optional: {parts}");
+    config_field(ui, &mut training.config, |field| field.desired_width(320.0).hint_text(hint))
         .labelled_by(name.id)
         .on_hover_text("What it leaves out keeps its default; `--print-config` prints them all");
     ui.end_row();
     ui.label("");
-    bad_cases_ui(ui, bad_cases);
+    bad_cases_ui(ui, &mut training.bad_cases);
     ui.end_row();
 }
 

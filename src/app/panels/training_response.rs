@@ -2,16 +2,16 @@
 
 use egui::{ComboBox, DragValue, Grid, Ui};
 
+use crate::app::network::{NetworkQuestions, TrainingMode};
 use crate::app::panels::file_start::{file_list_ui, open_files};
 use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
-use crate::app::response::{ResponseTrainingForm, TrainingMode};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::dataset_choice;
 use impactlab_core::data::FileKind;
 use impactlab_core::ranges::TRAJECTORIES;
 
 /// Draws the form and returns whether a data set or a log that suits the training mode is open.
-pub fn response_form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &[Source]) -> bool {
+pub fn response_form_ui(ui: &mut Ui, form: &mut NetworkQuestions, sources: &[Source]) -> bool {
     let datasets = open_datasets(sources, form.mode.data_kinds());
     Grid::new("response training form")
         .num_columns(2)
@@ -34,9 +34,11 @@ pub fn response_form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &
                 "A quarter of its cases is kept for the test, chosen by the seed of the split";
             let name = ui.label("Data set").on_hover_text(hint);
             ui.add_enabled_ui(!is_of_log, |ui| {
-                dataset_choice(ui, "trajectories", &datasets, &mut form.dataset)
-                    .labelled_by(name.id)
-                    .on_hover_text(hint);
+                let mut data = form.fine_tune.data.first().cloned().unwrap_or_default();
+                let list = dataset_choice(ui, "trajectories", &datasets, &mut data);
+                if list.labelled_by(name.id).on_hover_text(hint).changed() {
+                    form.fine_tune.data = vec![data];
+                }
             });
             ui.end_row();
             numbers_ui(ui, form, is_of_log);
@@ -46,7 +48,7 @@ pub fn response_form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &
 }
 
 /// Draws the choice of a log among the open files and returns whether the network learns from one.
-fn log_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &[Source]) -> bool {
+fn log_ui(ui: &mut Ui, form: &mut NetworkQuestions, sources: &[Source]) -> bool {
     let logs = open_files(sources, FileKind::Trajectory);
     if !form.mode.takes_log() || logs.is_empty() {
         return false;
@@ -68,12 +70,13 @@ fn log_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &[Source]) -> b
 
 /// Draws the number of trajectories, the seeds and the settings in a two-column grid. Pre-training
 /// on simulations and learning from a log use neither the number of trajectories nor the seed of their choice.
-fn numbers_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, is_of_log: bool) {
-    let is_fine_tuning = form.mode != TrainingMode::Pretrain && !is_of_log;
+fn numbers_ui(ui: &mut Ui, questions: &mut NetworkQuestions, is_of_log: bool) {
+    let NetworkQuestions { fine_tune: form, mode, .. } = questions;
+    let is_fine_tuning = *mode != TrainingMode::Pretrain && !is_of_log;
     let name = ui.label("Trajectories");
     let hint = "To learn from, spinning and others as they occur; 0 for all that are not kept for the test";
     ui.add_enabled_ui(is_fine_tuning, |ui| {
-        optional_number_ui(ui, &mut form.n_trajectories, "all", &TRAJECTORIES)
+        optional_number_ui(ui, &mut form.trajectories, "all", &TRAJECTORIES)
             .labelled_by(name.id)
             .on_hover_text(hint);
     });
@@ -83,20 +86,18 @@ fn numbers_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, is_of_log: bool) {
         true => "Which cases are kept for the test",
         false => "Which cases are kept for the test, and every other random number",
     };
-    ui.add(DragValue::new(&mut form.seed).speed(0.2)).labelled_by(name.id).on_hover_text(hint);
+    ui.add(DragValue::new(&mut form.training.seed).speed(0.2))
+        .labelled_by(name.id)
+        .on_hover_text(hint);
     ui.end_row();
     let name = ui.label("Seed of the choice");
-    let mut choice = form.choice.unwrap_or(form.seed);
+    let mut choice = form.choice.unwrap_or(form.training.seed);
     let field = ui.add_enabled(is_fine_tuning, DragValue::new(&mut choice).speed(0.2));
     let hint = "Which trajectories are learned from, and every other random number; the seed of the split unless it is changed";
     if field.labelled_by(name.id).on_hover_text(hint).changed() {
         form.choice = Some(choice);
     }
     ui.end_row();
-    settings_rows_ui(
-        ui,
-        "network, single_steps, rollouts, physics, …",
-        &mut form.config,
-        &mut form.bad_cases,
-    );
+    let parts = "network, single_steps, rollouts, physics, …";
+    settings_rows_ui(ui, parts, &mut form.training);
 }

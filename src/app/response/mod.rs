@@ -8,9 +8,7 @@ mod update;
 
 pub use comparison::ComparisonStatus;
 pub use motion::{DensityAnswer, DensityQuestion, MotionAnswer, MotionQuestion};
-pub use settings::{
-    ComparisonForm, DensityChoice, ResponseTrainingForm, ResponseView, TrainingMode,
-};
+pub use settings::{DensityChoice, ResponseView};
 
 use std::sync::Arc;
 

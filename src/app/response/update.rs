@@ -1,6 +1,6 @@
 //! Background work and commands of the response network.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::Context;
@@ -8,19 +8,14 @@ use egui::Context;
 use crate::app::archive::{ArchiveEntry, keep_trained};
 use crate::app::command::{Command, ComparisonCommand, TrainingCommand, wake};
 use crate::app::found::Found;
-use crate::app::model::file_name;
 use crate::app::network::Network;
 use crate::app::response::comparison::write_comparison_folder;
 use crate::app::response::{
-    DensityChoice, DensityQuestion, MotionAnswer, MotionQuestion, ResponseSession, TrainingMode,
+    DensityChoice, DensityQuestion, MotionAnswer, MotionQuestion, ResponseSession,
 };
-use crate::app::source::{chosen_dataset, open_datasets};
 use crate::app::state::{Session, State};
-use impactlab_core::data::{DatasetKind, Existing, Severity};
+use impactlab_core::data::{Existing, Severity};
 use impactlab_core::error_chain;
-use impactlab_study::Request;
-
-const NO_MODEL: &str = "there is no current response model";
 
 impl State {
     /// Receives the results of the loader, the training, the comparison and the forecast, and asks
@@ -107,29 +102,9 @@ impl State {
         }
     }
 
-    /// Returns the question of the training form and the name of its data.
-    ///
-    /// # Errors
-    /// What is missing, as a message for the user.
-    pub(in crate::app) fn response_training(&self) -> Result<(Request, String), &'static str> {
-        let form = &self.project.response_training;
-        if let Some(logs) = self.log_to_learn_from() {
-            let name = logs.logs.first().map(|path| file_name(path)).unwrap_or_default();
-            let question = self.fine_tune_request(Vec::new(), Some(logs));
-            return Ok((question.ok_or(NO_MODEL)?.into(), name));
-        }
-        let data = self.chosen_data(form.dataset.as_deref(), form.mode.data_kinds());
-        let (data, name) = data.ok_or("open a data set to train on first")?;
-        let question = match form.mode {
-            TrainingMode::Pretrain => Some(self.train_response_request(data).into()),
-            _ => self.fine_tune_request(vec![data], None).map(Request::from),
-        };
-        Ok((question.ok_or(NO_MODEL)?, name))
-    }
-
     /// Starts a training on the chosen data set.
     fn start_response_training(&mut self, context: &Context) {
-        match self.response_training() {
+        match self.train_response_request() {
             Ok((question, data)) => {
                 self.start_training(question, Network::Response, data, context);
             }
@@ -165,13 +140,9 @@ impl State {
 
     /// Starts a comparison on the chosen data set.
     fn start_comparison(&mut self, context: &Context) {
-        let Some(data) = self.compared_data() else { return };
-        let request = match self.compare_request(data) {
+        let request = match self.compare_request() {
             Ok(request) => request,
-            Err(problem) => {
-                self.session.response.comparison.shown = Some(Err(problem));
-                return;
-            }
+            Err(problem) => return self.say(Severity::Warning, problem),
         };
         let (comparison, library) = (&mut self.session.response.comparison, &self.session.library);
         if let Err(error) = comparison.start(request, library, wake(context)) {
@@ -181,43 +152,14 @@ impl State {
 
     /// Starts an evaluation of the current response model on the chosen data set.
     fn evaluate_response(&mut self, context: &Context) {
-        let Some(data) = self.compared_data() else { return };
-        let Some(request) = self.evaluate_response_request(data) else {
-            self.say(Severity::Warning, "there is no response model to evaluate");
-            return;
+        let request = match self.evaluate_response_request() {
+            Ok(request) => request,
+            Err(problem) => return self.say(Severity::Warning, problem),
         };
         let (comparison, library) = (&mut self.session.response.comparison, &self.session.library);
         if let Err(error) = comparison.evaluate(request, library, wake(context)) {
             self.say(Severity::Error, error.to_string());
         }
-    }
-
-    /// Returns the folder of the data set in the comparison form. If there is none, tells the user
-    /// to open one.
-    fn compared_data(&mut self) -> Option<PathBuf> {
-        let chosen = self.data_to_compare();
-        if chosen.is_none() {
-            self.say(Severity::Warning, "open a trajectory data set first");
-        }
-        chosen
-    }
-
-    /// Returns the folder of the data set in the comparison form, if one is open.
-    pub(in crate::app) fn data_to_compare(&self) -> Option<PathBuf> {
-        let wanted = self.project.comparison.dataset.as_deref();
-        self.chosen_data(wanted, &[DatasetKind::Trajectory]).map(|(path, _)| path)
-    }
-
-    /// Returns the folder and the name of the wanted data set, or of the first open one of the
-    /// given kinds if the wanted one is not open; `None` if none is open.
-    fn chosen_data(
-        &self,
-        wanted: Option<&Path>,
-        kinds: &[DatasetKind],
-    ) -> Option<(PathBuf, String)> {
-        let datasets = open_datasets(&self.session.sources, kinds);
-        let chosen = chosen_dataset(&datasets, wanted)?;
-        Some((chosen.path.to_owned(), chosen.name()))
     }
 
     /// Returns the latest predicted motion, if there is one. While a newer one is awaited, it

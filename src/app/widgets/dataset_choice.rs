@@ -10,7 +10,7 @@ use impactlab_core::data::DatasetKind;
 /// Draws a drop-down list of the data sets and returns the response of its button.
 ///
 /// The list shows the first data set as selected as long as `chosen` names none of them; `chosen`
-/// is only written when the user selects an entry.
+/// is only written when the user selects an entry, which the response tells.
 ///
 /// - `id`: distinguishes this list from others in the same panel.
 /// - `datasets`: the data sets to choose from.
@@ -19,21 +19,23 @@ pub fn dataset_choice(
     ui: &mut Ui,
     id: &str,
     datasets: &[OpenDataset<'_>],
-    chosen: &mut Option<PathBuf>,
+    chosen: &mut PathBuf,
 ) -> Response {
     let label =
         |of: &OpenDataset<'_>| format!("{}, {} cases", of.name(), of.checked.dataset.cases.len());
-    let current = chosen_dataset(datasets, chosen.as_deref());
+    let current = chosen_dataset(datasets, chosen);
     let text = current.as_ref().map_or("none is open".to_owned(), label);
-    ComboBox::from_id_salt(id)
-        .selected_text(text)
-        .width(220.0)
-        .show_ui(ui, |ui| {
-            for of in datasets {
-                ui.selectable_value(chosen, Some(of.path.to_owned()), label(of));
-            }
-        })
-        .response
+    let mut is_selected = false;
+    let list = ComboBox::from_id_salt(id).selected_text(text).width(220.0).show_ui(ui, |ui| {
+        for of in datasets {
+            is_selected |= ui.selectable_value(chosen, of.path.to_owned(), label(of)).changed();
+        }
+    });
+    let mut response = list.response;
+    if is_selected {
+        response.mark_changed();
+    }
+    response
 }
 
 /// Tells the user that no data set of this kind is open, and which folder to open.

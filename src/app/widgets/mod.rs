@@ -9,6 +9,7 @@ mod facts;
 mod figure_frame;
 mod quantity;
 mod time_figure;
+mod written;
 
 pub use assumptions::{assumptions_ui, evidence_assumptions_ui};
 pub use bad_cases::bad_cases_ui;
@@ -22,3 +23,4 @@ pub use quantity::{
     quantity_slider, quantity_value, value_row, value_ui, within_view,
 };
 pub use time_figure::{BetweenCursors, time_figure};
+pub use written::{config_field, written_field};

@@ -20,7 +20,7 @@ use impactlab_networks::force::{
 };
 
 /// Asks for a force network that has learned from force data sets.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TrainForceRequest {
     /// A force data set; a share of its cases is kept apart for the test.
     pub data: PathBuf,
