@@ -16,8 +16,7 @@ use crate::app::state::{Session, State, Subject};
 use crate::app::tasks::TaskKey;
 use crate::app::widgets::OUTDATED;
 use crate::app::workspaces::Workspace;
-use impactlab_core::data::{Existing, Severity, contact_interval};
-use impactlab_study::SimulateAnswer;
+use impactlab_core::data::{Existing, Severity};
 
 impl State {
     /// Carries out a command.
@@ -127,17 +126,7 @@ impl State {
     fn apply_to_view(&mut self, command: Command) {
         match command {
             Command::ShowLicences => self.session.dialogs.open(Dialog::Licences),
-            Command::SetTime(time_s) => self.session.playback.time_s = time_s,
-            Command::SetSpeed(speed) => self.view.playback_speed = speed,
-            Command::StepTime(steps) => {
-                let end_s = self.end_time_s();
-                self.session.playback.step(steps, end_s);
-            }
-            Command::ToContactEnd => self.show_contact_end(),
-            Command::TogglePlay => {
-                let end_s = self.end_time_s();
-                self.session.playback.toggle(end_s);
-            }
+            Command::Playback(command) => self.play(command),
             Command::FitPlots => self.session.fit_plots = true,
             Command::ShowTraining(network) => {
                 self.view.trained = network;
@@ -218,32 +207,5 @@ impl State {
         if let Some(replay) = self.session.replays.get(path) {
             replay.cancel();
         }
-    }
-
-    fn show_contact_end(&mut self) {
-        // The motions of a reconstruction begin with an impact of no duration.
-        if self.view.workspaces.shown == Workspace::Reconstruct {
-            return;
-        }
-        let force = self.analysis().and_then(|answer| answer.analysis.force.as_ref());
-        if let Some((_, end_s)) = force.and_then(contact_interval) {
-            let motion_end_s = self.end_time_s();
-            self.session.playback.stop_at(end_s, motion_end_s);
-        }
-    }
-
-    /// Returns the last time of the simulation of the subject, or of its recorded motion if it is
-    /// not simulated, in seconds; in the workspace of the reconstruction, that of the path that is
-    /// followed; 0 without any.
-    pub fn end_time_s(&self) -> f64 {
-        if self.view.workspaces.shown == Workspace::Reconstruct {
-            return self.session.reconstruction.end_time_s();
-        }
-        let last = |SimulateAnswer { analysis, .. }: &SimulateAnswer| {
-            let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
-            let series = simulation.or(analysis.reference.as_ref())?;
-            series.time_s().last().copied()
-        };
-        self.analysis().and_then(last).unwrap_or(0.0)
     }
 }

@@ -20,6 +20,7 @@ use crate::app::import::ImportAnswer;
 use crate::app::model::ModelEvent;
 use crate::app::network::Network;
 use crate::app::panes::Pane;
+use crate::app::playback::PlaybackCommand;
 use crate::app::reconstruction::ReconstructionCommand;
 use crate::app::report::ReportCommand;
 use crate::app::source::OpenedPath;
@@ -36,9 +37,6 @@ use impactlab_networks::response::ResponseModel;
 use impactlab_networks::response::evaluate::Comparison;
 use impactlab_reconstruct::evidence::Evidence;
 use impactlab_study::{Cost, Request};
-
-/// Time step of the left and right arrow keys in the scene, s.
-pub(in crate::app) const TIME_STEP_S: f64 = 0.05;
 
 /// An action that the user requests.
 #[derive(Debug, Clone)]
@@ -67,17 +65,8 @@ pub enum Command {
     ReplayDataset(PathBuf),
     /// Cancel the simulation of the data set in this folder.
     CancelReplay(PathBuf),
-    /// Set the time that is shown, in seconds.
-    SetTime(f64),
-    /// Move the time by this number of arrow-key steps of 0.05 s and stop playback; negative values
-    /// move back.
-    StepTime(f64),
-    /// Move the time to the end of the contact, if the force is known, and stop playback.
-    ToContactEnd,
-    /// Play this many seconds of the motion in a second.
-    SetSpeed(f64),
-    /// Start or stop the playback. At the end of the motion it starts again from zero.
-    TogglePlay,
+    /// Set the time that is shown, or let it run.
+    Playback(PlaybackCommand),
     /// Fit the axes of all plots to their data.
     FitPlots,
     /// Write a figure to a file: as CSV if the path ends in `.csv`, otherwise as PNG.

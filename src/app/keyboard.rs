@@ -2,8 +2,9 @@
 
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
-use crate::app::command::{Command, TIME_STEP_S};
+use crate::app::command::Command;
 use crate::app::dialog::Purpose;
+use crate::app::playback::{PlaybackCommand, TIME_STEP_S};
 use crate::app::workspaces::Workspace;
 
 /// Shortcut that undoes the last change of the project.
@@ -79,7 +80,7 @@ pub fn commands(context: &Context, has_dialog: bool, commands: &mut Vec<Command>
     }
     for (key, sign) in [(Key::ArrowLeft, -1.0), (Key::ArrowRight, 1.0)] {
         if context.input_mut(|input| input.consume_key(Modifiers::SHIFT, key)) {
-            commands.push(Command::StepTime(sign * STEPS_PER_MS));
+            commands.push(Command::Playback(PlaybackCommand::Step(sign * STEPS_PER_MS)));
         }
     }
     let has_focus = context.memory(|memory| memory.focused().is_some());
@@ -95,11 +96,11 @@ pub fn commands(context: &Context, has_dialog: bool, commands: &mut Vec<Command>
 
 fn plain(key: Key) -> Option<Command> {
     match key {
-        Key::Space => Some(Command::TogglePlay),
-        Key::ArrowLeft => Some(Command::StepTime(-1.0)),
-        Key::ArrowRight => Some(Command::StepTime(1.0)),
-        Key::Home => Some(Command::SetTime(0.0)),
-        Key::End => Some(Command::ToContactEnd),
+        Key::Space => Some(Command::Playback(PlaybackCommand::Toggle)),
+        Key::ArrowLeft => Some(Command::Playback(PlaybackCommand::Step(-1.0))),
+        Key::ArrowRight => Some(Command::Playback(PlaybackCommand::Step(1.0))),
+        Key::Home => Some(Command::Playback(PlaybackCommand::SetTime(0.0))),
+        Key::End => Some(Command::Playback(PlaybackCommand::ToContactEnd)),
         Key::ArrowUp => Some(Command::SelectNeighbour(-1)),
         Key::ArrowDown => Some(Command::SelectNeighbour(1)),
         Key::F => Some(Command::FitPlots),

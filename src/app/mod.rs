@@ -88,6 +88,7 @@ pub use latest::Latest;
 pub use measure::{Measure, Measurement, Measuring};
 pub use network::{Network, TrainingMode};
 pub use pane::Pane;
+pub use playback::PlaybackCommand;
 pub use project::{Beside, Project};
 pub use question_job::{Answered, QuestionJob};
 pub use reconstruction::{FollowedParticle, ReconstructionCommand, ReconstructionSession};

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use egui::Pos2;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, GroundCommand, Measure, Pane, ReconstructionCommand, State};
+use impactlab::app::{
+    App, Command, GroundCommand, Measure, Pane, PlaybackCommand, ReconstructionCommand, State,
+};
 use impactlab_core::units::UnitSystem;
 
 use crate::harness::{apply, is_idle, open, step_until};
@@ -24,7 +26,7 @@ fn on_road() -> Harness<'static, App> {
         state.session.ground.shown().is_some() && is_idle(state) && state.analysis().is_some()
     });
     apply(&mut harness, Command::Show(Pane::Scene));
-    apply(&mut harness, Command::SetTime(1.0));
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetTime(1.0)));
     harness.run_steps(4);
     harness
 }
@@ -146,7 +148,7 @@ fn an_orthophoto_alone_is_scaled_by_two_points_undone_and_saved() {
     step_until(&mut harness, "the ground", |state| {
         state.session.ground.shown().is_some() && is_idle(state) && state.analysis().is_some()
     });
-    apply(&mut harness, Command::SetTime(0.2));
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetTime(0.2)));
     harness.run_steps(4);
     let width_m = |harness: &Harness<'_, App>| {
         let ground = harness.state().state().session.ground.shown().expect("a ground").clone();

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use egui_kittest::Harness;
-use impactlab::app::{App, Command, Pane, Subject};
+use impactlab::app::{App, Command, Pane, PlaybackCommand, Subject};
 
 use crate::harness::{apply, is_idle, open, step_until};
 
@@ -29,7 +29,7 @@ fn the_window_on_the_shipped_data() {
     step_until(&mut harness, "a trajectory case", |state| {
         state.analysis().is_some_and(|answer| answer.report.name == "FE_c002") && is_idle(state)
     });
-    apply(&mut harness, Command::SetTime(2.0));
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetTime(2.0)));
     harness.step();
     save(&mut harness, "window.png");
     apply(

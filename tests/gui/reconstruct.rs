@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use impactlab::app::{App, Command, FollowedParticle, ReconstructionCommand, State, Workspace};
+use impactlab::app::{
+    App, Command, FollowedParticle, PlaybackCommand, ReconstructionCommand, State, Workspace,
+};
 use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::vehicle::built_in_vehicle;
 use impactlab_reconstruct::evidence::{Edr, Evidence, RestPose, Stated};
@@ -355,7 +357,7 @@ fn the_example_in_both_themes() {
     run(&mut harness);
     save(&mut harness, "reconstruct-live.png");
     step_until(&mut harness, "the speeds", is_answered);
-    apply(&mut harness, Command::SetTime(1.5));
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetTime(1.5)));
     for (dark, theme) in [(false, "light"), (true, "dark")] {
         harness.state_mut().state_mut().view.dark = dark;
         for (height, name) in [(720.0, "reconstruct"), (2100.0, "reconstruct-tall")] {

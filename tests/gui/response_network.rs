@@ -5,7 +5,8 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{
-    App, Command, ComparisonCommand, DensityChoice, Network, Pane, State, Subject, TrainingMode,
+    App, Command, ComparisonCommand, DensityChoice, Network, Pane, PlaybackCommand, State, Subject,
+    TrainingMode,
 };
 use impactlab_study::{ConfigChoice, ForceSource, ModelChoice};
 
@@ -42,7 +43,7 @@ fn a_recorded_case_is_forecast_with_density_and_bands() {
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Show(Pane::MotionForecast));
     select(&mut harness, DATA, "FE_c026");
-    apply(&mut harness, Command::SetTime(2.0));
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetTime(2.0)));
     step_until(&mut harness, "the density", |state| is_density_current(state, [2.0, 2.0]));
     harness.get_by_label_contains("FE_c026: position after 2.00 s");
     harness.get_by_label_contains("still moving");
@@ -82,15 +83,15 @@ fn a_predicted_force_spreads_the_forecast_and_playing_moves_it() {
         state.motion_forecast().is_some_and(|of| of.is_predicted())
     });
     assert!(area(state(&harness)) > 1.5 * given, "{} {given}", area(state(&harness)));
-    apply(&mut harness, Command::SetTime(1.0));
-    apply(&mut harness, Command::TogglePlay);
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetTime(1.0)));
+    apply(&mut harness, Command::Playback(PlaybackCommand::Toggle));
     harness.run_steps(20);
     assert!(
         state(&harness).session.playback.time_s > 1.2,
         "{}",
         state(&harness).session.playback.time_s
     );
-    apply(&mut harness, Command::TogglePlay);
+    apply(&mut harness, Command::Playback(PlaybackCommand::Toggle));
     let time_s = state(&harness).session.playback.time_s;
     step_until(&mut harness, "the density", |state| is_density_current(state, [time_s; 2]));
     harness.run_steps(4);
@@ -116,7 +117,7 @@ fn forecast_and_density_stay_while_time_runs() {
     select(&mut harness, DATA, "FE_c002");
     step_until(&mut harness, "a density", |state| state.session.response.density.ok().is_some());
     for i in 0..60 {
-        apply(&mut harness, Command::SetTime(0.05 * f64::from(i)));
+        apply(&mut harness, Command::Playback(PlaybackCommand::SetTime(0.05 * f64::from(i))));
         harness.step();
         let state = state(&harness);
         assert!(state.motion_forecast().is_some(), "frame {i}: no forecast");

@@ -3,7 +3,7 @@
 use egui::{Pos2, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Pane};
+use impactlab::app::{App, Command, Pane, PlaybackCommand};
 use impactlab_draw::scene::{Camera, Follow, ViewKind};
 
 use crate::harness::{apply, is_idle, open, step_until};
@@ -15,7 +15,7 @@ fn scene() -> Harness<'static, App> {
     let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
     step_until(&mut harness, "the first case", is_idle);
     apply(&mut harness, Command::Show(Pane::Scene));
-    apply(&mut harness, Command::SetTime(0.3));
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetTime(0.3)));
     harness.run_steps(4);
     harness
 }
@@ -88,7 +88,7 @@ fn the_camera_follows_the_struck_car() {
     let mut harness = scene();
     harness.state_mut().state_mut().view.scene.follow = Follow::Struck;
     for time_s in [0.2, 1.0, 3.0] {
-        apply(&mut harness, Command::SetTime(time_s));
+        apply(&mut harness, Command::Playback(PlaybackCommand::SetTime(time_s)));
         harness.run_steps(3);
         let answer = harness.state().state().analysis().expect("a simulation");
         let motion = &answer.analysis.simulation.as_ref().expect("a motion").series;
@@ -98,7 +98,7 @@ fn the_camera_follows_the_struck_car() {
     }
     harness.state_mut().state_mut().view.dark = true;
     harness.state_mut().state_mut().view.scene.camera.kind = ViewKind::Perspective;
-    apply(&mut harness, Command::SetTime(0.6));
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetTime(0.6)));
     harness.run_steps(4);
     save(&mut harness, "scene-dark.png");
 }
@@ -128,7 +128,7 @@ fn the_forecast_stands_in_the_scene_if_it_is_wanted() {
         state.session.response.forecast.ok().is_some()
     });
     apply(&mut harness, Command::Show(Pane::Scene));
-    apply(&mut harness, Command::SetTime(2.0));
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetTime(2.0)));
     harness.run_steps(4);
     let without = harness.render().expect("a picture");
     harness.get_by_label("Forecast").click();

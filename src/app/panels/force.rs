@@ -6,6 +6,7 @@ use egui::{ComboBox, Grid, Id, ScrollArea, Ui};
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
+use crate::app::playback::PlaybackCommand;
 use crate::app::project::Project;
 use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, time_figure, value_row};
@@ -63,7 +64,7 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let drawn = ScrollArea::vertical()
         .show(ui, |ui| time_figure(ui, &figure.title, &figure, options, between, commands));
     if let Some(x) = drawn.inner.picked_x {
-        commands.push(Command::SetTime(figure.x.unit.to_si(x).max(0.0)));
+        commands.push(Command::Playback(PlaybackCommand::SetTime(figure.x.unit.to_si(x).max(0.0))));
     }
 }
 

@@ -6,6 +6,7 @@ use egui::{Id, Ui};
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
+use crate::app::playback::PlaybackCommand;
 use crate::app::recording::{overlaid, recording_menu_ui};
 use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, time_figure};
@@ -57,7 +58,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let response = time_figure(ui, &heading, &figure, options, between, commands);
         if let Some(time_s) = response.picked_x {
             let last = figure_end(&figure);
-            commands.push(Command::SetTime(time_s.clamp(0.0, last)));
+            commands.push(Command::Playback(PlaybackCommand::SetTime(time_s.clamp(0.0, last))));
         }
     };
     egui::ScrollArea::vertical().show(ui, |ui| {

@@ -15,7 +15,7 @@ use crate::app::panels::model_row::{model_row_ui, no_model_ui};
 use crate::app::panels::scene::clock_ui;
 use crate::app::panels::vehicle::until_rest_ui;
 use crate::app::panes::PaneContext;
-use crate::app::playback::Playback;
+use crate::app::playback::{Playback, PlaybackCommand};
 use crate::app::project::Project;
 use crate::app::response::{
     DensityAnswer, DensityChoice, MotionAnswer, ResponseSession, ResponseView,
@@ -255,7 +255,7 @@ fn figures_ui(
     answer: &Arc<MotionAnswer>,
     session: &Session,
     variants: &[AnsweredVariant],
-    view: &View,
+    view: &mut View,
     commands: &mut Vec<Command>,
 ) {
     let choice = &view.response;
@@ -289,7 +289,7 @@ fn figures_ui(
         })
         .collect();
     let playback = Playback { time_s, ..session.playback };
-    clock_ui(ui, &playback, answer.end_s(), view.playback_speed, commands);
+    clock_ui(ui, &playback, answer.end_s(), &mut view.playback_speed, commands);
     let all = ui.available_height();
     let mut scene = forecast_scene_figure(&input);
     for (i, (name, other)) in others.iter().enumerate() {
@@ -328,7 +328,9 @@ fn figures_ui(
                     let heading = forecast_readout(&input, channel);
                     let response = figure_frame(ui, &heading, &figure, &options, commands);
                     if let Some(picked_s) = response.picked_x {
-                        commands.push(Command::SetTime(picked_s.clamp(0.0, answer.end_s())));
+                        commands.push(Command::Playback(PlaybackCommand::SetTime(
+                            picked_s.clamp(0.0, answer.end_s()),
+                        )));
                     }
                 }
             });

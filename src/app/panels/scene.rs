@@ -16,7 +16,7 @@ use crate::app::panels::scene_ground::{
     ground_menu_ui, measure_bar_ui, measure_menu_ui, measured_ui,
 };
 use crate::app::panes::PaneContext;
-use crate::app::playback::Playback;
+use crate::app::playback::{Playback, PlaybackCommand};
 use crate::app::recording::overlaid;
 use crate::app::scene::{SceneSession, SceneSettings, SceneSource};
 use crate::app::state::{Session, State};
@@ -52,7 +52,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         return;
     };
     let end_s = series.time_s().last().copied().unwrap_or(0.0);
-    clock_ui(ui, &session.playback, end_s, view.playback_speed, commands);
+    clock_ui(ui, &session.playback, end_s, &mut view.playback_speed, commands);
     restrictions_ui(ui, &report.caveats);
     rest_ui(ui, report.rest.as_ref(), view.units);
     let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
@@ -241,12 +241,12 @@ fn export_menu_ui(
 /// Draws the button that plays or pauses the motion, and the slider of the time.
 ///
 /// - `end_s`: the end of the motion and of the slider, s; the slider starts at 0.
-/// - `speed`: seconds of the motion that are played in a second.
+/// - `speed`: seconds of the motion that are played in a second, which the user can change.
 pub fn clock_ui(
     ui: &mut Ui,
     &Playback { time_s, is_playing }: &Playback,
     end_s: f64,
-    speed: f64,
+    speed: &mut f64,
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {
@@ -255,15 +255,13 @@ pub fn clock_ui(
             false => (Icon::Play, "Play"),
         };
         if ui.add(icon_button(of, label)).on_hover_text("Space").clicked() {
-            commands.push(Command::TogglePlay);
+            commands.push(Command::Playback(PlaybackCommand::Toggle));
         }
         let text = |speed: f64| format!("× {speed}");
         let list = egui::ComboBox::from_id_salt("playback speed").width(58.0);
-        let list = list.selected_text(text(speed)).show_ui(ui, |ui| {
+        let list = list.selected_text(text(*speed)).show_ui(ui, |ui| {
             for other in SPEEDS {
-                if ui.selectable_label(other == speed, text(other)).clicked() {
-                    commands.push(Command::SetSpeed(other));
-                }
+                ui.selectable_value(speed, other, text(other));
             }
         });
         list.response.on_hover_text("Speed of the playback");
@@ -272,7 +270,7 @@ pub fn clock_ui(
         ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(80.0);
         let slider = Slider::new(&mut time_s, 0.0..=end_s).suffix(" s").fixed_decimals(3);
         if ui.add(slider).labelled_by(name.id).changed() {
-            commands.push(Command::SetTime(time_s));
+            commands.push(Command::Playback(PlaybackCommand::SetTime(time_s)));
         }
     });
 }
