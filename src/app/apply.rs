@@ -11,6 +11,7 @@ use crate::app::export;
 use crate::app::film::FilmForm;
 use crate::app::found::Found;
 use crate::app::network::Network;
+use crate::app::output::Output;
 use crate::app::panes::Pane;
 use crate::app::state::{Session, State, Subject};
 use crate::app::tasks::TaskKey;
@@ -42,9 +43,9 @@ impl State {
             Command::CancelReplay(path) => self.cancel_replay(&path),
             Command::NewCase => self.leave(Leaving::New, context),
             Command::SaveCase => match self.case.path.clone() {
-                None => self.ask(Purpose::SaveCase),
+                None => self.ask(Purpose::Save(Output::Case)),
                 Some(path) if self.is_case_file_foreign() => {
-                    self.session.dialogs.open(Dialog::Replace(Box::new(Command::SaveCaseAs(path))));
+                    self.session.dialogs.open(Dialog::Replace(Output::Case, path));
                 }
                 Some(path) => self.save_case(path, Existing::Replace),
             },
@@ -53,22 +54,8 @@ impl State {
             Command::Leave { to, ask: false } => self.go(to, context),
             Command::SaveAndLeave => self.save_and_leave(context),
             Command::AskPath(purpose) => self.ask_path(purpose),
-            Command::Export(..)
-            | Command::ExportScene(..)
-            | Command::ExportExchange(..)
-            | Command::SaveFilm(..)
-            | Command::SaveScenario(_)
-            | Command::SaveVehicle(..)
-            | Command::SaveEvidence(..)
-            | Command::SaveSite(_)
-            | Command::SaveModel(..)
-            | Command::SaveArchived(..)
-            | Command::SaveCaseAs(_)
-            | Command::PackCase(_)
-            | Command::SaveReport(..) => {
-                self.write(command, Existing::Refuse, context);
-            }
-            Command::Replace(command) => self.write(*command, Existing::Replace, context),
+            Command::Write(output, path) => self.write(output, path, Existing::Refuse),
+            Command::Replace(output, path) => self.write(output, path, Existing::Replace),
             Command::CopyNumbers(figure) => match export::numbers(&figure) {
                 Ok(text) => context.copy_text(text),
                 Err(error) => self.say(Severity::Error, error),

@@ -5,7 +5,6 @@
 //! [`Command`] into a list, which is applied after the frame has been drawn.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use egui::Context;
 
@@ -13,12 +12,12 @@ use crate::app::archive::{ArchiveEntry, ArchiveEvent, ModelsDialog, Removal};
 use crate::app::case::{Leaving, SavedCase, VariantCommand};
 use crate::app::cost::CostPlace;
 use crate::app::dialog::Purpose;
-use crate::app::export::SceneExport;
 use crate::app::found::Found;
 use crate::app::ground::GroundCommand;
 use crate::app::import::ImportAnswer;
 use crate::app::model::ModelEvent;
 use crate::app::network::Network;
+use crate::app::output::Output;
 use crate::app::panes::Pane;
 use crate::app::playback::PlaybackCommand;
 use crate::app::reconstruction::ReconstructionCommand;
@@ -27,15 +26,11 @@ use crate::app::source::OpenedPath;
 use crate::app::state::Subject;
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::{ColumnMap, Outcome, Severity};
-use impactlab_core::vehicle::DataSheet;
 use impactlab_document::figure::Figure;
-use impactlab_document::report::ReportDocument;
-use impactlab_draw::film::Film;
 use impactlab_draw::scene::ScenePicture;
 use impactlab_networks::force::ForceModel;
 use impactlab_networks::response::ResponseModel;
 use impactlab_networks::response::evaluate::Comparison;
-use impactlab_reconstruct::evidence::Evidence;
 use impactlab_study::{Cost, Request};
 
 /// An action that the user requests.
@@ -69,16 +64,8 @@ pub enum Command {
     Playback(PlaybackCommand),
     /// Fit the axes of all plots to their data.
     FitPlots,
-    /// Write a figure to a file: as CSV if the path ends in `.csv`, otherwise as PNG.
-    Export(Box<Figure>, PathBuf),
-    /// Write a scene to a PNG file, as it is seen.
-    ExportScene(Box<ScenePicture>, PathBuf),
-    /// Write a scene to a file for another program.
-    ExportExchange(Box<SceneExport>, PathBuf),
     /// Ask how a film of a scene is to be made.
     AskFilm(Box<ScenePicture>),
-    /// Make a film and write it to an MP4 file, in the background.
-    SaveFilm(Box<Film>, PathBuf),
     /// Cancel the film that is being made.
     CancelFilm,
     /// Copy the numbers of a figure to the clipboard, as CSV.
@@ -87,10 +74,6 @@ pub enum Command {
     NewCase,
     /// Write the case to its file; asks for one if it has none.
     SaveCase,
-    /// Write the case to a file, which becomes its own.
-    SaveCaseAs(PathBuf),
-    /// Write one zip of the case and all its files.
-    PackCase(PathBuf),
     /// Show, copy, rename or remove a variant of the case.
     Variant(VariantCommand),
     /// Quit, or begin or open another case.
@@ -104,14 +87,10 @@ pub enum Command {
     SaveAndLeave,
     /// Ask the user for a path within the window.
     AskPath(Purpose),
-    /// Write the scenario of the scenario pane to a TOML file.
-    SaveScenario(PathBuf),
-    /// Write a vehicle to a TOML file.
-    SaveVehicle(Box<DataSheet>, PathBuf),
-    /// Write the evidence of a reconstruction to a TOML file.
-    SaveEvidence(Box<Evidence>, PathBuf),
-    /// Carry out a command that writes a file or a folder, and replace what is there.
-    Replace(Box<Command>),
+    /// Write something to a file or a folder, after asking if something would be replaced.
+    Write(Output, PathBuf),
+    /// Write something to a file or a folder, and replace what is there.
+    Replace(Output, PathBuf),
     /// Predict the force of the selected case.
     PredictCase,
     /// Predict the force of the collision in the scenario pane.
@@ -120,30 +99,22 @@ pub enum Command {
     UseModel(Network, Option<PathBuf>),
     /// Use the model of a cancelled training, which has been set aside.
     UseTrained(Network),
-    /// Write the current model of a network to a file.
-    SaveModel(Network, PathBuf),
     /// Start, pause or cancel the training of a network.
     Train(Network, TrainingCommand),
-    /// Compare response models, evaluate the current one, or open or save a comparison.
+    /// Compare response models, evaluate the current one, or open a comparison.
     Compare(ComparisonCommand),
     /// Act on what is kept of models, comparisons and trainings.
     Models(ModelsCommand),
-    /// Write a copy of a kept model, the first path, to a file of the user, the second one.
-    SaveArchived(PathBuf, PathBuf),
     /// Evaluate the current force model on the chosen data set.
     Evaluate,
     /// Cancel the evaluation of the force model.
     CancelEvaluation,
     /// Act on the ground of the scene.
     Ground(GroundCommand),
-    /// Write the ground to a site file, which becomes that of the project.
-    SaveSite(PathBuf),
     /// Act on the reconstruction.
     Reconstruct(ReconstructionCommand),
     /// Make the report of the case, or show a part of it.
     Report(ReportCommand),
-    /// Write a report to a file, in the format of its ending.
-    SaveReport(Arc<ReportDocument>, PathBuf),
     /// Bring a pane to the front.
     Show(Pane),
     /// Bring the training pane to the front and show this network in it.
@@ -226,23 +197,15 @@ pub enum ComparisonCommand {
     Open(PathBuf),
     /// Show the comparison that was read, or why there is none.
     Read(Result<Found<Comparison>, String>),
-    /// Write the comparison that is shown into a folder.
-    Save(PathBuf),
 }
 
 impl Command {
     /// Whether it saves or copies a figure that is not of what is asked any more.
     pub(in crate::app) fn exports_outdated(&self) -> bool {
         match self {
-            Self::Ask(Purpose::Picture(figure) | Purpose::Numbers(figure))
-            | Self::Export(figure, _)
-            | Self::CopyNumbers(figure) => figure.caveats.is_outdated(),
-            Self::Ask(Purpose::ScenePicture(picture))
-            | Self::ExportScene(picture, _)
-            | Self::AskFilm(picture) => picture.scene.caveats.is_outdated(),
-            Self::Ask(Purpose::Exchange(export)) | Self::ExportExchange(export, _) => {
-                export.scene.caveats.is_outdated()
-            }
+            Self::Ask(Purpose::Save(output)) | Self::Write(output, _) => output.is_outdated(),
+            Self::CopyNumbers(figure) => figure.caveats.is_outdated(),
+            Self::AskFilm(picture) => picture.scene.caveats.is_outdated(),
             _ => false,
         }
     }

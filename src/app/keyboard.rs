@@ -4,6 +4,7 @@ use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
+use crate::app::output::Output;
 use crate::app::playback::{PlaybackCommand, TIME_STEP_S};
 use crate::app::workspaces::Workspace;
 
@@ -62,7 +63,7 @@ pub fn commands(context: &Context, has_dialog: bool, commands: &mut Vec<Command>
         (OPEN_FOLDER, Command::Ask(Purpose::Folder)),
         (OPEN, Command::Ask(Purpose::Files)),
         (NEW, Command::NewCase),
-        (SAVE_AS, Command::Ask(Purpose::SaveCase)),
+        (SAVE_AS, Command::Ask(Purpose::Save(Output::Case))),
         (SAVE, Command::SaveCase),
     ];
     for (shortcut, command) in shortcuts {

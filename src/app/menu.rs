@@ -9,6 +9,7 @@ use crate::app::dialog::Purpose;
 use crate::app::keyboard;
 use crate::app::looks::{self, Icon, icon, icon_button};
 use crate::app::network::Network;
+use crate::app::output::Output;
 use crate::app::panels;
 use crate::app::panes::Pane;
 use crate::app::reconstruction::ReconstructionCommand;
@@ -99,7 +100,12 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         (Icon::File, "Open files…", keyboard::OPEN, Command::Ask(Purpose::Files)),
         (Icon::FolderOpen, "Open folder…", keyboard::OPEN_FOLDER, Command::Ask(Purpose::Folder)),
         (Icon::Save, "Save case", keyboard::SAVE, Command::SaveCase),
-        (Icon::SaveAll, "Save case as…", keyboard::SAVE_AS, Command::Ask(Purpose::SaveCase)),
+        (
+            Icon::SaveAll,
+            "Save case as…",
+            keyboard::SAVE_AS,
+            Command::Ask(Purpose::Save(Output::Case)),
+        ),
     ] {
         edit_item(ui, of, label, shortcut, true, command, commands);
     }
@@ -108,7 +114,7 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
     let package = ui.add(icon_button(Icon::Archive, "Package…"));
     if package.on_hover_text("One zip of the case and all its files").clicked() {
-        commands.push(Command::Ask(Purpose::PackCase));
+        commands.push(Command::Ask(Purpose::Save(Output::PackedCase)));
     }
     ui.add_enabled_ui(!state.view.recent.is_empty(), |ui| {
         ui.menu_button("Recent cases", |ui| {
@@ -126,12 +132,12 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let has_response = session.response.model.current.is_some();
     let has_comparison = session.response.comparison.report().is_some();
     for (label, enabled, purpose) in [
-        ("Save scenario…", true, Purpose::Scenario),
+        ("Save scenario…", true, Purpose::Save(Output::Scenario)),
         ("Open model…", true, Purpose::OpenModel),
-        ("Save force model…", has_force, Purpose::SaveModel(Network::Force)),
-        ("Save response model…", has_response, Purpose::SaveModel(Network::Response)),
+        ("Save force model…", has_force, Purpose::Save(Output::Model(Network::Force))),
+        ("Save response model…", has_response, Purpose::Save(Output::Model(Network::Response))),
         ("Open comparison…", true, Purpose::OpenComparison),
-        ("Save comparison…", has_comparison, Purpose::SaveComparison),
+        ("Save comparison…", has_comparison, Purpose::Save(Output::Comparison)),
     ] {
         if ui.add_enabled(enabled, Button::new(label)).clicked() {
             commands.push(Command::Ask(purpose));

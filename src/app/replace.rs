@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{Context, Ui};
+use egui::Ui;
 
-use crate::app::command::{Command, ComparisonCommand};
+use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::export;
+use crate::app::output::Output;
 use crate::app::state::State;
 use crate::app::tasks::TaskKey;
 use impactlab_core::data::write::{MANIFEST_FILE, check_inputs};
@@ -16,94 +17,65 @@ use impactlab_core::data::{
 use impactlab_core::error_chain;
 use impactlab_study::InputKind;
 
-impl Command {
-    /// The file or folder that the command writes; `None` for all other commands.
-    fn target(&self) -> Option<&Path> {
-        match self {
-            Self::Export(_, path)
-            | Self::ExportScene(_, path)
-            | Self::ExportExchange(_, path)
-            | Self::SaveFilm(_, path)
-            | Self::SaveScenario(path)
-            | Self::SaveVehicle(_, path)
-            | Self::SaveEvidence(_, path)
-            | Self::SaveSite(path)
-            | Self::SaveModel(_, path)
-            | Self::SaveArchived(_, path)
-            | Self::SaveCaseAs(path)
-            | Self::PackCase(path)
-            | Self::SaveReport(_, path)
-            | Self::Compare(ComparisonCommand::Save(path)) => Some(path),
-            _ => None,
-        }
-    }
-
-    /// Whether the command would replace something. A folder is replaced if it holds results.
-    fn replaces_something(&self) -> bool {
-        let holds_results = |folder: &Path| {
-            [MANIFEST_FILE, "comparison.json"].iter().any(|name| folder.join(name).exists())
-        };
-        self.target().is_some_and(|path| path.is_file() || path.is_dir() && holds_results(path))
-    }
+/// Whether something would be replaced at a path. A folder is replaced if it holds results.
+fn is_taken(path: &Path) -> bool {
+    let is_there = |name: &&str| path.join(name).exists();
+    path.is_file() || [MANIFEST_FILE, "comparison.json"].iter().any(is_there)
 }
 
 impl State {
-    /// Carries out a command that writes a file. If it would replace something and that was not
-    /// said to be wanted, the user is asked first.
-    pub(super) fn write(&mut self, command: Command, existing: Existing, context: &Context) {
-        self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Replace(_)));
-        if let Some(Err(error)) = command.target().map(|path| self.check_inputs(&command, path)) {
+    /// Writes something to a path. If that would replace something and that was not said to be wanted, the
+    /// user is asked first.
+    pub(super) fn write(&mut self, output: Output, path: PathBuf, existing: Existing) {
+        self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Replace(..)));
+        if let Err(error) = self.check_inputs(&output, &path) {
             return self.say(Severity::Error, error_chain(&error));
         }
-        if existing == Existing::Refuse && command.replaces_something() {
-            self.session.dialogs.open(Dialog::Replace(Box::new(command)));
-            return;
+        if existing == Existing::Refuse && is_taken(&path) {
+            return self.session.dialogs.open(Dialog::Replace(output, path));
         }
-        match command {
-            Command::Export(figure, path) => {
+        match output {
+            Output::Picture(figure) | Output::Numbers(figure) => {
                 let dark = self.view.dark;
                 self.start_writing(path, move |to| {
                     export::write_figure(&figure, to, existing, dark)
                 });
             }
-            Command::ExportScene(picture, path) => {
+            Output::ScenePicture(picture) => {
                 let dark = self.view.dark;
                 self.start_writing(path, move |to| {
                     export::write_scene(&picture, to, existing, dark)
                 });
             }
-            Command::ExportExchange(scene, path) => {
+            Output::Exchange(scene) => {
                 self.start_writing(path, move |to| export::write_exchange(*scene, to, existing));
             }
-            Command::SaveFilm(film, path) => self.make_film(*film, path, existing),
-            Command::SaveScenario(path) => {
+            Output::Film(film) => self.make_film(*film, path, existing),
+            Output::Scenario => {
                 if let Some(scenario) = self.project.scenario() {
                     self.write_text(&scenario.to_toml(), &path, existing);
                 }
             }
-            Command::SaveVehicle(sheet, path) => {
+            Output::Vehicle(sheet) => {
                 self.write_text(&sheet.to_toml(), &path, existing);
             }
-            Command::SaveEvidence(evidence, path) => {
+            Output::Evidence(evidence) => {
                 self.write_text(&evidence.to_toml(), &path, existing);
             }
-            Command::SaveSite(path) => self.save_site(&path, existing),
-            Command::SaveCaseAs(path) => self.save_case(path, existing),
-            Command::PackCase(path) => self.pack_case(path, existing),
-            Command::SaveReport(document, path) => {
+            Output::Site => self.save_site(&path, existing),
+            Output::Case => self.save_case(path, existing),
+            Output::PackedCase => self.pack_case(path, existing),
+            Output::Report(document) => {
                 self.start_writing(path, move |to| export::write_report(&document, to, existing));
             }
-            Command::SaveModel(network, path) => self.save_model(network, path, existing),
-            Command::SaveArchived(model, path) => self.start_writing(path, move |to| {
+            Output::Model(network) => self.save_model(network, path, existing),
+            Output::Archived(_, model) => self.start_writing(path, move |to| {
                 let bytes =
                     read_bytes(&model, MAX_MODEL_BYTES).map_err(|error| error_chain(&error))?;
                 write_atomically(to, existing, |out| out.write_all(&bytes))
                     .map_err(|error| error_chain(&error))
             }),
-            Command::Compare(ComparisonCommand::Save(folder)) => {
-                self.save_comparison(folder, existing);
-            }
-            other => self.apply(other, context),
+            Output::Comparison => self.save_comparison(path, existing),
         }
     }
 
@@ -127,14 +99,14 @@ impl State {
 
     /// Refuses to write over a file that the case rests on. A document that is edited in the window, or a
     /// network, may go back to its own file.
-    fn check_inputs(&self, command: &Command, path: &Path) -> Result<(), DataError> {
-        let own = match command {
-            Command::SaveScenario(_) => Some(InputKind::Scenario),
-            Command::SaveVehicle(..) => Some(InputKind::Vehicle),
-            Command::SaveEvidence(..) => Some(InputKind::Evidence),
-            Command::SaveSite(_) => Some(InputKind::Site),
-            Command::SaveModel(..) | Command::SaveArchived(..) => Some(InputKind::Network),
-            Command::SaveCaseAs(_) => Some(InputKind::Case),
+    fn check_inputs(&self, output: &Output, path: &Path) -> Result<(), DataError> {
+        let own = match output {
+            Output::Scenario => Some(InputKind::Scenario),
+            Output::Vehicle(_) => Some(InputKind::Vehicle),
+            Output::Evidence(_) => Some(InputKind::Evidence),
+            Output::Site => Some(InputKind::Site),
+            Output::Model(_) | Output::Archived(..) => Some(InputKind::Network),
+            Output::Case => Some(InputKind::Case),
             _ => None,
         };
         let is_own = own == Some(InputKind::from_path(path));
@@ -154,9 +126,8 @@ impl State {
 /// Draws the question whether something is to be replaced, and adds a command when the user has
 /// answered.
 ///
-/// - `command`: the command that would replace it.
-pub fn replace_ui(ui: &mut Ui, command: &Command, commands: &mut Vec<Command>) {
-    let Some(path) = command.target() else { return };
+/// - `output`, `path`: what would be written, and where.
+pub fn replace_ui(ui: &mut Ui, (output, path): (&Output, &Path), commands: &mut Vec<Command>) {
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     ui.heading(format!("Replace {name}?"));
     ui.label(path.display().to_string());
@@ -167,7 +138,7 @@ pub fn replace_ui(ui: &mut Ui, command: &Command, commands: &mut Vec<Command>) {
     ui.separator();
     ui.horizontal(|ui| {
         if ui.button("Replace").clicked() {
-            commands.push(Command::Replace(Box::new(command.clone())));
+            commands.push(Command::Replace(output.clone(), path.to_owned()));
         }
         if ui.button("Keep it").clicked() {
             commands.push(Command::CloseDialog);

@@ -3,7 +3,7 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Group, Pane, Subject, VariantCommand, Workspace};
+use impactlab::app::{App, Command, Group, Output, Pane, Subject, VariantCommand, Workspace};
 use impactlab_core::vehicle::{DataSheet, LibraryVehicle, SheetQuantity};
 use impactlab_study::{MotionSource, VehicleChoice};
 
@@ -155,7 +155,7 @@ fn a_vehicle_is_edited_in_a_form_and_the_answer_is_that_of_its_saved_file() {
     let in_form = state(&harness).analysis().unwrap().report.clone();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("edited.toml");
-    apply(&mut harness, Command::SaveVehicle(sheet, path.clone()));
+    apply(&mut harness, Command::Write(Output::Vehicle(sheet), path.clone()));
     harness.state_mut().state_mut().project.simulate.vehicle = VehicleChoice::File(path);
     harness.run_steps(3);
     step_until(&mut harness, "the saved vehicle", is_idle);

@@ -11,7 +11,7 @@ use std::time::Duration;
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Leaving, State, Subject, TaskKey, VariantCommand};
+use impactlab::app::{App, Command, Leaving, Output, State, Subject, TaskKey, VariantCommand};
 use impactlab_core::collision::{ChannelClass, Scenario};
 use impactlab_core::data::{Existing, Severity};
 use impactlab_core::uncertainty::CaveatKind;
@@ -49,7 +49,7 @@ fn is_answered(state: &State) -> bool {
 }
 
 fn save_as(harness: &mut Harness<'_, App>, path: &Path) {
-    apply(harness, Command::SaveCaseAs(path.to_owned()));
+    apply(harness, Command::Write(Output::Case, path.to_owned()));
     step_until(harness, "the case on disk", |state| {
         !state.session.tasks.is_running(&TaskKey::SaveCase) && state.case.path.is_some()
     });
@@ -110,7 +110,7 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
 
     // The package opens elsewhere, with the same numbers.
     let zip = folder.path().join("pit.zip");
-    apply(&mut harness, Command::PackCase(zip.clone()));
+    apply(&mut harness, Command::Write(Output::PackedCase, zip.clone()));
     step_until(&mut harness, "the package", |state| !state.session.tasks.is_writing());
     let elsewhere = unpack(&zip, &folder.path().join("elsewhere")).expect("unpacked");
     assert_eq!(answers_of(&elsewhere), answers);
@@ -126,7 +126,7 @@ fn saved_again(from: &Path, to: &Path) -> Harness<'static, App> {
     let mut harness = open(&[from.to_str().expect("text")]);
     step_until(&mut harness, "the forecast", is_answered);
     assert!(!state(&harness).is_case_changed(), "the case is as it was opened");
-    apply(&mut harness, Command::SaveCaseAs(to.to_owned()));
+    apply(&mut harness, Command::Write(Output::Case, to.to_owned()));
     step_until(&mut harness, "the case on disk", |state| state.case.path.as_deref() == Some(to));
     harness
 }
@@ -256,7 +256,7 @@ fn a_case_that_is_saved_before_its_data_are_read_keeps_its_questions() {
     assert_eq!(questions.len(), 2, "{questions:?}");
     // Another window saves it again before it has read anything.
     let mut harness = open(&[one.to_str().unwrap()]);
-    apply(&mut harness, Command::SaveCaseAs(two.clone()));
+    apply(&mut harness, Command::Write(Output::Case, two.clone()));
     step_until(&mut harness, "the case on disk", |state| state.case.path.as_ref() == Some(&two));
     assert_eq!(CaseFile::load(&two).expect("a case").variants[0].questions, questions);
 }

@@ -4,7 +4,7 @@
 use egui::OutputCommand;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use impactlab::app::{App, Command, Pane, State};
+use impactlab::app::{App, Command, Output, Pane, State};
 use impactlab_core::data::Severity;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_core::units::{Quantity, UnitSystem};
@@ -132,7 +132,7 @@ fn what_the_window_exports_says_what_restricts_it() {
     let figure = forecast_figure(ForceComponent::Y, &input);
     for name in ["force.png", "force.csv"] {
         let path = folder.path().join(name);
-        apply(&mut harness, Command::Export(Box::new(figure.clone()), path));
+        apply(&mut harness, Command::Write(Output::Picture(Box::new(figure.clone())), path));
         step_until(&mut harness, "the export", |state| !state.session.tasks.is_writing());
     }
     let csv = std::fs::read_to_string(folder.path().join("force.csv")).expect("a table");
@@ -150,9 +150,10 @@ fn what_is_not_of_what_is_asked_any_more_is_not_saved() {
     let path = folder.path().join("old.csv");
     let old = figure(&Caveats::default().outdated_if(true));
     let before = state(&harness).session.messages.len();
-    for command in
-        [Command::Export(Box::new(old.clone()), path.clone()), Command::CopyNumbers(Box::new(old))]
-    {
+    for command in [
+        Command::Write(Output::Picture(Box::new(old.clone())), path.clone()),
+        Command::CopyNumbers(Box::new(old)),
+    ] {
         apply(&mut harness, command);
         assert_eq!(copied(&harness), None);
     }

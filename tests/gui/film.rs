@@ -7,7 +7,7 @@ use std::sync::Arc;
 use egui::ColorImage;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Pane};
+use impactlab::app::{App, Command, Output, Pane};
 use impactlab_core::data::{Existing, Outcome};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
@@ -241,7 +241,7 @@ fn the_window_films_the_cars_of_a_reconstruction() {
     (film.canvas.size_px, film.timing.to_s) = ([320, 180], 0.3);
     let n_frames = film.instants().expect("a possible film").len();
     let path = folder.path().join("film.mp4");
-    apply(&mut harness, Command::SaveFilm(Box::new(film.clone()), path.clone()));
+    apply(&mut harness, Command::Write(Output::Film(Box::new(film.clone())), path.clone()));
     step_until(&mut harness, "the film", |state| state.session.tasks.film().is_none());
     assert_eq!(decoded(&path, 30).len(), n_frames);
     assert!(last_message(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
@@ -253,7 +253,7 @@ fn the_window_films_the_cars_of_a_reconstruction() {
 fn cancel_a_long_one(harness: &mut Harness<'_, App>, mut film: Film, path: &Path) {
     film.canvas.size_px = [1920, 1080];
     film.timing = FilmTiming { frames_per_s: 120, ..FilmTiming::from_scene(&film.picture.scene) };
-    apply(harness, Command::SaveFilm(Box::new(film), path.to_owned()));
+    apply(harness, Command::Write(Output::Film(Box::new(film)), path.to_owned()));
     harness.run_steps(2);
     apply(harness, Command::CancelFilm);
     step_until(harness, "the end of the film", |state| state.session.tasks.film().is_none());
@@ -283,7 +283,7 @@ fn the_window_makes_a_film_of_the_scene_as_it_is_seen() {
     (film.canvas.size_px, film.timing.to_s) = ([320, 180], 0.5);
     film.timing.sections.clear();
     let n_frames = film.instants().expect("a possible film").len();
-    apply(&mut harness, Command::SaveFilm(Box::new(film.clone()), path.clone()));
+    apply(&mut harness, Command::Write(Output::Film(Box::new(film.clone())), path.clone()));
     let session = &harness.state().state().session;
     assert!(session.tasks.film().is_some() && session.dialogs.film().is_none());
     step_until(&mut harness, "the film", |state| state.session.tasks.film().is_none());
@@ -291,7 +291,7 @@ fn the_window_makes_a_film_of_the_scene_as_it_is_seen() {
     assert!(last_message(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
 
     // A film that exists already is asked about, and a cancelled one is not written.
-    apply(&mut harness, Command::SaveFilm(Box::new(film.clone()), path));
+    apply(&mut harness, Command::Write(Output::Film(Box::new(film.clone())), path));
     assert!(harness.state().state().session.dialogs.replacing().is_some());
     apply(&mut harness, Command::CloseDialog);
     cancel_a_long_one(&mut harness, film, &folder.path().join("other.mp4"));

@@ -7,7 +7,8 @@ use std::sync::OnceLock;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{
-    App, Command, NamedCollision, Network, Pane, State, Subject, TrainingCommand, collision_of,
+    App, Command, NamedCollision, Network, Output, Pane, State, Subject, TrainingCommand,
+    collision_of,
 };
 use impactlab_core::data::{Dataset, Existing, Severity};
 use impactlab_networks::force::{ForceCase, ForceConfig, ForceScenario, train};
@@ -236,7 +237,7 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
     assert!(harness.query_by_label("Use it").is_none());
 
     let path = folder.path().join("mine.safetensors");
-    apply(&mut harness, Command::SaveModel(Network::Force, path.clone()));
+    apply(&mut harness, Command::Write(Output::Model(Network::Force), path.clone()));
     step_until(&mut harness, "the file", |state| !state.session.force.model.is_saving());
     assert_eq!(state(&harness).project.predict_force.model.path(), Some(path.as_path()));
     harness.run_steps(90);

@@ -6,7 +6,8 @@ use egui::Pos2;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{
-    App, Command, GroundCommand, Measure, Pane, PlaybackCommand, ReconstructionCommand, State,
+    App, Command, GroundCommand, Measure, Output, Pane, PlaybackCommand, ReconstructionCommand,
+    State,
 };
 use impactlab_core::units::UnitSystem;
 
@@ -181,7 +182,7 @@ fn an_orthophoto_alone_is_scaled_by_two_points_undone_and_saved() {
     assert!((first[0] - 80.0).abs() < 2.0, "the first point stays: {first:?}");
 
     let site = folder.path().join("site.toml");
-    apply(&mut harness, Command::SaveSite(site.clone()));
+    apply(&mut harness, Command::Write(Output::Site, site.clone()));
     step_until(&mut harness, "the site", |state| {
         state.session.ground.shown().is_some() && is_idle(state) && state.analysis().is_some()
     });

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{
-    App, ArchiveEntry, ArchiveKind, Command, ComparisonCommand, CostPlace, Leaving, Network, Pane,
-    State, TrainingCommand, TrainingMode,
+    App, ArchiveEntry, ArchiveKind, Command, ComparisonCommand, CostPlace, Leaving, Network,
+    Output, Pane, State, TrainingCommand, TrainingMode,
 };
 use impactlab_study::{ConfigChoice, ModelChoice};
 
@@ -172,7 +172,10 @@ fn a_finished_training_is_kept_named_and_used_after_a_restart() {
     step_until(&mut harness, "the kept model", is_in_use("my PIT model"));
     assert_eq!(in_use(&harness).0, ModelChoice::file(&path));
     let copy = desk.path("copy.safetensors");
-    apply(&mut harness, Command::SaveArchived(path.clone(), copy.clone()));
+    apply(
+        &mut harness,
+        Command::Write(Output::Archived(Network::Force, path.clone()), copy.clone()),
+    );
     step_until(&mut harness, "the copy", |_| copy.exists());
     assert_eq!(fs::read(&copy).expect("a copy"), fs::read(&path).expect("a model"));
     desk.store(&mut harness);

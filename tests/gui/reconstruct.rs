@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{
-    App, Command, FollowedParticle, PlaybackCommand, ReconstructionCommand, State, Workspace,
+    App, Command, FollowedParticle, Output, PlaybackCommand, ReconstructionCommand, State,
+    Workspace,
 };
 use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::vehicle::built_in_vehicle;
@@ -255,9 +256,12 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
 
     edited = evidence(&harness);
     let path = folder.path().join("new.toml");
-    apply(&mut harness, Command::SaveEvidence(Box::new(edited.clone()), path.clone()));
+    apply(&mut harness, Command::Write(Output::Evidence(Box::new(edited.clone())), path.clone()));
     assert_eq!(Evidence::load(&path).expect("the file"), edited);
-    apply(&mut harness, Command::SaveEvidence(Box::new(edited.mirrored()), path.clone()));
+    apply(
+        &mut harness,
+        Command::Write(Output::Evidence(Box::new(edited.mirrored())), path.clone()),
+    );
     assert!(
         state(&harness).session.dialogs.replacing().is_some(),
         "it was written without a question"
@@ -265,7 +269,7 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
     assert_eq!(Evidence::load(&path).expect("the file"), edited);
     apply(&mut harness, Command::CloseDialog);
     let case = folder.path().join("spin.impactlab");
-    apply(&mut harness, Command::SaveCaseAs(case.clone()));
+    apply(&mut harness, Command::Write(Output::Case, case.clone()));
     step_until(&mut harness, "the case file", |state| state.case.path.is_some());
     apply(&mut harness, Command::NewCase);
     harness.run_steps(2);

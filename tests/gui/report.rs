@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, MadeReport, ReportCommand, State, TaskKey, Workspace};
+use impactlab::app::{App, Command, MadeReport, Output, ReportCommand, State, TaskKey, Workspace};
 use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{
     Language, ReportFormat, ReportSettings, SectionKind, report_case,
@@ -62,7 +62,7 @@ fn the_report_on_screen_is_the_one_of_the_case_file() {
     save(&mut harness, "report.png");
 
     let case_file = folder.path().join("pit.impactlab");
-    apply(&mut harness, Command::SaveCaseAs(case_file.clone()));
+    apply(&mut harness, Command::Write(Output::Case, case_file.clone()));
     step_until(&mut harness, "the case file", |state| {
         !state.session.tasks.is_running(&TaskKey::SaveCase)
     });
@@ -106,7 +106,7 @@ fn a_report_is_saved_as_its_ending_says_unless_the_case_has_changed() {
     let document = made(&harness).document.clone();
     for name in ["report.pdf", "report.md", "report.json"] {
         let path = folder.path().join(name);
-        apply(&mut harness, Command::SaveReport(document.clone(), path.clone()));
+        apply(&mut harness, Command::Write(Output::Report(document.clone()), path.clone()));
         step_until(&mut harness, name, |state| !state.session.tasks.is_writing());
         let format = ReportFormat::from_path(&path).expect("a format");
         let drawing = &impactlab_draw::report_picture;
@@ -114,7 +114,7 @@ fn a_report_is_saved_as_its_ending_says_unless_the_case_has_changed() {
         assert!(std::fs::read(&path).expect("a file") == expected, "{name}");
     }
     let other: PathBuf = folder.path().join("report.docx");
-    apply(&mut harness, Command::SaveReport(document, other.clone()));
+    apply(&mut harness, Command::Write(Output::Report(document), other.clone()));
     step_until(&mut harness, "the refusal", |state| !state.session.tasks.is_writing());
     assert!(!other.exists());
     let message = &state(&harness).session.messages.last().expect("a message").text;

@@ -5,7 +5,7 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{
-    App, Command, ComparisonCommand, DensityChoice, Network, Pane, PlaybackCommand, State, Subject,
+    App, Command, DensityChoice, Network, Output, Pane, PlaybackCommand, State, Subject,
     TrainingMode,
 };
 use impactlab_study::{ConfigChoice, ForceSource, ModelChoice};
@@ -170,7 +170,7 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     harness.run_steps(2);
     assert_eq!(name(&harness), "trained on 3 trajectories of trajectories-fea");
     let path = folder.path().join("mine.safetensors");
-    apply(&mut harness, Command::SaveModel(Network::Response, path.clone()));
+    apply(&mut harness, Command::Write(Output::Model(Network::Response), path.clone()));
     step_until(&mut harness, "the file", |state| !state.session.response.model.is_saving());
     assert_eq!(state(&harness).project.predict_motion.response_model.path(), Some(path.as_path()));
     // A model file is used for the network that its header names.
@@ -219,7 +219,7 @@ fn models_are_compared_saved_and_opened_again() {
     harness.run_steps(4);
     save(&mut harness, "compare.png");
     let out = folder.path().join("saved");
-    apply(&mut harness, Command::Compare(ComparisonCommand::Save(out.clone())));
+    apply(&mut harness, Command::Write(Output::Comparison, out.clone()));
     step_until(&mut harness, "the files", |_| out.join("comparison.md").is_file());
     // The tall window also shows what otherwise needs scrolling.
     apply(&mut harness, Command::Open(vec![out.join("comparison.json")]));

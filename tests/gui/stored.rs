@@ -6,7 +6,7 @@ use std::path::Path;
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, ComparisonCommand, Network, Pane, State, Subject};
+use impactlab::app::{App, Command, Network, Output, Pane, State, Subject};
 use impactlab_core::data::Severity;
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
@@ -41,9 +41,9 @@ fn the_window_never_writes_over_a_file_that_the_case_rests_on() {
     let before = fs::read(&path).expect("a recording");
     let mut harness = open(&[path.to_str().expect("UTF-8")]);
     step_until(&mut harness, "the recording", is_idle);
-    for save in [Command::SaveScenario(path.clone()), Command::SaveCaseAs(path.clone())] {
-        for command in [save.clone(), Command::Replace(Box::new(save))] {
-            apply(&mut harness, command);
+    for output in [Output::Scenario, Output::Case] {
+        for command in [Command::Write, Command::Replace] {
+            apply(&mut harness, command(output.clone(), path.clone()));
             harness.run_steps(3);
             assert!(messages(&harness).contains("is an input ("), "{}", messages(&harness));
             assert!(state(&harness).session.dialogs.replacing().is_none(), "nothing to be asked");
@@ -59,7 +59,7 @@ fn the_window_asks_before_it_replaces_a_file() {
     fs::write(&path, "mine").expect("a file");
     let mut harness = open(&[SCENARIO]);
     step_until(&mut harness, "the scenario", is_idle);
-    let save = Command::SaveScenario(path.clone());
+    let save = Command::Write(Output::Scenario, path.clone());
 
     apply(&mut harness, save.clone());
     harness.step();
@@ -84,8 +84,8 @@ fn the_window_asks_before_it_replaces_a_file() {
     // A figure, a model and a folder of results are asked about alike; a new name is not.
     step_until(&mut harness, "the models", |state| state.session.force.model.current.is_some());
     for (name, command) in [
-        ("model", Command::SaveModel(Network::Force, folder.path().join("model"))),
-        ("results", Command::Compare(ComparisonCommand::Save(folder.path().join("results")))),
+        ("model", Command::Write(Output::Model(Network::Force), folder.path().join("model"))),
+        ("results", Command::Write(Output::Comparison, folder.path().join("results"))),
     ] {
         match name {
             "results" => {
@@ -99,7 +99,7 @@ fn the_window_asks_before_it_replaces_a_file() {
         apply(&mut harness, Command::CloseDialog);
     }
     assert_eq!(fs::read_to_string(folder.path().join("model")).expect("a file"), "mine");
-    apply(&mut harness, Command::SaveScenario(folder.path().join("new.toml")));
+    apply(&mut harness, Command::Write(Output::Scenario, folder.path().join("new.toml")));
     assert!(
         folder.path().join("new.toml").exists()
             && state(&harness).session.dialogs.replacing().is_none()

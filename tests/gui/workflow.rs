@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, ReplayStatus, State};
+use impactlab::app::{App, Command, Output, ReplayStatus, State};
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
@@ -178,14 +178,17 @@ fn a_dropped_file_opens_and_a_figure_is_exported() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["scene.png", "scene.csv"] {
         let path = folder.path().join(name);
-        apply(&mut harness, Command::Export(Box::new(figure.clone()), path.clone()));
+        apply(
+            &mut harness,
+            Command::Write(Output::Picture(Box::new(figure.clone())), path.clone()),
+        );
         step_until(&mut harness, "the export", |state| !state.session.tasks.is_writing());
         assert!(path.metadata().unwrap().len() > 1000, "{name}");
     }
     let png = image::open(folder.path().join("scene.png")).unwrap();
     assert_eq!((png.width(), png.height()), (1600, 1000));
     let bad = folder.path().join("no/folder/scene.png");
-    apply(&mut harness, Command::Export(Box::new(figure), bad));
+    apply(&mut harness, Command::Write(Output::Picture(Box::new(figure)), bad));
     step_until(&mut harness, "the failure", |state| {
         state.session.messages.last().is_some_and(|m| m.severity == Severity::Error)
     });

@@ -1,17 +1,15 @@
 //! The desktop's dialogs for files, and the commands that follow from a path.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use rfd::AsyncFileDialog;
 
-use crate::app::command::{Command, ComparisonCommand};
+use crate::app::command::Command;
 use crate::app::dialog::purpose::Purpose;
 use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::jobs::ProgressCallback;
 use impactlab_study::MODEL_ENDING;
-use impactlab_study::case_file::CASE_ENDING;
 
 /// File extensions of site files and orthophotos.
 const GROUNDS: [&str; 6] = ["toml", "png", "jpg", "jpeg", "tif", "tiff"];
@@ -19,49 +17,20 @@ const GROUNDS: [&str; 6] = ["toml", "png", "jpg", "jpeg", "tif", "tiff"];
 impl Purpose {
     /// The command that follows once paths are known.
     ///
-    /// - `was_asked`: whether the user was asked already if a file of that name is to be replaced.
+    /// - `is_confirmed`: whether a native dialog has asked already if that file is to be replaced. It has
+    ///   not asked about a file with the ending that is added to a name without one.
     pub(in crate::app) fn command(
         &self,
         paths: Vec<PathBuf>,
         is_confirmed: bool,
     ) -> Option<Command> {
-        let first = paths.first().cloned()?;
-        let written = |ending: &str, command: &dyn Fn(PathBuf) -> Command| {
-            written(&first, ending, is_confirmed, command)
-        };
-        Some(match self {
-            Self::Folder | Self::Files | Self::Ground | Self::OpenModel | Self::OpenComparison => {
-                Command::Open(paths)
-            }
-            Self::Site => written("toml", &Command::SaveSite),
-            Self::SaveComparison => Command::Compare(ComparisonCommand::Save(first)),
-            Self::Picture(figure) => written("png", &|path| Command::Export(figure.clone(), path)),
-            Self::ScenePicture(picture) => {
-                written("png", &|path| Command::ExportScene(picture.clone(), path))
-            }
-            Self::Exchange(of) => {
-                written(of.format.ending(), &|path| Command::ExportExchange(of.clone(), path))
-            }
-            Self::Film(film) => written("mp4", &|path| Command::SaveFilm(film.clone(), path)),
-            Self::Numbers(figure) => written("csv", &|path| Command::Export(figure.clone(), path)),
-            Self::Scenario => written("toml", &Command::SaveScenario),
-            Self::Vehicle(sheet) => {
-                written("toml", &|path| Command::SaveVehicle(sheet.clone(), path))
-            }
-            Self::Evidence(evidence) => {
-                written("toml", &|path| Command::SaveEvidence(evidence.clone(), path))
-            }
-            Self::SaveModel(network) => {
-                written(MODEL_ENDING, &|path| Command::SaveModel(*network, path))
-            }
-            Self::SaveArchived(_, model) => {
-                written(MODEL_ENDING, &|path| Command::SaveArchived(model.clone(), path))
-            }
-            Self::SaveCase => written(CASE_ENDING, &Command::SaveCaseAs),
-            Self::PackCase => written("zip", &Command::PackCase),
-            Self::Report(document) => {
-                written("pdf", &|path| Command::SaveReport(Arc::clone(document), path))
-            }
+        let path = paths.first().cloned()?;
+        let Some(output) = self.output().cloned() else { return Some(Command::Open(paths)) };
+        let endings = output.endings();
+        Some(match (endings.first(), path.extension()) {
+            (Some(ending), None) => Command::Write(output, path.with_extension(ending)),
+            (Some(_), Some(_)) if is_confirmed => Command::Replace(output, path),
+            _ => Command::Write(output, path),
         })
     }
 }
@@ -105,25 +74,8 @@ pub fn ask_for_path(purpose: Purpose, tasks: &mut Tasks) {
     });
 }
 
-/// Returns the command that writes a file which the user has chosen in a dialog. A native dialog has
-/// asked already whether that file is to be replaced, but not a file with the ending that is added
-/// to a name without one.
-fn written(
-    chosen: &Path,
-    ending: &str,
-    is_confirmed: bool,
-    command: &dyn Fn(PathBuf) -> Command,
-) -> Command {
-    match chosen.extension() {
-        Some(_) if is_confirmed => Command::Replace(Box::new(command(chosen.to_owned()))),
-        Some(_) => command(chosen.to_owned()),
-        None => command(chosen.with_extension(ending)),
-    }
-}
-
 async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
-    let (dialog, name) = (AsyncFileDialog::new().set_title(purpose.title()), purpose.usual_name());
-    let save = |dialog: AsyncFileDialog, name: String| dialog.set_file_name(name).save_file();
+    let dialog = AsyncFileDialog::new().set_title(purpose.title());
     let one = match purpose {
         Purpose::Folder => dialog.pick_folder().await,
         Purpose::Files => {
@@ -137,30 +89,21 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
                 .await;
             return files.unwrap_or_default().iter().map(|file| file.path().to_owned()).collect();
         }
-        Purpose::SaveComparison => dialog.pick_folder().await,
         Purpose::OpenComparison => {
             dialog.add_filter("comparison.json", &["json"]).pick_file().await
         }
         Purpose::Ground => dialog.add_filter("site file or orthophoto", &GROUNDS).pick_file().await,
-        Purpose::Site => save(dialog.add_filter("site file", &["toml"]), name).await,
         Purpose::OpenModel => dialog.add_filter("model", &[MODEL_ENDING]).pick_file().await,
-        Purpose::SaveModel(_) | Purpose::SaveArchived(..) => {
-            save(dialog.add_filter("model", &[MODEL_ENDING]), name).await
+        Purpose::Save(output) => {
+            let (endings, [_, kind]) = (output.endings(), output.texts());
+            match endings.is_empty() {
+                true => dialog.pick_folder().await,
+                false => {
+                    let dialog = dialog.set_file_name(output.usual_name());
+                    dialog.add_filter(kind, &endings).save_file().await
+                }
+            }
         }
-        Purpose::Picture(_) | Purpose::ScenePicture(_) => {
-            save(dialog.add_filter("picture", &["png"]), name).await
-        }
-        Purpose::Exchange(of) => {
-            save(dialog.add_filter("scene", &[of.format.ending()]), name).await
-        }
-        Purpose::Film(_) => save(dialog.add_filter("film", &["mp4"]), name).await,
-        Purpose::Numbers(_) => save(dialog.add_filter("table", &["csv"]), name).await,
-        Purpose::Vehicle(_) => save(dialog.add_filter("vehicle", &["toml"]), name).await,
-        Purpose::Evidence(_) => save(dialog.add_filter("evidence", &["toml"]), name).await,
-        Purpose::Scenario => save(dialog.add_filter("scenario", &["toml"]), name).await,
-        Purpose::SaveCase => save(dialog.add_filter("case", &[CASE_ENDING]), name).await,
-        Purpose::PackCase => save(dialog.add_filter("package", &["zip"]), name).await,
-        Purpose::Report(_) => save(dialog.add_filter("report", &["pdf", "md", "json"]), name).await,
     };
     one.iter().map(|file| file.path().to_owned()).collect()
 }

@@ -6,6 +6,7 @@ use egui::{Key, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::purpose::Purpose;
+use crate::app::output::Output;
 
 /// A question for a path.
 pub struct PathDialog {
@@ -17,7 +18,8 @@ impl PathDialog {
     /// A question with the usual name in the current folder.
     pub fn new(purpose: Purpose) -> Self {
         let folder = std::env::current_dir().unwrap_or_default();
-        let typed = folder.join(purpose.usual_name()).display().to_string();
+        let name = purpose.output().map(Output::usual_name).unwrap_or_default();
+        let typed = folder.join(name).display().to_string();
         Self { purpose, typed }
     }
 
@@ -33,10 +35,11 @@ impl PathDialog {
             field.request_focus();
         }
         let path = PathBuf::from(self.typed.trim());
-        ui.weak(state_of(&path, self.purpose.writes()));
+        let writes = self.purpose.output().is_some();
+        ui.weak(state_of(&path, writes));
         ui.separator();
         ui.horizontal(|ui| {
-            let label = if self.purpose.writes() { "Save" } else { "Open" };
+            let label = if writes { "Save" } else { "Open" };
             let is_typed = !self.typed.trim().is_empty();
             let is_clicked = ui.add_enabled(is_typed, egui::Button::new(label)).clicked();
             if is_clicked || is_entered && is_typed {

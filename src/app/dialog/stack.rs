@@ -1,14 +1,14 @@
 //! The dialogs that are open in the window, one over the other. All keys belong to the uppermost one.
 
 use std::collections::VecDeque;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::app::archive::ModelsDialog;
 use crate::app::case::Leaving;
-use crate::app::command::Command;
 use crate::app::dialog::PathDialog;
 use crate::app::film::FilmForm;
 use crate::app::import::ImportDialog;
+use crate::app::output::Output;
 
 /// A dialog within the window.
 pub enum Dialog {
@@ -18,8 +18,8 @@ pub enum Dialog {
     Licences,
     /// All messages since the start.
     Messages,
-    /// Whether the command may replace what exists.
-    Replace(Box<Command>),
+    /// Whether what exists at the path may be replaced.
+    Replace(Output, PathBuf),
     /// Whether to leave, though something would be lost.
     Leave {
         /// Where the user goes.
@@ -98,10 +98,10 @@ impl Dialogs {
         })
     }
 
-    /// The command that waits for an answer whether it may replace what exists.
-    pub fn replacing(&self) -> Option<&Command> {
+    /// The path of which the user is asked whether what exists there may be replaced.
+    pub fn replacing(&self) -> Option<&Path> {
         self.iter().find_map(|dialog| match dialog {
-            Dialog::Replace(command) => Some(&**command),
+            Dialog::Replace(_, path) => Some(path.as_path()),
             _ => None,
         })
     }

@@ -32,7 +32,7 @@ impl Dialog {
             Self::Import(_) => "mapping dialog",
             Self::Licences => "licences",
             Self::Messages => "messages",
-            Self::Replace(_) => "replace dialog",
+            Self::Replace(..) => "replace dialog",
             Self::Leave { .. } => "leaving dialog",
             Self::Path(_) => "path dialog",
             Self::Models(_) => "models dialog",
@@ -49,7 +49,7 @@ fn dialog_ui(ui: &mut Ui, dialog: &mut Dialog, state: &mut State, commands: &mut
         }
         Dialog::Licences => licences_ui(ui, commands),
         Dialog::Messages => messages_ui(ui, state, commands),
-        Dialog::Replace(command) => replace_ui(ui, command, commands),
+        Dialog::Replace(output, path) => replace_ui(ui, (output, path), commands),
         Dialog::Leave { to, .. } => leaving_ui(ui, to, state, commands),
         Dialog::Path(dialog) => dialog.ui(ui, commands),
         Dialog::Models(dialog) => models_dialog_ui(ui, dialog, commands),

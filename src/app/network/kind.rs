@@ -32,11 +32,11 @@ impl Network {
         }
     }
 
-    /// Returns the file name that is proposed when a model of this network is saved.
-    pub fn file_name(self) -> &'static str {
+    /// Returns the name without ending that is proposed for a file with a model of this network.
+    pub fn stem(self) -> &'static str {
         match self {
-            Self::Force => "force.safetensors",
-            Self::Response => "response.safetensors",
+            Self::Force => "force",
+            Self::Response => "response",
         }
     }
 }

@@ -5,6 +5,7 @@ use egui::{Grid, RichText, Ui};
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::film::FilmForm;
+use crate::app::output::Output;
 use crate::app::widgets::{count_field, quantity_field, quantity_value};
 use impactlab_core::data::Severity;
 use impactlab_core::error_chain;
@@ -38,7 +39,7 @@ pub fn film_ui(ui: &mut Ui, form: &mut FilmForm, is_busy: bool, commands: &mut V
             if is_busy { "Another film is being made" } else { "The film cannot be made so" };
         let save = ui.add_enabled(is_possible && !is_busy, save).on_disabled_hover_text(hint);
         if save.clicked() {
-            commands.push(Command::Ask(Purpose::Film(Box::new(form.film.clone()))));
+            commands.push(Command::Ask(Purpose::Save(Output::Film(Box::new(form.film.clone())))));
         }
         if ui.button("Cancel").clicked() {
             commands.push(Command::CloseDialog);

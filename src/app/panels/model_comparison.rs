@@ -7,6 +7,7 @@ use crate::app::command::{Command, ComparisonCommand};
 use crate::app::cost::CostPlace;
 use crate::app::dialog::Purpose;
 use crate::app::network::NetworkQuestions;
+use crate::app::output::Output;
 use crate::app::panels::model_comparison_plots::{browser_ui, overview_ui};
 use crate::app::panes::PaneContext;
 use crate::app::response::ComparisonStatus;
@@ -149,14 +150,14 @@ fn buttons_ui(
         ui.add_enabled_ui(has_result, |ui| {
             let hint = "JSON, Markdown and tables into a folder";
             if ui.button("Save…").on_hover_text(hint).clicked() {
-                commands.push(Command::Ask(Purpose::SaveComparison));
+                commands.push(Command::Ask(Purpose::Save(Output::Comparison)));
             }
             let field = egui::TextEdit::singleline(&mut status.typed_path).desired_width(200.0);
             let typed = ui.add(field.hint_text("or type a folder and press Enter"));
             if typed.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
                 let folder = std::mem::take(&mut status.typed_path);
                 if !folder.trim().is_empty() {
-                    commands.push(Command::Compare(ComparisonCommand::Save(folder.trim().into())));
+                    commands.push(Command::Write(Output::Comparison, folder.trim().into()));
                 }
             }
         });

@@ -7,6 +7,7 @@ use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::model::ModelStatus;
 use crate::app::network::TrainedModel;
+use crate::app::output::Output;
 use impactlab_core::data::Severity;
 use impactlab_draw::theme;
 use impactlab_study::MODEL_ENDING;
@@ -69,7 +70,7 @@ pub fn model_row_ui<M: TrainedModel>(
             commands.push(Command::Ask(Purpose::OpenModel));
         }
         if ui.small_button("Save…").clicked() {
-            commands.push(Command::Ask(Purpose::SaveModel(M::NETWORK)));
+            commands.push(Command::Ask(Purpose::Save(Output::Model(M::NETWORK))));
         }
         if current.choice != ModelChoice::default() && ui.small_button("Shipped").clicked() {
             commands.push(Command::UseModel(M::NETWORK, None));
@@ -111,7 +112,7 @@ pub fn save_model_ui<M: TrainedModel>(
             commands.push(Command::Ask(Purpose::OpenModel));
         }
         if ui.button("Save model…").clicked() {
-            commands.push(Command::Ask(Purpose::SaveModel(M::NETWORK)));
+            commands.push(Command::Ask(Purpose::Save(Output::Model(M::NETWORK))));
         }
         let field = egui::TextEdit::singleline(&mut model.typed_path).desired_width(240.0);
         let typed = ui.add(field.hint_text("or type a path and press Enter"));
@@ -121,7 +122,7 @@ pub fn save_model_ui<M: TrainedModel>(
                 let path = std::path::PathBuf::from(path.trim());
                 let has_ending = path.extension().is_some();
                 let path = if has_ending { path } else { path.with_extension(MODEL_ENDING) };
-                commands.push(Command::SaveModel(M::NETWORK, path));
+                commands.push(Command::Write(Output::Model(M::NETWORK), path));
             }
         }
     });

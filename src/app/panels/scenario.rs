@@ -4,6 +4,7 @@ use egui::{ComboBox, Grid, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
+use crate::app::output::Output;
 use crate::app::panels::ending::ending_form;
 use crate::app::panels::scenario_plan::scenario_plan_ui;
 use crate::app::panes::PaneContext;
@@ -34,7 +35,7 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 commands.push(Command::Ask(Purpose::Files));
             }
             if ui.button("Save…").clicked() {
-                commands.push(Command::Ask(Purpose::Scenario));
+                commands.push(Command::Ask(Purpose::Save(Output::Scenario)));
             }
             let shown = project.subject() == Some(Subject::Scenario);
             let hint = "Spread the impulse over a pulse and simulate both vehicles";

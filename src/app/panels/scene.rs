@@ -11,6 +11,7 @@ use crate::app::export::{SceneExport, SceneFormat};
 use crate::app::ground::GroundSession;
 use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::measure::Measuring;
+use crate::app::output::Output;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panels::scene_ground::{
     ground_menu_ui, measure_bar_ui, measure_menu_ui, measured_ui,
@@ -214,7 +215,7 @@ fn export_menu_ui(
     commands: &mut Vec<Command>,
 ) {
     if ui.add(icon_button(Icon::Image, "Save picture (PNG)…")).clicked() {
-        commands.push(Command::Ask(Purpose::ScenePicture(Box::new(exported().0))));
+        commands.push(Command::Ask(Purpose::Save(Output::ScenePicture(Box::new(exported().0)))));
     }
     if ui.add(icon_button(Icon::Film, "Save film (MP4)…")).clicked() {
         commands.push(Command::AskFilm(Box::new(exported().0)));
@@ -227,11 +228,11 @@ fn export_menu_ui(
             let ScenePicture { scene, time_s, .. } = exported().0;
             let outlines_s = vec![FilmTiming::from_scene(&scene).from_s, time_s, scene.end_s];
             let export = SceneExport { scene, format, outlines_s };
-            commands.push(Command::Ask(Purpose::Exchange(Box::new(export))));
+            commands.push(Command::Ask(Purpose::Save(Output::Exchange(Box::new(export)))));
         }
     }
     if ui.add(icon_button(Icon::Table2, "Save numbers (CSV)…")).clicked() {
-        commands.push(Command::Ask(Purpose::Numbers(Box::new(exported().1))));
+        commands.push(Command::Ask(Purpose::Save(Output::Numbers(Box::new(exported().1)))));
     }
     if ui.add(icon_button(Icon::Copy, "Copy numbers")).clicked() {
         commands.push(Command::CopyNumbers(Box::new(exported().1)));

@@ -7,6 +7,7 @@ use crate::app::dialog::Purpose;
 use crate::app::ground::{GroundCommand, GroundSession};
 use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::measure::{Measure, Measurement, Measuring};
+use crate::app::output::Output;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_document::scene::Scene;
 use impactlab_draw::scene::{SceneView, draw_measure, draw_measure_text, measure_text_place};
@@ -47,7 +48,7 @@ pub fn ground_menu_ui(
         }
         ui.add_enabled_ui(shown.is_some(), |ui| {
             if ui.add(icon_button(Icon::Save, "Save site file…")).clicked() {
-                commands.push(Command::Ask(Purpose::Site));
+                commands.push(Command::Ask(Purpose::Save(Output::Site)));
             }
         });
         ui.add_enabled_ui(shown.is_some() || ground.problem.is_some(), |ui| {

@@ -4,6 +4,7 @@ use egui::{CollapsingHeader, ComboBox, Grid, RichText, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
+use crate::app::output::Output;
 use crate::app::widgets::quantity_value;
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::Range;
@@ -34,7 +35,7 @@ pub fn vehicle_form_ui(
             );
             let hint = "As a vehicle file, for other cases and the command line";
             if ui.button("Save vehicle…").on_hover_text(hint).clicked() {
-                commands.push(Command::Ask(Purpose::Vehicle(Box::new(sheet.clone()))));
+                commands.push(Command::Ask(Purpose::Save(Output::Vehicle(Box::new(sheet.clone())))));
             }
         });
         if let Err(error) = sheet.checked_vehicle() {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::Context;
 
 use crate::app::archive::{ArchiveEntry, keep_trained};
-use crate::app::command::{Command, ComparisonCommand, TrainingCommand, wake};
+use crate::app::command::{ComparisonCommand, TrainingCommand, wake};
 use crate::app::found::Found;
 use crate::app::network::Network;
 use crate::app::response::comparison::write_comparison_folder;
@@ -112,7 +112,7 @@ impl State {
         }
     }
 
-    /// Starts or cancels a comparison or an evaluation, or opens or saves a comparison.
+    /// Starts or cancels a comparison or an evaluation, or opens a comparison.
     pub(in crate::app) fn compare(&mut self, command: ComparisonCommand, context: &Context) {
         let Session { response, tasks, .. } = &mut self.session;
         match command {
@@ -121,9 +121,6 @@ impl State {
             ComparisonCommand::Cancel => response.comparison.cancel(),
             ComparisonCommand::Open(path) => response.comparison.open(path, tasks),
             ComparisonCommand::Read(result) => response.comparison.take(result.map(Found::take)),
-            ComparisonCommand::Save(_) => {
-                self.write(Command::Compare(command), Existing::Refuse, context);
-            }
         }
     }
 

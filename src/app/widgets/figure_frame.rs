@@ -5,6 +5,7 @@ use egui::{Align, Layout, RichText, Ui};
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::looks::{Icon, icon, icon_button};
+use crate::app::output::Output;
 use impactlab_document::figure::Figure;
 use impactlab_draw::{FigureOptions, FigureResponse, figure_ui};
 
@@ -47,10 +48,10 @@ pub fn figure_frame(
 
 fn export_menu_ui(ui: &mut Ui, figure: &Figure, commands: &mut Vec<Command>) {
     if ui.add(icon_button(Icon::Image, "Save picture (PNG)…")).clicked() {
-        commands.push(Command::Ask(Purpose::Picture(Box::new(figure.clone()))));
+        commands.push(Command::Ask(Purpose::Save(Output::Picture(Box::new(figure.clone())))));
     }
     if ui.add(icon_button(Icon::Table2, "Save numbers (CSV)…")).clicked() {
-        commands.push(Command::Ask(Purpose::Numbers(Box::new(figure.clone()))));
+        commands.push(Command::Ask(Purpose::Save(Output::Numbers(Box::new(figure.clone())))));
     }
     if ui.add(icon_button(Icon::Copy, "Copy numbers")).clicked() {
         commands.push(Command::CopyNumbers(Box::new(figure.clone())));

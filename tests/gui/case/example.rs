@@ -37,8 +37,8 @@ fn the_example_case_is_what_the_window_saves_and_has_an_answer_to_every_question
     step_until(&mut harness, "the forecast", is_answered);
     example(&mut harness);
     if std::env::var_os("UPDATE_EXAMPLES").is_some() {
-        apply(&mut harness, Command::SaveCaseAs(shipped.clone()));
-        apply(&mut harness, Command::Replace(Box::new(Command::SaveCaseAs(shipped.clone()))));
+        apply(&mut harness, Command::Write(Output::Case, shipped.clone()));
+        apply(&mut harness, Command::Replace(Output::Case, shipped.clone()));
         step_until(&mut harness, "the example", |state| {
             !state.session.tasks.is_running(&TaskKey::SaveCase)
         });

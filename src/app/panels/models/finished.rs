@@ -9,6 +9,7 @@ use crate::app::archive::{
 use crate::app::command::{Command, ModelsCommand};
 use crate::app::dialog::Purpose;
 use crate::app::network::Network;
+use crate::app::output::Output;
 use crate::app::panels::models::parts::facts_ui;
 use crate::app::panes::PaneContext;
 use crate::app::project::Project;
@@ -139,7 +140,7 @@ fn buttons_ui(
                 commands.push(Command::UseModel(network, Some(path.clone())));
             }
             if ui.button("Save as…").clicked() {
-                commands.push(Command::Ask(Purpose::SaveArchived(network, path)));
+                commands.push(Command::Ask(Purpose::Save(Output::Archived(network, path))));
             }
         }
         None => {

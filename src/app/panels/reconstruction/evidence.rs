@@ -5,6 +5,7 @@ use egui::{DragValue, ProgressBar, ScrollArea, TextEdit, Ui};
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon, icon_button};
+use crate::app::output::Output;
 use crate::app::panels::reconstruction::cards::{SheetChoices, cards_ui};
 use crate::app::panels::reconstruction::notice_ui;
 use crate::app::panels::reconstruction::priors::{prior_ranges_ui, priors_ui};
@@ -111,7 +112,8 @@ fn case_ui(
         let hint = "A file for impactlab reconstruct, and for this window";
         let save = ui.add_enabled(evidence.missing().is_none(), egui::Button::new("Save as…"));
         if save.on_hover_text(hint).clicked() {
-            commands.push(Command::Ask(Purpose::Evidence(Box::new(evidence.clone()))));
+            commands
+                .push(Command::Ask(Purpose::Save(Output::Evidence(Box::new(evidence.clone())))));
         }
     });
     if let EvidenceChoice::File(path) = &request.evidence {

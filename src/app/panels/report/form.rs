@@ -7,6 +7,7 @@ use egui::{ComboBox, Grid, Label, ProgressBar, RichText, ScrollArea, TextEdit, U
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon, icon_button};
+use crate::app::output::Output;
 use crate::app::panes::PaneContext;
 use crate::app::report::{MadeReport, ReportCommand, ReportView};
 use crate::app::state::Session;
@@ -130,7 +131,7 @@ fn made_ui(ui: &mut Ui, made: &Arc<MadeReport>, is_outdated: bool, commands: &mu
     let save = ui.add_enabled(!is_outdated, icon_button(Icon::Save, "Save…"));
     let save = save.on_hover_text("As PDF, Markdown or JSON, by the ending of the name");
     if save.on_disabled_hover_text("It is not of the case as it is").clicked() {
-        commands.push(Command::Ask(Purpose::Report(Arc::clone(&made.document))));
+        commands.push(Command::Ask(Purpose::Save(Output::Report(Arc::clone(&made.document)))));
     }
     ui.add_space(looks::PART);
     ui.strong("Sections");
