@@ -4,17 +4,13 @@ use std::path::{Path, PathBuf};
 
 use egui::Context;
 
-use crate::app::case::Leaving;
 use crate::app::command::{Command, wake};
 use crate::app::dialog::{Dialog, PathDialog, Purpose, ask_for_path};
 use crate::app::export;
-use crate::app::film::FilmForm;
 use crate::app::found::Found;
 use crate::app::network::Network;
-use crate::app::output::Output;
 use crate::app::panes::Pane;
 use crate::app::state::{Session, State, Subject};
-use crate::app::tasks::TaskKey;
 use crate::app::widgets::OUTDATED;
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::{Existing, Severity};
@@ -41,18 +37,8 @@ impl State {
             Command::CloseDialog => self.close_dialog(),
             Command::ReplayDataset(path) => self.replay(path, context),
             Command::CancelReplay(path) => self.cancel_replay(&path),
-            Command::NewCase => self.leave(Leaving::New, context),
-            Command::SaveCase => match self.case.path.clone() {
-                None => self.ask(Purpose::Save(Output::Case)),
-                Some(path) if self.is_case_file_foreign() => {
-                    self.session.dialogs.open(Dialog::Replace(Output::Case, path));
-                }
-                Some(path) => self.save_case(path, Existing::Replace),
-            },
+            Command::Case(command) => self.change_case(command, context),
             Command::Variant(command) => self.change_variant(command),
-            Command::Leave { to, ask: true } => self.leave(to, context),
-            Command::Leave { to, ask: false } => self.go(to, context),
-            Command::SaveAndLeave => self.save_and_leave(context),
             Command::AskPath(purpose) => self.ask_path(purpose),
             Command::Write(output, path) => self.write(output, path, Existing::Refuse),
             Command::Replace(output, path) => self.write(output, path, Existing::Replace),
@@ -60,15 +46,7 @@ impl State {
                 Ok(text) => context.copy_text(text),
                 Err(error) => self.say(Severity::Error, error),
             },
-            Command::AskFilm(picture) => {
-                let form = FilmForm::new(*picture, self.view.dark);
-                self.session.dialogs.open(Dialog::Film(Box::new(form)));
-            }
-            Command::CancelFilm => {
-                if let Some(path) = self.session.tasks.film() {
-                    self.session.tasks.cancel(&TaskKey::Film(path.to_owned()));
-                }
-            }
+            Command::Film(command) => self.film(command),
             Command::ForceModel(event) => self.take_force_model(&event),
             Command::ResponseModel(event) => self.take_response_model(&event),
             Command::Archive(event) => self.take_archive_event(event.take(), context),
@@ -85,17 +63,8 @@ impl State {
             Command::Ground(command) => self.change_ground(command),
             Command::Reconstruct(command) => self.reconstruct(command, context),
             Command::Report(command) => self.report(command),
-            command => self.apply_result(command),
-        }
-    }
-
-    /// Carries out a command that says what has come of work on another thread.
-    fn apply_result(&mut self, command: Command) {
-        match command {
             Command::Opened(path, result) => self.take_opened(&path, result),
             Command::Written(result) => self.say_of_file(result),
-            Command::FilmEnded(path, result) => self.say_of_film(&path, result),
-            Command::CaseSaved(result) => self.take_saved_case(result),
             Command::ImportRead(path, result) => {
                 let dialog = self.session.dialogs.import_mut();
                 if let Some(dialog) = dialog.filter(|dialog| dialog.path() == path) {
@@ -105,13 +74,6 @@ impl State {
             Command::Measured(place, question, result) => {
                 self.session.costs.take(place, *question, result);
             }
-            command => self.apply_to_view(command),
-        }
-    }
-
-    /// Carries out a command that changes what is shown and nothing else. Undo and redo are the app's.
-    fn apply_to_view(&mut self, command: Command) {
-        match command {
             Command::ShowLicences => self.session.dialogs.open(Dialog::Licences),
             Command::Playback(command) => self.play(command),
             Command::FitPlots => self.session.fit_plots = true,
@@ -126,7 +88,7 @@ impl State {
             Command::Say(severity, text) => self.say(severity, text),
             Command::DismissMessage => drop(self.session.messages.pop()),
             Command::ShowMessages => self.session.dialogs.open(Dialog::Messages),
-            _ => {}
+            Command::Undo | Command::Redo => {}
         }
     }
 
@@ -139,7 +101,8 @@ impl State {
         self.session.dialogs.open(Dialog::Path(PathDialog::new(purpose)));
     }
 
-    fn ask(&mut self, purpose: Purpose) {
+    /// Asks for a path with a dialog of the desktop.
+    pub(super) fn ask(&mut self, purpose: Purpose) {
         ask_for_path(purpose, &mut self.session.tasks);
     }
 

@@ -9,9 +9,10 @@ use std::path::PathBuf;
 use egui::Context;
 
 use crate::app::archive::{ArchiveEntry, ArchiveEvent, ModelsDialog, Removal};
-use crate::app::case::{Leaving, SavedCase, VariantCommand};
+use crate::app::case::{CaseCommand, VariantCommand};
 use crate::app::cost::CostPlace;
 use crate::app::dialog::Purpose;
+use crate::app::film::FilmCommand;
 use crate::app::found::Found;
 use crate::app::ground::GroundCommand;
 use crate::app::import::ImportAnswer;
@@ -27,7 +28,6 @@ use crate::app::state::Subject;
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::{ColumnMap, Outcome, Severity};
 use impactlab_document::figure::Figure;
-use impactlab_draw::scene::ScenePicture;
 use impactlab_networks::force::ForceModel;
 use impactlab_networks::response::ResponseModel;
 use impactlab_networks::response::evaluate::Comparison;
@@ -64,27 +64,14 @@ pub enum Command {
     Playback(PlaybackCommand),
     /// Fit the axes of all plots to their data.
     FitPlots,
-    /// Ask how a film of a scene is to be made.
-    AskFilm(Box<ScenePicture>),
-    /// Cancel the film that is being made.
-    CancelFilm,
+    /// Make a film of a scene.
+    Film(FilmCommand),
     /// Copy the numbers of a figure to the clipboard, as CSV.
     CopyNumbers(Box<Figure>),
-    /// Begin a new case, after asking if something would be lost.
-    NewCase,
-    /// Write the case to its file; asks for one if it has none.
-    SaveCase,
+    /// Save the case, or leave it.
+    Case(CaseCommand),
     /// Show, copy, rename or remove a variant of the case.
     Variant(VariantCommand),
-    /// Quit, or begin or open another case.
-    Leave {
-        /// Where to.
-        to: Leaving,
-        /// Whether to ask first if something would be lost.
-        ask: bool,
-    },
-    /// Save the case and go where the user was asked about.
-    SaveAndLeave,
     /// Ask the user for a path within the window.
     AskPath(Purpose),
     /// Write something to a file or a folder, after asking if something would be replaced.
@@ -129,10 +116,6 @@ pub enum Command {
     Opened(PathBuf, Result<Outcome<Found<OpenedPath>>, String>),
     /// Say that a file or folder has been written, or why it could not be.
     Written(Result<PathBuf, String>),
-    /// Say how the film for a file has ended.
-    FilmEnded(PathBuf, Result<Outcome<()>, String>),
-    /// Take the case that was written, or say why it was not.
-    CaseSaved(Result<Found<SavedCase>, String>),
     /// Take what was read for the import dialog of a file.
     ImportRead(PathBuf, Result<Found<ImportAnswer>, String>),
     /// Take what a form with this question will cost.
@@ -205,7 +188,7 @@ impl Command {
         match self {
             Self::Ask(Purpose::Save(output)) | Self::Write(output, _) => output.is_outdated(),
             Self::CopyNumbers(figure) => figure.caveats.is_outdated(),
-            Self::AskFilm(picture) => picture.scene.caveats.is_outdated(),
+            Self::Film(FilmCommand::Ask(picture)) => picture.scene.caveats.is_outdated(),
             _ => false,
         }
     }

@@ -2,6 +2,7 @@
 
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
+use crate::app::case::{CaseCommand, Leaving};
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::output::Output;
@@ -62,9 +63,9 @@ pub fn commands(context: &Context, has_dialog: bool, commands: &mut Vec<Command>
         (UNDO, Command::Undo),
         (OPEN_FOLDER, Command::Ask(Purpose::Folder)),
         (OPEN, Command::Ask(Purpose::Files)),
-        (NEW, Command::NewCase),
+        (NEW, Command::Case(CaseCommand::Leave(Leaving::New))),
         (SAVE_AS, Command::Ask(Purpose::Save(Output::Case))),
-        (SAVE, Command::SaveCase),
+        (SAVE, Command::Case(CaseCommand::Save)),
     ];
     for (shortcut, command) in shortcuts {
         if context.input_mut(|input| input.consume_shortcut(&shortcut)) {

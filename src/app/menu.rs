@@ -4,8 +4,10 @@ use std::time::Duration;
 
 use egui::{Align, Button, Layout, MenuBar, Panel, ProgressBar, RichText, Ui};
 
+use crate::app::case::{CaseCommand, Leaving};
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::dialog::Purpose;
+use crate::app::film::FilmCommand;
 use crate::app::keyboard;
 use crate::app::looks::{self, Icon, icon, icon_button};
 use crate::app::network::Network;
@@ -96,10 +98,15 @@ fn edit_item(
 
 fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     for (of, label, shortcut, command) in [
-        (Icon::FilePlus, "New case", keyboard::NEW, Command::NewCase),
+        (
+            Icon::FilePlus,
+            "New case",
+            keyboard::NEW,
+            Command::Case(CaseCommand::Leave(Leaving::New)),
+        ),
         (Icon::File, "Open files…", keyboard::OPEN, Command::Ask(Purpose::Files)),
         (Icon::FolderOpen, "Open folder…", keyboard::OPEN_FOLDER, Command::Ask(Purpose::Folder)),
-        (Icon::Save, "Save case", keyboard::SAVE, Command::SaveCase),
+        (Icon::Save, "Save case", keyboard::SAVE, Command::Case(CaseCommand::Save)),
         (
             Icon::SaveAll,
             "Save case as…",
@@ -269,7 +276,7 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         {
             let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
             let what = format!("Making {name}");
-            progress_ui(ui, &what, progress, elapsed, Command::CancelFilm, commands);
+            progress_ui(ui, &what, progress, elapsed, Command::Film(FilmCommand::Cancel), commands);
         }
         if state.session.frame_times.is_shown {
             ui.weak(state.session.frame_times.text());

@@ -77,12 +77,13 @@ use impactlab_draw::scene::gpu::WindowDevice;
 use impactlab_draw::{DensityGpu, theme};
 
 pub use archive::{ArchiveEntry, ArchiveKind, ArchiveStatus, ModelsDialog, Removal};
-pub use case::{Leaving, OpenCase, VariantCommand};
+pub use case::{CaseCommand, Leaving, OpenCase, VariantCommand};
 pub use chain::Link;
 pub use command::{Command, ComparisonCommand, ModelsCommand, TrainingCommand};
 pub use contents::{ContentsEntry, Group};
 pub use cost::{CostPlace, Costs};
 pub use dialog::{Dialog, Dialogs, Purpose};
+pub use film::FilmCommand;
 pub use force::{ForceSession, NamedCollision, collision_of};
 pub use ground::{GroundCommand, GroundSession};
 pub use latest::Latest;

@@ -11,7 +11,9 @@ use std::time::Duration;
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Leaving, Output, State, Subject, TaskKey, VariantCommand};
+use impactlab::app::{
+    App, CaseCommand, Command, Leaving, Output, State, Subject, TaskKey, VariantCommand,
+};
 use impactlab_core::collision::{ChannelClass, Scenario};
 use impactlab_core::data::{Existing, Severity};
 use impactlab_core::uncertainty::CaveatKind;
@@ -160,7 +162,7 @@ fn questions_that_were_edited_in_the_file_are_those_of_the_window() {
     // What is edited in the window is in every question that has it.
     scenario(&mut harness).contact.restitution = 0.25;
     harness.step();
-    apply(&mut harness, Command::SaveCase);
+    apply(&mut harness, Command::Case(CaseCommand::Save));
     step_until(&mut harness, "the case on disk", |state| !state.is_case_changed());
     let text = serde_json::to_string(&questions_in(&two)).expect("JSON");
     assert_eq!(text.matches("\"restitution\":0.25").count(), 4, "{text}");
@@ -187,7 +189,7 @@ fn questions_for_which_there_is_no_form_stay_in_their_variant() {
     assert_eq!(questions_in(&two), made);
     harness.state_mut().state_mut().project.simulate.duration_s = 3.0;
     harness.step();
-    apply(&mut harness, Command::SaveCase);
+    apply(&mut harness, Command::Case(CaseCommand::Save));
     step_until(&mut harness, "the case on disk", |state| !state.is_case_changed());
     let questions = questions_in(&two);
     assert!(made[3..].iter().all(|question| questions.contains(question)), "{questions:?}");
@@ -324,7 +326,7 @@ fn a_file_that_somebody_else_has_changed_is_not_replaced_unasked() {
     save_as(&mut harness, &path);
     harness.state_mut().state_mut().project.simulate.duration_s = 2.0;
     fs::write(&path, "theirs").expect("written");
-    apply(&mut harness, Command::SaveCase);
+    apply(&mut harness, Command::Case(CaseCommand::Save));
     harness.run_steps(3);
     harness.get_by_label("Replace pit.impactlab?");
     harness.get_by_label("Keep it").click();
@@ -345,7 +347,7 @@ fn a_training_that_runs_is_asked_about_before_the_window_closes() {
         reasons.iter().any(|reason| reason.contains("simulation of a data set")),
         "{reasons:?}"
     );
-    apply(&mut harness, Command::Leave { to: Leaving::Quit, ask: true });
+    apply(&mut harness, Command::Case(CaseCommand::Leave(Leaving::Quit)));
     harness.run_steps(3);
     harness.get_by_label("Quit impactlab?");
     harness.get_by_label("Stay").click();

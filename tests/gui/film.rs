@@ -7,7 +7,7 @@ use std::sync::Arc;
 use egui::ColorImage;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Output, Pane};
+use impactlab::app::{App, Command, FilmCommand, Output, Pane};
 use impactlab_core::data::{Existing, Outcome};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
@@ -255,7 +255,7 @@ fn cancel_a_long_one(harness: &mut Harness<'_, App>, mut film: Film, path: &Path
     film.timing = FilmTiming { frames_per_s: 120, ..FilmTiming::from_scene(&film.picture.scene) };
     apply(harness, Command::Write(Output::Film(Box::new(film)), path.to_owned()));
     harness.run_steps(2);
-    apply(harness, Command::CancelFilm);
+    apply(harness, Command::Film(FilmCommand::Cancel));
     step_until(harness, "the end of the film", |state| state.session.tasks.film().is_none());
     assert!(last_message(harness).is_some_and(|text| text.ends_with("not written: cancelled")));
     assert!(!path.exists());

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{
-    App, Command, FollowedParticle, Output, PlaybackCommand, ReconstructionCommand, State,
-    Workspace,
+    App, CaseCommand, Command, FollowedParticle, Leaving, Output, PlaybackCommand,
+    ReconstructionCommand, State, Workspace,
 };
 use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::vehicle::built_in_vehicle;
@@ -271,7 +271,7 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
     let case = folder.path().join("spin.impactlab");
     apply(&mut harness, Command::Write(Output::Case, case.clone()));
     step_until(&mut harness, "the case file", |state| state.case.path.is_some());
-    apply(&mut harness, Command::NewCase);
+    apply(&mut harness, Command::Case(CaseCommand::Leave(Leaving::New)));
     harness.run_steps(2);
     assert!(state(&harness).evidence().is_none());
     apply(&mut harness, Command::Open(vec![case.clone()]));

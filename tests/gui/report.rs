@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, MadeReport, Output, ReportCommand, State, TaskKey, Workspace};
+use impactlab::app::{
+    App, CaseCommand, Command, Leaving, MadeReport, Output, ReportCommand, State, TaskKey,
+    Workspace,
+};
 use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{
     Language, ReportFormat, ReportSettings, SectionKind, report_case,
@@ -146,7 +149,7 @@ fn a_report_is_cancelled_and_none_is_made_of_nothing() {
     step_until(&mut harness, "the end", |state| !state.session.report.is_running);
     assert!(state(&harness).session.report.made.is_none());
 
-    apply(&mut harness, Command::NewCase);
+    apply(&mut harness, Command::Case(CaseCommand::Leave(Leaving::New)));
     apply(&mut harness, Command::ShowWorkspace(Workspace::Report));
     harness.state_mut().state_mut().project.simulate.source = MotionSource::default();
     harness.run_steps(3);

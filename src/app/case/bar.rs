@@ -2,7 +2,7 @@
 
 use egui::{Button, Panel, RichText, Ui};
 
-use crate::app::case::VariantCommand;
+use crate::app::case::{CaseCommand, VariantCommand};
 use crate::app::command::Command;
 use crate::app::keyboard;
 use crate::app::state::State;
@@ -28,7 +28,7 @@ pub fn case_bar_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) 
             let saved =
                 ui.add_enabled(can_save, save).on_hover_text(format!("Save the case ({shortcut})"));
             if saved.clicked() {
-                commands.push(Command::SaveCase);
+                commands.push(Command::Case(CaseCommand::Save));
             }
             ui.separator();
             ui.label("Variant");

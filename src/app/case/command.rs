@@ -2,7 +2,23 @@
 
 use std::path::PathBuf;
 
+use crate::app::found::Found;
 use impactlab_study::case_file::CaseFile;
+
+/// An action on the case as a whole.
+#[derive(Debug, Clone)]
+pub enum CaseCommand {
+    /// Write the case to its file; asks for one if it has none.
+    Save,
+    /// Save the case and go where the user was asked about.
+    SaveAndLeave,
+    /// Quit, or begin or open another case, after asking if something would be lost.
+    Leave(Leaving),
+    /// The same without asking.
+    LeaveUnasked(Leaving),
+    /// Take the case that was written, or say why it was not.
+    Saved(Result<Found<SavedCase>, String>),
+}
 
 /// An action on the variants of the case.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use egui::{Context, Ui, ViewportCommand};
 
-use crate::app::case::Leaving;
+use crate::app::case::{CaseCommand, Leaving};
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::state::{Session, State};
@@ -111,15 +111,12 @@ impl State {
     }
 
     /// Saves the case to its own file and goes on once that is done; asks for a file if it has none.
-    pub(in crate::app) fn save_and_leave(&mut self, context: &Context) {
-        let Some(path) = self.case.path.clone() else {
+    pub(in crate::app) fn save_and_leave(&mut self) {
+        let own = self.case.path.clone().filter(|_| !self.is_case_file_foreign());
+        let Some(path) = own else {
             self.stay();
-            return self.apply(Command::SaveCase, context);
+            return self.save_to_own_file();
         };
-        if self.is_case_file_foreign() {
-            self.stay();
-            return self.apply(Command::SaveCase, context);
-        }
         let open = self.session.dialogs.iter().find_map(|dialog| match dialog {
             Dialog::Leave { to, .. } => Some(to.clone()),
             _ => None,
@@ -158,10 +155,10 @@ pub fn leaving_ui(ui: &mut Ui, to: &Leaving, state: &State, commands: &mut Vec<C
     ui.separator();
     ui.horizontal(|ui| {
         if state.is_case_changed() && ui.button("Save the case").clicked() {
-            commands.push(Command::SaveAndLeave);
+            commands.push(Command::Case(CaseCommand::SaveAndLeave));
         }
         if ui.button(to.label()).clicked() {
-            commands.push(Command::Leave { to: to.clone(), ask: false });
+            commands.push(Command::Case(CaseCommand::LeaveUnasked(to.clone())));
         }
         if ui.button("Stay").clicked() {
             commands.push(Command::CloseDialog);

@@ -7,7 +7,7 @@ mod update;
 mod version_1;
 
 pub use bar::case_bar_ui;
-pub use command::{Leaving, SavedCase, VariantCommand};
+pub use command::{CaseCommand, Leaving, VariantCommand};
 pub use leaving::leaving_ui;
 
 use std::path::PathBuf;

@@ -2,9 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::case::{OpenCase, SavedCase, VariantCommand};
+use egui::Context;
+
+use crate::app::case::command::SavedCase;
+use crate::app::case::{CaseCommand, OpenCase, VariantCommand};
 use crate::app::command::Command;
+use crate::app::dialog::{Dialog, Purpose};
 use crate::app::found::Found;
+use crate::app::output::Output;
 use crate::app::panes::Pane;
 use crate::app::project::Project;
 use crate::app::source::Source;
@@ -25,6 +30,29 @@ const EXAMPLE: &str = include_str!("../../../assets/examples/pit.impactlab");
 const MAX_RECENT: usize = 10;
 
 impl State {
+    /// Carries out a command on the case as a whole.
+    pub(in crate::app) fn change_case(&mut self, command: CaseCommand, context: &Context) {
+        match command {
+            CaseCommand::Save => self.save_to_own_file(),
+            CaseCommand::SaveAndLeave => self.save_and_leave(),
+            CaseCommand::Leave(to) => self.leave(to, context),
+            CaseCommand::LeaveUnasked(to) => self.go(to, context),
+            CaseCommand::Saved(result) => self.take_saved_case(result),
+        }
+    }
+
+    /// Writes the case to its file. Asks for one if it has none, and before something of somebody else
+    /// is replaced.
+    pub(super) fn save_to_own_file(&mut self) {
+        match self.case.path.clone() {
+            None => self.ask(Purpose::Save(Output::Case)),
+            Some(path) if self.is_case_file_foreign() => {
+                self.session.dialogs.open(Dialog::Replace(Output::Case, path));
+            }
+            Some(path) => self.save_case(path, Existing::Replace),
+        }
+    }
+
     /// Whether the case has something that is not in its file.
     pub fn is_case_changed(&self) -> bool {
         self.case.is_changed(&self.project_of_questions())
@@ -290,7 +318,9 @@ impl State {
             let on_disk = sha256_hex(text.as_bytes());
             Ok(Found::new(SavedCase { file, path, on_disk, fingerprint }))
         };
-        self.session.tasks.start(TaskKey::SaveCase, write, Command::CaseSaved);
+        self.session
+            .tasks
+            .start(TaskKey::SaveCase, write, |saved| Command::Case(CaseCommand::Saved(saved)));
     }
 
     /// Starts to write one zip of the case and its files.

@@ -4,3 +4,4 @@ mod form;
 mod update;
 
 pub use form::FilmForm;
+pub use update::FilmCommand;

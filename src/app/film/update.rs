@@ -4,15 +4,45 @@ use std::path::{Path, PathBuf};
 
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
-use crate::app::state::State;
+use crate::app::film::FilmForm;
+use crate::app::state::{Session, State};
 use crate::app::tasks::TaskKey;
 use impactlab_core::data::{Existing, Outcome, Severity};
 use impactlab_core::error_chain;
 use impactlab_draw::film::{Film, write_film};
+use impactlab_draw::scene::ScenePicture;
+
+/// An action on the film of a scene.
+#[derive(Debug, Clone)]
+pub enum FilmCommand {
+    /// Ask how a film is to be made.
+    Ask(Box<ScenePicture>),
+    /// Cancel the film that is being made.
+    Cancel,
+    /// Say how the film for a file has ended.
+    Ended(PathBuf, Result<Outcome<()>, String>),
+}
 
 impl State {
+    /// Carries out a command on the film of a scene.
+    pub(in crate::app) fn film(&mut self, command: FilmCommand) {
+        let Session { dialogs, tasks, .. } = &mut self.session;
+        match command {
+            FilmCommand::Ask(picture) => {
+                let form = FilmForm::new(*picture, self.view.dark);
+                dialogs.open(Dialog::Film(Box::new(form)));
+            }
+            FilmCommand::Cancel => {
+                if let Some(path) = tasks.film() {
+                    tasks.cancel(&TaskKey::Film(path.to_owned()));
+                }
+            }
+            FilmCommand::Ended(path, result) => self.say_of_film(&path, result),
+        }
+    }
+
     /// Tells the user how a film has ended.
-    pub(in crate::app) fn say_of_film(&mut self, path: &Path, result: Result<Outcome<()>, String>) {
+    fn say_of_film(&mut self, path: &Path, result: Result<Outcome<()>, String>) {
         match result {
             Ok(Outcome::Complete(())) => self.say_of_file(Ok(path.to_owned())),
             Ok(Outcome::Cancelled) => {
@@ -36,7 +66,7 @@ impl State {
             move |report| {
                 write_film(&film, &target, existing, report).map_err(|error| error_chain(&error))
             },
-            |result| Command::FilmEnded(path, result),
+            |result| Command::Film(FilmCommand::Ended(path, result)),
         );
     }
 }

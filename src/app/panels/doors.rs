@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui::{Align, Button, Frame, Layout, RichText, Ui, vec2};
 
-use crate::app::case::Leaving;
+use crate::app::case::{CaseCommand, Leaving};
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon};
@@ -34,7 +34,7 @@ const DOORS: [Door; 3] = [
         text: "Two cars, a PIT at 54 km/h, ready to play. Change speeds, angle, cars and brakes, and \
                see where the struck car goes and how sure that is.",
         button: "Set up a collision",
-        commands: || vec![Command::Leave { to: Leaving::Pit, ask: true }],
+        commands: || vec![Command::Case(CaseCommand::Leave(Leaving::Pit))],
     },
     Door {
         icon: Icon::History,
@@ -42,7 +42,7 @@ const DOORS: [Door; 3] = [
         text: "A finished example case with three variants side by side: the car coasts, its driver \
                brakes, a lighter car.",
         button: "Look at the example",
-        commands: || vec![Command::Leave { to: Leaving::Example, ask: true }],
+        commands: || vec![Command::Case(CaseCommand::Leave(Leaving::Example))],
     },
     Door {
         icon: Icon::FolderOpen,

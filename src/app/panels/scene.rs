@@ -8,6 +8,7 @@ use egui::{Align, Layout, RichText, Slider, Ui};
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::export::{SceneExport, SceneFormat};
+use crate::app::film::FilmCommand;
 use crate::app::ground::GroundSession;
 use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::measure::Measuring;
@@ -218,7 +219,7 @@ fn export_menu_ui(
         commands.push(Command::Ask(Purpose::Save(Output::ScenePicture(Box::new(exported().0)))));
     }
     if ui.add(icon_button(Icon::Film, "Save film (MP4)…")).clicked() {
-        commands.push(Command::AskFilm(Box::new(exported().0)));
+        commands.push(Command::Film(FilmCommand::Ask(Box::new(exported().0))));
     }
     for (format, icon, label) in [
         (SceneFormat::Dxf, Icon::PencilRuler, "Save drawing (DXF)…"),
