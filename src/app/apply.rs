@@ -8,7 +8,6 @@ use crate::app::command::{Command, wake};
 use crate::app::dialog::{Dialog, PathDialog, Purpose, ask_for_path};
 use crate::app::export;
 use crate::app::found::Found;
-use crate::app::network::Network;
 use crate::app::panes::Pane;
 use crate::app::state::{Session, State, Subject};
 use crate::app::widgets::OUTDATED;
@@ -54,8 +53,7 @@ impl State {
             Command::PredictScenario => self.predict_scenario(),
             Command::UseModel(network, path) => self.use_model(network, path),
             Command::UseTrained(network) => self.use_trained(network),
-            Command::Train(Network::Force, command) => self.train_force(command, context),
-            Command::Train(Network::Response, command) => self.train_response(command, context),
+            Command::Train(network, command) => self.train(network, command, context),
             Command::Compare(command) => self.compare(command, context),
             Command::Models(command) => self.change_models(command, context),
             Command::Evaluate => self.evaluate(context),

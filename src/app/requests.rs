@@ -159,19 +159,22 @@ impl State {
         self.project.keep_in_step();
     }
 
-    /// Returns the question that trains the force network and the name of its data; `None` if no force
-    /// data set is open.
-    pub(in crate::app) fn train_force_request(&self) -> Option<(TrainForceRequest, String)> {
+    /// Returns the question that trains the force network and the name of its data.
+    ///
+    /// # Errors
+    /// What is missing, as a message for the user.
+    pub(in crate::app) fn train_force_request(&self) -> Result<(Request, String), &'static str> {
         let NetworkQuestions { train_force, use_others, .. } = &self.project.networks;
         let datasets = open_datasets(&self.session.sources, &[DatasetKind::Force]);
-        let chosen = chosen_dataset(&datasets, &train_force.data)?;
+        let chosen = chosen_dataset(&datasets, &train_force.data);
+        let chosen = chosen.ok_or("open a force data set to train on first")?;
         let is_extra = |of: &&OpenDataset<'_>| *use_others && of.path != chosen.path;
         let extra: Vec<_> = datasets.iter().filter(is_extra).collect();
         let names = std::iter::once(&chosen).chain(extra.iter().copied()).map(OpenDataset::name);
         let name = names.collect::<Vec<_>>().join(" + ");
         let extra = extra.iter().map(|of| of.path.to_owned()).collect();
         let data = chosen.path.to_owned();
-        Some((TrainForceRequest { data, extra, ..train_force.clone() }, name))
+        Ok((TrainForceRequest { data, extra, ..train_force.clone() }.into(), name))
     }
 
     /// Returns the question that trains the response network and the name of its data.
@@ -180,34 +183,33 @@ impl State {
     /// What is missing, as a message for the user.
     pub(in crate::app) fn train_response_request(&self) -> Result<(Request, String), &'static str> {
         let NetworkQuestions { mode, fine_tune, .. } = &self.project.networks;
-        let logs = self.log_to_learn_from();
-        let (data, name) = match logs.as_ref().and_then(|logs| logs.logs.first()) {
-            Some(log) => (None, file_name(log)),
-            None => {
-                let wanted = fine_tune.data.first().map_or(Path::new(""), PathBuf::as_path);
-                let chosen = self.chosen_data(wanted, mode.data_kinds());
-                let (data, name) = chosen.ok_or("open a data set to train on first")?;
-                (Some(data), name)
-            }
-        };
         let vehicle = self.project.simulate.vehicle.clone();
-        if let (TrainingMode::Pretrain, Some(data)) = (mode, &data) {
-            let (data, training) = (data.clone(), fine_tune.training.clone());
+        let chosen = || {
+            let wanted = fine_tune.data.first().map_or(Path::new(""), PathBuf::as_path);
+            let chosen = self.chosen_data(wanted, mode.data_kinds());
+            chosen.ok_or("open a data set to train on first")
+        };
+        if *mode == TrainingMode::Pretrain {
+            let ((data, name), training) = (chosen()?, fine_tune.training.clone());
             let request = TrainResponseRequest { data, vehicle, plain: false, training };
             return Ok((request.into(), name));
         }
-        let learning = match mode {
-            TrainingMode::Condition => Learning::Strengths,
-            _ => Learning::Network,
+        let logs = self.log_to_learn_from();
+        let (data, name) = match logs.as_ref().and_then(|logs| logs.logs.first()) {
+            Some(log) => (Vec::new(), file_name(log)),
+            None => chosen().map(|(data, name)| (vec![data], name))?,
         };
-        let data = data.into_iter().collect();
-        let model = match mode {
-            TrainingMode::FineTuneShipped => Some(ModelSource::ShippedPretrained.into()),
-            TrainingMode::FineTuneCurrent | TrainingMode::Condition => {
-                let current = choice(self.session.response.model.current.as_ref());
-                Some(current.ok_or("there is no current response model")?)
+        let current = || {
+            let current = choice(self.session.response.model.current.as_ref());
+            current.ok_or("there is no current response model").map(Some)
+        };
+        let (learning, model) = match mode {
+            TrainingMode::FineTuneShipped => {
+                (Learning::Network, Some(ModelSource::ShippedPretrained.into()))
             }
-            TrainingMode::FromScratch | TrainingMode::Pretrain => None,
+            TrainingMode::FineTuneCurrent => (Learning::Network, current()?),
+            TrainingMode::Condition => (Learning::Strengths, current()?),
+            TrainingMode::FromScratch | TrainingMode::Pretrain => (Learning::Network, None),
         };
         let request = FineTuneRequest { learning, model, data, logs, vehicle, ..fine_tune.clone() };
         Ok((request.into(), name))
@@ -215,7 +217,7 @@ impl State {
 
     /// The log that the response network is to learn from instead of a data set; `None` if none is
     /// chosen, or if its file is not open any more.
-    pub(in crate::app) fn log_to_learn_from(&self) -> Option<MotionLogs> {
+    fn log_to_learn_from(&self) -> Option<MotionLogs> {
         let NetworkQuestions { mode, log, log_force, .. } = &self.project.networks;
         let log =
             log.as_ref().filter(|_| mode.takes_log()).and_then(|path| self.open_source(path))?;

@@ -63,7 +63,7 @@ impl State {
     /// Returns the question that a form asks; `None` if something is missing.
     fn question_of(&self, place: CostPlace) -> Option<Request> {
         match place {
-            CostPlace::ForceTraining => Some(self.train_force_request()?.0.into()),
+            CostPlace::ForceTraining => Some(self.train_force_request().ok()?.0),
             CostPlace::ResponseTraining => Some(self.train_response_request().ok()?.0),
             CostPlace::ForceEvaluation => self.evaluate_force_request().map(Request::from),
             CostPlace::Comparison => self.compare_request().ok().map(Request::from),

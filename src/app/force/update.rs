@@ -6,10 +6,9 @@ use std::sync::Arc;
 use egui::Context;
 
 use crate::app::archive::{ArchiveEntry, keep_trained};
-use crate::app::command::{TrainingCommand, wake};
+use crate::app::command::wake;
 use crate::app::force::ForceSession;
 use crate::app::force::recorded::RecordedCase;
-use crate::app::network::Network;
 use crate::app::source::Source;
 use crate::app::state::{Session, State, Subject};
 use impactlab_core::data::{DatasetKind, Severity};
@@ -112,26 +111,6 @@ impl State {
                 self.project.predict_force.collision = ForceQuestion::Scenario(scenario);
                 self.session.fit_plots = true;
             }
-        }
-    }
-
-    /// Starts, pauses or cancels the training of the force network.
-    pub(in crate::app) fn train_force(&mut self, command: TrainingCommand, context: &Context) {
-        let training = &self.session.force.training;
-        match command {
-            TrainingCommand::Start => self.start_force_training(context),
-            TrainingCommand::Pause(pause) => training.run.set_paused(pause),
-            TrainingCommand::Cancel => training.run.cancel(),
-        }
-    }
-
-    /// Starts a training on the chosen data set.
-    fn start_force_training(&mut self, context: &Context) {
-        match self.train_force_request() {
-            Some((question, data)) => {
-                self.start_training(question.into(), Network::Force, data, context);
-            }
-            None => self.say(Severity::Warning, "open a force data set to train on first"),
         }
     }
 

@@ -6,9 +6,8 @@ use std::sync::Arc;
 use egui::Context;
 
 use crate::app::archive::{ArchiveEntry, keep_trained};
-use crate::app::command::{ComparisonCommand, TrainingCommand, wake};
+use crate::app::command::{ComparisonCommand, wake};
 use crate::app::found::Found;
-use crate::app::network::Network;
 use crate::app::response::comparison::write_comparison_folder;
 use crate::app::response::{
     DensityChoice, DensityQuestion, MotionAnswer, MotionQuestion, ResponseSession,
@@ -90,26 +89,6 @@ impl State {
         };
         let question = DensityQuestion { motion, window_s, gpu: response.gpu.clone() };
         response.density.ask(question, library, wake(context));
-    }
-
-    /// Starts, pauses or cancels the training of the response network.
-    pub(in crate::app) fn train_response(&mut self, command: TrainingCommand, context: &Context) {
-        let training = &self.session.response.training;
-        match command {
-            TrainingCommand::Start => self.start_response_training(context),
-            TrainingCommand::Pause(pause) => training.run.set_paused(pause),
-            TrainingCommand::Cancel => training.run.cancel(),
-        }
-    }
-
-    /// Starts a training on the chosen data set.
-    fn start_response_training(&mut self, context: &Context) {
-        match self.train_response_request() {
-            Ok((question, data)) => {
-                self.start_training(question, Network::Response, data, context);
-            }
-            Err(problem) => self.say(Severity::Warning, problem),
-        }
     }
 
     /// Starts or cancels a comparison or an evaluation, or opens a comparison.

@@ -1,10 +1,10 @@
-//! Starts trainings and goes on with those that have not ended.
+//! Starts, pauses and cancels trainings, and goes on with those that have not ended.
 
 use std::path::{Path, PathBuf};
 
 use egui::Context;
 
-use crate::app::command::wake;
+use crate::app::command::{TrainingCommand, wake};
 use crate::app::network::Network;
 use crate::app::state::{Session, State};
 use crate::app::unfinished::diary::TrainingDiary;
@@ -13,10 +13,34 @@ use impactlab_core::data::Severity;
 use impactlab_study::Request;
 
 impl State {
+    /// Starts, pauses or cancels the training of a network.
+    pub(in crate::app) fn train(
+        &mut self,
+        network: Network,
+        command: TrainingCommand,
+        context: &Context,
+    ) {
+        let (force, response) = (&self.session.force.training, &self.session.response.training);
+        let question = match (command, network) {
+            (TrainingCommand::Start, Network::Force) => self.train_force_request(),
+            (TrainingCommand::Start, Network::Response) => self.train_response_request(),
+            (TrainingCommand::Pause(pause), Network::Force) => return force.run.set_paused(pause),
+            (TrainingCommand::Pause(pause), Network::Response) => {
+                return response.run.set_paused(pause);
+            }
+            (TrainingCommand::Cancel, Network::Force) => return force.run.cancel(),
+            (TrainingCommand::Cancel, Network::Response) => return response.run.cancel(),
+        };
+        match question {
+            Ok((question, data)) => self.start_training(question, network, data, context),
+            Err(problem) => self.say(Severity::Warning, problem),
+        }
+    }
+
     /// Starts a training.
     ///
     /// - `data`: name of the data, shown to the user.
-    pub(in crate::app) fn start_training(
+    fn start_training(
         &mut self,
         mut question: Request,
         network: Network,
