@@ -6,6 +6,7 @@
 
 use crate::numerics::{normal_cdf, normal_density, normal_quantile};
 use crate::uncertainty::MixtureError;
+use crate::units::Estimate;
 
 /// Largest number of steps of the search for a quantile. Bisection alone would need 60 for the last
 /// bit.
@@ -125,6 +126,12 @@ impl NormalMixture {
     /// 1.
     pub fn interval(&self, level: f64) -> [f64; 2] {
         [self.quantile((1.0 - level) / 2.0), self.quantile((1.0 + level) / 2.0)]
+    }
+
+    /// Median, 50 % and 90 %, in the unit of the quantity.
+    pub fn estimate(&self) -> Estimate {
+        let [half, ninety] = [0.5, 0.9].map(|level| self.interval(level));
+        Estimate::new(self.quantile(0.5), half, ninety)
     }
 
     /// Continuous ranked probability score for an observed value, in the unit of the quantity;

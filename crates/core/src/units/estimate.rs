@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::numerics::quantile_of_sorted;
+
 /// A central interval of a quantity: it leaves out as much below as above.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Interval {
@@ -59,6 +61,13 @@ impl Estimate {
         Self { median, intervals: vec![interval(0.5, half), interval(0.9, ninety)] }
     }
 
+    /// Median, 50 % and 90 % of draws; NaN without any.
+    pub fn from_draws(mut draws: Vec<f64>) -> Self {
+        draws.sort_by(f64::total_cmp);
+        let at = |probability| quantile_of_sorted(&draws, probability).unwrap_or(f64::NAN);
+        Self::new(at(0.5), [at(0.25), at(0.75)], [at(0.05), at(0.95)])
+    }
+
     /// Median and intervals of a distribution; `None` if it has no quantiles.
     ///
     /// - `levels`: probabilities of the intervals, ascending;
@@ -99,8 +108,11 @@ impl Estimate {
     /// Applies an increasing function to the median and the ends.
     #[must_use]
     pub fn mapped(&self, map: impl Fn(f64) -> f64) -> Self {
-        let mapped =
-            |of: &Interval| Interval { level: of.level, low: map(of.low), high: map(of.high) };
+        let mapped = |Interval { level, low, high }: &Interval| Interval {
+            level: *level,
+            low: map(*low),
+            high: map(*high),
+        };
         Self { median: map(self.median), intervals: self.intervals.iter().map(mapped).collect() }
     }
 }

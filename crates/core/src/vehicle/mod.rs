@@ -4,6 +4,7 @@
 mod constants;
 mod controlled;
 mod controls;
+mod draws;
 mod energy;
 pub mod frames;
 mod loads;
@@ -39,6 +40,7 @@ pub use batch::{SimulationRun, simulate_batch};
 pub use constants::VehicleConstants;
 pub use controlled::ControlledVehicle;
 pub use controls::{Controls, SteerHistory, WheelHistory};
+pub use draws::{Sensitivity, VehicleDraws};
 pub use ending::{
     Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
     HeldSteer,

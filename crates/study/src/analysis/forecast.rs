@@ -69,19 +69,6 @@ pub struct ForceForecast {
     pub modes: Vec<Mode>,
 }
 
-/// Median, 50 % and 90 % of a normal mixture.
-pub(crate) fn spread_of(distribution: &NormalMixture) -> Estimate {
-    let [half, ninety] = [0.5, 0.9].map(|level| distribution.interval(level));
-    Estimate::new(distribution.quantile(0.5), half, ninety)
-}
-
-/// Median, 50 % and 90 % of draws; NaN without any.
-pub(crate) fn spread_of_draws(mut draws: Vec<f64>) -> Estimate {
-    draws.sort_by(f64::total_cmp);
-    let at = |probability| quantile_of_sorted(&draws, probability).unwrap_or(f64::NAN);
-    Estimate::new(at(0.5), [at(0.25), at(0.75)], [at(0.05), at(0.95)])
-}
-
 /// Median and the intervals at [`BAND_LEVELS`] of a normal mixture.
 fn bands_of(distribution: &NormalMixture) -> Estimate {
     estimate(|probability| distribution.quantile(probability))

@@ -15,7 +15,6 @@ mod rest_outcome;
 mod scenario;
 mod second_contacts;
 mod striking;
-mod vehicle_draws;
 
 use impactlab_core::collision::{Footprint, PulseError, ScenarioError, SecondContact};
 use impactlab_core::compare::{MotionError, ReplayError};
@@ -27,8 +26,8 @@ use impactlab_core::vehicle::{
 
 pub use case::analyse_case;
 pub use file::{DriveSetup, analyse_drive, analyse_recording};
+pub(crate) use forecast::bands_of_draws;
 pub use forecast::{ForceForecast, ForecastSettings, Mode, pulse_curves};
-pub(crate) use forecast::{bands_of_draws, spread_of, spread_of_draws};
 pub use motion_bands::{MOTION_BAND_LEVELS, MotionBands};
 pub use motion_density::{DensityMap, DensityTask, Region};
 pub use motion_forecast::{
@@ -38,7 +37,8 @@ pub use motion_forecast::{
 pub use rest_outcome::{MotionEnd, RestOutcome};
 pub use scenario::{PulseSetup, analyse_scenario};
 pub use second_contacts::SecondContacts;
-pub use vehicle_draws::{Sensitivity, VehicleDraws};
+
+pub(crate) use impactlab_core::vehicle::Sensitivity;
 
 /// Vehicles and settings of the simulation of a case.
 #[derive(Debug, Clone, PartialEq)]

@@ -12,10 +12,10 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::analysis::RestOutcome;
 use crate::analysis::motion_to_rest::{Settled, ToRest};
 use crate::analysis::rest::{Pace, rest_instant};
 use crate::analysis::rest_outcome::region_m2;
-use crate::analysis::{RestOutcome, Sensitivity, VehicleDraws, spread_of, spread_of_draws};
 use impactlab_core::collision::Pose;
 use impactlab_core::data::{
     ContactOutside, ForceAxes, ForceHistory, check_contact_within, contact_interval,
@@ -25,8 +25,8 @@ use impactlab_core::ranges::{DRAWS, FORECAST_DURATION, OutOfRange, REST_LIMIT};
 use impactlab_core::uncertainty::{ForceCurve, PlanarMixture};
 use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::{
-    ContactLoad, ContactPoint, ControlledVehicle, Controls, FrictionZone, Manoeuvre, VehicleInput,
-    VehicleParameters, VehicleState,
+    ContactLoad, ContactPoint, ControlledVehicle, Controls, FrictionZone, Manoeuvre, Sensitivity,
+    VehicleDraws, VehicleInput, VehicleParameters, VehicleState,
 };
 use impactlab_networks::force::{ForceError, ForceModel, ForcePrediction, ForceScenario};
 use impactlab_networks::learning::LearningError;
@@ -432,14 +432,14 @@ fn outcome(
     let (pace, start) = (pace.get(at)?, central.first()?);
     let position: PlanarMixture = distribution.position(at);
     let draws = position.sample(N_END_DRAWS, seed);
-    let of = |axis: usize| spread_of_draws(draws.iter().map(|point| point[axis]).collect());
+    let of = |axis: usize| Estimate::from_draws(draws.iter().map(|point| point[axis]).collect());
     let heading = distribution.heading(at)?;
     Some(MotionOutcome {
         time_s: at as f64 * STEP_S,
         is_at_rest: rest.is_some(),
         x_m: of(0),
         y_m: of(1),
-        heading_change_rad: spread_of(&heading).mapped(|yaw_rad| yaw_rad - start.yaw_rad),
+        heading_change_rad: heading.estimate().mapped(|yaw_rad| yaw_rad - start.yaw_rad),
         speed_m_s: pace.speed_m_s,
         yaw_rate_rad_s: pace.yaw_rate_rad_s,
         region_90_m2: region_m2(&position, 0.9),

@@ -10,8 +10,9 @@ use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
 use crate::analysis::rest_outcome::groups;
-use crate::analysis::{MotionEnd, MotionOutcome, RestOutcome, StruckVehicle, spread_of_draws};
+use crate::analysis::{MotionEnd, MotionOutcome, RestOutcome, StruckVehicle};
 use impactlab_core::data::ForceHistory;
+use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::VehicleState;
 use impactlab_networks::response::{
     Applicability, ComponentMotion, MotionDistribution, Predictor, RestSearch, STEP_S,
@@ -194,7 +195,7 @@ fn outcome(
         y_m: rest.y_m.clone(),
         p_quarter_turn: share_of(FRAC_PI_2),
         p_half_turn: share_of(PI),
-        heading_change_rad: spread_of_draws(turned),
+        heading_change_rad: Estimate::from_draws(turned),
         speed_m_s: mean(|end| end.speed_m_s),
         yaw_rate_rad_s: mean(|end| end.yaw_rate_rad_s.abs()),
         region_90_m2: rest.region_90_m2,

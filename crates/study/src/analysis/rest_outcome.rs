@@ -3,7 +3,6 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::analysis::spread_of_draws;
 use impactlab_core::uncertainty::{PlanarMixture, PlanarPart};
 use impactlab_core::units::Estimate;
 
@@ -74,7 +73,8 @@ impl RestOutcome {
         if ends.is_empty() {
             return None;
         }
-        let of = |value: fn(&MotionEnd) -> f64| spread_of_draws(ends.iter().map(value).collect());
+        let of =
+            |value: fn(&MotionEnd) -> f64| Estimate::from_draws(ends.iter().map(value).collect());
         let moving: Vec<f64> =
             ends.iter().filter(|end| !end.is_at_rest).map(|end| end.speed_m_s).collect();
         let position = position_of(ends);
@@ -89,7 +89,7 @@ impl RestOutcome {
             yaw_rad: of(|end| end.yaw_rad),
             region_50_m2: region_m2(&position, 0.5),
             region_90_m2: region_m2(&position, 0.9),
-            moving_speed_m_s: (!moving.is_empty()).then(|| spread_of_draws(moving).median),
+            moving_speed_m_s: (!moving.is_empty()).then(|| Estimate::from_draws(moving).median),
         })
     }
 }

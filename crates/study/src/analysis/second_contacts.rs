@@ -9,7 +9,7 @@
 
 use rayon::prelude::*;
 
-use crate::analysis::{MotionForecast, StruckVehicle, VehicleTrack, spread_of_draws};
+use crate::analysis::{MotionForecast, StruckVehicle, VehicleTrack};
 use impactlab_core::collision::{Footprint, Pose, SecondContact};
 use impactlab_core::data::{Channel, ForceAxes, ForceHistory, TimeSeries, contact_interval};
 use impactlab_core::units::Estimate;
@@ -61,8 +61,9 @@ impl SecondContacts {
         if met.is_empty() {
             return None;
         }
-        let of =
-            |value: fn(&SecondContact) -> f64| spread_of_draws(met.iter().map(value).collect());
+        let of = |value: fn(&SecondContact) -> f64| {
+            Estimate::from_draws(met.iter().map(value).collect())
+        };
         Some(Self {
             n_draws: followed.len(),
             probability: met.len() as f64 / followed.len() as f64,

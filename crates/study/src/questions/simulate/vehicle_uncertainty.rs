@@ -5,12 +5,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use impactlab_core::units::Estimate;
+use impactlab_core::vehicle::{Sensitivity, VehicleDraws};
 
 use crate::EndState;
-use crate::analysis::{
-    Analysis, AnalysisError, MotionEnd, RestOutcome, Sensitivity, Settings, VehicleDraws,
-    spread_of_draws,
-};
+use crate::analysis::{Analysis, AnalysisError, MotionEnd, RestOutcome, Settings};
 use crate::questions::simulate::report::motion_end;
 
 /// Where and how the motion ends over vehicles that are drawn from the estimates of a data sheet, SI
@@ -79,7 +77,7 @@ pub(crate) fn vehicle_uncertainty(
         RestOutcome::from_ends(&ends, settings.duration_s)
     };
     let of = |value: fn(&EndState) -> f64| {
-        spread_of_draws(ends.iter().flatten().map(value).collect::<Vec<f64>>())
+        Estimate::from_draws(ends.iter().flatten().map(value).collect::<Vec<f64>>())
     };
     let places: Vec<_> =
         ends.iter().map(|end| end.map(|end| [end.x_m, end.y_m, end.yaw_rad])).collect();

@@ -6,9 +6,8 @@ use rand_distr::StandardNormal;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use impactlab_core::numerics::random_stream;
-use impactlab_core::vehicle::sheet::SheetQuantity;
-use impactlab_core::vehicle::{DataSheet, VehicleParameters};
+use crate::numerics::random_stream;
+use crate::vehicle::{DataSheet, SheetQuantity, VehicleParameters};
 
 /// The estimates of a vehicle, drawn several times.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,7 +86,7 @@ impl VehicleDraws {
             true => (share - (1.0 - share) / (n - 2.0)).clamp(0.0, 1.0),
             false => 0.0,
         };
-        let of = |(idx, &quantity): (usize, &SheetQuantity)| {
+        let sensitivity = |(idx, &quantity): (usize, &SheetQuantity)| {
             let factor: Vec<f64> = drawn.iter().map(|(z, _)| z[idx]).collect();
             let [x, y, heading] = [0, 1, 2].map(|component| {
                 let values: Vec<f64> = drawn.iter().map(|(_, end)| end[component]).collect();
@@ -107,7 +106,8 @@ impl VehicleDraws {
                 chance_share: (CHI_SQUARED_95 / n.max(1.0)).min(1.0),
             }
         };
-        let mut shares: Vec<Sensitivity> = self.quantities.iter().enumerate().map(of).collect();
+        let mut shares: Vec<Sensitivity> =
+            self.quantities.iter().enumerate().map(sensitivity).collect();
         let size = |share: &Sensitivity| (share.position_share, share.heading_share);
         shares.sort_by(|a, b| size(b).partial_cmp(&size(a)).unwrap_or(std::cmp::Ordering::Equal));
         shares
@@ -126,14 +126,14 @@ impl Moments {
         let n = factor.len().max(1) as f64;
         let mean = |values: &[f64]| values.iter().sum::<f64>() / n;
         let (mean_factor, mean_value) = (mean(factor), mean(values));
-        let sum = |of: &dyn Fn(f64, f64) -> f64| {
+        let mean_of = |product: &dyn Fn(f64, f64) -> f64| {
             let pairs = factor.iter().zip(values);
-            pairs.map(|(z, v)| of(z - mean_factor, v - mean_value)).sum::<f64>() / n
+            pairs.map(|(z, v)| product(z - mean_factor, v - mean_value)).sum::<f64>() / n
         };
         Self {
-            variance: sum(&|_, v| v * v),
-            covariance: sum(&|z, v| z * v),
-            variance_of_factor: sum(&|z, _| z * z),
+            variance: mean_of(&|_, v| v * v),
+            covariance: mean_of(&|z, v| z * v),
+            variance_of_factor: mean_of(&|z, _| z * z),
         }
     }
 
@@ -149,7 +149,7 @@ impl Moments {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impactlab_core::vehicle::sheet::VehicleClass;
+    use crate::vehicle::VehicleClass;
 
     #[test]
     fn the_shares_are_those_of_a_known_dependence() {
