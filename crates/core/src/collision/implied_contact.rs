@@ -35,7 +35,7 @@ impl Impact<f64> {
         let contacts: Vec<ImpliedContact> = impulses_world_n_s.iter().filter_map(implied).collect();
         let (v, k) = (self.relative_velocity_m_s(), self.inverse_mass_1_kg());
         let gains = |impulse: &&[f64; 2]| contact_work_j(v, k, **impulse) < 0.0;
-        let rigid = contacts.iter().filter(|of| (0.0..=1.0).contains(&of.restitution));
+        let rigid = contacts.iter().filter(|contact| (0.0..=1.0).contains(&contact.restitution));
         let share = |n: usize| n as f64 / impulses_world_n_s.len() as f64;
         ImpliedContacts {
             p_rigid: share(rigid.count()),

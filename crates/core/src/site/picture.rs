@@ -40,7 +40,7 @@ pub fn is_picture(head: &[u8]) -> bool {
 
 fn format_of(path: &Path) -> Option<ImageFormat> {
     let ending = path.extension()?.to_str()?;
-    ENDINGS.iter().find(|(of, _)| of.eq_ignore_ascii_case(ending)).map(|(_, format)| *format)
+    ENDINGS.iter().find(|(known, _)| known.eq_ignore_ascii_case(ending)).map(|(_, format)| *format)
 }
 
 /// Width and height of a picture by its header, pixels, without decoding it.
@@ -77,7 +77,7 @@ fn decoder(path: &Path) -> Result<impl ImageDecoder, SiteError> {
     let mut head = [0; 8];
     let n = file.read(&mut head).map_err(|source| DataError::io(path, source))?;
     let format = image::guess_format(&head[..n]).map_err(wrong)?;
-    let is_read = ENDINGS.iter().any(|(_, of)| *of == format);
+    let is_read = ENDINGS.iter().any(|(_, known)| *known == format);
     if !is_read {
         let hint = image::error::ImageFormatHint::Exact(format);
         return Err(wrong(image::ImageError::Unsupported(hint.into())));

@@ -234,10 +234,13 @@ impl From<CaveatsJson> for Caveats {
             range,
             ..Caveat::new(kind, text)
         });
-        let assumptions = json.assumptions.into_iter().map(|of| match of.quantity {
-            AssumedJson::NotUsed => Caveat::not_used(of.value, of.reason),
-            AssumedJson::Assumed(subject) => Caveat::assumed(subject, of.value, of.reason),
-        });
+        let assumptions =
+            json.assumptions.into_iter().map(|assumption| match assumption.quantity {
+                AssumedJson::NotUsed => Caveat::not_used(assumption.value, assumption.reason),
+                AssumedJson::Assumed(subject) => {
+                    Caveat::assumed(subject, assumption.value, assumption.reason)
+                }
+            });
         let notes = json.notes.into_iter().map(|text| Caveat::new(CaveatKind::Note, text));
         badges.chain(assumptions).chain(notes).collect()
     }

@@ -25,12 +25,12 @@ impl CurveMixture {
     pub fn log_density(&self, curve: &ForceCurve) -> Result<f64, MixtureError> {
         let values = curve.to_values();
         let mut logs = Vec::with_capacity(self.components().len());
-        for (component, of) in self.components().iter().enumerate() {
-            let (expected, got) = (of.mean.len(), values.len());
+        for (idx, component) in self.components().iter().enumerate() {
+            let (expected, got) = (component.mean.len(), values.len());
             if got != expected {
-                return Err(MixtureError::Shape { component, what: "curve", expected, got });
+                return Err(MixtureError::Shape { component: idx, what: "curve", expected, got });
             }
-            logs.push(of.weight.ln() + of.log_density(&values));
+            logs.push(component.weight.ln() + component.log_density(&values));
         }
         let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         Ok(largest + logs.iter().map(|log| (log - largest).exp()).sum::<f64>().ln())

@@ -61,9 +61,9 @@ impl CurveMixture {
         let weights: Vec<f64> = components.iter().map(|component| component.weight).collect();
         let sum = MixtureError::check_weights(&weights)?;
         let expected = components.first().map_or(0, |first| first.mean.len() / 2 * 2 + 1);
-        for (component, of) in components.iter_mut().enumerate() {
-            of.weight /= sum;
-            of.check(component, expected)?;
+        for (idx, component) in components.iter_mut().enumerate() {
+            component.weight /= sum;
+            component.check(idx, expected)?;
         }
         Ok(Self { components })
     }

@@ -163,11 +163,11 @@ impl NumberFormat {
     /// The same in a unit of its own.
     pub fn estimate_in(&self, unit: Unit, estimate: &Estimate) -> EstimateText {
         let in_unit = estimate.mapped(|si| unit.from_si(si));
-        let deciding = in_unit.interval(0.9).or(in_unit.intervals.last().map(|of| of.ends()));
+        let deciding = in_unit.interval(0.9).or(in_unit.intervals.last().map(Interval::ends));
         let width = deciding.map_or(0.0, |[low, high]| (high - low).abs());
         let number = |value: f64| with_width(value, width);
-        let interval = |of: &Interval| {
-            let [low, high] = of.ends().map(number);
+        let interval = |interval: &Interval| {
+            let [low, high] = interval.ends().map(number);
             let texts = [&low, &high].map(|end| self.with_unit(end, unit.symbol));
             let first = match (unit.symbol, self.language) {
                 ("deg", Language::De) => texts[0].clone(),
@@ -175,7 +175,7 @@ impl NumberFormat {
             };
             let range = format!("{first} {} {}", self.to(), texts[1]);
             let [low, high] = texts;
-            IntervalText { level: of.level, low, high, range }
+            IntervalText { level: interval.level, low, high, range }
         };
         EstimateText {
             median: self.with_unit(&number(in_unit.median), unit.symbol),
@@ -311,7 +311,8 @@ mod tests {
         assert_eq!(shown(2.0, [1.0, f64::INFINITY]), "2 (1 to inf) m");
         let nested = Estimate::new(32.209, [30.11, 34.52], [26.789, 37.193]);
         let text = EN.estimate(Quantity::Length, &nested);
-        let ranges: Vec<&str> = text.intervals.iter().map(|of| of.range.as_str()).collect();
+        let ranges: Vec<&str> =
+            text.intervals.iter().map(|interval| interval.range.as_str()).collect();
         assert_eq!((&*text.median, &*ranges), ("32 m", &["30 to 35 m", "27 to 37 m"][..]));
         assert_eq!(EN.measured(Quantity::Speed, 12.34, 0.876), "44.4 ± 3.2 km/h");
     }

@@ -169,7 +169,8 @@ impl JsonSchema for DataSheet {
         let words =
             |words: &[&str], meaning: &str| json!({ "enum": words, "description": meaning });
         let classes = VehicleClass::ALL.map(VehicleClass::word);
-        let instead = |of: &str| number(format!("where it is known instead of the {of}"));
+        let instead =
+            |replaced: &str| number(format!("where it is known instead of the {replaced}"));
         properties.extend([
             ("class".to_owned(), words(&classes, "Kind of vehicle.")),
             ("drive".to_owned(), words(&Drive::WORDS, "Driven axle, if it is known.")),
