@@ -47,17 +47,16 @@ pub fn report_case(
     let grounds = Grounds::default();
     let context = Context { wording: &wording, paths: &paths, grounds: &grounds };
     let mut parts: Vec<VariantParts> = Vec::new();
-    let outcome =
-        case.ask_each((variants, library), observer, &mut |variant, request, answer| {
-            let part = match answer {
-                Ok(answer) => Ok(part_of(request, answer, context)),
-                Err(error) => Err(paths.shown(&error_chain(error))),
-            };
-            match parts.last_mut() {
-                Some(last) if last.name == variant.name => last.answers.push(part),
-                _ => parts.push(VariantParts { name: variant.name.clone(), answers: vec![part] }),
-            }
-        })?;
+    let outcome = case.ask_each(variants, library, observer, &mut |variant, request, answer| {
+        let part = match answer {
+            Ok(answer) => Ok(part_of(request, answer, context)),
+            Err(error) => Err(paths.shown(&error_chain(error))),
+        };
+        match parts.last_mut() {
+            Some(last) if last.name == variant.name => last.answers.push(part),
+            _ => parts.push(VariantParts { name: variant.name.clone(), answers: vec![part] }),
+        }
+    })?;
     let Outcome::Complete(report) = outcome else { return Ok(Outcome::Cancelled) };
     let builder = Builder { case, report: &report, settings, wording: &wording, paths: &paths };
     let document = builder.document(&parts);

@@ -48,10 +48,9 @@ pub fn analyse_drive(
     let mut controls = settings.ending.controls(&settings.struck);
     controls.steer = steer.or(controls.steer);
     controls.wheels = wheels.or(controls.wheels);
-    let start = (initial, settings.duration_s);
-    let simulation = Some(simulate(start, load.as_ref(), controls.clone(), settings)?);
+    let motion = simulate(initial, settings.duration_s, load.as_ref(), controls.clone(), settings)?;
     Ok(Analysis {
-        simulation,
+        simulation: Some(motion),
         notes,
         ..not_simulated(name, Some(initial), controls, load, settings)
     })
@@ -87,7 +86,7 @@ pub fn analyse_recording(
         (Ok(initial), Some(_)) => {
             file.series.check_starts_at_zero(TIME_TOLERANCE_S)?;
             let controls = settings.ending.controls(&settings.struck);
-            let motion = simulate((initial, duration_s), load.as_ref(), controls, settings)?;
+            let motion = simulate(initial, duration_s, load.as_ref(), controls, settings)?;
             (Some(initial), Some(motion))
         }
     };
@@ -102,7 +101,8 @@ pub fn analyse_recording(
 /// Simulates the struck vehicle; a recorded yaw moment takes precedence over that of the contact
 /// point.
 fn simulate(
-    (initial, duration_s): (VehicleState<f64>, f64),
+    initial: VehicleState<f64>,
+    duration_s: f64,
     load: Option<&ActingForce>,
     controls: Controls,
     settings: &Settings,

@@ -197,7 +197,8 @@ impl StruckVehicle {
 /// of [`forecast_forces`].
 pub fn forecast_collision(
     collision: &ForceScenario,
-    (force_model, response): (&ForceModel, &ResponseModel),
+    force_model: &ForceModel,
+    response: &ResponseModel,
     struck: &StruckVehicle,
     settings: &MotionForecastSettings,
 ) -> Result<MotionForecast, MotionForecastError> {
@@ -322,7 +323,7 @@ fn timed_outcome(
     let pace = Pace::mean_of(paths);
     let force_end_s = forces.iter().filter_map(contact_interval).map(|(_, end_s)| end_s);
     let rest = rest_instant(&pace, force_end_s.fold(0.0, f64::max));
-    outcome((distribution, &mean_of(paths)), (&pace, rest), seed)
+    outcome(distribution, &mean_of(paths), &pace, rest, seed)
 }
 
 /// The motion over the duration, by propagation of the moments of the state; `None` where it is not
@@ -424,8 +425,10 @@ fn mean_of(paths: &[Vec<VehicleState<f64>>]) -> Vec<VehicleState<f64>> {
 ///
 /// - `rest`: the instant at which the vehicle comes to rest, if it does.
 fn outcome(
-    (distribution, central): (&MotionDistribution, &[VehicleState<f64>]),
-    (pace, rest): (&[Pace], Option<usize>),
+    distribution: &MotionDistribution,
+    central: &[VehicleState<f64>],
+    pace: &[Pace],
+    rest: Option<usize>,
     seed: u64,
 ) -> Option<MotionOutcome> {
     let at = rest.unwrap_or(central.len().checked_sub(1)?);

@@ -84,7 +84,7 @@ impl ToRest<'_> {
         let distribution = distribution(&draws, &ends, n_instants);
         let rest = RestOutcome::from_ends(&ends, self.limit_s)?;
         let start_rad = self.struck.initial.yaw_rad;
-        let outcome = outcome((&ends, &rest), n_instants, start_rad);
+        let outcome = outcome(&ends, &rest, n_instants, start_rad);
         Some(Settled { distribution, paths, outcome, rest, applicabilities })
     }
 
@@ -179,7 +179,8 @@ fn moments(motions: &[&SettledMotion], instant: usize) -> StateDistribution {
 
 /// The end of the forecast, over the draws.
 fn outcome(
-    (ends, rest): (&[MotionEnd], &RestOutcome),
+    ends: &[MotionEnd],
+    rest: &RestOutcome,
     n_instants: usize,
     start_rad: f64,
 ) -> MotionOutcome {

@@ -48,12 +48,13 @@ impl SecondContacts {
     ///   forecast. If not, it is simulated.
     pub fn find(
         forecast: &MotionForecast,
-        (struck, striking): (Footprint, &VehicleTrack),
+        struck: Footprint,
+        striking: &VehicleTrack,
         is_own: bool,
     ) -> Option<Self> {
         let follow = |(part, path): (usize, &Vec<Pose>)| {
             let force = forecast.forces.get(part % forecast.forces.len().max(1))?;
-            follow((struck, path), (striking, is_own), force)
+            follow(struck, path, striking, is_own, force)
         };
         let followed: Vec<Option<SecondContact>> =
             forecast.paths.par_iter().enumerate().filter_map(follow).collect();
@@ -78,8 +79,10 @@ impl SecondContacts {
 
 /// Follows one draw; the outer `None` if that is not possible.
 fn follow(
-    (footprint, path): (Footprint, &[Pose]),
-    (striking, is_own): (&VehicleTrack, bool),
+    footprint: Footprint,
+    path: &[Pose],
+    striking: &VehicleTrack,
+    is_own: bool,
     force: &ForceHistory,
 ) -> Option<Option<SecondContact>> {
     let struck = (footprint, &series(path)?);

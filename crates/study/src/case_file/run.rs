@@ -61,7 +61,7 @@ impl CaseFile {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<CaseReport>, CaseError> {
-        self.ask_each((variants, library), observer, &mut |_, _, _| {})
+        self.ask_each(variants, library, observer, &mut |_, _, _| {})
     }
 
     /// The same, and tells of each answer, with what it was made from, before the next question is
@@ -73,7 +73,8 @@ impl CaseFile {
     /// As for [`CaseFile::ask`].
     pub fn ask_each(
         &self,
-        (variants, library): (&[String], &Library),
+        variants: &[String],
+        library: &Library,
         observer: &mut Observer<'_>,
         listener: &mut AnswerListener<'_>,
     ) -> Result<Outcome<CaseReport>, CaseError> {

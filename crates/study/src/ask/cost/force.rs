@@ -27,10 +27,11 @@ impl TrainForceRequest {
     /// Measures one step of each fit of the crush model, one regression and some epochs.
     pub(super) fn cost(
         &self,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<Cost>, StudyError> {
         self.check()?;
-        let Outcome::Complete((set, _)) = self.training_set((library, observer))? else {
+        let Outcome::Complete((set, _)) = self.training_set(library, observer)? else {
             return Ok(Outcome::Cancelled);
         };
         let config = self.settings()?;
@@ -129,11 +130,12 @@ impl EvaluateForceRequest {
     /// Measures the evaluation for some seconds, and the curves of some cases.
     pub(super) fn cost(
         &self,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<Cost>, StudyError> {
         self.check()?;
         let model = library.force_model(&self.model)?;
-        let cases = self.test_cases(&model, (library, observer))?;
+        let cases = self.test_cases(&model, library, observer)?;
         let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
         let test = usable.cases;
         let settings = EvaluationSettings {

@@ -82,12 +82,12 @@ impl Request {
                 return Ok(Outcome::Complete(None));
             }
             Self::Compare(of) if of.leave_one_car_out => return Ok(Outcome::Complete(None)),
-            Self::TrainForce(of) => of.cost((library, observer))?,
-            Self::EvaluateForce(of) => of.cost((library, observer))?,
-            Self::TrainResponse(of) => of.cost((library, observer))?,
-            Self::FineTune(of) => return of.cost((library, observer)),
-            Self::EvaluateResponse(of) => of.cost((library, observer))?,
-            Self::Compare(of) => of.cost((library, observer))?,
+            Self::TrainForce(of) => of.cost(library, observer)?,
+            Self::EvaluateForce(of) => of.cost(library, observer)?,
+            Self::TrainResponse(of) => of.cost(library, observer)?,
+            Self::FineTune(of) => return of.cost(library, observer),
+            Self::EvaluateResponse(of) => of.cost(library, observer)?,
+            Self::Compare(of) => of.cost(library, observer)?,
             _ => return Ok(Outcome::Complete(None)),
         };
         Ok(cost.map(Some))

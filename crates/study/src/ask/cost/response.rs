@@ -62,7 +62,7 @@ impl Stages {
     }
 
     /// Adds the epochs of every stage and what else a training takes.
-    fn add_to(&self, cost: &mut Cost, (config, total_s): (&ResponseConfig, f64)) {
+    fn add_to(&self, cost: &mut Cost, config: &ResponseConfig, total_s: f64) {
         let in_epochs_s: f64 = self.seconds.iter().flat_map(|(_, of)| of).sum();
         cost.add("preparation", 1.0, (total_s - in_epochs_s).max(0.0));
         for (stage, seconds) in &self.seconds {
@@ -78,8 +78,10 @@ impl Stages {
 
 /// Measures a pre-training. `None` if the observer has broken.
 fn pretraining_cost(
-    (name, records): (&str, &[ImpactRecord]),
-    (config, seed): (&ResponseConfig, u64),
+    name: &str,
+    records: &[ImpactRecord],
+    config: &ResponseConfig,
+    seed: u64,
     observer: &mut Observer<'_>,
 ) -> Result<Option<(Cost, ResponseModel)>, StudyError> {
     let settings = ResponseTrainSettings::unsaved(measured(config), seed);
@@ -89,7 +91,7 @@ fn pretraining_cost(
         return Ok(None);
     }
     let mut cost = Cost::default();
-    stages.add_to(&mut cost, (config, watch.seconds()));
+    stages.add_to(&mut cost, config, watch.seconds());
     Ok(Some((cost, model)))
 }
 
@@ -109,7 +111,7 @@ fn fine_tuning_cost(
         return Ok(None);
     }
     let mut cost = Cost::default();
-    stages.add_to(&mut cost, (config, watch.seconds()));
+    stages.add_to(&mut cost, config, watch.seconds());
     let n_folds = config.calibration.folds.min(set.train.len());
     if n_folds > 1 {
         // Each leaves out its part of the trajectories: together as much as one less than there are.
@@ -123,14 +125,15 @@ impl TrainResponseRequest {
     /// Measures the simulations and some epochs.
     pub(super) fn cost(
         &self,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<Cost>, StudyError> {
         self.check()?;
-        let records = self.records(&mut TrainingNotes::default(), (library, observer))?;
+        let records = self.records(&mut TrainingNotes::default(), library, observer)?;
         let Outcome::Complete(records) = records else { return Ok(Outcome::Cancelled) };
         let (config, name) = (self.settings()?, data_name(&self.data));
         let seed = self.training.seed;
-        let measured = pretraining_cost((&name, &records), (&config, seed), observer)?;
+        let measured = pretraining_cost(&name, &records, &config, seed, observer)?;
         Ok(measured.map_or(Outcome::Cancelled, |(cost, _)| Outcome::Complete(cost)))
     }
 }
@@ -139,11 +142,12 @@ impl FineTuneRequest {
     /// Measures some epochs of each stage, or the conditioning on some trajectories.
     pub(super) fn cost(
         &self,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<Option<Cost>>, StudyError> {
         self.check()?;
         let (config, start) = self.settings(library)?;
-        let set = self.training_set(&mut TrainingNotes::default(), (library, observer))?;
+        let set = self.training_set(&mut TrainingNotes::default(), library, observer)?;
         let Outcome::Complete(set) = set else { return Ok(Outcome::Cancelled) };
         let cost = match (self.learning, start.as_deref()) {
             (Learning::Fleet, _) => return Ok(Outcome::Complete(None)),
@@ -174,10 +178,11 @@ impl EvaluateResponseRequest {
     /// Measures as many cases as there are cores.
     pub(super) fn cost(
         &self,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<Cost>, StudyError> {
         let model = library.response_model(&self.model)?;
-        let cases = self.cases(&model, &mut Caveats::default(), (library, observer))?;
+        let cases = self.cases(&model, &mut Caveats::default(), library, observer)?;
         let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
         let cases = usable.cases;
         let n = rayon::current_num_threads().min(cases.len());
@@ -195,11 +200,12 @@ impl CompareRequest {
     /// trajectories.
     pub(super) fn cost(
         &self,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<Cost>, StudyError> {
         self.check()?;
         let (config, given) = self.settings(library)?;
-        let cases = self.cases(&mut Caveats::default(), (library, observer))?;
+        let cases = self.cases(&mut Caveats::default(), library, observer)?;
         let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
         let name = data_name(&self.data);
         let all = ResponseTrainingSet::from_split(&name, &usable.cases, self.seed, TEST_SHARE);
@@ -207,8 +213,7 @@ impl CompareRequest {
             all.train.iter().filter_map(ResponseCase::impact).collect();
         let (mut cost, mut starts) = (Cost::default(), Vec::new());
         for (label, config) in [("PINN", config.clone()), ("NN-only", config.plain())] {
-            let of_data = (name.as_str(), records.as_slice());
-            let measured = pretraining_cost(of_data, (&config, self.seed), observer)?;
+            let measured = pretraining_cost(&name, &records, &config, self.seed, observer)?;
             let Some((pretraining, model)) = measured else { return Ok(Outcome::Cancelled) };
             match given.as_deref().filter(|_| starts.is_empty()) {
                 Some(given) => starts.push((label, config, given.copied()?)),

@@ -71,10 +71,12 @@ pub(crate) fn force_cases(
 
 /// The trajectories of a data set; a vehicle that nobody named is added to the caveats.
 pub(crate) fn response_cases(
-    (root, choice): (&Path, &VehicleChoice),
+    root: &Path,
+    choice: &VehicleChoice,
     bad_cases: BadCases,
     caveats: &mut Caveats,
-    (library, observer): (&Library, &mut Observer<'_>),
+    library: &Library,
+    observer: &mut Observer<'_>,
 ) -> Result<Outcome<UsableCases<ResponseCase>>, StudyError> {
     let Outcome::Complete(dataset) = library.dataset(root, observer)? else {
         return Ok(Outcome::Cancelled);

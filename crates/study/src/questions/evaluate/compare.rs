@@ -110,7 +110,8 @@ impl CompareRequest {
     pub(crate) fn cases(
         &self,
         caveats: &mut Caveats,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<UsableCases<ResponseCase>>, StudyError> {
         let folders = match self.leave_one_car_out {
             true => {
@@ -120,8 +121,8 @@ impl CompareRequest {
         };
         let mut usable = UsableCases { cases: Vec::new(), left_out: Vec::new() };
         for folder in folders {
-            let chosen = (folder.as_path(), &self.vehicle);
-            let cases = response_cases(chosen, self.bad_cases, caveats, (library, observer))?;
+            let cases =
+                response_cases(&folder, &self.vehicle, self.bad_cases, caveats, library, observer)?;
             let Outcome::Complete(of_folder) = cases else { return Ok(Outcome::Cancelled) };
             usable.cases.extend(of_folder.cases);
             usable.left_out.extend(of_folder.left_out);
@@ -158,7 +159,8 @@ impl CompareAnswer {
     /// - `models`: the networks that were given; the comparison has the seed itself.
     pub(crate) fn new(
         comparison: Comparison,
-        (left_out, mut caveats): (Vec<String>, Caveats),
+        left_out: Vec<String>,
+        mut caveats: Caveats,
         models: impl IntoIterator<Item = ModelDigest>,
     ) -> Self {
         let provenance = Provenance::default().with_models(models);
@@ -194,7 +196,7 @@ impl Question for CompareRequest {
         let digest = |model| library.response_model_digest(model);
         let digest = self.model.as_ref().map(digest).transpose()?;
         let mut caveats = Caveats::default();
-        let cases = self.cases(&mut caveats, (library, observer))?;
+        let cases = self.cases(&mut caveats, library, observer)?;
         let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
         let settings = ComparisonSettings {
             config,
@@ -216,11 +218,9 @@ impl Question for CompareRequest {
         };
         Ok(match compared {
             None => Outcome::Cancelled,
-            Some(comparison) => Outcome::Complete(CompareAnswer::new(
-                comparison,
-                (usable.left_out, caveats),
-                digest,
-            )),
+            Some(comparison) => {
+                Outcome::Complete(CompareAnswer::new(comparison, usable.left_out, caveats, digest))
+            }
         })
     }
 }

@@ -82,7 +82,8 @@ impl EvaluateForceRequest {
     pub(crate) fn test_cases(
         &self,
         model: &ForceModel,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<UsableCases<ForceCase>>, StudyError> {
         let cases = force_cases(&self.data, self.bad_cases, library, observer)?;
         let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
@@ -195,7 +196,7 @@ impl Question for EvaluateForceRequest {
                 EvaluateForceAnswer { report, cases: None }
             }));
         }
-        let cases = self.test_cases(&model, (library, observer))?;
+        let cases = self.test_cases(&model, library, observer)?;
         let Outcome::Complete(UsableCases { cases: test, left_out }) = cases else {
             return Ok(Outcome::Cancelled);
         };

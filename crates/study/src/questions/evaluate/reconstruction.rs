@@ -146,7 +146,8 @@ impl EvaluateReconstructionRequest {
     /// The estimates of all cases, as far as the observer lets it go, and why others have none.
     fn estimates(
         &self,
-        (staged, cases): (&StagedCollisions, &[String]),
+        staged: &StagedCollisions,
+        cases: &[String],
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Estimated, StudyError> {
@@ -226,7 +227,7 @@ impl Question for EvaluateReconstructionRequest {
     ) -> Result<Outcome<EvaluateReconstructionAnswer>, StudyError> {
         let staged = StagedCollisions::open(&self.data)?;
         let cases = self.cases(&staged)?;
-        let mut estimated = self.estimates((&staged, &cases), library, observer)?;
+        let mut estimated = self.estimates(&staged, &cases, library, observer)?;
         let scores = estimated.scored(&staged);
         let Estimated { failed: left_out, stopped, .. } = estimated;
         if stopped && scores.is_empty() {

@@ -71,7 +71,8 @@ impl Asked<'_> {
         &self,
         evidence: &Evidence,
         of: &EvaluateReconstructionRequest,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<CaseEstimates>, StudyError> {
         let request = ReconstructRequest {
             particles: of.particles,
@@ -140,7 +141,7 @@ impl<'a> FinishedCases<'a> {
     ) -> Result<Outcome<CaseEstimates>, StudyError> {
         let evidence = asked.known.select(&Evidence::load(&asked.evidence)?);
         let Some(folder) = self.folder else {
-            return asked.estimates(&evidence, of, (library, observer));
+            return asked.estimates(&evidence, of, library, observer);
         };
         let file = folder.join(format!("{}-{}.json", asked.case, word(&asked.known)));
         let settings = (of.particles, of.seed, of.swarm);
@@ -151,7 +152,7 @@ impl<'a> FinishedCases<'a> {
         if let Some(saved) = saved.filter(|saved| saved.question == question) {
             return Ok(Outcome::Complete(saved.estimates));
         }
-        let estimates = asked.estimates(&evidence, of, (library, observer))?;
+        let estimates = asked.estimates(&evidence, of, library, observer)?;
         let Outcome::Complete(estimates) = estimates else { return Ok(Outcome::Cancelled) };
         let saved = Saved { question, estimates };
         write_atomically(&file, Existing::Replace, |out| {

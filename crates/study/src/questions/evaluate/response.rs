@@ -43,10 +43,11 @@ impl EvaluateResponseRequest {
         &self,
         model: &ResponseModel,
         caveats: &mut Caveats,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<UsableCases<ResponseCase>>, StudyError> {
-        let chosen = (self.data.as_path(), &self.vehicle);
-        let cases = response_cases(chosen, self.bad_cases, caveats, (library, observer))?;
+        let cases =
+            response_cases(&self.data, &self.vehicle, self.bad_cases, caveats, library, observer)?;
         let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
         let cases = match self.split {
             EvaluatedCases::All => usable.cases,
@@ -92,7 +93,7 @@ impl Question for EvaluateResponseRequest {
         let model = library.response_model(&self.model)?;
         let digest = library.response_model_digest(&self.model)?;
         let mut caveats = Caveats::default();
-        let cases = self.cases(&model, &mut caveats, (library, observer))?;
+        let cases = self.cases(&model, &mut caveats, library, observer)?;
         let Outcome::Complete(UsableCases { cases, left_out }) = cases else {
             return Ok(Outcome::Cancelled);
         };
@@ -101,7 +102,7 @@ impl Question for EvaluateResponseRequest {
         let compared = Self::motion_model(&model)?;
         let name = data_name(&self.data);
         let comparison = evaluate_motion_model(&name, &chosen, &compared, trajectories, self.seed)?;
-        let answer = CompareAnswer::new(comparison, (left_out, caveats), [digest]);
+        let answer = CompareAnswer::new(comparison, left_out, caveats, [digest]);
         Ok(Outcome::Complete(answer))
     }
 }

@@ -254,9 +254,9 @@ impl Question for PredictForceRequest {
             ForceForecast::new(&prediction.mixture, settings).map_err(ForceError::from)?;
         let provenance = Provenance::from_seed(self.seed)
             .with_models([library.force_model_digest(&self.model)?]);
-        let mut report = PredictForceReport::new(name, &self.model, (&prediction, &forecast));
+        let mut report = PredictForceReport::new(name, &self.model, &prediction, &forecast);
         report.implied_contact = impact.and_then(|(impact, heading_rad)| {
-            ImpliedContactReport::from_prediction(&prediction, (&impact, heading_rad), self.seed)
+            ImpliedContactReport::from_prediction(&prediction, &impact, heading_rad, self.seed)
         });
         let restrictions = restrictions::predicted_force_caveats(&report, &prediction.caveats);
         let caveats = restrictions.into_iter().chain(unused).chain(overlap).collect();
@@ -269,7 +269,8 @@ impl PredictForceReport {
     fn new(
         scenario: String,
         model: &ModelChoice,
-        (prediction, forecast): (&ForcePrediction, &ForceForecast),
+        prediction: &ForcePrediction,
+        forecast: &ForceForecast,
     ) -> Self {
         let pdof = PrincipalDirectionOfForce { angle_rad: forecast.pdof_rad.median };
         let [x, y] = forecast.impulse_n_s.clone();

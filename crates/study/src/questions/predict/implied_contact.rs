@@ -86,7 +86,8 @@ impl ImpliedContactReport {
     /// - `seed`: of the draws.
     pub(crate) fn from_prediction(
         prediction: &ForcePrediction,
-        (impact, heading_rad): (&Impact, f64),
+        impact: &Impact,
+        heading_rad: f64,
         seed: u64,
     ) -> Option<Self> {
         let mut rng = random_stream(seed, "implied contact", 0);
@@ -156,7 +157,7 @@ mod tests {
             let mut impact = scenario.impact().unwrap();
             let heading_rad = scenario.struck.heading_rad;
             let report =
-                ImpliedContactReport::from_prediction(&prediction, (&impact, heading_rad), 0)
+                ImpliedContactReport::from_prediction(&prediction, &impact, heading_rad, 0)
                     .unwrap();
             assert!((report.momentum.restitution - scenario.contact.restitution).abs() < 1e-12);
             impact.surface.restitution = report.restitution.median;

@@ -141,7 +141,8 @@ impl PredictMotionRequest {
     fn predicted(
         &self,
         model: &ModelChoice,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<(Arc<ForceModel>, ForceScenario)>, StudyError> {
         let source = &self.motion.source;
         let collision = match source {
@@ -260,12 +261,11 @@ impl Question for PredictMotionRequest {
                 forecast_forces(&[force], &model, struck, &settings)
             }
             ForceSource::Predicted(choice) => {
-                let predicted = self.predicted(choice, (library, observer))?;
+                let predicted = self.predicted(choice, library, observer)?;
                 let Outcome::Complete((force_model, collision)) = predicted else {
                     return Ok(Outcome::Cancelled);
                 };
-                let models = (force_model.as_ref(), model.as_ref());
-                forecast_collision(&collision, models, struck, &settings)
+                forecast_collision(&collision, &force_model, &model, struck, &settings)
             }
         };
         let forecast = forecast.map_err(failed)?;
@@ -324,8 +324,8 @@ impl PredictMotionRequest {
         };
         let scenario = choice.load()?;
         let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
-        let at = (&impact, scenario.struck.heading_rad);
-        Ok(ImpliedContactReport::from_prediction(prediction, at, self.seed))
+        let heading_rad = scenario.struck.heading_rad;
+        Ok(ImpliedContactReport::from_prediction(prediction, &impact, heading_rad, self.seed))
     }
 
     /// Whether the motion of the source is a recorded one.
@@ -344,7 +344,7 @@ impl PredictMotionRequest {
     fn second_contact(&self, forecast: &MotionForecast, analysis: &Analysis) -> Option<FlagReport> {
         let striking = analysis.striking.as_ref()?;
         let is_own = self.force == ForceSource::Given;
-        let met = SecondContacts::find(forecast, (analysis.footprint, striking), is_own)?;
+        let met = SecondContacts::find(forecast, analysis.footprint, striking, is_own)?;
         Some(FlagReport::from(&met))
     }
 

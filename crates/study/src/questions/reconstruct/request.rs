@@ -289,7 +289,7 @@ impl Question for ReconstructRequest {
         let quantities = posterior.quantities();
         let report = ReconstructReport {
             case: target.evidence().case.clone(),
-            marks: compared_marks(&target, (&particles, &posterior), &quantities),
+            marks: compared_marks(&target, &particles, &posterior, &quantities),
             quantities,
             modes: posterior.modes(&particles, &turned_rad),
             fit,
@@ -310,7 +310,8 @@ impl Question for ReconstructRequest {
 /// The marks that were found beside those of the particle of median speed.
 fn compared_marks(
     target: &ReconstructionTarget,
-    (particles, posterior): (&Particles, &Posterior),
+    particles: &Particles,
+    posterior: &Posterior,
     quantities: &[QuantityEstimate],
 ) -> Vec<MarkComparison> {
     let found = &target.evidence().marks;

@@ -94,7 +94,7 @@ impl Drive {
             yaw_rate_rad_s: self.yaw_rate_rad_s,
             ..VehicleState::driving_straight(speed_m_s)
         };
-        let steer = self.steer((&settings.struck, &initial), caveats)?;
+        let steer = self.steer(&settings.struck, &initial, caveats)?;
         let held = steer.as_ref().and_then(|steer| held_steer(steer, settings.duration_s));
         caveats.extend(held);
         let wheels = self.wheels.as_ref().map(|file| wheel_history(file, &settings.struck));
@@ -118,7 +118,8 @@ impl Drive {
     /// The road-wheel angle over time.
     fn steer(
         &self,
-        (vehicle, initial): (&VehicleParameters, &VehicleState<f64>),
+        vehicle: &VehicleParameters,
+        initial: &VehicleState<f64>,
         caveats: &mut Caveats,
     ) -> Result<Option<SteerHistory>, StudyError> {
         if !self.fishhook {

@@ -153,9 +153,10 @@ impl SimulateReport {
         let motion = analysis.simulation.as_ref();
         let series = motion.map(|motion| &motion.series);
         let interval = analysis.force.as_ref().and_then(contact_interval);
-        let delta_v = series.zip(interval);
-        let delta_v =
-            delta_v.map(|(series, interval)| delta_v_m_s(series, interval)).transpose()?;
+        let delta_v = series
+            .zip(interval)
+            .map(|(series, (start_s, end_s))| delta_v_m_s(series, start_s, end_s))
+            .transpose()?;
         let recorded = analysis.reference.as_ref();
         let end_s = series.and_then(|series| series.time_s().last().copied());
         let recorded_s = recorded.and_then(|series| series.time_s().last().copied());
@@ -219,7 +220,7 @@ impl ForceReport {
 }
 
 /// Change of the CG's velocity over the contact, world axes, m/s: tires included.
-fn delta_v_m_s(series: &TimeSeries, (start_s, end_s): (f64, f64)) -> Result<[f64; 2], SeriesError> {
+fn delta_v_m_s(series: &TimeSeries, start_s: f64, end_s: f64) -> Result<[f64; 2], SeriesError> {
     let [vx, vy, yaw] = [Channel::Vx, Channel::Vy, Channel::Yaw].map(|c| series.require(c));
     let (vx, vy, yaw) = (vx?, vy?, yaw?);
     let velocity = |time_s| {

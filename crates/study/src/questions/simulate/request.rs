@@ -117,7 +117,8 @@ impl SimulateRequest {
 
     fn settings(
         &self,
-        (open, named_striking): (&OpenVehicle<'_>, Option<&str>),
+        open: &OpenVehicle<'_>,
+        named_striking: Option<&str>,
         caveats: &mut Caveats,
     ) -> Result<Settings, StudyError> {
         let mut struck = struck_vehicle(&self.vehicle, open, caveats)?;
@@ -223,11 +224,11 @@ impl Question for SimulateRequest {
                     caveats.extend(contact_height_assumption(case)?);
                 }
                 let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
-                let (settings, case) = (self.settings((&own, None), &mut caveats)?, case.clone());
+                let (settings, case) = (self.settings(&own, None, &mut caveats)?, case.clone());
                 (settings, Box::new(move |settings| analyse_case(&case, settings)))
             }
             MotionSource::Trajectory { file, contact } => {
-                let settings = self.settings((&OpenVehicle::Unknown, None), &mut caveats)?;
+                let settings = self.settings(&OpenVehicle::Unknown, None, &mut caveats)?;
                 let loaded = trajectory(library, file)?;
                 caveats.extend(by_simulation(self, true));
                 let force = recorded_force(&loaded, file)?;
@@ -245,7 +246,7 @@ impl Question for SimulateRequest {
                 (settings, Box::new(analyse))
             }
             MotionSource::Drive(drive) => {
-                let settings = self.settings((&OpenVehicle::Unknown, None), &mut caveats)?;
+                let settings = self.settings(&OpenVehicle::Unknown, None, &mut caveats)?;
                 caveats.extend(by_simulation(self, false));
                 let setup = drive.setup(&settings, library, &mut caveats)?;
                 let name = drive.name();
@@ -257,8 +258,8 @@ impl Question for SimulateRequest {
                 caveats.extend(pulse_assumptions(pulse));
                 let scenario = scenario.load()?;
                 let open = OpenVehicle::OfScenario(scenario.struck_vehicle.as_deref());
-                let vehicles = (&open, scenario.striking_vehicle.as_deref());
-                let mut settings = self.settings(vehicles, &mut caveats)?;
+                let striking = scenario.striking_vehicle.as_deref();
+                let mut settings = self.settings(&open, striking, &mut caveats)?;
                 if let (None, Some(ending)) = (&self.ending, &scenario.ending) {
                     settings.ending.clone_from(ending);
                 }
@@ -278,8 +279,8 @@ impl Question for SimulateRequest {
         let mut report = SimulateReport::new(self, &analysis)
             .map_err(|source| failed(AnalysisError::Series(source)))?;
         report.momentum = momentum;
-        let asked = (self.vehicle_draws, self.seed);
-        report.uncertainty = vehicle_uncertainty(asked, (&settings, &analysis), &analyse);
+        report.uncertainty =
+            vehicle_uncertainty(self.vehicle_draws, self.seed, &settings, &analysis, &analyse);
         let provenance = match report.uncertainty {
             Some(_) => Provenance::from_seed(self.seed),
             None => Provenance::default(),

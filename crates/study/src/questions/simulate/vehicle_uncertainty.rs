@@ -46,11 +46,14 @@ struct DrawnEnd {
 /// Simulates the motion with vehicles drawn from what the data sheet leaves open; `None` if it leaves
 /// nothing open, if no draws are asked for, or if nothing is simulated.
 ///
-/// - `asked`: number and seed of the draws.
-/// - `central`: settings with the vehicle at the medians of its estimates, and what came of them.
+/// - `n_draws`, `seed`: number and seed of the draws.
+/// - `settings`: with the vehicle at the medians of its estimates;
+/// - `central`: the analysis with these settings.
 pub(crate) fn vehicle_uncertainty(
-    (n_draws, seed): (usize, u64),
-    (settings, central): (&Settings, &Analysis),
+    n_draws: usize,
+    seed: u64,
+    settings: &Settings,
+    central: &Analysis,
     analyse: &(impl Fn(&Settings) -> Result<Analysis, AnalysisError> + Sync + ?Sized),
 ) -> Option<VehicleUncertainty> {
     let sheet = settings.struck.sheet.as_ref()?;

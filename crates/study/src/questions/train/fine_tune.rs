@@ -116,7 +116,8 @@ impl FineTuneRequest {
     pub(crate) fn training_set(
         &self,
         notes: &mut TrainingNotes,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<ResponseTrainingSet>, StudyError> {
         if let Some(logs) = &self.logs {
             let vehicle = struck_vehicle(&self.vehicle, &OpenVehicle::Unknown, &mut notes.caveats)?;
@@ -130,10 +131,15 @@ impl FineTuneRequest {
         }
         let mut sets = Vec::new();
         for root in dataset_folders(&self.data)? {
-            let chosen = (root.as_path(), &self.vehicle);
             let caveats = &mut notes.caveats;
-            let cases =
-                response_cases(chosen, self.training.bad_cases, caveats, (library, observer))?;
+            let cases = response_cases(
+                &root,
+                &self.vehicle,
+                self.training.bad_cases,
+                caveats,
+                library,
+                observer,
+            )?;
             let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
             notes.left_out.extend(usable.left_out);
             let (name, share) = (data_name(&root), self.test_share);
@@ -198,7 +204,7 @@ impl Question for FineTuneRequest {
             start: self.model.as_ref().map(start_digest).transpose()?,
             ..TrainingNotes::default()
         };
-        let set = self.training_set(&mut notes, (library, observer))?;
+        let set = self.training_set(&mut notes, library, observer)?;
         let Outcome::Complete(set) = set else { return Ok(Outcome::Cancelled) };
         let settings = ResponseTrainSettings {
             config,

@@ -96,7 +96,8 @@ impl TrainForceRequest {
     /// The cases to learn from, and why others are left out.
     pub(crate) fn training_set(
         &self,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<(ForceTrainingSet, Vec<String>)>, StudyError> {
         let cases = force_cases(&self.data, self.training.bad_cases, library, observer)?;
         let Outcome::Complete(mut usable) = cases else { return Ok(Outcome::Cancelled) };
@@ -135,7 +136,7 @@ impl Question for TrainForceRequest {
         // Held until the training is over.
         let _claim = self.training.claim()?;
         let config = self.settings()?;
-        let set = self.training_set((library, observer))?;
+        let set = self.training_set(library, observer)?;
         let Outcome::Complete((set, left_out)) = set else { return Ok(Outcome::Cancelled) };
         let settings = ForceTrainSettings {
             config,

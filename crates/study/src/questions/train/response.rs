@@ -106,13 +106,19 @@ impl TrainResponseRequest {
     pub(crate) fn records(
         &self,
         notes: &mut TrainingNotes,
-        (library, observer): (&Library, &mut Observer<'_>),
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<Vec<ImpactRecord>>, StudyError> {
         if DatasetKind::from_folder(&self.data) == Some(DatasetKind::Trajectory) {
-            let chosen = (self.data.as_path(), &self.vehicle);
             let caveats = &mut notes.caveats;
-            let cases =
-                response_cases(chosen, self.training.bad_cases, caveats, (library, observer))?;
+            let cases = response_cases(
+                &self.data,
+                &self.vehicle,
+                self.training.bad_cases,
+                caveats,
+                library,
+                observer,
+            )?;
             return Ok(cases.map(|usable| {
                 notes.left_out = usable.left_out;
                 let kept = self.learned_from(&usable.cases);
@@ -185,7 +191,7 @@ impl Question for TrainResponseRequest {
             resume: self.training.resume,
         };
         let mut notes = TrainingNotes::default();
-        let records = self.records(&mut notes, (library, observer))?;
+        let records = self.records(&mut notes, library, observer)?;
         let Outcome::Complete(records) = records else { return Ok(Outcome::Cancelled) };
         let (started, name) = (Instant::now(), data_name(&self.data));
         let model =
