@@ -193,8 +193,8 @@ mod tests {
 
     #[test]
     fn a_window_holds_the_way_and_a_moment_its_end() {
-        let of = |window_s| DensityTask::new(&motion(), window_s).on_cpu();
-        let (moment, window) = (of([1.0, 1.0]), of([0.0, 9.0]));
+        let density = |window_s| DensityTask::new(&motion(), window_s).on_cpu();
+        let (moment, window) = (density([1.0, 1.0]), density([0.0, 9.0]));
         assert_eq!(window.window_s, [0.0, 1.0]);
         let share_before_5_m = |map: &DensityMap| {
             let [width, _] = map.grid.size;

@@ -335,7 +335,7 @@ fn propagated(
     settings: &MotionForecastSettings,
 ) -> Option<ForecastMotion> {
     let n_parts = forces.len().max(predictors.len());
-    let of = |part: usize| {
+    let forecast = |part: usize| {
         let (force, predictor) =
             (forces.get(part % forces.len())?, predictors.get(part % predictors.len())?);
         let inputs = struck.inputs(force, settings.duration_s);
@@ -345,7 +345,7 @@ fn propagated(
             applicability: predictor.applicability(&struck.initial, &inputs),
         })
     };
-    let parts: Vec<Part> = (0..n_parts).into_par_iter().filter_map(of).collect();
+    let parts: Vec<Part> = (0..n_parts).into_par_iter().filter_map(forecast).collect();
     let applicabilities = parts.iter().map(|part| part.applicability.clone()).collect();
     let (parts, paths): (Vec<MotionDistribution>, Vec<Vec<VehicleState<f64>>>) =
         parts.into_iter().map(|part| (part.motion, part.path)).unzip();
@@ -361,7 +361,8 @@ fn pose(state: &VehicleState<f64>) -> Pose {
 /// What lies outside for the median of several forces and vehicles, with the mean of their values.
 fn usual(mut all: Vec<&Applicability>) -> Applicability {
     all.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-    let mean = all.iter().map(|of| of.value).sum::<f64>() / all.len().max(1) as f64;
+    let mean =
+        all.iter().map(|applicability| applicability.value).sum::<f64>() / all.len().max(1) as f64;
     match all.get(all.len() / 2) {
         Some(median) => Applicability { value: mean, ..(*median).clone() },
         None => Applicability::whole(),
@@ -435,13 +436,13 @@ fn outcome(
     let (pace, start) = (pace.get(at)?, central.first()?);
     let position: PlanarMixture = distribution.position(at);
     let draws = position.sample(N_END_DRAWS, seed);
-    let of = |axis: usize| Estimate::from_draws(draws.iter().map(|point| point[axis]).collect());
+    let along = |axis: usize| Estimate::from_draws(draws.iter().map(|point| point[axis]).collect());
     let heading = distribution.heading(at)?;
     Some(MotionOutcome {
         time_s: at as f64 * STEP_S,
         is_at_rest: rest.is_some(),
-        x_m: of(0),
-        y_m: of(1),
+        x_m: along(0),
+        y_m: along(1),
         heading_change_rad: heading.estimate().mapped(|yaw_rad| yaw_rad - start.yaw_rad),
         speed_m_s: pace.speed_m_s,
         yaw_rate_rad_s: pace.yaw_rate_rad_s,

@@ -188,7 +188,9 @@ fn outcome(
     let share_of = |least_rad: f64| {
         turned.iter().filter(|rad| rad.abs() >= least_rad).count() as f64 / turned.len() as f64
     };
-    let mean = |of: fn(&MotionEnd) -> f64| ends.iter().map(of).sum::<f64>() / ends.len() as f64;
+    let mean = |quantity: fn(&MotionEnd) -> f64| {
+        ends.iter().map(quantity).sum::<f64>() / ends.len() as f64
+    };
     MotionOutcome {
         time_s: n_instants.saturating_sub(1) as f64 * STEP_S,
         is_at_rest: rest.share_at_rest >= SHARE_AT_REST,

@@ -17,8 +17,8 @@ impl Pace {
         let n_instants = paths.first().map_or(0, Vec::len);
         let at = |i: usize| {
             let states = || paths.iter().filter_map(move |path| path.get(i));
-            let mean = |of: fn(&VehicleState<f64>) -> f64| {
-                states().map(of).sum::<f64>() / paths.len() as f64
+            let mean = |quantity: fn(&VehicleState<f64>) -> f64| {
+                states().map(quantity).sum::<f64>() / paths.len() as f64
             };
             Self {
                 speed_m_s: mean(|state| state.vx_body_m_s.hypot(state.vy_body_m_s)),
@@ -50,9 +50,9 @@ pub(super) fn rest_instant(motion: &[Pace], force_end_s: f64) -> Option<usize> {
 mod tests {
     use super::*;
 
-    fn motion(of: impl Fn(f64) -> [f64; 2]) -> Vec<Pace> {
+    fn motion(speed_and_yaw_rate: impl Fn(f64) -> [f64; 2]) -> Vec<Pace> {
         let at = |i: i32| {
-            let [speed_m_s, yaw_rate_rad_s] = of(f64::from(i) * STEP_S);
+            let [speed_m_s, yaw_rate_rad_s] = speed_and_yaw_rate(f64::from(i) * STEP_S);
             Pace { speed_m_s, yaw_rate_rad_s }
         };
         (0..=400).map(at).collect()

@@ -73,7 +73,7 @@ impl RestOutcome {
         if ends.is_empty() {
             return None;
         }
-        let of =
+        let spread =
             |value: fn(&MotionEnd) -> f64| Estimate::from_draws(ends.iter().map(value).collect());
         let moving: Vec<f64> =
             ends.iter().filter(|end| !end.is_at_rest).map(|end| end.speed_m_s).collect();
@@ -82,11 +82,11 @@ impl RestOutcome {
             n_draws: ends.len(),
             share_at_rest: 1.0 - moving.len() as f64 / ends.len() as f64,
             limit_s,
-            time_s: of(|end| end.time_s),
-            distance_m: of(|end| end.distance_m),
-            x_m: of(|end| end.x_m),
-            y_m: of(|end| end.y_m),
-            yaw_rad: of(|end| end.yaw_rad),
+            time_s: spread(|end| end.time_s),
+            distance_m: spread(|end| end.distance_m),
+            x_m: spread(|end| end.x_m),
+            y_m: spread(|end| end.y_m),
+            yaw_rad: spread(|end| end.yaw_rad),
             region_50_m2: region_m2(&position, 0.5),
             region_90_m2: region_m2(&position, 0.9),
             moving_speed_m_s: (!moving.is_empty()).then(|| Estimate::from_draws(moving).median),

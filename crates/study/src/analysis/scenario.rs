@@ -196,12 +196,12 @@ mod tests {
             let (struck, striking) =
                 (analysis.simulation.unwrap().series, analysis.striking.unwrap());
             let at = |series: &TimeSeries, footprint, time_s: f64| {
-                let of = |channel| {
+                let value = |channel| {
                     let values = series.require(channel).unwrap();
                     interpolate(series.time_s(), values, time_s).unwrap()
                 };
-                let (x_m, y_m) = (of(Channel::X), of(Channel::Y));
-                let pose = Pose { x_m, y_m, yaw_rad: of(Channel::Yaw) };
+                let (x_m, y_m) = (value(Channel::X), value(Channel::Y));
+                let pose = Pose { x_m, y_m, yaw_rad: value(Channel::Yaw) };
                 MovingFootprint::at_rest(footprint, pose)
             };
             let overlap = |time_s| {

@@ -62,16 +62,16 @@ impl SecondContacts {
         if met.is_empty() {
             return None;
         }
-        let of = |value: fn(&SecondContact) -> f64| {
+        let spread = |value: fn(&SecondContact) -> f64| {
             Estimate::from_draws(met.iter().map(value).collect())
         };
         Some(Self {
             n_draws: followed.len(),
             probability: met.len() as f64 / followed.len() as f64,
-            time_s: of(|met| met.time_s),
-            x_m: of(|met| met.point_m[0]),
-            y_m: of(|met| met.point_m[1]),
-            closing_speed_m_s: of(|met| met.closing_speed_m_s),
+            time_s: spread(|met| met.time_s),
+            x_m: spread(|met| met.point_m[0]),
+            y_m: spread(|met| met.point_m[1]),
+            closing_speed_m_s: spread(|met| met.closing_speed_m_s),
             apart_share: met.iter().filter(|met| met.was_apart).count() as f64 / met.len() as f64,
         })
     }
@@ -131,9 +131,9 @@ fn pushed(start: &StruckVehicle, force: ForceHistory, duration_s: f64) -> Option
 
 fn series(path: &[Pose]) -> Option<TimeSeries> {
     let mut series = TimeSeries::new((0..path.len()).map(|i| i as f64 * STEP_S).collect()).ok()?;
-    let of = |value: fn(&Pose) -> f64| path.iter().map(value).collect();
-    series.insert(Channel::X, of(|pose| pose.x_m)).ok()?;
-    series.insert(Channel::Y, of(|pose| pose.y_m)).ok()?;
-    series.insert(Channel::Yaw, of(|pose| pose.yaw_rad)).ok()?;
+    let column = |value: fn(&Pose) -> f64| path.iter().map(value).collect();
+    series.insert(Channel::X, column(|pose| pose.x_m)).ok()?;
+    series.insert(Channel::Y, column(|pose| pose.y_m)).ok()?;
+    series.insert(Channel::Yaw, column(|pose| pose.yaw_rad)).ok()?;
     Some(series)
 }

@@ -47,9 +47,9 @@ impl<'de, R: Serialize + DeserializeOwned> Deserialize<'de> for Answer<R> {
     /// What stands in the report, such as a seed of its own, does not come from the provenance.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut all = Map::<String, Value>::deserialize(deserializer)?;
-        let told = Value::Object(all.clone());
-        let report = R::deserialize(&told).map_err(D::Error::custom)?;
-        let caveats = Caveats::deserialize(&told).map_err(D::Error::custom)?;
+        let written = Value::Object(all.clone());
+        let report = R::deserialize(&written).map_err(D::Error::custom)?;
+        let caveats = Caveats::deserialize(&written).map_err(D::Error::custom)?;
         let own = serde_json::to_value(&report).map_err(D::Error::custom)?;
         all.retain(|key, _| own.get(key).is_none());
         let provenance = Provenance::deserialize(Value::Object(all)).map_err(D::Error::custom)?;
@@ -64,14 +64,14 @@ mod tests {
     use impactlab_core::uncertainty::{Caveat, CaveatKind};
 
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    struct Told {
+    struct Content {
         speed_m_s: f64,
     }
 
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     struct Drawn {
         #[serde(flatten)]
-        told: Told,
+        content: Content,
         seed: u64,
     }
 
@@ -87,17 +87,17 @@ mod tests {
 
     #[test]
     fn an_answer_is_one_object_and_comes_back_from_it() {
-        let told = Told { speed_m_s: 3.5 };
-        let mut of_seed = answer(told.clone());
+        let content = Content { speed_m_s: 3.5 };
+        let mut of_seed = answer(content.clone());
         of_seed.provenance.seed = Some(7);
         let json = serde_json::to_value(&of_seed).unwrap();
         let keys: Vec<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
         for key in ["speed_m_s", "caveats", "notes", "badges", "version", "seed", "model_digests"] {
             assert!(keys.contains(&key), "{key} is not in {keys:?}");
         }
-        assert_eq!(serde_json::from_value::<Answer<Told>>(json).unwrap(), of_seed);
+        assert_eq!(serde_json::from_value::<Answer<Content>>(json).unwrap(), of_seed);
         // A seed that is told is not taken for that of the provenance.
-        let own = answer(Drawn { told, seed: 7 });
+        let own = answer(Drawn { content, seed: 7 });
         let json = serde_json::to_value(&own).unwrap();
         assert_eq!(json["seed"], 7);
         assert_eq!(serde_json::from_value::<Answer<Drawn>>(json).unwrap(), own);

@@ -150,10 +150,11 @@ impl QuestionText {
 fn take_common(questions: &mut [Value]) -> Map<String, Value> {
     let mut common = Map::new();
     let scenarios: Vec<Value> = questions.iter().flat_map(scenarios).cloned().collect();
-    let is_shared = |of: &&Value| scenarios.iter().filter(|other| other == of).count() > 1;
+    let is_shared =
+        |scenario: &&Value| scenarios.iter().filter(|other| other == scenario).count() > 1;
     if let Some(scenario) = scenarios.iter().find(is_shared) {
         let place = Value::String(COMMON.to_owned());
-        questions.iter_mut().for_each(|of| replace_scenario(of, scenario, &place));
+        questions.iter_mut().for_each(|question| replace_scenario(question, scenario, &place));
         common.insert("scenario".to_owned(), scenario.clone());
     }
     let mut motions: Vec<&mut Map<String, Value>> =
@@ -170,7 +171,7 @@ fn take_common(questions: &mut [Value]) -> Map<String, Value> {
             .filter(is_shared)
             .map(|(key, value)| (key.clone(), value.clone()))
             .collect();
-        motions.iter_mut().for_each(|of| of.retain(|key, _| !shared.contains_key(key)));
+        motions.iter_mut().for_each(|motion| motion.retain(|key, _| !shared.contains_key(key)));
         common.insert("motion".to_owned(), Value::Object(shared));
     }
     common

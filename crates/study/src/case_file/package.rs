@@ -157,7 +157,8 @@ pub fn unpack(package: &Path, folder: &Path) -> Result<PathBuf, CaseError> {
         return Err(none("it has too many files"));
     }
     let mut names = archive.file_names().flatten();
-    let is_case = |name: &str| Path::new(name).extension().is_some_and(|of| of == CASE_ENDING);
+    let is_case =
+        |name: &str| Path::new(name).extension().is_some_and(|ending| ending == CASE_ENDING);
     let case = names.find(|name| is_case(name.as_ref()));
     let case = case.ok_or_else(|| none("it has no case"))?.into_owned();
     drop(names);

@@ -149,8 +149,9 @@ impl CaseReport {
 /// The networks that reports name, by kind and name.
 fn models_of<'a>(reports: impl Iterator<Item = &'a Report>) -> BTreeMap<(String, String), String> {
     let digests = reports.flat_map(|report| &report.provenance().model_digests);
-    let model =
-        |of: &ModelDigest| ((of.network.clone().into_owned(), of.name.clone()), of.sha256.clone());
+    let model = |digest: &ModelDigest| {
+        ((digest.network.clone().into_owned(), digest.name.clone()), digest.sha256.clone())
+    };
     digests.map(model).collect()
 }
 

@@ -126,7 +126,7 @@ mod tests {
         let friction = caveats.iter().find(|caveat| caveat.text.contains("friction")).unwrap();
         assert_eq!(friction.subject, Some(CaveatSubject::RoadFriction), "{friction}");
         assert!(friction.to_string().starts_with("assumed road friction: "), "{friction}");
-        let parameters = |of: &&Caveat| of.subject == Some(CaveatSubject::VehicleParameter);
+        let parameters = |caveat: &&Caveat| caveat.subject == Some(CaveatSubject::VehicleParameter);
         assert_eq!(caveats.iter().filter(parameters).count() + 1, caveats.len());
     }
 }

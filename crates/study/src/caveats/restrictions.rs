@@ -54,7 +54,7 @@ pub(crate) fn cut_record_caveat(force: &ForceHistory) -> Option<Caveat> {
 pub(crate) fn simulation_caveats(report: &SimulateReport, until_rest: bool) -> Vec<Caveat> {
     let moving = report.end.filter(|_| until_rest && report.rest.is_none());
     let moving = moving.map(|end| motion_caveat(end.speed_m_s, report.duration_s));
-    let n_failed = report.uncertainty.as_ref().map_or(0, |of| of.n_failed);
+    let n_failed = report.uncertainty.as_ref().map_or(0, |uncertainty| uncertainty.n_failed);
     let left_out = left_out_caveat(n_failed, "vehicles drawn from the data sheet");
     let flags = report.flags.iter().map(|flag| flag.caveat.clone());
     flags.chain(moving).chain(left_out).collect()
@@ -68,7 +68,7 @@ pub(crate) fn flagged_cases_caveats(cases: &[ReplayedCaseReport]) -> Vec<Caveat>
     kinds.dedup();
     let of_kind = |kind| {
         let is_flagged =
-            |case: &&ReplayedCaseReport| case.flags.iter().any(|of| of.caveat.kind == kind);
+            |case: &&ReplayedCaseReport| case.flags.iter().any(|flag| flag.caveat.kind == kind);
         let n = cases.iter().filter(is_flagged).count();
         let text = format!("in {n} of {} cases", cases.len());
         Caveat::new(kind, text).with_value("cases", n as f64).with_range([0.0, 0.0])
@@ -194,8 +194,8 @@ pub(crate) fn disagreement_caveat(
     let n_steps = forecast.distribution.n_instants().checked_sub(1)?;
     let end_s = motion.time_s().last()?.min(n_steps as f64 * STEP_S);
     let at = motion.time_s().partition_point(|time_s| *time_s < end_s - 1e-9);
-    let of = |channel| motion.get(channel)?.get(at).copied();
-    let simulated_m = [of(Channel::X)?, of(Channel::Y)?];
+    let value = |channel| motion.get(channel)?.get(at).copied();
+    let simulated_m = [value(Channel::X)?, value(Channel::Y)?];
     let instant = ((end_s / STEP_S).round() as usize).min(n_steps);
     let level = forecast.distribution.position(instant).level_of(simulated_m);
     let mean = forecast.distribution.mean(instant);

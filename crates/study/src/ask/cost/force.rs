@@ -51,8 +51,8 @@ impl TrainForceRequest {
         }
 
         let (mut epochs_s, mut watch) = (Vec::new(), Watch::start());
-        train_around(physics, &set, &settings, &mut |told| {
-            if let TrainingReport::Epoch(epoch) = told {
+        train_around(physics, &set, &settings, &mut |report| {
+            if let TrainingReport::Epoch(epoch) = report {
                 epochs_s.extend(epoch.summary.seconds);
             }
             let flow = observer(Event::Progress(Progress::new(0, 0, "measuring epochs")));
@@ -97,8 +97,8 @@ impl Fits {
     ) -> Result<Option<(Self, Physics)>, StudyError> {
         let mut watch = Watch::start();
         let (mut crush_s, mut regression_s) = (None, None);
-        let physics = fit_physics(set, settings, &mut |told| {
-            let TrainingReport::Fit { what, done, .. } = told else {
+        let physics = fit_physics(set, settings, &mut |report| {
+            let TrainingReport::Fit { what, done, .. } = report else {
                 return ControlFlow::Continue(());
             };
             let flow = observer(Event::Progress(Progress::new(0, 0, format!("measuring: {what}"))));

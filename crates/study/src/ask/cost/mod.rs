@@ -46,9 +46,9 @@ impl Cost {
     }
 
     /// Adds the work of another question, done several times.
-    fn add_all(&mut self, of: &str, other: &Self, n: f64) {
+    fn add_all(&mut self, name: &str, other: &Self, n: f64) {
         let part = |part: &CostPart| CostPart {
-            what: format!("{of}: {}", part.what),
+            what: format!("{name}: {}", part.what),
             n: n * part.n,
             seconds_each: part.seconds_each,
         };
@@ -78,16 +78,18 @@ impl Request {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<Option<Cost>>, StudyError> {
         let cost = match self {
-            Self::EvaluateForce(of) if of.cross_validate.is_some() => {
+            Self::EvaluateForce(request) if request.cross_validate.is_some() => {
                 return Ok(Outcome::Complete(None));
             }
-            Self::Compare(of) if of.leave_one_car_out => return Ok(Outcome::Complete(None)),
-            Self::TrainForce(of) => of.cost(library, observer)?,
-            Self::EvaluateForce(of) => of.cost(library, observer)?,
-            Self::TrainResponse(of) => of.cost(library, observer)?,
-            Self::FineTune(of) => return of.cost(library, observer),
-            Self::EvaluateResponse(of) => of.cost(library, observer)?,
-            Self::Compare(of) => of.cost(library, observer)?,
+            Self::Compare(request) if request.leave_one_car_out => {
+                return Ok(Outcome::Complete(None));
+            }
+            Self::TrainForce(request) => request.cost(library, observer)?,
+            Self::EvaluateForce(request) => request.cost(library, observer)?,
+            Self::TrainResponse(request) => request.cost(library, observer)?,
+            Self::FineTune(request) => return request.cost(library, observer),
+            Self::EvaluateResponse(request) => request.cost(library, observer)?,
+            Self::Compare(request) => request.cost(library, observer)?,
             _ => return Ok(Outcome::Complete(None)),
         };
         Ok(cost.map(Some))

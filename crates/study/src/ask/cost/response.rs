@@ -47,8 +47,8 @@ struct Stages {
 }
 
 impl Stages {
-    fn take(&mut self, told: &TrainingReport, observer: &mut Observer<'_>) -> ControlFlow<()> {
-        if let TrainingReport::Epoch(epoch) = told {
+    fn take(&mut self, report: &TrainingReport, observer: &mut Observer<'_>) -> ControlFlow<()> {
+        if let TrainingReport::Epoch(epoch) = report {
             let stage = epoch.summary.stage.clone().unwrap_or_default();
             let seconds = epoch.summary.seconds.unwrap_or_default();
             match self.seconds.last_mut().filter(|(name, _)| *name == stage) {
@@ -63,12 +63,16 @@ impl Stages {
 
     /// Adds the epochs of every stage and what else a training takes.
     fn add_to(&self, cost: &mut Cost, config: &ResponseConfig, total_s: f64) {
-        let in_epochs_s: f64 = self.seconds.iter().flat_map(|(_, of)| of).sum();
+        let in_epochs_s: f64 = self.seconds.iter().flat_map(|(_, seconds)| seconds).sum();
         cost.add("preparation", 1.0, (total_s - in_epochs_s).max(0.0));
         for (stage, seconds) in &self.seconds {
             let n = match stage {
-                of if *of == ResponseStage::Pretraining.to_string() => config.pretraining.epochs,
-                of if *of == ResponseStage::SingleSteps.to_string() => config.single_steps.epochs,
+                name if *name == ResponseStage::Pretraining.to_string() => {
+                    config.pretraining.epochs
+                }
+                name if *name == ResponseStage::SingleSteps.to_string() => {
+                    config.single_steps.epochs
+                }
                 _ => config.rollouts.epochs,
             };
             cost.add(format!("epochs of {stage}"), n as f64, mean_without_first(seconds));
@@ -86,7 +90,7 @@ fn pretraining_cost(
 ) -> Result<Option<(Cost, ResponseModel)>, StudyError> {
     let settings = ResponseTrainSettings::unsaved(measured(config), seed);
     let (mut stages, watch) = (Stages::default(), Watch::start());
-    let model = pretrain(name, records, &settings, &mut |told| stages.take(told, observer))?;
+    let model = pretrain(name, records, &settings, &mut |report| stages.take(report, observer))?;
     if stages.is_broken {
         return Ok(None);
     }
@@ -106,7 +110,7 @@ fn fine_tuning_cost(
 ) -> Result<Option<Cost>, StudyError> {
     let settings = ResponseTrainSettings::unsaved(measured(config), seed);
     let (mut stages, watch) = (Stages::default(), Watch::start());
-    fine_tune(start, set, &settings, &mut |told| stages.take(told, observer))?;
+    fine_tune(start, set, &settings, &mut |report| stages.take(report, observer))?;
     if stages.is_broken {
         return Ok(None);
     }
@@ -115,8 +119,8 @@ fn fine_tuning_cost(
     let n_folds = config.calibration.folds.min(set.train.len());
     if n_folds > 1 {
         // Each leaves out its part of the trajectories: together as much as one less than there are.
-        let of_one = cost.clone();
-        cost.add_all("calibration", &of_one, (n_folds - 1) as f64);
+        let training = cost.clone();
+        cost.add_all("calibration", &training, (n_folds - 1) as f64);
     }
     Ok(Some(cost))
 }

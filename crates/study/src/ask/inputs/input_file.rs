@@ -98,7 +98,7 @@ impl InputFile {
             InputKind::Scenario => read(kind, Scenario::load(path), Self::Scenario),
             InputKind::Vehicle => read(kind, VehicleParameters::load(path), Self::Vehicle),
             InputKind::Site | InputKind::Orthophoto => read(kind, Site::load(path), Self::Site),
-            InputKind::Network => read(kind, kind_of_file(path), |of| Self::Network(*of)),
+            InputKind::Network => read(kind, kind_of_file(path), |kind| Self::Network(*kind)),
             InputKind::Comparison => read(kind, Comparison::load(path), Self::Comparison),
             InputKind::Settings => read(kind, TomlFile::read(path), |_| Self::Settings),
             InputKind::UnknownToml => match TomlFile::read(path) {

@@ -16,58 +16,58 @@ impl Request {
     pub fn input_files(&self) -> Vec<PathBuf> {
         let mut files = Files::default();
         match self {
-            Self::Check(asked) => asked.paths.iter().for_each(|path| files.path(path)),
-            Self::Impact(asked) => files.scenario(&asked.scenario),
-            Self::Simulate(asked) => files.simulation(asked),
-            Self::SimulateDataset(asked) => {
-                files.path(&asked.dataset);
-                files.vehicle(&asked.vehicle);
+            Self::Check(request) => request.paths.iter().for_each(|path| files.path(path)),
+            Self::Impact(request) => files.scenario(&request.scenario),
+            Self::Simulate(request) => files.simulation(request),
+            Self::SimulateDataset(request) => {
+                files.path(&request.dataset);
+                files.vehicle(&request.vehicle);
             }
-            Self::PredictForce(asked) => match &asked.collision {
+            Self::PredictForce(request) => match &request.collision {
                 ForceQuestion::Scenario(scenario) => files.scenario(scenario),
                 ForceQuestion::Case { dataset, .. } => files.path(dataset),
                 ForceQuestion::Numbers { .. } => {}
             },
-            Self::PredictMotion(asked) => {
-                files.simulation(&asked.motion);
-                if let ForceSource::File(path) = &asked.force {
+            Self::PredictMotion(request) => {
+                files.simulation(&request.motion);
+                if let ForceSource::File(path) = &request.force {
                     files.path(path);
                 }
             }
-            Self::Reconstruct(asked) => {
-                if let Some(path) = asked.evidence.file() {
+            Self::Reconstruct(request) => {
+                if let Some(path) = request.evidence.file() {
                     files.path(path);
                 }
-                files.vehicle(&asked.vehicle);
-                files.vehicle(&asked.striking);
-                files.site(asked.site.as_deref());
+                files.vehicle(&request.vehicle);
+                files.vehicle(&request.striking);
+                files.site(request.site.as_deref());
             }
-            Self::TrainForce(asked) => {
-                files.paths(std::iter::once(&asked.data).chain(&asked.extra));
-                files.training(&asked.training);
+            Self::TrainForce(request) => {
+                files.paths(std::iter::once(&request.data).chain(&request.extra));
+                files.training(&request.training);
             }
-            Self::TrainResponse(asked) => {
-                files.path(&asked.data);
-                files.vehicle(&asked.vehicle);
-                files.training(&asked.training);
+            Self::TrainResponse(request) => {
+                files.path(&request.data);
+                files.vehicle(&request.vehicle);
+                files.training(&request.training);
             }
-            Self::FineTune(asked) => {
-                files.paths(&asked.data);
-                let logs = asked.logs.iter();
+            Self::FineTune(request) => {
+                files.paths(&request.data);
+                let logs = request.logs.iter();
                 files.paths(logs.flat_map(|logs| logs.logs.iter().chain(&logs.forces)));
-                files.vehicle(&asked.vehicle);
-                files.training(&asked.training);
+                files.vehicle(&request.vehicle);
+                files.training(&request.training);
             }
-            Self::EvaluateForce(asked) => files.path(&asked.data),
-            Self::EvaluateReconstruction(asked) => files.paths(&asked.evidence_files()),
-            Self::EvaluateResponse(asked) => {
-                files.path(&asked.data);
-                files.vehicle(&asked.vehicle);
+            Self::EvaluateForce(request) => files.path(&request.data),
+            Self::EvaluateReconstruction(request) => files.paths(&request.evidence_files()),
+            Self::EvaluateResponse(request) => {
+                files.path(&request.data);
+                files.vehicle(&request.vehicle);
             }
-            Self::Compare(asked) => {
-                files.path(&asked.data);
-                files.vehicle(&asked.vehicle);
-                files.config(&asked.config);
+            Self::Compare(request) => {
+                files.path(&request.data);
+                files.vehicle(&request.vehicle);
+                files.config(&request.config);
             }
         }
         files.0
@@ -76,15 +76,15 @@ impl Request {
     /// Every file that the answer rests on: those of [`Request::input_files`] and trained networks.
     pub fn files_read(&self) -> Vec<PathBuf> {
         let networks: Vec<&ModelChoice> = match self {
-            Self::PredictForce(asked) => vec![&asked.model],
-            Self::PredictMotion(asked) => match &asked.force {
-                ForceSource::Predicted(model) => vec![model, &asked.response_model],
-                ForceSource::Given | ForceSource::File(_) => vec![&asked.response_model],
+            Self::PredictForce(request) => vec![&request.model],
+            Self::PredictMotion(request) => match &request.force {
+                ForceSource::Predicted(model) => vec![model, &request.response_model],
+                ForceSource::Given | ForceSource::File(_) => vec![&request.response_model],
             },
-            Self::FineTune(asked) => asked.model.iter().collect(),
-            Self::EvaluateForce(asked) => vec![&asked.model],
-            Self::EvaluateResponse(asked) => vec![&asked.model],
-            Self::Compare(asked) => asked.model.iter().collect(),
+            Self::FineTune(request) => request.model.iter().collect(),
+            Self::EvaluateForce(request) => vec![&request.model],
+            Self::EvaluateResponse(request) => vec![&request.model],
+            Self::Compare(request) => request.model.iter().collect(),
             _ => Vec::new(),
         };
         let networks = networks.into_iter().filter_map(ModelChoice::path).map(Path::to_owned);
@@ -137,8 +137,8 @@ impl Files {
         self.config(&options.config);
     }
 
-    fn simulation(&mut self, asked: &SimulateRequest) {
-        match &asked.source {
+    fn simulation(&mut self, request: &SimulateRequest) {
+        match &request.source {
             MotionSource::Case { dataset, .. } => self.path(dataset),
             MotionSource::Trajectory { file, .. } => self.path(&file.path),
             MotionSource::Drive(Drive { force, steer, wheels, .. }) => {
@@ -146,9 +146,9 @@ impl Files {
             }
             MotionSource::Scenario { scenario, .. } => self.scenario(scenario),
         }
-        self.vehicle(&asked.vehicle);
-        self.vehicle(&asked.striking);
-        self.site(asked.site.as_deref());
+        self.vehicle(&request.vehicle);
+        self.vehicle(&request.striking);
+        self.site(request.site.as_deref());
     }
 
     /// A site file with the files that it names.

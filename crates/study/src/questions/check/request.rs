@@ -184,8 +184,8 @@ impl CheckReport {
     }
 
     fn add_input_file(&mut self, path: &Path, kind: InputKind) {
-        let told = |file: InputFile| Ok((file.name(path), file.contents(kind)?));
-        match InputFile::load_as(path, kind).and_then(told) {
+        let summary = |file: InputFile| Ok((file.name(path), file.contents(kind)?));
+        match InputFile::load_as(path, kind).and_then(summary) {
             Ok((name, contents)) => {
                 self.models.push(InputFileReport { path: path.to_owned(), kind, name, contents });
             }

@@ -272,9 +272,9 @@ fn samples(
     let ranks = (0..n_samples).map(|i| i * last / n_samples.saturating_sub(1).max(1));
     let chosen = ranks.filter_map(|rank| ranked.get(rank));
     let settings = ForecastSettings { n_curves: 0, seed };
-    let of = |case: &&ForceCase| {
+    let estimate = |case: &&ForceCase| {
         let forecast = ForceForecast::new(&distribution(model, case)?, settings);
         Ok(((*case).clone(), forecast.map_err(ForceError::from)?))
     };
-    chosen.map(of).collect()
+    chosen.map(estimate).collect()
 }

@@ -8,7 +8,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
-use crate::questions::evaluate::reconstruction_estimates::{Asked, CaseEstimates, FinishedCases};
+use crate::questions::evaluate::reconstruction_estimates::{
+    CaseEstimates, CaseQuestion, FinishedCases,
+};
 use crate::{
     Answer, Event, Library, Observer, Provenance, Question, ReconstructRequest, StudyError,
 };
@@ -157,8 +159,8 @@ impl EvaluateReconstructionRequest {
         let pairs = cases.iter().flat_map(|case| known().map(move |known| (case, known)));
         let n = cases.len() * self.known.len();
         for (done, (case, known)) in pairs.enumerate() {
-            let asked = Asked { case, known, evidence: staged.evidence_file(case) };
-            let mut told = |event: Event<'_>| match event {
+            let question = CaseQuestion { case, known, evidence: staged.evidence_file(case) };
+            let mut report_share = |event: Event<'_>| match event {
                 Event::Progress(of_case) => {
                     let what = format!("{case}, {}: {}", known.label(), of_case.message);
                     let share = of_case.fraction().map_or(0.0, f64::from);
@@ -168,13 +170,13 @@ impl EvaluateReconstructionRequest {
                 }
                 Event::Training(_) | Event::Sampling(_) => ControlFlow::Continue(()),
             };
-            match finished.estimates(self, &asked, library, &mut told) {
+            match finished.estimates(self, &question, library, &mut report_share) {
                 Ok(Outcome::Complete(estimates)) => all.done.push(estimates),
                 Ok(Outcome::Cancelled) => {
                     all.stopped = true;
                     break;
                 }
-                Err(error) => all.failed.push(asked.failed(&error)),
+                Err(error) => all.failed.push(question.failed(&error)),
             }
         }
         Ok(all)
@@ -233,7 +235,7 @@ impl Question for EvaluateReconstructionRequest {
         if stopped && scores.is_empty() {
             return Ok(Outcome::Cancelled);
         }
-        let is_answer = |of: &&CaseScore| of.method == ReconstructionMethod::Reconstruction;
+        let is_answer = |score: &&CaseScore| score.method == ReconstructionMethod::Reconstruction;
         let n_answers = scores.iter().filter(is_answer).count();
         let report = EvaluateReconstructionReport {
             data: self.data.clone(),

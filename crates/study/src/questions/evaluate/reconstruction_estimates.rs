@@ -25,7 +25,7 @@ use impactlab_reconstruct::evidence::Evidence;
 const SWARM_DRAWS: usize = 2000;
 
 /// A case of which the speeds are asked.
-pub(crate) struct Asked<'a> {
+pub(crate) struct CaseQuestion<'a> {
     /// Its name.
     pub(crate) case: &'a str,
     /// How much of its evidence is used.
@@ -60,7 +60,7 @@ struct Saved {
     estimates: CaseEstimates,
 }
 
-impl Asked<'_> {
+impl CaseQuestion<'_> {
     /// Why the case has no answer.
     pub(crate) fn failed(&self, error: &StudyError) -> String {
         format!("{}, {}: {}", self.case, self.known.label(), error_chain(error))
@@ -70,23 +70,23 @@ impl Asked<'_> {
     fn estimates(
         &self,
         evidence: &Evidence,
-        of: &EvaluateReconstructionRequest,
+        evaluation: &EvaluateReconstructionRequest,
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<CaseEstimates>, StudyError> {
         let request = ReconstructRequest {
-            particles: of.particles,
-            seed: of.seed,
+            particles: evaluation.particles,
+            seed: evaluation.seed,
             ..ReconstructRequest::new(EvidenceChoice::Inline(Box::new(evidence.clone())))
         };
         let mut is_stopped = false;
-        let mut told = |event: Event<'_>| {
+        let mut watch = |event: Event<'_>| {
             let flow = observer(event);
             is_stopped |= flow.is_break();
             flow
         };
         let started = Instant::now();
-        let answer = request.answer(library, &mut told)?;
+        let answer = request.answer(library, &mut watch)?;
         let seconds = || started.elapsed().as_secs_f64();
         // A reconstruction that is stopped answers with what it has, which is not of the posterior.
         let Outcome::Complete(answer) = answer else { return Ok(Outcome::Cancelled) };
@@ -103,16 +103,16 @@ impl Asked<'_> {
         let hand = HandCalculation::new(evidence, answer.target.model().cars(), &[]);
         let by_hand = SpeedEstimates::by_hand(hand.as_ref(), started.elapsed().as_secs_f64());
         let mut methods = vec![ours, by_hand];
-        if of.swarm {
+        if evaluation.swarm {
             let started = Instant::now();
-            let settings = OptimumSettings { seed: of.seed, ..OptimumSettings::default() };
+            let settings = OptimumSettings { seed: evaluation.seed, ..OptimumSettings::default() };
             let found = PointOptimum::find(&answer.target, settings);
             let seconds = started.elapsed().as_secs_f64();
             methods.push(SpeedEstimates::by_swarm(
                 &answer.target,
                 found.as_ref(),
                 SWARM_DRAWS,
-                of.seed,
+                evaluation.seed,
                 seconds,
             ));
         }
@@ -134,25 +134,25 @@ impl<'a> FinishedCases<'a> {
     /// evidence with the same settings, else anew. A file that cannot be read is replaced.
     pub(crate) fn estimates(
         &self,
-        of: &EvaluateReconstructionRequest,
-        asked: &Asked<'_>,
+        evaluation: &EvaluateReconstructionRequest,
+        case: &CaseQuestion<'_>,
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<CaseEstimates>, StudyError> {
-        let evidence = asked.known.select(&Evidence::load(&asked.evidence)?);
+        let evidence = case.known.select(&Evidence::load(&case.evidence)?);
         let Some(folder) = self.folder else {
-            return asked.estimates(&evidence, of, library, observer);
+            return case.estimates(&evidence, evaluation, library, observer);
         };
-        let file = folder.join(format!("{}-{}.json", asked.case, word(&asked.known)));
-        let settings = (of.particles, of.seed, of.swarm);
-        let question = format!("{} {} {settings:?} {evidence:?}", program::version(), asked.case);
+        let file = folder.join(format!("{}-{}.json", case.case, word(&case.known)));
+        let settings = (evaluation.particles, evaluation.seed, evaluation.swarm);
+        let question = format!("{} {} {settings:?} {evidence:?}", program::version(), case.case);
         let question = sha256_hex([question.as_bytes()]);
         let saved = read_bytes(&file, MAX_RESULTS_BYTES).ok();
         let saved = saved.and_then(|bytes| serde_json::from_slice::<Saved>(&bytes).ok());
         if let Some(saved) = saved.filter(|saved| saved.question == question) {
             return Ok(Outcome::Complete(saved.estimates));
         }
-        let estimates = asked.estimates(&evidence, of, library, observer)?;
+        let estimates = case.estimates(&evidence, evaluation, library, observer)?;
         let Outcome::Complete(estimates) = estimates else { return Ok(Outcome::Cancelled) };
         let saved = Saved { question, estimates };
         write_atomically(&file, Existing::Replace, |out| {

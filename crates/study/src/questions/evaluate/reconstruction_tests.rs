@@ -16,7 +16,7 @@ fn request() -> EvaluateReconstructionRequest {
 /// The report of an evaluation that is stopped once a share of the work is done.
 fn stopped_at(share: f32) -> Option<Answer<EvaluateReconstructionReport>> {
     let mut stop = |event: Event<'_>| match event {
-        Event::Progress(told) if told.fraction().is_some_and(|done| done >= share) => {
+        Event::Progress(progress) if progress.fraction().is_some_and(|done| done >= share) => {
             ControlFlow::Break(())
         }
         _ => ControlFlow::Continue(()),
@@ -29,9 +29,9 @@ fn stopped_at(share: f32) -> Option<Answer<EvaluateReconstructionReport>> {
 fn what_is_finished_when_an_evaluation_is_stopped_is_reported() {
     let report = stopped_at(0.6).unwrap();
     assert!(report.stopped);
-    let told: Vec<_> = report.cases.iter().map(|of| (of.known, of.method)).collect();
+    let answers: Vec<_> = report.cases.iter().map(|score| (score.known, score.method)).collect();
     let methods = [ReconstructionMethod::Reconstruction, ReconstructionMethod::Hand];
-    assert_eq!(told, methods.map(|method| (KnownEvidence::RestOnly, method)));
+    assert_eq!(answers, methods.map(|method| (KnownEvidence::RestOnly, method)));
     assert!(report.caveats.restrictions()[0].text.starts_with("1 of 2 "), "{:?}", report.caveats);
     assert_eq!(stopped_at(0.1), None);
 }

@@ -229,11 +229,11 @@ impl Question for PredictForceRequest {
     ) -> Result<Outcome<PredictForceAnswer>, StudyError> {
         let model = library.force_model(&self.model)?;
         let numbers = self.collision.numbers(library, observer)?;
-        let Outcome::Complete(asked) = numbers else {
+        let Outcome::Complete(collision) = numbers else {
             return Ok(Outcome::Cancelled);
         };
         let AskedCollision { name, numbers: mut collision, mut impact, mut unused, overlap } =
-            asked;
+            collision;
         if let Some(body) = &self.body {
             collision.striking_body = Some(body.clone());
             if model.bodies().len() == 1 {

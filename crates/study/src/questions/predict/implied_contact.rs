@@ -99,11 +99,12 @@ impl ImpliedContactReport {
         if contacts.is_empty() {
             return None;
         }
-        let estimate =
-            |of: fn(&ImpliedContact) -> f64| bands_of_draws(contacts.iter().map(of).collect());
+        let estimate = |value: fn(&ImpliedContact) -> f64| {
+            bands_of_draws(contacts.iter().map(value).collect())
+        };
         Some(Self {
-            restitution: estimate(|of| of.restitution),
-            impulse_ratio: estimate(|of| of.impulse_ratio),
+            restitution: estimate(|contact| contact.restitution),
+            impulse_ratio: estimate(|contact| contact.impulse_ratio),
             p_rigid,
             p_energy_gain,
             warning: warning(p_rigid, p_energy_gain),

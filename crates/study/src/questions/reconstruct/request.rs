@@ -262,7 +262,7 @@ impl Question for ReconstructRequest {
         let target = ReconstructionTarget::new(evidence, model, Discrepancy::default());
         let settings = self.settings();
         let mut before = None;
-        let mut told = |report: SamplerReport<'_>| {
+        let mut watch = |report: SamplerReport<'_>| {
             let (temperature, z) = (report.temperature, report.z);
             observer(Event::Sampling(Sampling { target: &target, temperature, z }))?;
             let progress = progress(&report, &settings);
@@ -270,7 +270,7 @@ impl Question for ReconstructRequest {
             observer(Event::Progress(progress.going_on_from(done_before)))
         };
         let particles =
-            sample(&target, &settings, checkpoint.as_ref(), &mut told).map_err(|source| {
+            sample(&target, &settings, checkpoint.as_ref(), &mut watch).map_err(|source| {
                 StudyError::Reconstruction { name: self.evidence.name(), source: Box::new(source) }
             })?;
         let posterior = Posterior::new(&target, &particles);

@@ -29,11 +29,11 @@ fn a_tiny_case_is_reconstructed_the_same_way_each_time() {
         "road_friction",
         "delta_v_target_m_s",
     ] {
-        let of = report.quantities.iter().find(|of| of.name == name).unwrap();
-        let (median, [low, high]) = (of.estimate.median, of.estimate.ninety());
-        assert!(low <= median && median <= high && low < high, "{of:?}");
-        let [least, most] = of.estimate.interval(0.95).unwrap();
-        assert!(least <= low && high <= most, "{of:?}");
+        let found = report.quantities.iter().find(|quantity| quantity.name == name).unwrap();
+        let (median, [low, high]) = (found.estimate.median, found.estimate.ninety());
+        assert!(low <= median && median <= high && low < high, "{found:?}");
+        let [least, most] = found.estimate.interval(0.95).unwrap();
+        assert!(least <= low && high <= most, "{found:?}");
     }
     let speed = report.quantities[0].estimate.median;
     assert!((17.0..23.0).contains(&speed), "{speed} m/s where a recorder says 20 ± 0.8");
@@ -55,8 +55,8 @@ fn evidence_that_contradicts_itself_is_said() {
     evidence.edr = Some(Edr { speed_before_m_s, ..Edr::default() });
     evidence.rest.as_mut().unwrap().x_m = Some(150.0);
     let report = answer(&request).report;
-    let said = report.caveats.has(CaveatKind::EvidenceUnexplained);
-    assert!(said, "{:?} {:?}", report.caveats, report.fit);
+    let is_flagged = report.caveats.has(CaveatKind::EvidenceUnexplained);
+    assert!(is_flagged, "{:?} {:?}", report.caveats, report.fit);
 }
 
 #[test]
@@ -72,18 +72,18 @@ fn a_stop_keeps_what_was_sampled_and_says_that_it_is_not_the_posterior() {
 fn a_run_goes_on_from_its_checkpoint_to_the_same_answer_and_from_no_other() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.reconstruction");
-    let kept = ReconstructRequest { checkpoint: Some(path.clone()), ..request(60) };
+    let saved = ReconstructRequest { checkpoint: Some(path.clone()), ..request(60) };
     // Some way beyond the first checkpoint.
     let mut n_left = 20;
     let stop = &mut |_: Event<'_>| {
         n_left -= i32::from(path.exists());
         if n_left < 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    kept.answer(&Library::default(), stop).unwrap();
+    saved.answer(&Library::default(), stop).unwrap();
     assert!(path.exists());
-    let go_on = ReconstructRequest { resume: true, ..kept.clone() };
+    let go_on = ReconstructRequest { resume: true, ..saved.clone() };
     assert_eq!(answer(&go_on).report, answer(&request(60)).report);
-    let again = kept.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
+    let again = saved.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
     assert!(again.unwrap_err().to_string().contains("run.reconstruction"));
     let other = ReconstructRequest { seed: 7, ..go_on };
     let refused = other.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
@@ -109,10 +109,10 @@ fn a_way_over_ice_is_no_sign_of_a_high_speed() {
     let mut evidence = spin();
     evidence.edr = None;
     let inline = |evidence: &Evidence| EvidenceChoice::Inline(Box::new(evidence.clone()));
-    let asked = ReconstructRequest { site: Some(site), ..request(100) };
+    let on_site = ReconstructRequest { site: Some(site), ..request(100) };
 
     // The motion of the medians at 20 m/s, of which the place of rest is found.
-    let model = asked.model(&evidence).unwrap();
+    let model = on_site.model(&evidence).unwrap();
     let mut z = vec![0.0; model.prior().components().len()];
     z[0] = -0.43;
     let [truth] = &model.motions(&[z], |motion| motion)[..] else { panic!("one motion") };
@@ -127,17 +127,18 @@ fn a_way_over_ice_is_no_sign_of_a_high_speed() {
         (report.quantities[0].clone(), report)
     };
     let (known, report) =
-        speed(&ReconstructRequest { evidence: inline(&evidence), ..asked.clone() });
+        speed(&ReconstructRequest { evidence: inline(&evidence), ..on_site.clone() });
     let true_m_s = truth.impact.struck_speed_m_s;
     assert!((known.estimate.median / true_m_s - 1.0).abs() < 0.25, "{true_m_s} m/s, {known:?}");
     assert_eq!(report.friction_zones[0].name, "ice");
     for part in ["friction of the zone \"ice\" is 0.15", "all of which stood on one friction"] {
         assert!(report.caveats.iter().any(|caveat| caveat.text.contains(part)), "{part}");
     }
-    assert!(report.priors.iter().any(|of| of.latent == Latent::ZoneFrictionFactor));
-    let zones = report.caveats.iter().find(|of| of.text.contains("zones of the site")).unwrap();
+    assert!(report.priors.iter().any(|prior| prior.latent == Latent::ZoneFrictionFactor));
+    let zones =
+        report.caveats.iter().find(|caveat| caveat.text.contains("zones of the site")).unwrap();
     assert_eq!(zones.subject, Some(CaveatSubject::RoadFriction));
-    let without = ReconstructRequest { site: None, evidence: inline(&evidence), ..asked };
+    let without = ReconstructRequest { site: None, evidence: inline(&evidence), ..on_site };
     let (blind, report) = speed(&without);
     assert!(blind.estimate.median > 1.2 * true_m_s, "{true_m_s} m/s, {blind:?}");
     assert!(report.friction_zones.is_empty());
@@ -149,8 +150,9 @@ fn a_friction_that_the_evidence_leaves_open_is_that_of_the_road() {
     evidence.friction = None;
     let choice = EvidenceChoice::Inline(Box::new(evidence.clone()));
     let model = ReconstructRequest { evidence: choice, ..request(100) }.model(&evidence).unwrap();
-    let told = assumptions(&evidence, &model);
-    let friction = told.iter().find(|of| of.to_string().contains("[road] friction")).unwrap();
+    let caveats = assumptions(&evidence, &model);
+    let friction =
+        caveats.iter().find(|caveat| caveat.to_string().contains("[road] friction")).unwrap();
     assert!(friction.to_string().starts_with("assumed road friction: 0."), "{friction}");
 }
 

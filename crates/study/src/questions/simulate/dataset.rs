@@ -158,7 +158,11 @@ impl Question for SimulateDatasetRequest {
 impl Answer<SimulateDatasetReport> {
     /// What restricts the motion of one case.
     pub fn caveats_of(&self, case: &str) -> Caveats {
-        let flags = self.cases.iter().filter(|of| of.case == case).flat_map(|of| &of.flags);
+        let flags = self
+            .cases
+            .iter()
+            .filter(|replayed| replayed.case == case)
+            .flat_map(|replayed| &replayed.flags);
         let assumptions = self.caveats.assumptions().cloned();
         flags.map(|flag| flag.caveat.clone()).chain(assumptions).collect()
     }

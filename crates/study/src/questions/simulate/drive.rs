@@ -188,19 +188,19 @@ fn steer_history(
 ) -> Result<SteerHistory, StudyError> {
     let path = || file.path.clone();
     let series = read_steer_file(&file.path, file.map.as_ref())?.series;
-    let of = |steer_rad| SteerHistory { time_s: series.time_s().to_vec(), steer_rad };
+    let history = |steer_rad| SteerHistory { time_s: series.time_s().to_vec(), steer_rad };
     let road_wheel = match (series.get(Channel::Steer), front_wheels(&series)) {
         (Some(steer), _) => Some(steer.to_vec()),
         (None, wheels) => wheels,
     };
     match (road_wheel, series.get(Channel::SteeringWheel), steering_ratio) {
-        (Some(steer_rad), _, None) => Ok(of(steer_rad)),
+        (Some(steer_rad), _, None) => Ok(history(steer_rad)),
         (Some(_), None, Some(_)) => Err(StudyError::NoSteeringWheel { path: path() }),
         (_, Some(angles_rad), Some(ratio)) => {
             let steer_rad: Vec<f64> = angles_rad.iter().map(|angle| angle / ratio).collect();
             let refused = steer_rad.iter().find_map(|angle| STEER_ANGLE.check(*angle).err());
             match refused {
-                None => Ok(of(steer_rad)),
+                None => Ok(history(steer_rad)),
                 Some(source) => Err(StudyError::RoadWheel { path: path(), ratio, source }),
             }
         }

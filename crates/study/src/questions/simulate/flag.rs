@@ -140,18 +140,18 @@ impl From<&SecondContacts> for FlagReport {
 
 impl From<&MotionFlag> for FlagReport {
     fn from(flag: &MotionFlag) -> Self {
-        let of = |kind, time_s: f64| Self::new(kind, time_s, flag.to_string());
+        let flagged = |kind, time_s: f64| Self::new(kind, time_s, flag.to_string());
         match flag {
             MotionFlag::WheelLift { wheel, time_s } => {
-                Self { wheel: Some(word(wheel)), ..of(CaveatKind::WheelLift, *time_s) }
+                Self { wheel: Some(word(wheel)), ..flagged(CaveatKind::WheelLift, *time_s) }
             }
             MotionFlag::RollLimit { time_s, roll_rad } => {
                 let caveat = Caveat::new(CaveatKind::RollLimit, flag.to_string())
                     .with_value("roll angle [rad]", *roll_rad)
                     .with_range([-ROLL_LIMIT_RAD, ROLL_LIMIT_RAD]);
-                Self { caveat, ..of(CaveatKind::RollLimit, *time_s) }
+                Self { caveat, ..flagged(CaveatKind::RollLimit, *time_s) }
             }
-            MotionFlag::EnergyGain { time_s } => of(CaveatKind::EnergyGain, *time_s),
+            MotionFlag::EnergyGain { time_s } => flagged(CaveatKind::EnergyGain, *time_s),
         }
     }
 }

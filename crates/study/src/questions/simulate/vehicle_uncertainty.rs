@@ -74,12 +74,12 @@ pub(crate) fn vehicle_uncertainty(
     };
     let drawn: Vec<Option<DrawnEnd>> = vehicles.into_par_iter().map(end).collect();
     let ends: Vec<Option<EndState>> =
-        drawn.iter().map(|drawn| drawn.as_ref().map(|of| of.state)).collect();
+        drawn.iter().map(|drawn| drawn.as_ref().map(|end| end.state)).collect();
     let rest = || {
         let ends: Vec<MotionEnd> = drawn.iter().flatten().map(|drawn| drawn.end).collect();
         RestOutcome::from_ends(&ends, settings.duration_s)
     };
-    let of = |value: fn(&EndState) -> f64| {
+    let spread = |value: fn(&EndState) -> f64| {
         Estimate::from_draws(ends.iter().flatten().map(value).collect::<Vec<f64>>())
     };
     let places: Vec<_> =
@@ -100,10 +100,10 @@ pub(crate) fn vehicle_uncertainty(
     Some(VehicleUncertainty {
         n_draws: ends.len(),
         n_failed,
-        x_m: of(|end| end.x_m),
-        y_m: of(|end| end.y_m),
-        yaw_rad: of(|end| end.yaw_rad),
-        speed_m_s: of(|end| end.speed_m_s),
+        x_m: spread(|end| end.x_m),
+        y_m: spread(|end| end.y_m),
+        yaw_rad: spread(|end| end.yaw_rad),
+        speed_m_s: spread(|end| end.speed_m_s),
         rest: settings.ends_at_rest.then(rest).flatten(),
         second_contact_probability: central.striking.is_some().then_some(share_met),
         sensitivity,

@@ -160,10 +160,10 @@ impl FineTuneRequest {
         settings: &ResponseTrainSettings,
         observer: &mut Observer<'_>,
     ) -> Result<ResponseModel, StudyError> {
-        let mut told = |told: &TrainingReport| observer(Event::Training(told));
+        let mut report = |report: &TrainingReport| observer(Event::Training(report));
         Ok(match (self.learning, start) {
-            (Learning::Network, start) => fine_tune(start, set, settings, &mut told)?,
-            (Learning::Fleet, Some(start)) => train_fleet(start, set, settings, &mut told)?,
+            (Learning::Network, start) => fine_tune(start, set, settings, &mut report)?,
+            (Learning::Fleet, Some(start)) => train_fleet(start, set, settings, &mut report)?,
             (Learning::Strengths, Some(start)) => condition(start, set)?,
             (Learning::Fleet | Learning::Strengths, None) => return Err(StudyError::NoStart),
         })

@@ -145,7 +145,7 @@ impl Question for TrainForceRequest {
             resume: self.training.resume,
         };
         let started = Instant::now();
-        let model = train(&set, &settings, &mut |told| observer(Event::Training(told)))?;
+        let model = train(&set, &settings, &mut |report| observer(Event::Training(report)))?;
         let seconds = started.elapsed().as_secs_f64();
         let provenance = Provenance::from_seed(self.training.seed);
         let provenance = provenance.with_trained(FORCE_NETWORK, &model)?;

@@ -121,8 +121,8 @@ impl TrainResponseRequest {
             )?;
             return Ok(cases.map(|usable| {
                 notes.left_out = usable.left_out;
-                let kept = self.learned_from(&usable.cases);
-                kept.filter_map(ResponseCase::impact).collect()
+                let learned = self.learned_from(&usable.cases);
+                learned.filter_map(ResponseCase::impact).collect()
             }));
         }
         let vehicle =
@@ -132,8 +132,8 @@ impl TrainResponseRequest {
         let cases = force_cases(&self.data, self.training.bad_cases, library, observer)?;
         Ok(cases.map(|usable| {
             notes.left_out = usable.left_out;
-            let kept = self.learned_from(&usable.cases);
-            kept.filter_map(|case| impact_record(case, &vehicle)).collect()
+            let learned = self.learned_from(&usable.cases);
+            learned.filter_map(|case| impact_record(case, &vehicle)).collect()
         }))
     }
 
@@ -195,7 +195,7 @@ impl Question for TrainResponseRequest {
         let Outcome::Complete(records) = records else { return Ok(Outcome::Cancelled) };
         let (started, name) = (Instant::now(), data_name(&self.data));
         let model =
-            pretrain(&name, &records, &settings, &mut |told| observer(Event::Training(told)))?;
+            pretrain(&name, &records, &settings, &mut |report| observer(Event::Training(report)))?;
         let answer = ResponseTrainingAnswer::new(model, started.elapsed().as_secs_f64(), notes)?;
         Ok(Outcome::Complete(answer))
     }
