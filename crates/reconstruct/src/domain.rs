@@ -14,23 +14,38 @@ use impactlab_core::vehicle::{FrictionZone, VehicleParameters};
 struct Known {
     name: &'static str,
     unit: &'static str,
-    of: fn(&VehicleParameters) -> f64,
+    quantity: fn(&VehicleParameters) -> f64,
     range: [f64; 2],
 }
 
 /// What is compared: the lightest is a micro car, the heaviest a large SUV, and the longest wheelbase
 /// that of a pickup.
 const KNOWN: [Known; 5] = [
-    Known { name: "mass", unit: "kg", of: |car| car.mass.mass_kg, range: [900.0, 2750.0] },
+    Known { name: "mass", unit: "kg", quantity: |car| car.mass.mass_kg, range: [900.0, 2750.0] },
     Known {
         name: "wheelbase",
         unit: "m",
-        of: |car| car.geometry.wheelbase_m(),
+        quantity: |car| car.geometry.wheelbase_m(),
         range: [2.25, 3.70],
     },
-    Known { name: "track", unit: "m", of: |car| car.geometry.track_width_m, range: [1.34, 1.74] },
-    Known { name: "load of the front axle", unit: "kg", of: front_load_kg, range: AXLE_LOAD_KG },
-    Known { name: "load of the rear axle", unit: "kg", of: rear_load_kg, range: AXLE_LOAD_KG },
+    Known {
+        name: "track",
+        unit: "m",
+        quantity: |car| car.geometry.track_width_m,
+        range: [1.34, 1.74],
+    },
+    Known {
+        name: "load of the front axle",
+        unit: "kg",
+        quantity: front_load_kg,
+        range: AXLE_LOAD_KG,
+    },
+    Known {
+        name: "load of the rear axle",
+        unit: "kg",
+        quantity: rear_load_kg,
+        range: AXLE_LOAD_KG,
+    },
 ];
 
 /// Load of an axle at rest as a mass, kg, of the same vehicles.
@@ -71,8 +86,8 @@ fn vehicle_caveats(cars: &Cars) -> Vec<Caveat> {
 }
 
 fn car_caveats<'a>(which: &'a str, car: &'a Car) -> impl Iterator<Item = Caveat> + 'a {
-    KNOWN.iter().filter_map(move |Known { name, unit, of, range }| {
-        let value = of(&car.parameters);
+    KNOWN.iter().filter_map(move |Known { name, unit, quantity, range }| {
+        let value = quantity(&car.parameters);
         let [low, high] = *range;
         let text = format!(
             "{which}: {name} is {} {unit}; what is estimated of a vehicle, how it moves and what is \
@@ -147,7 +162,10 @@ mod tests {
 
     fn outside(evidence: &Evidence) -> Vec<(String, f64)> {
         let caveats = vehicle_caveats(&Cars::new(evidence, None, None));
-        caveats.into_iter().map(|of| (of.quantity.unwrap(), of.value.unwrap())).collect()
+        caveats
+            .into_iter()
+            .map(|caveat| (caveat.quantity.unwrap(), caveat.value.unwrap()))
+            .collect()
     }
 
     #[test]

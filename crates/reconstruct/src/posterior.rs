@@ -13,7 +13,7 @@ use impactlab_core::numerics::quantile_of_sorted;
 use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem};
 
 macro_rules! quantities {
-    ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $of:expr;)+) => {
+    ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $value:expr;)+) => {
         /// A quantity that a reconstruction asks for.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
@@ -37,8 +37,8 @@ macro_rules! quantities {
 
             /// Its value of a particle.
             pub fn value(self, values: &LatentValues, impact: &ImpactState) -> f64 {
-                let of: fn(&LatentValues, &ImpactState) -> f64 = match self { $(Self::$name => $of),+ };
-                of(values, impact)
+                let value: fn(&LatentValues, &ImpactState) -> f64 = match self { $(Self::$name => $value),+ };
+                value(values, impact)
             }
         }
     };
@@ -225,7 +225,8 @@ impl Posterior {
         quantities: &[QuantityEstimate],
     ) -> Option<usize> {
         let speed = ReconstructedQuantity::StruckSpeed;
-        let median = quantities.iter().find(|of| of.name == speed.key())?.estimate.median;
+        let median =
+            quantities.iter().find(|quantity| quantity.name == speed.key())?.estimate.median;
         let speeds = self.values(speed);
         let off = |idx: &usize| speeds.get(*idx).map_or(f64::INFINITY, |v| (v - median).abs());
         members.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
@@ -237,11 +238,11 @@ impl Posterior {
     }
 
     fn quantities_of(&self, chosen: &[usize]) -> Vec<QuantityEstimate> {
-        let of = |quantity: &ReconstructedQuantity| {
+        let estimate = |quantity: &ReconstructedQuantity| {
             let value = |&idx: &usize| quantity.value(&self.values[idx], &self.impacts[idx]);
             QuantityEstimate::from_values(*quantity, chosen.iter().map(value).collect())
         };
-        ReconstructedQuantity::ALL.iter().filter_map(of).collect()
+        ReconstructedQuantity::ALL.iter().filter_map(estimate).collect()
     }
 
     /// The kinds of courses of events, the most probable one first.
@@ -321,8 +322,9 @@ impl BudgetItem {
 
     /// What kind of quantity it is.
     pub fn quantity(&self) -> Quantity {
-        let reconstructed = ReconstructedQuantity::ALL.iter().find(|of| of.key() == self.known);
-        let open = Latent::ALL.iter().find(|of| of.key() == self.known);
+        let reconstructed =
+            ReconstructedQuantity::ALL.iter().find(|quantity| quantity.key() == self.known);
+        let open = Latent::ALL.iter().find(|latent| latent.key() == self.known);
         let open = open.map_or(Quantity::Ratio, |latent| latent.quantity());
         reconstructed.map_or(open, |quantity| quantity.quantity())
     }

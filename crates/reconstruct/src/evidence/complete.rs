@@ -112,34 +112,47 @@ mod tests {
             evidence.missing().unwrap_or_default()
         };
         assert!(missing(|_| {}).contains("struck car at rest has not been placed"));
-        assert!(missing(|of| of.rest.as_mut().unwrap().x_m = Some(30.0)).contains("at rest"));
-        let text = missing(|of| of.rest.as_mut().unwrap().y_m = Some(0.0));
+        assert!(
+            missing(|evidence| evidence.rest.as_mut().unwrap().x_m = Some(30.0))
+                .contains("at rest")
+        );
+        let text = missing(|evidence| evidence.rest.as_mut().unwrap().y_m = Some(0.0));
         assert!(text.contains("damage of the struck car"), "{text}");
-        let along = move |of: &mut Evidence| {
-            of.damage.along_m = Some(Stated { value: Some(-1.5), sigma: None })
+        let along = move |evidence: &mut Evidence| {
+            evidence.damage.along_m = Some(Stated { value: Some(-1.5), sigma: None })
         };
         assert_eq!(missing(along), "");
-        let text = missing(|of| of.striking_rest = Some(RestPose::default()));
+        let text = missing(|evidence| evidence.striking_rest = Some(RestPose::default()));
         assert!(text.contains("striking car at rest has not been placed"), "{text}");
-        assert_eq!(missing(|of| of.striking_rest = None), "");
-        assert!(missing(|of| of.marks.push(Mark::default())).contains("at least two points"));
-        assert_eq!(missing(|of| of.marks[0].points_m = vec![[1.0, 0.0], [9.0, 1.0]]), "");
-        assert!(missing(|of| of.edr = Some(Edr::default())).contains("event data recorder"));
-        let text = missing(|of| of.edr.as_mut().unwrap().delta_v_y_m_s = Some([Some(-1.0), None]));
+        assert_eq!(missing(|evidence| evidence.striking_rest = None), "");
+        assert!(
+            missing(|evidence| evidence.marks.push(Mark::default()))
+                .contains("at least two points")
+        );
+        assert_eq!(
+            missing(|evidence| evidence.marks[0].points_m = vec![[1.0, 0.0], [9.0, 1.0]]),
+            ""
+        );
+        assert!(
+            missing(|evidence| evidence.edr = Some(Edr::default())).contains("event data recorder")
+        );
+        let text = missing(|evidence| {
+            evidence.edr.as_mut().unwrap().delta_v_y_m_s = Some([Some(-1.0), None])
+        });
         assert!(text.contains("Δv to the left has not been entered"), "{text}");
-        let text = missing(|of| {
+        let text = missing(|evidence| {
             let sigma = Some(0.5);
-            of.edr = Some(Edr {
+            evidence.edr = Some(Edr {
                 speed_before_m_s: Some(Stated { value: None, sigma }),
                 ..Edr::default()
             });
         });
         assert!(text.contains("speed before the impact has not been entered"), "{text}");
-        assert_eq!(missing(|of| of.edr = None), "");
-        let text = missing(|of| of.positions.push(VideoPosition::default()));
+        assert_eq!(missing(|evidence| evidence.edr = None), "");
+        let text = missing(|evidence| evidence.positions.push(VideoPosition::default()));
         assert!(text.contains("position in a video 1 has not been entered"), "{text}");
-        assert_eq!(missing(|of| of.positions.clear()), "");
-        let text = missing(|of| of.struck_car.cg_to_front_axle_m = Some(1.2));
+        assert_eq!(missing(|evidence| evidence.positions.clear()), "");
+        let text = missing(|evidence| evidence.struck_car.cg_to_front_axle_m = Some(1.2));
         assert!(text.contains("CG to rear axle has not been entered"), "{text}");
     }
 

@@ -250,7 +250,7 @@ mod tests {
         let fixed = Sigma::fixed("sigma", "±", POSITION_SIGMA, 0.1, "");
         let share = Sigma::share("sigma", "±", MASS_SIGMA, [0.03, 10.0], "");
         let stated = |value, sigma| Some(Stated { value, sigma });
-        let sigma = |of: Sigma, stated| of.resolve(stated).map(|of| of.sigma);
+        let sigma = |rule: Sigma, stated| rule.resolve(stated).map(|resolved| resolved.sigma);
         assert_eq!(sigma(fixed, stated(Some(5.0), None)), Some(0.1));
         assert_eq!(sigma(fixed, stated(Some(5.0), Some(0.2))), Some(0.2));
         assert_eq!(sigma(share, stated(Some(1000.0), None)), Some(30.0));

@@ -43,7 +43,9 @@ struct Collected {
 
 impl Collected {
     fn add(&mut self, points_m: Vec<[f64; 2]>, is_line: bool) {
-        let Some(section) = self.section.filter(|of| of.group == Group::Scene) else { return };
+        let Some(section) = self.section.filter(|section| section.group == Group::Scene) else {
+            return;
+        };
         let name: Vec<&str> = std::iter::once(section.title).chain(self.words.clone()).collect();
         self.places.push(FoundPlace { name: name.join(", "), section, points_m, is_line });
     }

@@ -39,7 +39,7 @@ impl Writer {
 impl Items for Writer {
     fn item(&mut self, section: &'static Section, _: Option<usize>, item: &mut impl Item) {
         let table = Self::table_of(item);
-        self.set(section.key, Some(table).filter(|of| section.is_required || !of.is_empty()));
+        self.set(section.key, Some(table).filter(|table| section.is_required || !table.is_empty()));
     }
 
     fn many<T: Item>(&mut self, section: &'static Section, items: &mut Vec<T>) {

@@ -216,7 +216,7 @@ impl WheelTrack {
         let mut nearest = self.foot([x, y], before);
         if best + 1 < self.at_m.len() && best > before {
             let after = self.foot([x, y], best);
-            let size = |of: &Nearest| of.offset_m[0].hypot(of.offset_m[1]);
+            let size = |nearest: &Nearest| nearest.offset_m[0].hypot(nearest.offset_m[1]);
             if size(&after) < size(&nearest) {
                 nearest = after;
             }
