@@ -159,7 +159,8 @@ impl Sheet {
         let survey = scene.ground.as_ref().map(|ground| survey_text(ground.origin.as_ref()));
         let caveats = &scene.caveats;
         let caveats = caveats.restrictions().into_iter().chain(caveats.assumptions());
-        let restrictions = caveats.map(|of| format!("{}: {}", of.kind.label(), of.statement()));
+        let restrictions =
+            caveats.map(|caveat| format!("{}: {}", caveat.kind.label(), caveat.statement()));
         for (idx, value) in std::iter::once(title).chain(survey).chain(restrictions).enumerate() {
             let place = [low[0], low[1] - (idx + 2) as f64 * LINE_M];
             self.add_to(RESTRICTIONS.to_owned(), 1, EntityType::Text(text(place, &value)));

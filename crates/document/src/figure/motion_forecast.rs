@@ -246,7 +246,7 @@ pub fn forecast_channel_figure(
     let mut elements = Vec::new();
     for (rank, (level, opacity)) in MOTION_BAND_LEVELS.into_iter().zip(BAND_OPACITIES).enumerate() {
         let edge = |end: usize| -> Vec<f64> {
-            let ends = input.bands.intervals.iter().map(|of| of[axis][rank][end]);
+            let ends = input.bands.intervals.iter().map(|instant| instant[axis][rank][end]);
             ends.map(|value| y.unit.from_si(value)).collect()
         };
         elements.push(FigureElement::Band(Band {

@@ -64,7 +64,7 @@ pub fn marginal_figure(
         }),
         FigureElement::Band(band("after it", &histogram(&posterior, range))),
     ];
-    let estimate = answer.report.quantities.iter().find(|of| of.name == quantity.key());
+    let estimate = answer.report.quantities.iter().find(|found| found.name == quantity.key());
     if let Some(QuantityEstimate { estimate, .. }) = estimate {
         let [low, high] = estimate.ninety();
         let lines = [("90 % interval", low), ("median", estimate.median), ("90 % interval", high)];
@@ -146,7 +146,7 @@ pub fn pair_figure(
     caveats: &Caveats,
     units: UnitSystem,
 ) -> Figure {
-    let axes = quantities.map(|of| Axis::shown(of.label(), of.quantity(), units));
+    let axes = quantities.map(|quantity| Axis::shown(quantity.label(), quantity.quantity(), units));
     let shown = |i: usize, values: &[f64]| -> Vec<f64> {
         values.iter().map(|value| axes[i].unit.from_si(*value)).collect()
     };

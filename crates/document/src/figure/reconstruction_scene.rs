@@ -67,19 +67,19 @@ pub fn reconstruction_scene_figure(
     let y = Axis::shown("Y, to the left", Quantity::Length, units);
     let shown = |[px, py]: [f64; 2]| [x.unit.from_si(px), y.unit.from_si(py)];
     let path = |(name, role): (&str, Role), path: &VehiclePath| {
-        let of = |point: &PathPoint| shown([point.x_m, point.y_m]);
+        let seen = |point: &PathPoint| shown([point.x_m, point.y_m]);
         FigureElement::Path(Path {
             series: Series {
                 name: name.to_owned(),
                 role,
                 style: LineStyle::Solid,
-                points: path.points.iter().map(of).collect(),
+                points: path.points.iter().map(seen).collect(),
             },
             time_s: path.points.iter().map(|point| point.time_s).collect(),
             yaw_rad: path.points.iter().map(|point| point.yaw_rad).collect(),
         })
     };
-    let drawn = scene.drawn.iter().map(|of| path(("particles", Role::Muted), of));
+    let drawn = scene.drawn.iter().map(|drawn| path(("particles", Role::Muted), drawn));
     let mut elements: Vec<FigureElement> = drawn.collect();
     elements.extend(contact_elements(scene, &shown, units));
     elements.extend(scene.marks.iter().map(|mark| {
@@ -104,8 +104,8 @@ fn pose_on(path: &VehiclePath, time_s: f64) -> Option<Pose> {
     let last = path.points.last()?;
     let time_s = time_s.min(last.time_s);
     let times: Vec<f64> = path.points.iter().map(|point| point.time_s).collect();
-    let at = |of: fn(&PathPoint) -> f64| {
-        let values: Vec<f64> = path.points.iter().map(of).collect();
+    let at = |coordinate: fn(&PathPoint) -> f64| {
+        let values: Vec<f64> = path.points.iter().map(coordinate).collect();
         interpolate(&times, &values, time_s)
     };
     Some(Pose { x_m: at(|p| p.x_m)?, y_m: at(|p| p.y_m)?, yaw_rad: at(|p| p.yaw_rad)? })

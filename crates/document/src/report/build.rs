@@ -170,10 +170,11 @@ impl Builder<'_> {
     ) -> Vec<Block> {
         let words = self.wording.words;
         let mut blocks = vec![Block::heading(level, part.title.clone())];
-        let is_same = |of: &Part| {
-            (&of.title, &of.answer, &of.caveats) == (&part.title, &part.answer, &part.caveats)
+        let is_same = |other: &Part| {
+            (&other.title, &other.answer, &other.caveats)
+                == (&part.title, &part.answer, &part.caveats)
         };
-        if let Some((name, _)) = written.iter().find(|(_, of)| is_same(of)) {
+        if let Some((name, _)) = written.iter().find(|(_, other)| is_same(other)) {
             blocks.push(Block::paragraph(fill(words.same_as, &[("name", name)])));
             return blocks;
         }
@@ -207,7 +208,7 @@ impl Builder<'_> {
         for variant in variants {
             let mut of_variant = Vec::new();
             for picture in parts_of(variant).flat_map(|part| &part.pictures) {
-                if drawn.iter().any(|of| of.content == picture.content) {
+                if drawn.iter().any(|other| other.content == picture.content) {
                     continue;
                 }
                 drawn.push(picture);
@@ -362,9 +363,9 @@ fn methods(variants: &[VariantParts]) -> BTreeSet<Method> {
 }
 
 /// What the parts contribute, each once.
-fn distinct(variants: &[VariantParts], of: impl Fn(&Part) -> &Vec<Block>) -> Vec<Block> {
+fn distinct(variants: &[VariantParts], blocks_of: impl Fn(&Part) -> &Vec<Block>) -> Vec<Block> {
     let mut written: Vec<&Vec<Block>> = Vec::new();
-    for blocks in variants.iter().flat_map(parts_of).map(&of) {
+    for blocks in variants.iter().flat_map(parts_of).map(&blocks_of) {
         if !written.contains(&blocks) {
             written.push(blocks);
         }

@@ -42,12 +42,12 @@ pub(super) fn provenance_blocks(
     let saved = is_saved.then(|| Block::paragraph(fill(words.case_saved_by, &versions)));
     let mut blocks: Vec<Block> = saved.into_iter().collect();
     blocks.extend(change_notice(&report.changes, wording, paths));
-    let row = |(name, of): &(String, PartProvenance)| {
-        let seeds = match of.seeds.is_empty() {
+    let row = |(name, provenance): &(String, PartProvenance)| {
+        let seeds = match provenance.seeds.is_empty() {
             true => words.no_draws.to_owned(),
-            false => of.seeds.join(", "),
+            false => provenance.seeds.join(", "),
         };
-        [name.clone(), of.version.clone(), seeds]
+        [name.clone(), provenance.version.clone(), seeds]
     };
     let rows = answers.iter().map(row).collect();
     let columns = [words.answer, words.version, words.seeds];

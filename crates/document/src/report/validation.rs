@@ -141,17 +141,19 @@ pub(super) fn validation_blocks(method: Method, wording: &Wording) -> Vec<Block>
         Method::DataSheet => (words.validation_sheet, Vec::new()),
     };
     let heading = Block::heading(2, method.name(wording));
-    let tables = tables.into_iter().map(|(caption, of)| Block::Table(table(caption, of, wording)));
+    let tables = tables
+        .into_iter()
+        .map(|(caption, published)| Block::Table(table(caption, published, wording)));
     [heading, Block::paragraph(text)].into_iter().chain(tables).collect()
 }
 
 /// The lines as a table.
-fn table(caption: &str, of: &ValidationTable, wording: &Wording) -> Table {
+fn table(caption: &str, published: &ValidationTable, wording: &Wording) -> Table {
     let cells = |line: &str| -> Vec<String> {
         let inner = line.trim().trim_start_matches('|').trim_end_matches('|');
         inner.split('|').map(|cell| wording.validation_cell(cell.trim())).collect()
     };
-    let mut lines = of.lines.iter().map(|line| cells(line));
+    let mut lines = published.lines.iter().map(|line| cells(line));
     let header = lines.next().unwrap_or_default();
     let n = header.len();
     let column = |title| Column { title, is_numeric: false };

@@ -18,14 +18,16 @@ pub(super) fn validity_blocks(
 ) -> Vec<Block> {
     let words = wording.words;
     let mut blocks = vec![Block::paragraph(words.validity_text)];
-    let limits = methods.iter().map(|of| format!("{}: {}", of.name(wording), of.limits(wording)));
+    let limits = methods
+        .iter()
+        .map(|method| format!("{}: {}", method.name(wording), method.limits(wording)));
     let limits: Vec<String> = limits.collect();
     if !limits.is_empty() {
         blocks.push(Block::List { items: limits });
     }
     let domain = each_once(variants, |part| part.domain.clone());
     if !domain.is_empty() {
-        let rows = domain.into_iter().map(|(text, of)| [text, of.join("; ")]).collect();
+        let rows = domain.into_iter().map(|(text, holders)| [text, holders.join("; ")]).collect();
         let columns = [words.sentence, words.holds_for];
         blocks.push(Block::Table(Table::new(words.domain_caption, columns, rows)));
     }
@@ -42,7 +44,7 @@ pub(super) fn validity_blocks(
 /// What the answers have, each once, with the answers that have it.
 fn each_once<T: PartialEq>(
     variants: &[VariantParts],
-    of: impl Fn(&Part) -> Vec<T>,
+    items: impl Fn(&Part) -> Vec<T>,
 ) -> Vec<(T, Vec<String>)> {
     let mut found: Vec<(T, Vec<String>)> = Vec::new();
     for variant in variants {
@@ -51,7 +53,7 @@ fn each_once<T: PartialEq>(
                 1 => part.kind.clone(),
                 _ => format!("{}: {}", variant.name, part.kind),
             };
-            for item in of(part) {
+            for item in items(part) {
                 match found.iter_mut().find(|(known, _)| *known == item) {
                     Some((_, names)) if !names.contains(&name) => names.push(name.clone()),
                     Some(_) => {}
@@ -72,10 +74,15 @@ fn caveat_rows(variants: &[VariantParts], wording: &Wording) -> Vec<[String; 4]>
         restrictions.chain(part.caveats.summaries()).collect()
     });
     found.sort_by_key(|(caveat, _)| !caveat.is_warning());
-    let row = |(caveat, of): (Caveat, Vec<String>)| {
+    let row = |(caveat, holders): (Caveat, Vec<String>)| {
         let severity = if caveat.is_warning() { words.warning } else { words.note };
         let label = format!("{severity}: {}", wording.term(caveat.kind.label()));
-        [label, sentence(&caveat, wording), remedy(caveat.kind, wording).to_owned(), of.join("; ")]
+        [
+            label,
+            sentence(&caveat, wording),
+            remedy(caveat.kind, wording).to_owned(),
+            holders.join("; "),
+        ]
     };
     found.into_iter().map(row).collect()
 }

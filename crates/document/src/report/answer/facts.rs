@@ -55,14 +55,14 @@ fn with_writer<T>(context: Context<'_>, write: impl FnOnce(&FactWriter<'_>) -> T
 
 /// Version, seeds and numbers of draws of an answer.
 pub(super) fn provenance_of(
-    of: &Provenance,
+    provenance: &Provenance,
     draws: &[(&str, String)],
     wording: &Wording,
 ) -> PartProvenance {
-    let seed = of.seed.map(|seed| format!("{} {seed}", wording.words.seed));
+    let seed = provenance.seed.map(|seed| format!("{} {seed}", wording.words.seed));
     let draws = draws.iter().map(|(name, n)| format!("{name} {n}"));
     PartProvenance {
-        version: of.version.to_string(),
+        version: provenance.version.to_string(),
         seeds: seed.into_iter().chain(draws).collect(),
     }
 }

@@ -37,12 +37,13 @@ pub(super) fn with_request(mut part: Part, request: &Request, context: Context<'
             source: source.to_owned(),
         }
     });
-    let assumed = part.caveats.assumptions().map(|of| InputRow {
+    let assumed = part.caveats.assumptions().map(|assumption| InputRow {
         group: part.kind.clone(),
-        label: wording.term(of.subject.map_or(of.kind.label(), CaveatSubject::label)),
-        value: wording.quoted(&of.text),
+        label: wording
+            .term(assumption.subject.map_or(assumption.kind.label(), CaveatSubject::label)),
+        value: wording.quoted(&assumption.text),
         class: InputClass::Assumed,
-        source: wording.quoted(of.reason.as_deref().unwrap_or_default()),
+        source: wording.quoted(assumption.reason.as_deref().unwrap_or_default()),
     });
     let mut rows: Vec<InputRow> = given.collect();
     rows.append(&mut part.inputs);

@@ -81,7 +81,7 @@ fn pictures(
     let still = forecast_still(request, answer, &density, caveats, context);
     let input = MotionForecastFigure::new(answer, &bands, caveats, at_s, wording.units)
         .with_motions(analysis);
-    let yaw = FORECAST_CHANNELS.into_iter().find(|of| of.channel == Channel::Yaw);
+    let yaw = FORECAST_CHANNELS.into_iter().find(|shown| shown.channel == Channel::Yaw);
     let yaw = yaw.map(|channel| {
         let caption = fill(words.forecast_yaw_picture, &[("name", &report.scenario)]);
         PartPicture::figure(caption, forecast_channel_figure(&input, channel))

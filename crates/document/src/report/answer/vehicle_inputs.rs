@@ -60,7 +60,7 @@ pub(super) fn estimate_row(estimate: &Estimate, group: &str, wording: &Wording) 
         None => wording
             .estimate_in(Unit { quantity: Quantity::Ratio, symbol: unit, si_per_unit: 1.0 }, value),
     };
-    let range = text.at(0.9).map_or_else(String::new, |of| of.range.clone());
+    let range = text.at(0.9).map_or_else(String::new, |interval| interval.range.clone());
     InputRow {
         group: group.to_owned(),
         label: wording.term(quantity.label()),

@@ -37,9 +37,9 @@ mod tests {
 
     #[test]
     fn every_label_of_the_program_has_a_german_one() {
-        let latents = Latent::ALL.iter().map(|of| of.label());
-        let quantities = ReconstructedQuantity::ALL.iter().map(|of| of.label());
-        let sheet = SheetQuantity::ALL.iter().map(|of| of.label());
+        let latents = Latent::ALL.iter().map(|latent| latent.label());
+        let quantities = ReconstructedQuantity::ALL.iter().map(|quantity| quantity.label());
+        let sheet = SheetQuantity::ALL.iter().map(|quantity| quantity.label());
         for label in latents.chain(quantities).chain(sheet) {
             assert!(phrase_of(Language::De, label).is_some(), "{label}");
         }

@@ -211,8 +211,8 @@ impl Drawn<'_> {
             }
             _ => {
                 filled(surface, rect_pt, Ink::Shade);
-                let caption = self.document.pictures().find(|of| of.number == number);
-                let caption = caption.map_or(String::new(), |of| of.caption.clone());
+                let caption = self.document.pictures().find(|picture| picture.number == number);
+                let caption = caption.map_or(String::new(), |picture| picture.caption.clone());
                 let words = words_of(self.document.language);
                 let text = fill(words.not_drawn, &[("caption", &caption)]);
                 let text = self.cut(&text, width - 16.0);

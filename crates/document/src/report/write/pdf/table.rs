@@ -156,7 +156,9 @@ fn columns(table: &Table, fonts: &Fonts, width_pt: f32) -> Vec<[f32; 2]> {
         cells.chain(table.columns.get(idx).map(|column| &column.title))
     };
     let padded = |pt: f32| pt + 2.0 * PADDING_PT + 0.5;
-    let size = |of: &dyn Fn(&str) -> f32, idx| texts(idx).map(|text| of(text)).fold(8.0, f32::max);
+    let size = |width_pt: &dyn Fn(&str) -> f32, idx| {
+        texts(idx).map(|text| width_pt(text)).fold(8.0, f32::max)
+    };
     let wanted: Vec<f32> =
         (0..n).map(|idx| padded(size(&|t| CELL_PT * fonts.width(t), idx))).collect();
     let widest = WIDEST_WORD * width_pt;
