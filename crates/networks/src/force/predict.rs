@@ -170,7 +170,7 @@ impl ForceModel {
         Ok(CanonicalPrediction {
             mixture,
             likely,
-            centre: mean_curve(curves.zip(variants.iter().map(|of| of.probability))),
+            centre: mean_curve(curves.zip(variants.iter().map(|variant| variant.probability))),
             momentum_impulse_n_s,
             hooking_probability: (k > 1).then_some(hooking),
         })
@@ -202,8 +202,8 @@ impl ForceModel {
         let mixture = CurveMixture::new(components.collect())?;
         let curves: Vec<(ForceCurve, f64)> =
             bare.iter().map(|(force, share)| (force.curve(), *share)).collect();
-        let momentum_impulse_n_s =
-            [0, 1].map(|axis| bare.iter().map(|(of, share)| share * of.impulse_n_s[axis]).sum());
+        let momentum_impulse_n_s = [0, 1]
+            .map(|axis| bare.iter().map(|(force, share)| share * force.impulse_n_s[axis]).sum());
         let prediction = CanonicalPrediction {
             likely: mixture.clone(),
             mixture,
@@ -211,7 +211,7 @@ impl ForceModel {
             momentum_impulse_n_s,
             hooking_probability: None,
         };
-        Ok((prediction, bare.iter().any(|(of, _)| of.is_approaching)))
+        Ok((prediction, bare.iter().any(|(force, _)| force.is_approaching)))
     }
 
     fn variants(&self, scenario: &ForceScenario) -> Result<Vec<Variant>, ForceError> {

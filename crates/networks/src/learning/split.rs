@@ -42,9 +42,9 @@ pub fn split<C: TrainingCase>(cases: &[C], seed: u64, test_share: f64) -> Split 
 /// - `n_folds`: 2 or more; folds that get no case are left out.
 pub fn folds<C: TrainingCase>(cases: &[C], n_folds: usize, seed: u64) -> Vec<Split> {
     let order: Vec<usize> = strata(cases, seed).concat();
-    let fold = |of: usize| {
+    let fold = |number: usize| {
         let dealt = order.iter().enumerate().map(|(rank, &idx)| (rank % n_folds.max(1), idx));
-        let (test, train): (Vec<_>, Vec<_>) = dealt.partition(|(fold, _)| *fold == of);
+        let (test, train): (Vec<_>, Vec<_>) = dealt.partition(|(fold, _)| *fold == number);
         let indices = |part: Vec<(usize, usize)>| {
             let mut indices: Vec<usize> = part.into_iter().map(|(_, idx)| idx).collect();
             indices.sort_unstable();
@@ -60,11 +60,11 @@ fn strata<C: TrainingCase>(cases: &[C], seed: u64) -> [Vec<usize>; 2] {
     let mut keyed: Vec<(String, usize)> =
         cases.iter().enumerate().map(|(idx, case)| (hash(seed, case.name()), idx)).collect();
     keyed.sort();
-    let of = |ordinary: bool| {
+    let members = |ordinary: bool| {
         let stratum = keyed.iter().filter(|(_, idx)| cases[*idx].is_ordinary() == ordinary);
         stratum.map(|(_, idx)| *idx).collect()
     };
-    [of(true), of(false)]
+    [members(true), members(false)]
 }
 
 fn hash(seed: u64, name: &str) -> String {

@@ -160,9 +160,9 @@ mod tests {
     fn results(parameters: &Parameters, x: &Var, forward: impl Fn(&Var) -> Tensor) -> Vec<Tensor> {
         let y = forward(x);
         let gradients = y.sqr().unwrap().mean_all().unwrap().backward().unwrap();
-        let of = |variable: &Var| gradients.get(variable).unwrap().clone();
-        let all = parameters.iter().map(|(_, variable)| of(variable));
-        let all: Vec<Tensor> = all.chain([of(x)]).collect();
+        let gradient = |variable: &Var| gradients.get(variable).unwrap().clone();
+        let all = parameters.iter().map(|(_, variable)| gradient(variable));
+        let all: Vec<Tensor> = all.chain([gradient(x)]).collect();
         [vec![y], all].concat()
     }
 

@@ -148,10 +148,10 @@ impl<T: NetworkNumber> CustomOp2 for MatrixProduct<T> {
             let matrices = Matrices::new(values, layout.dims(), is_transposed);
             matrices.ok_or_else(|| self.mismatch(a.dims(), b.dims()))
         };
-        let gradient_of = |of: &Tensor, left: Matrices<'_, T>, right: Matrices<'_, T>| {
+        let gradient_of = |input: &Tensor, left: Matrices<'_, T>, right: Matrices<'_, T>| {
             let values = products(n, left, right);
             let values = values.ok_or_else(|| self.mismatch(a.dims(), b.dims()))?;
-            Tensor::from_vec(values, of.shape(), &Device::Cpu)
+            Tensor::from_vec(values, input.shape(), &Device::Cpu)
         };
         let da = match a.track_op() {
             true => Some(gradient_of(a, read(2, false)?, read(1, !self.transposes_b)?)?),

@@ -100,13 +100,13 @@ pub fn evaluate(
     let scored = Scored::new(test, predictions, settings.probabilistic)?;
     let of_domain = |inside: bool| {
         let known = predictions.iter().enumerate();
-        let known = known.filter(|(_, of)| (of.applicability == 1.0) == inside);
+        let known = known.filter(|(_, prediction)| (prediction.applicability == 1.0) == inside);
         scored.over(known.map(|(idx, _)| idx))
     };
     let domain = DomainMetrics { inside: of_domain(true), outside: of_domain(false) };
     let clusters = cluster(train, settings.seed)?;
     let all = [&scored, &pulse, &nearest, &statistical];
-    let metrics = |of: &Scored| of.metrics(test).ok_or(EvaluationError::NoCases);
+    let metrics = |scored: &Scored| scored.metrics(test).ok_or(EvaluationError::NoCases);
     let evaluation = Evaluation {
         model: model.to_owned(),
         columns: settings.columns,
@@ -185,7 +185,7 @@ fn cluster_metrics(
     model: &Scored,
     statistical: &Scored,
 ) -> Vec<ClusterMetrics> {
-    let of = |number: usize| {
+    let metrics = |number: usize| {
         let is_in =
             |case: &ForceCase| features(case).is_some_and(|f| clusters.nearest(&f) == number);
         Some(ClusterMetrics {
@@ -195,7 +195,7 @@ fn cluster_metrics(
             statistical: statistical.chosen(test, is_in)?,
         })
     };
-    (0..clusters.n_clusters()).filter_map(of).collect()
+    (0..clusters.n_clusters()).filter_map(metrics).collect()
 }
 
 fn case_errors(
@@ -203,7 +203,7 @@ fn case_errors(
     clusters: &ImpulseClusters,
     [model, pulse, nearest, statistical]: [&Scored; 4],
 ) -> Vec<CaseErrors> {
-    let of = |(idx, case): (usize, &&ForceCase)| {
+    let errors = |(idx, case): (usize, &&ForceCase)| {
         let number = clusters.nearest(&features(case)?);
         Some(CaseErrors {
             name: case.name.clone(),
@@ -215,5 +215,5 @@ fn case_errors(
             statistical: *statistical.errors.get(idx)?,
         })
     };
-    test.iter().enumerate().filter_map(of).collect()
+    test.iter().enumerate().filter_map(errors).collect()
 }

@@ -54,8 +54,8 @@ impl CrossValidation {
         let compared = |choose: fn(&CaseErrors) -> bool| {
             let cases: Vec<&CaseErrors> =
                 folds.iter().flat_map(|fold| &fold.cases).filter(|case| choose(case)).collect();
-            let metrics = |of: fn(&CaseErrors) -> &PointErrors| {
-                let errors: Vec<&PointErrors> = cases.iter().map(|case| of(case)).collect();
+            let metrics = |errors_by: fn(&CaseErrors) -> &PointErrors| {
+                let errors: Vec<&PointErrors> = cases.iter().map(|case| errors_by(case)).collect();
                 CurveMetrics::new(&errors, &[])
             };
             Some(ComparedMetrics {
@@ -141,11 +141,11 @@ pub fn cross_validate(
     let n_steps = (folds.len() * config.training.epochs) as u64;
     let mut evaluations = Vec::with_capacity(folds.len());
     for (i, fold) in folds.iter().enumerate() {
-        let of = |indices: &[usize]| -> Vec<ForceCase> {
+        let chosen = |indices: &[usize]| -> Vec<ForceCase> {
             indices.iter().filter_map(|&idx| cases.get(idx)).cloned().collect()
         };
         let name = format!("fold {}", i + 1);
-        let set = TrainingSet { name, train: of(&fold.train), test: Vec::new() };
+        let set = TrainingSet { name, train: chosen(&fold.train), test: Vec::new() };
         let train_settings = TrainSettings::unsaved(config.clone(), settings.seed);
         let (mut is_cancelled, first) = (false, (i * config.training.epochs) as u64);
         let model = train(&set, &train_settings, &mut |progress| {
@@ -163,7 +163,7 @@ pub fn cross_validate(
         if is_cancelled {
             return Ok(Outcome::Cancelled);
         }
-        match evaluate_model(&model, &of(&fold.test), settings, report)? {
+        match evaluate_model(&model, &chosen(&fold.test), settings, report)? {
             Outcome::Complete(evaluation) => evaluations.push(evaluation),
             Outcome::Cancelled => return Ok(Outcome::Cancelled),
         }

@@ -23,10 +23,10 @@ impl Evaluation {
     }
 
     fn tables(&self) -> Vec<MetricsTable> {
-        let mut tables = vec![self.errors("all cases", |of| Some(&of.overall))];
+        let mut tables = vec![self.errors("all cases", |metrics| Some(&metrics.overall))];
         if self.metrics.separated.is_some() {
             let title = "without cases that hook or have not separated";
-            tables.push(self.errors(title, |of| of.separated.as_ref()));
+            tables.push(self.errors(title, |metrics| metrics.separated.as_ref()));
         }
         tables.extend(self.coverage());
         tables.extend(self.scores());
@@ -49,19 +49,19 @@ impl Evaluation {
         title: &str,
         block: impl Fn(&'a ForceMetrics) -> Option<&'a CurveMetrics>,
     ) -> MetricsTable {
-        let row = |(name, of): (&str, &'a ForceMetrics)| {
-            let of = block(of)?;
+        let row = |(name, metrics): (&str, &'a ForceMetrics)| {
+            let metrics = block(metrics)?;
             let errors = [
-                of.history_error,
-                of.rmse_over_peak,
-                of.impulse_error,
-                of.peak_error,
-                of.duration_error,
+                metrics.history_error,
+                metrics.rmse_over_peak,
+                metrics.impulse_error,
+                metrics.peak_error,
+                metrics.duration_error,
             ];
             let cells = errors.iter().map(|error| median_and_mean(error, 100.0));
             Some(std::iter::once(name.to_owned()).chain(cells).collect())
         };
-        let n_cases = block(&self.metrics).map_or(0, |of| of.n_cases);
+        let n_cases = block(&self.metrics).map_or(0, |metrics| metrics.n_cases);
         MetricsTable {
             title: format!("Median (mean) error in %, {title}: {n_cases}"),
             header: header(&["", "history", "RMSE/peak", "impulse", "peak", "duration"]),
@@ -71,22 +71,26 @@ impl Evaluation {
 
     fn with_distribution(&self) -> impl Iterator<Item = (&str, &DistributionMetrics)> {
         let models = self.models().into_iter();
-        models.filter_map(|(name, of)| Some((name, of.overall.probabilistic.as_ref()?)))
+        models.filter_map(|(name, metrics)| Some((name, metrics.overall.probabilistic.as_ref()?)))
     }
 
     fn coverage(&self) -> Option<MetricsTable> {
         let by_domain = [("in the domain", &self.domain.inside), ("outside", &self.domain.outside)];
-        let by_domain = by_domain.into_iter().filter_map(|(name, of)| {
-            let of = of.as_ref().filter(|_| self.domain.outside.is_some())?;
-            Some((format!("{}, {} {name}", self.model, of.n_cases), of.probabilistic.as_ref()?))
+        let by_domain = by_domain.into_iter().filter_map(|(name, metrics)| {
+            let metrics = metrics.as_ref().filter(|_| self.domain.outside.is_some())?;
+            Some((
+                format!("{}, {} {name}", self.model, metrics.n_cases),
+                metrics.probabilistic.as_ref()?,
+            ))
         });
-        let all = self.with_distribution().map(|(name, of)| (name.to_owned(), of));
-        let rows = all.chain(by_domain).flat_map(|(name, of)| {
+        let all =
+            self.with_distribution().map(|(name, distribution)| (name.to_owned(), distribution));
+        let rows = all.chain(by_domain).flat_map(|(name, distribution)| {
             let quantities = [
-                ("F(t)", &of.force_n),
-                ("impulse", &of.impulse_n_s),
-                ("peak", &of.peak_n),
-                ("duration", &of.duration_s),
+                ("F(t)", &distribution.force_n),
+                ("impulse", &distribution.impulse_n_s),
+                ("peak", &distribution.peak_n),
+                ("duration", &distribution.duration_s),
             ];
             quantities.map(|(quantity, coverage)| {
                 let labels = [name.clone(), quantity.to_owned()];
@@ -100,14 +104,14 @@ impl Evaluation {
     }
 
     fn scores(&self) -> Option<MetricsTable> {
-        let rows = self.with_distribution().map(|(name, of)| {
+        let rows = self.with_distribution().map(|(name, distribution)| {
             let scores = [
-                (of.crps_force_n, 1e-3),
-                (of.energy_score_n, 1e-3),
-                (of.crps_impulse_n_s, 1e-3),
-                (of.crps_peak_n, 1e-3),
-                (of.crps_duration_s, 1e3),
-                (of.nll_nats, 1.0),
+                (distribution.crps_force_n, 1e-3),
+                (distribution.energy_score_n, 1e-3),
+                (distribution.crps_impulse_n_s, 1e-3),
+                (distribution.crps_peak_n, 1e-3),
+                (distribution.crps_duration_s, 1e3),
+                (distribution.nll_nats, 1.0),
             ];
             let cells = scores.iter().map(|(score, scale)| format!("{:.3}", score.mean * scale));
             std::iter::once(name.to_owned()).chain(cells).collect()
@@ -127,13 +131,13 @@ impl Evaluation {
     }
 
     fn by_cluster(&self) -> MetricsTable {
-        let row = |of: &crate::force::evaluate::ClusterMetrics| {
+        let row = |cluster: &crate::force::evaluate::ClusterMetrics| {
             vec![
-                of.name.clone(),
-                of.model.n_cases.to_string(),
-                format!("{:.2}", of.impulse_n_s * 1e-3),
-                median_and_mean(&of.model.history_error, 100.0),
-                median_and_mean(&of.statistical.history_error, 100.0),
+                cluster.name.clone(),
+                cluster.model.n_cases.to_string(),
+                format!("{:.2}", cluster.impulse_n_s * 1e-3),
+                median_and_mean(&cluster.model.history_error, 100.0),
+                median_and_mean(&cluster.statistical.history_error, 100.0),
             ]
         };
         MetricsTable {
@@ -148,12 +152,12 @@ fn header(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| (*name).to_owned()).collect()
 }
 
-fn median_and_mean(of: &Summary, scale: f64) -> String {
-    format!("{:.1} ({:.1})", of.median * scale, of.mean * scale)
+fn median_and_mean(summary: &Summary, scale: f64) -> String {
+    format!("{:.1} ({:.1})", summary.median * scale, summary.mean * scale)
 }
 
-fn share(of: &IntervalCoverage) -> String {
-    format!("{:.0} ± {:.0}", of.share * 100.0, of.standard_error * 100.0)
+fn share(coverage: &IntervalCoverage) -> String {
+    format!("{:.0} ± {:.0}", coverage.share * 100.0, coverage.standard_error * 100.0)
 }
 
 impl MetricsTable {

@@ -322,8 +322,8 @@ pub(crate) mod tests {
     fn the_shipped_cases_split_as_in_the_first_trials() {
         let cases = shipped("fea");
         let split = split(&cases, 0, TEST_SHARE);
-        let count = |of: &dyn Fn(&ForceCase) -> bool| {
-            split.test.iter().filter(|idx| of(&cases[**idx])).count()
+        let count = |is_counted: &dyn Fn(&ForceCase) -> bool| {
+            split.test.iter().filter(|idx| is_counted(&cases[**idx])).count()
         };
         assert_eq!((split.train.len(), split.test.len()), (75, 25));
         assert_eq!(count(&ForceCase::is_clean), 22);

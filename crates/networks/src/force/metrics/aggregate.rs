@@ -88,7 +88,7 @@ impl CurveMetrics {
     ///
     /// - `scores`: of the same cases, or empty.
     pub fn new(errors: &[&PointErrors], scores: &[&ProbabilisticScores]) -> Option<Self> {
-        let of = |metric: fn(&PointErrors) -> f64| {
+        let summary = |metric: fn(&PointErrors) -> f64| {
             Summary::from_values(errors.iter().map(|e| metric(e)))
         };
         let known = |metric: fn(&PointErrors) -> Option<f64>| {
@@ -96,15 +96,15 @@ impl CurveMetrics {
         };
         Some(Self {
             n_cases: errors.len(),
-            rmse_over_peak: of(|e| e.rmse_over_peak)?,
-            rmse_x_n: of(|e| e.rmse_x_n)?,
-            rmse_y_n: of(|e| e.rmse_y_n)?,
-            history_error: of(|e| e.history_error)?,
+            rmse_over_peak: summary(|e| e.rmse_over_peak)?,
+            rmse_x_n: summary(|e| e.rmse_x_n)?,
+            rmse_y_n: summary(|e| e.rmse_y_n)?,
+            history_error: summary(|e| e.history_error)?,
             history_error_x: known(|e| e.history_error_x),
             history_error_y: known(|e| e.history_error_y),
-            impulse_error: of(|e| e.impulse_error)?,
-            peak_error: of(|e| e.peak_error)?,
-            duration_error: of(|e| e.duration_error)?,
+            impulse_error: summary(|e| e.impulse_error)?,
+            peak_error: summary(|e| e.peak_error)?,
+            duration_error: summary(|e| e.duration_error)?,
             probabilistic: DistributionMetrics::from_scores(scores),
         })
     }
@@ -113,7 +113,7 @@ impl CurveMetrics {
 impl DistributionMetrics {
     /// Statistics over cases; `None` without any case.
     pub fn from_scores(scores: &[&ProbabilisticScores]) -> Option<Self> {
-        let of = |metric: fn(&ProbabilisticScores) -> f64| {
+        let summary = |metric: fn(&ProbabilisticScores) -> f64| {
             Summary::from_values(scores.iter().map(|s| metric(s)))
         };
         let covered = |metric: fn(&ProbabilisticScores) -> &CaseCoverage| {
@@ -133,12 +133,12 @@ impl DistributionMetrics {
             impulse_n_s: covered(|s| &s.impulse_n_s)?,
             peak_n: covered(|s| &s.peak_n)?,
             duration_s: covered(|s| &s.duration_s)?,
-            crps_force_n: of(|s| s.crps_force_n)?,
-            crps_impulse_n_s: of(|s| s.crps_impulse_n_s)?,
-            crps_peak_n: of(|s| s.crps_peak_n)?,
-            crps_duration_s: of(|s| s.crps_duration_s)?,
-            energy_score_n: of(|s| s.energy_score_n)?,
-            nll_nats: of(|s| s.nll_nats)?,
+            crps_force_n: summary(|s| s.crps_force_n)?,
+            crps_impulse_n_s: summary(|s| s.crps_impulse_n_s)?,
+            crps_peak_n: summary(|s| s.crps_peak_n)?,
+            crps_duration_s: summary(|s| s.crps_duration_s)?,
+            energy_score_n: summary(|s| s.energy_score_n)?,
+            nll_nats: summary(|s| s.nll_nats)?,
             pit_force: pit(|s| &s.pit_force),
             pit_impulse: pit(|s| &s.pit_impulse),
         })

@@ -212,8 +212,8 @@ mod tests {
             let settings = ProbabilisticSettings { n_samples: 300, seed: 1 };
             let scores =
                 ProbabilisticScores::new(&case, &mixture, settings, stream as u64).unwrap();
-            let of = [scores.force_n, scores.impulse_n_s, scores.peak_n, scores.duration_s];
-            for (sums, covered) in shares.iter_mut().zip(of) {
+            let quantities = [scores.force_n, scores.impulse_n_s, scores.peak_n, scores.duration_s];
+            for (sums, covered) in shares.iter_mut().zip(quantities) {
                 for (sum, share) in sums.iter_mut().zip(covered.share) {
                     *sum += share / n as f64;
                 }

@@ -204,7 +204,7 @@ mod tests {
             let outside = domain.outside(&heavy);
             assert_eq!(outside.len(), usize::from(mass_kg > 2500.0), "{outside:?}");
             let expected = "mass of the striking vehicle [kg]";
-            assert!(outside.iter().all(|of| of.feature == expected), "{outside:?}");
+            assert!(outside.iter().all(|found| found.feature == expected), "{outside:?}");
             before = now;
         }
         assert_eq!(before, 0.0);

@@ -170,7 +170,9 @@ impl CentreModel {
         }
         let plain: Vec<&ForceCase> = cases.iter().filter(|case| case.is_clean()).collect();
         let plain = if plain.is_empty() { cases.iter().collect() } else { plain };
-        let mean = |of: &dyn Fn(&ForceCase) -> f64| cases.iter().map(of).sum::<f64>() / n as f64;
+        let mean = |quantity: &dyn Fn(&ForceCase) -> f64| {
+            cases.iter().map(quantity).sum::<f64>() / n as f64
+        };
         let mut model = Self {
             kind,
             laws: Vec::new(),
@@ -183,7 +185,8 @@ impl CentreModel {
         model.laws = fit_laws(cases, &folds, kind, config, report)?;
         let mut histories = model.unseen_histories(cases, &folds)?;
         if kind == Centre::Committee {
-            let crush: Vec<ForceCurve> = histories.iter().map(|of| of.curve.clone()).collect();
+            let crush: Vec<ForceCurve> =
+                histories.iter().map(|history| history.curve.clone()).collect();
             let mut on_fit = |fit, n_fits| report(CentreFit::Regression { fit, n_fits });
             let fitted = Committee::fit(cases, &folds, &crush, seed, &mut on_fit)?;
             if let Some((committee, curves)) = fitted {
@@ -384,18 +387,25 @@ fn mean_history(laws: &[&CrushLaw], scenario: &CrushScenario) -> CentreHistory {
     let n = CURVE_N_INSTANTS;
     let histories: Vec<_> =
         laws.iter().filter_map(|law| law.simulate(scenario, n, CURVE_INTERVAL_S)).collect();
-    let series = |of: fn(&CrushHistory) -> &[f64]| -> Vec<f64> {
-        let at = |t: usize| histories.iter().filter_map(move |history| of(history).get(t));
+    let series = |column: fn(&CrushHistory) -> &[f64]| -> Vec<f64> {
+        let at = |t: usize| histories.iter().filter_map(move |history| column(history).get(t));
         (0..n).map(|t| at(t).sum::<f64>() / histories.len().max(1) as f64).collect()
     };
-    let mut curve =
-        ForceCurve { fx_n: series(|of| &of.fx_n), fy_n: series(|of| &of.fy_n), duration_s: 0.0 };
+    let mut curve = ForceCurve {
+        fx_n: series(|history| &history.fx_n),
+        fy_n: series(|history| &history.fy_n),
+        duration_s: 0.0,
+    };
     let (magnitude, peak_n) = (curve.magnitude_n(), curve.peak().0);
     let in_contact = |force: &f64| *force > CONTACT_SHARE * peak_n && peak_n > 0.0;
     let first = magnitude.iter().position(in_contact).unwrap_or(0);
     let last = magnitude.iter().rposition(in_contact).unwrap_or(0);
     curve.duration_s = (last + 1 - first) as f64 * CURVE_INTERVAL_S;
-    CentreHistory { curve, depth_m: series(|of| &of.depth_m), slip_m_s: series(|of| &of.slip_m_s) }
+    CentreHistory {
+        curve,
+        depth_m: series(|history| &history.depth_m),
+        slip_m_s: series(|history| &history.slip_m_s),
+    }
 }
 
 #[cfg(test)]

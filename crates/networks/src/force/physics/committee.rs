@@ -147,12 +147,12 @@ mod tests {
         let cases: Vec<ForceCase> = shipped("fea").into_iter().take(8).collect();
         let scaled = |factor: f64| -> Vec<ForceCurve> {
             let scale = |values: &[f64]| values.iter().map(|value| factor * value).collect();
-            let of = |case: &ForceCase| ForceCurve {
+            let scaled = |case: &ForceCase| ForceCurve {
                 fx_n: scale(&case.curve.fx_n),
                 fy_n: scale(&case.curve.fy_n),
                 ..case.curve
             };
-            cases.iter().map(of).collect()
+            cases.iter().map(scaled).collect()
         };
         let best = |crush, other| best_share(&cases, &scaled(crush), &scaled(other));
         assert_eq!(best(1.0, 1.4), 0.0);

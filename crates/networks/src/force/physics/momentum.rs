@@ -76,8 +76,9 @@ impl MomentumModel {
     pub fn fit(cases: &[&ForceCase], uses_contact: bool) -> Self {
         let mut model = Self::prior(uses_contact);
         let scenarios = || cases.iter().map(|case| &case.scenario);
-        let mean =
-            |values: &mut dyn Iterator<Item = f64>| Summary::from_values(values).map(|of| of.mean);
+        let mean = |values: &mut dyn Iterator<Item = f64>| {
+            Summary::from_values(values).map(|summary| summary.mean)
+        };
         for axis in [0, 1] {
             let contacts = &mut scenarios().filter_map(|s| Some(s.contact_m?[axis]));
             model.contact_m[axis] = mean(contacts).unwrap_or(model.contact_m[axis]);

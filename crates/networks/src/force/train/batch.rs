@@ -49,8 +49,10 @@ pub(crate) fn network_input(
         let curves = [false, true].map(|hooks| residuals.curve(centre, hooks));
         for component in 0..k {
             let curve = &curves[usize::from(k > 1 && component + 1 == k)];
-            for (all, of) in start.iter_mut().zip([&curve.mean, &curve.variance, &curve.factors]) {
-                all.extend(of.iter().map(|value| *value as f32));
+            for (all, values) in
+                start.iter_mut().zip([&curve.mean, &curve.variance, &curve.factors])
+            {
+                all.extend(values.iter().map(|value| *value as f32));
             }
             lag.push(curve.lag_correlation as f32);
         }

@@ -136,8 +136,8 @@ impl LossTerms {
     /// Mean over batches, each weighted by its number of cases.
     pub(crate) fn mean(batches: &[(usize, Self)]) -> Self {
         let n: usize = batches.iter().map(|(n, _)| n).sum();
-        let mean = |of: fn(&Self) -> f64| {
-            batches.iter().map(|(n, terms)| *n as f64 * of(terms)).sum::<f64>() / n.max(1) as f64
+        let mean = |term: fn(&Self) -> f64| {
+            batches.iter().map(|(n, terms)| *n as f64 * term(terms)).sum::<f64>() / n.max(1) as f64
         };
         Self {
             total: mean(|t| t.total),

@@ -169,7 +169,9 @@ fn coverage(distribution: &MotionDistribution, case: &ResponseCase) -> MotionCov
         sum.path_90 += f64::from(u8::from(level <= 0.9));
         let numbers = [state.x_m, state.y_m, state.yaw_rad];
         let crps = |axis: usize| {
-            distribution.marginal(at, axis).map_or(f64::INFINITY, |of| of.crps(numbers[axis]))
+            distribution
+                .marginal(at, axis)
+                .map_or(f64::INFINITY, |marginal| marginal.crps(numbers[axis]))
         };
         sum.crps_x_m += crps(0);
         sum.crps_y_m += crps(1);

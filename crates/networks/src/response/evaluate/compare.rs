@@ -103,11 +103,11 @@ pub(super) fn clusters(cases: &[&ResponseCase], seed: u64) -> CaseClusters {
     let known: Vec<ImpulseFeatures> = features.iter().flatten().copied().collect();
     // Too few trajectories to cluster make one cluster.
     let clusters = ImpulseClusters::fit(&known, seed).ok();
-    let of = |features: &Option<ImpulseFeatures>| match (&clusters, features) {
+    let cluster = |features: &Option<ImpulseFeatures>| match (&clusters, features) {
         (Some(clusters), Some(features)) => clusters.nearest(features),
         _ => 0,
     };
-    CaseClusters { of_case: features.iter().map(of).collect(), clusters }
+    CaseClusters { of_case: features.iter().map(cluster).collect(), clusters }
 }
 
 /// What a model says of trajectories.
@@ -215,8 +215,8 @@ impl<'a, 'b> Work<'a, 'b> {
         if self.is_broken() {
             return Ok(None);
         }
-        let of = [(config.clone(), start, "PINN"), (config.plain(), plain_start, "NN-only")];
-        for (idx, (config, start, label)) in of.into_iter().enumerate() {
+        let networks = [(config.clone(), start, "PINN"), (config.plain(), plain_start, "NN-only")];
+        for (idx, (config, start, label)) in networks.into_iter().enumerate() {
             let started = std::time::Instant::now();
             let settings = TrainSettings::unsaved(config, choice);
             let model = fine_tune(Some(start), set, &settings, &mut |progress| {

@@ -189,14 +189,14 @@ impl CoverageMetrics {
             all.iter().map(value).sum::<f64>() / all.len() as f64
         };
         Some(Self {
-            path_50: mean(|of| of.path_50),
-            path_90: mean(|of| of.path_90),
-            end_50: mean(|of| of.end_50),
-            end_90: mean(|of| of.end_90),
-            crps_x_m: mean(|of| of.crps_x_m),
-            crps_y_m: mean(|of| of.crps_y_m),
-            crps_yaw_deg: mean(|of| of.crps_yaw_rad).to_degrees(),
-            energy_score_m: mean(|of| of.energy_score_m),
+            path_50: mean(|coverage| coverage.path_50),
+            path_90: mean(|coverage| coverage.path_90),
+            end_50: mean(|coverage| coverage.end_50),
+            end_90: mean(|coverage| coverage.end_90),
+            crps_x_m: mean(|coverage| coverage.crps_x_m),
+            crps_y_m: mean(|coverage| coverage.crps_y_m),
+            crps_yaw_deg: mean(|coverage| coverage.crps_yaw_rad).to_degrees(),
+            energy_score_m: mean(|coverage| coverage.energy_score_m),
         })
     }
 }

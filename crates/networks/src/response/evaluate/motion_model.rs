@@ -88,10 +88,14 @@ impl MotionModel {
             Self::Plain(model) | Self::Network(model) => {
                 let predictor = model.predictor(&case.vehicle)?;
                 let distribution = predictor.motion(&initial, &case.inputs);
-                let of = |component: crate::response::ComponentPath| component.states;
+                let states = |component: crate::response::ComponentPath| component.states;
                 PredictedMotion {
                     states: predictor.central_path(&initial, &case.inputs),
-                    paths: predictor.paths(&initial, &case.inputs).into_iter().map(of).collect(),
+                    paths: predictor
+                        .paths(&initial, &case.inputs)
+                        .into_iter()
+                        .map(states)
+                        .collect(),
                     distribution: Some(distribution),
                 }
             }

@@ -149,8 +149,9 @@ impl Comparison {
             choices.sort_unstable();
             choices.dedup();
             let mean = |choice: &u64| {
-                let of = rows.iter().filter(|row| row.choice == *choice);
-                let errors: Vec<f64> = of.map(|row| row.metrics.error.average_error_m).collect();
+                let chosen = rows.iter().filter(|row| row.choice == *choice);
+                let errors: Vec<f64> =
+                    chosen.map(|row| row.metrics.error.average_error_m).collect();
                 errors.iter().sum::<f64>() / errors.len().max(1) as f64
             };
             let of_times = times.iter().filter(|(k, m, _)| (*k, *m) == (kind, n));
@@ -178,8 +179,8 @@ impl Comparison {
         };
         let cluster = |cluster: usize| ClusterRow {
             name: ImpulseClusters::label(cluster),
-            n: clusters.of_case.iter().filter(|of| **of == cluster).count(),
-            impulse_n_s: clusters.clusters.as_ref().and_then(|of| of.impulse_n_s(cluster)),
+            n: clusters.of_case.iter().filter(|number| **number == cluster).count(),
+            impulse_n_s: clusters.clusters.as_ref().and_then(|fitted| fitted.impulse_n_s(cluster)),
             models: models_on(&|row| row.cluster == cluster),
         };
         let ending = |(name, is_braked): (&str, bool)| ClusterRow {

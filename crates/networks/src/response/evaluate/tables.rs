@@ -136,19 +136,19 @@ pub fn uncertainty_table(comparison: &Comparison) -> ComparisonTable {
         "energy score, m",
     ]);
     let row = |model: &ComparedModel| {
-        let of = model.metrics.coverage?;
+        let coverage = model.metrics.coverage?;
         let share = |value: f64| format!("{:.0} %", 100.0 * value);
         Some(vec![
             model.name.clone(),
             count(model.trajectories),
-            share(of.path_50),
-            share(of.path_90),
-            share(of.end_50),
-            share(of.end_90),
-            number(of.crps_x_m),
-            number(of.crps_y_m),
-            number(of.crps_yaw_deg),
-            number(of.energy_score_m),
+            share(coverage.path_50),
+            share(coverage.path_90),
+            share(coverage.end_50),
+            share(coverage.end_90),
+            number(coverage.crps_x_m),
+            number(coverage.crps_y_m),
+            number(coverage.crps_yaw_deg),
+            number(coverage.energy_score_m),
         ])
     };
     ComparisonTable { header, rows: comparison.models.iter().filter_map(row).collect() }
@@ -205,11 +205,13 @@ pub fn ending_table(comparison: &Comparison) -> ComparisonTable {
     let mut rows = Vec::new();
     for ending in &comparison.endings {
         for ClusterModel { name, trajectories, metrics } in &ending.models {
-            let share = |of: fn(&CoverageMetrics) -> f64| {
-                metrics.coverage.map_or(String::new(), |all| format!("{:.0} %", 100.0 * of(&all)))
+            let share = |quantity: fn(&CoverageMetrics) -> f64| {
+                metrics
+                    .coverage
+                    .map_or(String::new(), |all| format!("{:.0} %", 100.0 * quantity(&all)))
             };
-            let median = |of: MeanStd| {
-                if of.median.is_nan() { String::new() } else { number(of.median) }
+            let median = |summary: MeanStd| {
+                if summary.median.is_nan() { String::new() } else { number(summary.median) }
             };
             rows.push(vec![
                 ending.name.clone(),
@@ -223,8 +225,8 @@ pub fn ending_table(comparison: &Comparison) -> ComparisonTable {
                 metrics.n_at_rest.to_string(),
                 mean_std(metrics.rest_error_m),
                 median(metrics.rest_error_m),
-                share(|of| of.path_50),
-                share(|of| of.path_90),
+                share(|coverage| coverage.path_50),
+                share(|coverage| coverage.path_90),
             ]);
         }
     }

@@ -29,11 +29,11 @@ pub(super) fn find_contact(
 ) -> LogWindow {
     let gain = |window: [f64; 2]| {
         let within = [window[0] - ABOUT_S, window[1] + ABOUT_S];
-        let of = |(tracks, scales): &(&Tracks, TrackScales)| {
+        let log_likelihood = |(tracks, scales): &(&Tracks, TrackScales)| {
             let likelihood = |window| tracks.log_likelihood(scales, window, within);
             likelihood(Some(window)) - likelihood(None)
         };
-        groups.iter().map(of).sum::<f64>()
+        groups.iter().map(log_likelihood).sum::<f64>()
     };
     let best = |starts_s: [f64; 2], step_s: f64, durations_s: &[f64]| {
         let first_s = starts_s[0].max(from_s);

@@ -170,7 +170,7 @@ fn a_recorded_force_keeps_its_impulse_and_its_clock() {
 fn roll_is_the_models_where_it_was_not_recorded() {
     let motion = simulated(&Preset::ScaledStruck.parameters(), Some(load()), 1.5);
     let mut channels = gnss_imu();
-    let of = |channels: &[(Channel, f64)]| {
+    let trajectory = |channels: &[(Channel, f64)]| {
         let log = log(&motion, 1, 0, channels);
         LoggedImpact::from_log(&log, Some(load()), &settings()).unwrap()
     };
@@ -181,10 +181,10 @@ fn roll_is_the_models_where_it_was_not_recorded() {
         (square / found.case.states.len() as f64).sqrt()
     };
     let largest = motion.get(Channel::Roll).unwrap().iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-    let of_model = roll(&of(&channels));
+    let of_model = roll(&trajectory(&channels));
     assert!(of_model < 0.2 * largest, "{of_model} of {largest}");
     channels.push((Channel::Roll, 0.005));
-    let recorded = roll(&of(&channels));
+    let recorded = roll(&trajectory(&channels));
     assert!(recorded < 0.5 * 0.005, "{recorded}");
 }
 

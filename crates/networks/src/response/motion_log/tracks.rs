@@ -46,14 +46,14 @@ impl Tracks {
         values: &[f64],
         velocities: Option<&[f64]>,
     ) -> Vec<TrackSample> {
-        let of = |(i, time_s): (usize, &f64)| {
+        let samples = |(i, time_s): (usize, &f64)| {
             let sample = |order, value: Option<&f64>| {
                 value.map(|&value| TrackSample { time_s: *time_s, order, value, std: 1.0 })
             };
             let velocity = velocities.and_then(|velocities| velocities.get(i));
             [sample(0, values.get(i)), sample(1, velocity)]
         };
-        time_s.iter().enumerate().flat_map(of).flatten().collect()
+        time_s.iter().enumerate().flat_map(samples).flatten().collect()
     }
 
     /// Without what was sampled before an instant.
@@ -102,7 +102,7 @@ impl Tracks {
         window: LogWindow,
         within: [f64; 2],
     ) -> f64 {
-        let of = |samples: &Vec<TrackSample>| {
+        let log_likelihood = |samples: &Vec<TrackSample>| {
             let from = samples.partition_point(|sample| sample.time_s < within[0]);
             let to = samples.partition_point(|sample| sample.time_s <= within[1]);
             let samples = scaled(samples.get(from..to).unwrap_or_default(), scales);
@@ -110,7 +110,7 @@ impl Tracks {
             let prior_std = self.prior_std;
             MeasuredTrack { samples: &samples, density: &density, prior_std }.log_likelihood()
         };
-        self.samples.iter().map(of).sum()
+        self.samples.iter().map(log_likelihood).sum()
     }
 
     /// Each coordinate at some instants, rising; `None` where a number is not finite.
@@ -120,13 +120,13 @@ impl Tracks {
         window: LogWindow,
         at_s: &[f64],
     ) -> Option<Vec<Vec<TrackPoint>>> {
-        let of = |samples: &Vec<TrackSample>| {
+        let smoothed = |samples: &Vec<TrackSample>| {
             let samples = scaled(samples, scales);
             let density = |a, b| scales.density_between(window, [a, b]);
             MeasuredTrack { samples: &samples, density: &density, prior_std: self.prior_std }
                 .smooth(at_s)
         };
-        self.samples.iter().map(of).collect()
+        self.samples.iter().map(smoothed).collect()
     }
 }
 
@@ -150,11 +150,11 @@ impl TrackScales {
 }
 
 fn scaled(samples: &[TrackSample], scales: &TrackScales) -> Vec<TrackSample> {
-    let of = |sample: &TrackSample| TrackSample {
+    let with_scale = |sample: &TrackSample| TrackSample {
         std: scales.sample_std[sample.order.min(1)],
         ..*sample
     };
-    samples.iter().map(of).collect()
+    samples.iter().map(with_scale).collect()
 }
 
 struct TrackProblem<'a> {

@@ -70,7 +70,7 @@ impl ResponseLossTerms {
     /// Mean over batches of equal weight.
     pub(crate) fn mean(batches: &[Self]) -> Self {
         let n = batches.len().max(1) as f64;
-        let mean = |of: fn(&Self) -> f64| batches.iter().map(of).sum::<f64>() / n;
+        let mean = |term: fn(&Self) -> f64| batches.iter().map(term).sum::<f64>() / n;
         Self {
             total: mean(|terms| terms.total),
             data: mean(|terms| terms.data),
@@ -213,11 +213,16 @@ mod tests {
     #[test]
     fn the_boundary_costs_little_inside_and_much_beyond() {
         let scale = Tensor::new(&[0.05f64; 5], &Device::Cpu).unwrap();
-        let of = |vx: f64| {
+        let penalty = |vx: f64| {
             let x = Tensor::new(&[[vx, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]], &Device::Cpu).unwrap();
             boundary(&x, &scale).unwrap().to_scalar::<f64>().unwrap()
         };
-        assert!(of(30.0) < 1e-6 && of(60.0) > 0.4 && of(-66.0) > 3.0, "{} {}", of(30.0), of(60.0));
-        assert!(of(1e9).is_finite());
+        assert!(
+            penalty(30.0) < 1e-6 && penalty(60.0) > 0.4 && penalty(-66.0) > 3.0,
+            "{} {}",
+            penalty(30.0),
+            penalty(60.0)
+        );
+        assert!(penalty(1e9).is_finite());
     }
 }

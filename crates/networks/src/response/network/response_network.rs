@@ -337,7 +337,7 @@ mod tests {
         let loss = network.forward(Gradients::FineTuned, input).unwrap();
         let gradients = loss.residual.sqr().unwrap().sum_all().unwrap().backward().unwrap();
         for (name, variable) in network.parameters.iter() {
-            let is_frozen = ["encoder.", "token."].iter().any(|of| name.starts_with(of));
+            let is_frozen = ["encoder.", "token."].iter().any(|prefix| name.starts_with(prefix));
             let is_of_layers = !name.starts_with("effects") && !name.starts_with("boundary");
             assert_eq!(gradients.get(variable).is_some(), is_of_layers && !is_frozen, "{name}");
         }

@@ -86,8 +86,8 @@ pub(crate) fn rollout_loss(
         let off = x.broadcast_sub(&recorded(cases, windows, t + 1)?)?;
         let squares = off.broadcast_div(&unit)?.sqr()?;
         let weights = softmax(&output.logits.mean(1)?, 1.0)?;
-        let mean = |of: &Tensor| -> Result<Tensor, NnError> {
-            let loss = huber_of_squares(&squares.broadcast_mul(of)?)?;
+        let mean = |factor: &Tensor| -> Result<Tensor, NnError> {
+            let loss = huber_of_squares(&squares.broadcast_mul(factor)?)?;
             Ok((loss * &weights)?.sum_all()?)
         };
         data = (data + mean(&is_velocity)?)?;
@@ -140,14 +140,14 @@ fn rows(
     t: usize,
     n_components: usize,
 ) -> Vec<StepRow> {
-    let of = |window: &RolloutWindow| {
+    let window_rows = |window: &RolloutWindow| {
         let at = window.start + t;
         let case = &cases[window.case_idx];
         let input = case.case.inputs.get(at).copied().unwrap_or(VehicleInput::released());
         let row = StepRow { vehicle: case.vehicle.clone(), input, time_s: at as f64 * STEP_S };
         vec![row; n_components]
     };
-    windows.iter().flat_map(of).collect()
+    windows.iter().flat_map(window_rows).collect()
 }
 
 /// Of the path of each component its own part: `[sequences, J, J, 4]` to `[sequences, J, 4]`.

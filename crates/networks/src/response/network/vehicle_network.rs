@@ -266,17 +266,17 @@ mod tests {
             let effects = Tensor::zeros((1, 1, 1, N_RESIDUAL), DType::F64, &Device::Cpu).unwrap();
             let tokens = token_tensor(&vehicle).unwrap();
             let slow = network.forward(Gradients::All, [&features, &tokens, &effects]).unwrap();
-            let of =
+            let values =
                 |tensor: &Tensor| -> Vec<f64> { tensor.flatten_all().unwrap().to_vec1().unwrap() };
-            let features = of(&features);
+            let features = values(&features);
             let mut work = Workspace::default();
             let row: [f64; N_FEATURES] = std::array::from_fn(|i| features[i]);
             let mut other = row;
             other[0] += 1.0;
             quick.forward(&[row, other], &mut work);
             assert_ne!(quick.remainder(&work, [0, 0]), quick.remainder(&work, [1, 0]));
-            let (residual, logits) = (of(&slow.residual), of(&slow.logits));
-            let variance = of(&slow.log_variance);
+            let (residual, logits) = (values(&slow.residual), values(&slow.logits));
+            let variance = values(&slow.log_variance);
             let sum: f64 = logits.iter().map(|logit| logit.exp()).sum();
             for j in 0..config.components {
                 let value = quick.bounded(quick.remainder(&work, [0, j]));

@@ -14,22 +14,23 @@ pub fn motion_series(
     inputs: &[VehicleInput<f64>],
 ) -> Result<TimeSeries, SeriesError> {
     let mut series = TimeSeries::new((0..states.len()).map(|i| i as f64 * STEP_S).collect())?;
-    let of = |value: fn(&VehicleState<f64>) -> f64| states.iter().map(value).collect::<Vec<f64>>();
+    let column =
+        |value: fn(&VehicleState<f64>) -> f64| states.iter().map(value).collect::<Vec<f64>>();
     let columns = [
-        (Channel::X, of(|x| x.x_m)),
-        (Channel::Y, of(|x| x.y_m)),
-        (Channel::Yaw, of(|x| x.yaw_rad)),
-        (Channel::Roll, of(|x| x.roll_rad)),
-        (Channel::Vx, of(|x| x.vx_body_m_s)),
-        (Channel::Vy, of(|x| x.vy_body_m_s)),
-        (Channel::YawRate, of(|x| x.yaw_rate_rad_s)),
-        (Channel::RollRate, of(|x| x.roll_rate_rad_s)),
+        (Channel::X, column(|x| x.x_m)),
+        (Channel::Y, column(|x| x.y_m)),
+        (Channel::Yaw, column(|x| x.yaw_rad)),
+        (Channel::Roll, column(|x| x.roll_rad)),
+        (Channel::Vx, column(|x| x.vx_body_m_s)),
+        (Channel::Vy, column(|x| x.vy_body_m_s)),
+        (Channel::YawRate, column(|x| x.yaw_rate_rad_s)),
+        (Channel::RollRate, column(|x| x.roll_rate_rad_s)),
     ];
     for (channel, values) in columns {
         series.insert(channel, values)?;
     }
     let force = |axis: usize| -> Vec<f64> {
-        let of = |(state, input): (&VehicleState<f64>, &VehicleInput<f64>)| {
+        let component = |(state, input): (&VehicleState<f64>, &VehicleInput<f64>)| {
             input.collision.map_or(0.0, |collision| {
                 let [fx, fy] = collision.force_n;
                 let (sin, cos) = state.yaw_rad.sin_cos();
@@ -41,7 +42,7 @@ pub fn motion_series(
                 }
             })
         };
-        let forces = states.iter().zip(inputs).map(of);
+        let forces = states.iter().zip(inputs).map(component);
         let rest = states.len().saturating_sub(inputs.len());
         forces.chain(std::iter::repeat_n(0.0, rest)).collect()
     };

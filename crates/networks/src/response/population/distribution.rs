@@ -164,8 +164,8 @@ impl StrengthPopulation {
             let evidence: Vec<Evidence> = predicted
                 .par_iter()
                 .map(|one| {
-                    let of = one.linearized(&posterior.mean, LEARNED_STEPS);
-                    self.evidence(&of, &posterior.mean)
+                    let linearized = one.linearized(&posterior.mean, LEARNED_STEPS);
+                    self.evidence(&linearized, &posterior.mean)
                 })
                 .collect();
             posterior = prior.updated(&Evidence::sum(evidence).times(EVIDENCE_SHARE));
@@ -245,17 +245,17 @@ impl StrengthPopulation {
     /// distribution).
     ///
     /// - `mean`: strengths about which that is judged.
-    pub(super) fn evidence(&self, of: &Linearized, mean: &DVector<f64>) -> Evidence {
-        let left = &of.target - &of.by_strengths * mean;
-        let mut weighted = of.by_strengths.clone();
+    pub(super) fn evidence(&self, linearized: &Linearized, mean: &DVector<f64>) -> Evidence {
+        let left = &linearized.target - &linearized.by_strengths * mean;
+        let mut weighted = linearized.by_strengths.clone();
         for (window, weight) in window_weights(&left, &self.noise).into_iter().enumerate() {
             for row in window * N_ROWS..(window + 1) * N_ROWS {
                 weighted.row_mut(row).scale_mut(weight / self.noise[row % N_ROWS]);
             }
         }
         let evidence = Evidence {
-            precision: weighted.tr_mul(&of.by_strengths),
-            weighted: weighted.tr_mul(&of.target),
+            precision: weighted.tr_mul(&linearized.by_strengths),
+            weighted: weighted.tr_mul(&linearized.target),
         };
         // Where a window is not finite, the trajectory says nothing.
         if evidence.is_finite() { evidence } else { Evidence::none() }
@@ -297,7 +297,7 @@ impl StrengthPopulation {
         for (slots, is_collision) in [(of_vehicle, false), (of_collision, true)] {
             let places: Vec<usize> =
                 (0..N_EFFECTS).filter(|k| is_of_collision(*k) == is_collision).collect();
-            let part = |of: &DMatrix<f64>| of.select_rows(&places).select_columns(&places);
+            let part = |matrix: &DMatrix<f64>| matrix.select_rows(&places).select_columns(&places);
             let floor = DMatrix::identity(places.len(), places.len()) * 1e-12;
             let Some(root) = (part(covariance) + floor).cholesky() else { continue };
             let root = root.unpack();

@@ -96,13 +96,16 @@ impl StrengthPopulation {
         let mut population = Self { remainder, ..Self::guess() };
         let mut fitted = cars
             .iter()
-            .map(|of| Car::new(of, remainder))
+            .map(|unseen| Car::new(unseen, remainder))
             .collect::<Result<Vec<Car<'_>>, NnError>>()?;
         for _ in 0..N_LINEARIZATIONS {
             for car in &mut fitted {
                 let mean = &car.strengths.mean;
-                car.linearized =
-                    car.predicted.par_iter().map(|of| of.linearized(mean, LEARNED_STEPS)).collect();
+                car.linearized = car
+                    .predicted
+                    .par_iter()
+                    .map(|motion| motion.linearized(mean, LEARNED_STEPS))
+                    .collect();
             }
             for _ in 0..N_ITERATIONS {
                 population.expect(&mut fitted);
@@ -138,7 +141,7 @@ impl StrengthPopulation {
             let evidence: Vec<Evidence> = car
                 .linearized
                 .par_iter()
-                .map(|of| self.evidence(of, &car.strengths.mean))
+                .map(|linearized| self.evidence(linearized, &car.strengths.mean))
                 .collect();
             car.strengths =
                 self.prior(&car.of_network).updated(&Evidence::sum(evidence).times(EVIDENCE_SHARE));
@@ -159,9 +162,9 @@ impl StrengthPopulation {
         self.between = between / n_cars;
         let left: Vec<Rows> = motions(cars)
             .par_iter()
-            .map(|(car, of)| {
-                let left = &of.target - &of.by_strengths * &car.mean;
-                Rows::new(&left, &self.noise, |row| variance(of, row, &car.covariance))
+            .map(|(car, linearized)| {
+                let left = &linearized.target - &linearized.by_strengths * &car.mean;
+                Rows::new(&left, &self.noise, |row| variance(linearized, row, &car.covariance))
             })
             .collect();
         self.noise = Rows::mean(&left);
@@ -173,7 +176,7 @@ impl StrengthPopulation {
         for _ in 0..N_ITERATIONS {
             let found: Vec<Motion> = motions(cars)
                 .par_iter()
-                .filter_map(|(car, of)| self.motion(car, of, &rest))
+                .filter_map(|(car, linearized)| self.motion(car, linearized, &rest))
                 .collect();
             let mut within = DMatrix::identity(N_EFFECTS, N_EFFECTS)
                 * (PRIOR_WITHIN_STD.powi(2) * PRIOR_MOTIONS);
@@ -184,18 +187,23 @@ impl StrengthPopulation {
     }
 
     /// Second moments of what the strengths of the car leave of one motion.
-    fn motion(&self, car: &CarStrengths, of: &Linearized, rest: &[f64; N_ROWS]) -> Option<Motion> {
-        let left = &of.target - &of.by_strengths * &car.mean;
-        let weights = DVector::from_fn(of.n_rows(), |row, _| 1.0 / rest[row % N_ROWS]);
-        let weighted = DMatrix::from_diagonal(&weights) * &of.by_strengths;
+    fn motion(
+        &self,
+        car: &CarStrengths,
+        linearized: &Linearized,
+        rest: &[f64; N_ROWS],
+    ) -> Option<Motion> {
+        let left = &linearized.target - &linearized.by_strengths * &car.mean;
+        let weights = DVector::from_fn(linearized.n_rows(), |row, _| 1.0 / rest[row % N_ROWS]);
+        let weighted = DMatrix::from_diagonal(&weights) * &linearized.by_strengths;
         let precision =
-            self.within.clone().cholesky()?.inverse() + weighted.tr_mul(&of.by_strengths);
+            self.within.clone().cholesky()?.inverse() + weighted.tr_mul(&linearized.by_strengths);
         let root = precision.cholesky()?;
         let mean = root.solve(&weighted.tr_mul(&left));
         let covariance = root.inverse();
-        let left = left - &of.by_strengths * &mean;
+        let left = left - &linearized.by_strengths * &mean;
         let unknown = &covariance + &car.covariance;
-        let rest = Rows::new(&left, rest, |row| variance(of, row, &unknown));
+        let rest = Rows::new(&left, rest, |row| variance(linearized, row, &unknown));
         let within = &mean * mean.transpose() + covariance;
         let is_finite = rest.sum.iter().chain(&within).all(|value| value.is_finite());
         is_finite.then_some(Motion { within, rest })
@@ -204,26 +212,28 @@ impl StrengthPopulation {
 
 /// The motions of all cars, each with the strengths of its car.
 fn motions<'a>(cars: &'a [Car<'_>]) -> Vec<(&'a CarStrengths, &'a Linearized)> {
-    cars.iter().flat_map(|car| car.linearized.iter().map(|of| (&car.strengths, of))).collect()
+    cars.iter()
+        .flat_map(|car| car.linearized.iter().map(|linearized| (&car.strengths, linearized)))
+        .collect()
 }
 
 /// Variance of a row by strengths that are not known.
-fn variance(of: &Linearized, row: usize, covariance: &DMatrix<f64>) -> f64 {
-    let by = of.by_strengths.row(row);
+fn variance(linearized: &Linearized, row: usize, covariance: &DMatrix<f64>) -> f64 {
+    let by = linearized.by_strengths.row(row);
     (by * covariance).dot(&by)
 }
 
 impl<'a> Car<'a> {
     /// - `remainder`: share of the remainder of the network that holds for the car.
-    fn new(of: &UnseenCar<'a>, remainder: f64) -> Result<Self, NnError> {
-        let predicted: Vec<Predicted<'a>> = of
+    fn new(unseen: &UnseenCar<'a>, remainder: f64) -> Result<Self, NnError> {
+        let predicted: Vec<Predicted<'a>> = unseen
             .cases
             .iter()
-            .map(|case| Predicted::new(case, of.network, remainder))
+            .map(|case| Predicted::new(case, unseen.network, remainder))
             .collect::<Result<_, _>>()?;
         let zero = DVector::zeros(N_EFFECTS);
         Ok(Self {
-            of_network: of.network.mean_strengths()?,
+            of_network: unseen.network.mean_strengths()?,
             predicted,
             linearized: Vec::new(),
             strengths: CarStrengths {
@@ -248,7 +258,7 @@ fn remainder_of(cars: &[UnseenCar<'_>]) -> Result<f64, NnError> {
     for share in REMAINDERS {
         let errors_m: Vec<f64> = cars
             .par_iter()
-            .flat_map_iter(|of| of.cases.iter().map(|case| (case, of.network)))
+            .flat_map_iter(|car| car.cases.iter().map(|case| (case, car.network)))
             .map(|(case, network)| Ok(Predicted::new(case, network, share)?.error_m(LEARNED_STEPS)))
             .collect::<Result<_, NnError>>()?;
         let sum: f64 = errors_m.iter().sum();
@@ -273,11 +283,11 @@ fn bare(cars: &[Car<'_>]) -> DMatrix<f64> {
 fn importance(cars: &[Car<'_>]) -> DMatrix<f64> {
     let mut sum = DMatrix::zeros(N_EFFECTS, N_EFFECTS);
     let mut n = 0.0;
-    for of in cars.iter().flat_map(|car| &car.linearized) {
-        for row in 0..of.n_rows() {
+    for linearized in cars.iter().flat_map(|car| &car.linearized) {
+        for row in 0..linearized.n_rows() {
             // X and Y at the end of a window.
             if row % N_ROWS == N_ROWS / 2 || row % N_ROWS == N_ROWS / 2 + 1 {
-                let by = of.by_strengths.row(row);
+                let by = linearized.by_strengths.row(row);
                 if by.iter().all(|value| value.is_finite()) {
                     sum += by.transpose() * by;
                     n += 1.0;

@@ -43,11 +43,12 @@ impl StrengthPopulation {
     /// [`NnError`].
     pub(crate) fn put(&self, file: &mut Checkpoint) -> Result<(), NnError> {
         let mut tensors = NamedTensors::new();
-        let mut add = |name: String, of: &DMatrix<f64>| -> Result<(), NnError> {
-            tensors.insert(name, tensor(of)?);
+        let mut add = |name: String, matrix: &DMatrix<f64>| -> Result<(), NnError> {
+            tensors.insert(name, tensor(matrix)?);
             Ok(())
         };
-        let row = |of: &DVector<f64>| DMatrix::from_column_slice(1, N_EFFECTS, of.as_slice());
+        let row =
+            |vector: &DVector<f64>| DMatrix::from_column_slice(1, N_EFFECTS, vector.as_slice());
         add("mean".to_owned(), &row(&self.mean))?;
         add("between".to_owned(), &self.between)?;
         add("within".to_owned(), &self.within)?;
@@ -96,8 +97,8 @@ impl StrengthPopulation {
             Ok(DVector::from_iterator(N_EFFECTS, matrix(name, 1)?.iter().copied()))
         };
         let mut cars = Vec::new();
-        for (i, of) in stored.cars.into_iter().enumerate() {
-            let StoredCar { vehicle, n_trajectories, remainder, widening, tail_ratio } = of;
+        for (i, car) in stored.cars.into_iter().enumerate() {
+            let StoredCar { vehicle, n_trajectories, remainder, widening, tail_ratio } = car;
             check_number("population.car.remainder", remainder, Expected::NotNegative)?;
             let strengths = CarStrengths {
                 mean: row(&format!("car{i}.mean"))?,
@@ -133,9 +134,9 @@ fn checked(name: &str, [widening, tail_ratio]: [f64; 2]) -> Result<Widths, NnErr
     Ok(Widths { widening, tail_ratio })
 }
 
-fn tensor(of: &DMatrix<f64>) -> Result<Tensor, NnError> {
-    let rows: Vec<f64> = of.transpose().iter().copied().collect();
-    Ok(Tensor::from_vec(rows, of.shape(), &Device::Cpu)?)
+fn tensor(matrix: &DMatrix<f64>) -> Result<Tensor, NnError> {
+    let rows: Vec<f64> = matrix.transpose().iter().copied().collect();
+    Ok(Tensor::from_vec(rows, matrix.shape(), &Device::Cpu)?)
 }
 
 fn matrix(tensors: &NamedTensors, name: &str, n_rows: usize) -> Result<DMatrix<f64>, NnError> {

@@ -185,8 +185,8 @@ impl Observation {
 /// The latent that moves the position most.
 fn largest(observations: &[Observation], scales: &LatentScales) -> usize {
     let effect = |m: usize| -> f64 {
-        let of = observations.iter().map(|seen| seen.sensitivities[m].xy().norm());
-        of.sum::<f64>() * scales.scales[m]
+        let distances = observations.iter().map(|seen| seen.sensitivities[m].xy().norm());
+        distances.sum::<f64>() * scales.scales[m]
     };
     (0..N_NAMED_LATENTS).max_by(|a, b| effect(*a).total_cmp(&effect(*b))).unwrap_or(0)
 }

@@ -190,8 +190,8 @@ fn applicability<const N: usize>(
     values: [f64; N],
 ) -> Applicability {
     let (mut squares, mut outside) = (0.0, Vec::new());
-    for ((of, &[low, high]), value) in quantities.iter().zip(ranges).zip(values) {
-        let least = match of.least_width {
+    for ((quantity, &[low, high]), value) in quantities.iter().zip(ranges).zip(values) {
+        let least = match quantity.least_width {
             Width::Thousandths(width) => f64::from(width) / 1e3,
             Width::Percent(share) => f64::from(share) / 1e2 * ((low + high) / 2.0).abs(),
         };
@@ -199,7 +199,7 @@ fn applicability<const N: usize>(
         // Rounding of what is at the end of a range is not outside.
         if off > 1e-9 * (1.0 + value.abs()) {
             squares += (off / (high - low).max(least).max(1e-9) * 2.0).powi(2);
-            outside.push(OutsideDomain { quantity: of.name, value, range: [low, high] });
+            outside.push(OutsideDomain { quantity: quantity.name, value, range: [low, high] });
         }
     }
     Applicability::new(squares.sqrt(), outside)
@@ -263,23 +263,23 @@ mod tests {
     fn what_lies_outside_is_named_with_value_and_range() {
         let cases = [case(0.5, 15.0), case(0.9, 25.0)];
         let domain = MotionDomain::from_cases(&cases);
-        let of = |case: &ResponseCase| {
+        let applicability = |case: &ResponseCase| {
             domain.vehicle_applicability(&case.vehicle).and(&domain.motion_applicability(
                 &case.vehicle,
                 &case.states[0],
                 &case.inputs,
             ))
         };
-        assert_eq!(of(&case(0.7, 20.0)), Applicability::whole());
-        assert_eq!(of(&cases[1]), Applicability::whole());
-        let slick = of(&case(0.1, 20.0));
+        assert_eq!(applicability(&case(0.7, 20.0)), Applicability::whole());
+        assert_eq!(applicability(&cases[1]), Applicability::whole());
+        let slick = applicability(&case(0.1, 20.0));
         assert!(slick.value < 0.01, "{slick:?}");
         let named = OutsideDomain { quantity: "friction", value: 0.1, range: [0.5, 0.9] };
         assert_eq!(slick.outside, [named]);
-        let both = of(&case(0.45, 80.0));
+        let both = applicability(&case(0.45, 80.0));
         assert!(both.value < 0.01 && both.outside.len() == 2, "{both:?}");
         // Half of half the range beyond its end.
-        let edge = of(&case(1.0, 20.0));
+        let edge = applicability(&case(1.0, 20.0));
         assert!((edge.value - 0.5).abs() < 1e-9, "{edge:?}");
     }
 

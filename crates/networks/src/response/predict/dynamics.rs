@@ -71,7 +71,9 @@ impl<'a> Dynamics<'a> {
             network,
             latents,
             effects: EffectModel::new(vehicle),
-            ignored: latents.directions.map(|of| of.iter().all(|change| *change == 0.0)),
+            ignored: latents
+                .directions
+                .map(|direction| direction.iter().all(|change| *change == 0.0)),
         }
     }
 

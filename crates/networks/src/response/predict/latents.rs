@@ -161,8 +161,8 @@ impl LatentScales {
         let named =
             [Direction::Grip, Direction::Balance, Direction::YawImpulse, Direction::LateralImpulse];
         let mut directions = [[0.0; N_EFFECTS]; N_LATENTS];
-        for ((place, of), scale) in NAMED_PLACES.into_iter().zip(named).zip(self.scales) {
-            directions[place] = direction(of).map(|value| value * scale);
+        for ((place, pattern), scale) in NAMED_PLACES.into_iter().zip(named).zip(self.scales) {
+            directions[place] = direction(pattern).map(|value| value * scale);
         }
         let shared_out = NAMED_PLACES.get(self.shared_out).copied().unwrap_or(0);
         Latents {
@@ -235,7 +235,7 @@ mod tests {
     #[test]
     fn directions_scale_with_their_scales() {
         let scales = LatentScales::default();
-        let [once, twice] = [scales, scales.widened(2.0)].map(|of| of.latents().directions);
+        let [once, twice] = [scales, scales.widened(2.0)].map(|scales| scales.latents().directions);
         for (a, b) in once.iter().flatten().zip(twice.iter().flatten()) {
             assert!((2.0 * a - b).abs() < 1e-15);
         }

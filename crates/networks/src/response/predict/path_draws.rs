@@ -97,8 +97,9 @@ mod tests {
             MotionDistribution::new(vec![ComponentMotion { weight: 1.0, states, tail_ratio: 1.0 }]);
         let draws = forecast.draws(4000, 7);
         assert_eq!((draws.len(), draws[0].len()), (4000, 3));
-        let mean =
-            |of: &dyn Fn(&Pose) -> f64| draws.iter().map(|path| of(&path[2])).sum::<f64>() / 4000.0;
+        let mean = |coordinate: &dyn Fn(&Pose) -> f64| {
+            draws.iter().map(|path| coordinate(&path[2])).sum::<f64>() / 4000.0
+        };
         let x = mean(&|pose| pose.x_m);
         // Four standard errors.
         assert!((x - 20.0).abs() < 4.0 / 4000_f64.sqrt(), "{x}");

@@ -70,8 +70,8 @@ impl PredictorSource {
         let (share, beyond) = (applicability.value, applicability.distance);
         let none = [0.0; N_EFFECTS];
         let (added, remainder, latents) = match &self.strengths {
-            SourceStrengths::Population(population, of) => {
-                (of.mean.as_slice(), of.remainder, population.latents(of, [share, beyond]))
+            SourceStrengths::Population(population, own) => {
+                (own.mean.as_slice(), own.remainder, population.latents(own, [share, beyond]))
             }
             SourceStrengths::OneCar(scales) => {
                 (none.as_slice(), 1.0, scales.faded([share, beyond]).latents())
@@ -170,8 +170,10 @@ impl Predictor {
         inputs: &[VehicleInput<f64>],
     ) -> Vec<ComponentPath> {
         let n = self.n_components();
-        let of = self.fitted_to(initial, inputs);
-        of.paths_at(initial, inputs, |j| of.latents.component_shares(j, n).map(|share| share.mean))
+        let fitted = self.fitted_to(initial, inputs);
+        fitted.paths_at(initial, inputs, |j| {
+            fitted.latents.component_shares(j, n).map(|share| share.mean)
+        })
     }
 
     /// The path of each component at given latent factors.
@@ -183,8 +185,9 @@ impl Predictor {
     ) -> Vec<ComponentPath> {
         let (dynamics, mut batch) = (self.dynamics(), NetworkBatch::default());
         let mut none = |std: &mut [f64; N_RESIDUAL]| *std = [0.0; N_RESIDUAL];
-        let of = |j: usize| path(&dynamics, j, &latents(j), &mut none, initial, inputs, &mut batch);
-        let mut paths: Vec<ComponentPath> = (0..self.n_components()).map(of).collect();
+        let component_path =
+            |j: usize| path(&dynamics, j, &latents(j), &mut none, initial, inputs, &mut batch);
+        let mut paths: Vec<ComponentPath> = (0..self.n_components()).map(component_path).collect();
         let sum: f64 = paths.iter().map(|path| path.weight).sum();
         paths.iter_mut().for_each(|path| path.weight /= sum);
         paths
@@ -211,8 +214,8 @@ impl Predictor {
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> Vec<VehicleState<f64>> {
-        let of = self.fitted_to(initial, inputs);
-        let paths = of.paths_at(initial, inputs, |_| [0.0; N_LATENTS]);
+        let fitted = self.fitted_to(initial, inputs);
+        let paths = fitted.paths_at(initial, inputs, |_| [0.0; N_LATENTS]);
         mean_of(&paths, inputs.len())
     }
 
@@ -224,8 +227,8 @@ impl Predictor {
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> MotionDistribution {
-        let of = self.fitted_to(initial, inputs);
-        let dynamics = of.dynamics();
+        let fitted = self.fitted_to(initial, inputs);
+        let dynamics = fitted.dynamics();
         let component = |j| dynamics.motion(j, self.unscented, initial, inputs);
         MotionDistribution::new((0..self.n_components()).map(component).collect())
     }
@@ -241,15 +244,15 @@ impl Predictor {
         n: usize,
         seed: u64,
     ) -> Vec<Vec<VehicleState<f64>>> {
-        let of = self.fitted_to(initial, inputs);
-        let dynamics = of.dynamics();
+        let fitted = self.fitted_to(initial, inputs);
+        let dynamics = fitted.dynamics();
         let weights: Vec<f64> =
             self.paths(initial, inputs).iter().map(|path| path.weight).collect();
         let draw = |idx: usize| {
             let mut rng = random_stream(seed, "coherent motions", idx as u64);
             let j = drawn(&weights, rng.random());
-            let shares = of.latents.component_shares(j, weights.len());
-            let width = of.latents.width(rng.random());
+            let shares = fitted.latents.component_shares(j, weights.len());
+            let width = fitted.latents.width(rng.random());
             let latents: [f64; N_LATENTS] = std::array::from_fn(|m| {
                 width * (shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng))
             });
@@ -353,11 +356,11 @@ impl MotionDistribution {
 
     /// Mean at an instant.
     pub fn mean(&self, instant: usize) -> VehicleState<f64> {
-        let of = self
+        let states = self
             .components
             .iter()
             .filter_map(|component| Some((component.weight, &component.states.get(instant)?.mean)));
-        weighted_mean(of)
+        weighted_mean(states)
     }
 
     /// Covariance of [X, Y, ψ, v_x, v_y, r] at an instant, within the components and between them.
@@ -398,7 +401,7 @@ impl MotionDistribution {
     /// The normal distributions of [X, Y, ψ, v_x, v_y, r] at an instant, of both widths of every
     /// component.
     fn parts(&self, instant: usize) -> impl Iterator<Item = PlanarState> + '_ {
-        let of = move |component: &ComponentMotion| component.at(instant);
-        self.components.iter().flat_map(of)
+        let parts = move |component: &ComponentMotion| component.at(instant);
+        self.components.iter().flat_map(parts)
     }
 }

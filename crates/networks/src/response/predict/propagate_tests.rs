@@ -61,7 +61,7 @@ fn it_agrees_with_ten_thousand_coherent_draws() {
                 .collect();
             let mean = motion.mean(at);
             let covariance = motion.covariance(at);
-            let of = |axis: usize| {
+            let moments = |axis: usize| {
                 let n = positions.len() as f64;
                 let mean = positions.iter().map(|p| p[axis]).sum::<f64>() / n;
                 let square = positions.iter().map(|p| (p[axis] - mean).powi(2)).sum::<f64>() / n;
@@ -69,7 +69,7 @@ fn it_agrees_with_ten_thousand_coherent_draws() {
             };
             let path_m = 22.0 * at as f64 * 0.01;
             for (axis, expected) in [mean.x_m, mean.y_m, mean.yaw_rad].into_iter().enumerate() {
-                let (mean, std) = of(axis);
+                let (mean, std) = moments(axis);
                 let scale = if axis < 2 { path_m } else { 1.0 };
                 assert!(
                     (mean - expected).abs() < 0.01 * scale,
@@ -83,7 +83,8 @@ fn it_agrees_with_ten_thousand_coherent_draws() {
             let levels: Vec<f64> =
                 positions[..2000].iter().map(|&[x, y, _]| position.level_of([x, y])).collect();
             for level in [0.5, 0.9] {
-                let held = levels.iter().filter(|of| **of <= level).count() as f64 / 2000.0;
+                let held =
+                    levels.iter().filter(|reached| **reached <= level).count() as f64 / 2000.0;
                 assert!((held - level).abs() < 0.05, "{level} at {at}: {held} of the draws");
             }
         }

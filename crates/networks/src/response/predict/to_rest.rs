@@ -62,24 +62,24 @@ impl Predictor {
         draws: &[usize],
         search: &RestSearch,
     ) -> Vec<SettledMotion> {
-        let of = self.fitted_to(initial, inputs);
-        let dynamics = of.dynamics();
+        let fitted = self.fitted_to(initial, inputs);
+        let dynamics = fitted.dynamics();
         // What a component weighs is known as far as the network is.
-        let n_learned = ((of.network.learned_s() / STEP_S).ceil() as usize).min(inputs.len());
+        let n_learned = ((fitted.network.learned_s() / STEP_S).ceil() as usize).min(inputs.len());
         let paths = self.paths(initial, inputs.get(..n_learned).unwrap_or(inputs));
         let weights: Vec<f64> = paths.iter().map(|path| path.weight).collect();
         let draw = |&idx: &usize| {
             let mut rng = random_stream(search.seed, "motions to rest", idx as u64);
             let component = drawn(&weights, rng.random());
-            let shares = of.latents.component_shares(component, weights.len());
-            let width = of.latents.width(rng.random());
+            let shares = fitted.latents.component_shares(component, weights.len());
+            let width = fitted.latents.width(rng.random());
             let latents = std::array::from_fn(|m| {
                 width * (shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng))
             });
             let [rolling, air] =
                 search.resistance_scatter.map(|scatter| (scatter * normal(&mut rng)).exp());
-            let resisted = with_resistance(&of.vehicle, [rolling, air]);
-            let beyond = Dynamics::new(&resisted, &of.network, &of.latents);
+            let resisted = with_resistance(&fitted.vehicle, [rolling, air]);
+            let beyond = Dynamics::new(&resisted, &fitted.network, &fitted.latents);
             let draw = MotionDraw { component, latents };
             follow([&dynamics, &beyond], &draw, initial, inputs, || width * normal(&mut rng))
         };
@@ -93,8 +93,8 @@ impl Predictor {
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> Vec<SettledMotion> {
-        let of = self.fitted_to(initial, inputs);
-        let dynamics = of.dynamics();
+        let fitted = self.fitted_to(initial, inputs);
+        let dynamics = fitted.dynamics();
         let path = |component| {
             let draw = MotionDraw { component, latents: [0.0; N_LATENTS] };
             follow([&dynamics; 2], &draw, initial, inputs, || 0.0)

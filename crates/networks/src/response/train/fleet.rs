@@ -69,7 +69,7 @@ pub fn train_fleet(
         flow
     };
     let parts = train_parts(start, set, settings, &mut on_progress)?;
-    let mut last = |of: &TrainingReport| on_progress(&numbered(of, N_PARTS));
+    let mut last = |progress: &TrainingReport| on_progress(&numbered(progress, N_PARTS));
     let mut model = fine_tune_once(Some(start), set, settings, &mut last)?;
     if is_cut.get() {
         return Ok(model);
@@ -127,13 +127,13 @@ impl FleetPart {
     ///
     /// - `set`: the trajectories of the whole fleet.
     pub fn unseen<'a>(&'a self, set: &'a ResponseTrainingSet) -> UnseenCars<'a> {
-        let of = |numbers: &Vec<usize>| -> Vec<&'a ResponseCase> {
+        let chosen = |numbers: &Vec<usize>| -> Vec<&'a ResponseCase> {
             numbers.iter().filter_map(|idx| set.train.get(*idx)).collect()
         };
         UnseenCars {
             model: &self.model,
-            cars: self.left_out.cars.iter().map(of).collect(),
-            motions: of(&self.left_out.motions),
+            cars: self.left_out.cars.iter().map(chosen).collect(),
+            motions: chosen(&self.left_out.motions),
         }
     }
 }
@@ -169,7 +169,7 @@ pub(crate) fn train_parts(
             name.into()
         });
         let settings = ResponseTrainSettings { checkpoint, ..settings.clone() };
-        let mut on_progress = |of: &TrainingReport| report(&numbered(of, part));
+        let mut on_progress = |progress: &TrainingReport| report(&numbered(progress, part));
         let model = fine_tune_once(Some(start), &set.part(&train), &settings, &mut on_progress)?;
         trained.push(FleetPart { left_out, model });
     }
@@ -233,14 +233,16 @@ pub fn learn_population(
 ) -> Result<(), LearningError> {
     let cars: Vec<UnseenCar<'_>> = unseen
         .iter()
-        .flat_map(|of| of.cars.iter().map(|cases| UnseenCar { cases, network: of.model.network() }))
+        .flat_map(|part| {
+            part.cars.iter().map(|cases| UnseenCar { cases, network: part.model.network() })
+        })
         .collect();
     let mut population = StrengthPopulation::fit(&cars)?;
     let of_unseen: Vec<UnseenCases<'_>> = unseen
         .iter()
-        .map(|of| {
-            let cases = of.cars.iter().flatten().copied().collect();
-            Ok(UnseenCases { model: of.model.copied()?, population: population.clone(), cases })
+        .map(|part| {
+            let cases = part.cars.iter().flatten().copied().collect();
+            Ok(UnseenCases { model: part.model.copied()?, population: population.clone(), cases })
         })
         .collect::<Result<_, LearningError>>()?;
     population.set_widths(calibrated(&of_unseen)?);
@@ -250,7 +252,7 @@ pub fn learn_population(
         let is_of_car = |case: &&ResponseCase| {
             cases.first().is_some_and(|first| is_same_car(&first.vehicle, &case.vehicle))
         };
-        let is_well_known = unseen.iter().flat_map(|of| &of.motions).any(is_of_car);
+        let is_well_known = unseen.iter().flat_map(|part| &part.motions).any(is_of_car);
         let widths = if is_well_known { well_known } else { population.widths() };
         population = population.with_learned_car(model.network(), widths, &cases)?;
     }
@@ -274,22 +276,22 @@ fn well_known_widths(
     train: &[ResponseCase],
 ) -> Result<Widths, LearningError> {
     let mut unseen_cases = Vec::new();
-    for of in unseen.iter().filter(|of| !of.motions.is_empty()) {
+    for part in unseen.iter().filter(|part| !part.motions.is_empty()) {
         let mut known = population.clone();
         let learned: Vec<ResponseCase> =
-            train.iter().filter(|case| of.model.is_trained_on(case)).cloned().collect();
+            train.iter().filter(|case| part.model.is_trained_on(case)).cloned().collect();
         for car in cars_of(&learned) {
             let cases: Vec<&ResponseCase> =
                 car.iter().filter_map(|idx| learned.get(*idx)).collect();
             let is_of_car = |other: &&ResponseCase| {
                 cases.first().is_some_and(|case| is_same_car(&case.vehicle, &other.vehicle))
             };
-            if of.motions.iter().any(is_of_car) {
-                known = known.with_learned_car(of.model.network(), Widths::NORMAL, &cases)?;
+            if part.motions.iter().any(is_of_car) {
+                known = known.with_learned_car(part.model.network(), Widths::NORMAL, &cases)?;
             }
         }
-        let cases = of.motions.clone();
-        unseen_cases.push(UnseenCases { model: of.model.copied()?, population: known, cases });
+        let cases = part.motions.clone();
+        unseen_cases.push(UnseenCases { model: part.model.copied()?, population: known, cases });
     }
     if unseen_cases.is_empty() { Ok(population.widths()) } else { calibrated(&unseen_cases) }
 }
@@ -299,12 +301,12 @@ fn calibrated(unseen_cases: &[UnseenCases<'_>]) -> Result<Widths, LearningError>
     let mut best = (f64::INFINITY, Widths::NORMAL);
     for widening in FACTORS {
         let mut counts = [Held::default(); RATIOS.len()];
-        for of in unseen_cases {
-            let mut population = of.population.clone();
+        for part in unseen_cases {
+            let mut population = part.population.clone();
             population.set_widths(Widths { widening, ..Widths::NORMAL });
-            let mut model = of.model.copied()?;
+            let mut model = part.model.copied()?;
             model.set_population(population);
-            let of_cases: Vec<[Held; RATIOS.len()]> = of
+            let of_cases: Vec<[Held; RATIOS.len()]> = part
                 .cases
                 .par_iter()
                 .map(|case| held_positions(&model, case))
@@ -358,7 +360,7 @@ fn held_positions(
         for at in (STRIDE_STEPS..=n_steps).step_by(STRIDE_STEPS) {
             let Some(state) = case.states.get(at) else { break };
             let level = motion.position(at).level_of([state.x_m, state.y_m]);
-            let inside = LEVELS.map(|of| usize::from(level <= of));
+            let inside = LEVELS.map(|limit| usize::from(level <= limit));
             held.add(Held { inside, all: 1 });
         }
         held

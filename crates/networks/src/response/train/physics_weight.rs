@@ -93,8 +93,8 @@ mod tests {
 
     #[test]
     fn the_weight_grows_on_paper_and_falls_else() {
-        let of = |trend| PhysicsSchedule { trend, ..PhysicsSchedule::default() };
-        let (paper, decay) = (of(PhysicsTrend::Paper), of(PhysicsTrend::Decay));
+        let schedule = |trend| PhysicsSchedule { trend, ..PhysicsSchedule::default() };
+        let (paper, decay) = (schedule(PhysicsTrend::Paper), schedule(PhysicsTrend::Decay));
         assert!(paper.weight(1, 1.0) < 1.0 && paper.weight(200, 1.0) > 9.9);
         assert!(decay.weight(1, 1.0) > 9.0 && decay.weight(200, 1.0) < 0.2);
         let middle = paper.midpoint_epoch as usize;

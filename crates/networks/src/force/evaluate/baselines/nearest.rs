@@ -71,7 +71,7 @@ impl NearestBaseline {
         let n_features = known.first().map_or(0, |first| first.row.len());
         let inverse_std = |j: usize| {
             let std = Summary::from_values(known.iter().map(|known| known.row[j]))
-                .map_or(0.0, |of| of.std);
+                .map_or(0.0, |summary| summary.std);
             if std > 0.0 { std.recip() } else { 0.0 }
         };
         let inverse_std = (0..n_features).map(inverse_std).collect();

@@ -26,8 +26,8 @@ pub(super) fn choose(
     });
     let losses: Vec<Vec<(f64, CurveRegressionOptions)>> = losses.collect::<Result<_, _>>()?;
     let candidates = candidates().map(|options| {
-        let of = losses.iter().flatten().filter(|(_, other)| *other == options);
-        (of.map(|(loss, _)| loss).sum(), options)
+        let own = losses.iter().flatten().filter(|(_, other)| *other == options);
+        (own.map(|(loss, _)| loss).sum(), options)
     });
     best_of(candidates.collect::<Vec<_>>())
         .filter(|_| !losses.is_empty())

@@ -212,8 +212,9 @@ impl CurveRegression {
 
     /// The curve at `z` standard deviations from the mean of each regression.
     fn curve(&self, regressed: &Regressed, unusual: bool, z: &[f64]) -> ForceCurve {
-        let at = |of: &GaussianPrediction, i: usize, z: f64| {
-            of.mean[i] + z * if unusual { of.std_unusual[i] } else { of.std[i] }
+        let at = |prediction: &GaussianPrediction, i: usize, z: f64| {
+            prediction.mean[i]
+                + z * if unusual { prediction.std_unusual[i] } else { prediction.std[i] }
         };
         let [ln_ratio, turn, ln_duration] = [0, 1, 2].map(|i| at(&regressed.scales[i], 0, z[i]));
         let [ln_length, ln_start] = [0, 1].map(|i| at(&regressed.times[i], 0, z[3 + i]));
