@@ -136,7 +136,7 @@ pub struct PredictForceAnswer {
 }
 
 /// A collision as a force network is asked about it.
-struct AskedCollision {
+struct CollisionInput {
     name: String,
     numbers: ForceScenario,
     /// Its planar impact in world axes and the heading of the struck vehicle, where the contact is
@@ -168,7 +168,7 @@ impl ForceQuestion {
         &self,
         library: &Library,
         observer: &mut Observer<'_>,
-    ) -> Result<Outcome<AskedCollision>, StudyError> {
+    ) -> Result<Outcome<CollisionInput>, StudyError> {
         let (mut unused, mut overlap) = (Vec::new(), None);
         let across = |numbers: &ForceScenario| {
             Some((numbers.impact(DEFAULT_RESTITUTION, DEFAULT_FRICTION_LIMIT)?, 0.0))
@@ -200,7 +200,7 @@ impl ForceQuestion {
                 (name.clone(), numbers.as_ref().clone(), across(numbers))
             }
         };
-        Ok(Outcome::Complete(AskedCollision { name, numbers, impact, unused, overlap }))
+        Ok(Outcome::Complete(CollisionInput { name, numbers, impact, unused, overlap }))
     }
 }
 
@@ -232,7 +232,7 @@ impl Question for PredictForceRequest {
         let Outcome::Complete(collision) = numbers else {
             return Ok(Outcome::Cancelled);
         };
-        let AskedCollision { name, numbers: mut collision, mut impact, mut unused, overlap } =
+        let CollisionInput { name, numbers: mut collision, mut impact, mut unused, overlap } =
             collision;
         if let Some(body) = &self.body {
             collision.striking_body = Some(body.clone());
