@@ -21,6 +21,8 @@ use crate::uncertainty::PlanarKernel;
 /// Number of draws from which the level of a density is estimated; the standard error of the level
 /// is then about 1 %.
 const N_DRAWS: usize = 2000;
+/// Number of draws for the area of a region, which then has an error of some 2 %.
+const N_REGION_DRAWS: usize = 10_000;
 /// Smallest variance relative to the larger one of a part, and smallest absolute variance, m².
 const LEAST_RATIO: f64 = 1e-9;
 const LEAST_VARIANCE_M2: f64 = 1e-8;
@@ -113,6 +115,21 @@ impl PlanarMixture {
         1.0 - n_below as f64 / densities.len().max(1) as f64
     }
 
+    /// Area of the smallest region that holds the position with probability `level`, m².
+    ///
+    /// ```text
+    /// A = E[1/p(X); p(X) ≥ c]
+    /// ```
+    ///
+    /// The expected value is estimated by the mean over draws X, with the threshold c exceeded by the
+    /// share `level` of them.
+    pub fn region_m2(&self, level: f64) -> f64 {
+        let densities = self.densities_of_draws(N_REGION_DRAWS);
+        let n_outside = ((1.0 - level) * densities.len() as f64).round() as usize;
+        let inverse = densities.iter().skip(n_outside).map(|density| 1.0 / density);
+        inverse.sum::<f64>() / densities.len().max(1) as f64
+    }
+
     /// Densities at `n` positions drawn from the mixture with a fixed seed, in ascending order,
     /// 1/m².
     pub fn densities_of_draws(&self, n: usize) -> Vec<f64> {
@@ -144,6 +161,15 @@ impl PlanarMixture {
 mod tests {
     use super::*;
     use crate::uncertainty::PlanarGrid;
+
+    #[test]
+    fn the_region_of_a_normal_distribution_is_an_ellipse() {
+        let part = PlanarPart { weight: 1.0, mean: [0.0; 2], covariance: [4.0, 0.0, 1.0] };
+        // The squared radius of the 90 % region is −2 ln 0.1 = 4.605, and its area π · 4.605 · 2 ·
+        // 1.
+        let area = PlanarMixture::new(vec![part]).region_m2(0.9);
+        assert!((area / 28.93 - 1.0).abs() < 0.05, "{area}");
+    }
 
     fn mixture() -> PlanarMixture {
         let part = |weight, mean, covariance| PlanarPart { weight, mean, covariance };

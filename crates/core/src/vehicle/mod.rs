@@ -9,6 +9,7 @@ mod energy;
 pub mod frames;
 mod loads;
 mod multibody_record;
+mod pace;
 mod parameters;
 mod preset;
 mod rest;
@@ -51,6 +52,7 @@ pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput
 pub use friction_zone::{FrictionZone, FrictionZoneError, MAX_BORDER_CORNERS, friction_at};
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;
+pub use pace::{Pace, rest_instant};
 pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
 pub use path_batch::{MAX_PATH_STEP_S, Path, PathEnd, PathLimit, PathPoint, simulate_paths};
 pub use preset::{Preset, built_in_vehicle};

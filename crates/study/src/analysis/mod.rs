@@ -10,7 +10,6 @@ mod motion_bands;
 mod motion_density;
 mod motion_forecast;
 mod motion_to_rest;
-mod rest;
 mod rest_outcome;
 mod scenario;
 mod second_contacts;

@@ -14,8 +14,6 @@ use serde::Serialize;
 
 use crate::analysis::RestOutcome;
 use crate::analysis::motion_to_rest::{Settled, ToRest};
-use crate::analysis::rest::{Pace, rest_instant};
-use crate::analysis::rest_outcome::region_m2;
 use impactlab_core::collision::Pose;
 use impactlab_core::data::{
     ContactOutside, ForceAxes, ForceHistory, check_contact_within, contact_interval,
@@ -25,8 +23,8 @@ use impactlab_core::ranges::{DRAWS, FORECAST_DURATION, OutOfRange, REST_LIMIT};
 use impactlab_core::uncertainty::{ForceCurve, PlanarMixture};
 use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::{
-    ContactLoad, ContactPoint, ControlledVehicle, Controls, FrictionZone, Manoeuvre, Sensitivity,
-    VehicleDraws, VehicleInput, VehicleParameters, VehicleState,
+    ContactLoad, ContactPoint, ControlledVehicle, Controls, FrictionZone, Manoeuvre, Pace,
+    Sensitivity, VehicleDraws, VehicleInput, VehicleParameters, VehicleState, rest_instant,
 };
 use impactlab_networks::force::{ForceError, ForceModel, ForcePrediction, ForceScenario};
 use impactlab_networks::learning::LearningError;
@@ -322,7 +320,7 @@ fn timed_outcome(
 ) -> Option<MotionOutcome> {
     let pace = Pace::mean_of(paths);
     let force_end_s = forces.iter().filter_map(contact_interval).map(|(_, end_s)| end_s);
-    let rest = rest_instant(&pace, force_end_s.fold(0.0, f64::max));
+    let rest = rest_instant(&pace, STEP_S, force_end_s.fold(0.0, f64::max));
     outcome(distribution, &mean_of(paths), &pace, rest, seed)
 }
 
@@ -446,7 +444,7 @@ fn outcome(
         heading_change_rad: heading.estimate().mapped(|yaw_rad| yaw_rad - start.yaw_rad),
         speed_m_s: pace.speed_m_s,
         yaw_rate_rad_s: pace.yaw_rate_rad_s,
-        region_90_m2: region_m2(&position, 0.9),
+        region_90_m2: position.region_m2(0.9),
         p_quarter_turn: heading.p_outside(start.yaw_rad - FRAC_PI_2, start.yaw_rad + FRAC_PI_2),
         p_half_turn: heading.p_outside(start.yaw_rad - PI, start.yaw_rad + PI),
     })

@@ -6,8 +6,6 @@ use serde::Serialize;
 use impactlab_core::uncertainty::{PlanarMixture, PlanarPart};
 use impactlab_core::units::Estimate;
 
-/// Number of draws for the area of a region, which then has an error of some 2 %.
-const N_REGION_DRAWS: usize = 10_000;
 /// Largest number of groups into which draws are divided by where they end.
 const MAX_GROUPS: usize = 24;
 /// Smallest number of draws in a group, so that their covariance means something.
@@ -87,8 +85,8 @@ impl RestOutcome {
             x_m: spread(|end| end.x_m),
             y_m: spread(|end| end.y_m),
             yaw_rad: spread(|end| end.yaw_rad),
-            region_50_m2: region_m2(&position, 0.5),
-            region_90_m2: region_m2(&position, 0.9),
+            region_50_m2: position.region_m2(0.5),
+            region_90_m2: position.region_m2(0.9),
             moving_speed_m_s: (!moving.is_empty()).then(|| Estimate::from_draws(moving).median),
         })
     }
@@ -136,21 +134,6 @@ pub(super) fn groups(ends: &[MotionEnd]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// Area of the smallest region that holds the position with probability `level`, m².
-///
-/// ```text
-/// A = E[1/p(X); p(X) ≥ c]
-/// ```
-///
-/// The expected value is estimated by the mean over draws X, with the threshold c exceeded by the
-/// share `level` of them.
-pub(super) fn region_m2(position: &PlanarMixture, level: f64) -> f64 {
-    let densities = position.densities_of_draws(N_REGION_DRAWS);
-    let n_outside = ((1.0 - level) * densities.len() as f64).round() as usize;
-    let inverse = densities.iter().skip(n_outside).map(|density| 1.0 / density);
-    inverse.sum::<f64>() / densities.len().max(1) as f64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -166,15 +149,6 @@ mod tests {
             speed_m_s: 1.0,
             yaw_rate_rad_s: 0.0,
         }
-    }
-
-    #[test]
-    fn the_region_of_a_normal_distribution_is_an_ellipse() {
-        let part = PlanarPart { weight: 1.0, mean: [0.0; 2], covariance: [4.0, 0.0, 1.0] };
-        // The squared radius of the 90 % region is −2 ln 0.1 = 4.605, and its area π · 4.605 · 2 ·
-        // 1.
-        let area = region_m2(&PlanarMixture::new(vec![part]), 0.9);
-        assert!((area / 28.93 - 1.0).abs() < 0.05, "{area}");
     }
 
     #[test]

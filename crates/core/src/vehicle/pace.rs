@@ -1,19 +1,21 @@
-//! When a vehicle has come to rest.
+//! How fast a vehicle moves and turns along a motion that is known at equal steps, and since when it
+//! is at rest.
 
-use impactlab_core::vehicle::{REST_DURATION_S, REST_SPEED_M_S, REST_YAW_RATE_RAD_S, VehicleState};
-use impactlab_networks::response::STEP_S;
+use crate::vehicle::{REST_DURATION_S, REST_SPEED_M_S, REST_YAW_RATE_RAD_S, VehicleState};
 
-/// Speed of the CG, m/s, and size of the yaw rate, rad/s.
+/// How fast a vehicle moves and turns.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Pace {
-    pub(super) speed_m_s: f64,
-    pub(super) yaw_rate_rad_s: f64,
+pub struct Pace {
+    /// Speed of the CG, m/s.
+    pub speed_m_s: f64,
+    /// Size of the yaw rate, rad/s.
+    pub yaw_rate_rad_s: f64,
 }
 
 impl Pace {
     /// Means over several paths at each instant; the mean of the velocities themselves would be zero
     /// where two paths turn to opposite sides.
-    pub(super) fn mean_of(paths: &[Vec<VehicleState<f64>>]) -> Vec<Self> {
+    pub fn mean_of(paths: &[Vec<VehicleState<f64>>]) -> Vec<Self> {
         let n_instants = paths.first().map_or(0, Vec::len);
         let at = |i: usize| {
             let states = || paths.iter().filter_map(move |path| path.get(i));
@@ -36,19 +38,21 @@ impl Pace {
 /// The first instant after the end of the force from which on speed and yaw rate stay below their
 /// limits; `None` if they do not to the end of the motion.
 ///
-/// - `motion`: every [`STEP_S`] from t = 0;
+/// - `motion`: every `step_s` from t = 0;
 /// - `force_end_s`: end of the last contact.
-pub(super) fn rest_instant(motion: &[Pace], force_end_s: f64) -> Option<usize> {
+pub fn rest_instant(motion: &[Pace], step_s: f64, force_end_s: f64) -> Option<usize> {
     let first = motion.iter().rposition(|pace| !pace.is_below_limits()).map_or(0, |last| last + 1);
-    let released = (force_end_s / STEP_S).ceil().max(0.0) as usize;
+    let released = (force_end_s / step_s).ceil().max(0.0) as usize;
     let rest = first.max(released);
-    let n_held = (REST_DURATION_S / STEP_S).round() as usize;
+    let n_held = (REST_DURATION_S / step_s).round() as usize;
     (rest + n_held < motion.len()).then_some(rest)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const STEP_S: f64 = 0.01;
 
     fn motion(speed_and_yaw_rate: impl Fn(f64) -> [f64; 2]) -> Vec<Pace> {
         let at = |i: i32| {
@@ -61,23 +65,23 @@ mod tests {
     #[test]
     fn a_parked_car_that_is_struck_is_not_at_rest_before_it_has_stopped() {
         let struck = motion(|t| [if t < 0.05 { 0.0 } else { (5.0 - 2.0 * t).max(0.0) }, 0.0]);
-        let rest = rest_instant(&struck, 0.1).unwrap();
+        let rest = rest_instant(&struck, STEP_S, 0.1).unwrap();
         assert!((247..=249).contains(&rest), "{rest}");
     }
 
     #[test]
     fn a_car_that_nothing_has_pushed_yet_or_that_turns_on_the_spot_is_not_at_rest() {
-        assert_eq!(rest_instant(&motion(|_| [0.0, 0.0]), 3.0), Some(300));
-        assert_eq!(rest_instant(&motion(|_| [0.0, 0.5]), 0.1), None);
-        assert_eq!(rest_instant(&motion(|_| [0.0, 0.0]), 5.0), None);
+        assert_eq!(rest_instant(&motion(|_| [0.0, 0.0]), STEP_S, 3.0), Some(300));
+        assert_eq!(rest_instant(&motion(|_| [0.0, 0.5]), STEP_S, 0.1), None);
+        assert_eq!(rest_instant(&motion(|_| [0.0, 0.0]), STEP_S, 5.0), None);
     }
 
     #[test]
     fn a_moment_of_standstill_is_not_rest() {
         let swings = motion(|t| [(2.0 * (t - 2.0)).abs(), 0.0]);
-        assert_eq!(rest_instant(&swings, 0.1), None);
+        assert_eq!(rest_instant(&swings, STEP_S, 0.1), None);
         let at_the_very_end = motion(|t| [5.0 * (4.0 - t), 0.0]);
-        assert_eq!(rest_instant(&at_the_very_end, 0.1), None);
+        assert_eq!(rest_instant(&at_the_very_end, STEP_S, 0.1), None);
     }
 
     #[test]
@@ -92,6 +96,6 @@ mod tests {
         };
         let pace = Pace::mean_of(&[path(1.0), path(-1.0)]);
         assert_eq!(pace[7], Pace { speed_m_s: 3.0, yaw_rate_rad_s: 1.0 });
-        assert_eq!(rest_instant(&pace, 0.1), None);
+        assert_eq!(rest_instant(&pace, STEP_S, 0.1), None);
     }
 }
