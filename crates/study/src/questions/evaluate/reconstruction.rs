@@ -258,10 +258,10 @@ impl Question for EvaluateReconstructionRequest {
 }
 
 /// Reconstructions that have no answer: they failed, or the evaluation was stopped.
-fn of_missing(n_answers: usize, n_asked: usize) -> Option<Caveat> {
-    let n_missing = n_asked.saturating_sub(n_answers);
+fn of_missing(n_answers: usize, n_expected: usize) -> Option<Caveat> {
+    let n_missing = n_expected.saturating_sub(n_answers);
     let caveat = || {
-        let text = format!("{n_missing} of {n_asked} reconstructions have no answer");
+        let text = format!("{n_missing} of {n_expected} reconstructions have no answer");
         let quantity = "reconstructions without an answer";
         Caveat::new(CaveatKind::LeftOut, text)
             .with_value(quantity, n_missing as f64)

@@ -110,9 +110,9 @@ impl Question for EvaluateResponseRequest {
 /// Those kept for the test of the model, or, of other data, all that it was not trained on.
 fn test_cases(model: &ResponseModel, cases: Vec<ResponseCase>) -> Vec<ResponseCase> {
     let test = &model.record().test;
-    let is_kept = |case: &ResponseCase| test.iter().any(|id| id.digest == case.digest);
-    if cases.iter().any(is_kept) {
-        return cases.into_iter().filter(is_kept).collect();
+    let is_held_out = |case: &ResponseCase| test.iter().any(|id| id.digest == case.digest);
+    if cases.iter().any(is_held_out) {
+        return cases.into_iter().filter(is_held_out).collect();
     }
     cases.into_iter().filter(|case| !model.is_trained_on(case)).collect()
 }

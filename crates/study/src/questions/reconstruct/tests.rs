@@ -47,7 +47,7 @@ fn a_tiny_case_is_reconstructed_the_same_way_each_time() {
 }
 
 #[test]
-fn evidence_that_contradicts_itself_is_said() {
+fn evidence_that_contradicts_itself_is_flagged() {
     let mut request = request(60);
     let EvidenceChoice::Inline(evidence) = &mut request.evidence else { unreachable!() };
     // The recorder says 5 m/s, and the car came 150 m far on a dry road.
