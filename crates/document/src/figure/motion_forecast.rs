@@ -114,7 +114,7 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     let x = Axis::shown("X, along the road", Quantity::Length, input.units);
     let y = Axis::shown("Y, to the left", Quantity::Length, input.units);
     let shown = |[px, py]: [f64; 2]| [x.unit.from_si(px), y.unit.from_si(py)];
-    let path = |(name, role): (&str, Role), states: &[&VehicleState<f64>]| {
+    let path = |name: &str, role: Role, states: &[&VehicleState<f64>]| {
         let points = states.iter().map(|state| shown([state.x_m, state.y_m])).collect();
         FigureElement::Path(Path {
             series: Series { name: name.to_owned(), role, style: LineStyle::Solid, points },
@@ -141,7 +141,7 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         let stride = components.len().div_ceil(MAX_PATHS).max(1);
         for component in components.iter().step_by(stride) {
             let means: Vec<_> = component.states.iter().map(|state| &state.mean).collect();
-            elements.push(path(("components", Role::Muted), &means));
+            elements.push(path("components", Role::Muted, &means));
         }
     }
     let line = |name: &str, role, style, series: &TimeSeries| -> Option<FigureElement> {
@@ -157,7 +157,7 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         elements.extend(series.and_then(|series| line(name, role, style, series)));
     }
     let central: Vec<_> = input.central.iter().collect();
-    elements.push(path(("central path", Role::Target), &central));
+    elements.push(path("central path", Role::Target, &central));
     if let Some(state) = input.central.get(at) {
         let pose = Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad };
         let (role, style) = (Role::Target, LineStyle::Solid);

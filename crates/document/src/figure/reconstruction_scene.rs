@@ -66,7 +66,7 @@ pub fn reconstruction_scene_figure(
     let x = Axis::shown("X, along the heading before the impact", Quantity::Length, units);
     let y = Axis::shown("Y, to the left", Quantity::Length, units);
     let shown = |[px, py]: [f64; 2]| [x.unit.from_si(px), y.unit.from_si(py)];
-    let path = |(name, role): (&str, Role), path: &VehiclePath| {
+    let path = |name: &str, role: Role, path: &VehiclePath| {
         let seen = |point: &PathPoint| shown([point.x_m, point.y_m]);
         FigureElement::Path(Path {
             series: Series {
@@ -79,7 +79,7 @@ pub fn reconstruction_scene_figure(
             yaw_rad: path.points.iter().map(|point| point.yaw_rad).collect(),
         })
     };
-    let drawn = scene.drawn.iter().map(|drawn| path(("particles", Role::Muted), drawn));
+    let drawn = scene.drawn.iter().map(|drawn| path("particles", Role::Muted, drawn));
     let mut elements: Vec<FigureElement> = drawn.collect();
     elements.extend(contact_elements(scene, &shown, units));
     elements.extend(scene.marks.iter().map(|mark| {
@@ -88,7 +88,7 @@ pub fn reconstruction_scene_figure(
     }));
     elements.extend(evidence_elements(scene, &shown, units));
     if let Some(FollowedPath { name, path: followed, time_s }) = scene.followed {
-        elements.push(path((name, Role::Model), followed));
+        elements.push(path(name, Role::Model, followed));
         if let Some(pose) = pose_on(followed, time_s) {
             let footprint = Footprint::from(&scene.cars.struck.parameters.geometry);
             let (role, style) = (Role::Model, LineStyle::Solid);

@@ -139,11 +139,11 @@ impl Comparison {
             cases.iter().map(|row| (row.kind, row.trajectories)).collect();
         kinds.sort_by_key(|(kind, n)| (*n, *kind));
         kinds.dedup();
-        let of_kind = |(kind, n): (MotionModelKind, usize)| -> Vec<&ComparedCase> {
+        let rows_of = |kind: MotionModelKind, n: usize| -> Vec<&ComparedCase> {
             cases.iter().filter(|row| row.kind == kind && row.trajectories == n).collect()
         };
         let model = |&(kind, n): &(MotionModelKind, usize)| {
-            let rows = of_kind((kind, n));
+            let rows = rows_of(kind, n);
             let metrics: Vec<&MotionCaseMetrics> = rows.iter().map(|row| &row.metrics).collect();
             let mut choices: Vec<u64> = rows.iter().map(|row| row.choice).collect();
             choices.sort_unstable();
@@ -169,7 +169,7 @@ impl Comparison {
         let n_clusters = clusters.clusters.as_ref().map_or(1, ImpulseClusters::n_clusters);
         let models_on = |is_in_group: &dyn Fn(&ComparedCase) -> bool| -> Vec<ClusterModel> {
             let of_model = |&(kind, n): &(MotionModelKind, usize)| {
-                let rows = of_kind((kind, n));
+                let rows = rows_of(kind, n);
                 let metrics: Vec<&MotionCaseMetrics> =
                     rows.iter().filter(|row| is_in_group(row)).map(|row| &row.metrics).collect();
                 let metrics = MotionMetrics::from_cases(&metrics);
