@@ -7,7 +7,7 @@ use clap::{Args, Subcommand};
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{BadCasesArg, LearningDataArgs, OverwriteArg};
-use crate::cli::text::{Trained, print_response_training};
+use crate::cli::text::print_trained;
 use impactlab_networks::learning::ModelFile;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{FineTuneRequest, Learning, ModelChoice, TrainingOptions};
@@ -75,7 +75,5 @@ pub(in crate::cli) fn run(
     console.check_target(Some(&args.out), args.overwrite.into())?;
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     answer.model.save(&args.out, args.overwrite.into())?;
-    let trained = Trained { model: &args.out, report: &answer.report };
-    console.print(&trained, |out| print_response_training(out, &trained))?;
-    Ok(Verdict::Clean)
+    print_trained(console, &args.out, &answer.report)
 }

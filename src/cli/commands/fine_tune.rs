@@ -5,7 +5,7 @@ use clap::{Args, Subcommand};
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_settings};
 use crate::cli::options::{LearningDataArgs, TrainingArgs};
-use crate::cli::text::{Trained, print_response_training};
+use crate::cli::text::print_trained;
 use impactlab_networks::learning::ModelFile;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{FineTuneRequest, Learning, ModelChoice};
@@ -87,7 +87,5 @@ fn fine_tune_response(
     let existing = args.training.existing(console)?;
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     answer.model.save(&args.training.out, existing)?;
-    let trained = Trained { model: &args.training.out, report: &answer.report };
-    console.print(&trained, |out| print_response_training(out, &trained))?;
-    Ok(Verdict::Clean)
+    print_trained(console, &args.training.out, &answer.report)
 }

@@ -7,12 +7,12 @@ use clap::{ArgGroup, Args};
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::cli::console::{Console, Verdict, shown_path};
+use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{
     EQUATIONS, EndingArgs, INTEGRATORS, OverwriteArg, SAMPLINGS, UnitsArg, VehicleArg,
     contact_point, count, number, one_of,
 };
-use crate::cli::text::{print_answer, print_dataset_simulation};
+use crate::cli::text::{PrintedAnswer, print_answer, print_dataset_simulation};
 use impactlab_core::data::{
     ColumnMap, DatasetKind, Existing, Sampling, write_restricted_series_csv,
 };
@@ -226,8 +226,7 @@ fn simulate_one(
     }
     let printed = PrintedSimulation { report, out };
     console.print(&printed, |text| {
-        print_answer(text, report, args.units.into())?;
-        out.map_or(Ok(()), |path| writeln!(text, "written: {}", shown_path(path)))
+        print_answer(text, PrintedAnswer::from(report).written(out), args.units.into())
     })?;
     Ok(Verdict::Clean)
 }

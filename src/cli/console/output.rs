@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::within_line;
 
-/// Number of characters of a cell that are printed.
+/// Number of characters of a cell that are printed if another stands beside it.
 const MAX_CELL_CHARS: usize = 200;
 
 /// Prints a value as indented JSON and a line end.
@@ -27,8 +27,7 @@ pub(in crate::cli) fn print_table(
     rows: &[Vec<String>],
 ) -> io::Result<()> {
     let header: Vec<String> = header.iter().map(|&name| name.to_owned()).collect();
-    let rows: Vec<Vec<String>> =
-        rows.iter().map(|row| row.iter().map(|cell| shown_cell(cell)).collect()).collect();
+    let rows: Vec<Vec<String>> = rows.iter().map(|row| shown_row(row)).collect();
     let rows = rows.as_slice();
     let columns: Vec<TextColumn> =
         (0..header.len()).map(|idx| TextColumn::new(&header, rows, idx)).collect();
@@ -51,13 +50,18 @@ pub(in crate::cli) fn print_facts(out: &mut dyn Write, facts: &[(&str, String)])
     Ok(())
 }
 
-/// The text of a cell within its line; a long one is cut.
-fn shown_cell(cell: &str) -> String {
-    let cell = within_line(cell);
-    match cell.char_indices().nth(MAX_CELL_CHARS) {
-        None => cell.into_owned(),
-        Some((at, _)) => format!("{}…", cell.get(..at).unwrap_or_default()),
-    }
+/// The texts of a row within their line; a long one with another beside it, or of digits, is cut.
+fn shown_row(row: &[String]) -> Vec<String> {
+    let last = row.iter().rposition(|cell| !cell.is_empty());
+    let shown = |(idx, cell): (usize, &String)| {
+        let is_whole = Some(idx) == last && cell.parse::<f64>().is_err();
+        let cell = within_line(cell);
+        match cell.char_indices().nth(MAX_CELL_CHARS) {
+            Some((at, _)) if !is_whole => format!("{}…", cell.get(..at).unwrap_or_default()),
+            _ => cell.into_owned(),
+        }
+    };
+    row.iter().enumerate().map(shown).collect()
 }
 
 struct TextColumn {
@@ -109,10 +113,14 @@ mod tests {
     #[test]
     fn a_cell_of_any_length_is_cut_to_what_fits() {
         // Wider columns than 65535 characters cannot be formatted.
-        let rows = [vec!["a".repeat(70_000), "b\n".to_owned()]];
+        let long = "a".repeat(70_000);
+        let rows = [[&*long, "b\n"], [&*long, ""], ["", &*long]];
+        let rows = rows.map(|row| row.map(str::to_owned).to_vec());
         let mut text = Vec::new();
         print_table(&mut text, &["name", ""], &rows).unwrap();
         let text = String::from_utf8(text).unwrap();
-        assert_eq!(text.lines().nth(1), Some(&*format!("{}…  b\\u000a", "a".repeat(200))));
+        let beside = format!("{}…  b\\u000a", "a".repeat(200));
+        let last = format!("{}{long}", " ".repeat(203));
+        assert!(text.lines().skip(1).eq([&*beside, &*long, &*last]));
     }
 }

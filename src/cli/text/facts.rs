@@ -1,57 +1,64 @@
 //! The answer to a question as a person reads it: its facts, and what restricts them.
 
 use std::io::{self, Write};
+use std::path::Path;
 
-use crate::cli::console::{print_caveats, print_table, within_line};
+use crate::cli::console::{print_caveats, print_table, shown_path, within_line};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_study::facts::{FactTable, FactWriter};
 use impactlab_study::{
     Answer, ImpactReport, PredictForceReport, PredictMotionReport, ReconstructReport,
-    SimulateReport,
+    ResponseTrainingReport, SimulateReport, TrainForceReport,
 };
 
 /// What is printed of an answer.
 pub(in crate::cli) struct PrintedAnswer<'a> {
-    name: &'a str,
+    name: String,
     tables: Vec<FactTable>,
     caveats: &'a Caveats,
+    written: Option<&'a Path>,
+}
+
+impl<'a> PrintedAnswer<'a> {
+    /// The same with the file or the folder that was written.
+    pub(in crate::cli) fn written(self, written: Option<&'a Path>) -> Self {
+        Self { written, ..self }
+    }
 }
 
 macro_rules! answers {
-    ($($report:ty: $name:ident;)+) => {
+    ($($report:ty: $of:ident => $name:expr;)+) => {
         $(impl<'a> From<&'a Answer<$report>> for PrintedAnswer<'a> {
-            fn from(report: &'a Answer<$report>) -> Self {
-                Self {
-                    name: &report.$name,
-                    tables: report.facts(),
-                    caveats: &report.caveats,
-                }
+            fn from($of: &'a Answer<$report>) -> Self {
+                Self { name: $name, tables: $of.facts(), caveats: &$of.caveats, written: None }
             }
         })+
     };
 }
 
 answers! {
-    ImpactReport: name;
-    PredictForceReport: scenario;
-    PredictMotionReport: scenario;
-    ReconstructReport: case;
-    SimulateReport: name;
+    ImpactReport: of => of.name.clone();
+    PredictForceReport: of => of.scenario.clone();
+    PredictMotionReport: of => of.scenario.clone();
+    ReconstructReport: of => of.case.clone();
+    SimulateReport: of => of.name.clone();
+    TrainForceReport: of => of.data.clone();
+    ResponseTrainingReport: of => of.data.clone();
 }
 
-/// Prints the name of an answer, its tables of facts below each other, each with its title, and what
-/// restricts it.
+/// Prints the name of an answer, its tables of facts below each other, each with its title, what was
+/// written, and what restricts it.
 pub(in crate::cli) fn print_answer<'a>(
     out: &mut dyn Write,
     answer: impl Into<PrintedAnswer<'a>>,
     units: UnitSystem,
 ) -> io::Result<()> {
     let answer: PrintedAnswer<'_> = answer.into();
-    writeln!(out, "{}", within_line(answer.name))?;
+    writeln!(out, "{}", within_line(&answer.name))?;
     for table in &answer.tables {
         let text = table.to_text(&FactWriter::english(units));
-        writeln!(out, "\n{}", text.title)?;
+        writeln!(out, "\n{}", within_line(&text.title))?;
         let is_list = text.is_list();
         let titles = text.header.iter().map(|title| if is_list { "" } else { title.as_str() });
         let titles: Vec<&str> = titles.collect();
@@ -62,5 +69,6 @@ pub(in crate::cli) fn print_answer<'a>(
     for note in answer.caveats.notes() {
         writeln!(out, "note: {}", within_line(note))?;
     }
-    print_caveats(out, answer.caveats)
+    print_caveats(out, answer.caveats)?;
+    answer.written.map_or(Ok(()), |path| writeln!(out, "written: {}", shown_path(path)))
 }

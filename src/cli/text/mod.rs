@@ -6,12 +6,12 @@ mod facts;
 mod force_evaluation;
 mod reconstruction_evaluation;
 mod simulate_dataset;
-mod training;
+mod trained;
 
 pub(super) use check::print_check;
 pub(super) use comparison::print_comparison;
-pub(super) use facts::print_answer;
+pub(super) use facts::{PrintedAnswer, print_answer};
 pub(super) use force_evaluation::print_force_evaluation;
 pub(super) use reconstruction_evaluation::print_reconstruction_evaluation;
 pub(super) use simulate_dataset::print_dataset_simulation;
-pub(super) use training::{Trained, print_force_training, print_response_training};
+pub(super) use trained::print_trained;

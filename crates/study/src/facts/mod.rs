@@ -14,6 +14,10 @@ mod predict_force;
 mod predict_motion;
 mod reconstruct;
 mod simulate;
+mod training;
 
 pub use table::{Fact, FactTable, FactWriter, TextRow, TextTable, Value};
 pub use term::Term;
+pub use training::{
+    force_model_table, force_settings_table, response_model_table, response_settings_table,
+};

@@ -101,7 +101,7 @@ impl ForceReport {
         let file = self.path.clone().map(|path| Fact::new(Term::ForceFile, Value::File(path)));
         let contact = self.contact_start_s.zip(self.contact_end_s).map(|(from_s, to_s)| {
             let ends = [from_s, to_s].map(|s| Value::Number(Quantity::Time, s));
-            Fact::new(Term::Contact, Value::Joined(ends.to_vec(), " – "))
+            Fact::new(Term::Contact, Value::span(ends))
         });
         let facts = [
             Fact::new(Term::ForceAxes, words(&self.axes)),

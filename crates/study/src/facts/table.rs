@@ -21,6 +21,8 @@ pub enum Value {
     File(PathBuf),
     /// A count.
     Count(usize),
+    /// A count out of a number.
+    CountOf(usize, usize),
     /// A share of 1, written in per cent.
     Share(f64),
     /// The same of a number of draws.
@@ -31,6 +33,8 @@ pub enum Value {
     Fixed(f64, usize),
     /// A number without an interval, SI units.
     Number(Quantity, f64),
+    /// The same with a fixed number of decimals.
+    Decimals(Quantity, f64, usize),
     /// A number that was given, SI units: written with all its digits.
     Given(Quantity, f64),
     /// A standard deviation, SI units.
@@ -67,6 +71,8 @@ pub struct Fact {
 pub struct FactTable {
     /// What the table is about.
     pub title: Value,
+    /// What the rows are.
+    pub rows: Term,
     /// Names of the columns of values.
     pub columns: Vec<Term>,
     /// Probabilities of the intervals that are shown, ascending.
@@ -148,10 +154,45 @@ impl Fact {
     }
 }
 
+impl From<Term> for Value {
+    fn from(term: Term) -> Self {
+        Self::Term(term)
+    }
+}
+
+impl Value {
+    /// Values with their names, one after the other.
+    pub(super) fn named<'a>(values: impl IntoIterator<Item = (&'a str, Self)>) -> Self {
+        let named = |(name, value): (&str, Self)| {
+            Self::Joined(vec![Self::Phrase(name.to_owned()), value], " ")
+        };
+        Self::Joined(values.into_iter().map(named).collect(), ", ")
+    }
+
+    /// From one number to another.
+    pub(super) fn span([from, to]: [Self; 2]) -> Self {
+        Self::Joined(vec![from, to], " – ")
+    }
+}
+
 impl FactTable {
     /// A table with one column of values that have no intervals.
-    pub(super) fn new(title: Term, facts: Vec<Fact>) -> Self {
-        Self { title: Value::Term(title), columns: vec![Term::Value], levels: &[], facts }
+    pub(super) fn new(title: impl Into<Value>, facts: Vec<Fact>) -> Self {
+        let columns = vec![Term::Value];
+        Self { title: title.into(), rows: Term::Quantity, columns, levels: &[], facts }
+    }
+
+    /// A table of texts that the program has in English only, one a row; none without any.
+    pub(super) fn lines(title: impl Into<Value>, texts: &[String]) -> Option<Self> {
+        let row = |text: &String| Fact::row(Value::English(text.clone()), Vec::new());
+        let table = Self::new(title, texts.iter().map(row).collect());
+        table.with_columns(&[]).unless_empty()
+    }
+
+    /// The same with another name for what the rows are.
+    #[must_use]
+    pub(super) fn with_rows(self, rows: Term) -> Self {
+        Self { rows, ..self }
     }
 
     /// The same with intervals.
@@ -182,7 +223,7 @@ impl FactTable {
     pub fn to_text(&self, writer: &FactWriter<'_>) -> TextTable {
         let language = writer.format.language;
         let (mut header, mut header_hints) =
-            (vec![Term::Quantity.label(language).to_owned()], vec![None]);
+            (vec![self.rows.label(language).to_owned()], vec![self.rows.hint()]);
         for (idx, column) in self.columns.iter().enumerate() {
             header.push(column.label(language).to_owned());
             header_hints.push(column.hint());
@@ -280,6 +321,10 @@ impl FactWriter<'_> {
             Value::English(text) => (self.english)(text),
             Value::File(path) => (self.file)(path),
             Value::Count(n) => n.to_string(),
+            Value::CountOf(n, all) => match format.language {
+                Language::En => format!("{n} of {all}"),
+                Language::De => format!("{n} von {all}"),
+            },
             Value::Share(share) => format.percent(*share),
             Value::ShareOfDraws(share, n) => match format.language {
                 Language::En => format!("{} of {n} draws", format.percent(*share)),
@@ -291,6 +336,11 @@ impl FactWriter<'_> {
             Value::Probability(p) => format.fixed(*p, 3),
             Value::Fixed(number, decimals) => format.fixed(*number, *decimals),
             Value::Number(quantity, si) => format.value(*quantity, *si),
+            Value::Decimals(quantity, si, decimals) => {
+                let unit = quantity.display_unit(format.units);
+                let number = format!("{:.decimals$}", unit.from_si(*si) + 0.0);
+                format.with_unit(&number, unit.symbol)
+            }
             Value::Given(quantity, si) => format.given(*quantity, *si),
             Value::Sigma(quantity, si) => format.sigma(*quantity, *si),
             Value::Measured(quantity, si, sigma) => format.measured(*quantity, *si, *sigma),

@@ -212,6 +212,47 @@ terms! {
     Now: "now, ±", "jetzt, ±";
     Then: "then, ±", "dann, ±";
     NotBelievable: "too few particles to say", "zu wenige Partikel für eine Aussage";
+    // Trainings and models.
+    ForceTraining: "Training of the force network", "Training des Kraftnetzes";
+    ResponseTraining: "Training of the response network", "Training des Bewegungsnetzes";
+    CasesLearned: "cases learned from", "Fälle zum Lernen";
+    CasesForValidation: "cases for validation", "Fälle zur Validierung", "They decide when to stop";
+    CasesForTest: "cases kept for the test", "für den Test zurückgehaltene Fälle";
+    TrajectoriesLearned: "trajectories learned from", "Bewegungen zum Lernen";
+    TrajectoriesForTest: "trajectories kept for the test", "für den Test zurückgehaltene Bewegungen";
+    BestEpoch: "best epoch", "beste Epoche", "Its weights are those of the model";
+    Epochs: "epochs", "Epochen";
+    ValidationLoss: "validation loss", "Validierungsverlust", "Of the best epoch";
+    LastLoss: "last loss", "letzter Verlust", "Of the last epoch";
+    Weights: "weights", "Gewichte";
+    VarianceFactors: "factors on the variances", "Faktoren auf die Varianzen",
+        "From calibration on training cases";
+    LatentScales: "uncertainty", "Unsicherheit", "Standard deviations of the latent factors";
+    CalibratedOn: "uncertainty calibrated on", "Unsicherheit kalibriert an";
+    UsualValues: "nothing: the usual values", "nichts: übliche Werte";
+    GuessOfModelBefore: "nothing: a guess, that of the model before and at least the usual",
+        "nichts: geschätzt wie beim Modell davor, mindestens wie üblich";
+    UnseenTrajectories: "trajectories, each unseen", "Bewegungen, jede zuvor ungesehen";
+    TrajectoriesOfModelBefore: "trajectories, by the model before", "Bewegungen, vom Modell davor";
+    CarsKnown: "cars that it knows", "bekannte Fahrzeuge";
+    Seed: "seed", "Startwert des Zufallsgenerators";
+    Program: "program", "Programm";
+    ComputingTime: "computing time", "Rechenzeit";
+    Losses: "Losses of the epoch", "Verluste der Epoche";
+    LossTerm: "term", "Anteil";
+    OfTraining: "training", "Training";
+    OfValidation: "validation", "Validierung";
+    UnusualSettings: "Settings that are not the usual ones", "Abweichungen von den üblichen Einstellungen";
+    MotionFrom: "motion learned from, beginning at", "gelernte Bewegung ab";
+    ForceOrigin: "force", "Kraft";
+    ForceRecorded: "recorded", "aufgezeichnet";
+    ForceEstimated: "estimated from the change of momentum", "aus der Impulsänderung geschätzt";
+    States: "states learned from", "gelernte Zustände";
+    PositionNoise: "noise of the position", "Rauschen der Lage";
+    YawNoise: "noise of the yaw angle", "Rauschen des Gierwinkels";
+    VelocityNoise: "noise of the velocity", "Rauschen der Geschwindigkeit";
+    YawRateNoise: "noise of the yaw rate", "Rauschen der Gierrate";
+    CasesLeftOut: "Cases that are left out, and why", "Ausgelassene Fälle, mit Grund";
 }
 
 #[cfg(test)]

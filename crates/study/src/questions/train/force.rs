@@ -160,7 +160,7 @@ impl Question for TrainForceRequest {
 }
 
 impl TrainForceReport {
-    fn new(model: &ForceModel, seconds: f64, left_out: Vec<String>) -> Self {
+    pub(crate) fn new(model: &ForceModel, seconds: f64, left_out: Vec<String>) -> Self {
         let record = model.record();
         let best = record.detail.best_epoch.checked_sub(1).and_then(|idx| record.history.get(idx));
         Self {

@@ -212,9 +212,22 @@ impl ResponseTrainingAnswer {
         let provenance = provenance.with_trained(RESPONSE_NETWORK, &model)?;
         let mut caveats = notes.caveats;
         caveats.extend(restrictions::left_out_caveat(notes.left_out.len(), "cases"));
+        let report = ResponseTrainingReport::new(&model, seconds, (notes.logs, notes.left_out));
+        let report = Answer { report, caveats, provenance };
+        Ok(Self { report, model })
+    }
+}
+
+impl ResponseTrainingReport {
+    /// What is told of a model, the logs it has learned from, and why cases are left out.
+    pub(crate) fn new(
+        model: &ResponseModel,
+        seconds: f64,
+        (logs, left_out): (Vec<LogReport>, Vec<String>),
+    ) -> Self {
         let record = model.record();
         let last = record.history.last();
-        let report = ResponseTrainingReport {
+        Self {
             data: record.data.clone(),
             data_digest: record.data_digest.clone(),
             seed: record.seed,
@@ -228,10 +241,8 @@ impl ResponseTrainingAnswer {
             balance: last.map(|epoch| epoch.detail.balance),
             latents: *model.latents(),
             keeps_latents: record.detail.keeps_latents,
-            logs: notes.logs,
-            left_out: notes.left_out,
-        };
-        let report = Answer { report, caveats, provenance };
-        Ok(Self { report, model })
+            logs,
+            left_out,
+        }
     }
 }
