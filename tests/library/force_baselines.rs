@@ -5,11 +5,14 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use impactlab_core::data::{Dataset, Outcome};
+use impactlab_core::units::UnitSystem;
 use impactlab_networks::force::{
     ColumnSet, CurvePrediction, Evaluation, EvaluationError, EvaluationSettings, ForceCase,
     evaluate,
 };
 use impactlab_networks::learning::{TEST_SHARE, split};
+use impactlab_study::facts::FactWriter;
+use impactlab_study::{EvaluateForceReport, EvaluatedCases};
 
 fn shipped_cases() -> Vec<ForceCase> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea");
@@ -63,8 +66,26 @@ fn baselines_on_the_test_part_of_the_shipped_runs() {
     }
     assert_eq!(evaluation.metrics.overall.history_error.max, 0.0);
     check_json(&serde_json::to_value(&evaluation).unwrap());
-    for table in [evaluation.to_text(), evaluation.to_markdown()] {
-        assert!(table.contains("the truth") && table.contains("classic pulse"), "{table}");
+    check_tables(evaluation);
+}
+
+fn check_tables(evaluation: Evaluation) {
+    let report = EvaluateForceReport {
+        model_file: "the truth".to_owned(),
+        data: "fea".into(),
+        split: EvaluatedCases::Test,
+        n_test: 25,
+        n_trained_on: 0,
+        evaluation,
+        left_out: vec!["c001: no force".to_owned()],
+    };
+    let (tables, writer) = (report.facts(), FactWriter::english(UnitSystem::Us));
+    for text in tables.iter().map(|table| table.to_text(&writer)) {
+        assert!(text.rows.iter().all(|row| row.cells.len() == text.header.len()), "{text:?}");
+    }
+    let markdown = writer.markdown(&tables);
+    for word in ["the truth", "classic pulse", " lbf s |", "c001: no force"] {
+        assert!(markdown.contains(word), "{word}: {markdown}");
     }
 }
 

@@ -11,10 +11,14 @@ use crate::app::panels::evaluation_plots::plots_ui;
 use crate::app::panels::evaluation_tables::tables_ui;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
-use crate::app::widgets::{bad_cases_ui, cost_ui, dataset_choice, no_dataset_ui, restrictions_ui};
+use crate::app::widgets::{
+    bad_cases_ui, cost_ui, dataset_choice, facts_text, no_dataset_ui, restrictions_ui,
+};
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::uncertainty::Caveats;
+use impactlab_core::units::UnitSystem;
 use impactlab_draw::theme;
+use impactlab_study::facts::FactWriter;
 use impactlab_study::{EvaluateForceReport, EvaluateForceRequest, EvaluatedCases, ForceEvaluation};
 
 /// Draws the choice of the data set and of its cases, and the tables and plots of the last
@@ -41,7 +45,7 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ui.separator();
         let name = session.archive.name_of(&latest.question.model);
         let caveats = &answer.report.caveats;
-        heading_ui(ui, report, caveats, &name);
+        heading_ui(ui, report, caveats, &name, view.units);
         tables_ui(ui, &report.evaluation, &mut view.force, view.units);
         ui.separator();
         match &answer.cases {
@@ -111,16 +115,24 @@ fn start_ui(
 /// evaluated ones, of problems and of cases that were left out.
 ///
 /// - `model`: what the user calls the model.
-fn heading_ui(ui: &mut Ui, report: &EvaluateForceReport, caveats: &Caveats, model: &str) {
+fn heading_ui(
+    ui: &mut Ui,
+    report: &EvaluateForceReport,
+    caveats: &Caveats,
+    model: &str,
+    units: UnitSystem,
+) {
     let (data, evaluation) = (file_name(&report.data), &report.evaluation);
     ui.horizontal_wrapped(|ui| {
         ui.strong(format!("{model} on {} cases of {data}", report.n_test));
         ui.weak(format!("baselines fitted to its {} training cases", evaluation.n_train));
         if ui.button("Copy as text").clicked() {
-            ui.ctx().copy_text(caveats.appended_to(evaluation.to_text()));
+            let text = facts_text(model, &report.facts(), units);
+            ui.ctx().copy_text(caveats.appended_to(text));
         }
         if ui.button("Copy as Markdown").clicked() {
-            ui.ctx().copy_text(caveats.appended_to(evaluation.to_markdown()));
+            let text = FactWriter::english(units).markdown(&report.facts());
+            ui.ctx().copy_text(caveats.appended_to(text));
         }
     });
     let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);

@@ -21,8 +21,7 @@ const VALUE_WIDTH: f32 = 150.0;
 /// - `name`: the case or scenario to which they belong; it tells the tables of a pane apart and is the
 ///   first cell of what is copied.
 pub fn facts_ui(ui: &mut Ui, name: &str, tables: &[FactTable], units: UnitSystem) {
-    let tables: Vec<TextTable> =
-        tables.iter().map(|table| table.to_text(&FactWriter::english(units))).collect();
+    let tables = texts(tables, units);
     for (idx, table) in tables.iter().enumerate() {
         ui.horizontal_wrapped(|ui| {
             ui.strong(&table.title);
@@ -36,6 +35,17 @@ pub fn facts_ui(ui: &mut Ui, name: &str, tables: &[FactTable], units: UnitSystem
             .id_salt(("facts", name, idx))
             .show(ui, |ui| table_ui(ui, (name, idx), table, is_stacked));
     }
+}
+
+/// Tables of facts as text, separated by tabs.
+///
+/// - `name`: what they belong to, in the first cell.
+pub fn facts_text(name: &str, tables: &[FactTable], units: UnitSystem) -> String {
+    copied(name, &texts(tables, units))
+}
+
+fn texts(tables: &[FactTable], units: UnitSystem) -> Vec<TextTable> {
+    tables.iter().map(|table| table.to_text(&FactWriter::english(units))).collect()
 }
 
 /// The width that a table needs with its values beside each other, points.

@@ -6,8 +6,9 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::text::print_check;
+use crate::cli::text::print_answer;
 use impactlab_core::data::ColumnMap;
+use impactlab_core::units::UnitSystem;
 use impactlab_study::CheckRequest;
 
 /// Say what is in files and data sets, in which units, and what is wrong with them
@@ -42,6 +43,7 @@ pub(in crate::cli) fn run(
     let CheckArgs { paths, all, map } = args;
     let request = CheckRequest { paths: paths.clone(), all: *all, map: map.clone() };
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    console.print(&answer.report, |out| print_check(out, &answer.report))?;
+    let units = UnitSystem::default();
+    console.print(&answer.report, |out| print_answer(out, &answer.report, units))?;
     Ok(Verdict::from_problems(!answer.report.ok))
 }

@@ -7,8 +7,9 @@ use clap::Args;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{BadCasesArg, OverwriteArg, VehicleArg, count};
-use crate::cli::text::print_comparison;
+use crate::cli::text::print_answer;
 use impactlab_core::ranges::{CHOICES, TRAJECTORIES};
+use impactlab_core::units::UnitSystem;
 use impactlab_networks::response::evaluate::write_comparison;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{CompareRequest, DEFAULT_CHOICES, ModelChoice};
@@ -96,6 +97,7 @@ pub(in crate::cli) fn run(
         Ok(answer.report.provenance_with_seed())
     })?;
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
-    console.print(&answer.report, |out| print_comparison(out, &answer.report))?;
+    let units = UnitSystem::default();
+    console.print(&answer.report, |out| print_answer(out, &answer.report, units))?;
     Ok(Verdict::Clean)
 }

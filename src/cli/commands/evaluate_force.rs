@@ -8,8 +8,9 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_force_evaluation;
 use crate::cli::options::{BadCasesArg, OverwriteArg, SPLITS, Words, count, one_of};
-use crate::cli::text::print_force_evaluation;
+use crate::cli::text::print_answer;
 use impactlab_core::ranges::FOLDS;
+use impactlab_core::units::UnitSystem;
 use impactlab_networks::force::ColumnSet;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{EvaluateForceRequest, EvaluatedCases, ForceEvaluation};
@@ -90,7 +91,8 @@ pub(in crate::cli) fn run(
         Ok(answer.report.provenance.clone())
     })?;
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
-    console.print(&answer.report, |out| print_force_evaluation(out, &answer.report))?;
+    let units = UnitSystem::default();
+    console.print(&answer.report, |out| print_answer(out, &answer.report, units))?;
     Ok(match &answer.report.report {
         ForceEvaluation::Cases(report) => {
             Verdict::from_problems(!report.evaluation.problems.is_empty())

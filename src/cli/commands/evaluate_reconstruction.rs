@@ -8,7 +8,7 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::{RECONSTRUCTION_EVALUATION_FILES, write_reconstruction_evaluation};
 use crate::cli::options::{OverwriteArg, UnitsArg, Words, one_of};
-use crate::cli::text::print_reconstruction_evaluation;
+use crate::cli::text::print_answer;
 use impactlab_reconstruct::evaluate::{KnownEvidence, StagedSplit};
 use impactlab_study::{EvaluateReconstructionRequest, ReconstructRequest};
 
@@ -97,7 +97,6 @@ pub(in crate::cli) fn run(
     })?;
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
     let units = args.units.into();
-    console
-        .print(&answer.report, |out| print_reconstruction_evaluation(out, &answer.report, units))?;
+    console.print(&answer.report, |out| print_answer(out, &answer.report, units))?;
     Ok(Verdict::from_problems(!answer.report.left_out.is_empty()))
 }

@@ -12,7 +12,7 @@ use crate::cli::options::{
     EQUATIONS, EndingArgs, INTEGRATORS, OverwriteArg, SAMPLINGS, UnitsArg, VehicleArg,
     contact_point, count, number, one_of,
 };
-use crate::cli::text::{PrintedAnswer, print_answer, print_dataset_simulation};
+use crate::cli::text::{PrintedAnswer, print_answer};
 use impactlab_core::data::{
     ColumnMap, DatasetKind, Existing, Sampling, write_restricted_series_csv,
 };
@@ -261,8 +261,9 @@ fn simulate_dataset(
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
     let report = &answer.report;
     let printed = PrintedSimulation { report, out };
-    console
-        .print(&printed, |text| print_dataset_simulation(text, report, out, args.units.into()))?;
+    console.print(&printed, |text| {
+        print_answer(text, PrintedAnswer::from(report).written(out), args.units.into())
+    })?;
     Ok(Verdict::from_problems(!report.failures.is_empty()))
 }
 

@@ -40,16 +40,6 @@ pub(in crate::cli) fn print_table(
     Ok(())
 }
 
-/// Prints names and values below each other.
-pub(in crate::cli) fn print_facts(out: &mut dyn Write, facts: &[(&str, String)]) -> io::Result<()> {
-    let width = facts.iter().map(|(name, _)| name.chars().count()).max();
-    for (name, value) in facts {
-        let (value, width) = (within_line(value), width.unwrap_or(0));
-        writeln!(out, "{name:<width$}  {value}")?;
-    }
-    Ok(())
-}
-
 /// The texts of a row within their line; a long one with another beside it, or of digits, is cut.
 fn shown_row(row: &[String]) -> Vec<String> {
     let last = row.iter().rposition(|cell| !cell.is_empty());

@@ -6,6 +6,8 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use impactlab_core::data::{Existing, write_atomically};
+use impactlab_core::units::UnitSystem;
+use impactlab_study::facts::FactWriter;
 use impactlab_study::{Answer, ForceEvaluation};
 
 /// Writes an evaluation as JSON and Markdown, or a cross-validation as JSON, into a folder that
@@ -17,7 +19,8 @@ pub(in crate::cli) fn write_force_evaluation(
     match &answer.report {
         ForceEvaluation::Cases(report) => {
             write_json(&path.join("evaluation.json"), answer)?;
-            let text = answer.caveats.appended_to(report.evaluation.to_markdown());
+            let tables = FactWriter::english(UnitSystem::default()).markdown(&report.facts());
+            let text = answer.caveats.appended_to(tables);
             write_atomically(&path.join("evaluation.md"), Existing::Refuse, |out| {
                 out.write_all(text.as_bytes())
             })?;

@@ -8,8 +8,9 @@ use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_study::facts::{FactTable, FactWriter};
 use impactlab_study::{
-    Answer, ImpactReport, PredictForceReport, PredictMotionReport, ReconstructReport,
-    ResponseTrainingReport, SimulateReport, TrainForceReport,
+    Answer, CheckReport, CompareReport, EvaluateReconstructionReport, ForceEvaluation,
+    ImpactReport, PredictForceReport, PredictMotionReport, ReconstructReport,
+    ResponseTrainingReport, SimulateDatasetReport, SimulateReport, TrainForceReport,
 };
 
 /// What is printed of an answer.
@@ -43,8 +44,23 @@ answers! {
     PredictMotionReport: of => of.scenario.clone();
     ReconstructReport: of => of.case.clone();
     SimulateReport: of => of.name.clone();
+    SimulateDatasetReport: of => of.dataset.display().to_string();
+    CheckReport: of => String::new();
     TrainForceReport: of => of.data.clone();
     ResponseTrainingReport: of => of.data.clone();
+    ForceEvaluation: of => evaluated(of);
+    CompareReport: of => of.comparison.data.clone();
+    EvaluateReconstructionReport: of => of.data.display().to_string();
+}
+
+/// The network and the data of an evaluation; a cross-validation has networks of its own.
+fn evaluated(of: &ForceEvaluation) -> String {
+    match of {
+        ForceEvaluation::Cases(report) => {
+            format!("{} on {}", report.model_file, report.data.display())
+        }
+        ForceEvaluation::Folds(_) => String::new(),
+    }
 }
 
 /// Prints the name of an answer, its tables of facts below each other, each with its title, what was
@@ -55,10 +71,15 @@ pub(in crate::cli) fn print_answer<'a>(
     units: UnitSystem,
 ) -> io::Result<()> {
     let answer: PrintedAnswer<'_> = answer.into();
-    writeln!(out, "{}", within_line(&answer.name))?;
+    let mut before = "";
+    if !answer.name.is_empty() {
+        writeln!(out, "{}", within_line(&answer.name))?;
+        before = "\n";
+    }
     for table in &answer.tables {
         let text = table.to_text(&FactWriter::english(units));
-        writeln!(out, "\n{}", within_line(&text.title))?;
+        writeln!(out, "{before}{}", within_line(&text.title))?;
+        before = "\n";
         let is_list = text.is_list();
         let titles = text.header.iter().map(|title| if is_list { "" } else { title.as_str() });
         let titles: Vec<&str> = titles.collect();

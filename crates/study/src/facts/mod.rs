@@ -8,12 +8,17 @@
 mod table;
 mod term;
 
+mod check;
+mod compare;
 mod contact;
+mod evaluate_force;
+mod evaluate_reconstruction;
 mod impact;
 mod predict_force;
 mod predict_motion;
 mod reconstruct;
 mod simulate;
+mod simulate_dataset;
 mod training;
 
 pub use table::{Fact, FactTable, FactWriter, TextRow, TextTable, Value};

@@ -72,9 +72,9 @@ pub struct FactTable {
     /// What the table is about.
     pub title: Value,
     /// What the rows are.
-    pub rows: Term,
+    pub rows: Value,
     /// Names of the columns of values.
-    pub columns: Vec<Term>,
+    pub columns: Vec<Value>,
     /// Probabilities of the intervals that are shown, ascending.
     pub levels: &'static [f64],
     /// The facts.
@@ -169,6 +169,20 @@ impl Value {
         Self::Joined(values.into_iter().map(named).collect(), ", ")
     }
 
+    /// A value, and another one in brackets.
+    pub(super) fn beside(value: Self, other: Self) -> Self {
+        let text = |text: &str| Self::Text(text.to_owned());
+        Self::Joined(vec![value, text(" ("), other, text(")")], "")
+    }
+
+    /// What it means, where it is a word that does not say it.
+    fn hint(&self) -> Option<&'static str> {
+        match self {
+            Self::Term(term) => term.hint(),
+            _ => None,
+        }
+    }
+
     /// From one number to another.
     pub(super) fn span([from, to]: [Self; 2]) -> Self {
         Self::Joined(vec![from, to], " – ")
@@ -178,8 +192,8 @@ impl Value {
 impl FactTable {
     /// A table with one column of values that have no intervals.
     pub(super) fn new(title: impl Into<Value>, facts: Vec<Fact>) -> Self {
-        let columns = vec![Term::Value];
-        Self { title: title.into(), rows: Term::Quantity, columns, levels: &[], facts }
+        let (rows, columns) = (Term::Quantity.into(), vec![Term::Value.into()]);
+        Self { title: title.into(), rows, columns, levels: &[], facts }
     }
 
     /// A table of texts that the program has in English only, one a row; none without any.
@@ -192,20 +206,19 @@ impl FactTable {
     /// The same with another name for what the rows are.
     #[must_use]
     pub(super) fn with_rows(self, rows: Term) -> Self {
-        Self { rows, ..self }
+        Self { rows: rows.into(), ..self }
     }
 
     /// The same with intervals.
     #[must_use]
     pub(super) fn with_levels(self, levels: &'static [f64]) -> Self {
-        let columns = vec![Term::Median];
-        Self { levels, columns, ..self }
+        Self { levels, ..self.with_columns(&[Term::Median]) }
     }
 
     /// The same with other columns.
     #[must_use]
     pub(super) fn with_columns(self, columns: &[Term]) -> Self {
-        Self { columns: columns.to_vec(), ..self }
+        Self { columns: columns.iter().copied().map(Value::Term).collect(), ..self }
     }
 
     /// The table, unless it is empty.
@@ -221,11 +234,10 @@ impl FactTable {
 
     /// The table as text.
     pub fn to_text(&self, writer: &FactWriter<'_>) -> TextTable {
-        let language = writer.format.language;
         let (mut header, mut header_hints) =
-            (vec![self.rows.label(language).to_owned()], vec![self.rows.hint()]);
+            (vec![writer.value(&self.rows)], vec![self.rows.hint()]);
         for (idx, column) in self.columns.iter().enumerate() {
-            header.push(column.label(language).to_owned());
+            header.push(writer.value(column));
             header_hints.push(column.hint());
             for level in self.levels.iter().filter(|_| self.has_intervals(idx)) {
                 header.push(format!("{:.0} %", 100.0 * level));
@@ -246,11 +258,7 @@ impl FactTable {
                     }
                 }
             }
-            let hint = match fact.name {
-                Value::Term(term) => term.hint(),
-                _ => None,
-            };
-            TextRow { cells, hint, is_warning: fact.is_warning }
+            TextRow { cells, hint: fact.name.hint(), is_warning: fact.is_warning }
         };
         let rows = self.facts.iter().map(row).collect();
         TextTable { title: writer.value(&self.title), header, header_hints, rows }
@@ -296,6 +304,14 @@ impl TextTable {
     pub fn is_list(&self) -> bool {
         self.header.len() <= 2
     }
+
+    /// The table in Markdown.
+    fn to_markdown(&self) -> String {
+        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | ").replace('\n', " "));
+        let rule: String = (1..self.header.len()).map(|_| " ---: |").collect();
+        let rows: String = self.rows.iter().map(|row| line(&row.cells)).collect();
+        format!("**{}**\n\n{}| --- |{rule}\n{rows}", self.title, line(&self.header))
+    }
 }
 
 impl FactWriter<'static> {
@@ -311,6 +327,13 @@ impl FactWriter<'static> {
 }
 
 impl FactWriter<'_> {
+    /// Tables in Markdown.
+    pub fn markdown(&self, tables: &[FactTable]) -> String {
+        let texts: Vec<String> =
+            tables.iter().map(|table| table.to_text(self).to_markdown()).collect();
+        texts.join("\n")
+    }
+
     /// A value as text.
     fn value(&self, value: &Value) -> String {
         let format = &self.format;

@@ -253,6 +253,112 @@ terms! {
     VelocityNoise: "noise of the velocity", "Rauschen der Geschwindigkeit";
     YawRateNoise: "noise of the yaw rate", "Rauschen der Gierrate";
     CasesLeftOut: "Cases that are left out, and why", "Ausgelassene Fälle, mit Grund";
+    // The simulation of a data set.
+    Replay: "Simulation beside the recorded motions", "Simulation neben den aufgezeichneten Bewegungen";
+    ReplayedCases: "Each case", "Die einzelnen Fälle";
+    ReplaySummary: "Errors over the cases", "Fehler über die Fälle";
+    Case: "case", "Fall";
+    Cases: "cases", "Fälle";
+    KindOfMotion: "motion", "Bewegung";
+    Spin: "spin", "Schleudern", "The heading changes by more than 90 deg";
+    PathError: "average error", "mittlerer Fehler", "Mean distance from the recorded path";
+    EndError: "final error", "Fehler am Ende", "Distance from the recorded end";
+    EndHeadingError: "final heading error", "Gierwinkelfehler am Ende";
+    Flags: "flags", "Auffälligkeiten";
+    AllCases: "all", "alle";
+    Spinning: "spinning", "mit Schleudern";
+    NotSpinning: "not spinning", "ohne Schleudern";
+    ErrorKind: "error", "Fehler";
+    Number: "n", "Anzahl";
+    Mean: "mean", "Mittel";
+    StandardDeviation: "std", "Std.-Abw.", "Standard deviation";
+    Percentile90: "p90", "90-%-Quantil", "Nine of ten are smaller";
+    Largest: "max", "größter Wert";
+    // Evaluations.
+    StagedCollisions: "Reconstructions beside the truth", "Rekonstruktionen neben der Wahrheit";
+    Stopped: "stopped", "abgebrochen";
+    StoppedEarly: "before all cases were done", "bevor alle Fälle fertig waren";
+    SpeedsBesideTruth: "truths within the intervals, and errors of the medians",
+        "wahre Werte in den Intervallen, und Fehler der Mediane";
+    CaseTimes: "Time of a case", "Rechenzeit eines Falls";
+    KnownEvidence: "known", "bekannt", "How much of the evidence was used";
+    Method: "method", "Verfahren";
+    SufficientEss: "ESS 400 or more", "ESS von mindestens 400", "Effective sample size";
+    Level50: "50 %", "50 %";
+    Level80: "80 %", "80 %";
+    Level90: "90 %", "90 %";
+    Level95: "95 %", "95 %";
+    MedianSizeOfError: "|error|, median", "|Fehler|, Median";
+    MedianError: "error, median", "Fehler, Median";
+    MedianWidth: "width of 90 %, median", "Breite von 90 %, Median";
+    MeanCrps: "CRPS, mean", "CRPS, Mittel", "Continuous ranked probability score";
+    ForceEvaluation: "Force network beside its baselines", "Kraftnetz neben Vergleichsverfahren";
+    CrossValidation: "Force networks, each on the cases that it has not seen",
+        "Kraftnetze, jedes mit den Fällen, die es nicht kennt";
+    CasesOfTraining: "of them learned from", "davon gelernt";
+    CasesOfBaselines: "cases that the baselines are fitted to",
+        "Fälle, an die die Vergleichsverfahren angepasst sind";
+    Folds: "folds", "Teilmengen";
+    NameOfModel: "model", "Modell";
+    ErrorsOfAll: "Errors over all cases, median (mean)", "Fehler über alle Fälle, Median (Mittel)";
+    ErrorsOfSeparated: "Errors without cases that hook or have not separated, median (mean)",
+        "Fehler ohne Fälle, die sich verhaken oder nicht trennen, Median (Mittel)";
+    HistoryError: "history", "Verlauf", "‖F̂ − F‖ / ‖F‖, both axes";
+    RmseOverPeak: "RMSE/peak", "RMSE/Spitze", "Root mean square error over the peak of |F|";
+    ImpulseError: "impulse vector", "Impulsvektor", "|P̂ − P| / |P|";
+    PeakError: "peak", "Spitze", "Error of the largest |F| over the largest |F|";
+    DurationError: "contact time", "Kontaktdauer", "Error of the duration over the duration";
+    Coverage: "Share inside the bands, ± standard error between cases",
+        "Anteil in den Bändern, ± Standardfehler zwischen den Fällen";
+    BandOf: "bands of", "Bänder";
+    ForceCurve: "F(t)", "F(t)";
+    InDomain: "in the domain", "im Gültigkeitsbereich";
+    OutsideDomain: "outside", "außerhalb";
+    Scores: "Mean scores, smaller is better", "Mittlere Bewertungen, kleiner ist besser";
+    CrpsForce: "CRPS F(t)", "CRPS F(t)";
+    EnergyScore: "energy score", "Energy Score";
+    CrpsImpulse: "CRPS |P|", "CRPS |P|";
+    CrpsPeak: "CRPS peak", "CRPS Spitze";
+    CrpsDuration: "CRPS duration", "CRPS Dauer";
+    LogLikelihood: "NLL [nats]", "NLL [nat]", "Negative log-likelihood";
+    ErrorsByCluster: "Error of the history by cluster of impulse, median (mean)",
+        "Fehler des Verlaufs nach Impulsklasse, Median (Mittel)";
+    Cluster: "cluster", "Klasse";
+    OfNetwork: "force network", "Kraftnetz";
+    OfGaussianProcesses: "Gaussian processes", "Gauß-Prozesse";
+    ResponseEvaluation: "Response models on trajectories that none has seen",
+        "Bewegungsmodelle mit Bewegungen, die keines kennt";
+    UnseenMotions: "trajectories", "Bewegungen";
+    // The check of files.
+    Checked: "What was checked", "Geprüft";
+    DataSets: "data sets", "Datensätze";
+    Files: "files", "Dateien";
+    Problems: "problems", "Probleme";
+    Problem: "problem", "Problem";
+    CasesWithFlags: "cases with flags", "auffällige Fälle";
+    NotGiven: "not given", "nicht angegeben";
+    Columns: "columns", "Spalten";
+    Samples: "samples", "Messwerte";
+    TimeSpan: "time", "Zeit";
+    Format: "format", "Format";
+    Note: "note", "Hinweis";
+    Name: "name", "Name";
+    Contents: "contents", "Inhalt";
+    ColumnsRead: "Columns that are read", "Gelesene Spalten";
+    ColumnsFound: "Columns that are found", "Gefundene Spalten";
+    Column: "column", "Spalte";
+    Channel: "channel", "Kanal";
+    Unit: "unit", "Einheit";
+    UnitIs: "which is", "sie ist";
+    Stated: "stated", "angegeben";
+    Assumed: "assumed", "angenommen";
+    FirstValues: "first values", "erste Werte";
+    ProposedMap: "for a force file, complete", "für eine Kraftdatei ergänzen";
+    FlagsFound: "Flags, the worst first", "Auffälligkeiten, die schwersten zuerst";
+    Severity: "severity", "Schwere";
+    Flag: "flag", "Auffälligkeit";
+    Meaning: "meaning", "Bedeutung";
+    Clean: "clean", "unauffällig";
 }
 
 #[cfg(test)]

@@ -8,7 +8,6 @@ mod report;
 mod scored;
 
 mod evaluation;
-mod table;
 
 mod model_evaluation;
 
