@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::app::archive::{ArchiveEntry, ArchiveKind, Fact};
+use crate::app::archive::{ArchiveEntry, ArchiveKind, StoredFact};
 use crate::app::network::TrainedModel;
 use crate::app::training::{TrainingEnd, TrainingSlot, time_left};
 use crate::app::unfinished::{TrainingDiary, training_options};
@@ -134,9 +134,10 @@ impl<M: TrainedModel> TrainingStatus<M> {
         let kind = ArchiveKind::from(M::NETWORK);
         let mut entry = ArchiveEntry::new(kind, name, model.data().to_owned(), question);
         entry.is_cancelled = !is_complete;
-        (entry.figures, entry.settings) = (model.facts(), model.settings());
+        entry.figures = StoredFact::from_table(&model.facts());
+        entry.settings = model.settings().as_ref().map_or_else(Vec::new, StoredFact::from_table);
         let time = Duration::try_from_secs_f64(M::seconds(report)).unwrap_or_default();
-        entry.figures.push(Fact::new("Time", duration_text(time)));
+        entry.figures.push(StoredFact::new("computing time", duration_text(time)));
         Some(entry)
     }
 

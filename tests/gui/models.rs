@@ -137,7 +137,7 @@ fn a_finished_training_is_kept_named_and_used_after_a_restart() {
         let fact = entry.figures.iter().find(|fact| fact.label == label);
         fact.unwrap_or_else(|| panic!("no {label}")).text.clone()
     };
-    assert!(fact("Best epoch").ends_with("of 3") && fact("Cases learned from") == "60");
+    assert!(fact("best epoch").ends_with("of 3") && fact("cases learned from") == "60");
     assert!(entry.settings.iter().any(|of| of.label == "training.epochs" && of.text == "3"));
 
     // The same training gives the same weights, which are kept once.
@@ -285,7 +285,7 @@ fn an_interrupted_training_is_offered_after_a_restart_and_goes_on_to_its_end() {
     let training = &state(&harness).session.force.training;
     assert_eq!(training.problem, None);
     let entry = &entries(&harness)[0];
-    let epochs = entry.figures.iter().find(|of| of.label == "Best epoch").expect("a figure");
+    let epochs = entry.figures.iter().find(|of| of.label == "best epoch").expect("a figure");
     assert!(epochs.text.ends_with("of 60"), "{epochs:?}");
     step_until(&mut harness, "the end of it", |state| {
         state.session.unfinished.list.trainings.is_empty()

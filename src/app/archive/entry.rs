@@ -4,7 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::network::Network;
 use crate::app::panes::Pane;
+use impactlab_core::units::UnitSystem;
 use impactlab_study::Request;
+use impactlab_study::facts::{FactTable, FactWriter, Term, TextRow};
 
 /// Version of the format of notes.
 pub(super) const VERSION: u32 = 1;
@@ -65,19 +67,35 @@ impl From<Network> for ArchiveKind {
     }
 }
 
-/// A line of a list of figures or settings.
+/// A fact as it is stored.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Fact {
-    /// What it is, such as “Cases learned from”.
+pub struct StoredFact {
+    /// What it is, such as “cases learned from”.
     pub label: String,
     /// The value with its unit.
     pub text: String,
 }
 
-impl Fact {
-    /// A line with a label and a value.
+impl StoredFact {
+    /// A fact with a label and a value.
     pub fn new(label: impl Into<String>, text: impl ToString) -> Self {
         Self { label: label.into(), text: text.to_string() }
+    }
+
+    /// The facts of a table with one column of values.
+    pub fn from_table(table: &FactTable) -> Vec<Self> {
+        let text = table.to_text(&FactWriter::english(UnitSystem::default()));
+        let fact = |row: TextRow| {
+            let mut cells = row.cells.into_iter();
+            Some(Self { label: cells.next()?, text: cells.next()? })
+        };
+        text.rows.into_iter().filter_map(fact).collect()
+    }
+
+    /// The table of facts.
+    pub fn table(title: Term, facts: &[Self]) -> FactTable {
+        let facts = facts.iter().map(|fact| (fact.label.as_str(), fact.text.as_str()));
+        FactTable::from_texts(title, facts)
     }
 }
 
@@ -99,9 +117,9 @@ pub struct ArchiveEntry {
     /// Name of the data.
     pub data: String,
     /// What is known of it in numbers.
-    pub figures: Vec<Fact>,
+    pub figures: Vec<StoredFact>,
     /// The settings that are not the usual ones.
-    pub settings: Vec<Fact>,
+    pub settings: Vec<StoredFact>,
     /// The question that it answers.
     pub question: Request,
     /// SHA-256 of the content, hexadecimal.
@@ -141,5 +159,18 @@ pub(in crate::app) fn moment_text(rfc3339: &str) -> String {
     match (rfc3339.get(..10), rfc3339.get(11..16)) {
         (Some(day), Some(time)) => format!("{day} {time} UTC"),
         _ => rfc3339.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn facts_of_a_note_are_shown_as_they_were_stored() {
+        let note = r#"[{"label":"Best epoch","text":"3 of 7"}]"#;
+        let facts: Vec<StoredFact> = serde_json::from_str(note).unwrap();
+        let table = StoredFact::table(Term::Figures, &facts);
+        assert_eq!(StoredFact::from_table(&table), facts);
     }
 }

@@ -19,9 +19,9 @@ mod folder;
 mod status;
 mod update;
 
-pub use described::{differences, how_it_was_made};
+pub use described::how_it_was_made;
 pub(in crate::app) use entry::moment_text;
-pub use entry::{ArchiveEntry, ArchiveKind, Fact};
+pub use entry::{ArchiveEntry, ArchiveKind, StoredFact};
 pub use error::ArchiveError;
 pub use event::{ArchiveEvent, ModelsDialog, OpenedResult, Removal};
 pub use folder::{ArchiveFolder, ArchiveList, ArchiveProblem, NOTE_ENDING, name_of};

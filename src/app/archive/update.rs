@@ -6,8 +6,8 @@ use std::sync::Arc;
 use egui::Context;
 
 use crate::app::archive::{
-    ArchiveEntry, ArchiveEvent, ArchiveFolder, ArchiveKind, ArchiveStatus, Fact, ModelsDialog,
-    OpenedResult,
+    ArchiveEntry, ArchiveEvent, ArchiveFolder, ArchiveKind, ArchiveStatus, ModelsDialog,
+    OpenedResult, StoredFact,
 };
 use crate::app::command::{Command, ModelsCommand};
 use crate::app::dialog::Dialog;
@@ -245,17 +245,17 @@ fn comparison_note(
         _ => (ArchiveKind::Comparison, format!("models compared on {}", comparison.data)),
     };
     let mut entry = ArchiveEntry::new(kind, name, comparison.data.clone(), question);
-    entry.figures.push(Fact::new("Trajectories asked about", comparison.test.len()));
+    entry.figures.push(StoredFact::new("Trajectories asked about", comparison.test.len()));
     for model in &comparison.models {
         let name = model_name(&model.name, model.trajectories);
         let error = significant(model.metrics.average_error_m.mean);
-        entry.figures.push(Fact::new(format!("{name}, average error"), format!("{error} m")));
+        entry.figures.push(StoredFact::new(format!("{name}, average error"), format!("{error} m")));
     }
-    entry.settings.push(Fact::new("Seed", comparison.seed));
+    entry.settings.push(StoredFact::new("Seed", comparison.seed));
     if let Request::Compare(of) = &entry.question
         && let Some(path) = of.config.file()
     {
-        entry.settings.push(Fact::new("Settings file", path.display()));
+        entry.settings.push(StoredFact::new("Settings file", path.display()));
     }
     entry
 }
@@ -273,11 +273,11 @@ fn evaluation_note(
     let mut entry = ArchiveEntry::new(ArchiveKind::ForceEvaluation, name, data, question);
     let of_model = &report.evaluation.metrics.overall;
     entry.figures = vec![
-        Fact::new("Cases", report.n_test),
-        Fact::new("Cases that it has learned from", report.n_trained_on),
-        Fact::new("Impulse error, median", percent(of_model.impulse_error.median)),
-        Fact::new("Peak error, median", percent(of_model.peak_error.median)),
-        Fact::new("History error, median", percent(of_model.history_error.median)),
+        StoredFact::new("Cases", report.n_test),
+        StoredFact::new("Cases that it has learned from", report.n_trained_on),
+        StoredFact::new("Impulse error, median", percent(of_model.impulse_error.median)),
+        StoredFact::new("Peak error, median", percent(of_model.peak_error.median)),
+        StoredFact::new("History error, median", percent(of_model.history_error.median)),
     ];
     entry
 }

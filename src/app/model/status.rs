@@ -249,8 +249,9 @@ impl<M: TrainedModel> ModelStatus<M> {
         };
         let (model, written) = (Arc::clone(&current.model), Arc::clone(&current.model));
         self.is_saving = true;
-        let write =
-            move |_: &mut ProgressCallback<'_>| written.write(&path, existing).map(|()| path);
+        let write = move |_: &mut ProgressCallback<'_>| {
+            written.save(&path, existing).map(|()| path).map_err(|error| error_chain(&error))
+        };
         let event = |result| M::command(ModelEvent::Saved(model, result));
         tasks.start(TaskKey::SaveModel(M::NETWORK), write, event);
         Ok(())
@@ -268,8 +269,9 @@ fn keep<M: TrainedModel>(
     draft: ArchiveEntry,
     folder: &ArchiveFolder,
 ) -> Result<ArchiveEntry, ArchiveError> {
-    let sha256 = model.digest().map_err(ArchiveError::Content)?;
-    let write = |path: &Path| model.write(path, Existing::Replace).map_err(ArchiveError::Content);
+    let problem = |error: M::Error| ArchiveError::Content(error_chain(&error));
+    let sha256 = model.sha256().map_err(problem)?;
+    let write = |path: &Path| model.save(path, Existing::Replace).map_err(problem);
     folder.put(ArchiveEntry { sha256, ..draft }, write)
 }
 

@@ -51,7 +51,7 @@ impl DatasetReport {
             Fact::new(Term::Vehicle, vehicle),
             Fact::new(Term::Columns, Value::Text(columns.join(", "))),
         ];
-        facts.extend(self.problems.iter().map(|problem| line(Term::Problem, problem)));
+        facts.extend(self.problems.iter().map(|problem| Fact::text(Term::Problem, problem)));
         let first = FactTable::new(title(&self.path, format!("{} data set", self.kind)), facts);
         let clean_cases = self.clean_cases.as_deref().unwrap_or_default();
         std::iter::once(first).chain(flag_table(&self.flags, clean_cases)).collect()
@@ -67,12 +67,12 @@ impl FileReport {
         let mut facts = vec![
             Fact::new(Term::Samples, Value::Count(self.n_samples)),
             Fact::new(Term::TimeSpan, Value::span(span)),
-            line(Term::Format, &format),
+            Fact::text(Term::Format, format),
         ];
         let sampling = self.force_sampling.as_ref();
         facts.extend(sampling.map(|of| Fact::new(Term::ForceSampling, words(of))));
         facts.extend(self.force.iter().flat_map(RecordedForceReport::facts));
-        facts.extend(self.notes.iter().map(|note| line(Term::Note, note)));
+        facts.extend(self.notes.iter().map(|note| Fact::text(Term::Note, note)));
         let first = FactTable::new(title(&self.path, format!("{} file", self.kind)), facts);
         [Some(first), self.column_table(), flag_table(&self.flags, &[])]
             .into_iter()
@@ -113,8 +113,8 @@ impl RecordedForceReport {
 
 impl InputFileReport {
     fn table(&self) -> FactTable {
-        let name = line(Term::Name, &self.name);
-        let contents = self.contents.iter().map(|part| line(Term::Contents, part));
+        let name = Fact::text(Term::Name, &self.name);
+        let contents = self.contents.iter().map(|part| Fact::text(Term::Contents, part));
         let facts = std::iter::once(name).chain(contents).collect();
         FactTable::new(title(&self.path, word(&self.kind)), facts)
     }
@@ -123,7 +123,7 @@ impl InputFileReport {
 impl PathProblem {
     /// What is wrong, and what its columns may be.
     fn facts(&self) -> Vec<FactTable> {
-        let mut facts = vec![line(Term::Problem, &self.message)];
+        let mut facts = vec![Fact::text(Term::Problem, &self.message)];
         let columns = self.columns.as_deref();
         facts.extend(columns.map(|columns| {
             let map = Value::Text(format!("--map \"{}\"", self.proposed_map(columns)));
@@ -182,10 +182,6 @@ fn flag_table(flags: &[CaseFlag], clean_cases: &[String]) -> Option<FactTable> {
 /// A path and what it holds.
 fn title(path: &std::path::Path, kind: String) -> Value {
     Value::Joined(vec![Value::File(path.to_owned()), Value::Phrase(kind)], ": ")
-}
-
-fn line(term: Term, text: &str) -> Fact {
-    Fact::new(term, Value::English(text.to_owned()))
 }
 
 fn words(text: &str) -> Value {

@@ -133,6 +133,11 @@ impl Fact {
         Self::row(Value::Term(term), vec![value])
     }
 
+    /// A fact that is a text in English.
+    pub fn text(term: Term, text: impl Into<String>) -> Self {
+        Self::new(term, Value::English(text.into()))
+    }
+
     /// A fact with a value for each column of its table.
     pub(super) fn row(name: Value, values: Vec<Value>) -> Self {
         Self { name, values, is_warning: false }
@@ -201,6 +206,16 @@ impl FactTable {
         let row = |text: &String| Fact::row(Value::English(text.clone()), Vec::new());
         let table = Self::new(title, texts.iter().map(row).collect());
         table.with_columns(&[]).unless_empty()
+    }
+
+    /// A table of names and values that are texts already.
+    pub fn from_texts<'a>(
+        title: Term,
+        texts: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Self {
+        let text = |text: &str| Value::Text(text.to_owned());
+        let row = |(name, value)| Fact::row(text(name), vec![text(value)]);
+        Self::new(title, texts.into_iter().map(row).collect())
     }
 
     /// The same with another name for what the rows are.

@@ -237,6 +237,9 @@ terms! {
     CarsKnown: "cars that it knows", "bekannte Fahrzeuge";
     Seed: "seed", "Startwert des Zufallsgenerators";
     Program: "program", "Programm";
+    Data: "data", "Daten";
+    Origin: "how it came to be", "Herkunft";
+    Figures: "Figures", "Kennwerte";
     ComputingTime: "computing time", "Rechenzeit";
     Losses: "Losses of the epoch", "Verluste der Epoche";
     LossTerm: "term", "Anteil";

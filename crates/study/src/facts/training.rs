@@ -5,6 +5,7 @@ use serde_json::Value as Json;
 
 use impactlab_core::units::Quantity;
 use impactlab_networks::force::{ForceConfig, ForceModel};
+use impactlab_networks::learning::TrainingRecord;
 use impactlab_networks::response::{
     ForceOrigin, LATENT_NAMES, LatentScales, ResponseConfig, ResponseModel,
 };
@@ -121,7 +122,7 @@ impl LogReport {
 /// What is known of a model of the force network.
 pub fn force_model_table(model: &ForceModel) -> FactTable {
     let mut facts = TrainForceReport::new(model, 0.0, Vec::new()).model_facts();
-    facts.extend(origin(model.record().seed, &model.record().version));
+    facts.extend(origin(model.record()));
     FactTable::new(Term::ForceTraining, facts)
 }
 
@@ -137,7 +138,7 @@ pub fn response_model_table(model: &ResponseModel) -> FactTable {
             Fact::new(Term::CalibratedOn, calibration(n_calibrated, record.detail.keeps_latents))
         }
     });
-    facts.extend(origin(record.seed, &record.version));
+    facts.extend(origin(record));
     FactTable::new(Term::ResponseTraining, facts)
 }
 
@@ -175,10 +176,11 @@ fn differences(name: String, value: &Json, usual: Option<&Json>, found: &mut Vec
     }
 }
 
-/// Seed and program of a training.
-fn origin(seed: u64, version: &str) -> [Fact; 2] {
-    [(Term::Seed, seed.to_string()), (Term::Program, version.to_owned())]
-        .map(|(term, text)| Fact::new(term, Value::Text(text)))
+/// Data, seed and program of a training.
+fn origin<E, T>(record: &TrainingRecord<E, T>) -> [Fact; 3] {
+    let seed = record.seed.to_string();
+    [(Term::Seed, &seed), (Term::Program, &record.version), (Term::Data, &record.data)]
+        .map(|(term, text)| Fact::new(term, Value::Text(text.clone())))
 }
 
 /// What the standard deviations of the latent factors come from.

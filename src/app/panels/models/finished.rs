@@ -3,18 +3,20 @@
 use egui::{Frame, Ui};
 
 use crate::app::archive::{
-    ArchiveEntry, ArchiveFolder, ArchiveProblem, ArchiveStatus, Fact, LIMIT_BYTES, ModelsDialog,
-    Removal, bytes_text, how_it_was_made,
+    ArchiveEntry, ArchiveFolder, ArchiveProblem, ArchiveStatus, LIMIT_BYTES, ModelsDialog, Removal,
+    StoredFact, bytes_text, how_it_was_made,
 };
 use crate::app::command::{Command, ModelsCommand};
 use crate::app::dialog::Purpose;
 use crate::app::network::Network;
 use crate::app::output::Output;
-use crate::app::panels::models::parts::facts_ui;
 use crate::app::panes::PaneContext;
 use crate::app::project::Project;
+use crate::app::widgets::facts_ui;
 use impactlab_core::data::Severity;
+use impactlab_core::units::UnitSystem;
 use impactlab_draw::theme;
+use impactlab_study::facts::Term;
 
 /// Number of figures that are shown of an entry without unfolding it.
 const N_MAIN_FIGURES: usize = 4;
@@ -109,17 +111,19 @@ fn entry_ui(
         ui.label(format!("{}; data {}", how_it_was_made(&entry.question), entry.data));
     });
     ui.horizontal_wrapped(|ui| {
-        let text = |fact: &Fact| format!("{} {}", fact.label, fact.text);
+        let text = |fact: &StoredFact| format!("{} {}", fact.label, fact.text);
         let main: Vec<String> = entry.figures.iter().take(N_MAIN_FIGURES).map(text).collect();
         ui.weak(main.join(" · "));
     });
     ui.horizontal_wrapped(|ui| buttons_ui(ui, entry, is_in_use, folder, commands));
     let id = ("kept", &entry.sha256);
     egui::CollapsingHeader::new("Figures and settings").id_salt(id).show(ui, |ui| {
-        facts_ui(ui, (id, "figures"), &entry.figures);
-        match entry.settings.is_empty() {
-            true => drop(ui.weak("The usual settings")),
-            false => facts_ui(ui, (id, "settings"), &entry.settings),
+        let lists = [(Term::Figures, &entry.figures), (Term::UnusualSettings, &entry.settings)];
+        let lists = lists.into_iter().filter(|(_, facts)| !facts.is_empty());
+        let tables: Vec<_> = lists.map(|(title, facts)| StoredFact::table(title, facts)).collect();
+        facts_ui(ui, &entry.name, &tables, UnitSystem::default());
+        if entry.settings.is_empty() {
+            ui.weak("The usual settings");
         }
         ui.weak(format!("SHA-256 {}, program {}", entry.sha256, entry.program));
         ui.weak(path.display().to_string());

@@ -2,19 +2,22 @@
 
 use egui::Ui;
 
-use crate::app::archive::{ArchiveStatus, Fact, how_it_was_made};
+use crate::app::archive::{ArchiveStatus, how_it_was_made};
 use crate::app::command::Command;
 use crate::app::model::{CurrentModel, ModelStatus};
 use crate::app::network::TrainedModel;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
-use crate::app::panels::models::parts::facts_ui;
 use crate::app::panes::PaneContext;
+use crate::app::widgets::facts_ui;
+use impactlab_core::units::UnitSystem;
 use impactlab_networks::shipped::ModelSource;
+use impactlab_study::facts::{Fact, Term};
 use impactlab_study::{ForceSource, ModelChoice};
 
 /// Draws both networks beside each other.
 pub fn in_use_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { project, session, commands, .. } = pane;
+    let PaneContext { project, view, session, commands, .. } = pane;
+    let units = view.units;
     let is_chained = matches!(project.predict_motion.force, ForceSource::Predicted(_));
     let (force, response, archive) =
         (&session.force.model, &session.response.model, &session.archive);
@@ -24,9 +27,9 @@ pub fn in_use_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             true => "Answers the force prediction, and gives the motion forecast its force.",
             false => "Answers the force prediction. The motion forecast takes the given force.",
         };
-        network_ui(left, force, use_of_it, archive, commands);
+        network_ui(left, force, use_of_it, archive, units, commands);
         let use_of_it = "Answers the motion forecast and the outcome.";
-        network_ui(right, response, use_of_it, archive, commands);
+        network_ui(right, response, use_of_it, archive, units, commands);
     });
 }
 
@@ -35,6 +38,7 @@ fn network_ui<M: TrainedModel>(
     model: &ModelStatus<M>,
     use_of_it: &str,
     archive: &ArchiveStatus,
+    units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
     ui.strong(M::NETWORK.label());
@@ -44,20 +48,15 @@ fn network_ui<M: TrainedModel>(
     };
     model_row_ui(ui, model, "The model that answers", commands);
     ui.label(use_of_it);
-    let mut facts = vec![
-        Fact::new("How it came to be", origin(current, archive)),
-        Fact::new("Data", current.model.data()),
-    ];
-    facts.extend(current.model.facts());
-    facts_ui(ui, ("in use", M::NETWORK.model()), &facts);
-    let settings = current.model.settings();
-    if settings.is_empty() {
-        ui.weak("The usual settings");
-    } else {
-        let title = format!("Settings that are not the usual ones: {}", settings.len());
-        ui.collapsing(title, |ui| {
-            facts_ui(ui, ("settings in use", M::NETWORK.model()), &settings);
-        });
+    let mut facts = current.model.facts();
+    facts.facts.insert(0, Fact::text(Term::Origin, origin(current, archive)));
+    facts_ui(ui, &current.name, &[facts], units);
+    match current.model.settings() {
+        None => drop(ui.weak("The usual settings")),
+        Some(settings) => {
+            let title = format!("Settings that are not the usual ones: {}", settings.facts.len());
+            ui.collapsing(title, |ui| facts_ui(ui, &current.name, &[settings], units));
+        }
     }
     if let Some(set_aside) = &model.set_aside {
         ui.horizontal_wrapped(|ui| {

@@ -4,7 +4,6 @@
 mod dialog;
 mod finished;
 mod in_use;
-mod parts;
 mod running;
 mod unfinished;
 
