@@ -5,20 +5,19 @@ use egui::{ProgressBar, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::cost::CostPlace;
-use crate::app::force::ForceSession;
+use crate::app::force::{ForceSession, Statistic};
 use crate::app::model::file_name;
 use crate::app::panels::evaluation_plots::plots_ui;
-use crate::app::panels::evaluation_tables::tables_ui;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{
-    bad_cases_ui, cost_ui, dataset_choice, facts_text, no_dataset_ui, restrictions_ui,
+    bad_cases_ui, cost_ui, dataset_choice, facts_text, facts_ui, no_dataset_ui, restrictions_ui,
 };
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_draw::theme;
-use impactlab_study::facts::FactWriter;
+use impactlab_study::facts::{Fact, FactWriter, Term, Value};
 use impactlab_study::{EvaluateForceReport, EvaluateForceRequest, EvaluatedCases, ForceEvaluation};
 
 /// Draws the choice of the data set and of its cases, and the tables and plots of the last
@@ -46,7 +45,7 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let name = session.archive.name_of(&latest.question.model);
         let caveats = &answer.report.caveats;
         heading_ui(ui, report, caveats, &name, view.units);
-        tables_ui(ui, &report.evaluation, &mut view.force, view.units);
+        tables_ui(ui, report, &name, &mut view.force.statistic, view.units);
         ui.separator();
         match &answer.cases {
             Some(cases) => {
@@ -142,5 +141,38 @@ fn heading_ui(
     }
     for why in &report.left_out {
         ui.colored_label(color, format!("Left out: {why}"));
+    }
+}
+
+/// Draws the tables of errors and of coverage, and the choice of the statistic over the cases that is
+/// shown.
+fn tables_ui(
+    ui: &mut Ui,
+    report: &EvaluateForceReport,
+    model: &str,
+    statistic: &mut Statistic,
+    units: UnitSystem,
+) {
+    ui.horizontal(|ui| {
+        ui.label("Errors, over cases");
+        for of in Statistic::ALL {
+            ui.radio_value(statistic, of, of.label());
+        }
+    });
+    let others = Statistic::ALL.into_iter().filter(|of| of != statistic);
+    let others: Vec<Value> = others.map(|of| Value::Term(of.term())).collect();
+    let is_shown = |fact: &Fact| fact.values.first().is_none_or(|value| !others.contains(value));
+    let mut tables = report.tables();
+    tables.iter_mut().for_each(|table| table.facts.retain(is_shown));
+    facts_ui(ui, model, &tables, units);
+}
+
+impl Statistic {
+    fn term(self) -> Term {
+        match self {
+            Self::Median => Term::Median,
+            Self::Mean => Term::Mean,
+            Self::P90 => Term::Percentile90,
+        }
     }
 }

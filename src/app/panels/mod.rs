@@ -12,7 +12,6 @@ mod doors;
 mod ending;
 mod evaluation;
 mod evaluation_plots;
-mod evaluation_tables;
 mod file_start;
 mod film;
 mod force;

@@ -18,11 +18,11 @@ use crate::app::widgets::{
 };
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::ranges::CHOICES;
+use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::model_name;
 use impactlab_draw::theme;
-use impactlab_networks::response::evaluate::{
-    ComparisonTable, all_tables, paper_metrics, to_markdown,
-};
+use impactlab_networks::response::evaluate::{ComparisonTable, all_tables, paper_metrics};
+use impactlab_study::facts::FactWriter;
 use impactlab_study::{Answer, CompareReport, EvaluatedCases};
 
 /// Draws the settings and buttons, and of the last comparison the figures, the case browser and the
@@ -193,7 +193,8 @@ fn heading_ui(ui: &mut Ui, report: &Answer<CompareReport>, commands: &mut Vec<Co
             ),
         });
         if ui.button("Copy as Markdown").clicked() {
-            ui.ctx().copy_text(report.caveats.appended_to(to_markdown(comparison)));
+            let text = FactWriter::english(UnitSystem::default()).markdown(&report.facts());
+            ui.ctx().copy_text(report.caveats.appended_to(text));
         }
     });
     caveats_ui(ui, &report.caveats, commands);

@@ -14,7 +14,7 @@ use impactlab_core::data::{DataError, Existing};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::{Progress, ProgressCallback};
 use impactlab_core::uncertainty::Caveats;
-use impactlab_networks::response::evaluate::{Comparison, write_comparison};
+use impactlab_networks::response::evaluate::Comparison;
 use impactlab_study::{
     Answer, CompareAnswer, CompareReport, CompareRequest, EvaluateResponseRequest, Library,
     Provenance, Question, Request,
@@ -153,8 +153,7 @@ pub fn write_comparison_folder(
     report: &Answer<CompareReport>,
 ) -> Result<(), DataError> {
     let output = OutputFolder::begin(folder, existing, &["comparison.json", "comparison.md"])?;
-    let restrictions = report.caveats.text();
-    write_comparison(output.staging(), &report.comparison, restrictions.as_deref())?;
+    report.write(output.staging())?;
     let Provenance { seed, model_digests: models, .. } = report.provenance_with_seed();
     output.finish(RunRecord { seed, models, ..RunRecord::default() })
 }

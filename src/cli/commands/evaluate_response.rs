@@ -9,7 +9,6 @@ use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{BadCasesArg, OverwriteArg, SPLITS, VehicleArg, one_of};
 use crate::cli::text::print_answer;
 use impactlab_core::units::UnitSystem;
-use impactlab_networks::response::evaluate::write_comparison;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{EvaluateResponseRequest, EvaluatedCases};
 
@@ -65,9 +64,7 @@ pub(in crate::cli) fn run(
     let known = &["comparison.json", "comparison.md"][..];
     let out = args.out.as_deref().map(|folder| (folder, args.overwrite.into(), known));
     let answer = console.ask_into(&request, out, |output, answer| {
-        let report = &answer.report;
-        let restrictions = report.caveats.text();
-        write_comparison(output.staging(), &report.comparison, restrictions.as_deref())?;
+        answer.report.write(output.staging())?;
         Ok(answer.report.provenance_with_seed())
     })?;
     let Some(answer) = answer else { return Ok(Verdict::Clean) };

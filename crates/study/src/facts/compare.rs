@@ -13,6 +13,7 @@ impl CompareReport {
         let facts = vec![
             Fact::new(Term::UnseenMotions, Value::Count(self.comparison.test.len())),
             Fact::new(Term::Seed, Value::Text(self.comparison.seed.to_string())),
+            Fact::new(Term::Choices, Value::Text(self.comparison.n_choices.to_string())),
         ];
         let tables = all_tables(&self.comparison).into_iter().filter_map(|(title, _, table)| {
             let mut header = table.header.into_iter().map(Value::English);

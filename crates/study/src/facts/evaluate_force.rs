@@ -3,20 +3,18 @@
 use impactlab_core::numerics::Summary;
 use impactlab_core::units::Quantity;
 use impactlab_networks::force::metrics::{CurveMetrics, DistributionMetrics, IntervalCoverage};
-use impactlab_networks::force::{ClusterMetrics, Evaluation, ForceMetrics};
+use impactlab_networks::force::{Evaluation, ForceMetrics};
 
 use crate::facts::training::left_out;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::{CrossValidateForceReport, EvaluateForceReport, ForceEvaluation};
 
-/// Columns of a table of errors.
-const ERRORS: [Term; 5] = [
-    Term::HistoryError,
-    Term::RmseOverPeak,
-    Term::ImpulseError,
-    Term::PeakError,
-    Term::DurationError,
-];
+/// Takes one number of a summary.
+type Statistic = fn(&Summary) -> f64;
+
+/// What is told of the errors over the cases.
+const STATISTICS: [(Term, Statistic); 3] =
+    [(Term::Median, |of| of.median), (Term::Mean, |of| of.mean), (Term::Percentile90, |of| of.p90)];
 
 impl ForceEvaluation {
     /// What the answer says: the errors of the network and its baselines, and what its intervals hold.
@@ -38,18 +36,23 @@ impl EvaluateForceReport {
             Fact::new(Term::CasesOfTraining, Value::Count(self.n_trained_on)),
             Fact::new(Term::CasesOfBaselines, Value::Count(of.n_train)),
         ];
-        let mut tables = vec![
-            FactTable::new(Term::ForceEvaluation, facts),
-            errors(Term::ErrorsOfAll, models(of).map(|(name, of)| (name, Some(&of.overall)))),
-        ];
+        let problems = FactTable::lines(Term::Problems, &of.problems);
+        let first = std::iter::once(FactTable::new(Term::ForceEvaluation, facts));
+        first.chain(self.tables()).chain(problems).chain(left_out(&self.left_out)).collect()
+    }
+
+    /// The errors of the network and its baselines, and what their intervals hold.
+    pub fn tables(&self) -> Vec<FactTable> {
+        let of = &self.evaluation;
+        let all = models(of).map(|(name, of)| (name, Some(&of.overall)));
+        let mut tables = vec![errors(Term::ErrorsOfAll, all)];
         if of.metrics.separated.is_some() {
             let separated = models(of).map(|(name, of)| (name, of.separated.as_ref()));
             tables.push(errors(Term::ErrorsOfSeparated, separated));
         }
-        let problems = FactTable::lines(Term::Problems, &of.problems);
-        let others = [coverage(of), scores(of), Some(clusters(of)), problems];
-        let others = others.into_iter().chain([left_out(&self.left_out)]);
-        tables.into_iter().chain(others.flatten()).collect()
+        tables.extend(coverage(of).into_iter().chain(scores(of)));
+        tables.push(clusters(of));
+        tables
     }
 }
 
@@ -83,26 +86,33 @@ fn table(title: Term, rows: Vec<Fact>, columns: &[Term]) -> FactTable {
     FactTable::new(title, rows).with_rows(Term::NameOfModel).with_columns(columns)
 }
 
-/// Median and mean of the errors of each model.
+/// The errors of each model.
 fn errors<const N: usize>(title: Term, models: [(&str, Option<&CurveMetrics>); N]) -> FactTable {
-    let row = |(name, of): (&str, Option<&CurveMetrics>)| {
-        let of = of?;
-        let errors = [
-            &of.history_error,
-            &of.rmse_over_peak,
-            &of.impulse_error,
-            &of.peak_error,
-            &of.duration_error,
-        ];
-        let values = std::iter::once(Value::Count(of.n_cases)).chain(errors.map(median_and_mean));
-        Some(Fact::row(Value::Phrase(name.to_owned()), values.collect()))
-    };
-    let columns: Vec<Term> = std::iter::once(Term::Cases).chain(ERRORS).collect();
-    table(title, models.into_iter().filter_map(row).collect(), &columns)
-}
-
-fn median_and_mean(of: &Summary) -> Value {
-    Value::beside(Value::Share(of.median), Value::Share(of.mean))
+    let rows = STATISTICS.into_iter().flat_map(|(term, statistic)| {
+        models.into_iter().filter_map(move |(name, of)| {
+            let of = of?;
+            let errors = [
+                &of.history_error,
+                &of.rmse_over_peak,
+                &of.impulse_error,
+                &of.peak_error,
+                &of.duration_error,
+            ];
+            let first = [Value::Term(term), Value::Count(of.n_cases)].into_iter();
+            let values = first.chain(errors.map(|error| Value::Share(statistic(error))));
+            Some(Fact::row(Value::Phrase(name.to_owned()), values.collect()))
+        })
+    });
+    let columns = [
+        Term::Statistic,
+        Term::Cases,
+        Term::HistoryError,
+        Term::RmseOverPeak,
+        Term::ImpulseError,
+        Term::PeakError,
+        Term::DurationError,
+    ];
+    table(title, rows.collect(), &columns)
 }
 
 /// The distributions that the models predict.
@@ -166,18 +176,31 @@ fn scores(of: &Evaluation) -> Option<FactTable> {
     table(Term::Scores, rows.collect(), &columns).unless_empty()
 }
 
-/// The error of the history by cluster of impulse.
+/// The errors by cluster of impulse.
 fn clusters(of: &Evaluation) -> FactTable {
-    let row = |cluster: &ClusterMetrics| {
-        let values = vec![
-            Value::Count(cluster.model.n_cases),
-            Value::Number(Quantity::Impulse, cluster.impulse_n_s),
-            median_and_mean(&cluster.model.history_error),
-            median_and_mean(&cluster.statistical.history_error),
-        ];
-        Fact::row(Value::Text(cluster.name.clone()), values)
-    };
-    let columns = [Term::Cases, Term::Impulse, Term::OfNetwork, Term::OfGaussianProcesses];
-    let rows = of.clusters.iter().map(row).collect();
-    FactTable::new(Term::ErrorsByCluster, rows).with_rows(Term::Cluster).with_columns(&columns)
+    let rows = STATISTICS.into_iter().flat_map(|(term, statistic)| {
+        of.clusters.iter().map(move |cluster| {
+            let model = &cluster.model;
+            let errors = [&model.history_error, &model.impulse_error, &model.peak_error];
+            let errors = errors.into_iter().chain([&cluster.statistical.history_error]);
+            let first = [
+                Value::Term(term),
+                Value::Count(model.n_cases),
+                Value::Number(Quantity::Impulse, cluster.impulse_n_s),
+            ];
+            let values = errors.map(|error| Value::Share(statistic(error)));
+            Fact::row(Value::Text(cluster.name.clone()), first.into_iter().chain(values).collect())
+        })
+    });
+    let columns = [
+        Term::Statistic,
+        Term::Cases,
+        Term::ClusterCentre,
+        Term::HistoryError,
+        Term::ImpulseError,
+        Term::PeakError,
+        Term::HistoryOfGaussianProcesses,
+    ];
+    let table = FactTable::new(Term::ErrorsByCluster, rows.collect());
+    table.with_rows(Term::Cluster).with_columns(&columns)
 }

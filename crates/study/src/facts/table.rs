@@ -174,12 +174,6 @@ impl Value {
         Self::Joined(values.into_iter().map(named).collect(), ", ")
     }
 
-    /// A value, and another one in brackets.
-    pub(super) fn beside(value: Self, other: Self) -> Self {
-        let text = |text: &str| Self::Text(text.to_owned());
-        Self::Joined(vec![value, text(" ("), other, text(")")], "")
-    }
-
     /// What it means, where it is a word that does not say it.
     fn hint(&self) -> Option<&'static str> {
         match self {

@@ -303,9 +303,10 @@ terms! {
         "Fälle, an die die Vergleichsverfahren angepasst sind";
     Folds: "folds", "Teilmengen";
     NameOfModel: "model", "Modell";
-    ErrorsOfAll: "Errors over all cases, median (mean)", "Fehler über alle Fälle, Median (Mittel)";
-    ErrorsOfSeparated: "Errors without cases that hook or have not separated, median (mean)",
-        "Fehler ohne Fälle, die sich verhaken oder nicht trennen, Median (Mittel)";
+    ErrorsOfAll: "Errors over all cases", "Fehler über alle Fälle";
+    ErrorsOfSeparated: "Errors without cases that hook or have not separated",
+        "Fehler ohne Fälle, die sich verhaken oder nicht trennen";
+    Statistic: "over the cases", "über die Fälle";
     HistoryError: "history", "Verlauf", "‖F̂ − F‖ / ‖F‖, both axes";
     RmseOverPeak: "RMSE/peak", "RMSE/Spitze", "Root mean square error over the peak of |F|";
     ImpulseError: "impulse vector", "Impulsvektor", "|P̂ − P| / |P|";
@@ -324,14 +325,16 @@ terms! {
     CrpsPeak: "CRPS peak", "CRPS Spitze";
     CrpsDuration: "CRPS duration", "CRPS Dauer";
     LogLikelihood: "NLL [nats]", "NLL [nat]", "Negative log-likelihood";
-    ErrorsByCluster: "Error of the history by cluster of impulse, median (mean)",
-        "Fehler des Verlaufs nach Impulsklasse, Median (Mittel)";
-    Cluster: "cluster", "Klasse";
-    OfNetwork: "force network", "Kraftnetz";
-    OfGaussianProcesses: "Gaussian processes", "Gauß-Prozesse";
+    ErrorsByCluster: "Errors by cluster of impulse", "Fehler nach Impulsklasse";
+    Cluster: "cluster", "Klasse",
+        "k-means of the training cases by impulse and force, ordered by impulse";
+    ClusterCentre: "centre", "Mitte", "Impulse at the centre of the cluster";
+    HistoryOfGaussianProcesses: "history, Gaussian processes", "Verlauf, Gauß-Prozesse",
+        "Error of the strongest baseline";
     ResponseEvaluation: "Response models on trajectories that none has seen",
         "Bewegungsmodelle mit Bewegungen, die keines kennt";
     UnseenMotions: "trajectories", "Bewegungen";
+    Choices: "choices of those to learn from", "Auswahlen der Bewegungen zum Lernen";
     // The check of files.
     Checked: "What was checked", "Geprüft";
     DataSets: "data sets", "Datensätze";

@@ -12,7 +12,6 @@ mod result;
 
 mod paper;
 mod tables;
-mod write;
 
 pub use case_metrics::{MotionCaseMetrics, MotionCoverage};
 pub use compare::{ComparisonSettings, compare_models, evaluate_motion_model};
@@ -24,8 +23,4 @@ use result::path_of;
 pub use result::{
     ClusterModel, ClusterRow, ComparedCase, ComparedModel, Comparison, PATH_STEP_S, TestCase,
 };
-pub use tables::{
-    ComparisonTable, all_tables, cluster_table, ending_table, horizon_table, model_table,
-    uncertainty_table,
-};
-pub use write::{to_markdown, write_comparison};
+pub use tables::{ComparisonTable, all_tables};

@@ -1,6 +1,4 @@
-//! The tables of a comparison: as text for a terminal, as Markdown, as CSV.
-
-use std::fmt::Write;
+//! The tables of a comparison: as text and as CSV.
 
 use crate::response::evaluate::{
     ClusterModel, ComparedModel, Comparison, CoverageMetrics, MeanStd, RootMeanSquares,
@@ -18,22 +16,6 @@ pub struct ComparisonTable {
 }
 
 impl ComparisonTable {
-    /// The table in Markdown.
-    pub fn to_markdown(&self) -> String {
-        let mut text = String::new();
-        let mut line = |cells: &[String]| {
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "| {} |", cells.join(" | "));
-        };
-        line(&self.header);
-        let rules: Vec<String> = (0..self.header.len())
-            .map(|idx| if idx == 0 { "---".to_owned() } else { "---:".to_owned() })
-            .collect();
-        line(&rules);
-        self.rows.iter().for_each(|row| line(row));
-        text
-    }
-
     /// The table as CSV.
     ///
     /// - `restrictions`: what restricts its numbers, for the first row of [`RESTRICTIONS_COLUMN`].
@@ -67,7 +49,7 @@ pub fn all_tables(comparison: &Comparison) -> Vec<(&'static str, &'static str, C
 
 /// Average error, score, time per step and root mean square errors of each model; what the paper
 /// printed in a column of its own.
-pub fn model_table(comparison: &Comparison) -> ComparisonTable {
+fn model_table(comparison: &Comparison) -> ComparisonTable {
     let mut header = words(&[
         "model",
         "trajectories",
@@ -111,7 +93,7 @@ pub fn model_table(comparison: &Comparison) -> ComparisonTable {
 }
 
 /// Distance after 0.5, 1, 2 and 4 s.
-pub fn horizon_table(comparison: &Comparison) -> ComparisonTable {
+fn horizon_table(comparison: &Comparison) -> ComparisonTable {
     let header = words(&["model", "trajectories", "0.5 s, m", "1 s, m", "2 s, m", "4 s, m"]);
     let row = |model: &ComparedModel| {
         let mut row = vec![model.name.clone(), count(model.trajectories)];
@@ -122,7 +104,7 @@ pub fn horizon_table(comparison: &Comparison) -> ComparisonTable {
 }
 
 /// MotionCoverage and scores of the models that have a distribution.
-pub fn uncertainty_table(comparison: &Comparison) -> ComparisonTable {
+fn uncertainty_table(comparison: &Comparison) -> ComparisonTable {
     let header = words(&[
         "model",
         "trajectories",
@@ -155,7 +137,7 @@ pub fn uncertainty_table(comparison: &Comparison) -> ComparisonTable {
 }
 
 /// Average error and root mean square errors by cluster of impulse.
-pub fn cluster_table(comparison: &Comparison) -> ComparisonTable {
+fn cluster_table(comparison: &Comparison) -> ComparisonTable {
     let mut header = words(&[
         "cluster",
         "cases",
@@ -186,7 +168,7 @@ pub fn cluster_table(comparison: &Comparison) -> ComparisonTable {
 }
 
 /// Errors over 4 s, over whole recordings and of the rest position, and coverage, by kind of ending.
-pub fn ending_table(comparison: &Comparison) -> ComparisonTable {
+fn ending_table(comparison: &Comparison) -> ComparisonTable {
     let header = words(&[
         "ending",
         "cases",

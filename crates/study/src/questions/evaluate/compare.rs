@@ -1,6 +1,6 @@
 //! The response network beside the tuned and the untuned 4DOF model and a plain network: `compare`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use schemars::JsonSchema;
@@ -10,16 +10,18 @@ use crate::ask::checks::{check, check_count};
 use crate::ask::inputs::{UsableCases, data_name, dataset_folders, response_cases};
 use crate::ask::question::progress_of;
 use crate::caveats::restrictions;
+use crate::facts::FactWriter;
 use crate::{
     Answer, BadCases, ConfigChoice, Library, ModelChoice, Observer, Provenance, Question,
     StudyError, VehicleChoice,
 };
-use impactlab_core::data::Outcome;
 use impactlab_core::data::write::ModelDigest;
+use impactlab_core::data::{DataError, Existing, Outcome, write_atomically};
 use impactlab_core::ranges::{CHOICES, TRAJECTORIES, TRAJECTORY_SETS};
 use impactlab_core::uncertainty::Caveats;
+use impactlab_core::units::UnitSystem;
 use impactlab_networks::response::evaluate::{
-    Comparison, ComparisonSettings, compare_models, compare_on_unseen_cars,
+    Comparison, ComparisonSettings, all_tables, compare_models, compare_on_unseen_cars,
 };
 use impactlab_networks::response::{
     ResponseCase, ResponseConfig, ResponseModel, ResponseTrainingSet,
@@ -132,6 +134,29 @@ impl CompareRequest {
 }
 
 impl Answer<CompareReport> {
+    /// Writes `comparison.json`, `comparison.md` and each table as CSV into a folder, which must exist
+    /// and have no files of these names.
+    ///
+    /// # Errors
+    /// [`DataError::Io`] with the file.
+    pub fn write(&self, folder: &Path) -> Result<(), DataError> {
+        let file = folder.join("comparison.json");
+        let to_error = |source: serde_json::Error| DataError::io(&file, source.into());
+        // A line for each number of all paths would be long.
+        let json = serde_json::to_vec(&self.comparison).map_err(to_error)?;
+        let markdown = FactWriter::english(UnitSystem::default()).markdown(&self.facts());
+        let markdown =
+            self.caveats.appended_to(format!("# {}\n\n{markdown}", self.comparison.data));
+        let restrictions = self.caveats.text();
+        let tables = all_tables(&self.comparison).into_iter();
+        let tables = tables.map(|(_, name, table)| (name, table.to_csv(restrictions.as_deref())));
+        let texts = tables.chain([("comparison.md", markdown)]);
+        let files = texts.map(|(name, text)| (folder.join(name), text.into_bytes()));
+        std::iter::once((file.clone(), json)).chain(files).try_for_each(|(path, bytes)| {
+            write_atomically(&path, Existing::Refuse, |out| out.write_all(&bytes))
+        })
+    }
+
     /// Version of the program, seed and the networks that were given.
     pub fn provenance_with_seed(&self) -> Provenance {
         Provenance { seed: Some(self.comparison.seed), ..self.provenance.clone() }
