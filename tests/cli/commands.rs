@@ -249,8 +249,10 @@ fn check_says_impulse_peak_and_contact_of_a_force_file() {
     let file = write(&folder, "f.csv", table);
     let ran = impactlab(&["check", text(&file)]);
     for line in [
-        "  impulse   2.006 kN s (x 0.1500, y 2.000), world axes",
-        "  peak      40.11 kN at 0.1000 s",
+        "axes of the force     world",
+        "impulse               2.006 kN s (x 0.1500, y 2.000)",
+        "peak force            40.11 kN",
+        "time of the peak      0.1000 s",
     ] {
         assert!(ran.out.lines().any(|printed| printed == line), "{line}\n{}", ran.out);
     }
