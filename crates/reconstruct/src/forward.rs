@@ -10,7 +10,7 @@
 
 use rayon::prelude::*;
 
-use crate::evidence::{Evidence, ends};
+use crate::evidence::{After, Evidence, ends};
 use crate::{Cars, ImpactState, Latent, LatentValues, Prior};
 use impactlab_core::collision::{Pulse, PulseShape, Side};
 use impactlab_core::data::{ForceAxes, ForceHistory, Sampling};
@@ -63,12 +63,21 @@ pub struct ForwardModel {
     pub(super) cars: Cars,
     pub(super) prior: Prior,
     pub(super) side: Side,
-    blocked: Option<Vec<Wheel>>,
-    near: [Wheel; 2],
+    /// Wheels of the struck and of the striking car that damage may hold.
+    wheels: [HeldWheels; 2],
     pub(super) restitution: Option<[f64; 2]>,
     follows_striking: bool,
     zones: Vec<FrictionZone>,
     limit: PathLimit,
+}
+
+/// Wheels of a car that damage holds or may hold.
+#[derive(Debug, Clone)]
+struct HeldWheels {
+    after: After,
+    near: [Wheel; 2],
+    which: Latent,
+    drag: Latent,
 }
 
 /// A car and what happens to it, before it is simulated.
@@ -93,8 +102,20 @@ impl ForwardModel {
         Self {
             prior,
             side,
-            blocked: evidence.after.blocked_wheels.clone(),
-            near: wheels_near(side, cars.is_hit_behind_cg(evidence)),
+            wheels: [
+                HeldWheels {
+                    after: evidence.after.clone(),
+                    near: wheels_near(side, cars.is_hit_behind_cg(evidence)),
+                    which: Latent::BlockedWheel,
+                    drag: Latent::BlockedDrag,
+                },
+                HeldWheels {
+                    after: evidence.striking_after.clone(),
+                    near: wheels_near(Side::Front, false),
+                    which: Latent::StrikingBlockedWheel,
+                    drag: Latent::StrikingBlockedDrag,
+                },
+            ],
             restitution: ends(evidence.prior.restitution),
             follows_striking: evidence.striking_rest.is_some(),
             zones: Vec::new(),
@@ -196,19 +217,7 @@ impl ForwardModel {
 
     /// What happens to the wheels of the struck car.
     fn ending(&self, values: &LatentValues, vehicle: &VehicleParameters) -> Ending {
-        let locked =
-            |wheel| DamagedWheel { wheel, start_s: BLOCKED_FROM_S, drag_share_of_friction: None };
-        let damage = match &self.blocked {
-            Some(wheels) => wheels.iter().copied().map(locked).collect(),
-            None => {
-                let drag = values.get(Latent::BlockedDrag);
-                let caught = |idx: usize| DamagedWheel {
-                    drag_share_of_friction: (drag < 1.0).then_some(drag),
-                    ..locked(self.near[idx])
-                };
-                values.blocked_of_two().map(caught).into_iter().collect()
-            }
-        };
+        let [damage, _] = self.wheels.each_ref().map(|wheels| wheels.damage(values));
         let brake = values.brakes().then(|| {
             let brake = Braking::new(
                 values.get(Latent::BrakeStart),
@@ -259,11 +268,11 @@ impl ForwardModel {
         let mass_kg = values.get(Latent::StrikingMass);
         let mut vehicle = self.cars.striking.parameters.clone().scaled_to_mass(mass_kg, None);
         vehicle.tires.friction = values.get(Latent::RoadFriction);
-        let brake = Some(Braking::new(
-            values.get(Latent::StrikingBrakeStart),
-            values.get(Latent::StrikingBrakeShare),
-            DEFAULT_BRAKE_RISE_S,
-        ));
+        let brake = values.striking_brakes_from_s().map(|start_s| {
+            let share = values.get(Latent::StrikingBrakeShare);
+            Braking::new(start_s, share, DEFAULT_BRAKE_RISE_S)
+        });
+        let [_, damage] = self.wheels.each_ref().map(|wheels| wheels.damage(values));
         let (sin, cos) = impact.heading_difference_rad.sin_cos();
         let in_body = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
         let [vx_body_m_s, vy_body_m_s] = in_body(impact.striking_velocity_m_s);
@@ -279,12 +288,33 @@ impl ForwardModel {
                 ..VehicleState::default()
             },
             contact_load: Some(contact_load(impulse, values, in_body(arm_m))),
-            controls: Ending { brake, ..Ending::default() }.controls(&vehicle),
+            controls: Ending { brake, damage, ..Ending::default() }.controls(&vehicle),
             duration_s: LONGEST_MOTION_S,
             ends_at_rest: true,
             friction_zones: self.zones_under(values, 1.0),
         };
         (vehicle, manoeuvre)
+    }
+}
+
+impl HeldWheels {
+    /// The wheels that are held in the motion of a particle.
+    fn damage(&self, values: &LatentValues) -> Vec<DamagedWheel> {
+        let locked =
+            |wheel| DamagedWheel { wheel, start_s: BLOCKED_FROM_S, drag_share_of_friction: None };
+        let drag = values.get(self.drag);
+        let dragged = |wheel| DamagedWheel {
+            drag_share_of_friction: (drag < 1.0).then_some(drag),
+            ..locked(wheel)
+        };
+        if !self.after.wheels_are_known() {
+            let idx = values.blocked_of_two(self.which);
+            return idx.map(|idx| dragged(self.near[idx])).into_iter().collect();
+        }
+        let blocked = self.after.blocked_wheels.iter().flatten().copied();
+        let dragging = self.after.dragging_wheels.iter().flatten().copied();
+        let dragging = dragging.filter(|wheel| !blocked.clone().any(|locked| locked == *wheel));
+        blocked.clone().map(locked).chain(dragging.map(dragged)).collect()
     }
 }
 

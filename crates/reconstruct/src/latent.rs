@@ -8,6 +8,13 @@ use impactlab_core::units::Quantity;
 /// Probability that a driver brakes of whom nothing is known.
 pub const BRAKE_PROBABILITY: f64 = 0.75;
 
+/// Probability that a driver brakes already when the cars meet who hits another car and of whom nothing is
+/// known.
+pub const STRIKING_BRAKES_BEFORE: f64 = 0.4;
+
+/// Probability that he brakes then or later.
+pub const STRIKING_BRAKES: f64 = 0.8;
+
 /// Probability that a wheel near the damage is blocked if nobody looked.
 pub const BLOCKED_PROBABILITY: f64 = 0.2;
 
@@ -111,12 +118,22 @@ latents! {
     BlockedWheel: "blocked_wheel", "", "which wheel is blocked";
     /// How far it is blocked: drag over what the road can hold; more than 1 is locked.
     BlockedDrag: "blocked_drag", "", "drag of the blocked wheel";
+    /// Whether the driver of the striking car brakes: below one threshold he already does at first contact,
+    /// below another he does later.
+    #[serde(rename = "bullet_brake_decision")]
+    StrikingBrakeDecision: "bullet_brake_decision", "", "whether the striking driver brakes";
     /// When the driver of the striking car brakes, s after the first contact.
     #[serde(rename = "bullet_brake_start")]
     StrikingBrakeStart: "bullet_brake_start_s", "s", "striking driver brakes from";
     /// Its braking force over the largest that the road can hold.
     #[serde(rename = "bullet_brake_share")]
     StrikingBrakeShare: "bullet_brake_share", "", "braking of the striking car";
+    /// Which front wheel of the striking car is blocked, where nobody looked, 0 to 1.
+    #[serde(rename = "bullet_blocked_wheel")]
+    StrikingBlockedWheel: "bullet_blocked_wheel", "", "which wheel of the striking car is blocked";
+    /// How far it is blocked: drag over what the road can hold; more than 1 is locked.
+    #[serde(rename = "bullet_blocked_drag")]
+    StrikingBlockedDrag: "bullet_blocked_drag", "", "drag of the blocked wheel of the striking car";
     /// Friction of the zones of the ground over that which the site says, in all of them alike.
     ZoneFrictionFactor: "zone_friction_factor", "", "friction of the zones over that of the site";
 }
@@ -158,9 +175,33 @@ impl LatentValues {
         self.get(Latent::BrakeDecision) < BRAKE_PROBABILITY
     }
 
+    /// When the driver of the striking car brakes, s after the first contact; `None` if he does not.
+    pub fn striking_brakes_from_s(&self) -> Option<f64> {
+        let decision = self.get(Latent::StrikingBrakeDecision);
+        match decision < STRIKING_BRAKES_BEFORE {
+            true => Some(0.0),
+            false => (decision < STRIKING_BRAKES).then(|| self.get(Latent::StrikingBrakeStart)),
+        }
+    }
+
+    /// Drag factor of the struck car with all wheels locked, over the acceleration of gravity.
+    pub fn locked_drag(&self) -> f64 {
+        [
+            Latent::RoadFriction,
+            Latent::TireFrictionFactor,
+            Latent::LongitudinalFrictionRatio,
+            Latent::SlidingRatio,
+        ]
+        .map(|latent| self.get(latent))
+        .iter()
+        .product()
+    }
+
     /// Which of two wheels near the damage is blocked, where nobody looked.
-    pub fn blocked_of_two(&self) -> Option<usize> {
-        let at = self.get(Latent::BlockedWheel);
+    ///
+    /// - `which`: [`Latent::BlockedWheel`] or [`Latent::StrikingBlockedWheel`].
+    pub fn blocked_of_two(&self, which: Latent) -> Option<usize> {
+        let at = self.get(which);
         if at < BLOCKED_PROBABILITY {
             Some(0)
         } else if at < 2.0 * BLOCKED_PROBABILITY {

@@ -43,7 +43,10 @@ pub use distribution::Distribution;
 pub use forward::{CollisionMotion, ForwardModel};
 pub use hand::HandCalculation;
 pub use impact_state::ImpactState;
-pub use latent::{BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues};
+pub use latent::{
+    BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues, STRIKING_BRAKES,
+    STRIKING_BRAKES_BEFORE,
+};
 pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
 pub use modes::{ParticleMode, cluster_keys, modes_by};
 pub use posterior::{BudgetItem, Mode, Posterior, QuantityEstimate, ReconstructedQuantity};

@@ -391,7 +391,10 @@ fn mode_name(values: &LatentValues, turned_rad: f64) -> String {
         (halves, false) => format!("turns right by about {}°", 180 * halves),
     };
     let braked = if values.brakes() { "the driver brakes" } else { "the driver does not brake" };
-    let blocked = match (values.get(Latent::BlockedWheel).is_nan(), values.blocked_of_two()) {
+    let blocked = match (
+        values.get(Latent::BlockedWheel).is_nan(),
+        values.blocked_of_two(Latent::BlockedWheel),
+    ) {
         (true, _) => "",
         (false, None) => ", no wheel blocked",
         (false, Some(0)) => ", the wheel at the damage blocked",

@@ -26,6 +26,9 @@
 //! | engine braking where he does not | uniform, 0 to 0.8 m/s² | neutral to third gear |
 //! | front wheels turned by | normal, 0 ± 0.9° | toe, play, a hand on the wheel |
 //! | each wheel near the damage blocked | 1 of 5, if nobody looked | assumed |
+//! | driver of the striking car brakes | 2 of 5 already at first contact, 2 of 5 later, from log-normal, 0.9 s, factor 1.6 | assumed: many brake before they hit |
+//! | … with a share of the largest force | log-normal, 0.8, factor 2.2 | as that of the struck car |
+//! | each front wheel of the striking car blocked | 1 of 5, if nobody looked | assumed: its front is bent |
 //! | mass of a car of which no mass is known | log-normal, by its length and width where they are known, else 1790 kg, factor 1.19 | vehicles of the library |
 //! | one scale that weighed both cars, over what it shows | log-normal, 1, as said | [`Weighing`](crate::evidence::Weighing) |
 //! | friction of the zones of a site over that which the site says, in all zones alike | log-normal, 1, factor 1.16 | assumed: grass, gravel and wet patches are known less well than the road |
@@ -38,9 +41,10 @@ use serde::Serialize;
 
 use crate::cars::{Car, Cars};
 use crate::evidence::{
-    Bounds, DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, DEFAULT_MASS_SHARE, DriverBraked, Evidence,
-    Measured, ends,
+    After, Bounds, DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, DEFAULT_MASS_SHARE, DriverBraked,
+    Evidence, Measured, ends,
 };
+use crate::latent::{STRIKING_BRAKES, STRIKING_BRAKES_BEFORE};
 use crate::{Distribution, Latent, LatentValues};
 use impactlab_core::collision::{ContactDistribution, Side};
 use impactlab_core::vehicle::sheet::SheetQuantity;
@@ -96,6 +100,10 @@ const ZONE_FRICTION_SCATTER: f64 = 0.15;
 
 /// Least scatter of sliding over peak friction, for the same reason.
 const SLIDING_SCATTER: f64 = 0.08;
+
+/// Sliding over peak friction where drag is measured and peak friction is not, and how far the peak may be off.
+const USUAL_SLIDING_RATIO: f64 = 0.8;
+const FRICTION_SIGMA_BY_DRAG: f64 = 0.2;
 
 impl Prior {
     /// The prior of a case.
@@ -226,9 +234,10 @@ impl Prior {
 
     fn add_cars(&mut self, evidence: &Evidence, cars: &Cars) {
         let usual = Measured { value: DEFAULT_FRICTION, sigma: DEFAULT_FRICTION_SIGMA };
-        let (source, friction) = match evidence.road_friction() {
-            Some(measured) => (PriorSource::Measured, measured),
-            None => (PriorSource::Assumed, usual),
+        let (source, friction) = match (evidence.road_friction(), evidence.drag_factor()) {
+            (Some(measured), _) => (PriorSource::Measured, measured),
+            (None, Some(drag)) => (PriorSource::Measured, friction_by_drag(drag)),
+            (None, None) => (PriorSource::Assumed, usual),
         };
         self.add(Latent::RoadFriction, source, normal(friction.value, friction.sigma, 0.03, 1.6));
         self.assume(
@@ -310,15 +319,57 @@ impl Prior {
         }
         self.assume(Latent::EngineBraking, Distribution::Uniform { low: 0.0, high: 0.8 });
         self.assume(Latent::SteerAngle, normal(0.0, 0.015, -0.2, 0.2));
-        if evidence.after.blocked_wheels.is_none() {
-            self.assume(Latent::BlockedWheel, Distribution::Uniform { low: 0.0, high: 1.0 });
-            self.assume(Latent::BlockedDrag, Distribution::Uniform { low: 0.2, high: 1.6 });
-        }
+        let of_struck = [Latent::BlockedWheel, Latent::BlockedDrag];
+        self.add_held_wheels(&evidence.after, of_struck);
         if evidence.striking_rest.is_some() {
-            self.assume(Latent::StrikingBrakeStart, log_normal(0.9, 0.47, 0.1, 6.0));
-            self.assume(Latent::StrikingBrakeShare, log_normal(0.6, 0.8, 0.02, 3.0));
+            self.add_striking_ending(evidence);
         }
     }
+
+    /// Wheels that damage holds: one of two near it where nobody looked.
+    fn add_held_wheels(&mut self, after: &After, [which, drag]: [Latent; 2]) {
+        if !after.wheels_are_known() {
+            self.assume(which, Distribution::Uniform { low: 0.0, high: 1.0 });
+            self.assume(drag, Distribution::Uniform { low: 0.2, high: 1.6 });
+        } else if after.dragging_wheels.iter().flatten().next().is_some() {
+            self.assume(drag, Distribution::Uniform { low: 0.1, high: 1.0 });
+        }
+    }
+
+    /// What driver and damage did to the wheels of the striking car.
+    fn add_striking_ending(&mut self, evidence: &Evidence) {
+        let (after, ranges) = (&evidence.striking_after, &evidence.prior);
+        // Who says when he begins, says that he does not before.
+        let first = match ranges.striking_brake_start_s {
+            Some(_) => STRIKING_BRAKES_BEFORE,
+            None => 0.0,
+        };
+        let last = match after.driver_braked {
+            DriverBraked::Unknown => Some(1.0),
+            DriverBraked::Yes => Some(STRIKING_BRAKES),
+            DriverBraked::No => None,
+        };
+        match last {
+            Some(last) => {
+                let decision = Distribution::Uniform { low: first, high: last };
+                self.assume(Latent::StrikingBrakeDecision, decision);
+                let start = (PriorSource::Assumed, log_normal(0.9, 0.47, 0.1, 6.0));
+                self.open(Latent::StrikingBrakeStart, ranges.striking_brake_start_s, start);
+                let share = (PriorSource::Assumed, log_normal(0.8, 0.79, 0.05, 3.0));
+                self.open(Latent::StrikingBrakeShare, ranges.striking_brake_share, share);
+            }
+            None => self.fixed.set(Latent::StrikingBrakeDecision, 1.0),
+        }
+        let latents = [Latent::StrikingBlockedWheel, Latent::StrikingBlockedDrag];
+        self.add_held_wheels(after, latents);
+    }
+}
+
+/// Peak friction of a road of which the drag of locked wheels is known; how well it is known is left to the
+/// comparison with the drag.
+fn friction_by_drag(drag: Measured) -> Measured {
+    let locked = TIRE_FRICTION_FACTOR * LONGITUDINAL_FRICTION_RATIO * USUAL_SLIDING_RATIO;
+    Measured { value: drag.value / locked, sigma: FRICTION_SIGMA_BY_DRAG * drag.value / locked }
 }
 
 /// The sign of a turn to the left that is a turn towards the struck side.

@@ -1,4 +1,5 @@
-//! What driver and damage did to the wheels after the impact: it decides what the forward model leaves open.
+//! What driver and damage did to the wheels of a car after the impact: it decides what the forward model
+//! leaves open.
 
 use impactlab_core::vehicle::Wheel;
 use schemars::JsonSchema;
@@ -6,14 +7,17 @@ use serde::{Deserialize, Serialize};
 
 use crate::evidence::{Choice, Fields, Group, Item, Section, Word};
 
-/// What happened after the impact in a file, a form and a report.
-pub const SECTION: Section = Section {
+/// What happened to the struck car after the impact in a file, a form and a report.
+pub const STRUCK: Section = Section {
     key: "after",
     title: "after the impact",
     group: Group::Cars,
     is_required: false,
     missing: "",
 };
+/// What happened to the striking car, likewise.
+pub const STRIKING: Section =
+    Section { key: "striking_after", title: "striking car after the impact", ..STRUCK };
 
 const DRIVER_BRAKED: Choice =
     Choice { key: "driver_braked", label: "driver braked", is_required: false, none: "" };
@@ -22,6 +26,12 @@ const BLOCKED_WHEELS: Choice = Choice {
     label: "blocked wheels",
     is_required: false,
     none: "nobody looked",
+};
+const DRAGGING_WHEELS: Choice = Choice {
+    key: "dragging_wheels",
+    label: "wheels that drag",
+    is_required: false,
+    none: "none that is known",
 };
 
 /// Whether the driver braked after the impact.
@@ -64,21 +74,37 @@ impl Word for DriverBraked {
     }
 }
 
-/// What driver and damage did to the wheels after the impact.
+/// What driver and damage did to the wheels of a car after the impact.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct After {
     /// Wheels that were found blocked; `None` if nobody looked, so that each wheel near the damage may
     /// be.
     pub blocked_wheels: Option<Vec<Wheel>>,
+    /// Wheels that turn, but are held back by the damage; `None` if none is known.
+    pub dragging_wheels: Option<Vec<Wheel>>,
     /// Whether the driver braked.
     pub driver_braked: DriverBraked,
 }
 
 impl Item for After {
     fn fields(&mut self, visitor: &mut impl Fields) {
-        let Self { blocked_wheels, driver_braked } = self;
+        let Self { blocked_wheels, dragging_wheels, driver_braked } = self;
         visitor.choice(&DRIVER_BRAKED, driver_braked);
         visitor.choices(&BLOCKED_WHEELS, blocked_wheels);
+        visitor.choices(&DRAGGING_WHEELS, dragging_wheels);
+    }
+}
+
+impl After {
+    /// Whether somebody has looked which wheels are held.
+    pub fn wheels_are_known(&self) -> bool {
+        self.blocked_wheels.is_some() || self.dragging_wheels.is_some()
+    }
+
+    /// Whether all four wheels were found locked.
+    pub fn is_all_locked(&self) -> bool {
+        let blocked = self.blocked_wheels.as_deref().unwrap_or_default();
+        Wheel::ALL.iter().all(|wheel| blocked.contains(wheel))
     }
 }

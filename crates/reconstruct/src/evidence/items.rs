@@ -38,6 +38,9 @@ pub struct Evidence {
     pub striking_rest: Option<RestPose>,
     /// What driver and damage did to the wheels of the struck car.
     pub after: After,
+    /// The same of the striking car.
+    #[serde(default)]
+    pub striking_after: After,
     /// Tire marks of the struck car.
     pub marks: Vec<Mark>,
     /// Event data recorder of the struck car.
@@ -68,6 +71,7 @@ impl Evidence {
             rest,
             striking_rest,
             after,
+            striking_after,
             marks,
             edr,
             positions,
@@ -83,7 +87,8 @@ impl Evidence {
         visitor.item(&damage::SECTION, None, damage);
         visitor.optional(&recorder::SECTION, edr);
         visitor.many(&position::SECTION, positions);
-        visitor.item(&after::SECTION, None, after);
+        visitor.item(&after::STRUCK, None, after);
+        visitor.item(&after::STRIKING, None, striking_after);
         visitor.item(&prior_ranges::SECTION, None, prior);
     }
 
@@ -108,6 +113,7 @@ impl Evidence {
             striking_rest,
             // What driver and wheels did, and ranges, are parts of the forward model and the prior.
             after: _,
+            striking_after: _,
             marks,
             edr,
             positions,
@@ -123,6 +129,7 @@ impl Evidence {
         edr.iter().for_each(|edr| edr.compare(&mut comparison));
         comparison.add_path();
         striking_rest.iter().for_each(|rest| rest.compare_striking(&mut comparison));
+        friction.iter().for_each(|road| road.compare_drag(&mut comparison));
         if wants_terms {
             friction.iter().for_each(|road| road.compare(&mut comparison));
             struck_car.compare_struck(&mut comparison);
@@ -159,6 +166,11 @@ impl Evidence {
         self.friction.and_then(|road| road.friction())
     }
 
+    /// Drag factor of locked wheels, where it was measured.
+    pub fn drag_factor(&self) -> Option<Measured> {
+        self.friction.and_then(|road| road.drag_factor())
+    }
+
     /// The event data recorder, which may have recorded nothing.
     pub fn recorder(&self) -> Edr {
         self.edr.unwrap_or_default()
@@ -172,7 +184,8 @@ impl Evidence {
     /// The same with nothing of the motion but the rest poses, and nothing of what driver and wheels
     /// did.
     pub fn rest_only(&self) -> Self {
-        let after = After::default();
-        Self { marks: Vec::new(), positions: Vec::new(), after, ..self.without_edr() }
+        let [after, striking_after] = [After::default(), After::default()];
+        let (marks, positions) = (Vec::new(), Vec::new());
+        Self { marks, positions, after, striking_after, ..self.without_edr() }
     }
 }

@@ -31,6 +31,10 @@ const CONTACT_FRICTION: Field =
 const BRAKE_START: Field = Field::new("brake_start", "driver brakes from", CONTROL_TIME);
 const BRAKE_SHARE_RANGE: Field =
     Field::new("brake_share", "braking over what the road holds", BRAKE_SHARE);
+const STRIKING_BRAKE_START: Field =
+    Field::new("bullet_brake_start", "striking driver brakes from", CONTROL_TIME);
+const STRIKING_BRAKE_SHARE: Field =
+    Field::new("bullet_brake_share", "braking of the striking car", BRAKE_SHARE);
 
 /// Ranges in which quantities are taken to lie before the evidence is looked at; each value inside is
 /// equally likely. What has none has the default of [`Prior`](crate::Prior).
@@ -56,6 +60,12 @@ pub struct PriorRanges {
     pub brake_start_s: Option<Bounds>,
     /// Braking force over the largest that the road can hold.
     pub brake_share: Option<Bounds>,
+    /// When the driver of the striking car begins to brake, s after the first contact.
+    #[serde(rename = "bullet_brake_start_s")]
+    pub striking_brake_start_s: Option<Bounds>,
+    /// Its braking force over the largest that the road can hold.
+    #[serde(rename = "bullet_brake_share")]
+    pub striking_brake_share: Option<Bounds>,
 }
 
 impl Item for PriorRanges {
@@ -69,6 +79,8 @@ impl Item for PriorRanges {
             contact_friction,
             brake_start_s,
             brake_share,
+            striking_brake_start_s,
+            striking_brake_share,
         } = self;
         visitor.interval(&STRUCK_SPEED, struck_speed_m_s);
         visitor.interval(&STRIKING_SPEED, striking_speed_m_s);
@@ -78,5 +90,7 @@ impl Item for PriorRanges {
         visitor.interval(&CONTACT_FRICTION, contact_friction);
         visitor.interval(&BRAKE_START, brake_start_s);
         visitor.interval(&BRAKE_SHARE_RANGE, brake_share);
+        visitor.interval(&STRIKING_BRAKE_START, striking_brake_start_s);
+        visitor.interval(&STRIKING_BRAKE_SHARE, striking_brake_share);
     }
 }

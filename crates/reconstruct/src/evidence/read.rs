@@ -7,6 +7,7 @@
 //! [road]                            # optional, as everything but struck_car, striking_car, damage
 //! friction = 0.72
 //! friction_sigma = 0.04
+//! drag_factor = 0.66                # of locked wheels, instead of a peak friction or beside it
 //!
 //! [struck_car]                      # mass_kg, or a data sheet (--vehicle)
 //! mass_kg = 1520
@@ -36,9 +37,10 @@
 //! heading_sigma_rad = 0.035
 //! # known = false                   # the car was moved
 //!
-//! [after]
-//! blocked_wheels = ["RR"]           # FL, FR, RL, RR; [] if all turn
-//! driver_braked = "unknown"         # yes, no
+//! [after]                           # and [striking_after]
+//! blocked_wheels = ["RR"]           # locked: FL, FR, RL, RR; [] if all turn
+//! dragging_wheels = ["RL"]          # turn, but are held back by the damage
+//! driver_braked = "unknown"         # yes, no: the car coasts
 //!
 //! [[mark]]
 //! wheel = "RR"
@@ -62,6 +64,7 @@
 //!
 //! [prior]                           # ranges, each value inside equally likely
 //! target_speed_m_s = [5, 45]
+//! bullet_brake_start_s = [0, 0.1]   # and brake_start_s, brake_share, bullet_brake_share
 //! ```
 
 use std::path::Path;

@@ -1,4 +1,9 @@
-//! Friction of the road. It is measured by itself, so that it is a part of the prior.
+//! Friction of the road. A peak friction is measured by itself, so that it is a part of the prior; the drag
+//! factor of a car with locked wheels is what follows from it and from tires, and is compared.
+//!
+//! ```text
+//! f = μ · f_tire · κ · d        d: sliding over peak friction, κ: friction along a wheel over across it
+//! ```
 
 use impactlab_core::ranges::{FRICTION_SIGMA, ROAD_FRICTION};
 use schemars::JsonSchema;
@@ -32,20 +37,35 @@ const SIGMA: Sigma = Sigma::fixed(
     "dry and wet asphalt together",
 );
 
+const DRAG_FACTOR: Field = Field::new("drag_factor", "drag factor, locked wheels", ROAD_FRICTION);
+const DRAG_FACTOR_SIGMA: Sigma = Sigma::fixed(
+    "drag_factor_sigma",
+    "±",
+    FRICTION_SIGMA,
+    // Skid tests of one car on one road differ by 5 to 7 %. `Brach2011`, drag factors.
+    0.05,
+    "skid tests with another car on the same road",
+);
+
 /// Friction of the road.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(transparent)]
+#[serde(default)]
 pub struct Road {
     /// Peak friction, as stated.
+    #[serde(flatten)]
     pub friction: Stated,
+    /// Drag factor of a car whose wheels are locked, deceleration over that of gravity.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drag_factor: Option<Stated>,
 }
 
 impl Item for Road {
     fn fields(&mut self, visitor: &mut impl Fields) {
-        let Self { friction } = self;
+        let Self { friction, drag_factor } = self;
         let mut stated = Some(*friction).filter(|stated| *stated != Stated::default());
         visitor.measured(&FRICTION, &SIGMA, &mut stated);
         *friction = stated.unwrap_or_default();
+        visitor.measured(&DRAG_FACTOR, &DRAG_FACTOR_SIGMA, drag_factor);
     }
 }
 
@@ -53,6 +73,19 @@ impl Road {
     /// Peak friction.
     pub fn friction(&self) -> Option<Measured> {
         SIGMA.resolve(Some(self.friction))
+    }
+
+    /// Drag factor of locked wheels.
+    pub fn drag_factor(&self) -> Option<Measured> {
+        DRAG_FACTOR_SIGMA.resolve(self.drag_factor)
+    }
+
+    pub(super) fn compare_drag(&self, comparison: &mut Comparison<'_>) {
+        let Some(Measured { value, sigma }) = self.drag_factor() else { return };
+        let expected = comparison.motion.values.locked_drag();
+        let distance = ((value - expected) / sigma).powi(2);
+        comparison.log_likelihood -= distance / 2.0;
+        comparison.tell("drag factor of locked wheels", "", [expected, value], distance);
     }
 
     pub(super) fn compare(&self, comparison: &mut Comparison<'_>) {

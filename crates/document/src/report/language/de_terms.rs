@@ -161,6 +161,19 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("drag of the blocked wheel", "Schleppkraft des blockierten Rades"),
     ("striking driver brakes from", "Fahrer des stoßenden Fahrzeugs bremst ab"),
     ("braking of the striking car", "Bremsung des stoßenden Fahrzeugs"),
+    ("whether the striking driver brakes", "ob der Fahrer des stoßenden Fahrzeugs bremst"),
+    (
+        "which wheel of the striking car is blocked",
+        "welches Rad des stoßenden Fahrzeugs blockiert ist",
+    ),
+    (
+        "drag of the blocked wheel of the striking car",
+        "Schleppkraft des blockierten Rades des stoßenden Fahrzeugs",
+    ),
+    // Speeds by hand.
+    ("struck car after the impact", "gestoßenes Fahrzeug nach dem Stoß"),
+    ("struck car before the impact", "gestoßenes Fahrzeug vor dem Stoß"),
+    ("striking car before the impact", "stoßendes Fahrzeug vor dem Stoß"),
     // Courses of events.
     ("recovers", "fängt sich"),
     ("the driver brakes", "der Fahrer bremst"),
@@ -202,6 +215,11 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("end of contact", "Ende des Kontakts"),
     ("position in a video", "Lage im Video"),
     ("after the impact", "nach dem Stoß"),
+    ("striking car after the impact", "stoßendes Fahrzeug nach dem Stoß"),
+    ("wheels that drag", "schleppende Räder"),
+    ("none that is known", "keines bekannt"),
+    ("drag factor, locked wheels", "Verzögerungsfaktor, blockierte Räder"),
+    ("drag factor of locked wheels", "Verzögerungsfaktor blockierter Räder"),
     ("driver braked", "Fahrer bremste"),
     ("not known", "nicht bekannt"),
     ("yes", "ja"),
