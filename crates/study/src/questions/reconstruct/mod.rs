@@ -1,4 +1,5 @@
 //! From the evidence to the speeds before the collision.
 
+mod assumed;
 pub(crate) mod paths;
 pub(crate) mod request;

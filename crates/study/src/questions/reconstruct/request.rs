@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
+use crate::questions::reconstruct::assumed::assumptions;
 use crate::{
     Answer, Event, FrictionZoneReport, InputKind, Library, Observer, Provenance, Question,
     Sampling, StudyError, VehicleChoice,
@@ -16,10 +17,10 @@ use impactlab_core::numerics::sha256_hex;
 use impactlab_core::program;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_core::site::Site;
-use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_core::vehicle::FrictionZone;
 use impactlab_reconstruct::domain::{check_damage, outside_domain};
-use impactlab_reconstruct::evidence::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Evidence};
+use impactlab_reconstruct::evidence::Evidence;
 use impactlab_reconstruct::sampler::{
     Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, sample,
 };
@@ -389,53 +390,6 @@ fn of_fit(fit: &[EvidenceFit]) -> Vec<Caveat> {
                 .with_range([EvidenceFit::UNEXPLAINED_BELOW, 1.0])
         })
         .collect()
-}
-
-/// What the evidence leaves open and the defaults of the prior fill.
-fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Caveat> {
-    let cars = model.cars();
-    let mut all = Vec::new();
-    let mut add = |subject, value: &str, reason: &str| {
-        all.push(Caveat::assumed(subject, value, reason));
-    };
-    if evidence.prior.striking_speed_m_s.is_none() && cars.is_hit_behind_cg(evidence) {
-        let value = "the striking car was faster by 1 ± 3 m/s";
-        let reason = "it hit a flank behind the CG, as in a PIT manoeuvre; otherwise: [prior] \
-                      bullet_speed_m_s";
-        add(CaveatSubject::Speed, value, reason);
-    }
-    if evidence.damage.angle_rad.is_none() && evidence.prior.heading_difference_rad.is_none() {
-        let reason = "by the struck side; otherwise: [damage] angle_deg or [prior] \
-                      heading_difference_deg";
-        add(CaveatSubject::ContactPoint, "direction of the striking car", reason);
-    }
-    if evidence.prior.restitution.is_none() {
-        let reason = "finite-element runs; otherwise: [prior] restitution, contact_friction";
-        add(CaveatSubject::Restitution, "0.24 to 0.66 up to 5 m/s, less beyond", reason);
-    }
-    if evidence.friction.is_none() {
-        let value = format!("{DEFAULT_FRICTION} ± {DEFAULT_FRICTION_SIGMA}");
-        let reason = "dry and wet asphalt together; otherwise: [road] friction";
-        add(CaveatSubject::RoadFriction, &value, reason);
-    }
-    if !model.zones().is_empty() {
-        let value = "zones of the site, each ± 15 %";
-        let reason = "nothing says how well it is known; all zones are better or worse together";
-        add(CaveatSubject::RoadFriction, value, reason);
-    }
-    let estimated = cars.struck.estimated().count();
-    if estimated > 0 {
-        let value = format!("{estimated} estimated from the rest");
-        let reason = "the evidence does not say them; a data sheet: --vehicle";
-        add(CaveatSubject::VehicleParameter, &value, reason);
-    }
-    let estimated = cars.striking.estimated().count();
-    if estimated > 0 {
-        let value = format!("{estimated} estimated from the rest, at their medians");
-        let reason = "the evidence does not say them; a data sheet: --striking";
-        add(CaveatSubject::StrikingParameter, &value, reason);
-    }
-    all
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@ use std::ops::ControlFlow;
 
 use super::*;
 use crate::examples::spin;
+use crate::questions::reconstruct::assumed::assumptions;
 use impactlab_core::uncertainty::{CaveatKind, CaveatSubject};
 use impactlab_reconstruct::Latent;
 use impactlab_reconstruct::evidence::{Edr, Measured};

@@ -1,0 +1,231 @@
+//! What the evidence leaves open and the program fills: every distribution of the prior that nobody stated,
+//! with the key that states it.
+
+use impactlab_core::uncertainty::{Caveat, CaveatSubject};
+use impactlab_core::units::{Quantity, significant};
+use impactlab_reconstruct::evidence::Evidence;
+use impactlab_reconstruct::{
+    BLOCKED_PROBABILITY, BRAKE_PROBABILITY, ForwardModel, Latent, Prior, PriorComponent,
+    PriorSource, STRIKING_BRAKES, STRIKING_BRAKES_BEFORE,
+};
+
+/// Standard normal variable below which 95 % lie.
+const Z_95: f64 = 1.645;
+
+/// Quantities of the prior that are assumed together.
+struct Group {
+    subject: CaveatSubject,
+    latents: &'static [Latent],
+    reason: &'static str,
+}
+
+/// What is assumed of everything that nobody stated. A quantity stands in one group only.
+const GROUPS: &[Group] = &[
+    Group {
+        subject: CaveatSubject::Speed,
+        latents: &[Latent::StruckSpeed, Latent::StrikingSpeed],
+        reason: "each value equally likely; otherwise: [prior] target_speed_m_s, bullet_speed_m_s",
+    },
+    Group {
+        subject: CaveatSubject::Speed,
+        latents: &[Latent::SpeedDifference],
+        reason: "it hit a flank behind the CG, as in a PIT manoeuvre; otherwise: [prior] \
+                 bullet_speed_m_s",
+    },
+    Group {
+        subject: CaveatSubject::ContactPoint,
+        latents: &[Latent::HeadingTowards],
+        reason: "by the struck side; otherwise: [damage] angle_deg or [prior] heading_difference_deg",
+    },
+    Group {
+        subject: CaveatSubject::ContactPoint,
+        latents: &[Latent::SideslipTowards, Latent::NormalTilt],
+        reason: "a car that turns in; otherwise: [prior] bullet_sideslip_deg",
+    },
+    Group {
+        subject: CaveatSubject::Restitution,
+        latents: &[Latent::ContactFriction],
+        reason: "finite-element runs; otherwise: [prior] contact_friction",
+    },
+    Group {
+        subject: CaveatSubject::Pulse,
+        latents: &[Latent::PulseDuration],
+        reason: "finite-element runs",
+    },
+    Group {
+        subject: CaveatSubject::RoadFriction,
+        latents: &[Latent::RoadFriction],
+        reason: "dry and wet asphalt together; otherwise: [road] friction or drag_factor",
+    },
+    Group {
+        subject: CaveatSubject::RoadFriction,
+        latents: &[Latent::TireFrictionFactor, Latent::LongitudinalFrictionRatio],
+        reason: "tires differ from those of a friction test; otherwise: [road] drag_factor, of this car \
+                 with locked wheels",
+    },
+    Group {
+        subject: CaveatSubject::RoadFriction,
+        latents: &[Latent::ZoneFrictionFactor],
+        reason: "nothing says how well the zones of the site are known; all are better or worse together",
+    },
+    Group {
+        subject: CaveatSubject::Vehicle,
+        latents: &[
+            Latent::BrakeDecision,
+            Latent::BrakeStart,
+            Latent::BrakeShare,
+            Latent::BrakeRise,
+            Latent::FrontBrakeShift,
+        ],
+        reason: "nobody says what the driver did; otherwise: [after] driver_braked, [prior] \
+                 brake_start_s, brake_share",
+    },
+    Group {
+        subject: CaveatSubject::Vehicle,
+        latents: &[Latent::EngineBraking, Latent::SteerAngle],
+        reason: "neutral to third gear where the driver does not brake; toe, play and a hand on the wheel",
+    },
+    Group {
+        subject: CaveatSubject::Vehicle,
+        latents: &[Latent::BlockedWheel, Latent::BlockedDrag],
+        reason: "nobody looked; otherwise: [after] blocked_wheels, dragging_wheels",
+    },
+    Group {
+        subject: CaveatSubject::Striking,
+        latents: &[
+            Latent::StrikingBrakeDecision,
+            Latent::StrikingBrakeStart,
+            Latent::StrikingBrakeShare,
+        ],
+        reason: "nobody says what its driver did; otherwise: [striking_after] driver_braked, [prior] \
+                 bullet_brake_start_s, bullet_brake_share",
+    },
+    Group {
+        subject: CaveatSubject::Striking,
+        latents: &[Latent::StrikingBlockedWheel, Latent::StrikingBlockedDrag],
+        reason: "nobody looked; otherwise: [striking_after] blocked_wheels, dragging_wheels",
+    },
+];
+
+/// What the evidence leaves open and the defaults of the prior fill.
+pub(super) fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Caveat> {
+    let (cars, prior) = (model.cars(), model.prior());
+    let mut all: Vec<Caveat> = GROUPS.iter().filter_map(|group| group.caveat(prior)).collect();
+    let mut add = |subject, value: &str, reason: &str| {
+        all.push(Caveat::assumed(subject, value, reason));
+    };
+    if evidence.prior.restitution.is_none() {
+        let reason = "finite-element runs; otherwise: [prior] restitution";
+        add(CaveatSubject::Restitution, "0.24 to 0.66 up to 5 m/s, less beyond", reason);
+    }
+    if evidence.road_friction().is_some() && evidence.drag_factor().is_none() {
+        let value = "the stated friction is the peak; locked wheels drag with less";
+        let reason = "a drag factor of locked wheels, which is what it is: [road] drag_factor";
+        add(CaveatSubject::RoadFriction, value, reason);
+    }
+    let estimated = cars.struck.estimated().count();
+    if estimated > 0 {
+        let value = format!("{estimated} estimated from the rest");
+        let reason = "the evidence does not say them; a data sheet: --vehicle";
+        add(CaveatSubject::VehicleParameter, &value, reason);
+    }
+    let estimated = cars.striking.estimated().count();
+    if estimated > 0 {
+        let value = format!("{estimated} estimated from the rest, at their medians");
+        let reason = "the evidence does not say them; a data sheet: --striking";
+        add(CaveatSubject::StrikingParameter, &value, reason);
+    }
+    all
+}
+
+impl Group {
+    /// What of the group is assumed; `None` if everything is stated or measured.
+    fn caveat(&self, prior: &Prior) -> Option<Caveat> {
+        let is_assumed = |component: &&PriorComponent| {
+            component.source == PriorSource::Assumed && self.latents.contains(&component.latent)
+        };
+        let texts: Vec<String> = prior.components().iter().filter(is_assumed).map(text).collect();
+        (!texts.is_empty()).then(|| Caveat::assumed(self.subject, texts.join("; "), self.reason))
+    }
+}
+
+/// The quantity with the interval that holds 90 % of it, or what becomes of it with which probability.
+fn text(PriorComponent { latent, distribution, .. }: &PriorComponent) -> String {
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let [low, high] = distribution.support();
+    let share_below = |threshold: f64| ((threshold - low) / (high - low)).clamp(0.0, 1.0);
+    match latent {
+        Latent::BrakeDecision => {
+            format!("the driver brakes with {}", percent(share_below(BRAKE_PROBABILITY)))
+        }
+        Latent::BlockedWheel | Latent::StrikingBlockedWheel => {
+            format!(
+                "each of two wheels near the damage is blocked with {}",
+                percent(BLOCKED_PROBABILITY)
+            )
+        }
+        Latent::StrikingBrakeDecision => {
+            let before = share_below(STRIKING_BRAKES_BEFORE);
+            let later = share_below(STRIKING_BRAKES) - before;
+            let [before, later] = [before, later].map(percent);
+            format!("the driver brakes from the first contact on with {before}, later with {later}")
+        }
+        _ => {
+            let (scale, unit) = match latent.quantity() {
+                Quantity::Angle => (1.0_f64.to_degrees(), "°"),
+                _ => (1.0, latent.unit()),
+            };
+            let [low, high] = [-Z_95, Z_95].map(|z| significant(scale * distribution.at(z)));
+            format!("{} {low} to {high} {unit}", latent.label()).trim_end().to_owned()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::examples::spin;
+    use impactlab_reconstruct::Cars;
+    use impactlab_reconstruct::evidence::RestPose;
+
+    /// What is drawn and not stated stands in the list, whatever it is.
+    #[test]
+    fn every_assumed_quantity_stands_in_the_list_once() {
+        for latent in Latent::ALL {
+            let n = GROUPS.iter().filter(|group| group.latents.contains(latent)).count();
+            assert!(n <= 1, "{latent:?} stands in {n} groups");
+        }
+        let mut evidence = spin();
+        evidence.friction = None;
+        evidence.after = Default::default();
+        evidence.striking_rest =
+            Some(RestPose { x_m: Some(20.0), y_m: Some(3.0), ..RestPose::default() });
+        let model = ForwardModel::new(&evidence, Cars::new(&evidence, None, None));
+        let found = assumptions(&evidence, &model);
+        for component in model.prior().components() {
+            if component.source == PriorSource::Assumed
+                && component.latent != Latent::RestitutionShare
+            {
+                let text = text(component);
+                let stands = found.iter().any(|caveat| caveat.text.contains(&text));
+                assert!(stands, "{text} is assumed and not told");
+            }
+        }
+        let striking = found.iter().find(|caveat| caveat.to_string().contains("[striking_after]"));
+        let text = striking.expect("the driver of the striking car").to_string();
+        assert!(text.contains("from the first contact on with 40 %, later with 40 %"), "{text}");
+    }
+
+    #[test]
+    fn what_is_stated_is_no_assumption() {
+        let mut evidence = spin();
+        let assumed = |evidence: &Evidence| {
+            let model = ForwardModel::new(evidence, Cars::new(evidence, None, None));
+            assumptions(evidence, &model).iter().map(Caveat::to_string).collect::<Vec<_>>()
+        };
+        let has = |texts: &[String], part: &str| texts.iter().any(|text| text.contains(part));
+        assert!(has(&assumed(&evidence), "brakes from 0.4"), "{:?}", assumed(&evidence));
+        evidence.prior.brake_start_s = Some([Some(0.0), Some(0.1)]);
+        assert!(!has(&assumed(&evidence), "brakes from"), "{:?}", assumed(&evidence));
+    }
+}
