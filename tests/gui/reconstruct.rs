@@ -102,7 +102,8 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
     for label in ["Play the median", "Items of the evidence: found and expected"] {
         assert!(harness.query_by_label(label).is_some(), "{label}");
     }
-    assert!(harness.query_by_label_contains("struck car by hand").is_some());
+    // The wheels of the example turn for a part of the way, so that no drag factor is known of it.
+    assert!(harness.query_by_label_contains("By hand").is_none());
 
     // The course of events that is clicked is shown alone, and a path of it is played.
     let name = answer.answer.report.modes[0].name.clone();

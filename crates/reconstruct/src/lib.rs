@@ -12,7 +12,7 @@
 //! - `forward`: from z to the motion of both cars;
 //! - `likelihood`: how well a motion goes with the evidence;
 //! - [`sampler`]: draws from the posterior;
-//! - `hand`: what one computes by hand, as a baseline;
+//! - `hand`: what one computes by hand, as a baseline; `hand_checks`: the same as independent checks;
 //! - [`evaluate`]: how well all of these do on staged collisions, of which the truth is known.
 
 pub mod baseline;
@@ -28,6 +28,7 @@ mod computed_marks;
 mod distribution;
 mod forward;
 mod hand;
+mod hand_checks;
 mod impact_state;
 mod latent;
 mod likelihood;
@@ -42,6 +43,7 @@ pub use computed_marks::MarkComparison;
 pub use distribution::Distribution;
 pub use forward::{CollisionMotion, ForwardModel};
 pub use hand::HandCalculation;
+pub use hand_checks::{HandCheck, HandSpeed};
 pub use impact_state::ImpactState;
 pub use latent::{
     BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues, STRIKING_BRAKES,

@@ -1,7 +1,9 @@
 //! The facts of a reconstruction.
 
 use impactlab_core::units::Quantity;
-use impactlab_reconstruct::{BudgetItem, EvidenceFit, MarkComparison, Mode, QuantityEstimate};
+use impactlab_reconstruct::{
+    BudgetItem, EvidenceFit, HandCheck, MarkComparison, Mode, QuantityEstimate,
+};
 
 use crate::ReconstructReport;
 use crate::facts::simulate::zones;
@@ -13,16 +15,19 @@ impl ReconstructReport {
     /// what further evidence would bring.
     pub fn facts(&self) -> Vec<FactTable> {
         let courses = (self.modes.len() > 1).then(|| self.course_table());
-        let tables = [Some(self.speed_table()), courses, Some(self.fit_table()), self.mark_table()];
+        let tables = [
+            Some(self.speed_table()),
+            self.hand_table(),
+            courses,
+            Some(self.fit_table()),
+            self.mark_table(),
+        ];
         tables.into_iter().flatten().chain([self.budget_table()]).collect()
     }
 
-    /// The quantities with their intervals, and the hand calculation beside them.
+    /// The quantities with their intervals.
     pub fn speed_table(&self) -> FactTable {
         let mut facts: Vec<Fact> = self.quantities.iter().map(quantity_fact).collect();
-        facts.extend(self.by_hand_m_s.map(|[value, sigma]| {
-            Fact::new(Term::ByHand, Value::Measured(Quantity::Speed, value, sigma))
-        }));
         facts.extend(zones(&self.friction_zones));
         facts.extend([
             Fact::new(Term::Motions, Value::Count(self.n_simulations)),
@@ -30,6 +35,18 @@ impl ReconstructReport {
             Fact::new(Term::EffectiveSamples, Value::Fixed(self.ess, 0)),
         ]);
         FactTable::new(Term::Speeds, facts).with_levels(RECONSTRUCTED)
+    }
+
+    /// What one computes by hand, each number from its own part of the evidence; none if nothing holds.
+    pub fn hand_table(&self) -> Option<FactTable> {
+        let row = |check: &HandCheck| {
+            let speed = Value::Measured(Quantity::Speed, check.value_m_s, check.sigma_m_s);
+            let values = vec![speed, Value::English(check.holds.to_owned())];
+            Fact::row(Value::Phrase(check.speed.label().to_owned()), values)
+        };
+        let rows = self.by_hand.iter().map(row).collect();
+        let columns = [Term::OneSigma, Term::HoldsBy];
+        FactTable::new(Term::ByHand, rows).with_columns(&columns).unless_empty()
     }
 
     /// The courses of events, the most probable one first.

@@ -179,9 +179,10 @@ terms! {
     // The reconstruction.
     Speeds: "What the evidence says of the speeds, before the impact unless said otherwise",
         "Was die Spuren über die Geschwindigkeiten sagen, vor dem Aufprall, wenn nicht anders gesagt";
-    ByHand: "struck car by hand, ± one standard deviation",
-        "gestoßenes Fahrzeug von Hand gerechnet, ± eine Standardabweichung",
-        "Momentum and the energy that was lost on the way to rest, for comparison";
+    ByHand: "By hand, each number from its own part of the evidence",
+        "Von Hand gerechnet, jede Zahl aus einem eigenen Teil der Spuren";
+    OneSigma: "± one standard deviation", "± eine Standardabweichung";
+    HoldsBy: "from", "aus";
     Motions: "simulated motions", "simulierte Bewegungen";
     Particles: "particles", "Partikel";
     EffectiveSamples: "independent particles that they are worth", "effektiver Stichprobenumfang";

@@ -84,7 +84,9 @@ fn numbers_ui(
     commands: &mut Vec<Command>,
 ) {
     restrictions_ui(ui, &report.caveats);
-    facts_ui(ui, &report.case, &[report.speed_table()], units);
+    let tables: Vec<FactTable> =
+        std::iter::once(report.speed_table()).chain(report.hand_table()).collect();
+    facts_ui(ui, &report.case, &tables, units);
     evidence_assumptions_ui(ui, &report.caveats, commands);
 }
 

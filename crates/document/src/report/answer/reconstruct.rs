@@ -36,6 +36,7 @@ pub(super) fn part(
     let mut blocks = vec![Block::paragraph(fill(words.ask_reconstruct, &[("name", &report.case)]))];
     let speeds = report.speed_table();
     blocks.extend(facts_with_meanings(&speeds, words.meaning_posterior, context));
+    blocks.extend(report.hand_table().map(|table| facts_table(&table, context)));
     let doubts = report.caveats.iter().filter(|caveat| DOUBTS.contains(&caveat.kind));
     let mut doubts: Vec<String> = doubts.map(|caveat| wording.term(caveat.kind.label())).collect();
     doubts.dedup();

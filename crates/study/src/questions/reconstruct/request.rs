@@ -25,7 +25,7 @@ use impactlab_reconstruct::sampler::{
     Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, sample,
 };
 use impactlab_reconstruct::{
-    BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCalculation, MarkComparison,
+    BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCheck, HandSpeed, MarkComparison,
     Mode, Posterior, PriorComponent, QuantityEstimate, ReconstructionTarget,
 };
 
@@ -101,7 +101,9 @@ pub struct ReconstructReport {
     pub n_particles: usize,
     /// Logarithm of the evidence, up to a constant of the case: tells assumptions about one case apart.
     pub log_evidence: f64,
-    /// Speed of the struck car by hand, m/s, and its standard deviation, for comparison.
+    /// Speeds by hand, each from its own part of the evidence, where one holds.
+    pub by_hand: Vec<HandCheck>,
+    /// That of the struck car before the impact, m/s, and its standard deviation.
     pub by_hand_m_s: Option<[f64; 2]>,
     /// The parts of the ground with their own friction.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -277,11 +279,9 @@ impl Question for ReconstructRequest {
         let posterior = Posterior::new(&target, &particles);
         let (fit, turned_rad) = target.fit(&particles);
         let ground = target.model().zones();
-        let by_hand = HandCalculation::new(target.evidence(), target.model().cars(), ground);
-        let by_hand_m_s = by_hand.map(|hand| {
-            let speed = hand.struck_speed_m_s;
-            [speed.value, speed.sigma]
-        });
+        let by_hand = HandCheck::all(target.evidence(), target.model().cars(), ground);
+        let before = by_hand.iter().find(|check| check.speed == HandSpeed::Struck);
+        let by_hand_m_s = before.map(|check| [check.value_m_s, check.sigma_m_s]);
         let mut caveats = Caveats::from(of_particles(&particles));
         caveats.extend(outside);
         caveats.extend(of_fit(&fit));
@@ -299,6 +299,7 @@ impl Question for ReconstructRequest {
             n_simulations: particles.n_evaluations + particles.z.len(),
             n_particles: particles.z.len(),
             log_evidence: particles.log_evidence,
+            by_hand,
             by_hand_m_s,
             friction_zones,
             priors: target.model().prior().components().to_vec(),
