@@ -9,7 +9,7 @@ use crate::{
     EvidenceFit, ForwardModel, ImpactState, Latent, LatentValues, Narrowing, ReconstructionTarget,
     modes_by,
 };
-use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_core::numerics::{quantile_of_sorted, unwrapped_rad};
 use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem};
 
 macro_rules! quantities {
@@ -352,8 +352,13 @@ impl QuantityEstimate {
         self.reconstructed().map_or(Quantity::Ratio, ReconstructedQuantity::quantity)
     }
 
-    /// Intervals of equally likely values; `None` without values.
-    fn from_values(quantity: ReconstructedQuantity, mut values: Vec<f64>) -> Option<Self> {
+    /// Intervals of equally likely values; `None` without values. Those of an angle continue from its
+    /// median without a jump, and may end beyond half a turn.
+    fn from_values(quantity: ReconstructedQuantity, values: Vec<f64>) -> Option<Self> {
+        let mut values = match quantity.quantity() {
+            Quantity::Angle => unwrapped_rad(&values),
+            _ => values,
+        };
         values.sort_by(f64::total_cmp);
         Self::by(quantity, |share| quantile_of_sorted(&values, share))
     }
@@ -401,4 +406,22 @@ fn mode_name(values: &LatentValues, turned_rad: f64) -> String {
         (false, Some(_)) => ", the other wheel near the damage blocked",
     };
     format!("{spin}, {braked}{blocked}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A head-on collision had a median of −148° with an interval of nearly the whole circle.
+    #[test]
+    fn an_angle_about_half_a_turn_has_an_interval_without_a_jump() {
+        let degrees = [150.0_f64, 165.0, 175.0, -178.0, -170.0, -160.0, 179.0];
+        let values = degrees.map(f64::to_radians).to_vec();
+        let heading = ReconstructedQuantity::HeadingDifference;
+        let estimate = QuantityEstimate::from_values(heading, values).unwrap().estimate;
+        let median = estimate.median.to_degrees();
+        assert!((median.rem_euclid(360.0) - 179.0).abs() < 1e-9, "{median}");
+        let [low, high] = estimate.ninety().map(f64::to_degrees);
+        assert!(low < median && median < high && high - low < 60.0, "{low} to {high}");
+    }
 }

@@ -8,9 +8,40 @@ pub fn wrap_angle_rad(angle_rad: f64) -> f64 {
     if wrapped > PI { wrapped - TAU } else { wrapped }
 }
 
+/// Directions as numbers without a jump: each is moved by whole turns to within half a turn of the mean
+/// direction, which lies in (−π, π], so that their order and quantiles are those along the circle.
+///
+/// Without a mean direction the angles stay as they are.
+pub fn unwrapped_rad(angles_rad: &[f64]) -> Vec<f64> {
+    let sum = |part: fn(f64) -> f64| angles_rad.iter().map(|angle| part(*angle)).sum::<f64>();
+    let [x, y] = [sum(f64::cos), sum(f64::sin)];
+    let length = x.hypot(y);
+    if length.is_nan() || length <= 1e-9 * angles_rad.len() as f64 {
+        return angles_rad.to_vec();
+    }
+    let mean = y.atan2(x);
+    angles_rad.iter().map(|angle| mean + wrap_angle_rad(angle - mean)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn directions_about_backwards_have_no_jump() {
+        let angles = [170.0_f64, -175.0, -160.0, 178.0].map(f64::to_radians);
+        let degrees: Vec<f64> = unwrapped_rad(&angles).iter().map(|a| a.to_degrees()).collect();
+        let spread = |values: &[f64]| {
+            let ends = values.iter().fold((f64::MAX, f64::MIN), |(low, high), value| {
+                (low.min(*value), high.max(*value))
+            });
+            ends.1 - ends.0
+        };
+        assert!((spread(&degrees) - 30.0).abs() < 1e-9, "{degrees:?}");
+        // Opposite directions have no mean.
+        assert_eq!(unwrapped_rad(&[0.0, PI]), [0.0, PI]);
+        assert_eq!(unwrapped_rad(&[]), [0.0; 0]);
+    }
 
     #[test]
     fn wrapping_keeps_the_direction() {
