@@ -8,6 +8,10 @@ use crate::{BodyReport, ImpactReport};
 
 /// Overlap or gap of outlines that counts as touching, m.
 const TOUCHING_M: f64 = 5e-4;
+/// Critical impulse ratio below which there is none but for rounding.
+const ROUNDING: f64 = 1e-9;
+/// Friction limit over the critical impulse ratio beyond which nothing is said by it.
+const LARGEST_SHARE: f64 = 100.0;
 
 impl ImpactReport {
     /// What the answer says: the contact, and both vehicles after it.
@@ -46,10 +50,14 @@ impl ImpactReport {
             Fact::new(Term::Restitution, Value::Joined(restitution, " ")),
             Fact::new(Term::FrictionLimit, Value::Joined(friction, ", ")),
         ];
-        if let Some(critical) = self.critical_impulse_ratio.filter(|critical| *critical > 0.0) {
-            let share = Value::Share(self.friction_limit / critical);
+        if let Some(critical) = self.critical_impulse_ratio {
+            // That of a central impact is nothing but rounding.
+            let critical = if critical < ROUNDING { 0.0 } else { critical };
             facts.push(Fact::number(Term::CriticalRatio, Quantity::Ratio, critical));
-            facts.push(Fact::new(Term::ShareOfCritical, share));
+            let share = self.friction_limit / critical;
+            if critical > 0.0 && share < LARGEST_SHARE {
+                facts.push(Fact::new(Term::ShareOfCritical, Value::Share(share)));
+            }
         }
         let surface = match &self.struck_surface {
             Some(surface) => phrase(surface.to_string()),
