@@ -267,9 +267,15 @@ impl ForwardModel {
     ) -> (VehicleParameters, Manoeuvre) {
         let mass_kg = values.get(Latent::StrikingMass);
         let mut vehicle = self.cars.striking.parameters.clone().scaled_to_mass(mass_kg, None);
-        vehicle.tires.friction = values.get(Latent::RoadFriction);
+        let tire_factor = values.get(Latent::StrikingTireFrictionFactor);
+        let tires = &mut vehicle.tires;
+        tires.friction = values.get(Latent::RoadFriction) * tire_factor;
+        // How tires slide is a matter of the road more than of the car.
+        tires.sliding_friction_ratio = values.get(Latent::SlidingRatio);
+        tires.longitudinal_friction_ratio = values.get(Latent::LongitudinalFrictionRatio);
         let brake = values.striking_brakes_from_s().map(|start_s| {
-            let share = values.get(Latent::StrikingBrakeShare);
+            let share = values.get(Latent::StrikingBrakeShare)
+                * values.get(Latent::LongitudinalFrictionRatio);
             Braking::new(start_s, share, DEFAULT_BRAKE_RISE_S)
         });
         let [_, damage] = self.wheels.each_ref().map(|wheels| wheels.damage(values));
@@ -291,7 +297,7 @@ impl ForwardModel {
             controls: Ending { brake, damage, ..Ending::default() }.controls(&vehicle),
             duration_s: LONGEST_MOTION_S,
             ends_at_rest: true,
-            friction_zones: self.zones_under(values, 1.0),
+            friction_zones: self.zones_under(values, tire_factor),
         };
         (vehicle, manoeuvre)
     }

@@ -128,6 +128,10 @@ latents! {
     /// Its braking force over the largest that the road can hold.
     #[serde(rename = "bullet_brake_share")]
     StrikingBrakeShare: "bullet_brake_share", "", "braking of the striking car";
+    /// Friction of the tires of the striking car over that of the road.
+    #[serde(rename = "bullet_tire_friction_factor")]
+    StrikingTireFrictionFactor: "bullet_tire_friction_factor", "",
+        "tire friction of the striking car over that of the road";
     /// Which front wheel of the striking car is blocked, where nobody looked, 0 to 1.
     #[serde(rename = "bullet_blocked_wheel")]
     StrikingBlockedWheel: "bullet_blocked_wheel", "", "which wheel of the striking car is blocked";

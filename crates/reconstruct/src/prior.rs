@@ -15,7 +15,7 @@
 //! | restitution | uniform, 0.24 to 0.66 up to 5 m/s of approach, falling to 0 to 0.3 at 15 m/s | [`ContactDistribution`], [`Brach2011`](impactlab_core::bibliography::Brach2011) |
 //! | friction of the contact | normal, 0.28 ± 0.15 | [`ContactDistribution`] |
 //! | normal of the contact turned towards where the striking car points | normal, 9° ± 7° hit behind the CG, else 0° ± 7° | a corner that digs in: tuning cases |
-//! | friction of the tires over that of the road | log-normal, 1.02, factor 1.09 | other tires: tuning cases |
+//! | friction of the tires over that of the road, each car its own | log-normal, 1.02, factor 1.09 | other tires: tuning cases |
 //! | friction of a wheel along its plane over that across it | log-normal, 1.15, factor 1.07 | tuning cases |
 //! | duration of the contact | log-normal, 0.12 s, factor 1.35 | finite-element runs of the project |
 //! | driver brakes | 3 of 4 | assumed |
@@ -360,6 +360,10 @@ impl Prior {
             }
             None => self.fixed.set(Latent::StrikingBrakeDecision, 1.0),
         }
+        self.assume(
+            Latent::StrikingTireFrictionFactor,
+            log_normal(TIRE_FRICTION_FACTOR, TIRE_FRICTION_SCATTER, 0.7, 1.4),
+        );
         let latents = [Latent::StrikingBlockedWheel, Latent::StrikingBlockedDrag];
         self.add_held_wheels(after, latents);
     }

@@ -161,6 +161,10 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("drag of the blocked wheel", "Schleppkraft des blockierten Rades"),
     ("striking driver brakes from", "Fahrer des stoßenden Fahrzeugs bremst ab"),
     ("braking of the striking car", "Bremsung des stoßenden Fahrzeugs"),
+    (
+        "tire friction of the striking car over that of the road",
+        "Reibbeiwert der Reifen des stoßenden Fahrzeugs zu dem der Fahrbahn",
+    ),
     ("whether the striking driver brakes", "ob der Fahrer des stoßenden Fahrzeugs bremst"),
     (
         "which wheel of the striking car is blocked",

@@ -59,7 +59,11 @@ const GROUPS: &[Group] = &[
     },
     Group {
         subject: CaveatSubject::RoadFriction,
-        latents: &[Latent::TireFrictionFactor, Latent::LongitudinalFrictionRatio],
+        latents: &[
+            Latent::TireFrictionFactor,
+            Latent::StrikingTireFrictionFactor,
+            Latent::LongitudinalFrictionRatio,
+        ],
         reason: "tires differ from those of a friction test; otherwise: [road] drag_factor, of this car \
                  with locked wheels",
     },
