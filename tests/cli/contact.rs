@@ -93,20 +93,7 @@ fn both_forms_of_restitution_are_a_choice() {
 /// The friction limit of a central impact was 16729789447281126.0 % of a critical ratio of 0.
 #[test]
 fn a_central_impact_has_no_share_of_its_critical_ratio() {
-    let folder = TempDir::new().unwrap();
-    let scenario = folder.path().join("inline.toml");
-    let car = |speed: f64, mass: f64| {
-        format!(
-            "mass_lb = {mass}\nyaw_inertia_slug_ft2 = 2300\nlength_ft = 16\nwidth_ft = 6\n\
-             cg_from_front_ft = 8\nspeed_mph = {speed}\n"
-        )
-    };
-    let contact = "from = \"side\"\nside = \"rear\"\noffset_ft = 0\nrestitution = 0\n\
-                   friction_limit = 0.4\n";
-    let (struck, striking) = (car(0.0, 4000.0), car(83.74, 3000.0));
-    let scenario_text = format!("[target]\n{struck}[bullet]\n{striking}[contact]\n{contact}");
-    std::fs::write(&scenario, scenario_text).unwrap();
-    let args = ["impact", text(&scenario), "--units", "us"];
+    let args = ["impact", "tests/data/inline_impact.toml", "--units", "us"];
     let printed = ok(program().args(args).output().unwrap());
     assert!(!printed.contains("over the critical impulse ratio"), "{printed}");
     // Common velocity: 83.74 mph · 3000/7000.

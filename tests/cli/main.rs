@@ -22,6 +22,7 @@ mod program;
 mod ranges;
 mod reconstruct;
 mod reconstruct_absurd;
+mod reconstruct_inline;
 mod reconstruct_killed;
 mod report;
 mod response;
