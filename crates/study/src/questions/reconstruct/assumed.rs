@@ -174,13 +174,18 @@ fn text(PriorComponent { latent, distribution, .. }: &PriorComponent) -> String 
             let [before, later] = [before, later].map(percent);
             format!("the driver brakes from the first contact on with {before}, later with {later}")
         }
+        Latent::ZoneFrictionFactor => {
+            let [low, high] = [-Z_95, Z_95].map(|z| significant(distribution.at(z)));
+            format!("zones of the site, all with {low} to {high} times the friction that it says")
+        }
         _ => {
-            let (scale, unit) = match latent.quantity() {
-                Quantity::Angle => (1.0_f64.to_degrees(), "°"),
-                _ => (1.0, latent.unit()),
+            let (scale, unit) = match (latent.quantity(), latent.unit()) {
+                (Quantity::Angle, _) => (1.0_f64.to_degrees(), "°".to_owned()),
+                (_, "") => (1.0, String::new()),
+                (_, unit) => (1.0, format!(" {unit}")),
             };
             let [low, high] = [-Z_95, Z_95].map(|z| significant(scale * distribution.at(z)));
-            format!("{} {low} to {high} {unit}", latent.label()).trim_end().to_owned()
+            format!("{} {low} to {high}{unit}", latent.label())
         }
     }
 }
