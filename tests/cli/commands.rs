@@ -11,10 +11,10 @@ use tempfile::TempDir;
 use crate::program::{SCENARIO, TRAJECTORIES, program};
 
 /// What a command printed, and its exit code.
-struct Ran {
-    code: i32,
-    out: String,
-    err: String,
+pub struct Ran {
+    pub code: i32,
+    pub out: String,
+    pub err: String,
 }
 
 impl Ran {
@@ -25,7 +25,7 @@ impl Ran {
 
     /// Returns the error message, after checking that it is a single line on stderr and that stdout
     /// is empty.
-    fn error_line(&self) -> &str {
+    pub fn error_line(&self) -> &str {
         assert_eq!(self.code, 1, "{}{}", self.out, self.err);
         assert_eq!(self.out, "", "{}", self.err);
         let lines: Vec<&str> = self.err.lines().collect();
@@ -34,7 +34,7 @@ impl Ran {
     }
 }
 
-fn impactlab(args: &[&str]) -> Ran {
+pub fn impactlab(args: &[&str]) -> Ran {
     let output = program().args(args).output().expect("the program can be started");
     Ran {
         code: output.status.code().expect("no signal ended it"),

@@ -8,6 +8,7 @@ mod budgets;
 mod closed_pipe;
 mod commands;
 mod contact;
+mod contradictions;
 mod data_sheets;
 mod endings;
 mod export;

@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use impactlab_core::data::{
-    Dataset, DatasetKind, FlagKind, ForceAttributes, Opened, TrajectoryAttributes, check_case, open,
+    Dataset, DatasetKind, FlagKind, ForceAttributes, Opened, TrajectoryAttributes, check_case,
+    contradictions, open,
 };
 
 #[test]
@@ -36,6 +37,8 @@ fn all_shipped_data_sets_load_without_a_problem() {
                 }
             }
             assert!(case.force_history().is_ok(), "{}", case.name);
+            // Cars that spin are no contradiction.
+            assert_eq!(contradictions(&case.series), [], "{}", case.name);
         }
     }
     assert_eq!(reports, 9);

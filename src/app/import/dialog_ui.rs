@@ -220,13 +220,37 @@ impl ImportDialog {
             });
             shown.response.labelled_by(name.id);
             ui.end_row();
+            self.headings_ui(ui);
             self.velocities_ui(ui);
         });
     }
 
+    fn has(&self, channel: Channel) -> bool {
+        self.choices.columns.iter().any(|column| column.channel == Some(channel))
+    }
+
+    fn headings_ui(&mut self, ui: &mut Ui) {
+        if !self.has(Channel::Yaw) {
+            return;
+        }
+        let name = ui.label("Headings are");
+        let text = |is_compass| match is_compass {
+            false => "yaw angles, from x to the left",
+            true => "compass headings, from north to the right",
+        };
+        let is_compass = &mut self.settings.compass_headings;
+        let combo = ComboBox::from_id_salt("headings").selected_text(text(*is_compass));
+        let shown = combo.show_ui(ui, |ui| {
+            for compass in [false, true] {
+                ui.selectable_value(is_compass, compass, text(compass));
+            }
+        });
+        shown.response.labelled_by(name.id);
+        ui.end_row();
+    }
+
     fn velocities_ui(&mut self, ui: &mut Ui) {
-        let has = |channel| self.choices.columns.iter().any(|of| of.channel == Some(channel));
-        if !(has(Channel::Vx) && has(Channel::Vy)) {
+        if !(self.has(Channel::Vx) && self.has(Channel::Vy)) {
             return;
         }
         let name = ui.label("v_x, v_y are in");

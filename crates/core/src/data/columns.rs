@@ -7,8 +7,8 @@ use std::path::Path;
 
 use crate::data::spelling::{self, Meaning};
 use crate::data::{
-    Channel, ColumnMap, ColumnRef, ColumnSource, DataError, RESTRICTIONS_COLUMN, SignedColumn,
-    Table, VelocityAxes, VelocityFit,
+    Channel, ColumnMap, ColumnRef, ColumnSource, Contradiction, DataError, RESTRICTIONS_COLUMN,
+    SignedColumn, Table, VelocityAxes, VelocityFit,
 };
 use crate::units::{Quantity, Unit};
 
@@ -96,12 +96,19 @@ pub enum Note {
         /// The axes in which they were read.
         read_as: VelocityAxes,
     },
+    /// Columns of a motion contradict each other.
+    Contradiction(Contradiction),
 }
 
 impl Note {
     /// Whether numbers that were read may be wrong, so that the user should be asked.
     pub fn is_doubt(&self) -> bool {
-        matches!(self, Self::UnitAssumed(_) | Self::Velocities { .. } | Self::MixedUnits { .. })
+        matches!(self, Self::UnitAssumed(_) | Self::MixedUnits { .. }) || self.is_contradiction()
+    }
+
+    /// Whether numbers that were read contradict each other, so that nothing can be made of them.
+    pub fn is_contradiction(&self) -> bool {
+        matches!(self, Self::Velocities { .. } | Self::Contradiction(_))
     }
 }
 
@@ -138,6 +145,7 @@ impl fmt::Display for Note {
                 write!(f, "{n_rows} rows have text to the right of the last column; it is not read")
             }
             Self::Velocities { fit, read_as } => fit.explain(*read_as, f),
+            Self::Contradiction(contradiction) => contradiction.fmt(f),
         }
     }
 }

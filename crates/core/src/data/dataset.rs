@@ -379,6 +379,7 @@ impl CaseFiles {
             });
         }
         let loaded = read_series(&file, None, self.kind.file_kind())?;
+        loaded.check_consistent(&file)?;
         Ok(Case {
             name: row.name.clone(),
             kind: self.kind,

@@ -296,6 +296,14 @@ pub enum DataError {
         /// Number of rows in the file.
         got: usize,
     },
+    /// Columns of a motion contradict each other.
+    #[error("{}: {what}", path.display())]
+    Contradiction {
+        /// The file that was read.
+        path: PathBuf,
+        /// What contradicts what, and what would mend it.
+        what: String,
+    },
     /// The time of a row is not later than that of the row before it.
     #[error("{}:{line}:{column}: time is {after_s} s after {before_s} s in the row before, expected a later time; sort the rows and remove doubles", path.display())]
     TimeOrder {

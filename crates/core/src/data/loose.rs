@@ -2,12 +2,13 @@
 //! that writes delimited text. The columns are found by their headers or by a mapping of the user
 //! and converted to SI units.
 
+use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
 use crate::data::velocity_fit::in_body_axes;
 use crate::data::{
     Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, ReadSettings, Sampling,
-    SeriesError, Table, TimeSeries, VelocityAxes, velocity_fit,
+    SeriesError, Table, TimeSeries, VelocityAxes, contradictions, velocity_fit,
 };
 use crate::ranges::{
     ACCELERATION_SAMPLE, ANGLE_SAMPLE, ANGULAR_VELOCITY_SAMPLE, BRAKE_TORQUE, FORCE_SAMPLE,
@@ -61,6 +62,23 @@ impl Loaded {
             Sampling::ComingMean
         } else {
             Sampling::Instant
+        }
+    }
+}
+
+impl Loaded {
+    /// Checks that the columns of a motion do not contradict each other, before anything is made of it.
+    ///
+    /// # Errors
+    /// [`DataError::Contradiction`] with what contradicts what, and what would mend it.
+    pub fn check_consistent(&self, path: &Path) -> Result<(), DataError> {
+        let found: Vec<String> =
+            self.notes.iter().filter(|note| note.is_contradiction()).map(Note::to_string).collect();
+        match found.is_empty() {
+            true => Ok(()),
+            false => {
+                Err(DataError::Contradiction { path: path.to_owned(), what: found.join("; ") })
+            }
         }
     }
 }
@@ -158,7 +176,9 @@ pub fn read_motion_log(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, D
     if has_position && !columns.by_channel.contains_key(&Channel::Yaw) {
         return Err(table.placed(columns.missing(&table, Channel::Yaw, "time, x, y and yaw")));
     }
-    load(&table, columns, FileKind::Trajectory, map)
+    let loaded = load(&table, columns, FileKind::Trajectory, map)?;
+    loaded.check_consistent(path)?;
+    Ok(loaded)
 }
 
 /// Reads the torques of brakes and drive at the wheels over time.
@@ -286,6 +306,7 @@ fn load_columns(
     }
     let Columns { by_channel, mut notes } = columns;
     notes.extend(fit.map(|fit| Note::Velocities { fit, read_as }));
+    notes.extend(contradictions(&series).into_iter().map(Note::Contradiction));
     let columns = by_channel.into_values().collect();
     Ok(Loaded {
         kind,
@@ -325,11 +346,17 @@ fn si_values(
     let mut values = sum.unwrap_or_else(|| vec![0.0; table.n_rows()]);
     let shift_s = settings.time_shift_s.filter(|_| column.channel == Channel::Time);
     let is_mirrored = settings.y_to_right && changes_sign_with_y(column.channel);
+    let compass = compass_quantity(column.channel).filter(|_| settings.compass_headings);
     let range = samples_range(column.channel);
     for (row_idx, value) in values.iter_mut().enumerate() {
         *value += shift_s.unwrap_or(0.0);
         if is_mirrored {
             *value = 0.0 - *value; // No negative zero.
+        }
+        match compass {
+            Some(Quantity::Angle) => *value = FRAC_PI_2 - *value,
+            Some(_) => *value = 0.0 - *value,
+            None => {}
         }
         if let Some(range) = range.filter(|range| !range.contains(*value)) {
             return Err(DataError::ImplausibleValue {
@@ -343,6 +370,16 @@ fn si_values(
         }
     }
     Ok(values)
+}
+
+/// What kind of heading a channel is, an angle or its rate; `None` if it is none.
+fn compass_quantity(channel: Channel) -> Option<Quantity> {
+    use Channel::{StrikingYaw, StrikingYawRate, StruckYaw, StruckYawRate, Yaw, YawRate};
+    let is_heading = matches!(
+        channel,
+        Yaw | YawRate | StruckYaw | StruckYawRate | StrikingYaw | StrikingYawRate
+    );
+    is_heading.then(|| channel.quantity())
 }
 
 /// Whether a channel has the other sign in axes whose y points to the right and whose z points down

@@ -18,6 +18,7 @@ mod case_braking;
 mod channel;
 mod column_map;
 mod columns;
+mod consistency;
 mod contact;
 mod dataset;
 mod dialect;
@@ -57,6 +58,7 @@ pub(crate) use columns::Columns;
 pub use columns::{
     ColumnProposal, ColumnUse, Note, Term, map_from_proposals, proposals, propose_columns,
 };
+pub use consistency::{Contradiction, contradictions};
 pub use contact::{
     CONTACT_SHARE_OF_PEAK, ContactOutside, MIN_GAP_S, TIME_TOLERANCE_S, check_contact_within,
     contact_interval, contact_pulses, cut_at_s,

@@ -49,6 +49,9 @@ pub struct ReadSettings {
     /// Whether y points to the right and yaw is positive clockwise (SAE J670), `y_axis=right`. The
     /// numbers are turned into the axes of this program, in which y points to the left.
     pub y_to_right: bool,
+    /// Whether yaw angles are compass headings, clockwise from north, over a path with x to the east and y to
+    /// the north: `headings=compass`. The numbers are turned into yaw angles.
+    pub compass_headings: bool,
     /// The axes of `vx` and `vy`, `velocities=world`; `None` takes them as body axes and compares
     /// them with the path.
     pub velocities: Option<VelocityAxes>,
@@ -94,6 +97,14 @@ impl ReadSettings {
                     _ => return Err(wrong("left or right")),
                 };
                 !std::mem::replace(&mut self.y_to_right, is_right)
+            }
+            "headings" => {
+                let is_compass = match value {
+                    "yaw" => false,
+                    "compass" => true,
+                    _ => return Err(wrong("compass or yaw")),
+                };
+                !std::mem::replace(&mut self.compass_headings, is_compass)
             }
             "velocities" => {
                 let axes = match value {
@@ -152,6 +163,7 @@ impl fmt::Display for ReadSettings {
             ("units", self.units_line.map(|line| line.to_string())),
             ("shift", self.time_shift_s.map(|shift_s| format!("{shift_s}:s"))),
             ("y_axis", self.y_to_right.then(|| "right".to_owned())),
+            ("headings", self.compass_headings.then(|| "compass".to_owned())),
             ("velocities", velocities),
         ];
         let given = parts.into_iter().filter_map(|(name, value)| Some((name, value?)));

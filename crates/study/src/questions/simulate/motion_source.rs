@@ -110,10 +110,12 @@ impl MotionSource {
     }
 }
 
-/// A recorded motion; another kind of file is refused, since its speed is not known.
+/// A recorded motion whose columns go together; another kind of file is refused, since its speed is not
+/// known.
 pub(crate) fn trajectory(library: &Library, file: &SeriesFile) -> Result<Arc<Loaded>, StudyError> {
     let loaded = library.series(file)?;
     if loaded.kind == FileKind::Trajectory {
+        loaded.check_consistent(&file.path)?;
         return Ok(loaded);
     }
     Err(StudyError::WrongKind {

@@ -1,0 +1,403 @@
+//! Whether the columns of a recorded motion go together: yaw rate and yaw angle, yaw angle and path, path
+//! and time. A unit that is off, a mirrored axis, a compass heading or positions that are held between
+//! fixes give a motion that no vehicle has, and each is found with what would mend it.
+//!
+//! ```text
+//! yaw rate   Δψ over each window against ∫r dt: the slope of a line through the origin
+//! compass    course + ψ = π/2 wherever the vehicle drives and the course turns
+//! mirror     course + ψ = 0 likewise
+//! held       share of steps at speed over which the place does not change at all
+//! ```
+//!
+//! A vehicle that spins moves in directions that have nothing to do with its heading; the path is compared
+//! with the heading only where one of these relations holds all along while the course turns, which no spin
+//! does.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::fmt;
+
+use crate::data::{Channel, TimeSeries};
+use crate::numerics::wrap_angle_rad;
+
+/// Windows into which a motion is divided.
+const N_WINDOWS: usize = 24;
+/// Turn in all below which a yaw rate is not compared, rad: noise of both is below.
+const LEAST_TURN_RAD: f64 = 0.2;
+/// Deviation of the slope up to which yaw and yaw rate go together: a gyroscope with a scale error, a yaw
+/// that is smoothed.
+const FITTING: f64 = 0.2;
+/// Share of the turn that may remain when the slope is taken out, so that there is one at all.
+const EXPLAINED: f64 = 0.35;
+/// Deviation of a slope from a known factor.
+const FACTOR_REACH: f64 = 0.15;
+/// Speed from which the direction of motion is known from positions, m/s.
+const DRIVING_M_S: f64 = 3.0;
+/// Turn of the course from which it can tell a compass or a mirror, rad.
+const LEAST_COURSE_TURN_RAD: f64 = 0.25;
+/// The same from which it can tell degrees that were read as radians.
+const LEAST_UNIT_TURN_RAD: f64 = 1.0;
+/// Deviation of a relation between course and heading up to which it holds all along, rad.
+const RELATION_RAD: f64 = 0.12;
+/// Way at the start over which the direction of motion is taken, m.
+const FIRST_WAY_M: f64 = 1.0;
+/// Yaw rate below which a vehicle does not turn there, rad/s.
+const STEADY_RAD_S: f64 = 0.3;
+/// Angle between course and heading there from which it is looked at, rad.
+const LEAST_OFF_RAD: f64 = 0.5;
+/// Share of steps over which places do not change from which they are held.
+const HELD: f64 = 0.5;
+/// Least number of steps at speed.
+const LEAST_STEPS: usize = 20;
+
+/// What contradicts what in a recorded motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Contradiction {
+    /// The yaw angle changes by this many times what the yaw rate says.
+    YawRate {
+        /// The factor: 1/57.3 for degrees that were read as radians, −1 for a mirrored axis.
+        factor: f64,
+    },
+    /// Yaw angle and yaw rate have nothing to do with each other.
+    YawRateUnrelated,
+    /// The yaw angle is a compass heading, clockwise from the Y axis.
+    Compass,
+    /// The vehicle turns to one side and its path to the other.
+    Mirrored,
+    /// The yaw angle changes by this many times what the path does, though the vehicle follows its heading.
+    YawUnit {
+        /// The factor.
+        factor: f64,
+    },
+    /// Positions stay the same over several rows at speed.
+    Held {
+        /// Rows for each position.
+        rows: f64,
+    },
+}
+
+/// A factor by which numbers are off, with the word for it.
+const FACTORS: [(f64, &str); 3] =
+    [(57.295_78, "degrees and radians"), (1000.0, "milli-units"), (3.6, "km/h and m/s")];
+
+/// What contradicts what in a recorded motion; nothing of one that may be true.
+pub fn contradictions(series: &TimeSeries) -> Vec<Contradiction> {
+    let held = held_positions(series);
+    // The direction of a path of steps is not that of the motion.
+    let by_path = || against_path(series).or_else(|| at_the_start(series));
+    let by_path = if held.is_some() { None } else { by_path() };
+    [held, against_yaw_rate(series), by_path].into_iter().flatten().collect()
+}
+
+/// Indices of the ends of the windows.
+fn windows(n_samples: usize) -> Option<impl Iterator<Item = (usize, usize)>> {
+    let n_steps = n_samples.checked_sub(1).filter(|n| *n >= N_WINDOWS)?;
+    Some((0..N_WINDOWS).map(move |i| (i * n_steps / N_WINDOWS, (i + 1) * n_steps / N_WINDOWS)))
+}
+
+/// A recorded angle without jumps by whole turns.
+fn unwrapped(angles_rad: &[f64]) -> Vec<f64> {
+    let mut last = angles_rad.first().copied().unwrap_or(0.0);
+    let follow = |angle: &f64| {
+        last += wrap_angle_rad(angle - last);
+        last
+    };
+    angles_rad.iter().map(follow).collect()
+}
+
+fn against_yaw_rate(series: &TimeSeries) -> Option<Contradiction> {
+    let (time_s, rate) = (series.time_s(), series.get(Channel::YawRate)?);
+    let yaw_rad = unwrapped(series.get(Channel::Yaw)?);
+    let mut pairs = Vec::new();
+    for (from, to) in windows(time_s.len())? {
+        let step = |i: usize| (time_s[i + 1] - time_s[i]) * (rate[i] + rate[i + 1]) / 2.0;
+        pairs.push(((from..to).map(step).sum::<f64>(), yaw_rad[to] - yaw_rad[from]));
+    }
+    let turn = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(|pair| of(pair).abs()).sum::<f64>();
+    let (by_rate, by_yaw) = (turn(|pair| pair.0), turn(|pair| pair.1));
+    if by_rate.max(by_yaw) < LEAST_TURN_RAD || by_rate == 0.0 {
+        return None;
+    }
+    let slope = pairs.iter().map(|(rate, yaw)| rate * yaw).sum::<f64>()
+        / pairs.iter().map(|(rate, _)| rate * rate).sum::<f64>();
+    let left = pairs.iter().map(|(rate, yaw)| (yaw - slope * rate).powi(2)).sum::<f64>();
+    let whole = pairs.iter().map(|(_, yaw)| yaw * yaw).sum::<f64>();
+    let is_explained = left <= EXPLAINED * EXPLAINED * whole;
+    match (slope - 1.0).abs() < FITTING {
+        true if is_explained || by_yaw < LEAST_TURN_RAD => None,
+        _ if is_explained => Some(Contradiction::YawRate { factor: slope }),
+        _ => Some(Contradiction::YawRateUnrelated),
+    }
+}
+
+/// Course and heading in the middle of each window in which the vehicle drives.
+fn courses(series: &TimeSeries) -> Option<Vec<(f64, f64)>> {
+    let time_s = series.time_s();
+    let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
+    let yaw_rad = unwrapped(series.get(Channel::Yaw)?);
+    let mut pairs = Vec::new();
+    for (from, to) in windows(time_s.len())? {
+        let moved_m = [x[to] - x[from], y[to] - y[from]];
+        let duration_s = time_s[to] - time_s[from];
+        if moved_m[0].hypot(moved_m[1]) < DRIVING_M_S * duration_s {
+            continue;
+        }
+        pairs.push((moved_m[1].atan2(moved_m[0]), (yaw_rad[from] + yaw_rad[to]) / 2.0));
+    }
+    Some(pairs)
+}
+
+fn against_path(series: &TimeSeries) -> Option<Contradiction> {
+    let pairs = courses(series)?;
+    if pairs.len() < N_WINDOWS / 4 {
+        return None;
+    }
+    let course_rad = unwrapped(&pairs.iter().map(|(course, _)| *course).collect::<Vec<_>>());
+    let turned = |values: &[f64]| {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
+    };
+    let course_turn = turned(&course_rad);
+    if course_turn < LEAST_COURSE_TURN_RAD {
+        return None;
+    }
+    // A relation `course − sign · ψ = constant`, with the constant and how far it is off at most.
+    let relation = |sign: f64| {
+        let off: Vec<f64> =
+            course_rad.iter().zip(&pairs).map(|(course, (_, yaw))| course - sign * yaw).collect();
+        let mean = off.iter().sum::<f64>() / off.len() as f64;
+        (mean, off.iter().map(|off| (off - mean).abs()).fold(0.0, f64::max))
+    };
+    let [(_, along), (sum, against)] = [relation(1.0), relation(-1.0)];
+    if along < RELATION_RAD.max(against / 2.0) {
+        return None;
+    }
+    let is = |angle_rad: f64| wrap_angle_rad(sum - angle_rad).abs() < 2.0 * RELATION_RAD;
+    if against < RELATION_RAD {
+        return match () {
+            () if is(FRAC_PI_2) => Some(Contradiction::Compass),
+            () if is(0.0) || is(PI) => Some(Contradiction::Mirrored),
+            () => None,
+        };
+    }
+    (course_turn > LEAST_UNIT_TURN_RAD).then(|| yaw_unit(&course_rad, &pairs)).flatten()
+}
+
+/// The direction of the first metre, over which a vehicle that does not turn moves along its heading. One that
+/// slides or drives backwards may not; that its heading is just that of a compass or a mirror is no chance.
+fn at_the_start(series: &TimeSeries) -> Option<Contradiction> {
+    let time_s = series.time_s();
+    let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
+    let yaw_rad = unwrapped(series.get(Channel::Yaw)?);
+    let moved_m = |i: usize| [x[i] - x[0], y[i] - y[0]];
+    let is_far = |i: &usize| moved_m(*i)[0].hypot(moved_m(*i)[1]) >= FIRST_WAY_M;
+    let end = (1..time_s.len()).find(is_far)?;
+    let duration_s = time_s[end] - time_s[0];
+    let is_turning = (yaw_rad[end] - yaw_rad[0]).abs() > STEADY_RAD_S * duration_s;
+    if is_turning || FIRST_WAY_M < DRIVING_M_S * duration_s {
+        return None;
+    }
+    let course_rad = moved_m(end)[1].atan2(moved_m(end)[0]);
+    let heading_rad = (yaw_rad[0] + yaw_rad[end]) / 2.0;
+    let is = |sum_rad: f64| wrap_angle_rad(course_rad + heading_rad - sum_rad).abs() < RELATION_RAD;
+    let off_rad = wrap_angle_rad(course_rad - heading_rad).abs();
+    match (LEAST_OFF_RAD..PI - LEAST_OFF_RAD).contains(&off_rad) {
+        true if is(FRAC_PI_2) => Some(Contradiction::Compass),
+        true if is(0.0) => Some(Contradiction::Mirrored),
+        _ => None,
+    }
+}
+
+/// A yaw that turns with the path, but by 57.3 times as much: degrees that were read as radians. No vehicle
+/// spins so often while its path turns by so much.
+fn yaw_unit(course_rad: &[f64], pairs: &[(f64, f64)]) -> Option<Contradiction> {
+    let off = |(course, (_, yaw)): (&f64, &(f64, f64))| course - yaw.to_radians();
+    let off: Vec<f64> = course_rad.iter().zip(pairs).map(off).collect();
+    let mean = off.iter().sum::<f64>() / off.len() as f64;
+    let is_along = off.iter().all(|off| (off - mean).abs() < RELATION_RAD);
+    let factor = 1.0_f64.to_degrees();
+    (is_along && wrap_angle_rad(mean).abs() < 2.0 * RELATION_RAD)
+        .then_some(Contradiction::YawUnit { factor })
+}
+
+fn held_positions(series: &TimeSeries) -> Option<Contradiction> {
+    let time_s = series.time_s();
+    let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
+    let (mut n_steps, mut n_held) = (0, 0);
+    for (from, to) in windows(time_s.len())? {
+        let moved_m = (x[to] - x[from]).hypot(y[to] - y[from]);
+        if moved_m < DRIVING_M_S * (time_s[to] - time_s[from]) {
+            continue;
+        }
+        n_steps += to - from;
+        n_held += (from..to).filter(|i| x[i + 1] == x[*i] && y[i + 1] == y[*i]).count();
+    }
+    let share = n_held as f64 / n_steps.max(1) as f64;
+    let rows = n_steps as f64 / (n_steps - n_held).max(1) as f64;
+    (n_steps >= LEAST_STEPS && share > HELD).then_some(Contradiction::Held { rows })
+}
+
+/// The known factor that a slope is near to, or the inverse of one.
+fn known_factor(slope: f64) -> Option<&'static str> {
+    let is = |factor: f64| (slope.abs() / factor - 1.0).abs() < FACTOR_REACH;
+    FACTORS.iter().find(|(factor, _)| is(*factor) || is(1.0 / factor)).map(|(_, words)| *words)
+}
+
+impl fmt::Display for Contradiction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::YawRate { factor } => {
+                write!(f, "the yaw angle changes by {factor:.3} times what the yaw rate says")?;
+                let is_mirrored = factor < 0.0;
+                let sign = if is_mirrored { "-" } else { "" };
+                match known_factor(factor) {
+                    Some(words) if factor.abs() < 0.05 && words.starts_with("degrees") => write!(
+                        f,
+                        ", as if degrees were read as radians{}: map yaw_rate={sign}COLUMN:deg/s",
+                        if is_mirrored { " and clockwise as counterclockwise" } else { "" }
+                    ),
+                    Some(words) => {
+                        write!(f, ", as between {words}: map the unit of yaw or yaw_rate")
+                    }
+                    None if (factor + 1.0).abs() < FACTOR_REACH => {
+                        write!(f, ": one of them is clockwise: map yaw_rate=-COLUMN or yaw=-COLUMN")
+                    }
+                    None => write!(f, "; check both columns and their units"),
+                }
+            }
+            Self::YawRateUnrelated => write!(
+                f,
+                "yaw angle and yaw rate have nothing to do with each other; check which columns they are"
+            ),
+            Self::Compass => write!(
+                f,
+                "the yaw angle is a compass heading, clockwise from north, over a path with x to the \
+                 east: map headings=compass"
+            ),
+            Self::Mirrored => write!(
+                f,
+                "the path turns to one side where the yaw angle turns to the other: map y=-COLUMN or \
+                 yaw=-COLUMN"
+            ),
+            Self::YawUnit { factor } => write!(
+                f,
+                "the yaw angle turns by {factor:.1} times what the path does, as if degrees were read as \
+                 radians: map yaw=COLUMN:deg"
+            ),
+            Self::Held { rows } => write!(
+                f,
+                "each position stands in about {rows:.0} rows, though the vehicle drives: positions were \
+                 held between fixes; keep one row for each"
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bend of 40 m radius at 15 m/s, driven with the heading along the path.
+    fn bend(change: impl Fn(Channel, f64) -> f64) -> TimeSeries {
+        let time_s: Vec<f64> = (0..200).map(|i| f64::from(i) * 0.02).collect();
+        let rate = 15.0 / 40.0;
+        let mut series = TimeSeries::new(time_s.clone()).unwrap();
+        let mut add = |channel: Channel, value: &dyn Fn(f64) -> f64| {
+            let values = time_s.iter().map(|t| change(channel, value(rate * t))).collect();
+            series.insert(channel, values).unwrap();
+        };
+        add(Channel::X, &|angle| 40.0 * angle.sin());
+        add(Channel::Y, &|angle| 40.0 * (1.0 - angle.cos()));
+        add(Channel::Yaw, &|angle| angle);
+        add(Channel::YawRate, &|_| rate);
+        series
+    }
+
+    fn changed(channel: Channel, change: impl Fn(f64) -> f64) -> Vec<Contradiction> {
+        contradictions(&bend(|of, value| if of == channel { change(value) } else { value }))
+    }
+
+    #[test]
+    fn a_bend_contradicts_nothing() {
+        assert_eq!(contradictions(&bend(|_, value| value)), []);
+        // Angles between −180° and 180°, far along the circle.
+        let wrapped = changed(Channel::Yaw, |yaw| wrap_angle_rad(yaw + 0.0));
+        assert_eq!(wrapped, []);
+    }
+
+    #[test]
+    fn a_yaw_rate_in_degrees_is_named_with_its_factor_and_its_side() {
+        for (sign, words) in [(1.0, "yaw_rate=COLUMN:deg/s"), (-1.0, "yaw_rate=-COLUMN:deg/s")] {
+            let found = changed(Channel::YawRate, |rate| sign * rate.to_degrees());
+            let [Contradiction::YawRate { factor }] = found[..] else { panic!("{found:?}") };
+            assert!((factor * 57.295_78 - sign).abs() < 1e-3, "{factor}");
+            assert!(found[0].to_string().contains(words), "{}", found[0]);
+        }
+        let found = changed(Channel::YawRate, |rate| -rate);
+        assert!(found[0].to_string().contains("one of them is clockwise"), "{found:?}");
+    }
+
+    #[test]
+    fn a_compass_and_a_mirror_are_told_apart() {
+        let compass = contradictions(&bend(|channel, value| match channel {
+            Channel::Yaw => FRAC_PI_2 - value,
+            Channel::YawRate => -value,
+            _ => value,
+        }));
+        assert_eq!(compass, [Contradiction::Compass]);
+        assert_eq!(changed(Channel::Y, |y| -y), [Contradiction::Mirrored]);
+        let degrees = contradictions(&bend(|channel, value| match channel {
+            Channel::Yaw | Channel::YawRate => value.to_degrees(),
+            _ => value,
+        }));
+        assert!(matches!(degrees[..], [Contradiction::YawUnit { .. }]), "{degrees:?}");
+    }
+
+    #[test]
+    fn positions_that_are_held_are_found() {
+        let mut series = bend(|_, value| value);
+        for channel in [Channel::X, Channel::Y] {
+            let values = series.get(channel).unwrap().to_vec();
+            let held = (0..values.len()).map(|i| values[i / 10 * 10]).collect();
+            series.insert(channel, held).unwrap();
+        }
+        let found = contradictions(&series);
+        let [Contradiction::Held { rows }] = found[..] else { panic!("{found:?}") };
+        assert!((rows - 10.0).abs() < 1.5, "{rows}");
+    }
+
+    /// A log that begins to the east and spins right away has no bend that tells a compass.
+    #[test]
+    fn a_compass_is_found_before_a_spin() {
+        let time_s: Vec<f64> = (0..300).map(|i| f64::from(i) * 0.01).collect();
+        let motion = |heading: &dyn Fn(f64) -> f64| {
+            let mut series = TimeSeries::new(time_s.clone()).unwrap();
+            let column = |f: &dyn Fn(f64) -> f64| time_s.iter().map(|t| f(*t)).collect();
+            series.insert(Channel::X, column(&|t| 15.0 * t)).unwrap();
+            series.insert(Channel::Y, column(&|t| -0.5 * t * t)).unwrap();
+            series.insert(Channel::Yaw, column(heading)).unwrap();
+            contradictions(&series)
+        };
+        let turned = |t: f64| -1.2 * (t - 0.2).max(0.0);
+        assert_eq!(motion(&turned), []);
+        assert_eq!(motion(&|t| FRAC_PI_2 - turned(t)), [Contradiction::Compass]);
+        // A car that reverses has its heading behind it.
+        assert_eq!(motion(&|t| PI + turned(t)), []);
+    }
+
+    /// A car that spins goes on along its path while its heading turns: no contradiction.
+    #[test]
+    fn a_spin_contradicts_nothing() {
+        let time_s: Vec<f64> = (0..300).map(|i| f64::from(i) * 0.01).collect();
+        let mut series = TimeSeries::new(time_s.clone()).unwrap();
+        let values = |f: &dyn Fn(f64) -> f64| time_s.iter().map(|t| f(*t)).collect::<Vec<f64>>();
+        for (channel, column) in [
+            (Channel::X, values(&|t| 20.0 * t - 2.5 * t * t)),
+            (Channel::Y, values(&|t| 0.6 * t * t)),
+            (Channel::Yaw, values(&|t| 2.0 * t - 0.2 * t * t)),
+            (Channel::YawRate, values(&|t| 2.0 - 0.4 * t)),
+        ] {
+            series.insert(channel, column).unwrap();
+        }
+        assert_eq!(contradictions(&series), []);
+    }
+}
