@@ -50,12 +50,16 @@ fn network_ui<M: TrainedModel>(
     ui.label(use_of_it);
     let mut facts = current.model.facts();
     facts.facts.insert(0, Fact::text(Term::Origin, origin(current, archive)));
-    facts_ui(ui, &current.name, &[facts], units);
+    // Both networks may be called alike.
+    let name = format!("{}: {}", M::NETWORK.label(), current.name);
+    facts_ui(ui, &name, &[facts], units);
     match current.model.settings() {
         None => drop(ui.weak("The usual settings")),
         Some(settings) => {
             let title = format!("Settings that are not the usual ones: {}", settings.facts.len());
-            ui.collapsing(title, |ui| facts_ui(ui, &current.name, &[settings], units));
+            ui.collapsing(title, |ui| {
+                facts_ui(ui, &format!("{name}, settings"), &[settings], units);
+            });
         }
     }
     if let Some(set_aside) = &model.set_aside {

@@ -154,7 +154,10 @@ fn a_friction_that_the_evidence_leaves_open_is_that_of_the_road() {
     let caveats = assumptions(&evidence, &model);
     let friction =
         caveats.iter().find(|caveat| caveat.to_string().contains("[road] friction")).unwrap();
-    assert!(friction.to_string().starts_with("assumed road friction: 0."), "{friction}");
+    assert!(
+        friction.to_string().starts_with("assumed road friction: friction of the road 0."),
+        "{friction}"
+    );
 }
 
 #[test]
