@@ -6,7 +6,7 @@
 //! yaw rate   Δψ over each window against ∫r dt: the slope of a line through the origin
 //! compass    course + ψ = π/2 wherever the vehicle drives and the course turns
 //! mirror     course + ψ = 0 likewise
-//! held       share of steps at speed over which the place does not change at all
+//! held       at speed most places stand in several rows
 //! ```
 //!
 //! A vehicle that spins moves in directions that have nothing to do with its heading; the path is compared
@@ -41,13 +41,13 @@ const RELATION_RAD: f64 = 0.12;
 /// Way at the start over which the direction of motion is taken, m.
 const FIRST_WAY_M: f64 = 1.0;
 /// Yaw rate below which a vehicle does not turn there, rad/s.
-const STEADY_RAD_S: f64 = 0.3;
+const STEADY_RAD_S: f64 = 0.6;
 /// Angle between course and heading there from which it is looked at, rad.
 const LEAST_OFF_RAD: f64 = 0.5;
-/// Share of steps over which places do not change from which they are held.
+/// Share of places that stand in several rows from which they are held.
 const HELD: f64 = 0.5;
-/// Least number of steps at speed.
-const LEAST_STEPS: usize = 20;
+/// Least number of places at speed.
+const LEAST_PLACES: usize = 8;
 
 /// What contradicts what in a recorded motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -219,21 +219,24 @@ fn yaw_unit(course_rad: &[f64], pairs: &[(f64, f64)]) -> Option<Contradiction> {
         .then_some(Contradiction::YawUnit { factor })
 }
 
+/// Rows between two places at speed, of which each is one where positions are recorded with the rows.
 fn held_positions(series: &TimeSeries) -> Option<Contradiction> {
     let time_s = series.time_s();
     let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
-    let (mut n_steps, mut n_held) = (0, 0);
-    for (from, to) in windows(time_s.len())? {
-        let moved_m = (x[to] - x[from]).hypot(y[to] - y[from]);
-        if moved_m < DRIVING_M_S * (time_s[to] - time_s[from]) {
-            continue;
+    let (mut last, mut rows) = (0, Vec::new());
+    for at in 1..time_s.len() {
+        let moved_m = (x[at] - x[last]).hypot(y[at] - y[last]);
+        if moved_m > 0.0 {
+            if moved_m >= DRIVING_M_S * (time_s[at] - time_s[last]) {
+                rows.push(at - last);
+            }
+            last = at;
         }
-        n_steps += to - from;
-        n_held += (from..to).filter(|i| x[i + 1] == x[*i] && y[i + 1] == y[*i]).count();
     }
-    let share = n_held as f64 / n_steps.max(1) as f64;
-    let rows = n_steps as f64 / (n_steps - n_held).max(1) as f64;
-    (n_steps >= LEAST_STEPS && share > HELD).then_some(Contradiction::Held { rows })
+    let n_held = rows.iter().filter(|rows| **rows > 1).count() as f64;
+    let mean = rows.iter().sum::<usize>() as f64 / rows.len().max(1) as f64;
+    (rows.len() >= LEAST_PLACES && n_held > HELD * rows.len() as f64)
+        .then_some(Contradiction::Held { rows: mean })
 }
 
 /// The known factor that a slope is near to, or the inverse of one.
@@ -362,7 +365,7 @@ mod tests {
         }
         let found = contradictions(&series);
         let [Contradiction::Held { rows }] = found[..] else { panic!("{found:?}") };
-        assert!((rows - 10.0).abs() < 1.5, "{rows}");
+        assert!((rows - 10.0).abs() < 1e-9, "{rows}");
     }
 
     /// A log that begins to the east and spins right away has no bend that tells a compass.
