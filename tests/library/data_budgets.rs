@@ -228,8 +228,19 @@ fn a_motion_or_a_log_of_ten_days_is_refused() {
     write(&folder, "cases.csv", table.lines().take(2).collect::<Vec<_>>().join("\n"));
     fs::create_dir(folder.path().join("trajectories")).unwrap();
     let recorded = fs::read_to_string(shipped.join("trajectories/FE_c001.csv")).unwrap();
-    let last = recorded.lines().last().unwrap();
-    let late = format!("9e5,{}\n", last.split_once(',').unwrap().1);
+    // It stands still for that time: a speed would contradict the place.
+    let header: Vec<&str> = recorded.lines().next().unwrap().split(',').collect();
+    let last: Vec<&str> = recorded.lines().last().unwrap().split(',').collect();
+    let at = |time_s: &str| {
+        let cell = |(name, cell): (&&str, &&str)| match *name {
+            "time_s" => time_s.to_owned(),
+            "vx_m_s" | "vy_m_s" | "yaw_rate_rad_s" => "0".to_owned(),
+            _ => (*cell).to_owned(),
+        };
+        header.iter().zip(&last).map(cell).collect::<Vec<String>>().join(",")
+    };
+    let end_s: f64 = last[0].parse().unwrap();
+    let late = format!("{}\n{}\n", at(&(end_s + 0.01).to_string()), at("9e5"));
     let path = write(&folder, "trajectories/FE_c001.csv", recorded.clone() + &late);
     let opened = open(folder.path(), &mut |_| ControlFlow::Continue(())).unwrap();
     let Opened::Dataset(dataset) = opened.complete().unwrap() else { panic!("a data set") };
