@@ -10,7 +10,7 @@ macro_rules! terms {
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
         #[serde(rename_all = "snake_case")]
         pub enum Term {
-            $(#[doc = concat!("“", $en, "”")] $name,)+
+            $(#[doc = concat!("`", $en, "`")] $name,)+
         }
 
         impl Term {
