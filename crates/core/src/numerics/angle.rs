@@ -8,6 +8,19 @@ pub fn wrap_angle_rad(angle_rad: f64) -> f64 {
     if wrapped > PI { wrapped - TAU } else { wrapped }
 }
 
+/// A recorded angle that jumps by whole turns made one that does not; it changes by less than half a turn
+/// between two samples.
+pub fn continued_rad(angles_rad: &[f64]) -> Vec<f64> {
+    let mut turns_rad = 0.0;
+    let mut before = angles_rad.first().copied().unwrap_or_default();
+    let go_on = |&angle: &f64| {
+        turns_rad -= TAU * ((angle - before + PI) / TAU).floor();
+        before = angle;
+        angle + turns_rad
+    };
+    angles_rad.iter().map(go_on).collect()
+}
+
 /// Directions as numbers without a jump: each is moved by whole turns to within half a turn of the mean
 /// direction, which lies in (−π, π], so that their order and quantiles are those along the circle.
 ///
@@ -26,6 +39,16 @@ pub fn unwrapped_rad(angles_rad: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn full_turns_are_taken_out() {
+        let smooth: Vec<f64> = (0..200).map(|i| 0.3 - 0.1 * f64::from(i)).collect();
+        let jumping: Vec<f64> =
+            smooth.iter().map(|angle| (angle + PI).rem_euclid(TAU) - PI).collect();
+        for (got, expected) in continued_rad(&jumping).iter().zip(&smooth) {
+            assert!((got - expected).abs() < 1e-9, "{got} {expected}");
+        }
+    }
 
     #[test]
     fn directions_about_backwards_have_no_jump() {

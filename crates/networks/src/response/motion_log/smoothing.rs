@@ -1,7 +1,5 @@
 //! States of a vehicle from the samples of its log.
 
-use std::f64::consts::{PI, TAU};
-
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -9,7 +7,7 @@ use crate::response::motion_log::contact::find_contact;
 use crate::response::motion_log::tracks::{LogWindow, TrackScales, Tracks};
 use crate::response::{LogError, MotionLog};
 use impactlab_core::data::{Channel, SeriesError};
-use impactlab_core::numerics::TrackPoint;
+use impactlab_core::numerics::{TrackPoint, continued_rad};
 use impactlab_core::vehicle::VehicleState;
 use impactlab_core::vehicle::frames::{body_from_world, world_from_body};
 
@@ -91,7 +89,7 @@ impl MotionLog {
     }
 
     fn yaw(&self) -> Result<Tracks, SeriesError> {
-        let yaw = unwrapped(self.series.require(Channel::Yaw)?);
+        let yaw = continued_rad(self.series.require(Channel::Yaw)?);
         let rate = self.series.get(Channel::YawRate);
         let samples = Tracks::samples_of(self.series.time_s(), &yaw, rate);
         Ok(Tracks { samples: vec![samples], prior_std: ANGLE_PRIOR })
@@ -127,19 +125,6 @@ impl MotionLog {
     }
 }
 
-/// An angle that jumps by full turns made one that does not; it changes by less than half a turn
-/// between two samples.
-fn unwrapped(angles_rad: &[f64]) -> Vec<f64> {
-    let mut turns_rad = 0.0;
-    let mut before = angles_rad.first().copied().unwrap_or_default();
-    let go_on = |&angle: &f64| {
-        turns_rad -= TAU * ((angle - before + PI) / TAU).floor();
-        before = angle;
-        angle + turns_rad
-    };
-    angles_rad.iter().map(go_on).collect()
-}
-
 /// - `headings`: of one coordinate, `places`: of X and Y.
 fn states(headings: &[Vec<TrackPoint>], places: &[Vec<TrackPoint>]) -> Vec<VehicleState<f64>> {
     let [yaw] = headings else { return Vec::new() };
@@ -159,19 +144,4 @@ fn states(headings: &[Vec<TrackPoint>], places: &[Vec<TrackPoint>]) -> Vec<Vehic
         }
     };
     yaw.iter().zip(x).zip(y).map(state).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn full_turns_are_taken_out() {
-        let smooth: Vec<f64> = (0..200).map(|i| 0.3 - 0.1 * f64::from(i)).collect();
-        let jumping: Vec<f64> =
-            smooth.iter().map(|angle| (angle + PI).rem_euclid(TAU) - PI).collect();
-        for (got, expected) in unwrapped(&jumping).iter().zip(&smooth) {
-            assert!((got - expected).abs() < 1e-9, "{got} {expected}");
-        }
-    }
 }
