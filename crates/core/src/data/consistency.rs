@@ -3,7 +3,7 @@
 //! fixes give a motion that no vehicle has, and each is found with what would mend it.
 //!
 //! ```text
-//! yaw rate   Δψ over each window against ∫r dt: the slope of a line through the origin
+//! yaw rate   ψ against ∫r dt, both about their means: the slope of a line through the origin
 //! compass    course + ψ = π/2 wherever the vehicle drives and the course turns
 //! mirror     course + ψ = 0 likewise
 //! held       at speed most places stand in several rows
@@ -17,16 +17,16 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
 use crate::data::{Channel, TimeSeries};
-use crate::numerics::wrap_angle_rad;
+use crate::numerics::{continued_rad, wrap_angle_rad};
 
 /// Windows into which a motion is divided.
 const N_WINDOWS: usize = 24;
-/// Turn in all below which a yaw rate is not compared, rad: noise of both is below.
-const LEAST_TURN_RAD: f64 = 0.2;
-/// Deviation of the slope up to which yaw and yaw rate go together: a gyroscope with a scale error, a yaw
-/// that is smoothed.
+/// Difference of the yaw angle and the integral of the yaw rate up to which they go together, rad: noise and
+/// drift of a gyroscope over some seconds.
+const DRIFT_RAD: f64 = 0.1;
+/// The same as a share of the turn: a gyroscope with a scale error, a yaw that is smoothed.
 const FITTING: f64 = 0.2;
-/// Share of the turn that may remain when the slope is taken out, so that there is one at all.
+/// Share of the turn that may remain when a factor is taken out, so that there is one at all.
 const EXPLAINED: f64 = 0.35;
 /// Deviation of a slope from a known factor.
 const FACTOR_REACH: f64 = 0.15;
@@ -46,6 +46,8 @@ const STEADY_RAD_S: f64 = 0.6;
 const LEAST_OFF_RAD: f64 = 0.5;
 /// Share of places that stand in several rows from which they are held.
 const HELD: f64 = 0.5;
+/// Steps of the resolution by which a place has to differ from the next for it to be a fix.
+const COARSE: f64 = 4.0;
 /// Least number of places at speed.
 const LEAST_PLACES: usize = 8;
 
@@ -94,46 +96,52 @@ fn windows(n_samples: usize) -> Option<impl Iterator<Item = (usize, usize)>> {
     Some((0..N_WINDOWS).map(move |i| (i * n_steps / N_WINDOWS, (i + 1) * n_steps / N_WINDOWS)))
 }
 
-/// A recorded angle without jumps by whole turns.
-fn unwrapped(angles_rad: &[f64]) -> Vec<f64> {
-    let mut last = angles_rad.first().copied().unwrap_or(0.0);
-    let follow = |angle: &f64| {
-        last += wrap_angle_rad(angle - last);
-        last
-    };
-    angles_rad.iter().map(follow).collect()
-}
-
+/// Compares the yaw angle with the integral of the yaw rate, both about their means, so that neither noise of
+/// single samples nor where the integral begins matters.
 fn against_yaw_rate(series: &TimeSeries) -> Option<Contradiction> {
     let (time_s, rate) = (series.time_s(), series.get(Channel::YawRate)?);
-    let yaw_rad = unwrapped(series.get(Channel::Yaw)?);
-    let mut pairs = Vec::new();
-    for (from, to) in windows(time_s.len())? {
-        let step = |i: usize| (time_s[i + 1] - time_s[i]) * (rate[i] + rate[i + 1]) / 2.0;
-        pairs.push(((from..to).map(step).sum::<f64>(), yaw_rad[to] - yaw_rad[from]));
+    let yaw_rad = continued_rad(series.get(Channel::Yaw)?);
+    let mut turned_rad = 0.0;
+    let mut integral = vec![0.0];
+    for i in 1..time_s.len() {
+        turned_rad += (time_s[i] - time_s[i - 1]) * (rate[i - 1] + rate[i]) / 2.0;
+        integral.push(turned_rad);
     }
-    let turn = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(|pair| of(pair).abs()).sum::<f64>();
-    let (by_rate, by_yaw) = (turn(|pair| pair.0), turn(|pair| pair.1));
-    if by_rate.max(by_yaw) < LEAST_TURN_RAD || by_rate == 0.0 {
+    let [yaw, by_rate] = [centred(&yaw_rad), centred(&integral)];
+    let off = |slope: f64| rms(yaw.iter().zip(&by_rate).map(|(yaw, rate)| yaw - slope * rate));
+    let [yaw_size, rate_size] = [&yaw, &by_rate].map(|values| rms(values.iter().copied()));
+    // What a gyroscope drifts by, and a scale error.
+    if off(1.0) <= DRIFT_RAD.max(FITTING * yaw_size) {
         return None;
     }
-    let slope = pairs.iter().map(|(rate, yaw)| rate * yaw).sum::<f64>()
-        / pairs.iter().map(|(rate, _)| rate * rate).sum::<f64>();
-    let left = pairs.iter().map(|(rate, yaw)| (yaw - slope * rate).powi(2)).sum::<f64>();
-    let whole = pairs.iter().map(|(_, yaw)| yaw * yaw).sum::<f64>();
-    let is_explained = left <= EXPLAINED * EXPLAINED * whole;
-    match (slope - 1.0).abs() < FITTING {
-        true if is_explained || by_yaw < LEAST_TURN_RAD => None,
-        _ if is_explained => Some(Contradiction::YawRate { factor: slope }),
-        _ => Some(Contradiction::YawRateUnrelated),
-    }
+    let slope = match rate_size > 0.0 {
+        true => {
+            let product: f64 = yaw.iter().zip(&by_rate).map(|(yaw, rate)| yaw * rate).sum();
+            product / (rate_size * rate_size * yaw.len() as f64)
+        }
+        false => 0.0,
+    };
+    Some(match off(slope) <= EXPLAINED * yaw_size {
+        true => Contradiction::YawRate { factor: slope },
+        false => Contradiction::YawRateUnrelated,
+    })
+}
+
+fn centred(values: &[f64]) -> Vec<f64> {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    values.iter().map(|value| value - mean).collect()
+}
+
+fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let n = values.len().max(1) as f64;
+    (values.map(|value| value * value).sum::<f64>() / n).sqrt()
 }
 
 /// Course and heading in the middle of each window in which the vehicle drives.
 fn courses(series: &TimeSeries) -> Option<Vec<(f64, f64)>> {
     let time_s = series.time_s();
     let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
-    let yaw_rad = unwrapped(series.get(Channel::Yaw)?);
+    let yaw_rad = continued_rad(series.get(Channel::Yaw)?);
     let mut pairs = Vec::new();
     for (from, to) in windows(time_s.len())? {
         let moved_m = [x[to] - x[from], y[to] - y[from]];
@@ -151,7 +159,7 @@ fn against_path(series: &TimeSeries) -> Option<Contradiction> {
     if pairs.len() < N_WINDOWS / 4 {
         return None;
     }
-    let course_rad = unwrapped(&pairs.iter().map(|(course, _)| *course).collect::<Vec<_>>());
+    let course_rad = continued_rad(&pairs.iter().map(|(course, _)| *course).collect::<Vec<_>>());
     let turned = |values: &[f64]| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
@@ -183,11 +191,11 @@ fn against_path(series: &TimeSeries) -> Option<Contradiction> {
 }
 
 /// The direction of the first metre, over which a vehicle that does not turn moves along its heading. One that
-/// slides or drives backwards may not; that its heading is just that of a compass or a mirror is no chance.
+/// slides or drives backwards may not; that its heading is just that of a compass is no chance.
 fn at_the_start(series: &TimeSeries) -> Option<Contradiction> {
     let time_s = series.time_s();
     let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
-    let yaw_rad = unwrapped(series.get(Channel::Yaw)?);
+    let yaw_rad = continued_rad(series.get(Channel::Yaw)?);
     let moved_m = |i: usize| [x[i] - x[0], y[i] - y[0]];
     let is_far = |i: &usize| moved_m(*i)[0].hypot(moved_m(*i)[1]) >= FIRST_WAY_M;
     let end = (1..time_s.len()).find(is_far)?;
@@ -198,13 +206,10 @@ fn at_the_start(series: &TimeSeries) -> Option<Contradiction> {
     }
     let course_rad = moved_m(end)[1].atan2(moved_m(end)[0]);
     let heading_rad = (yaw_rad[0] + yaw_rad[end]) / 2.0;
-    let is = |sum_rad: f64| wrap_angle_rad(course_rad + heading_rad - sum_rad).abs() < RELATION_RAD;
+    let is_compass = wrap_angle_rad(course_rad + heading_rad - FRAC_PI_2).abs() < RELATION_RAD;
     let off_rad = wrap_angle_rad(course_rad - heading_rad).abs();
-    match (LEAST_OFF_RAD..PI - LEAST_OFF_RAD).contains(&off_rad) {
-        true if is(FRAC_PI_2) => Some(Contradiction::Compass),
-        true if is(0.0) => Some(Contradiction::Mirrored),
-        _ => None,
-    }
+    let is_off = (LEAST_OFF_RAD..PI - LEAST_OFF_RAD).contains(&off_rad);
+    (is_off && is_compass).then_some(Contradiction::Compass)
 }
 
 /// A yaw that turns with the path, but by 57.3 times as much: degrees that were read as radians. No vehicle
@@ -219,22 +224,27 @@ fn yaw_unit(course_rad: &[f64], pairs: &[(f64, f64)]) -> Option<Contradiction> {
         .then_some(Contradiction::YawUnit { factor })
 }
 
-/// Rows between two places at speed, of which each is one where positions are recorded with the rows.
+/// Positions of which each stands in several rows at speed. Those of a coarse resolution do too, but go on by
+/// one step of it; between fixes a vehicle goes much farther than that.
 fn held_positions(series: &TimeSeries) -> Option<Contradiction> {
     let time_s = series.time_s();
     let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
-    let (mut last, mut rows) = (0, Vec::new());
+    let (mut last, mut rows, mut finest_m) = (0, Vec::new(), f64::INFINITY);
     for at in 1..time_s.len() {
-        let moved_m = (x[at] - x[last]).hypot(y[at] - y[last]);
+        let steps_m = [x[at] - x[last], y[at] - y[last]].map(f64::abs);
+        let moved_m = steps_m[0].hypot(steps_m[1]);
         if moved_m > 0.0 {
+            let finest = steps_m.into_iter().filter(|step_m| *step_m > 0.0).fold(moved_m, f64::min);
+            finest_m = finest_m.min(finest);
             if moved_m >= DRIVING_M_S * (time_s[at] - time_s[last]) {
-                rows.push(at - last);
+                rows.push((at - last, moved_m));
             }
             last = at;
         }
     }
-    let n_held = rows.iter().filter(|rows| **rows > 1).count() as f64;
-    let mean = rows.iter().sum::<usize>() as f64 / rows.len().max(1) as f64;
+    let is_held = |(rows, moved_m): &&(usize, f64)| *rows > 1 && *moved_m > COARSE * finest_m;
+    let n_held = rows.iter().filter(is_held).count() as f64;
+    let mean = rows.iter().map(|(rows, _)| *rows as f64).sum::<f64>() / rows.len().max(1) as f64;
     (rows.len() >= LEAST_PLACES && n_held > HELD * rows.len() as f64)
         .then_some(Contradiction::Held { rows: mean })
 }
@@ -385,6 +395,36 @@ mod tests {
         assert_eq!(motion(&|t| FRAC_PI_2 - turned(t)), [Contradiction::Compass]);
         // A car that reverses has its heading behind it.
         assert_eq!(motion(&|t| PI + turned(t)), []);
+    }
+
+    /// Noise of half a degree and a drift of half a degree a second are those of a usual log.
+    #[test]
+    fn a_straight_drive_with_noise_and_drift_contradicts_nothing() {
+        let noise = |i: usize, k: f64| (k * i as f64 * i as f64).sin();
+        let time_s: Vec<f64> = (0..800).map(|i| i as f64 * 0.01).collect();
+        let column = |f: &dyn Fn(usize, f64) -> f64| {
+            time_s.iter().enumerate().map(|(i, t)| f(i, *t)).collect::<Vec<f64>>()
+        };
+        let mut series = TimeSeries::new(time_s.clone()).unwrap();
+        for (channel, values) in [
+            (Channel::X, column(&|i, t| 15.0 * t + 0.02 * noise(i, 1.3))),
+            (Channel::Y, column(&|i, _| 0.02 * noise(i, 0.7))),
+            (Channel::Yaw, column(&|i, _| 0.012 * noise(i, 2.1))),
+            (Channel::YawRate, column(&|i, _| 0.009 + 0.02 * noise(i, 0.9))),
+        ] {
+            series.insert(channel, values).unwrap();
+        }
+        assert_eq!(contradictions(&series), []);
+        // Places to 0.1 m, at 100 Hz and 4 m/s: one of them stands in two or three rows.
+        let coarse = column(&|_, t| (40.0 * t).round() / 10.0);
+        series.insert(Channel::X, coarse).unwrap();
+        series.insert(Channel::Y, vec![0.0; time_s.len()]).unwrap();
+        assert_eq!(contradictions(&series), []);
+    }
+
+    #[test]
+    fn a_yaw_rate_that_is_nothing_at_all_is_no_yaw_rate() {
+        assert_eq!(changed(Channel::YawRate, |_| 0.0), [Contradiction::YawRateUnrelated]);
     }
 
     /// A car that spins goes on along its path while its heading turns: no contradiction.
