@@ -20,7 +20,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::Cars;
-use crate::evidence::{After, DriverBraked, Evidence, Measured, RestPose, ends};
+use crate::evidence::{After, DriverBraked, Evidence, Mark, MarkKind, Measured, RestPose, ends};
 use impactlab_core::collision::Side;
 use impactlab_core::numerics::wrap_angle_rad;
 use impactlab_core::units::STANDARD_GRAVITY_M_S2;
@@ -32,6 +32,10 @@ const DRAG_BY_FRICTION: f64 = 0.08;
 const SPIN_DRAG: Measured = Measured { value: 0.5, sigma: 0.15 };
 /// Scatter of the distance that a car slides before its wheels are locked, m.
 const LOCKING_WAY_M: f64 = 0.5;
+/// Way to rest below which nothing follows from it, m.
+const LEAST_WAY_M: f64 = 1.0;
+/// Share of the way over which the marks of each wheel have to reach for it to have been locked all along.
+const MARKED_SHARE: f64 = 0.9;
 /// Turn at rest beyond which a car has spun.
 const LEAST_SPIN_RAD: f64 = FRAC_PI_2;
 /// When braking may begin that locks the wheels from the impact on, s.
@@ -118,11 +122,6 @@ impl HandCheck {
     fn new(speed: HandSpeed, Measured { value, sigma }: Measured, holds: &'static str) -> Self {
         Self { speed, value_m_s: value, sigma_m_s: sigma, holds }
     }
-
-    /// The number.
-    pub fn value(&self) -> Measured {
-        Measured { value: self.value_m_s, sigma: self.sigma_m_s }
-    }
 }
 
 /// One of the two cars.
@@ -147,10 +146,10 @@ fn slide(
     };
     let way_m = [x_m - from_x_m, y_m - from_y_m];
     let length_m = way_m[0].hypot(way_m[1]);
-    if length_m < 1.0 {
+    if length_m < LEAST_WAY_M {
         return None;
     }
-    let (drag, holds) = drag(evidence, rest, which)?;
+    let (drag, holds) = drag(evidence, rest, which, length_m)?;
     let place_m = rest.position_sigma_m().hypot(LOCKING_WAY_M);
     let place_m = if which == Which::Striking { place_m.hypot(CRUSH_M) } else { place_m };
     let value = (2.0 * STANDARD_GRAVITY_M_S2 * drag.value * length_m).sqrt();
@@ -161,7 +160,14 @@ fn slide(
 }
 
 /// The mean drag factor on the way of a car, where it is known, and why.
-fn drag(evidence: &Evidence, rest: &RestPose, which: Which) -> Option<(Measured, &'static str)> {
+///
+/// - `way_m`: from the impact to rest, m.
+fn drag(
+    evidence: &Evidence,
+    rest: &RestPose,
+    which: Which,
+    way_m: f64,
+) -> Option<(Measured, &'static str)> {
     let friction = evidence.road_friction();
     let locked = evidence.drag_factor().or(friction
         .map(|road| Measured { sigma: road.sigma.hypot(DRAG_BY_FRICTION * road.value), ..road }));
@@ -178,7 +184,7 @@ fn drag(evidence: &Evidence, rest: &RestPose, which: Which) -> Option<(Measured,
     let is_braked_hard = after.driver_braked == DriverBraked::Yes
         && start_s.is_some_and(|[_, last]| last <= AT_ONCE_S)
         && share.is_some_and(|[least, _]| least > 1.0);
-    if after.is_all_locked() || (which == Which::Struck && has_four_locked_marks(evidence)) {
+    if after.is_all_locked() || (which == Which::Struck && has_four_locked_marks(evidence, way_m)) {
         return locked.map(|drag| (drag, "way to rest; all wheels were locked from the impact on"));
     }
     if is_braked_hard {
@@ -201,11 +207,15 @@ fn is_free(after: &After) -> bool {
     after.blocked_wheels.as_ref().is_some_and(Vec::is_empty) && none(&after.dragging_wheels)
 }
 
-/// Whether each wheel has left a mark as a locked wheel does.
-fn has_four_locked_marks(evidence: &Evidence) -> bool {
+/// Whether each wheel has left marks as a locked wheel does over nearly the whole way.
+fn has_four_locked_marks(evidence: &Evidence, way_m: f64) -> bool {
+    let length_m = |mark: &Mark| -> f64 {
+        mark.points_m.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).sum()
+    };
     let is_locked = |wheel: &Wheel| {
-        let mut marks = evidence.marks.iter().filter(|mark| mark.wheel == *wheel);
-        marks.any(|mark| mark.kind == Some(crate::evidence::MarkKind::Locked))
+        let marks = evidence.marks.iter();
+        let locked = marks.filter(|m| m.wheel == *wheel && m.kind == Some(MarkKind::Locked));
+        locked.map(length_m).sum::<f64>() > MARKED_SHARE * way_m
     };
     Wheel::ALL.iter().all(is_locked)
 }
@@ -345,6 +355,22 @@ mod tests {
         assert!((0.5..1.5).contains(&sigma), "{sigma}");
         // Of a car of whose wheels nothing is known, a hand calculation says nothing.
         assert_eq!(checks(&rear("rest = { x_m = 20, y_m = 0 }")), []);
+    }
+
+    /// Marks of the last metres say nothing of the way before them.
+    #[test]
+    fn marks_of_locked_wheels_count_where_they_reach_over_the_way() {
+        let marks = |from_m: f64| -> String {
+            let mark = |wheel: &str| {
+                format!(
+                    "[[mark]]\nwheel = \"{wheel}\"\nkind = \"locked\"\n\
+                     points_m = [[{from_m}, 0], [20, 0]]\n"
+                )
+            };
+            rear("rest = { x_m = 20, y_m = 0 }\n") + &["FL", "FR", "RL", "RR"].map(mark).concat()
+        };
+        assert_eq!(checks(&marks(1.0)).len(), 1);
+        assert_eq!(checks(&marks(14.0)), []);
     }
 
     /// A car of 1.2 t pushes one of 1.8 t that stood; both slide from 15 m/s: 37.5 m/s before.
