@@ -49,11 +49,13 @@ const DRAG_FACTOR_SIGMA: Sigma = Sigma::fixed(
 
 /// Friction of the road.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default)]
+#[serde(default, deny_unknown_fields)]
 pub struct Road {
-    /// Peak friction, as stated.
-    #[serde(flatten)]
-    pub friction: Stated,
+    /// Peak friction; `None` until it is entered.
+    pub value: Option<f64>,
+    /// Its standard deviation; `None` for that of the program.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sigma: Option<f64>,
     /// Drag factor of a car whose wheels are locked, deceleration over that of gravity.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub drag_factor: Option<Stated>,
@@ -61,10 +63,12 @@ pub struct Road {
 
 impl Item for Road {
     fn fields(&mut self, visitor: &mut impl Fields) {
-        let Self { friction, drag_factor } = self;
-        let mut stated = Some(*friction).filter(|stated| *stated != Stated::default());
+        let Self { value, sigma, drag_factor } = self;
+        let parts = Stated { value: *value, sigma: *sigma };
+        let mut stated = Some(parts).filter(|stated| *stated != Stated::default());
         visitor.measured(&FRICTION, &SIGMA, &mut stated);
-        *friction = stated.unwrap_or_default();
+        let stated = stated.unwrap_or_default();
+        (*value, *sigma) = (stated.value, stated.sigma);
         visitor.measured(&DRAG_FACTOR, &DRAG_FACTOR_SIGMA, drag_factor);
     }
 }
@@ -72,7 +76,7 @@ impl Item for Road {
 impl Road {
     /// Peak friction.
     pub fn friction(&self) -> Option<Measured> {
-        SIGMA.resolve(Some(self.friction))
+        SIGMA.resolve(Some(Stated { value: self.value, sigma: self.sigma }))
     }
 
     /// Drag factor of locked wheels.
@@ -91,5 +95,20 @@ impl Road {
     pub(super) fn compare(&self, comparison: &mut Comparison<'_>) {
         let expected = comparison.value(Latent::RoadFriction);
         comparison.tell_measured("road friction", "", self.friction(), expected);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_road_of_an_earlier_case_is_read_and_a_key_that_nobody_knows_is_refused() {
+        let read = |json: &str| serde_json::from_str::<Road>(json);
+        let road = read(r#"{"value": 0.7, "sigma": 0.05}"#).unwrap();
+        assert_eq!(road.friction(), Some(Measured { value: 0.7, sigma: 0.05 }));
+        assert_eq!(road.drag_factor(), None);
+        let error = read(r#"{"value": 0.7, "sgima": 0.05}"#).unwrap_err().to_string();
+        assert!(error.contains("sgima"), "{error}");
     }
 }
