@@ -217,7 +217,8 @@ impl ForwardModel {
 
     /// What happens to the wheels of the struck car.
     fn ending(&self, values: &LatentValues, vehicle: &VehicleParameters) -> Ending {
-        let [damage, _] = self.wheels.each_ref().map(|wheels| wheels.damage(values));
+        let [struck, _] = &self.wheels;
+        let damage = struck.damage(values);
         let brake = values.brakes().then(|| {
             let brake = Braking::new(
                 values.get(Latent::BrakeStart),
@@ -278,7 +279,8 @@ impl ForwardModel {
                 * values.get(Latent::LongitudinalFrictionRatio);
             Braking::new(start_s, share, DEFAULT_BRAKE_RISE_S)
         });
-        let [_, damage] = self.wheels.each_ref().map(|wheels| wheels.damage(values));
+        let [_, striking] = &self.wheels;
+        let damage = striking.damage(values);
         let (sin, cos) = impact.heading_difference_rad.sin_cos();
         let in_body = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
         let [vx_body_m_s, vy_body_m_s] = in_body(impact.striking_velocity_m_s);
