@@ -131,7 +131,7 @@ mod tests {
     fn every_key_survives() {
         let all = r#"
             case = "a \"quoted\" name"
-            road = { friction = 0.7 }
+            road = { friction = 0.7, drag_factor = 0.6 }
             struck_car = { mass_kg = 1500, length_m = 4.4, width_m = 1.8, yaw_inertia_kg_m2 = 2400 }
             striking_car = { cg_to_front_axle_m = 1.2, cg_to_rear_axle_m = 1.5, cg_height_m = 0.5 }
             weighing = { shared_scale_sigma = 0.01 }
@@ -139,6 +139,7 @@ mod tests {
             rest = { x_m = 30.25, y_m = -4, heading_deg = 190 }
             striking_rest = { x_m = 60, y_m = 2 }
             after = { driver_braked = "yes" }
+            striking_after = { blocked_wheels = [], dragging_wheels = ["FR"] }
             [edr]
             delta_v_x_min_m_s = 1
             delta_v_x_max_m_s = 2
@@ -160,6 +161,8 @@ mod tests {
             contact_friction = [0.1, 0.3]
             brake_start_s = [0.5, 1]
             brake_share = [0.5, 1]
+            bullet_brake_start_s = [0, 0.1]
+            bullet_brake_share = [1, 1.5]
         "#;
         let evidence = read(all);
         assert_eq!(read(&evidence.to_toml()), evidence, "{}", evidence.to_toml());

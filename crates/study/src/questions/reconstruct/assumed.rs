@@ -3,7 +3,7 @@
 
 use impactlab_core::uncertainty::{Caveat, CaveatSubject};
 use impactlab_core::units::{Quantity, significant};
-use impactlab_reconstruct::evidence::Evidence;
+use impactlab_reconstruct::evidence::{After, DriverBraked, Evidence};
 use impactlab_reconstruct::{
     BLOCKED_PROBABILITY, BRAKE_PROBABILITY, ForwardModel, Latent, Prior, PriorComponent,
     PriorSource, STRIKING_BRAKES, STRIKING_BRAKES_BEFORE,
@@ -142,6 +142,34 @@ pub(super) fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Cave
     all
 }
 
+/// What the evidence says and the answer does not depend on.
+pub(super) fn unused(evidence: &Evidence) -> Vec<Caveat> {
+    let Evidence { after, striking_after, striking_rest, prior, .. } = evidence;
+    let striking_brakes = prior.striking_brake_start_s.or(prior.striking_brake_share);
+    let is_striking_stated = *striking_after != After::default() || striking_brakes.is_some();
+    if striking_rest.is_none() && is_striking_stated {
+        return vec![Caveat::not_used(
+            "wheels and driver of the striking car after the impact",
+            "its place of rest is not among the evidence ([striking_rest]), so that its way is not \
+             followed",
+        )];
+    }
+    let both = [
+        ("struck", after, prior.brake_start_s.or(prior.brake_share)),
+        ("striking", striking_after, striking_brakes),
+    ];
+    let idle = both.into_iter().filter_map(|(car, after, range)| {
+        let is_idle = after.driver_braked == DriverBraked::No && range.is_some();
+        is_idle.then(|| {
+            Caveat::not_used(
+                format!("ranges of the braking of the {car} car"),
+                "its driver is said not to have braked",
+            )
+        })
+    });
+    idle.collect()
+}
+
 impl Group {
     /// What of the group is assumed; `None` if everything is stated or measured.
     fn caveat(&self, prior: &Prior) -> Option<Caveat> {
@@ -223,6 +251,22 @@ mod tests {
         let striking = found.iter().find(|caveat| caveat.to_string().contains("[striking_after]"));
         let text = striking.expect("the driver of the striking car").to_string();
         assert!(text.contains("from the first contact on with 40 %, later with 40 %"), "{text}");
+    }
+
+    #[test]
+    fn what_is_said_and_not_used_is_listed() {
+        let mut evidence = spin();
+        assert_eq!(unused(&evidence), []);
+        evidence.striking_after.driver_braked = DriverBraked::Yes;
+        let texts = unused(&evidence).iter().map(Caveat::to_string).collect::<Vec<_>>();
+        assert!(matches!(&texts[..], [text] if text.contains("[striking_rest]")), "{texts:?}");
+        evidence.striking_rest =
+            Some(RestPose { x_m: Some(20.0), y_m: Some(3.0), ..RestPose::default() });
+        assert_eq!(unused(&evidence), []);
+        evidence.striking_after.driver_braked = DriverBraked::No;
+        evidence.prior.striking_brake_share = Some([Some(1.0), Some(1.2)]);
+        let texts = unused(&evidence).iter().map(Caveat::to_string).collect::<Vec<_>>();
+        assert!(matches!(&texts[..], [text] if text.contains("striking car")), "{texts:?}");
     }
 
     #[test]

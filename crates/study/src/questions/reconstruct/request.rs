@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
-use crate::questions::reconstruct::assumed::assumptions;
+use crate::questions::reconstruct::assumed::{assumptions, unused};
 use crate::{
     Answer, Event, FrictionZoneReport, InputKind, Library, Observer, Provenance, Question,
     Sampling, StudyError, VehicleChoice,
@@ -253,7 +253,8 @@ impl Question for ReconstructRequest {
         let evidence = self.evidence.load()?;
         let model = self.model(&evidence)?;
         let cars = model.cars();
-        let assumptions = assumptions(&evidence, &model);
+        let mut assumptions = assumptions(&evidence, &model);
+        assumptions.extend(unused(&evidence));
         check_damage(&evidence.damage, cars).map_err(|source| StudyError::ContactOffVehicle {
             name: self.evidence.name(),
             vehicle: "the struck car".to_owned(),
