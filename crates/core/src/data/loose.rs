@@ -10,6 +10,7 @@ use crate::data::{
     Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, ReadSettings, Sampling,
     SeriesError, Table, TimeSeries, VelocityAxes, contradictions, velocity_fit,
 };
+use crate::numerics::counted_turns_rad;
 use crate::ranges::{
     ACCELERATION_SAMPLE, ANGLE_SAMPLE, ANGULAR_VELOCITY_SAMPLE, BRAKE_TORQUE, FORCE_SAMPLE,
     INSTANT, LENGTH_SAMPLE, MOMENT_SAMPLE, Range, SPEED, STEER_ANGLE, STEERING_WHEEL_ANGLE,
@@ -287,6 +288,10 @@ fn load_columns(
                 let time = TimeSeries::new(values);
                 series = time.map_err(|error| out_of_order(table, column, error))?;
                 check_steps(table, column, series.time_s())?;
+            }
+            // Everything that interpolates, compares or draws a heading takes it without jumps.
+            channel if compass_quantity(channel) == Some(Quantity::Angle) => {
+                insert(&mut series, channel, counted_turns_rad(values), table)?;
             }
             channel => insert(&mut series, channel, values, table)?,
         }

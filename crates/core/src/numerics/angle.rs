@@ -21,6 +21,17 @@ pub fn continued_rad(angles_rad: &[f64]) -> Vec<f64> {
     angles_rad.iter().map(go_on).collect()
 }
 
+/// A recorded direction without the jumps of a recorder that keeps it within one turn (179°, then −179°);
+/// one that spans more than a turn counts turns by itself and stays as it is.
+pub fn counted_turns_rad(angles_rad: Vec<f64>) -> Vec<f64> {
+    let least = angles_rad.iter().copied().fold(f64::INFINITY, f64::min);
+    let greatest = angles_rad.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    match greatest - least <= TAU * (1.0 + 1e-6) {
+        true => continued_rad(&angles_rad),
+        false => angles_rad,
+    }
+}
+
 /// Directions as numbers without a jump: each is moved by whole turns to within half a turn of the mean
 /// direction, which lies in (−π, π], so that their order and quantiles are those along the circle.
 ///
@@ -39,6 +50,20 @@ pub fn unwrapped_rad(angles_rad: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn turns_are_counted_where_the_recorder_did_not() {
+        let spin: Vec<f64> = (0..90).map(|i| 3.0 + 0.1 * f64::from(i)).collect();
+        for start in [-PI, 0.0] {
+            let kept = spin.iter().map(|angle| (angle - start).rem_euclid(TAU) + start).collect();
+            for (got, expected) in counted_turns_rad(kept).iter().zip(&spin) {
+                assert!((got - expected).abs() < 1e-9, "{got} for {expected}");
+            }
+        }
+        // Every second of a fast spin, in a record that counts its turns.
+        let coarse = vec![0.0, 4.0, 8.0, 11.0];
+        assert_eq!(counted_turns_rad(coarse.clone()), coarse);
+    }
 
     #[test]
     fn full_turns_are_taken_out() {

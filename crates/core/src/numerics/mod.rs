@@ -17,7 +17,7 @@ mod seed;
 mod smoother;
 mod statistics;
 
-pub use angle::{continued_rad, unwrapped_rad, wrap_angle_rad};
+pub use angle::{continued_rad, counted_turns_rad, unwrapped_rad, wrap_angle_rad};
 pub use clustering::{ClusterError, Clusters};
 pub use four::Four;
 pub use gaussian_process::{
