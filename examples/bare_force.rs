@@ -16,7 +16,6 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab_core::collision::{DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION};
 use impactlab_networks::force::{ForceCase, ForceScenario};
 
 type Feature = fn(&ForceScenario) -> f64;
@@ -43,7 +42,7 @@ fn errors(train: &[&ForceCase], test: &[&ForceCase]) -> Option<Vec<Errors>> {
     let shape = |case: &&&ForceCase| case.peak_n * case.curve.duration_s / size(case.impulse_n_s);
     let shape = median(clean().map(|case| shape(&case)).collect());
     let of = |case: &&ForceCase| {
-        let impact = case.scenario.impact(DEFAULT_RESTITUTION, DEFAULT_FRICTION_LIMIT)?;
+        let impact = case.scenario.likely_impact()?;
         let (p, q) = (case.impulse_n_s, impact.solve().ok()?.impulse_world_n_s);
         let turn = p[1].atan2(p[0]) - q[1].atan2(q[0]);
         Some([

@@ -21,7 +21,7 @@ use impactlab_core::collision::{
 };
 use impactlab_core::data::Dataset;
 use impactlab_core::numerics::Summary;
-use impactlab_networks::force::ForceCase;
+use impactlab_networks::force::{ContactLaw, ForceCase};
 use impactlab_networks::learning::{TEST_SHARE, split};
 
 /// Steps of the grid over e and over μ_c, each from 0 to 1.
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         test.len()
     );
     let closing =
-        clean.iter().filter_map(|case| Some(impact(case, [0.0; 2])?.closing_velocity_m_s()[0]));
+        clean.iter().filter_map(|case| Some(case.scenario.likely_impact()?.closing_speed_m_s()));
     if let Some(of) = Summary::from_values(closing) {
         println!("closing speed {:.1} to {:.1} m/s", of.min, of.max);
     }
@@ -83,7 +83,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn impact(case: &ForceCase, [restitution, friction_limit]: [f64; 2]) -> Option<Impact> {
-    case.scenario.impact(restitution, friction_limit)
+    let slow = ContactLaw::at_closing_speed(0.0);
+    case.scenario.impact(ContactLaw { restitution, friction_limit, ..slow })
 }
 
 /// `|P̂ − P| / |P|` of each case.

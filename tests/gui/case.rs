@@ -154,13 +154,13 @@ fn questions_that_were_edited_in_the_file_are_those_of_the_window() {
 
     let mut harness = saved_again(&one, &two);
     let project = &state(&harness).project;
-    assert_eq!(project.scenario().expect("a scenario").contact.restitution, 0.35);
+    assert_eq!(project.scenario().expect("a scenario").contact.restitution, Some(0.35));
     assert_eq!((project.simulate.duration_s, project.predict_motion.draws), (3.0, 20));
     assert_eq!(questions_in(&two), edited);
     assert_eq!(answers_of(&two), answers);
 
     // What is edited in the window is in every question that has it.
-    scenario(&mut harness).contact.restitution = 0.25;
+    scenario(&mut harness).contact.restitution = Some(0.25);
     harness.step();
     apply(&mut harness, Command::Case(CaseCommand::Save));
     step_until(&mut harness, "the case on disk", |state| !state.is_case_changed());
@@ -203,7 +203,7 @@ fn a_case_of_version_1_is_its_questions_and_what_only_its_forms_say() {
     let harness = saved_again(&old, &new);
     let project = &state(&harness).project;
     // The questions were edited; the forms have 0.15.
-    assert_eq!(project.scenario().expect("a scenario").contact.restitution, 0.35);
+    assert_eq!(project.scenario().expect("a scenario").contact.restitution, Some(0.35));
     assert_eq!(project.beside.channel_class, Some(ChannelClass::Cfc60));
     assert_eq!(project.beside.start.speed_m_s, Some(12.5));
     assert_eq!(questions_in(&new), questions_in(&old));
@@ -228,7 +228,7 @@ fn what_is_entered_for_another_subject_is_kept_with_the_case() {
     assert_eq!(state(&harness).project.simulate.ending, None, "a scenario says it itself");
     let project = &mut harness.state_mut().state_mut().project;
     project.pulse_mut().duration_s = 0.12;
-    project.scenario_mut().expect("a scenario").contact.restitution = 0.25;
+    project.scenario_mut().expect("a scenario").contact.restitution = Some(0.25);
     apply(&mut harness, Command::Select(Subject::File(force.clone())));
     step_until(&mut harness, "the force", is_idle);
     save_as(&mut harness, &path);
@@ -237,7 +237,7 @@ fn what_is_entered_for_another_subject_is_kept_with_the_case() {
     let project = &state(&harness).project;
     assert_eq!((project.start().speed_m_s, &project.beside.ending), (Some(12.5), &None));
     assert!(project.simulate.ending.is_some());
-    assert_eq!(project.scenario().expect("a scenario").contact.restitution, 0.25);
+    assert_eq!(project.scenario().expect("a scenario").contact.restitution, Some(0.25));
     apply(&mut harness, Command::Select(Subject::Scenario));
     assert_eq!(harness.state_mut().state_mut().project.pulse_mut().duration_s, 0.12);
     assert!(state(&harness).project.beside.ending.is_some());

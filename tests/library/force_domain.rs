@@ -96,12 +96,13 @@ fn random_scenario(rng: &mut ChaCha8Rng) -> ForceScenario {
         striking_position_m: Some([contact_m[0] - 2.0 * cos, contact_m[1] - 2.0 * sin]),
         striking_body: None,
         yaw_inertia_kg_m2: mass_kg.map(|mass_kg| Some(1.8 * mass_kg)),
+        contact_law: None,
     }
 }
 
 /// The smallest work of the contact over the means of the components, as a share of the largest, J.
 fn least_work(scenario: &ForceScenario, predicted: &ForcePrediction) -> Option<f64> {
-    let impact = scenario.impact(0.0, 0.0)?;
+    let impact = scenario.likely_impact()?;
     let (v, k) = (impact.relative_velocity_m_s(), impact.inverse_mass_1_kg());
     let work = predicted.mixture.components().iter().map(|component| {
         let n = component.mean.len() / 2;

@@ -318,7 +318,8 @@ fn set(scenario: &mut Scenario, number: usize, value: f64) {
             &mut vehicle.yaw_rate_rad_s,
         ]);
     }
-    numbers.extend([&mut contact.restitution, &mut contact.friction_limit]);
+    let stated = [&mut contact.restitution, &mut contact.friction_limit];
+    numbers.extend(stated.map(|stated| stated.as_mut().expect("the shipped scenario states it")));
     match &mut contact.location {
         ContactLocation::Side { offset_m, .. } => numbers.push(offset_m),
         other => panic!("the shipped scenario is placed by a side, not {other:?}"),

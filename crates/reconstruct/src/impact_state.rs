@@ -4,6 +4,7 @@ use crate::prior::towards;
 use crate::{ForwardModel, Latent, LatentValues};
 use impactlab_core::collision::{
     ContactSurface, FrictionModel, Impact, ImpactBody, ImpactSolution, RestitutionForm, Side,
+    restitution_bounds,
 };
 use impactlab_core::numerics::wrap_angle_rad;
 use impactlab_core::vehicle::VehicleParameters;
@@ -14,9 +15,6 @@ const CRUSH_M: f64 = 0.15;
 /// Angle over which the contact moves from the middle of an edge of the striking car to its corner,
 /// as its sine.
 const CORNER_SINE: f64 = 0.3;
-
-/// Speeds of approach between which the bounds of restitution fall, m/s, and the bounds there.
-const RESTITUTION_OVER_SPEED: [(f64, [f64; 2]); 2] = [(5.0, [0.24, 0.66]), (15.0, [0.0, 0.3])];
 
 /// State of both cars at the impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,7 +101,7 @@ impl ForwardModel {
             friction_model: FrictionModel::Limit,
         };
         let mut impact = Impact { struck, striking, surface };
-        let restitution = self.restitution(values, impact.closing_velocity_m_s()[0]);
+        let restitution = self.restitution(values, impact.closing_speed_m_s());
         impact.surface.restitution = restitution;
         let closing = [striking_velocity_m_s[0] - struck_speed_m_s, striking_velocity_m_s[1]];
         ImpactState {
@@ -119,14 +117,10 @@ impl ForwardModel {
         }
     }
 
-    /// Coefficient of restitution at a speed of approach, m/s.
-    fn restitution(&self, values: &LatentValues, approach_m_s: f64) -> f64 {
+    /// Coefficient of restitution at a closing speed, m/s.
+    fn restitution(&self, values: &LatentValues, closing_m_s: f64) -> f64 {
         let share = values.get(Latent::RestitutionShare);
-        let [low, high] = self.restitution.unwrap_or_else(|| {
-            let [(slow, of_slow), (fast, of_fast)] = RESTITUTION_OVER_SPEED;
-            let at = ((approach_m_s - slow) / (fast - slow)).clamp(0.0, 1.0);
-            [0, 1].map(|i| of_slow[i] + (of_fast[i] - of_slow[i]) * at)
-        });
+        let [low, high] = self.restitution.unwrap_or_else(|| restitution_bounds(closing_m_s));
         low + (high - low) * share
     }
 

@@ -273,6 +273,12 @@ impl<T: Scalar> Impact<T> {
         [dot(v, normal), dot(v, perpendicular(normal))]
     }
 
+    /// Speed at which the contact points move relative to each other, in all directions, m/s.
+    pub fn closing_speed_m_s(&self) -> T {
+        let [x, y] = self.relative_velocity_m_s();
+        (x.squared() + y.squared()).sqrt()
+    }
+
     /// Solves the impact without a check of its inputs, which have to be in range; see
     /// [`Impact::solve`] for a solution with a check.
     ///

@@ -55,7 +55,10 @@ mod impulse_clusters;
 pub use channel_filter::{
     ChannelClass, ChannelFilter, FilterError, filter_channel, filter_history,
 };
-pub use contact_distribution::ContactDistribution;
+pub use contact_distribution::{
+    ContactDistribution, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, HARD_RESTITUTION,
+    RESTITUTION_SPEEDS_M_S, default_restitution, restitution_bounds,
+};
 pub use dented_outline::DentedOutlines;
 pub use footprint::{Footprint, FootprintError, OffOutline, Pose, Side};
 pub use impact::{
@@ -72,8 +75,7 @@ pub use outline_contact::{
 pub use pdof::PrincipalDirectionOfForce;
 pub use pulse::{Pulse, PulseError, PulseShape};
 pub use scenario::{
-    ContactLocation, DEFAULT_CONTACT_CLOSING_M_S, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION,
-    Scenario, ScenarioContact, ScenarioError, ScenarioGeometry, ScenarioVehicle,
+    ContactLocation, Scenario, ScenarioContact, ScenarioError, ScenarioGeometry, ScenarioVehicle,
 };
 pub use scenario_preset::SCENARIO_PRESETS;
 pub use second_contact::SecondContact;

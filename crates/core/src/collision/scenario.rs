@@ -1,15 +1,16 @@
 //! A collision scenario: two vehicles that are about to collide, as plain numbers. A user writes it
 //! as a `SCENARIO.toml` file, the app saves it, and [`Scenario::solve`] computes the impact.
 //!
-//! The source of the default restitution and friction limit is given at [`DEFAULT_RESTITUTION`].
+//! What holds where restitution and friction limit are not given is said at
+//! [`default_restitution`](crate::collision::default_restitution).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::collision::{
-    ContactSurface, Footprint, FootprintError, FrictionModel, Impact, ImpactBody, ImpactError,
-    ImpactSolution, MovingFootprint, OffOutline, Pose, RestitutionForm, Side, StruckSurface,
-    find_contact, place_touching,
+    ContactSurface, DEFAULT_FRICTION_LIMIT, Footprint, FootprintError, FrictionModel, Impact,
+    ImpactBody, ImpactError, ImpactSolution, MovingFootprint, OffOutline, Pose, RestitutionForm,
+    Side, StruckSurface, default_restitution, find_contact, place_touching,
 };
 
 use crate::vehicle::Ending;
@@ -19,21 +20,6 @@ use crate::ranges::{
     CONTACT_OFFSET, FRICTION_LIMIT, FRICTION_OF_CRITICAL, HEADING, POSITION, RESTITUTION, Range,
     SPEED, YAW_RATE,
 };
-
-/// Coefficient of restitution that is used if none is given. Together with
-/// [`DEFAULT_FRICTION_LIMIT`] it gives the smallest mean error of the impulse vector over the
-/// training cases of the shipped finite-element runs in which the vehicles do not hook, 17.1 %
-/// (`examples/fit_contact.rs`). They are pushes at the rear quarter at the closing speeds of
-/// [`DEFAULT_CONTACT_CLOSING_M_S`]; restitution falls as the closing speed rises, so that 0.38 is too
-/// much for a hard crash.
-pub const DEFAULT_RESTITUTION: f64 = 0.38;
-
-/// Friction limit that is used if none is given; see [`DEFAULT_RESTITUTION`].
-pub const DEFAULT_FRICTION_LIMIT: f64 = 0.3;
-
-/// Lowest and highest closing speed along the normal of the cases to which restitution and friction
-/// limit are fitted, m/s.
-pub const DEFAULT_CONTACT_CLOSING_M_S: [f64; 2] = [0.8, 5.0];
 
 /// Vehicle data and motion before the impact of one of the two vehicles. The ranges are checked
 /// when a scenario is read from a file.
@@ -116,13 +102,17 @@ pub struct ScenarioContact {
     /// Specification of contact point, contact normal and position of the striking vehicle.
     #[serde(flatten)]
     pub location: ContactLocation,
-    /// Coefficient of restitution e, 0 to 1.
-    pub restitution: f64,
+    /// Coefficient of restitution e, 0 to 1; without it,
+    /// [`default_restitution`](crate::collision::default_restitution) at the closing speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub restitution: Option<f64>,
     /// Meaning of the coefficient of restitution.
     #[serde(default)]
     pub restitution_form: RestitutionForm,
-    /// Friction limit μ_c, the largest ratio of tangential to normal impulse, 0 to 10.
-    pub friction_limit: f64,
+    /// Friction limit μ_c, the largest ratio of tangential to normal impulse, 0 to 10; without it,
+    /// [`DEFAULT_FRICTION_LIMIT`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_limit: Option<f64>,
     /// Friction limit as a share of the critical impulse ratio, 0 to 1, which overrules
     /// `friction_limit`; see [`Impact::critical_impulse_ratio`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -274,12 +264,14 @@ impl ScenarioVehicle {
 impl ScenarioContact {
     /// Every number with its name and its range.
     fn ranges(&self) -> Vec<(&'static str, f64, Range)> {
-        let mut numbers = vec![
+        let mut numbers: Vec<(&'static str, f64, Range)> = [
             ("restitution", self.restitution, RESTITUTION),
             ("friction_limit", self.friction_limit, FRICTION_LIMIT),
-        ];
-        let of_critical = self.friction_of_critical;
-        numbers.extend(of_critical.map(|s| ("friction_of_critical", s, FRICTION_OF_CRITICAL)));
+            ("friction_of_critical", self.friction_of_critical, FRICTION_OF_CRITICAL),
+        ]
+        .into_iter()
+        .filter_map(|(name, value, range)| Some((name, value?, range)))
+        .collect();
         let mut striking = |x_m, y_m| {
             numbers.extend([("bullet_x_m", x_m, POSITION), ("bullet_y_m", y_m, POSITION)]);
         };
@@ -401,8 +393,9 @@ impl Scenario {
         })
     }
 
-    /// The planar impact of the two vehicles, ready to be solved. A friction that is given as a
-    /// share of the critical impulse ratio is a friction limit here.
+    /// The planar impact of the two vehicles, ready to be solved, with a value for the restitution and
+    /// the friction limit that the scenario leaves open. A friction that is given as a share of the
+    /// critical impulse ratio is a friction limit here.
     ///
     /// # Errors
     /// The errors of [`Scenario::geometry`]; [`ScenarioError::NoCriticalRatio`].
@@ -414,12 +407,15 @@ impl Scenario {
             striking: self.striking.body(&geometry.striking, point),
             surface: ContactSurface {
                 normal_angle_world_rad: geometry.normal_angle_world_rad,
-                restitution: self.contact.restitution,
+                restitution: self.contact.restitution.unwrap_or_default(),
                 restitution_form: self.contact.restitution_form,
-                friction_limit: self.contact.friction_limit,
+                friction_limit: self.contact.friction_limit.unwrap_or(DEFAULT_FRICTION_LIMIT),
                 friction_model: self.contact.friction_model,
             },
         };
+        if self.contact.restitution.is_none() {
+            impact.surface.restitution = default_restitution(impact.closing_speed_m_s());
+        }
         if let Some(share) = self.contact.friction_of_critical
             && impact.closing_velocity_m_s()[0] > 0.0
         {

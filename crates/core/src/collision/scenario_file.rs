@@ -22,7 +22,7 @@
 //! offset_m = -1.5             # from the middle of that side
 //! # from = "footprints"       # bullet.x_m and bullet.y_m say where it is
 //! # from = "point"            # x_m, y_m, normal_deg in axes of the struck car; bullet.x_m, …
-//! restitution = 0.15          # optional
+//! restitution = 0.15          # optional; without it that of the closing speed
 //! restitution_form = "normal" # optional; or "common_velocity"
 //! friction_limit = 0.4        # optional; or friction_of_critical, friction_of_critical_percent
 //! friction_model = "limit"    # optional; or "paper"
@@ -38,8 +38,8 @@
 use std::path::Path;
 
 use crate::collision::{
-    ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, FrictionModel, RestitutionForm,
-    Scenario, ScenarioContact, ScenarioVehicle, Side,
+    ContactLocation, FrictionModel, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle,
+    Side,
 };
 use crate::data::{TomlError, TomlFile, TomlTable};
 use crate::ranges::{
@@ -235,11 +235,11 @@ fn read_contact(
     section.finish()?;
     Ok(ScenarioContact {
         location,
-        restitution: restitution.unwrap_or(DEFAULT_RESTITUTION),
+        restitution,
         restitution_form: form
             .and_then(|idx| RestitutionForm::ALL.get(idx).copied())
             .unwrap_or_default(),
-        friction_limit: friction_limit.unwrap_or(DEFAULT_FRICTION_LIMIT),
+        friction_limit,
         friction_of_critical,
         friction_model,
     })

@@ -44,11 +44,14 @@ impl Scenario {
                 contact.number("normal_rad", normal_body_rad);
             }
         }
-        contact.number("restitution", self.contact.restitution);
+        if let Some(restitution) = self.contact.restitution {
+            contact.number("restitution", restitution);
+        }
         contact.line("restitution_form", quoted(self.contact.restitution_form.name()));
-        match self.contact.friction_of_critical {
-            Some(share) => contact.number("friction_of_critical", share),
-            None => contact.number("friction_limit", self.contact.friction_limit),
+        match (self.contact.friction_of_critical, self.contact.friction_limit) {
+            (Some(share), _) => contact.number("friction_of_critical", share),
+            (None, Some(limit)) => contact.number("friction_limit", limit),
+            (None, None) => {}
         }
         let model = match self.contact.friction_model {
             FrictionModel::Limit => FRICTION_MODELS[0],

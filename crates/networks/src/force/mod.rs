@@ -30,7 +30,7 @@ pub use evaluate::{
     EvaluateError, Evaluation, EvaluationError, EvaluationSettings, FittedBaselines, ForceMetrics,
     baselines, cross_validate, evaluate, evaluate_model,
 };
-pub use input::{ForceCase, ForceCaseError, ForceScenario, curve_on_grid};
+pub use input::{ContactLaw, ForceCase, ForceCaseError, ForceScenario, curve_on_grid};
 pub use metrics::CurvePrediction;
 pub use network::{OpenFeatures, OutsideTraining, Standardisation};
 pub use physics::{CentreCurve, CentreFit, CentreModel, MomentumModel, regression};

@@ -1,7 +1,7 @@
 //! Values that a question leaves open and the program chose.
 
 use impactlab_core::collision::{
-    DEFAULT_CONTACT_CLOSING_M_S, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, Impact, Scenario,
+    DEFAULT_RESTITUTION, HARD_RESTITUTION, Impact, RESTITUTION_SPEEDS_M_S, Scenario,
     ScenarioGeometry, TOUCH_TOLERANCE_M,
 };
 use impactlab_core::uncertainty::{Caveat, CaveatSubject};
@@ -55,29 +55,26 @@ pub(crate) fn first_touch(geometry: &ScenarioGeometry) -> Option<Caveat> {
 /// Restitution and friction limit of a scenario where they are the default.
 pub(crate) fn contact_default(scenario: &Scenario, impact: &Impact) -> Option<Caveat> {
     let contact = &scenario.contact;
-    let (e, mu) = (contact.restitution, contact.friction_limit);
-    let is_default = [
-        ("e", e, e == DEFAULT_RESTITUTION),
-        ("μ_c", mu, mu == DEFAULT_FRICTION_LIMIT && contact.friction_of_critical.is_none()),
-    ];
-    let defaults = is_default.into_iter().filter(|(.., is_default)| *is_default);
-    let values: Vec<String> =
-        defaults.map(|(name, value, _)| format!("{name} = {value}")).collect();
-    if values.is_empty() {
-        return None;
-    }
-    let [low, high] = DEFAULT_CONTACT_CLOSING_M_S;
-    let [closing, _] = impact.closing_velocity_m_s();
-    let here = match closing {
-        closing if closing > high => {
-            format!("; here {closing:.1} m/s, where restitution is usually smaller")
-        }
-        closing => format!("; here {closing:.1} m/s"),
-    };
-    let reason = format!(
-        "the default, fitted to finite-element runs that close at {low} to {high} m/s{here}"
+    let surface = &impact.surface;
+    let has_restitution = contact.restitution.is_some();
+    let has_friction = contact.friction_limit.or(contact.friction_of_critical).is_some();
+    let closing_m_s = impact.closing_speed_m_s();
+    let [slow, fast] = RESTITUTION_SPEEDS_M_S;
+    let at_this_speed = format!(
+        "the default at {closing_m_s:.1} m/s, the speed at which the contact points close in all \
+         directions: {DEFAULT_RESTITUTION} up to {slow} m/s, fitted to finite-element runs, and \
+         {HARD_RESTITUTION} from {fast} m/s on, as in staged crashes"
     );
-    Some(Caveat::assumed(CaveatSubject::Restitution, values.join(", "), reason))
+    let e = format!("e = {}", three_digits(surface.restitution));
+    let mu = format!("μ_c = {}", surface.friction_limit);
+    let by_runs = "the default, fitted to finite-element runs that close at up to 5.2 m/s";
+    let (values, reason) = match (has_restitution, has_friction) {
+        (true, true) => return None,
+        (false, true) => (e, at_this_speed),
+        (true, false) => (mu, by_runs.to_owned()),
+        (false, false) => (format!("{e}, {mu}"), format!("e: {at_this_speed}; μ_c: {by_runs}")),
+    };
+    Some(Caveat::assumed(CaveatSubject::Restitution, values, reason))
 }
 
 /// The contact point that stands for an unknown one.

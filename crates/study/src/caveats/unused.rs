@@ -12,8 +12,8 @@ use crate::{
     ScenarioChoice, SimulateRequest, StudyError, VehicleChoice,
 };
 use impactlab_core::collision::{
-    DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, FrictionModel, Pose, RestitutionForm, Scenario,
-    ScenarioGeometry, ScenarioVehicle,
+    FrictionModel, Pose, RestitutionForm, Scenario, ScenarioContact, ScenarioGeometry,
+    ScenarioVehicle,
 };
 use impactlab_core::uncertainty::Caveat;
 use impactlab_core::units::percent;
@@ -72,32 +72,49 @@ pub(crate) fn by_force_network(
             ));
         }
     }
-    let contact = &scenario.contact;
-    let by_momentum = "the momentum solution alone depends on it; the force network has learned the \
-                       course of the contact";
-    if contact.restitution != DEFAULT_RESTITUTION {
-        unused.push(Caveat::not_used(format!("restitution, {}", contact.restitution), by_momentum));
-    }
-    if contact.restitution_form != RestitutionForm::default() {
-        let form = contact.restitution_form.label();
-        unused.push(Caveat::not_used(format!("form of the restitution, {form}"), by_momentum));
-    }
-    if let Some(share) = contact.friction_of_critical {
-        let share = percent(share);
-        unused.push(Caveat::not_used(
-            format!("friction, {share} of the critical ratio"),
-            by_momentum,
-        ));
-    } else if contact.friction_limit != DEFAULT_FRICTION_LIMIT {
-        unused.push(Caveat::not_used(
-            format!("friction limit, {}", contact.friction_limit),
-            by_momentum,
-        ));
-    }
-    if contact.friction_model != FrictionModel::Limit {
-        unused.push(Caveat::not_used("friction model of the contact", by_momentum));
-    }
     Ok(unused)
+}
+
+/// What a predicted force does not use of what a scenario says of its contact.
+///
+/// - `applicability`: share of the force network in the answer, 0 to 1; the rest is the momentum
+///   solution, which depends on restitution and friction.
+pub(crate) fn contact_by_force_network(
+    contact: &ScenarioContact,
+    applicability: f64,
+) -> Vec<Caveat> {
+    let mut stated = Vec::new();
+    stated.extend(contact.restitution.map(|e| format!("restitution, {e}")));
+    if contact.restitution_form != RestitutionForm::default() {
+        stated.push(format!("form of the restitution, {}", contact.restitution_form.label()));
+    }
+    match (contact.friction_of_critical, contact.friction_limit) {
+        (Some(share), _) => {
+            stated.push(format!("friction, {} of the critical ratio", percent(share)));
+        }
+        (None, limit) => stated.extend(limit.map(|limit| format!("friction limit, {limit}"))),
+    }
+    let reason = if applicability >= 1.0 {
+        "the momentum solution alone depends on it; the force network has learned the course of the \
+         contact"
+            .to_owned()
+    } else {
+        format!(
+            "{} of the answer are those of the force network, which has learned the course of the \
+             contact and does not depend on it; the rest uses it",
+            percent(applicability)
+        )
+    };
+    if applicability <= 0.0 {
+        stated.clear();
+    }
+    let mut unused: Vec<Caveat> =
+        stated.into_iter().map(|stated| Caveat::not_used(stated, reason.as_str())).collect();
+    if contact.friction_model != FrictionModel::Limit {
+        let reason = "a predicted force has friction up to the limit";
+        unused.push(Caveat::not_used("friction model of the contact", reason));
+    }
+    unused
 }
 
 fn refuse_fast_turning(

@@ -32,9 +32,13 @@ impl PredictForceReport {
             Fact::new(Term::ClockDirection, Value::Clock(self.pdof_clock)),
             Fact::new(Term::Hooking, hooking.map_or(Value::Term(Term::Unknown), Value::Share)),
         ];
-        let start = self.momentum_impulse_n_s;
-        facts.push(Fact::vector(Term::NetworkStart, Quantity::Impulse, start));
-        facts.extend(self.implied_contact.iter().flat_map(|implied| implied.facts()));
+        match &self.implied_contact {
+            Some(implied) => facts.extend(implied.facts()),
+            None => {
+                let start = self.momentum_impulse_n_s;
+                facts.push(Fact::vector(Term::NetworkStart, Quantity::Impulse, start));
+            }
+        }
         let open =
             [(Term::ContactPoint, self.is_contact_open), (Term::StrikingBody, self.is_body_open)];
         let drawn = |term| Fact::new(term, Value::Term(Term::DrawnFromTraining));

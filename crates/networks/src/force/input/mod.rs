@@ -8,6 +8,6 @@ mod case;
 #[cfg(test)]
 pub(crate) use case::tests::shipped;
 pub use case::{ForceCase, ForceCaseError, curve_on_grid};
-pub use scenario::ForceScenario;
 #[cfg(test)]
 pub(crate) use scenario::tests::example;
+pub use scenario::{ContactLaw, ForceScenario};

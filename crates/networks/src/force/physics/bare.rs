@@ -5,8 +5,8 @@
 //! F(t) = P g(t / L) / L      P = R(β) P₀ exp(ζ_P)      L = L₀ exp(ζ_L)      Δt = L / s
 //! ```
 //!
-//! P₀ is the impulse of the planar impact with the default restitution and friction limit of the
-//! solver, g the haversine, L₀ = s Δt₀ with the mean duration Δt₀ of the training cases. The errors ζ_P,
+//! P₀ is the impulse of the planar impact with the restitution and friction limit of the scenario, or
+//! with their defaults, g the haversine, L₀ = s Δt₀ with the mean duration Δt₀ of the training cases. The errors ζ_P,
 //! β and ζ_L are normal and correlated. This is what is left of a force network outside of what it has
 //! learned from.
 //!
@@ -30,10 +30,9 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use nalgebra::DMatrix;
 
-use crate::force::{ForceScenario, MomentumModel};
+use crate::force::{ContactLaw, ForceScenario, MomentumModel};
 use impactlab_core::collision::{
-    ContactSurface, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, Impact, ImpactError, PulseShape,
-    Regime, contact_work_j,
+    ContactSurface, Impact, ImpactError, PulseShape, Regime, contact_work_j,
 };
 use impactlab_core::numerics::normal_quantile;
 use impactlab_core::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, CurveComponent, ForceCurve};
@@ -96,12 +95,6 @@ impl BareForce {
     ) -> Result<Self, ImpactError> {
         let known = ForceScenario { contact_m: Some(contact_m), ..scenario.clone() };
         let mut impact = MomentumModel { uses_contact: true, ..*momentum }.impact(&known);
-        impact.surface = ContactSurface {
-            normal_angle_world_rad: scenario.normal_rad.unwrap_or(FRAC_PI_2),
-            restitution: DEFAULT_RESTITUTION,
-            friction_limit: DEFAULT_FRICTION_LIMIT,
-            ..impact.surface
-        };
         if let Some([x, y]) = scenario.striking_position_m {
             impact.striking.contact_arm_world_m = [contact_m[0] - x, contact_m[1] - y];
         }
@@ -110,6 +103,16 @@ impl BareForce {
         {
             body.yaw_inertia_kg_m2 = inertia.unwrap_or(body.yaw_inertia_kg_m2);
         }
+        let law = scenario
+            .contact_law
+            .unwrap_or_else(|| ContactLaw::at_closing_speed(impact.closing_speed_m_s()));
+        impact.surface = ContactSurface {
+            normal_angle_world_rad: scenario.normal_rad.unwrap_or(FRAC_PI_2),
+            restitution: law.restitution,
+            restitution_form: law.restitution_form,
+            friction_limit: law.friction_limit,
+            ..impact.surface
+        };
         let solution = impact.solve()?;
         Ok(Self {
             impact,

@@ -7,15 +7,13 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::{ForceForecast, ForecastSettings, Mode};
 use crate::ask::checks::{check_all, check_count};
 use crate::caveats::restrictions;
-use crate::caveats::unused::by_force_network;
+use crate::caveats::unused::{by_force_network, contact_by_force_network};
 use crate::questions::simulate::dataset::take_case;
 use crate::{
     Answer, ImpliedContactReport, Library, ModelChoice, Observer, Provenance, Question,
     ScenarioChoice, StudyError,
 };
-use impactlab_core::collision::{
-    DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, Impact, PrincipalDirectionOfForce,
-};
+use impactlab_core::collision::{Impact, PrincipalDirectionOfForce, ScenarioContact};
 use impactlab_core::data::{DatasetKind, Outcome};
 use impactlab_core::ranges::SAMPLES;
 use impactlab_core::uncertainty::Caveat;
@@ -88,8 +86,8 @@ pub struct PredictForceReport {
     pub pdof_clock: u8,
     /// The same with its intervals, degrees.
     pub pdof_interval_deg: Estimate,
-    /// Impulse of the momentum solution that the force network starts from, with its own restitution
-    /// and friction fitted to the training cases [x, y], N s.
+    /// Impulse of the momentum solution [x, y], N s: with the restitution and the friction of the
+    /// collision; where its contact is open, with those that are fitted to the training cases.
     pub momentum_impulse_n_s: [f64; 2],
     /// Restitution and impulse ratio with which a momentum solution would give the impulse, beside
     /// the one with the values of the collision; none where the contact is open.
@@ -142,6 +140,8 @@ struct CollisionInput {
     /// Its planar impact in world axes and the heading of the struck vehicle, where the contact is
     /// known.
     impact: Option<(Impact, f64)>,
+    /// What a scenario says of the contact.
+    contact: Option<ScenarioContact>,
     /// What the network does not use of what the question says.
     unused: Vec<Caveat>,
     /// That its outlines overlap.
@@ -169,14 +169,13 @@ impl ForceQuestion {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<CollisionInput>, StudyError> {
-        let (mut unused, mut overlap) = (Vec::new(), None);
-        let across = |numbers: &ForceScenario| {
-            Some((numbers.impact(DEFAULT_RESTITUTION, DEFAULT_FRICTION_LIMIT)?, 0.0))
-        };
+        let (mut unused, mut overlap, mut contact) = (Vec::new(), None, None);
+        let across = |numbers: &ForceScenario| Some((numbers.likely_impact()?, 0.0));
         let (name, numbers, impact) = match self {
             Self::Scenario(choice) => {
                 let scenario = choice.load()?;
                 unused = by_force_network(choice, &scenario)?;
+                contact = Some(scenario.contact);
                 let geometry = scenario.geometry().ok();
                 unused.extend(geometry.as_ref().and_then(assumed::first_touch));
                 overlap = geometry.as_ref().and_then(restrictions::overlap_caveat);
@@ -200,7 +199,7 @@ impl ForceQuestion {
                 (name.clone(), numbers.as_ref().clone(), across(numbers))
             }
         };
-        Ok(Outcome::Complete(CollisionInput { name, numbers, impact, unused, overlap }))
+        Ok(Outcome::Complete(CollisionInput { name, numbers, impact, contact, unused, overlap }))
     }
 }
 
@@ -232,8 +231,8 @@ impl Question for PredictForceRequest {
         let Outcome::Complete(collision) = numbers else {
             return Ok(Outcome::Cancelled);
         };
-        let CollisionInput { name, numbers: mut collision, mut impact, mut unused, overlap } =
-            collision;
+        let CollisionInput { name, numbers, mut impact, contact, mut unused, overlap } = collision;
+        let mut collision = numbers;
         if let Some(body) = &self.body {
             collision.striking_body = Some(body.clone());
             if model.bodies().len() == 1 {
@@ -249,6 +248,8 @@ impl Question for PredictForceRequest {
             (collision.striking_position_m, impact) = (None, None);
         }
         let prediction = model.predict(&collision)?;
+        let share = prediction.applicability;
+        unused.extend(contact.iter().flat_map(|contact| contact_by_force_network(contact, share)));
         let settings = ForecastSettings { n_curves: self.samples, seed: self.seed };
         let forecast =
             ForceForecast::new(&prediction.mixture, settings).map_err(ForceError::from)?;
@@ -258,6 +259,9 @@ impl Question for PredictForceRequest {
         report.implied_contact = impact.and_then(|(impact, heading_rad)| {
             ImpliedContactReport::from_prediction(&prediction, &impact, heading_rad, self.seed)
         });
+        if let Some(implied) = &report.implied_contact {
+            report.momentum_impulse_n_s = implied.momentum.impulse_n_s;
+        }
         let restrictions = restrictions::predicted_force_caveats(&report, &prediction.caveats);
         let caveats = restrictions.into_iter().chain(unused).chain(overlap).collect();
         let report = Answer { report, caveats, provenance };

@@ -160,7 +160,7 @@ mod tests {
             let report =
                 ImpliedContactReport::from_prediction(&prediction, &impact, heading_rad, 0)
                     .unwrap();
-            assert!((report.momentum.restitution - scenario.contact.restitution).abs() < 1e-12);
+            assert!((report.momentum.restitution - impact.surface.restitution).abs() < 1e-12);
             impact.surface.restitution = report.restitution.median;
             impact.surface.friction_limit = report.impulse_ratio.median.abs();
             let [x, y] = turned(impact.solve().unwrap().impulse_world_n_s, -heading_rad);

@@ -12,7 +12,9 @@ use crate::analysis::{
 };
 use crate::ask::checks::{check, check_count};
 use crate::caveats::restrictions;
-use crate::caveats::unused::{by_force_network, by_forecast, zones_by_network};
+use crate::caveats::unused::{
+    by_force_network, by_forecast, contact_by_force_network, zones_by_network,
+};
 use crate::questions::simulate::dataset::take_case;
 use crate::{
     Answer, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, Library, ModelChoice,
@@ -274,6 +276,12 @@ impl Question for PredictMotionRequest {
         caveats.extend(unused);
         let provenance = self.provenance(library)?;
         let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.caveats);
+        if let (Some(force), MotionSource::Scenario { scenario, .. }) =
+            (&forecast.force, &self.motion.source)
+        {
+            let contact = scenario.load()?.contact;
+            caveats.extend(contact_by_force_network(&contact, force.applicability));
+        }
         let report = PredictMotionReport {
             implied_contact: self.implied_contact(&forecast)?,
             flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
