@@ -93,6 +93,10 @@ sources! {
     /// Hochschule Wien, 1966. Impact with compression to a common velocity and restitution as a
     /// share of the impulse of compression; sliding on a contact plane.
     Kudlich1966;
+    /// M. D. McKay, R. J. Beckman, W. J. Conover, *A comparison of three methods for selecting values of
+    /// input variables in the analysis of output from a computer code*, Technometrics 21(2), 1979.
+    /// Latin hypercube sampling.
+    McKay1979;
     /// NHTSA, *Consumer Information; New Car Assessment Program; Rollover Resistance*, final policy
     /// statement, 49 CFR Part 575, docket NHTSA-2001-9663 notice 3, Federal Register 68 (2003)
     /// 59249–59304. Fishhook with roll rate feedback.

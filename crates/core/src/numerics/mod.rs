@@ -8,6 +8,7 @@ mod elementary;
 mod four;
 mod gaussian_process;
 mod interpolation;
+mod latin;
 mod least_squares;
 mod normal;
 mod ode;
@@ -24,6 +25,7 @@ pub use gaussian_process::{
     GaussianPrediction, GaussianProcess, GaussianProcessData, GaussianProcessError,
 };
 pub use interpolation::interpolate;
+pub use latin::{latin_normals, latin_uniforms};
 pub use least_squares::{LeastSquares, levenberg_marquardt};
 pub use normal::{normal_cdf, normal_density, normal_quantile};
 pub use ode::{Stage, euler_step, rk4_step, rk4_step_from};
@@ -31,4 +33,6 @@ pub use packed::{MAX_LANES, Packed};
 pub use scalar::{Lanes, LanesOver, Scalar};
 pub use seed::{random_stream, sha256_hex};
 pub use smoother::{MeasuredTrack, TrackPoint, TrackSample};
-pub use statistics::{Summary, quantile_of_sorted, quantile_of_weighted};
+pub use statistics::{
+    Summary, jackknife_errors, quantile_error_of_sorted, quantile_of_sorted, quantile_of_weighted,
+};

@@ -44,6 +44,28 @@ impl Summary {
     }
 }
 
+/// Standard errors of estimates, by leaving out each of several groups of the sample in turn:
+///
+/// ```text
+/// s² = (g − 1)/g Σ_j (θ_j − mean of θ)²
+/// ```
+///
+/// - `n_groups`: g, 2 or more; with fewer the errors are zero;
+/// - `without`: the estimates θ_j without the group of a number from 0 on.
+pub fn jackknife_errors<const N: usize>(
+    n_groups: usize,
+    without: impl Fn(usize) -> [f64; N],
+) -> [f64; N] {
+    let estimates: Vec<[f64; N]> = (0..n_groups).map(without).collect();
+    let n = n_groups.max(1) as f64;
+    std::array::from_fn(|idx| {
+        let values = || estimates.iter().map(|estimate| estimate[idx]);
+        let mean = values().sum::<f64>() / n;
+        let squares: f64 = values().map(|value| (value - mean).powi(2)).sum();
+        ((n - 1.0) / n * squares).sqrt()
+    })
+}
+
 /// Quantile of values in increasing order, by linear interpolation between neighbouring values: the
 /// probability 0 gives the smallest value, 1 the largest. A probability outside this range is
 /// limited to it.
@@ -60,6 +82,16 @@ pub fn quantile_of_sorted(values: &[f64], probability: f64) -> Option<f64> {
     let low = position.floor() as usize;
     let (&below, &above) = (values.get(low)?, values.get((low + 1).min(last))?);
     Some(below + position.fract() * (above - below))
+}
+
+/// Standard error of [`quantile_of_sorted`] for independent values: half the distance between the
+/// quantiles at p ± √(p (1 − p)/n), by how many of n values lie below the true quantile.
+///
+/// - returns `None` if there are no values.
+pub fn quantile_error_of_sorted(values: &[f64], probability: f64) -> Option<f64> {
+    let share_error = (probability * (1.0 - probability) / values.len().max(1) as f64).sqrt();
+    let at = |probability: f64| quantile_of_sorted(values, probability);
+    Some((at(probability + share_error)? - at(probability - share_error)?) / 2.0)
 }
 
 /// Quantile of weighted values in increasing order, by linear interpolation. With equal weights it is
@@ -109,6 +141,30 @@ mod tests {
         assert_eq!(quantile_of_weighted(&[1.0, 5.0], &[0.0, 0.0], 0.1), None);
         let twice = quantile_of_weighted(&[0.0, 1.0, 2.0], &[1.0, 2.0, 1.0], 0.5).unwrap();
         assert!((twice - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_error_of_a_quantile_is_that_of_the_share_below_it() {
+        // Uniform between 0 and 1: the error of a quantile is that of the share.
+        let values: Vec<f64> = (0..=400).map(|i| f64::from(i) / 400.0).collect();
+        for (probability, expected) in [(0.5, 0.025), (0.05, 0.0109)] {
+            let error = quantile_error_of_sorted(&values, probability).unwrap();
+            assert!((error - expected).abs() < 1e-4, "{probability}: {error}");
+        }
+        assert_eq!(quantile_error_of_sorted(&[], 0.5), None);
+    }
+
+    #[test]
+    fn the_jackknife_of_a_mean_is_its_standard_error() {
+        let values = [1.0, 4.0, 2.0, 9.0, 5.0];
+        let mean = |left_out: usize| {
+            let others = values.iter().enumerate().filter(|(idx, _)| *idx != left_out);
+            [others.map(|(_, value)| value).sum::<f64>() / 4.0]
+        };
+        let [error] = jackknife_errors(5, mean);
+        let summary = Summary::from_values(values).unwrap();
+        assert!((error - summary.std / 5.0_f64.sqrt()).abs() < 1e-12, "{error}");
+        assert_eq!(jackknife_errors(1, |_| [3.0]), [0.0]);
     }
 
     #[test]

@@ -1,10 +1,10 @@
 //! Random draws of whole force curves from a mixture, and the impulse, peak and duration of the
 //! drawn curves.
 
-use rand::{Rng, RngExt};
+use rand::{Rng, RngExt as _};
 use rand_distr::StandardNormal;
 
-use crate::numerics::quantile_of_sorted;
+use crate::numerics::{latin_normals, latin_uniforms, quantile_of_sorted};
 use crate::uncertainty::{CurveMixture, ForceCurve};
 
 /// Impulse, peak and duration of drawn curves, one entry for each draw.
@@ -28,20 +28,26 @@ impl CurveMixture {
     /// k ~ π     y = m_k + U_k z + √d_k ⊙ ε     z ~ N(0, 1)     ε_i = φ ε_(i−1) + √(1 − φ²) N(0, 1)
     /// ```
     ///
-    /// A negative duration is replaced by zero.
+    /// k and z fill their space evenly over the draws (Latin hypercube,
+    /// [`McKay1979`](crate::bibliography::McKay1979)), so that a few curves stand for the distribution
+    /// better than independent ones would. A negative duration is replaced by zero.
     pub fn sample(&self, n_samples: usize, rng: &mut impl Rng) -> Vec<ForceCurve> {
         let mut drawn = Vec::with_capacity(n_samples);
+        let components = latin_uniforms(n_samples, rng);
+        let n_factors = self.components().iter().map(|component| component.factors.ncols()).max();
+        let factors: Vec<Vec<f64>> =
+            (0..n_factors.unwrap_or(0)).map(|_| latin_normals(n_samples, rng)).collect();
         let deviations: Vec<Vec<f64>> = self
             .components()
             .iter()
             .map(|component| component.variance.iter().map(|d| d.sqrt()).collect())
             .collect();
-        for _ in 0..n_samples {
-            let k = self.draw_component(rng);
+        for (draw, share) in components.into_iter().enumerate() {
+            let k = self.component_at(share);
             let (component, own) = (&self.components()[k], &deviations[k]);
             let mut values = component.mean.clone();
-            for column in component.factors.column_iter() {
-                let z: f64 = rng.sample(StandardNormal);
+            for (column, z) in component.factors.column_iter().zip(&factors) {
+                let z = z[draw];
                 for (value, factor) in values.iter_mut().zip(column.iter()) {
                     *value += z * factor;
                 }
@@ -66,9 +72,9 @@ impl CurveMixture {
         CurveQuantities::from_curves(&self.sample(n_samples, rng))
     }
 
-    /// Index of a component, drawn with the weights as probabilities.
-    fn draw_component(&self, rng: &mut impl Rng) -> usize {
-        let mut left: f64 = rng.random();
+    /// Index of the component at a share of the weights, 0 to 1.
+    fn component_at(&self, share: f64) -> usize {
+        let mut left = share;
         for (k, component) in self.components().iter().enumerate() {
             left -= component.weight;
             if left < 0.0 {

@@ -1,12 +1,10 @@
 //! What follows for a motion from what is not known of the vehicle: its estimated parameters are
 //! drawn, and how the motion ends is compared with what was drawn.
 
-use rand::RngExt as _;
-use rand_distr::StandardNormal;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::numerics::random_stream;
+use crate::numerics::{latin_normals, random_stream};
 use crate::vehicle::{DataSheet, SheetQuantity, VehicleParameters};
 
 /// The estimates of a vehicle, drawn several times.
@@ -43,14 +41,17 @@ impl Sensitivity {
 const CHI_SQUARED_95: f64 = 3.841;
 
 impl VehicleDraws {
-    /// Draws every estimate of a data sheet, each independent of the others.
+    /// Draws every estimate of a data sheet, each independent of the others; together the draws fill
+    /// the space of the estimates evenly (Latin hypercube,
+    /// [`McKay1979`](crate::bibliography::McKay1979)).
     pub fn from_sheet(sheet: &DataSheet, n_draws: usize, seed: u64) -> Self {
         let quantities: Vec<SheetQuantity> = sheet.estimated().collect();
-        let draw = |idx: usize| {
-            let mut rng = random_stream(seed, "vehicle estimates", idx as u64);
-            quantities.iter().map(|_| rng.sample(StandardNormal)).collect()
+        let along = |idx: usize| {
+            latin_normals(n_draws, &mut random_stream(seed, "vehicle estimates", idx as u64))
         };
-        let latents = (0..n_draws).map(draw).collect();
+        let columns: Vec<Vec<f64>> = (0..quantities.len()).map(along).collect();
+        let latents =
+            (0..n_draws).map(|draw| columns.iter().map(|column| column[draw]).collect()).collect();
         Self { quantities, latents }
     }
 
