@@ -9,6 +9,7 @@ mod closed_pipe;
 mod commands;
 mod contact;
 mod contradictions;
+mod controls;
 mod data_sheets;
 mod endings;
 mod export;

@@ -30,6 +30,8 @@ pub enum CaveatKind {
     /// The record of a force ends while the vehicles are still in contact: its impulse is not
     /// complete.
     ContactNotEnded,
+    /// A check of a file that the answer used found that something is wrong with it.
+    DoubtfulData,
     /// A computed motion gains energy without a force.
     EnergyGain,
     /// A wheel lifts off.
@@ -42,6 +44,8 @@ pub enum CaveatKind {
     EvidenceUnexplained,
     /// The particles are too few, or not of the posterior.
     FewParticles,
+    /// The draws are so few that their intervals are uncertain themselves.
+    FewDraws,
     /// How often the intervals hold the truth has hardly been tried.
     HardlyValidated,
     /// Cases or draws could not be used and are left out.
@@ -125,12 +129,14 @@ impl CaveatKind {
             Self::Overlap => "overlap",
             Self::SecondContact => "second contact",
             Self::ContactNotEnded => "contact not ended",
+            Self::DoubtfulData => "doubtful data",
             Self::EnergyGain => "energy gain",
             Self::WheelLift => "wheel lift",
             Self::RollLimit => "roll limit",
             Self::NotAtRest => "not at rest",
             Self::EvidenceUnexplained => "evidence unexplained",
             Self::FewParticles => "few particles",
+            Self::FewDraws => "few draws",
             Self::HardlyValidated => "hardly validated",
             Self::LeftOut => "left out",
             Self::TrainedOn => "trained on",

@@ -6,11 +6,13 @@
 mod case;
 mod file;
 mod forecast;
+mod monte_carlo;
 mod motion_bands;
 mod motion_density;
 mod motion_forecast;
 mod motion_to_rest;
 mod rest_outcome;
+mod rival;
 mod scenario;
 mod second_contacts;
 mod striking;
@@ -27,6 +29,7 @@ pub use case::analyse_case;
 pub use file::{DriveSetup, analyse_drive, analyse_recording};
 pub(crate) use forecast::bands_of_draws;
 pub use forecast::{ForceForecast, ForecastSettings, Mode, pulse_curves};
+pub use monte_carlo::MonteCarloError;
 pub use motion_bands::{MOTION_BAND_LEVELS, MotionBands};
 pub use motion_density::{DensityMap, DensityTask, Region};
 pub use motion_forecast::{
@@ -34,6 +37,7 @@ pub use motion_forecast::{
     forecast_collision, forecast_forces,
 };
 pub use rest_outcome::{MotionEnd, RestOutcome};
+pub use rival::{Rival, RivalForce};
 pub use scenario::{PulseSetup, analyse_scenario};
 pub use second_contacts::SecondContacts;
 

@@ -12,8 +12,8 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::analysis::RestOutcome;
 use crate::analysis::motion_to_rest::{Settled, ToRest};
+use crate::analysis::{MonteCarloError, RestOutcome};
 use impactlab_core::collision::Pose;
 use impactlab_core::data::{
     ContactOutside, ForceAxes, ForceHistory, check_contact_within, contact_interval,
@@ -133,6 +133,9 @@ pub struct MotionOutcome {
     pub p_quarter_turn: f64,
     /// Probability that the change of heading is at least 180° to either side at that time.
     pub p_half_turn: f64,
+    /// How much of this is chance, because forces and vehicles are drawn a limited number of times;
+    /// none where nothing is drawn.
+    pub monte_carlo: Option<MonteCarloError>,
 }
 
 /// Reason for which a forecast cannot be made.
@@ -306,7 +309,10 @@ impl ForecastMotion {
 impl Settled {
     /// The same motion with its outcome at the end of the forecast, or where it has come to rest.
     fn timed(self, forces: &[ForceHistory], seed: u64) -> Option<ForecastMotion> {
-        let outcome = timed_outcome(&self.distribution, &self.paths, forces, seed)?;
+        let outcome = MotionOutcome {
+            monte_carlo: self.outcome.monte_carlo,
+            ..timed_outcome(&self.distribution, &self.paths, forces, seed)?
+        };
         Some(ForecastMotion { outcome, rest: None, ..ForecastMotion::from_settled(self) })
     }
 }
@@ -348,7 +354,9 @@ fn propagated(
     let (parts, paths): (Vec<MotionDistribution>, Vec<Vec<VehicleState<f64>>>) =
         parts.into_iter().map(|part| (part.motion, part.path)).unzip();
     let distribution = MotionDistribution::mixed(parts);
-    let outcome = timed_outcome(&distribution, &paths, forces, settings.seed)?;
+    let mut outcome = timed_outcome(&distribution, &paths, forces, settings.seed)?;
+    let instant = (outcome.time_s / STEP_S).round() as usize;
+    outcome.monte_carlo = MonteCarloError::from_mixture(&distribution, instant, paths.len());
     Some(ForecastMotion { distribution, paths, outcome, rest: None, applicabilities })
 }
 
@@ -447,6 +455,7 @@ fn outcome(
         region_90_m2: position.region_m2(0.9),
         p_quarter_turn: heading.p_outside(start.yaw_rad - FRAC_PI_2, start.yaw_rad + FRAC_PI_2),
         p_half_turn: heading.p_outside(start.yaw_rad - PI, start.yaw_rad + PI),
+        monte_carlo: None,
     })
 }
 

@@ -10,7 +10,7 @@ use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
 use crate::analysis::rest_outcome::groups;
-use crate::analysis::{MotionEnd, MotionOutcome, RestOutcome, StruckVehicle};
+use crate::analysis::{MonteCarloError, MotionEnd, MotionOutcome, RestOutcome, StruckVehicle};
 use impactlab_core::data::ForceHistory;
 use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::VehicleState;
@@ -202,5 +202,6 @@ fn outcome(
         speed_m_s: mean(|end| end.speed_m_s),
         yaw_rate_rad_s: mean(|end| end.yaw_rate_rad_s.abs()),
         region_90_m2: rest.region_90_m2,
+        monte_carlo: MonteCarloError::from_ends(ends, rest.limit_s),
     }
 }

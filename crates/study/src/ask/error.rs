@@ -318,6 +318,24 @@ pub enum StudyError {
         /// The force file.
         path: PathBuf,
     },
+    /// What steers, brakes or drives a vehicle is recorded for another time than the motion.
+    #[error(
+        "{}: the recording runs from {start_s} s to {end_s} s, the motion from 0 s to {duration_s} s, \
+         so that nothing of it would act; give its clock a shift in the map of its columns, such as \
+         shift={shift_s}:s", path.display()
+    )]
+    ControlsOutside {
+        /// The file.
+        path: PathBuf,
+        /// Start of the recording, s.
+        start_s: f64,
+        /// End of the recording, s.
+        end_s: f64,
+        /// Duration of the motion, s.
+        duration_s: f64,
+        /// The shift with which the recording begins with the motion, s.
+        shift_s: f64,
+    },
     /// The contact lies outside the time of the motion.
     #[error("{name}: {outside}")]
     ContactOutside {

@@ -1,13 +1,16 @@
 //! What restricts an answer: findings that a report has in a form of its own, as caveats.
 
-use crate::analysis::{Analysis, MotionForecast, RestOutcome};
+use crate::analysis::{MonteCarloError, RestOutcome, Rival, RivalForce};
 use crate::questions::predict::implied_contact::{LEAST_P_RIGID, MOST_P_ENERGY_GAIN};
 use crate::{
     ImpliedContactReport, PredictForceReport, PredictMotionReport, ReplayedCaseReport,
     SimulateReport,
 };
 use impactlab_core::collision::{ScenarioGeometry, TOUCH_TOLERANCE_M};
-use impactlab_core::data::{CONTACT_SHARE_OF_PEAK, Channel, ForceHistory, cut_at_s};
+use impactlab_core::data::{
+    CONTACT_SHARE_OF_PEAK, Case, Flag, FlagKind, ForceHistory, Loaded, Severity, check_case,
+    check_file, cut_at_s,
+};
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{percent, significant};
 use impactlab_core::vehicle::REST_SPEED_M_S;
@@ -15,9 +18,8 @@ use impactlab_networks::response::{OutsideDomain, STEP_S};
 
 /// The region of a forecast in which the 4DOF model ends if the two agree.
 const AGREEMENT_LEVEL: f64 = 0.99;
-/// How far the 4DOF model by data sheet ends from the record, as a share of the way, in three of four
-/// motions of the fleet: what is nearer to it is no disagreement.
-const PHYSICS_ERROR: f64 = 0.125;
+/// Largest standard error of the end of an interval by the number of draws, as a share of the width.
+const MOST_CHANCE: f64 = 0.1;
 
 /// Outlines that overlap by more than the tolerance within which they touch.
 pub(crate) fn overlap_caveat(geometry: &ScenarioGeometry) -> Option<Caveat> {
@@ -48,6 +50,26 @@ pub(crate) fn cut_record_caveat(force: &ForceHistory) -> Option<Caveat> {
     Some(caveat)
 }
 
+/// What a check of a file finds wrong with it. That a record ends during the contact is said by
+/// [`cut_record_caveat`].
+///
+/// - `name`: of the file.
+pub(crate) fn doubtful_data_caveats(name: &str, loaded: &Loaded) -> Vec<Caveat> {
+    doubts(name, check_file(loaded))
+}
+
+/// The same for a case of a data set.
+pub(crate) fn doubtful_case_caveats(case: &Case) -> Vec<Caveat> {
+    doubts(&case.name, check_case(case))
+}
+
+fn doubts(name: &str, flags: Vec<Flag>) -> Vec<Caveat> {
+    let is_doubt =
+        |flag: &Flag| flag.severity > Severity::Info && flag.kind != FlagKind::NotSeparated;
+    let caveat = |flag: Flag| Caveat::new(CaveatKind::DoubtfulData, format!("{name}: {flag}"));
+    flags.into_iter().filter(is_doubt).map(caveat).collect()
+}
+
 /// What restricts the simulation of one vehicle.
 ///
 /// - `until_rest`: whether the question asks where the vehicle comes to rest.
@@ -56,8 +78,28 @@ pub(crate) fn simulation_caveats(report: &SimulateReport, until_rest: bool) -> V
     let moving = moving.map(|end| motion_caveat(end.speed_m_s, report.duration_s));
     let n_failed = report.uncertainty.as_ref().map_or(0, |uncertainty| uncertainty.n_failed);
     let left_out = left_out_caveat(n_failed, "vehicles drawn from the data sheet");
+    let drawn = report.uncertainty.as_ref().and_then(|uncertainty| uncertainty.monte_carlo);
+    let few = drawn.and_then(|error| few_draws_caveat(&error));
     let flags = report.flags.iter().map(|flag| flag.caveat.clone());
-    flags.chain(moving).chain(left_out).collect()
+    flags.chain(moving).chain(left_out).chain(few).collect()
+}
+
+/// Draws that are so few that with another seed the intervals would be others.
+fn few_draws_caveat(error: &MonteCarloError) -> Option<Caveat> {
+    let share = error.interval_share;
+    let text = || {
+        format!(
+            "an end of a 90 % interval is uncertain by {} of the interval's width, because so few \
+             draws were made",
+            percent(share)
+        )
+    };
+    let is_much = share > MOST_CHANCE || share.is_nan();
+    is_much.then(|| {
+        Caveat::new(CaveatKind::FewDraws, text())
+            .with_value("standard error of an interval end as a share of the width", share)
+            .with_range([0.0, MOST_CHANCE])
+    })
 }
 
 /// How many cases raise each kind of flag.
@@ -164,8 +206,10 @@ pub(crate) fn predicted_motion_caveats(
         None => (!end.is_at_rest).then(|| motion_caveat(end.speed_m_s, end.time_s)),
     };
     let beyond = duration_caveat(report);
+    let few = end.monte_carlo.as_ref().and_then(few_draws_caveat);
     let outside = predicted.iter().cloned().chain(domain).chain(beyond);
-    outside.chain(contact).chain(flags).chain(moving).collect()
+    let apart = report.rival.as_ref().and_then(disagreement_caveat);
+    outside.chain(contact).chain(flags).chain(moving).chain(few).chain(apart).collect()
 }
 
 /// A predicted impulse that no contact brings about.
@@ -180,45 +224,24 @@ pub(crate) fn contact_caveat(implied: &ImpliedContactReport) -> Option<Caveat> {
     })
 }
 
-/// A forecast in whose bands the 4DOF simulation of the same source does not end, by more than the 4DOF
-/// model is known to err.
-///
-/// - `has_same_force`: whether the simulation has the force of the forecast; else that of the momentum
-///   solution.
-pub(crate) fn disagreement_caveat(
-    forecast: &MotionForecast,
-    simulated: &Analysis,
-    has_same_force: bool,
-) -> Option<Caveat> {
-    let motion = &simulated.simulation.as_ref()?.series;
-    let n_steps = forecast.distribution.n_instants().checked_sub(1)?;
-    let end_s = motion.time_s().last()?.min(n_steps as f64 * STEP_S);
-    let at = motion.time_s().partition_point(|time_s| *time_s < end_s - 1e-9);
-    let value = |channel| motion.get(channel)?.get(at).copied();
-    let simulated_m = [value(Channel::X)?, value(Channel::Y)?];
-    let instant = ((end_s / STEP_S).round() as usize).min(n_steps);
-    let level = forecast.distribution.position(instant).level_of(simulated_m);
-    let mean = forecast.distribution.mean(instant);
-    let apart_m = (simulated_m[0] - mean.x_m).hypot(simulated_m[1] - mean.y_m);
-    let [xs, ys] = [motion.get(Channel::X)?, motion.get(Channel::Y)?];
-    let steps = xs.iter().zip(ys).zip(xs.iter().zip(ys).skip(1)).take(at);
-    let way_m: f64 = steps.map(|((x0, y0), (x1, y1))| (x1 - x0).hypot(y1 - y0)).sum();
-    let known_m = PHYSICS_ERROR * way_m;
-    if level <= AGREEMENT_LEVEL || apart_m.is_nan() || apart_m <= known_m {
+/// A forecast in whose bands the other method does not end, by more than that method is known to err.
+fn disagreement_caveat(rival: &Rival) -> Option<Caveat> {
+    let Rival { apart_m, time_s, known_error_m, .. } = *rival;
+    if rival.region_level <= AGREEMENT_LEVEL || rival.is_within_known_error() {
         return None;
     }
-    let force = match has_same_force {
-        true => "under the same force",
-        false => "under the impulse of the momentum solution",
+    let force = match rival.force {
+        RivalForce::Same => "under the same force",
+        RivalForce::Momentum => "under the impulse of the momentum solution",
     };
     let text = format!(
-        "the 4DOF model {force} is {apart_m:.1} m away after {end_s:.2} s, outside the {:.0} % region, more \
-         than it is known to err: network and physics do not say the same",
+        "the 4DOF model {force} is {apart_m:.1} m away after {time_s:.2} s, outside the {:.0} % region, \
+         more than it is known to err: network and physics do not say the same",
         100.0 * AGREEMENT_LEVEL
     );
     let caveat = Caveat::new(CaveatKind::Disagreement, text)
         .with_value("distance to the 4DOF model [m]", apart_m)
-        .with_range([0.0, known_m]);
+        .with_range([0.0, known_error_m]);
     Some(caveat)
 }
 

@@ -3,6 +3,7 @@
 use impactlab_core::units::Quantity;
 
 use crate::PredictMotionReport;
+use crate::analysis::{MonteCarloError, RivalForce};
 use crate::facts::simulate::sensitivity;
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
@@ -10,12 +11,43 @@ use crate::facts::{Fact, FactTable, Term, Value};
 impl PredictMotionReport {
     /// What the answer says: how the motion ends, and what that depends on.
     pub fn facts(&self) -> Vec<FactTable> {
-        [Some(self.motion_table()), self.sensitivity_table()].into_iter().flatten().collect()
+        let tables = [Some(self.motion_table()), self.rival_table(), self.sensitivity_table()];
+        tables.into_iter().flatten().collect()
     }
 
     /// How the motion ends.
     pub fn motion_table(&self) -> FactTable {
         FactTable::new(Term::Forecast, self.motion()).with_levels(PREDICTED)
+    }
+
+    /// Whether the 4DOF model without a network says the same; none where it says nothing.
+    pub fn rival_table(&self) -> Option<FactTable> {
+        let rival = self.rival.as_ref()?;
+        let (method, why) = match rival.force {
+            RivalForce::Same => (Term::RivalSameForce, Term::NetworkCorrects),
+            RivalForce::Momentum => (Term::RivalMomentum, Term::OtherForce),
+        };
+        let (agree, is_whole) = match (rival.is_in_region(), rival.is_within_known_error()) {
+            (true, true) => (Term::MethodsAgree, true),
+            (true, false) => (Term::AgreeInRegion, false),
+            (false, true) => (Term::AgreeWithinError, false),
+            (false, false) => (Term::MethodsDisagree, false),
+        };
+        let mut facts = vec![
+            Fact::new(Term::MethodsVerdict, Value::Term(agree)),
+            Fact::new(Term::OtherMethod, Value::Term(method)),
+            Fact::number(Term::ComparedAfter, Quantity::Time, rival.time_s),
+            Fact::new(Term::ForecastPlace, Value::Place(rival.forecast_m)),
+            Fact::new(Term::RivalPlace, Value::Place([rival.x_m, rival.y_m])),
+            Fact::number(Term::RivalHeading, Quantity::Angle, rival.heading_change_rad),
+            Fact::number(Term::Apart, Quantity::Length, rival.apart_m),
+            Fact::new(Term::RivalRegion, Value::Share(rival.region_level)),
+            Fact::number(Term::RivalError, Quantity::Length, rival.known_error_m),
+        ];
+        if !is_whole {
+            facts.push(Fact::new(Term::WhyApart, Value::Term(why)));
+        }
+        Some(FactTable::new(Term::Agreement, facts))
     }
 
     /// Which estimates of the vehicle the end depends on; none if no share is clear.
@@ -54,6 +86,7 @@ impl PredictMotionReport {
         if self.rest.is_none() {
             facts.push(Fact::new(Term::Region90, Value::Area(outcome.region_90_m2)));
         }
+        facts.extend(outcome.monte_carlo.iter().flat_map(MonteCarloError::facts));
         facts.extend([
             Fact::new(Term::QuarterTurn, Value::Share(outcome.p_quarter_turn)),
             Fact::new(Term::HalfTurn, Value::Share(outcome.p_half_turn)),

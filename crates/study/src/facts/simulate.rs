@@ -2,7 +2,7 @@
 
 use impactlab_core::units::Quantity;
 
-use crate::analysis::{RestOutcome, Sensitivity};
+use crate::analysis::{MonteCarloError, RestOutcome, Sensitivity};
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::{
@@ -150,9 +150,20 @@ impl VehicleUncertainty {
             estimate(Term::FinalSpeed, Quantity::Speed, &self.speed_m_s),
         ]);
         facts.extend(self.rest.iter().flat_map(RestOutcome::facts));
+        facts.extend(self.monte_carlo.iter().flat_map(MonteCarloError::facts));
         let second = self.second_contact_probability;
         facts.extend(second.map(|share| Fact::new(Term::SecondContact, Value::Share(share))));
         FactTable::new(Term::Draws, facts).with_levels(PREDICTED)
+    }
+}
+
+impl MonteCarloError {
+    /// How much of the intervals and of the region is chance.
+    pub(super) fn facts(&self) -> [Fact; 2] {
+        [
+            Fact::new(Term::MonteCarlo, Value::Share(self.interval_share)),
+            Fact::new(Term::MonteCarloRegion, Value::Area(self.region_90_m2)),
+        ]
     }
 }
 

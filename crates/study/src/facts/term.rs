@@ -124,6 +124,40 @@ terms! {
          still move count with where they are then";
     RestLimit: "followed for at most", "verfolgt bis höchstens";
     Region50: "area that holds the position with 50 %", "Fläche, in der die Lage mit 50 % liegt";
+    Agreement: "Do the methods agree?", "Stimmen die Verfahren überein?";
+    MethodsVerdict: "the two methods", "die beiden Verfahren";
+    MethodsAgree: "agree: each ends within what the other allows",
+        "stimmen überein: jedes endet in dem, was das andere zulässt";
+    AgreeInRegion: "agree in part: the other ends in the 90 % region, but further away than it is known to err",
+        "stimmen teilweise überein: das andere endet in der Fläche von 90 %, aber weiter weg, als es bekanntlich irrt";
+    AgreeWithinError: "agree in part: no further apart than the other is known to err, but it ends outside the 90 % region",
+        "stimmen teilweise überein: nicht weiter auseinander, als das andere bekanntlich irrt, aber außerhalb der Fläche von 90 %";
+    MethodsDisagree: "do not agree", "stimmen nicht überein";
+    OtherMethod: "the other method", "das andere Verfahren";
+    RivalSameForce: "the 4DOF model without a network, under the same force",
+        "das 4DOF-Modell ohne Netz unter derselben Kraft";
+    RivalMomentum: "the 4DOF model without a network, under the impulse of the momentum solution",
+        "das 4DOF-Modell ohne Netz unter dem Impuls der Impulslösung";
+    ComparedAfter: "compared after", "verglichen nach";
+    ForecastPlace: "mean of the forecast (X; Y)", "Mittel der Vorhersage (X; Y)";
+    RivalPlace: "by the other method (X; Y)", "nach dem anderen Verfahren (X; Y)";
+    RivalHeading: "change of heading by the other method",
+        "Änderung der Richtung nach dem anderen Verfahren";
+    Apart: "distance between the two", "Abstand der beiden";
+    RivalRegion: "smallest region of the forecast that holds the other",
+        "kleinste Fläche der Vorhersage, die das andere enthält";
+    RivalError: "the other errs by less in three of four motions",
+        "das andere irrt in drei von vier Bewegungen um weniger als";
+    WhyApart: "why they differ", "warum sie sich unterscheiden";
+    OtherForce: "another force, and what the network corrects of the motion",
+        "eine andere Kraft und was das Netz an der Bewegung verbessert";
+    NetworkCorrects: "what the network corrects of the motion",
+        "was das Netz an der Bewegung verbessert";
+    MonteCarlo: "chance in the ends of the intervals", "Zufall in den Intervallgrenzen",
+        "Largest standard error of an end of the 90 % intervals of place and heading, as a share of \
+         the width, by the number of draws: with another seed they differ by about as much";
+    MonteCarloRegion: "chance in the area of 90 %", "Zufall in der Fläche von 90 %",
+        "Standard error of the area by the number of draws";
     Region90: "area that holds the position with 90 %", "Fläche, in der die Lage mit 90 % liegt";
     SecondContact: "probability of a second contact", "Wahrscheinlichkeit eines zweiten Kontakts";
     Sensitivity: "Linear share of each estimate in the variance of the end; shares that may be chance \

@@ -33,6 +33,7 @@ pub(super) fn part(
     let is_one = report.n_forces <= 1 && report.n_vehicles == 0;
     let meaning = if is_one { words.meaning_motion_one } else { words.meaning_motion };
     blocks.extend(facts_with_meanings(&report.motion_table(), meaning, context));
+    blocks.extend(report.rival_table().iter().map(|table| facts_table(table, context)));
     let shares = report.sensitivity_table();
     let draws = [
         (words.forces_drawn, report.n_forces.to_string()),

@@ -324,6 +324,8 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("not at rest", "nicht im Stillstand"),
     ("evidence unexplained", "Spur nicht erklärt"),
     ("few particles", "wenige Partikel"),
+    ("few draws", "wenige Ziehungen"),
+    ("doubtful data", "zweifelhafte Daten"),
     ("hardly validated", "kaum validiert"),
     ("left out", "ausgelassen"),
     ("trained on", "im Training enthalten"),

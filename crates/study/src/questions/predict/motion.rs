@@ -7,8 +7,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
-    Analysis, MotionForecast, MotionForecastSettings, MotionOutcome, RestOutcome, SecondContacts,
-    Sensitivity, StruckVehicle, forecast_collision, forecast_forces,
+    Analysis, MotionForecast, MotionForecastSettings, MotionOutcome, RestOutcome, Rival,
+    RivalForce, SecondContacts, Sensitivity, StruckVehicle, forecast_collision, forecast_forces,
 };
 use crate::ask::checks::{check, check_count};
 use crate::caveats::restrictions;
@@ -27,8 +27,9 @@ use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
 use impactlab_networks::force::{ForceModel, ForceScenario, OutsideTraining};
 use impactlab_networks::response::OutsideDomain;
 
-/// Force curves drawn from a predicted force where nobody says how many.
-pub const DEFAULT_DRAWS: usize = 30;
+/// Force curves drawn from a predicted force where nobody says how many: so many that chance moves the
+/// ends of the 90 % intervals of the example by less than a tenth of their width.
+pub const DEFAULT_DRAWS: usize = 100;
 
 /// How many force curves and vehicles the coarse answer draws.
 pub const COARSE_DRAWS: usize = 5;
@@ -92,6 +93,8 @@ pub struct PredictMotionReport {
     /// How long the motions were that the response network has learned from, s: what comes after that
     /// is the physics with the strengths that it knows.
     pub learned_duration_s: f64,
+    /// Where the 4DOF model ends without a network: do the methods agree?
+    pub rival: Option<Rival>,
     /// Which estimates of the vehicle the end depends on, the one that moves it most first.
     pub sensitivity: Vec<Sensitivity>,
     /// Restitution and impulse ratio with which a momentum solution would give the predicted impulse,
@@ -249,17 +252,15 @@ impl Question for PredictMotionRequest {
             until_rest: self.motion.until_rest,
             seed: self.seed,
         };
-        let failed = |source| StudyError::Forecast { name: name(), source: Box::new(source) };
-        let mut cut = None;
+        let mut of_force = Vec::new();
         let forecast = match &self.force {
             ForceSource::Given => {
                 let own = Some(own_force).filter(|_| self.motion.source.is_recorded());
-                cut = own.and_then(restrictions::cut_record_caveat);
+                of_force.extend(own.and_then(restrictions::cut_record_caveat));
                 forecast_forces(std::slice::from_ref(own_force), &model, struck, &settings)
             }
             ForceSource::File(path) => {
-                let force = given_force(path, struck, settings.duration_s, library)?;
-                cut = restrictions::cut_record_caveat(&force);
+                let force = given_force(path, struck, settings.duration_s, library, &mut of_force)?;
                 forecast_forces(&[force], &model, struck, &settings)
             }
             ForceSource::Predicted(choice) => {
@@ -270,27 +271,22 @@ impl Question for PredictMotionRequest {
                 forecast_collision(&collision, &force_model, &model, struck, &settings)
             }
         };
-        let forecast = forecast.map_err(failed)?;
+        let forecast = forecast
+            .map_err(|source| StudyError::Forecast { name: name(), source: Box::new(source) })?;
         let holds_here = |caveat: &Caveat| self.rests_on(caveat);
         let mut caveats: Caveats = simulated.caveats.into_iter().filter(holds_here).collect();
         caveats.extend(unused);
         let provenance = self.provenance(library)?;
+        caveats.extend(self.unused_of_contact(&forecast)?);
         let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.caveats);
-        if let (Some(force), MotionSource::Scenario { scenario, .. }) =
-            (&forecast.force, &self.motion.source)
-        {
-            let contact = scenario.load()?.contact;
-            caveats.extend(contact_by_force_network(&contact, force.applicability));
-        }
         let report = PredictMotionReport {
             implied_contact: self.implied_contact(&forecast)?,
             flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
+            rival: Rival::from_simulation(&forecast, &analysis, self.rival_force()),
             ..self.report(&analysis.name, struck, &forecast)
         };
         caveats.extend(restrictions::predicted_motion_caveats(&report, predicted));
-        let has_same_force = self.force == ForceSource::Given;
-        let apart = restrictions::disagreement_caveat(&forecast, &analysis, has_same_force);
-        caveats.extend(apart.into_iter().chain(cut));
+        caveats.extend(of_force);
         let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
     }
@@ -298,14 +294,18 @@ impl Question for PredictMotionRequest {
 
 /// The force of a file. Where it acts without a yaw moment of its own, the source of the motion says.
 ///
-/// - `duration_s`: duration of the motion, s, within which the contact lies.
+/// - `duration_s`: duration of the motion, s, within which the contact lies;
+/// - `caveats`: gets what is wrong with the file.
 fn given_force(
     path: &Path,
     struck: &StruckVehicle,
     duration_s: f64,
     library: &Library,
+    caveats: &mut Vec<Caveat>,
 ) -> Result<ForceHistory, StudyError> {
     let loaded = library.series(&SeriesFile::new(path))?;
+    let name = path.display().to_string();
+    caveats.extend(restrictions::doubtful_data_caveats(&name, &loaded));
     let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling())
         .map_err(|source| StudyError::Series { path: path.to_owned(), source })?;
     // A recorded yaw moment acts about the CG: it does not say where another force acts.
@@ -313,9 +313,9 @@ fn given_force(
     if force.mz_n_m.is_none() && !has_contact {
         return Err(StudyError::NoYawMoment { path: path.to_owned() });
     }
-    let outside =
-        |outside| StudyError::ContactOutside { name: path.display().to_string(), outside };
-    check_contact_within(&force, duration_s).map_err(outside)?;
+    check_contact_within(&force, duration_s)
+        .map_err(|outside| StudyError::ContactOutside { name, outside })?;
+    caveats.extend(restrictions::cut_record_caveat(&force));
     Ok(force)
 }
 
@@ -334,6 +334,24 @@ impl PredictMotionRequest {
         let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
         let heading_rad = scenario.struck.heading_rad;
         Ok(ImpliedContactReport::from_prediction(prediction, &impact, heading_rad, self.seed))
+    }
+
+    /// The force of the 4DOF simulation of the same source.
+    fn rival_force(&self) -> RivalForce {
+        match self.force {
+            ForceSource::Given => RivalForce::Same,
+            ForceSource::Predicted(_) | ForceSource::File(_) => RivalForce::Momentum,
+        }
+    }
+
+    /// What a predicted force does not use of what the scenario says of the contact.
+    fn unused_of_contact(&self, forecast: &MotionForecast) -> Result<Vec<Caveat>, StudyError> {
+        let (Some(force), MotionSource::Scenario { scenario, .. }) =
+            (&forecast.force, &self.motion.source)
+        else {
+            return Ok(Vec::new());
+        };
+        Ok(contact_by_force_network(&scenario.load()?.contact, force.applicability))
     }
 
     /// Whether the motion of the source is a recorded one.
@@ -360,6 +378,8 @@ impl PredictMotionRequest {
     fn rests_on(&self, caveat: &Caveat) -> bool {
         match (caveat.kind, caveat.subject) {
             (CaveatKind::Overlap | CaveatKind::Note | CaveatKind::NotUsed, _) => true,
+            // That of a record, where it is a record that moves the vehicle.
+            (CaveatKind::DoubtfulData, _) => self.force == ForceSource::Given,
             (CaveatKind::Assumed, Some(subject)) => match subject {
                 CaveatSubject::Striking | CaveatSubject::StrikingParameter => false,
                 CaveatSubject::Pulse | CaveatSubject::Restitution => {
@@ -409,6 +429,7 @@ impl PredictMotionRequest {
             sensitivity: forecast.sensitivity.clone(),
             hooking_probability: predicted.and_then(|force| force.hooking_probability),
             flags: Vec::new(),
+            rival: None,
             implied_contact: None,
             force_applicability: predicted.map(|force| force.applicability),
             outside_training: predicted.map_or_else(Vec::new, |force| force.outside.clone()),

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::{AnalysisError, DriveSetup, Settings};
 use crate::ask::checks::{check, check_contact, check_given};
+use crate::caveats::restrictions::doubtful_data_caveats;
 use crate::questions::simulate::motion_source::acting_force;
 use crate::{Library, SeriesFile, StudyError};
 use impactlab_core::data::{
@@ -84,6 +85,7 @@ impl Drive {
             Some(file) => {
                 let loaded = library.series(file)?;
                 notes.extend(loaded.notes.iter().map(ToString::to_string));
+                caveats.extend(doubtful_data_caveats(&file.title(), &loaded));
                 let force = force_of(&loaded, self.sampling, file)?;
                 Some(acting_force(force, self.contact, &settings.struck, caveats))
             }
@@ -94,11 +96,31 @@ impl Drive {
             yaw_rate_rad_s: self.yaw_rate_rad_s,
             ..VehicleState::driving_straight(speed_m_s)
         };
-        let steer = self.steer(&settings.struck, &initial, caveats)?;
-        let held = steer.as_ref().and_then(|steer| held_steer(steer, settings.duration_s));
+        let duration_s = settings.duration_s;
+        let steer = match &self.steer {
+            Some(file) if !self.fishhook => {
+                let loaded = read_steer_file(&file.path, file.map.as_ref())?;
+                let steer = steer_history(file, &loaded.series, self.steering_ratio)?;
+                let acts = |sample: usize| steer.steer_rad.get(sample).is_some_and(|a| *a != 0.0);
+                caveats.extend(covered(file, &loaded, duration_s, acts)?);
+                Some(steer)
+            }
+            _ => self.fishhook(&settings.struck, &initial, caveats)?,
+        };
+        let held = steer.as_ref().and_then(|steer| held_steer(steer, duration_s));
         caveats.extend(held);
-        let wheels = self.wheels.as_ref().map(|file| wheel_history(file, &settings.struck));
-        Ok(DriveSetup { initial, load, steer, wheels: wheels.transpose()?, notes })
+        let wheels = match &self.wheels {
+            Some(file) => {
+                let loaded = read_wheels_file(&file.path, file.map.as_ref())?;
+                let wheels = wheel_history(&loaded.series, &settings.struck);
+                let free = [WheelEffort::none(); 4];
+                let acts = |sample: usize| wheels.wheels.get(sample).is_some_and(|at| *at != free);
+                caveats.extend(covered(file, &loaded, duration_s, acts)?);
+                Some(wheels)
+            }
+            None => None,
+        };
+        Ok(DriveSetup { initial, load, steer, wheels, notes })
     }
 
     /// Checks that not two things steer the vehicle, nor brake or drive it.
@@ -115,16 +137,15 @@ impl Drive {
         Ok(())
     }
 
-    /// The road-wheel angle over time.
-    fn steer(
+    /// The road-wheel angle of a driver who steers a fishhook; `None` for another one.
+    fn fishhook(
         &self,
         vehicle: &VehicleParameters,
         initial: &VehicleState<f64>,
         caveats: &mut Caveats,
     ) -> Result<Option<SteerHistory>, StudyError> {
         if !self.fishhook {
-            let of_file = |file| steer_history(file, self.steering_ratio);
-            return self.steer.as_ref().map(of_file).transpose();
+            return Ok(None);
         }
         let angle_rad = angle_at_third_g_rad(vehicle);
         let ratio = self.steering_ratio.unwrap_or_else(|| {
@@ -164,6 +185,47 @@ fn force_of(
     }
 }
 
+/// Checks that a recording of controls covers the motion that it acts in, and says what of it acts
+/// before or after that and what a check of it finds.
+///
+/// - `acts`: whether something acts at the sample of an index.
+///
+/// # Errors
+/// [`StudyError::ControlsOutside`] if the recording and the motion share no time, or if something acts
+/// before the start alone, as where the clock of a recorder ends at the impact.
+fn covered(
+    file: &SeriesFile,
+    loaded: &Loaded,
+    duration_s: f64,
+    acts: impl Fn(usize) -> bool,
+) -> Result<Vec<Caveat>, StudyError> {
+    let time_s = loaded.series.time_s();
+    let (&start_s, &end_s) = match (time_s.first(), time_s.last()) {
+        (Some(start_s), Some(end_s)) => (start_s, end_s),
+        _ => return Ok(Vec::new()),
+    };
+    let acts_when = |is_when: &dyn Fn(f64) -> bool| {
+        time_s.iter().enumerate().any(|(sample, &at_s)| is_when(at_s) && acts(sample))
+    };
+    let acts_before = acts_when(&|at_s| at_s < -TIME_TOLERANCE_S);
+    let acts_within = acts_when(&|at_s| (-TIME_TOLERANCE_S..=duration_s).contains(&at_s));
+    let acts_after = acts_when(&|at_s| at_s > duration_s);
+    let shares_no_time = end_s <= TIME_TOLERANCE_S || start_s >= duration_s;
+    if shares_no_time || (acts_before && !acts_within) {
+        let (path, shift_s) = (file.path.clone(), -start_s);
+        return Err(StudyError::ControlsOutside { path, start_s, end_s, duration_s, shift_s });
+    }
+    let mut caveats = doubtful_data_caveats(&file.title(), loaded);
+    let reason = format!("the motion begins at 0 s and ends after {duration_s} s");
+    for (is_lost, when) in
+        [(acts_before, "before 0 s".to_owned()), (acts_after, format!("after {duration_s} s"))]
+    {
+        let what = || format!("{}, what acts {when}", file.title());
+        caveats.extend(is_lost.then(|| Caveat::not_used(what(), reason.as_str())));
+    }
+    Ok(caveats)
+}
+
 /// What stands for the steer angle where its recording does not reach.
 fn held_steer(steer: &SteerHistory, duration_s: f64) -> Option<Caveat> {
     let (&start_s, &end_s) = (steer.time_s.first()?, steer.time_s.last()?);
@@ -184,12 +246,12 @@ fn held_steer(steer: &SteerHistory, duration_s: f64) -> Option<Caveat> {
 /// steering wheel over the steering ratio.
 fn steer_history(
     file: &SeriesFile,
+    series: &TimeSeries,
     steering_ratio: Option<f64>,
 ) -> Result<SteerHistory, StudyError> {
     let path = || file.path.clone();
-    let series = read_steer_file(&file.path, file.map.as_ref())?.series;
     let history = |steer_rad| SteerHistory { time_s: series.time_s().to_vec(), steer_rad };
-    let road_wheel = match (series.get(Channel::Steer), front_wheels(&series)) {
+    let road_wheel = match (series.get(Channel::Steer), front_wheels(series)) {
         (Some(steer), _) => Some(steer.to_vec()),
         (None, wheels) => wheels,
     };
@@ -216,15 +278,11 @@ fn front_wheels(series: &TimeSeries) -> Option<Vec<f64>> {
 }
 
 /// The torques of a file over the rolling radius. What it does not record is zero.
-fn wheel_history(
-    file: &SeriesFile,
-    vehicle: &VehicleParameters,
-) -> Result<WheelHistory, StudyError> {
+fn wheel_history(series: &TimeSeries, vehicle: &VehicleParameters) -> WheelHistory {
     const BRAKE: [Channel; 4] =
         [Channel::BrakeFl, Channel::BrakeFr, Channel::BrakeRl, Channel::BrakeRr];
     const DRIVE: [Channel; 4] =
         [Channel::DriveFl, Channel::DriveFr, Channel::DriveRl, Channel::DriveRr];
-    let series = read_wheels_file(&file.path, file.map.as_ref())?.series;
     let radius_m = vehicle.tires.rolling_radius_m;
     let at = |sample: usize| {
         let force_n = |channel| {
@@ -238,5 +296,5 @@ fn wheel_history(
         })
     };
     let wheels = (0..series.n_samples()).map(at).collect();
-    Ok(WheelHistory { time_s: series.time_s().to_vec(), wheels })
+    WheelHistory { time_s: series.time_s().to_vec(), wheels }
 }

@@ -219,6 +219,7 @@ impl Question for SimulateRequest {
                 if let (DatasetKind::Trajectory, Some(_)) = (case.kind, self.friction) {
                     return Err(StudyError::FrictionOfCase { case: case.name.clone() });
                 }
+                caveats.extend(restrictions::doubtful_case_caveats(case));
                 caveats.extend(by_simulation(self, case.kind == DatasetKind::Trajectory));
                 if case.kind == DatasetKind::Force {
                     caveats.extend(contact_height_assumption(case)?);
@@ -230,6 +231,7 @@ impl Question for SimulateRequest {
             MotionSource::Trajectory { file, contact } => {
                 let settings = self.settings(&OpenVehicle::Unknown, None, &mut caveats)?;
                 let loaded = trajectory(library, file)?;
+                caveats.extend(restrictions::doubtful_data_caveats(&file.title(), &loaded));
                 caveats.extend(by_simulation(self, true));
                 let force = recorded_force(&loaded, file)?;
                 if force.is_some() {
@@ -273,9 +275,8 @@ impl Question for SimulateRequest {
         };
         let analysis = analyse(&settings).map_err(failed)?;
         refuse_contact_off_vehicle(&analysis)?;
-        caveats.extend(assumed::estimates(&analysis.vehicle));
         let notes = analysis.notes.iter().map(|text| Caveat::new(CaveatKind::Note, text));
-        caveats.extend(notes);
+        caveats.extend(assumed::estimates(&analysis.vehicle).into_iter().chain(notes));
         let mut report = SimulateReport::new(self, &analysis)
             .map_err(|source| failed(AnalysisError::Series(source)))?;
         report.momentum = momentum;

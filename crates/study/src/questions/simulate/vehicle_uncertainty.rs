@@ -8,7 +8,7 @@ use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::{Sensitivity, VehicleDraws};
 
 use crate::EndState;
-use crate::analysis::{Analysis, AnalysisError, MotionEnd, RestOutcome, Settings};
+use crate::analysis::{Analysis, AnalysisError, MonteCarloError, MotionEnd, RestOutcome, Settings};
 use crate::questions::simulate::report::motion_end;
 
 /// Where and how the motion ends over vehicles that are drawn from the estimates of a data sheet, SI
@@ -34,6 +34,8 @@ pub struct VehicleUncertainty {
     pub second_contact_probability: Option<f64>,
     /// Which estimates the end depends on, the one that moves the end position most first.
     pub sensitivity: Vec<Sensitivity>,
+    /// How much of the intervals is chance, because the vehicle is drawn a limited number of times.
+    pub monte_carlo: Option<MonteCarloError>,
 }
 
 /// How the motion of one drawn vehicle ends.
@@ -75,10 +77,8 @@ pub(crate) fn vehicle_uncertainty(
     let drawn: Vec<Option<DrawnEnd>> = vehicles.into_par_iter().map(end).collect();
     let ends: Vec<Option<EndState>> =
         drawn.iter().map(|drawn| drawn.as_ref().map(|end| end.state)).collect();
-    let rest = || {
-        let ends: Vec<MotionEnd> = drawn.iter().flatten().map(|drawn| drawn.end).collect();
-        RestOutcome::from_ends(&ends, settings.duration_s)
-    };
+    let motion_ends: Vec<MotionEnd> = drawn.iter().flatten().map(|drawn| drawn.end).collect();
+    let rest = || RestOutcome::from_ends(&motion_ends, settings.duration_s);
     let spread = |value: fn(&EndState) -> f64| {
         Estimate::from_draws(ends.iter().flatten().map(value).collect::<Vec<f64>>())
     };
@@ -107,6 +107,7 @@ pub(crate) fn vehicle_uncertainty(
         rest: settings.ends_at_rest.then(rest).flatten(),
         second_contact_probability: central.striking.is_some().then_some(share_met),
         sensitivity,
+        monte_carlo: MonteCarloError::from_ends(&motion_ends, settings.duration_s),
     })
 }
 
