@@ -1,4 +1,8 @@
 //! A run of the sampler on disk, so that it survives being killed.
+//!
+//! ```text
+//! 64 characters: SHA-256 of what follows, hexadecimal | the run, CBOR
+//! ```
 
 use std::path::PathBuf;
 
@@ -6,7 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use super::population::Population;
 use super::{SamplerError, SamplerSettings};
+use impactlab_core::data::write::WriterLock;
 use impactlab_core::data::{Existing, read_bytes, write_atomically};
+use impactlab_core::numerics::sha256_hex;
 use impactlab_core::program;
 
 /// Largest checkpoint that is read, bytes: many times that of the longest run.
@@ -36,9 +42,17 @@ struct Saved<S> {
 }
 
 /// What the file says that it is.
-const KIND: &str = "impactlab reconstruction 2";
+const KIND: &str = "impactlab reconstruction 3";
+
+/// Length of the checksum at the beginning of the file.
+const CHECKSUM_BYTES: usize = 64;
 
 impl SamplerCheckpoint {
+    /// Takes the right to write the file, for as long as the result is held.
+    pub(super) fn claim(&self) -> Result<WriterLock, SamplerError> {
+        Ok(WriterLock::claim_checkpoint(&self.path)?)
+    }
+
     /// The state of the saved run, if it is to be resumed and there is one.
     ///
     /// - `dim`: number of variables of the target.
@@ -52,8 +66,9 @@ impl SamplerCheckpoint {
         }
         let bytes = read_bytes(&self.path, MAX_BYTES)?;
         let bad = |reason: String| SamplerError::Checkpoint { path: self.path.clone(), reason };
+        let content = unsealed(&bytes).map_err(|reason| bad(reason.to_owned()))?;
         let saved: Saved<Population> =
-            ciborium::from_reader(bytes.as_slice()).map_err(|error| bad(error.to_string()))?;
+            ciborium::from_reader(content).map_err(|error| bad(error.to_string()))?;
         let differs = [
             ("kind", saved.kind != KIND),
             ("version of the program", saved.version != program::version()),
@@ -82,8 +97,21 @@ impl SamplerCheckpoint {
             state,
         };
         write_atomically(&self.path, Existing::Replace, |writer| {
-            ciborium::into_writer(&saved, writer).map_err(std::io::Error::other)
+            let mut content = Vec::new();
+            ciborium::into_writer(&saved, &mut content).map_err(std::io::Error::other)?;
+            writer.write_all(sha256_hex([content.as_slice()]).as_bytes())?;
+            writer.write_all(&content)
         })?;
         Ok(())
+    }
+}
+
+/// What stands behind the checksum, if that fits.
+fn unsealed(bytes: &[u8]) -> Result<&[u8], &'static str> {
+    let (checksum, content) =
+        bytes.split_at_checked(CHECKSUM_BYTES).ok_or("it is shorter than its checksum")?;
+    match sha256_hex([content]).as_bytes() == checksum {
+        true => Ok(content),
+        false => Err("it is damaged: its checksum does not fit"),
     }
 }

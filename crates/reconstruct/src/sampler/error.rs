@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use impactlab_core::data::DataError;
+use impactlab_core::data::write::WriteError;
 
 /// A posterior cannot be sampled.
 #[derive(Debug, thiserror::Error)]
@@ -62,6 +63,12 @@ impl SamplerError {
     /// Whether the checkpoint is at fault, and not what is sampled.
     pub fn is_of_checkpoint(&self) -> bool {
         matches!(self, Self::OtherRun { .. } | Self::Checkpoint { .. } | Self::File(_))
+    }
+
+    /// Whether another run, here or in another process, is writing the checkpoint.
+    pub fn is_in_use(&self) -> bool {
+        let Self::File(error) = self else { return false };
+        matches!(**error, DataError::Write(WriteError::InUse { .. }))
     }
 }
 

@@ -66,7 +66,8 @@ const SAVED_GROWTH: f64 = 1.3;
 ///
 /// # Errors
 /// [`SamplerError`] if a setting is outside its range, if the evidence is impossible everywhere, or
-/// if the checkpoint is of another run or cannot be read or written.
+/// if the checkpoint is of another run, is damaged, cannot be read or written, or belongs to another
+/// process.
 pub fn sample(
     target: &(impl Target + ?Sized),
     settings: &SamplerSettings,
@@ -74,6 +75,7 @@ pub fn sample(
     report: &mut dyn FnMut(SamplerReport<'_>) -> ControlFlow<()>,
 ) -> Result<Particles, SamplerError> {
     settings.check()?;
+    let _claim = checkpoint.map(SamplerCheckpoint::claim).transpose()?;
     let saved = match checkpoint {
         Some(checkpoint) => checkpoint.read(settings, target.dim())?,
         None => None,

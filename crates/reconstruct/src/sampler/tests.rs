@@ -237,6 +237,20 @@ fn a_checkpoint_of_another_question_or_of_nothing_is_refused() {
     let other = SamplerSettings { seed: 1, ..settings };
     assert!(message(resume("a", &other, 2)).ends_with("had another seed"));
     assert!(message(resume("a", &settings, 3)).contains("as many finite numbers"));
+    // A bit that has turned over is found wherever it is, and nobody else writes the file meanwhile.
+    let whole = std::fs::read(&path).unwrap();
+    for at in (0..whole.len()).step_by(whole.len() / 50) {
+        let mut flipped = whole.clone();
+        flipped[at] ^= 1 << (at % 8);
+        std::fs::write(&path, flipped).unwrap();
+        let error = message(resume("a", &settings, 2));
+        assert!(error.contains("checksum does not fit"), "byte {at}: {error}");
+    }
+    std::fs::write(&path, &whole).unwrap();
+    let claim = impactlab_core::data::write::WriterLock::lock_file(&path).unwrap();
+    assert!(message(resume("a", &settings, 2)).contains("process"));
+    drop(claim);
+    resume("a", &settings, 2).unwrap();
     std::fs::write(&path, b"no checkpoint").unwrap();
     assert!(message(resume("a", &settings, 2)).contains("cannot be read as the checkpoint"));
 }

@@ -430,6 +430,14 @@ impl StudyError {
             _ => false,
         }
     }
+
+    /// Whether another run is writing the saved run of a reconstruction.
+    pub fn is_checkpoint_in_use(&self) -> bool {
+        match self {
+            Self::Reconstruction { source, .. } => source.is_in_use(),
+            _ => false,
+        }
+    }
 }
 
 macro_rules! boxed {

@@ -5,8 +5,8 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use crate::data::DataError;
-use crate::data::write::WriteError;
 use crate::data::write::temporary::{MARK, is_at};
+use crate::data::write::{Existing, WriteError, check_target};
 
 /// Number of times that a lock file is opened anew because its holder removed it meanwhile.
 const MAX_ATTEMPTS: usize = 100;
@@ -34,6 +34,16 @@ impl WriterLock {
         let name = target.file_name().unwrap_or_default().to_string_lossy();
         let path = target.with_file_name(format!(".{name}.{MARK}-lock"));
         Ok(Self::take(path, target)?)
+    }
+
+    /// Takes the right to replace a file again and again while a long computation goes on, and says before
+    /// it begins what stands in the way.
+    ///
+    /// # Errors
+    /// As for [`check_target`] and [`WriterLock::lock_file`].
+    pub fn claim_checkpoint(target: &Path) -> Result<Self, DataError> {
+        check_target(target, Existing::Replace)?;
+        Self::lock_file(target)
     }
 
     /// Takes the lock of a folder, which must exist. The lock file is in it.

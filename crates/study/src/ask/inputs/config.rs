@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::{BadCases, StudyError};
 use impactlab_core::data::write::WriterLock;
-use impactlab_core::data::{Existing, check_target};
 
 /// Where the settings of a training come from.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -63,8 +62,7 @@ impl TrainingOptions {
     /// written.
     pub(crate) fn claim(&self) -> Result<Option<WriterLock>, StudyError> {
         let Some(path) = &self.checkpoint else { return Ok(None) };
-        check_target(path, Existing::Replace)?;
-        let lock = WriterLock::lock_file(path)?;
+        let lock = WriterLock::claim_checkpoint(path)?;
         if path.exists() && !self.resume && !self.overwrite {
             return Err(StudyError::TrainingExists { path: path.clone() });
         }
