@@ -126,6 +126,7 @@ fn options_out_of_range_are_wrong_usage() {
         (EVALUATE, "--cross-validate=2000000000", "folds is 2e9, expected 2 to 1000"),
         (TRAIN, "--epochs=0", "epochs is 0, expected 1 to 100000"),
         (IMPACT, "--size=99999x99999", "picture side is 99999, expected 16 to 16384"),
+        (IMPACT, "--size=16384x16384", "expected 256 to 4e7"),
         (IMPACT, "--scale=nan", "expected a number"),
     ] {
         let args: Vec<&str> = command.split(' ').chain([option]).collect();

@@ -218,6 +218,65 @@ fn a_workbook_that_unpacks_to_too_much_is_refused_before_it_is_read() {
     assert!(matches!(error, DataError::TooLarge { .. }), "{error}");
 }
 
+/// A workbook of one sheet with these rows and, if there are any, shared texts.
+fn raw_workbook(rows: &str, texts: &str) -> Vec<u8> {
+    let main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
+    let relations = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
+    let sheet = format!(r#"<worksheet xmlns="{main}"><sheetData>{rows}</sheetData></worksheet>"#);
+    let book = format!(
+        r#"<workbook xmlns="{main}" xmlns:r="{relations}"><sheets><sheet name="S" sheetId="1" r:id="rId1"/></sheets></workbook>"#
+    );
+    let links = format!(
+        r#"<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="rId1" Type="{relations}/worksheet" Target="worksheets/sheet1.xml"/></Relationships>"#
+    );
+    archive(&[
+        ("xl/worksheets/sheet1.xml", &sheet),
+        ("xl/sharedStrings.xml", texts),
+        ("xl/workbook.xml", &book),
+        ("xl/_rels/workbook.xml.rels", &links),
+        LINKS,
+    ])
+}
+
+#[test]
+fn what_a_workbook_says_of_its_size_takes_no_memory() {
+    let cell = |place: &str| format!(r#"<c r="{place}"><v>1</v></c>"#);
+    let row = |at: &str| format!(r#"<row r="{at}">{}</row>"#, cell(&format!("A{at}")));
+    let texts = |count: &str| format!(r#"<sst uniqueCount="{count}"><si><t>t</t></si></sst>"#);
+    let folder = tempfile::tempdir().unwrap();
+    let message = |rows: &str, texts: &str| {
+        let path = file(folder.path(), "f.xlsx", raw_workbook(rows, texts));
+        read_any_series(&path, None).unwrap_err().to_string()
+    };
+    let (first, few) = (row("1"), texts("1"));
+    for at in ["1048577", "4294967295", "4294967294"] {
+        let error = message(&(first.clone() + &row(at)), &few);
+        assert!(
+            error.contains(&format!("has a row {at}, expected 1048576 at the most")),
+            "{error}"
+        );
+    }
+    for count in ["2000001", "4000000000", " +4000000000", "99999999999999999999999"] {
+        let error = message(&first, &texts(count));
+        assert!(error.contains("texts, expected 2000000 at the most"), "{count}: {error}");
+    }
+    // A number without meaning is read over, as other programs do.
+    for count in ["", "many", "2000000"] {
+        let error = message(&first, &texts(count));
+        assert!(!error.contains("cannot be read"), "{count}: {error}");
+    }
+    let styles = format!("<styleSheet>{}</styleSheet>", "<xf/>".repeat(500_001));
+    let parts = [("xl/workbook.xml", "<workbook/>"), ("xl/styles.xml", styles.as_str())];
+    let path = file(folder.path(), "s.xlsx", archive(&parts));
+    let error = read_any_series(&path, None).unwrap_err().to_string();
+    assert!(error.contains("have more than 500000 elements"), "{error}");
+    // Which of two numbers stands in a cell cannot be told.
+    for rows in [row("2") + &row("1"), format!("<row r=\"1\">{0}{0}</row>", cell("A1"))] {
+        let error = message(&rows, &few);
+        assert!(error.contains("row 1 of sheet \"S\" has cells out of order"), "{error}");
+    }
+}
+
 #[test]
 fn what_is_recognised_but_not_read_is_said_by_its_name() {
     let rcforc = "  legend\n     1 bumper to door\n  end of legend\n\n slave         1  time  0.00000E+00   x  1.0000E+00   y  2.0000E+00   z  0.0000E+00   mass  0.0000E+00\n master        1  time  0.00000E+00   x -1.0000E+00   y -2.0000E+00   z  0.0000E+00   mass  0.0000E+00\n";

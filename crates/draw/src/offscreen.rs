@@ -7,7 +7,7 @@ use image::RgbaImage;
 
 use crate::{SoftwareRenderer, picture_ui, theme};
 use impactlab_core::data::{DataError, Existing, write_atomically};
-use impactlab_core::ranges::{OutOfRange, PICTURE_SIDE};
+use impactlab_core::ranges::{OutOfRange, PICTURE_PIXELS, PICTURE_SIDE};
 use impactlab_document::figure::Figure;
 
 /// Number of passes after which fonts, plot bounds and layout no longer change.
@@ -16,7 +16,7 @@ const SETTLING_PASSES: usize = 4;
 /// Size, scale and theme of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Canvas {
-    /// Width and height, pixels, each in [`PICTURE_SIDE`].
+    /// Width and height, pixels, each in [`PICTURE_SIDE`], and their product in [`PICTURE_PIXELS`].
     pub size_px: [u32; 2],
     /// Pixels per point; 2 is suitable for print and slides.
     pub scale: f32,
@@ -27,6 +27,20 @@ pub struct Canvas {
 impl Default for Canvas {
     fn default() -> Self {
         Self { size_px: [1600, 1000], scale: 2.0, dark: false }
+    }
+}
+
+impl Canvas {
+    /// Checks the size, before anything is allocated for it.
+    ///
+    /// # Errors
+    /// [`OutOfRange`].
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        let [width, height] = self.size_px.map(u64::from);
+        PICTURE_SIDE.check_count(width)?;
+        PICTURE_SIDE.check_count(height)?;
+        PICTURE_PIXELS.check_count(width * height)?;
+        Ok(())
     }
 }
 
@@ -44,14 +58,13 @@ pub enum RenderError {
 /// Draws any user interface off screen on the CPU, which gives the same pixels on every machine.
 ///
 /// # Errors
-/// [`RenderError::Size`] for a width or height outside [`PICTURE_SIDE`].
+/// [`RenderError::Size`] for a size that [`Canvas::check`] refuses.
 pub fn draw_offscreen(
     canvas: Canvas,
     mut ui: impl FnMut(&mut Ui),
 ) -> Result<RgbaImage, RenderError> {
+    canvas.check()?;
     let [width, height] = canvas.size_px;
-    PICTURE_SIDE.check_count(u64::from(width))?;
-    PICTURE_SIDE.check_count(u64::from(height))?;
     let context = Context::default();
     context.set_visuals(theme::visuals(canvas.dark));
     let mut renderer = SoftwareRenderer::default();
@@ -80,7 +93,7 @@ pub fn draw_offscreen(
 /// Draws a figure below its title and above what restricts it ([`picture_ui`]).
 ///
 /// # Errors
-/// [`RenderError::Size`] for a width or height outside [`PICTURE_SIDE`].
+/// [`RenderError::Size`] for a size that [`Canvas::check`] refuses.
 pub fn figure_image(figure: &Figure, canvas: Canvas) -> Result<RgbaImage, RenderError> {
     draw_offscreen(canvas, |ui| {
         let frame = egui::Frame::new().inner_margin(12.0);

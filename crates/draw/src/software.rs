@@ -64,9 +64,12 @@ impl SoftwareRenderer {
     ) -> RgbaImage {
         let mut image = ColorImage::filled([width as usize, height as usize], background);
         self.draw_over(primitives, pixels_per_point, &mut image);
-        let opaque = |color: Color32| [color.r(), color.g(), color.b(), 255];
-        let bytes: Vec<u8> = image.pixels.into_iter().flat_map(opaque).collect();
-        RgbaImage::from_raw(width, height, bytes).unwrap_or_default()
+        let opaque = |color: &Color32| image::Rgba([color.r(), color.g(), color.b(), 255]);
+        let mut drawn = RgbaImage::new(width, height);
+        for (pixel, color) in drawn.pixels_mut().zip(&image.pixels) {
+            *pixel = opaque(color);
+        }
+        drawn
     }
 
     /// Draws a frame over an image of the same size, whose pixels are opaque and stay so.

@@ -1,8 +1,8 @@
 //! Numbers with units as arguments: `20`, `72km/h`, `30deg/s`.
 
 use impactlab_core::ranges::{
-    CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, FILM_SPEED, INSTANT, OutOfRange, PICTURE_SIDE, Range,
-    WINDOW,
+    CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, FILM_SPEED, INSTANT, OutOfRange, PICTURE_PIXELS,
+    PICTURE_SIDE, Range, WINDOW,
 };
 use impactlab_core::units::Quantity;
 use impactlab_core::vehicle::ContactPoint;
@@ -91,7 +91,9 @@ pub(in crate::cli) fn size_px(text: &str) -> Result<[u32; 2], QuantityError> {
         PICTURE_SIDE.check_count(u64::from(side))?;
         Ok(side)
     };
-    Ok([side(width)?, side(height)?])
+    let size = [side(width)?, side(height)?];
+    PICTURE_PIXELS.check_count(u64::from(size[0]) * u64::from(size[1]))?;
+    Ok(size)
 }
 
 /// A part of a film at a speed of its own, s unless it says otherwise: `0.2..0.6=0.1`.

@@ -8,6 +8,16 @@ pub const MAX_TABLE_BYTES: u64 = 256 << 20;
 /// Bytes of an Excel workbook. What is in it may have the size of a table when it is unpacked.
 pub const MAX_WORKBOOK_BYTES: u64 = 64 << 20;
 
+/// Rows of a sheet of a workbook, as many as Excel has.
+pub const MAX_SHEET_ROWS: u32 = 1 << 20;
+
+/// Texts of the cells of a workbook that it says it has.
+pub const MAX_WORKBOOK_TEXTS: u64 = 2_000_000;
+
+/// XML elements in which a workbook has its texts, and its styles. A style takes some 300 bytes.
+pub const MAX_TEXT_ELEMENTS: u64 = 16_000_000;
+pub const MAX_STYLE_ELEMENTS: u64 = 500_000;
+
 /// Bytes of a table of cases, `cases.csv`.
 pub const MAX_CASES_BYTES: u64 = 16 << 20;
 
@@ -41,14 +51,19 @@ pub const MAX_MODEL_BYTES: u64 = 256 << 20;
 /// Bytes of an orthophoto.
 pub const MAX_PICTURE_BYTES: u64 = 1 << 30;
 
-/// Pixels of an orthophoto: 4 bytes each in memory, and a third more for its smaller copies.
-pub const MAX_PICTURE_PIXELS: u64 = 128 << 20;
+/// Pixels of an orthophoto. One takes 12 bytes of memory at the most while the picture is decoded, and some
+/// 5 bytes after that.
+pub const MAX_PICTURE_PIXELS: u64 = 64 << 20;
 
 /// Pixels of a side of an orthophoto.
 pub const MAX_PICTURE_SIDE: u32 = 65_535;
 
 /// Bytes of a drawing.
 pub const MAX_DRAWING_BYTES: u64 = 64 << 20;
+
+/// Objects of a drawing, each of which takes some 2 kB of memory while it is read. Drawing programs write
+/// 200 bytes for one, so that no file of theirs below [`MAX_DRAWING_BYTES`] has as many.
+pub const MAX_DRAWING_OBJECTS: usize = 400_000;
 
 /// Points of the lines of a drawing.
 pub const MAX_DRAWING_POINTS: usize = 2_000_000;

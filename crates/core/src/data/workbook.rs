@@ -3,15 +3,20 @@
 //! column of the sheet.
 //!
 //! A workbook is an archive, and a small one may unpack to any size. It is unpacked once and counted
-//! before anything in it is read, and the text is limited as that of any table.
+//! before anything in it is read, what it says of its own size is checked before anything is allocated by
+//! it, and the text is limited as that of any table.
 
-use std::io::{Cursor, Read};
+use std::io::{BufReader, Cursor, Read};
 use std::path::Path;
 
 use calamine::{CellErrorType, DataRef, Reader, Xlsx};
+use quick_xml::events::{BytesStart, Event};
 use zip::ZipArchive;
 
-use crate::data::budget::{MAX_COLUMNS, MAX_TABLE_BYTES, MAX_WORKBOOK_BYTES};
+use crate::data::budget::{
+    MAX_COLUMNS, MAX_SHEET_ROWS, MAX_STYLE_ELEMENTS, MAX_TABLE_BYTES, MAX_TEXT_ELEMENTS,
+    MAX_WORKBOOK_BYTES, MAX_WORKBOOK_TEXTS,
+};
 use crate::data::foreign::other;
 use crate::data::text::Text;
 use crate::data::{DataError, SheetRef, open_file, read_bytes};
@@ -109,11 +114,69 @@ fn check_archive(path: &Path, bytes: &[u8]) -> Result<(), DataError> {
     let mut left = MAX_TABLE_BYTES;
     for idx in 0..archive.len() {
         let part = archive.by_index(idx).map_err(|error| damaged(error.to_string()))?;
-        let unpacked = std::io::copy(&mut part.take(left + 1), &mut std::io::sink());
-        let unpacked = unpacked.map_err(|error| damaged(error.to_string()))?;
-        left = left.checked_sub(unpacked).ok_or_else(|| too_large(path))?;
+        let name = part.name().map_err(|error| damaged(error.to_string()))?.to_ascii_lowercase();
+        let mut part = part.take(left + 1);
+        if let Some(limit) = max_elements(&name) {
+            check_elements(&mut part, limit).map_err(damaged)?;
+        }
+        std::io::copy(&mut part, &mut std::io::sink())
+            .map_err(|error| damaged(error.to_string()))?;
+        left = part.limit().checked_sub(1).ok_or_else(|| too_large(path))?;
     }
     Ok(())
+}
+
+/// The most elements of a part of a workbook that is held in memory, element by element.
+///
+/// - `name`: of the part, in small letters.
+fn max_elements(name: &str) -> Option<u64> {
+    match () {
+        () if name.ends_with("sharedstrings.xml") => Some(MAX_TEXT_ELEMENTS),
+        () if name.ends_with("styles.xml") => Some(MAX_STYLE_ELEMENTS),
+        () => None,
+    }
+}
+
+/// Counts the elements of a part, and checks the number of texts for which memory is set aside at once.
+/// Whatever else is wrong with it is found when it is read.
+fn check_elements(part: &mut impl Read, limit: u64) -> Result<(), String> {
+    let mut xml = quick_xml::Reader::from_reader(BufReader::new(part));
+    xml.config_mut().check_end_names = false;
+    let (mut n, mut buffer) = (0, Vec::new());
+    loop {
+        buffer.clear();
+        match xml.read_event_into(&mut buffer) {
+            Ok(Event::Start(element) | Event::Empty(element)) => {
+                n += 1;
+                let n_texts = stated_texts(&element);
+                if n_texts > MAX_WORKBOOK_TEXTS {
+                    return Err(format!(
+                        "it says that it has {n_texts} texts, expected {MAX_WORKBOOK_TEXTS} at the most"
+                    ));
+                }
+                if n > limit {
+                    return Err(format!(
+                        "its texts or styles have more than {limit} elements, expected fewer"
+                    ));
+                }
+            }
+            Ok(Event::Eof) | Err(_) => return Ok(()),
+            Ok(_) => {}
+        }
+    }
+}
+
+/// How many texts an element says that there are, the largest number if it says several.
+fn stated_texts(element: &BytesStart<'_>) -> u64 {
+    let is_digit = |c: char| c.is_ascii_digit();
+    let stated = element.attributes_raw().split("uniqueCount").skip(1);
+    let number = |text: &str| {
+        let digits = &text[text.find(is_digit)?..];
+        let end = digits.find(|c| !is_digit(c)).unwrap_or(digits.len());
+        // More digits than a number can have are too many texts, too.
+        Some(digits[..end].parse().unwrap_or(u64::MAX))
+    };
+    stated.filter_map(number).max().unwrap_or(0)
 }
 
 /// The error for a workbook that unpacks to more than is read; how much more is not found out.
@@ -135,12 +198,24 @@ fn sheet_text(
     let mut cells = workbook.worksheet_cells_reader(name).map_err(damaged)?;
     let (mut text, mut row, mut column, mut width) = (String::new(), 0, 0, 0);
     let mut widths = Vec::new();
+    let mut before = None;
     while let Some(cell) = cells.next_cell().map_err(damaged)? {
         let (at_row, at_column) = cell.get_position();
         let shown = shown(cell.get_value());
-        if shown.is_empty() || at_row < row || (at_row == row && at_column < column) {
+        if shown.is_empty() {
             continue;
         }
+        if before.is_some_and(|before| before >= (at_row, at_column)) {
+            let why = format!("row {} of sheet {name:?} has cells out of order", at_row + 1);
+            return Err(DataError::Workbook { path: path.to_owned(), why });
+        }
+        if at_row >= MAX_SHEET_ROWS {
+            let got = u64::from(at_row) + 1;
+            let why =
+                format!("sheet {name:?} has a row {got}, expected {MAX_SHEET_ROWS} at the most");
+            return Err(DataError::Workbook { path: path.to_owned(), why });
+        }
+        before = Some((at_row, at_column));
         if at_column as usize >= MAX_COLUMNS {
             let (path, line) = (path.to_owned(), u64::from(at_row) + 1);
             let (got, limit) = (at_column as usize + 1, MAX_COLUMNS);

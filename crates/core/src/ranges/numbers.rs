@@ -279,6 +279,8 @@ ranges! {
     /// Pictures.
     PICTURES = "pictures";
     PICTURE_SIDE: "picture side" = whole([16, 16_384]), "width or height of a picture in pixels";
+    PICTURE_PIXELS: "pixels of a picture" = whole([256, 40_000_000]),
+        "width times height; as many take 1 GB of memory while they are drawn";
     PICTURE_SCALE: "picture scale" = real(Quantity::Ratio, [0.25, 8.0]), "pixels per point";
     CAMERA_AZIMUTH: "camera azimuth" = real(Quantity::Angle, [-2.0 * PI, 2.0 * PI]),
         "direction from the scene to the camera, counter-clockwise from X";

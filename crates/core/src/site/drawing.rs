@@ -12,12 +12,16 @@ use dxf::entities::{Entity, EntityType};
 use dxf::enums::Units;
 use dxf::{Point, Vector};
 
-use crate::data::{MAX_DRAWING_BYTES, MAX_DRAWING_POINTS, read_bytes};
+use crate::data::{MAX_DRAWING_BYTES, MAX_DRAWING_OBJECTS, MAX_DRAWING_POINTS, read_bytes};
 use crate::ranges::SURVEY_COORDINATE;
 use crate::site::drawing_curves::{arc, bulged, spline};
 use crate::site::frozen_layers::frozen_layers;
 use crate::site::parts::{extent_of, extent_text};
 use crate::site::{DrawingFile, LengthUnit, SiteError, SiteOrigin};
+
+/// What the first line of a binary drawing has, and that of a format that drawings are not read in.
+const BINARY: &[u8] = b"AutoCAD Binary DXF";
+const OTHER_FORMAT: &[u8] = b"AutoCAD DXB";
 
 /// Blocks within blocks, at most.
 const MAX_DEPTH: usize = 8;
@@ -88,6 +92,14 @@ pub fn read_drawing(file: &DrawingFile, origin: &SiteOrigin) -> Result<Drawing, 
     let path = file.file.as_path();
     let wrong = |message: String| SiteError::Drawing { path: path.to_owned(), message };
     let bytes = read_bytes(path, MAX_DRAWING_BYTES)?;
+    if first_line_has(&bytes, OTHER_FORMAT) {
+        return Err(wrong("it is a DXB file; save it as DXF".to_owned()));
+    }
+    let got = count_objects(&bytes);
+    if got > MAX_DRAWING_OBJECTS {
+        let (path, limit) = (path.to_owned(), MAX_DRAWING_OBJECTS);
+        return Err(SiteError::TooManyObjects { path, got, limit });
+    }
     // The reader may panic where a file is damaged.
     let loaded = catch_unwind(AssertUnwindSafe(|| dxf::Drawing::load(&mut bytes.as_slice())));
     let drawing = match loaded {
@@ -123,6 +135,25 @@ pub fn read_drawing(file: &DrawingFile, origin: &SiteOrigin) -> Result<Drawing, 
         *point = origin.site_from_survey(survey_m);
     }
     Ok(found)
+}
+
+/// Number of objects in the text or the bytes of a drawing, before any of them is read: each begins with the
+/// group code 0. It may be a few too many.
+fn count_objects(bytes: &[u8]) -> usize {
+    if first_line_has(bytes, BINARY) {
+        let is_object = |at: &[u8]| at[..2] == [0, 0] && at[2].is_ascii_uppercase();
+        return bytes.windows(3).filter(|at| is_object(at)).count();
+    }
+    let is_code_0 = |line: &&[u8]| {
+        let mut digits = line.iter().filter(|byte| byte.is_ascii_alphanumeric()).peekable();
+        digits.peek().is_some() && digits.all(|digit| *digit == b'0')
+    };
+    bytes.split(|byte| *byte == b'\n').step_by(2).filter(is_code_0).count()
+}
+
+fn first_line_has(bytes: &[u8], words: &[u8]) -> bool {
+    let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
+    line.windows(words.len()).any(|part| part == words)
 }
 
 /// Name and length of the unit that a drawing states, m; `None` if it states none, or one that no drawing

@@ -180,3 +180,31 @@ fn a_damaged_drawing_is_an_error() {
         }
     }
 }
+
+#[test]
+fn a_drawing_of_too_many_objects_is_refused_before_it_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("many.dxf");
+    let message = |content: Vec<u8>| {
+        std::fs::write(&file, content).unwrap();
+        let unit = Some(LengthUnit::Metre);
+        let drawing_file = DrawingFile { file: file.clone(), unit, layers: None };
+        read_drawing(&drawing_file, &SiteOrigin::default()).unwrap_err().to_string()
+    };
+    let mut binary = b"AutoCAD Binary DXF\r\n\x1a\0".to_vec();
+    binary.extend(b"\0\0POINT\0".repeat(400_001));
+    for content in [
+        b"0\nP\n".repeat(400_001),
+        b" 00\r\nP\r\n".repeat(400_001),
+        [&b"\xef\xbb\xbf999\nx\n"[..], &b"0\nP\n".repeat(400_001)].concat(),
+        binary,
+    ] {
+        let error = message(content);
+        assert!(error.contains("many.dxf: has 400001 objects, expected at most 400000"), "{error}");
+    }
+    // Values are no objects.
+    let error = message(b"70\n0\n".repeat(400_001));
+    assert!(error.contains("cannot be read as a DXF drawing"), "{error}");
+    let error = message(b"AutoCAD DXB 1.0\r\n\x1a\0".to_vec());
+    assert!(error.contains("it is a DXB file; save it as DXF"), "{error}");
+}

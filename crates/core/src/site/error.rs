@@ -47,8 +47,8 @@ pub enum SiteError {
     },
     /// An orthophoto is too large.
     #[error(
-        "{}: has {} x {} pixels, expected at most {limit} in all and {side} on a side; cut it to the \
-         scene or halve its resolution",
+        "{}: has {} x {} pixels, expected at most {limit} in all, which take up to 0.8 GB of memory, and \
+         {side} on a side; cut it to the scene or halve its resolution",
         path.display(), size_px[0], size_px[1]
     )]
     TooManyPixels {
@@ -102,6 +102,20 @@ pub enum SiteError {
         layer: String,
         /// The layers that have lines.
         known: Vec<String>,
+    },
+    /// A drawing has too many objects.
+    #[error(
+        "{}: has {got} objects, expected at most {limit}, which take 1 GB of memory; leave out what the \
+         scene does not need",
+        path.display()
+    )]
+    TooManyObjects {
+        /// The drawing.
+        path: PathBuf,
+        /// Number of its objects.
+        got: usize,
+        /// The largest permitted number of objects.
+        limit: usize,
     },
     /// A drawing has too many points.
     #[error("{}: has more than {limit} points; name the layers that are wanted", path.display())]

@@ -124,24 +124,25 @@ mod tests {
 
     #[test]
     fn a_huge_picture_is_refused_by_its_header() {
-        // A PNG of 100 000 x 100 000 pixels in 60 bytes: nothing is allocated for them.
-        let mut header = b"IHDR".to_vec();
-        header.extend(100_000_u32.to_be_bytes());
-        header.extend(100_000_u32.to_be_bytes());
-        header.extend([8, 6, 0, 0, 0]);
-        let mut bytes = b"\x89PNG\r\n\x1a\n\0\0\0\x0d".to_vec();
-        bytes.extend(&header);
-        bytes.extend(crc32(&header).to_be_bytes());
-        bytes.extend(b"\0\0\0\0IDAT\x35\xaf\x06\x1e");
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("huge.png");
-        std::fs::write(&path, bytes).unwrap();
-        for error in [picture_size_px(&path).unwrap_err(), read_picture(&path).unwrap_err()] {
-            let text = error.to_string();
-            assert!(
-                text.contains("huge.png: has 100000 x 100000 pixels, expected at most"),
-                "{text}"
-            );
+        for [width, height] in [[100_000_u32, 100_000], [8193, 8192], [70_000, 1]] {
+            // A PNG of as many pixels in 60 bytes: nothing is allocated for them.
+            let mut header = b"IHDR".to_vec();
+            header.extend(width.to_be_bytes());
+            header.extend(height.to_be_bytes());
+            header.extend([8, 6, 0, 0, 0]);
+            let mut bytes = b"\x89PNG\r\n\x1a\n\0\0\0\x0d".to_vec();
+            bytes.extend(&header);
+            bytes.extend(crc32(&header).to_be_bytes());
+            bytes.extend(b"\0\0\0\0IDAT\x35\xaf\x06\x1e");
+            std::fs::write(&path, bytes).unwrap();
+            for error in [picture_size_px(&path).unwrap_err(), read_picture(&path).unwrap_err()] {
+                let text = error.to_string();
+                let expected =
+                    format!("huge.png: has {width} x {height} pixels, expected at most 67108864");
+                assert!(text.contains(&expected), "{text}");
+            }
         }
     }
 

@@ -5,7 +5,7 @@ use egui::{Color32, ColorImage, Context, Pos2, RawInput, Rect, TexturesDelta, Ve
 use crate::caveats::framed_ui;
 use crate::scene::{ScenePicture, SceneView, scene_view_ui};
 use crate::{Canvas, SoftwareRenderer, theme};
-use impactlab_core::ranges::{OutOfRange, PICTURE_SIDE};
+use impactlab_core::ranges::OutOfRange;
 
 /// Passes after which fonts and layout of the first frame no longer change.
 const SETTLING_PASSES: usize = 4;
@@ -27,11 +27,9 @@ impl FrameRenderer {
     /// A renderer of pictures of a size.
     ///
     /// # Errors
-    /// [`OutOfRange`] for a width or height outside [`PICTURE_SIDE`].
+    /// [`OutOfRange`] for a size that [`Canvas::check`] refuses.
     pub fn new(canvas: Canvas) -> Result<Self, OutOfRange> {
-        for side in canvas.size_px {
-            PICTURE_SIDE.check_count(u64::from(side))?;
-        }
+        canvas.check()?;
         let context = Context::default();
         context.set_visuals(theme::visuals(canvas.dark));
         let size = canvas.size_px.map(|side| side as usize);
