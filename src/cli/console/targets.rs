@@ -1,6 +1,7 @@
 //! What a command is going to write, and what it has read by then: a file that is read is never
 //! replaced, and a folder of results says what they were made from.
 
+use std::collections::HashSet;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -18,6 +19,8 @@ pub(in crate::cli) struct Targets {
     record: RunRecord,
     /// Everything that was read for the folder.
     read: Vec<PathBuf>,
+    /// The files whose content stands in the record.
+    digested: HashSet<PathBuf>,
 }
 
 impl Targets {
@@ -86,10 +89,9 @@ impl Targets {
     /// Adds the content of files. One that cannot be read is left out: the question that names it says
     /// why.
     fn digest(&mut self, files: &[PathBuf]) {
-        for path in files {
+        for path in files.iter().filter(|path| self.digested.insert((*path).clone())) {
             let digest = FileDigest::from_file(path.to_string_lossy(), path).ok();
-            let inputs = &mut self.record.inputs;
-            inputs.extend(digest.filter(|of| !inputs.contains(of)));
+            self.record.inputs.extend(digest);
         }
     }
 }

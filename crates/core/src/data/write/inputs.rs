@@ -13,7 +13,9 @@ use crate::data::write::WriteError;
 /// # Errors
 /// [`WriteError::IsInput`] within [`DataError::Write`].
 pub fn check_inputs(target: &Path, inputs: &[PathBuf]) -> Result<(), DataError> {
-    match inputs.iter().find(|input| is_same_file(target, input)) {
+    // Of a file that is not there, none of the many inputs is looked at.
+    let Some(identity) = identity(target) else { return Ok(()) };
+    match inputs.iter().find(|input| self::identity(input).as_ref() == Some(&identity)) {
         None => Ok(()),
         Some(input) => {
             let (path, input) = (target.to_owned(), input.clone());
@@ -22,20 +24,17 @@ pub fn check_inputs(target: &Path, inputs: &[PathBuf]) -> Result<(), DataError> 
     }
 }
 
-/// Whether two paths lead to the same file; of a file that is not there, no.
-fn is_same_file(a: &Path, b: &Path) -> bool {
-    let (Ok(of_a), Ok(of_b)) = (fs::metadata(a), fs::metadata(b)) else { return false };
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt;
-        (of_a.dev(), of_a.ino()) == (of_b.dev(), of_b.ino())
-    }
-    #[cfg(not(unix))]
-    {
-        let _ = (of_a, of_b);
-        let canonical = |path: &Path| fs::canonicalize(path).ok();
-        canonical(a).is_some_and(|a| canonical(b) == Some(a))
-    }
+/// What a file is known by, whatever path leads to it; `None` if there is none.
+#[cfg(unix)]
+fn identity(path: &Path) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    let metadata = fs::metadata(path).ok()?;
+    Some((metadata.dev(), metadata.ino()))
+}
+
+#[cfg(not(unix))]
+fn identity(path: &Path) -> Option<PathBuf> {
+    fs::canonicalize(path).ok()
 }
 
 #[cfg(test)]
