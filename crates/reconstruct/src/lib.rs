@@ -51,5 +51,7 @@ pub use latent::{
 };
 pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
 pub use modes::{ParticleMode, cluster_keys, modes_by};
-pub use posterior::{BudgetItem, Mode, Posterior, QuantityEstimate, ReconstructedQuantity};
+pub use posterior::{
+    BudgetItem, LEAST_ESS_FOR_INTERVALS, Mode, Posterior, QuantityEstimate, ReconstructedQuantity,
+};
 pub use prior::{Prior, PriorComponent, PriorSource};

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::sampler::Particles;
-use impactlab_core::numerics::{ClusterError, Clusters};
+use impactlab_core::numerics::{ClusterError, Clusters, share_standard_error};
 
 /// Mean silhouette from which clusters count as separate. One normal distribution that is cut into
 /// pieces stays below it.
@@ -19,7 +19,8 @@ pub struct ParticleMode<K> {
     pub key: K,
     /// Its share of the particles, 0 to 1.
     pub probability: f64,
-    /// Standard error of the probability, from how often each draw is among the particles.
+    /// Standard error of the probability, from how often each draw is among the particles. It is not
+    /// nothing where all of them are of this kind.
     pub standard_error: f64,
     /// Indices of its particles.
     pub members: Vec<usize>,
@@ -42,9 +43,9 @@ pub fn modes_by<K: Ord + Clone>(
         let mut indicator = vec![0.0; n];
         members.iter().for_each(|idx| indicator[*idx] = 1.0);
         let probability = members.len() as f64 / n as f64;
-        let variance = probability * (1.0 - probability);
         let ess = particles.effective_sample_size(&indicator);
-        let standard_error = ess.map_or(0.0, |ess| (variance / ess).sqrt());
+        let ess = ess.unwrap_or_else(|| particles.effective_draws());
+        let standard_error = share_standard_error(probability, ess);
         ParticleMode { key, probability, standard_error, members }
     };
     let mut modes: Vec<ParticleMode<K>> = members.into_iter().map(mode).collect();
@@ -103,6 +104,9 @@ mod tests {
         let rows: Vec<Vec<f64>> = particles.z.iter().map(|z| z[..2].to_vec()).collect();
         assert!(cluster_keys(&rows, 0).unwrap().iter().all(|cluster| *cluster == 0));
         let all = modes_by(&particles, |_| "all");
-        assert_eq!((all[0].probability, all[0].standard_error), (1.0, 0.0));
+        assert_eq!(all[0].probability, 1.0);
+        // Something that happens in none of 1000 independent draws may have a probability of 0.3 %.
+        let error = all[0].standard_error;
+        assert!((0.001..0.003).contains(&error), "{error}");
     }
 }

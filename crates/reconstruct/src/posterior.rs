@@ -92,7 +92,12 @@ impl ReconstructedQuantity {
 /// Levels of the intervals of a quantity.
 pub(crate) const LEVELS: [f64; 4] = [0.5, 0.8, 0.9, 0.95];
 
-/// A quantity with its intervals, which leave out as much below as above.
+/// Independent particles that an interval needs: five of these then lie beyond each end of the interval
+/// of 90 %. With fewer the ends are those of single particles.
+pub const LEAST_ESS_FOR_INTERVALS: f64 = 100.0;
+
+/// A quantity with its intervals, which leave out as much below as above; without any where too few
+/// particles are known of it.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(into = "WrittenEstimate")]
 pub struct QuantityEstimate {
@@ -178,6 +183,8 @@ pub struct Posterior {
     pub values: Vec<LatentValues>,
     /// The impact of each particle.
     pub impacts: Vec<ImpactState>,
+    /// Independent particles that all of them are worth; none if they are not of the posterior.
+    pub ess: f64,
 }
 
 /// Smallest probability of a mode that is told.
@@ -189,16 +196,22 @@ const FIT_PARTICLES: usize = 300;
 impl Posterior {
     /// What follows from particles.
     pub fn new(struck: &ReconstructionTarget, particles: &Particles) -> Self {
-        Self::from_points(struck.model(), &particles.z)
+        let ess = if particles.is_posterior() { particles.ess } else { 0.0 };
+        Self { ess, ..Self::from_points(struck.model(), &particles.z) }
     }
 
-    /// What follows from points.
+    /// What follows from independent points.
     ///
     /// - `z`: standard normal variables of each point, `[n][dim]`.
     pub fn from_points(model: &ForwardModel, z: &[Vec<f64>]) -> Self {
         let values: Vec<LatentValues> = z.iter().map(|z| model.prior().values(z)).collect();
         let impacts = values.iter().map(|values| model.impact(values)).collect();
-        Self { values, impacts }
+        Self { ess: values.len() as f64, values, impacts }
+    }
+
+    /// Whether there are enough particles for intervals.
+    pub fn has_intervals(&self) -> bool {
+        self.ess >= LEAST_ESS_FOR_INTERVALS
     }
 
     /// Values of a quantity, one for each particle.
@@ -207,8 +220,11 @@ impl Posterior {
     }
 
     /// The interval that holds 90 % of a quantity that the motion depends on; `None` where the case does
-    /// not have it.
+    /// not have it, or with too few particles.
     pub fn interval_90_of(&self, latent: Latent) -> Option<[f64; 2]> {
+        if !self.has_intervals() {
+            return None;
+        }
         let mut values: Vec<f64> = self.values.iter().map(|values| values.get(latent)).collect();
         values.sort_by(f64::total_cmp);
         let ends = [quantile_of_sorted(&values, 0.05)?, quantile_of_sorted(&values, 0.95)?];
@@ -238,9 +254,11 @@ impl Posterior {
     }
 
     fn quantities_of(&self, chosen: &[usize]) -> Vec<QuantityEstimate> {
+        let ess = self.ess * chosen.len() as f64 / self.values.len().max(1) as f64;
+        let levels = if ess >= LEAST_ESS_FOR_INTERVALS { &LEVELS[..] } else { &[] };
         let estimate = |quantity: &ReconstructedQuantity| {
             let value = |&idx: &usize| quantity.value(&self.values[idx], &self.impacts[idx]);
-            QuantityEstimate::from_values(*quantity, chosen.iter().map(value).collect())
+            QuantityEstimate::from_values(*quantity, chosen.iter().map(value).collect(), levels)
         };
         ReconstructedQuantity::ALL.iter().filter_map(estimate).collect()
     }
@@ -266,10 +284,13 @@ impl Posterior {
             .collect()
     }
 
-    /// What further measurements would bring, by [`Narrowing`].
+    /// What further measurements would bring, by [`Narrowing`]; nothing is known with too few particles.
     ///
-    /// - `ess`, `seed`: effective sample size of the particles, seed of the errors of measurements.
-    pub fn budget(&self, ess: f64, seed: u64) -> Vec<BudgetItem> {
+    /// - `seed`: seed of the errors of measurements.
+    pub fn budget(&self, seed: u64) -> Vec<BudgetItem> {
+        if !self.has_intervals() {
+            return Vec::new();
+        }
         let speeds = self.values(ReconstructedQuantity::StruckSpeed);
         let latent = |latent: Latent| self.values.iter().map(|v| v.get(latent)).collect::<Vec<_>>();
         let quantity = |quantity: ReconstructedQuantity| self.values(quantity);
@@ -289,7 +310,7 @@ impl Posterior {
             if !x.iter().all(|x| x.is_finite()) {
                 return None; // The quantity is not open.
             }
-            let narrowing = Narrowing::by(&speeds, (&x, sigma), ess, seed)?;
+            let narrowing = Narrowing::by(&speeds, (&x, sigma), self.ess, seed)?;
             Some(BudgetItem {
                 known,
                 sigma,
@@ -354,20 +375,34 @@ impl QuantityEstimate {
 
     /// Intervals of equally likely values; `None` without values. Those of an angle continue from its
     /// median without a jump, and may end beyond half a turn.
-    fn from_values(quantity: ReconstructedQuantity, values: Vec<f64>) -> Option<Self> {
+    ///
+    /// - `levels`: probabilities of the intervals, ascending.
+    fn from_values(
+        quantity: ReconstructedQuantity,
+        values: Vec<f64>,
+        levels: &[f64],
+    ) -> Option<Self> {
         let mut values = match quantity.quantity() {
             Quantity::Angle => unwrapped_rad(&values),
             _ => values,
         };
         values.sort_by(f64::total_cmp);
-        Self::by(quantity, |share| quantile_of_sorted(&values, share))
+        Self::with_levels(quantity, levels, |share| quantile_of_sorted(&values, share))
     }
 
     /// Median and intervals of a distribution; `None` if it has no quantiles.
     ///
     /// - `at`: the value below which the quantity lies with a probability.
     pub fn by(quantity: ReconstructedQuantity, at: impl Fn(f64) -> Option<f64>) -> Option<Self> {
-        let estimate = Estimate::from_quantiles(&LEVELS, at)?;
+        Self::with_levels(quantity, &LEVELS, at)
+    }
+
+    fn with_levels(
+        quantity: ReconstructedQuantity,
+        levels: &[f64],
+        at: impl Fn(f64) -> Option<f64>,
+    ) -> Option<Self> {
+        let estimate = Estimate::from_quantiles(levels, at)?;
         Some(Self { name: quantity.key(), unit: quantity.unit(), estimate })
     }
 }
@@ -411,6 +446,31 @@ fn mode_name(values: &LatentValues, turned_rad: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Cars;
+    use crate::evidence::examples::{SPIN, read};
+
+    /// Twenty particles were said to hold a speed with a probability of 90 %.
+    #[test]
+    fn few_particles_have_a_median_and_no_intervals() {
+        let evidence = read(SPIN);
+        let model = ForwardModel::new(&evidence, Cars::new(&evidence, None, None));
+        let dim = model.prior().components().len();
+        let z = |n: usize| -> Vec<Vec<f64>> {
+            (0..n).map(|i| vec![(i as f64 + 0.5) / n as f64 - 0.5; dim]).collect()
+        };
+        for (n, has_intervals) in [(20, false), (99, false), (100, true)] {
+            let posterior = Posterior::from_points(&model, &z(n));
+            assert_eq!(posterior.has_intervals(), has_intervals, "{n}");
+            let [speed, ..] = &posterior.quantities()[..] else { panic!("quantities") };
+            assert!(speed.estimate.median.is_finite());
+            assert_eq!(speed.estimate.interval(0.9).is_some(), has_intervals, "{n}");
+            let friction = posterior.interval_90_of(Latent::RoadFriction);
+            assert_eq!(friction.is_some(), has_intervals, "{n}");
+            assert_eq!(posterior.budget(0).is_empty(), !has_intervals, "{n}");
+            let written = serde_json::to_value(speed).unwrap();
+            assert_eq!(written.get("interval_90").is_some(), has_intervals, "{written}");
+        }
+    }
 
     /// A head-on collision had a median of −148° with an interval of nearly the whole circle.
     #[test]
@@ -418,7 +478,7 @@ mod tests {
         let degrees = [150.0_f64, 165.0, 175.0, -178.0, -170.0, -160.0, 179.0];
         let values = degrees.map(f64::to_radians).to_vec();
         let heading = ReconstructedQuantity::HeadingDifference;
-        let estimate = QuantityEstimate::from_values(heading, values).unwrap().estimate;
+        let estimate = QuantityEstimate::from_values(heading, values, &LEVELS).unwrap().estimate;
         let median = estimate.median.to_degrees();
         assert!((median.rem_euclid(360.0) - 179.0).abs() < 1e-9, "{median}");
         let [low, high] = estimate.ninety().map(f64::to_degrees);

@@ -5,6 +5,7 @@ use egui::{DragValue, Grid, ScrollArea, Ui};
 use crate::app::command::Command;
 use crate::app::state::View;
 use crate::app::widgets::figure_frame;
+use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Quantity, UnitSystem, significant};
 use impactlab_document::figure::{
     CoveragePoint, Figure, Role, cluster_figure, compared_case_figure, coverage_figure,
@@ -110,11 +111,7 @@ fn variables(comparison: &Comparison, units: UnitSystem) -> Vec<Figure> {
 /// positions inside the 50 % and 90 % regions, along the path and at the end, and a histogram of
 /// the levels of the smallest regions that hold the recorded ends.
 ///
-/// The bars are the standard error of a share `p` of `n` trajectories:
-///
-/// ```text
-/// √(p (1 − p) / n)
-/// ```
+/// The bars are the standard errors of shares of the trajectories.
 fn calibration(comparison: &Comparison) -> Vec<Figure> {
     let networks = comparison.models.iter().filter(|model| model.kind == MotionModelKind::Network);
     let points = |model: &ComparedModel, of: &CoverageMetrics, is_end: bool| {
@@ -124,7 +121,7 @@ fn calibration(comparison: &Comparison) -> Vec<Figure> {
         let point = |(level, share): (f64, f64)| CoveragePoint {
             level,
             share,
-            standard_error: (share * (1.0 - share) / n).sqrt(),
+            standard_error: share_standard_error(share, n),
         };
         [0.5, 0.9].into_iter().zip(shares).map(point).collect::<Vec<CoveragePoint>>()
     };

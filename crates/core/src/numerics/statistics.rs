@@ -66,6 +66,30 @@ pub fn jackknife_errors<const N: usize>(
     })
 }
 
+/// Standard error of the share of a sample, of which two more hits and two more misses are taken into
+/// account, so that it is not nothing where all or none are hits:
+///
+/// ```text
+/// p̃ = (n p + 2) / (n + 4)      σ = √(p̃ (1 − p̃) / (n + 4))
+/// ```
+///
+/// Source: Agresti and Coull, The American Statistician 52 (1998), 119 to 126. Where all of n are hits,
+/// two of these are about 3/n, the largest share of misses that such a sample leaves possible.
+///
+/// - `share`: 0 to 1;
+/// - `n`: effective size of the sample, 0 or more.
+///
+/// ```
+/// # use impactlab_core::numerics::share_standard_error;
+/// assert!((share_standard_error(1.0, 100.0) - 0.0133).abs() < 1e-4);
+/// assert!((share_standard_error(0.3, 1e6) - (0.3_f64 * 0.7 / 1e6).sqrt()).abs() < 1e-8);
+/// ```
+pub fn share_standard_error(share: f64, n: f64) -> f64 {
+    let n_more = n + 4.0;
+    let share_more = (n * share + 2.0) / n_more;
+    (share_more * (1.0 - share_more) / n_more).sqrt()
+}
+
 /// Quantile of values in increasing order, by linear interpolation between neighbouring values: the
 /// probability 0 gives the smallest value, 1 the largest. A probability outside this range is
 /// limited to it.

@@ -146,6 +146,26 @@ impl NumberFormat {
         self.local(&percent(share))
     }
 
+    /// A probability, such as `12.3 % ± 4.5 %` with its standard error and `> 99.9 %` without one: never
+    /// one of 0 or 100 % without an error.
+    ///
+    /// - `error`: standard error of a share of draws; `None` where nothing was drawn.
+    pub fn chance(&self, chance: f64, error: Option<f64>) -> String {
+        let text = percent(chance);
+        let text = match (error, text.as_str()) {
+            (Some(error), _) => format!("{text} ± {}", percent_up(error)),
+            (None, "100.0 %") => "> 99.9 %".to_owned(),
+            (None, "0.0 %") => "< 0.1 %".to_owned(),
+            (None, _) => text,
+        };
+        self.local(&text)
+    }
+
+    /// A standard error of a share of one, which is never nothing.
+    pub fn share_error(&self, error: f64) -> String {
+        self.local(&percent_up(error))
+    }
+
     /// Size and components of a vector, such as `3.026 kN s (x 1.124, y 2.810)`.
     pub fn vector(&self, quantity: Quantity, [x, y]: [f64; 2], names: [&str; 2]) -> String {
         let unit = quantity.display_unit(self.units);
@@ -184,10 +204,13 @@ impl NumberFormat {
     }
 
     /// The median with its interval of 90 % in one text, such as `31 (27 to 57) m`; the median alone
-    /// where the interval has no width.
+    /// where there is no such interval, or one without a width.
     pub fn estimate_in_words(&self, quantity: Quantity, estimate: &Estimate) -> String {
         let unit = quantity.display_unit(self.units);
-        let [low, high] = estimate.ninety().map(|si| unit.from_si(si));
+        let Some(ends) = estimate.interval(0.9) else {
+            return self.value(quantity, estimate.median);
+        };
+        let [low, high] = ends.map(|si| unit.from_si(si));
         let number = |value: f64| self.local(&with_width(value, (high - low).abs()));
         let median = number(unit.from_si(estimate.median));
         if low == high {
@@ -254,6 +277,11 @@ pub fn significant(value: f64) -> String {
 pub fn percent(share: f64) -> String {
     let tenths = (1000.0 * share).round() + 0.0;
     format!("{:.1} %", tenths / 10.0)
+}
+
+/// The same, rounded up to the next tenth.
+fn percent_up(share: f64) -> String {
+    percent((1000.0 * share).ceil() / 1000.0)
 }
 
 /// A number with the digits that it was given with.
@@ -343,5 +371,9 @@ mod tests {
             ["12.3 %", "100.0 %", "0.0 %", "0.0 %"]
         );
         assert_eq!(percent(-0.05), "-5.0 %");
+        assert_eq!(EN.chance(1.0, Some(0.000_2)), "100.0 % ± 0.1 %");
+        assert_eq!(EN.chance(0.999_7, None), "> 99.9 %");
+        assert_eq!(DE_US.chance(0.0, None), "< 0,1 %");
+        assert_eq!(DE_US.chance(0.123, Some(0.0401)), "12,3 % ± 4,1 %");
     }
 }

@@ -66,9 +66,9 @@ pub fn marginal_figure(
     ];
     let estimate = answer.report.quantities.iter().find(|found| found.name == quantity.key());
     if let Some(QuantityEstimate { estimate, .. }) = estimate {
-        let [low, high] = estimate.ninety();
-        let lines = [("90 % interval", low), ("median", estimate.median), ("90 % interval", high)];
-        for (name, value) in lines {
+        let end = |i: usize| Some(("90 % interval", estimate.interval(0.9)?[i]));
+        let lines = [end(0), Some(("median", estimate.median)), end(1)];
+        for (name, value) in lines.into_iter().flatten() {
             let role = if name == "median" { Role::Model } else { Role::Muted };
             let name = name.to_owned();
             elements.push(FigureElement::VerticalLine { name, role, x: x.unit.from_si(value) });

@@ -1,5 +1,7 @@
 //! The particles of a posterior.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 /// Particles of equal weight from the prior times the likelihood to the power of a temperature.
@@ -31,6 +33,14 @@ impl Particles {
         self.temperature >= 1.0
     }
 
+    /// Effective number of draws that these particles are copies of: `1 / Σ w²` by the share of each.
+    pub fn effective_draws(&self) -> f64 {
+        let share = 1.0 / self.draw.len().max(1) as f64;
+        let mut shares = BTreeMap::new();
+        self.draw.iter().for_each(|draw| *shares.entry(draw).or_insert(0.0) += share);
+        1.0 / shares.values().map(|share: &f64| share * share).sum::<f64>()
+    }
+
     /// Effective sample size of the mean of a quantity over these particles, of which those of one draw
     /// are copies:
     ///
@@ -46,21 +56,20 @@ impl Particles {
         let share = 1.0 / values.len() as f64;
         let mean = share * values.iter().sum::<f64>();
         let n_draws = self.draw.iter().max().map_or(0, |largest| largest + 1);
-        let (mut sums, mut variance) = (vec![[0.0; 2]; n_draws], 0.0);
+        let (mut sums, mut variance) = (vec![0.0; n_draws], 0.0);
         for (value, draw) in values.iter().zip(&self.draw) {
             let deviation = share * (value - mean);
             variance += deviation * deviation / share;
-            let [sum, weight] = &mut sums[*draw];
-            (*sum, *weight) = (*sum + deviation, *weight + share);
+            sums[*draw] += deviation;
         }
         if variance <= f64::EPSILON * mean * mean {
             return None;
         }
-        let effective = 1.0 / sums.iter().map(|[_, weight]| weight * weight).sum::<f64>();
+        let effective = self.effective_draws();
         if effective < 1.5 {
             return Some(1.0);
         }
-        let scatter: f64 = sums.iter().map(|[sum, _]| sum * sum).sum();
+        let scatter: f64 = sums.iter().map(|sum| sum * sum).sum();
         Some((variance * (effective - 1.0) / (effective * scatter)).max(1.0))
     }
 }
@@ -93,6 +102,7 @@ mod tests {
         let copied = particles((0..200).map(|i| i / 4).collect());
         let ess = copied.effective_sample_size(&copies).unwrap();
         assert!((ess - 49.0).abs() < 1e-6, "{ess}");
+        assert!((copied.effective_draws() - 50.0).abs() < 1e-9);
         assert_eq!(independent.effective_sample_size(&[3.0; 200]), None);
         assert_eq!(particles(vec![7; 200]).effective_sample_size(&values), Some(1.0));
     }

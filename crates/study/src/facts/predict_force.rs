@@ -30,7 +30,10 @@ impl PredictForceReport {
             Fact::estimate(Term::ContactDuration, Quantity::Time, &self.duration_s),
             Fact::estimate(Term::Pdof, Quantity::Angle, &pdof_rad),
             Fact::new(Term::ClockDirection, Value::Clock(self.pdof_clock)),
-            Fact::new(Term::Hooking, hooking.map_or(Value::Term(Term::Unknown), Value::Share)),
+            Fact::new(
+                Term::Hooking,
+                hooking.map_or(Value::Term(Term::Unknown), |chance| Value::Chance(chance, None)),
+            ),
         ];
         match &self.implied_contact {
             Some(implied) => facts.extend(implied.facts()),
@@ -55,7 +58,7 @@ impl PredictForceReport {
                 Value::Number(Quantity::Force, mode.peak_n),
                 Value::Number(Quantity::Time, mode.duration_s),
             ];
-            Fact::row(Value::Share(mode.weight), values)
+            Fact::row(Value::Chance(mode.weight, None), values)
         };
         let rows = self.modes.iter().map(row).collect();
         let table = FactTable::new(Term::ForceModes, rows).with_columns(&columns);

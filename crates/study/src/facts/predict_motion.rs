@@ -1,5 +1,6 @@
 //! The facts of a predicted motion.
 
+use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::Quantity;
 
 use crate::PredictMotionReport;
@@ -55,6 +56,17 @@ impl PredictMotionReport {
         sensitivity(&self.sensitivity)
     }
 
+    /// A probability over the forces and vehicles that were drawn. Draws under one force and of one
+    /// vehicle are not independent and count once.
+    fn chance(&self, chance: f64) -> Value {
+        let n = match (self.n_forces.max(self.n_vehicles), &self.rest) {
+            (1, None) => return Value::Chance(chance, None),
+            (1, Some(rest)) => rest.n_draws,
+            (n, _) => n,
+        };
+        Value::Chance(chance, Some(share_standard_error(chance, n as f64)))
+    }
+
     fn motion(&self) -> Vec<Fact> {
         let outcome = &self.outcome;
         let mut facts = vec![
@@ -88,11 +100,11 @@ impl PredictMotionReport {
         }
         facts.extend(outcome.monte_carlo.iter().flat_map(MonteCarloError::facts));
         facts.extend([
-            Fact::new(Term::QuarterTurn, Value::Share(outcome.p_quarter_turn)),
-            Fact::new(Term::HalfTurn, Value::Share(outcome.p_half_turn)),
+            Fact::new(Term::QuarterTurn, self.chance(outcome.p_quarter_turn)),
+            Fact::new(Term::HalfTurn, self.chance(outcome.p_half_turn)),
         ]);
         let hooking = self.hooking_probability;
-        facts.extend(hooking.map(|share| Fact::new(Term::Hooking, Value::Share(share))));
+        facts.extend(hooking.map(|chance| Fact::new(Term::Hooking, Value::Chance(chance, None))));
         facts.extend(self.implied_contact.iter().flat_map(|implied| implied.facts()));
         if self.applicability < 1.0 {
             facts.push(Fact::new(Term::Applicability, Value::Share(self.applicability)));

@@ -21,8 +21,9 @@ impl ReconstructReport {
             courses,
             Some(self.fit_table()),
             self.mark_table(),
+            self.budget_table(),
         ];
-        tables.into_iter().flatten().chain([self.budget_table()]).collect()
+        tables.into_iter().flatten().collect()
     }
 
     /// The quantities with their intervals.
@@ -56,7 +57,7 @@ impl ReconstructReport {
             let speed = speed.map(|of| Value::Estimate(of.quantity(), of.estimate.clone()));
             let values = vec![
                 Value::Share(mode.probability),
-                Value::Share(mode.standard_error),
+                Value::ShareError(mode.standard_error),
                 speed.unwrap_or_else(|| Value::Text(String::new())),
             ];
             Fact::row(Value::Phrase(mode.name.clone()), values)
@@ -105,8 +106,9 @@ impl ReconstructReport {
         FactTable::new(Term::MarksCompared, rows).with_columns(&columns).unless_empty()
     }
 
-    /// What further evidence would bring, the most useful first; what cannot be believed is last.
-    pub fn budget_table(&self) -> FactTable {
+    /// What further evidence would bring, the most useful first; what cannot be believed is last. None
+    /// with too few particles.
+    pub fn budget_table(&self) -> Option<FactTable> {
         let mut items: Vec<&BudgetItem> = self.budget.iter().collect();
         items.sort_by(|a, b| {
             b.believable.cmp(&a.believable).then(a.then_m_s.total_cmp(&b.then_m_s))
@@ -122,7 +124,8 @@ impl ReconstructReport {
             Fact::row(Value::Joined(name, ", ± "), vec![half(item.now_m_s), then])
         };
         let rows = items.iter().map(row).collect();
-        FactTable::new(Term::Budget, rows).with_columns(&[Term::Now, Term::Then])
+        let columns = [Term::Now, Term::Then];
+        FactTable::new(Term::Budget, rows).with_columns(&columns).unless_empty()
     }
 }
 

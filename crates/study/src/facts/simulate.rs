@@ -1,5 +1,6 @@
 //! The facts of the simulation of one vehicle.
 
+use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::Quantity;
 
 use crate::analysis::{MonteCarloError, RestOutcome, Sensitivity};
@@ -151,8 +152,10 @@ impl VehicleUncertainty {
         ]);
         facts.extend(self.rest.iter().flat_map(RestOutcome::facts));
         facts.extend(self.monte_carlo.iter().flat_map(MonteCarloError::facts));
-        let second = self.second_contact_probability;
-        facts.extend(second.map(|share| Fact::new(Term::SecondContact, Value::Share(share))));
+        let n = self.n_draws.saturating_sub(self.n_failed) as f64;
+        let chance = |chance| Value::Chance(chance, Some(share_standard_error(chance, n)));
+        let second = self.second_contact_probability.map(chance);
+        facts.extend(second.map(|chance| Fact::new(Term::SecondContact, chance)));
         FactTable::new(Term::Draws, facts).with_levels(PREDICTED)
     }
 }

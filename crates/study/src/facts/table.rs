@@ -25,7 +25,12 @@ pub enum Value {
     CountOf(usize, usize),
     /// A share of 1, written in per cent.
     Share(f64),
-    /// The same of a number of draws.
+    /// A probability, with its standard error where it comes from draws. It is never written as
+    /// certain.
+    Chance(f64, Option<f64>),
+    /// Standard error of a share of 1, written in per cent and never as nothing.
+    ShareError(f64),
+    /// A share of a number of draws.
     ShareOfDraws(f64, usize),
     /// A probability that may be small: three decimals, and never written as nothing.
     Probability(f64),
@@ -237,7 +242,10 @@ impl FactTable {
 
     /// Whether a column holds intervals.
     fn has_intervals(&self, column: usize) -> bool {
-        let value = |fact: &Fact| matches!(fact.values.get(column), Some(Value::Estimate(..)));
+        let value = |fact: &Fact| match fact.values.get(column) {
+            Some(Value::Estimate(_, estimate)) => !estimate.intervals.is_empty(),
+            _ => false,
+        };
         !self.levels.is_empty() && self.facts.iter().any(value)
     }
 
@@ -358,6 +366,8 @@ impl FactWriter<'_> {
                 Language::De => format!("{n} von {all}"),
             },
             Value::Share(share) => format.percent(*share),
+            Value::ShareError(error) => format.share_error(*error),
+            Value::Chance(chance, error) => format.chance(*chance, *error),
             Value::ShareOfDraws(share, n) => match format.language {
                 Language::En => format!("{} of {n} draws", format.percent(*share)),
                 Language::De => format!("{} von {n} Ziehungen", format.percent(*share)),

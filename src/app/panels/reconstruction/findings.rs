@@ -30,11 +30,11 @@ pub fn modes_ui(
 ) {
     heading(ui, "Courses of events");
     for (idx, mode) in report.modes.iter().enumerate() {
-        let [share, error] = [mode.probability, mode.standard_error].map(|of| 100.0 * of);
+        let format = NumberFormat::english(units);
         ui.horizontal(|ui| {
-            ui.strong(format!("{share:.0} ± {error:.0} %")).on_hover_text("One standard error");
+            let chance = format.chance(mode.probability, Some(mode.standard_error));
+            ui.strong(chance).on_hover_text("One standard error");
             if let Some(speed) = mode.quantities.first() {
-                let format = NumberFormat::english(units);
                 let text = format.estimate_in_words(speed.quantity(), &speed.estimate);
                 ui.label(format!("struck car {text}")).on_hover_text("Median and 90 %");
             }
@@ -77,7 +77,7 @@ pub fn budget_ui(
         &options,
         commands,
     );
-    facts_ui(ui, "budget", &[answer.report.budget_table()], units);
+    facts_ui(ui, "budget", answer.report.budget_table().as_slice(), units);
 }
 
 fn heading(ui: &mut Ui, text: &str) {

@@ -33,11 +33,19 @@ pub(super) fn part(
 ) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
+    let ess = wording.fixed(report.ess, 0);
     let mut blocks = vec![Block::paragraph(fill(words.ask_reconstruct, &[("name", &report.case)]))];
     let speeds = report.speed_table();
-    blocks.extend(facts_with_meanings(&speeds, words.meaning_posterior, context));
+    match report.has_intervals() {
+        true => blocks.extend(facts_with_meanings(&speeds, words.meaning_posterior, context)),
+        false => {
+            blocks.push(facts_table(&speeds, context));
+            blocks.push(Block::paragraph(fill(words.too_few_particles, &[("ess", &ess)])));
+        }
+    }
     blocks.extend(report.hand_table().map(|table| facts_table(&table, context)));
-    let doubts = report.caveats.iter().filter(|caveat| DOUBTS.contains(&caveat.kind));
+    let is_doubt = |kind| DOUBTS.contains(&kind) && report.has_intervals();
+    let doubts = report.caveats.iter().filter(|caveat| is_doubt(caveat.kind));
     let mut doubts: Vec<String> = doubts.map(|caveat| wording.term(caveat.kind.label())).collect();
     doubts.dedup();
     for badge in doubts {
@@ -46,7 +54,7 @@ pub(super) fn part(
     let draws = [
         (words.particles, report.n_particles.to_string()),
         (words.simulated_motions, report.n_simulations.to_string()),
-        (words.ess, format!("{:.0}", report.ess)),
+        (words.ess, ess),
         (words.log_evidence, wording.fixed(report.log_evidence, 2)),
     ];
     Part {
@@ -56,10 +64,9 @@ pub(super) fn part(
         pictures: pictures(request.site.as_deref(), answer, context),
         inputs: evidence_rows(request, answer, wording),
         evidence: evidence_blocks(report, context),
-        sensitivity: vec![
-            Block::paragraph(words.budget_text),
-            facts_table(&report.budget_table(), context),
-        ],
+        sensitivity: report.budget_table().map_or_else(Vec::new, |table| {
+            vec![Block::paragraph(words.budget_text), facts_table(&table, context)]
+        }),
         caveats: report.caveats.clone(),
         provenance: provenance_of(&report.provenance, &draws, wording),
         methods: [Method::Reconstruction, Method::Impact, Method::FourDof, Method::DataSheet]

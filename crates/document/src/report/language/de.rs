@@ -105,6 +105,9 @@ pub(super) const WORDS: Words = Words {
         Berücksichtigung der Spuren, wenn die Annahmen in Abschnitt 3 und die Modelle in \
         Abschnitt 5 zutreffen.",
     meaning_doubtful: "Auf diese Intervalle ist kein Verlass: siehe die Warnung „{badge}“ in Abschnitt 6.",
+    too_few_particles: "Es wird kein Intervall angegeben: Der effektive Stichprobenumfang ist {ess}, oder die \
+        Rechnung wurde beendet, bevor alle Spuren zählten; die Grenzen eines Intervalls wären die \
+        einzelner Partikel. Mit mehr Partikeln erneut fragen und die Rechnung zu Ende führen.",
     particles: "Partikel:",
     simulated_motions: "simulierte Bewegungen:",
     ess: "effektiver Stichprobenumfang:",

@@ -103,6 +103,9 @@ pub(super) const WORDS: Words = Words {
     meaning_posterior: "{quantity}: between {low} and {high} with a probability of 90 %, given the evidence, if \
         the assumptions of section 3 and the models of section 5 hold.",
     meaning_doubtful: "These intervals are not to be relied on: see the warning “{badge}” in section 6.",
+    too_few_particles: "No interval is given: the particles are worth {ess} independent ones, or the run was \
+        stopped before all of the evidence counted, and the ends of an interval would be those of single \
+        particles. Ask again with more particles, and let the run end.",
     particles: "particles:",
     simulated_motions: "simulated motions:",
     ess: "effective sample size:",

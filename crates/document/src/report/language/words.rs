@@ -82,6 +82,7 @@ pub(in crate::report) struct Words {
     pub forecast_yaw_picture: &'static str,
     pub meaning_posterior: &'static str,
     pub meaning_doubtful: &'static str,
+    pub too_few_particles: &'static str,
     pub particles: &'static str,
     pub simulated_motions: &'static str,
     pub ess: &'static str,

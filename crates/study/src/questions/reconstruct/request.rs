@@ -25,11 +25,12 @@ use impactlab_reconstruct::sampler::{
     Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, sample,
 };
 use impactlab_reconstruct::{
-    BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCheck, HandSpeed, MarkComparison,
-    Mode, Posterior, PriorComponent, QuantityEstimate, ReconstructionTarget,
+    BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCheck, HandSpeed,
+    LEAST_ESS_FOR_INTERVALS, MarkComparison, Mode, Posterior, PriorComponent, QuantityEstimate,
+    ReconstructionTarget,
 };
 
-/// Effective sample size below which intervals are not to be relied on.
+/// Effective sample size below which intervals may be too narrow.
 const LEAST_ESS: f64 = 400.0;
 
 /// Evaluations of the forward model that each particle is worth at the most.
@@ -82,7 +83,8 @@ pub enum EvidenceChoice {
 pub struct ReconstructReport {
     /// Name of the case.
     pub case: String,
-    /// The quantities with their intervals.
+    /// The quantities with their intervals, which are left out where the particles are worth less than
+    /// 100 independent ones or are not of the posterior.
     pub quantities: Vec<QuantityEstimate>,
     /// Courses of events that the evidence leaves possible, the most probable one first.
     pub modes: Vec<Mode>,
@@ -123,6 +125,13 @@ pub struct ReconstructAnswer {
     pub particles: Particles,
     /// What follows from them.
     pub posterior: Posterior,
+}
+
+impl ReconstructReport {
+    /// Whether there were enough particles for intervals.
+    pub fn has_intervals(&self) -> bool {
+        self.quantities.iter().any(|quantity| !quantity.estimate.intervals.is_empty())
+    }
 }
 
 impl ReconstructRequest {
@@ -295,7 +304,7 @@ impl Question for ReconstructRequest {
             quantities,
             modes: posterior.modes(&particles, &turned_rad),
             fit,
-            budget: posterior.budget(particles.ess, self.seed),
+            budget: posterior.budget(self.seed),
             ess: particles.ess,
             n_simulations: particles.n_evaluations + particles.z.len(),
             n_particles: particles.z.len(),
@@ -343,15 +352,19 @@ fn progress(report: &SamplerReport<'_>, settings: &SamplerSettings) -> Progress 
 fn of_particles(particles: &Particles) -> Vec<Caveat> {
     let stopped = (!particles.is_posterior()).then(|| {
         let text = "sampling was stopped before all of the evidence was used: these particles are \
-                    not of the posterior";
+                    not of the posterior, and no intervals are given; let the run end";
         Caveat::new(CaveatKind::FewParticles, text)
             .with_value("temperature", particles.temperature)
             .with_range([1.0, f64::INFINITY])
     });
     let few = (particles.ess < LEAST_ESS).then(|| {
+        let consequence = match particles.ess < LEAST_ESS_FOR_INTERVALS {
+            true => "no intervals are given, which would be those of single particles",
+            false => "intervals may be too narrow",
+        };
         let text = format!(
-            "the particles are worth {:.0} independent ones, expected {LEAST_ESS}: intervals may be \
-             too narrow; more particles: --particles",
+            "the particles are worth {:.0} independent ones, expected {LEAST_ESS}: {consequence}; more \
+             particles: --particles",
             particles.ess
         );
         Caveat::new(CaveatKind::FewParticles, text)
