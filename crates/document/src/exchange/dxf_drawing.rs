@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 
 use dxf::entities::{Entity, EntityType, Line, LwPolyline, ModelPoint, Text};
-use dxf::enums::{AcadVersion, Units};
+use dxf::enums::{AcadVersion, DrawingUnits, Units};
 use dxf::tables::Layer;
 use dxf::{Color, Drawing, LwPolylineVertex, Point};
 
@@ -172,6 +172,7 @@ impl Sheet {
         let header = &mut drawing.header;
         header.version = AcadVersion::R2000;
         header.default_drawing_units = Units::Meters;
+        header.drawing_units = DrawingUnits::Metric;
         let beginning = chrono::DateTime::<chrono::Utc>::UNIX_EPOCH;
         (header.creation_date, header.update_date) = (beginning.into(), beginning.into());
         (header.creation_date_universal, header.update_date_universal) = (beginning, beginning);

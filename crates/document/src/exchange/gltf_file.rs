@@ -38,7 +38,9 @@ pub fn glb(scene: &Scene, out: &mut dyn Write) -> Result<(), ExchangeError> {
     let mut builder = GltfBuilder::default();
     let cars: Vec<&SceneCar> = scene.cars.iter().filter(|car| !is_draw(car)).collect();
     let frame = GltfFrame::new(scene);
-    let time_s = key_times_s(scene.end_s, frame.start_s, &cars);
+    let mut time_s = key_times_s(scene.end_s, frame.start_s, &cars);
+    // Keys that single precision does not tell apart are one.
+    time_s.dedup_by_key(|time| frame.time(*time));
     let single: Vec<[f32; 1]> = time_s.iter().map(|time| [frame.time(*time)]).collect();
     let times = builder.list(&single, None);
     let mut animation = Animation {

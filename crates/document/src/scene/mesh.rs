@@ -64,7 +64,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Adds a flat polygon with convex outline, corners in either order around it.
+    /// Adds a flat polygon with convex outline, corners in either order around it. Triangles between corners
+    /// that coincide or lie on a line are left out: they have no normal.
     ///
     /// - `inside`: a point on the inner side of the surface, m.
     pub(super) fn add(&mut self, surface: Surface, corners_m: &[[f64; 3]], inside: [f64; 3]) {
@@ -77,6 +78,9 @@ impl Mesh {
                 continue;
             };
             let out = triangle_normal([*a, *b, *c]);
+            if out == [0.0; 3] {
+                continue;
+            }
             let is_outward = (0..3).map(|i| out[i] * (a[i] - inside[i])).sum::<f64>() >= 0.0;
             let (second, third) = (first + last as u32 - 1, first + last as u32);
             let corners = if is_outward { [first, second, third] } else { [first, third, second] };
