@@ -48,7 +48,10 @@ fn scene() -> Scene {
     let density = Arc::new(DensityTask::new(&answer.forecast.distribution, [3.0; 2]).on_cpu());
     let forecast = &answer.forecast;
     let (density, n_ghosts) = (Some(&density), N_GHOSTS);
-    add_forecast(&mut scene, &ForecastScene { analysis, forecast, density, n_ghosts, seed: 0 });
+    add_forecast(
+        &mut scene,
+        &ForecastScene { analysis, forecast, density, until_s: f64::INFINITY, n_ghosts, seed: 0 },
+    );
     scene
 }
 

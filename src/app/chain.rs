@@ -164,11 +164,16 @@ fn outcome_link(
     let length = |m: f64| Quantity::Length.shown(m, units);
     let (figure, source, pane) = match (motion, report.and_then(|report| report.end)) {
         (Some(motion), _) => {
-            let outcome = &motion.answer.report.outcome;
+            let report = &motion.answer.report;
+            let outcome = &report.outcome;
             let format = NumberFormat::english(units);
-            let shown = |of: &Estimate| format.estimate_in_words(Quantity::Length, of);
+            let shown =
+                |of: &Estimate| format.estimate_in_words(Quantity::Length, &report.at_end(of));
             let figure = format!("X {}, Y {}", shown(&outcome.x_m), shown(&outcome.y_m));
-            let when = format!("forecast after {:.2} s, 90 % intervals", outcome.time_s);
+            let when = match report.known_until_s() < outcome.time_s {
+                true => "after a second contact, which is not computed: no intervals".to_owned(),
+                false => format!("forecast after {:.2} s, 90 % intervals", outcome.time_s),
+            };
             (Some(figure), when, Pane::MotionForecast)
         }
         (None, Some(end)) => {

@@ -62,7 +62,17 @@ fn forecast_scene() -> Scene {
     let mut scene = simulation_scene(&input);
     let density = Arc::new(DensityTask::new(&answer.forecast.distribution, [1.0; 2]).on_cpu());
     let (forecast, density) = (&answer.forecast, Some(&density));
-    add_forecast(&mut scene, &ForecastScene { analysis, forecast, density, n_ghosts: 30, seed: 0 });
+    add_forecast(
+        &mut scene,
+        &ForecastScene {
+            analysis,
+            forecast,
+            density,
+            until_s: f64::INFINITY,
+            n_ghosts: 30,
+            seed: 0,
+        },
+    );
     scene
 }
 

@@ -9,6 +9,7 @@ use crate::app::variants::AnsweredVariant;
 use impactlab_core::data::Severity;
 use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem};
 use impactlab_draw::theme;
+use impactlab_study::analysis::MotionOutcome;
 
 /// The columns of the table.
 const COLUMNS: [&str; 8] = [
@@ -84,7 +85,7 @@ fn row_ui(ui: &mut Ui, variant: &AnsweredVariant, units: UnitSystem, commands: &
 /// The figures of a variant, as the table shows them.
 fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 8] {
     let report = variant.simulation.as_ref().map(|answer| &answer.report);
-    let outcome = variant.forecast.as_ref().map(|answer| &answer.answer.report.outcome);
+    let forecast = variant.forecast.as_ref().map(|answer| &answer.answer.report);
     let of = |text: Option<String>| match text {
         Some(text) => text,
         None if variant.is_waiting => "computing…".to_owned(),
@@ -94,15 +95,18 @@ fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 8] {
     let end = report.and_then(|report| report.end);
     let rest = report.and_then(|report| report.rest.as_ref());
     let format = NumberFormat::english(units);
-    let spread = |of: &Estimate, quantity: Quantity| format.estimate_in_words(quantity, of);
+    let spread = |quantity: Quantity, of: fn(&MotionOutcome) -> &Estimate| {
+        forecast
+            .map(|report| format.estimate_in_words(quantity, &report.at_end(of(&report.outcome))))
+    };
     [
         variant.name.clone(),
         of(delta_v.map(|m_s| Quantity::Speed.shown(m_s, units))),
         of(end.map(|end| Quantity::Length.shown_vector([end.x_m, end.y_m], units))),
         of(rest.map(|rest| Quantity::Time.shown(rest.time_s, units))),
-        of(outcome.map(|outcome| spread(&outcome.x_m, Quantity::Length))),
-        of(outcome.map(|outcome| spread(&outcome.y_m, Quantity::Length))),
-        of(outcome.map(|outcome| spread(&outcome.heading_change_rad, Quantity::Angle))),
+        of(spread(Quantity::Length, |outcome| &outcome.x_m)),
+        of(spread(Quantity::Length, |outcome| &outcome.y_m)),
+        of(spread(Quantity::Angle, |outcome| &outcome.heading_change_rad)),
         match warning_texts(variant).len() {
             0 => NONE.to_owned(),
             n => n.to_string(),

@@ -77,6 +77,7 @@ impl ShownForecast {
                 forecast,
                 density: self.density.as_ref().map(|density| &density.map),
                 n_ghosts: N_GHOSTS,
+                until_s: report.known_until_s(),
                 seed: self.seed,
             },
         );

@@ -280,6 +280,7 @@ fn add_ghosts(
             forecast: &answer.forecast,
             density: density.as_ref(),
             n_ghosts,
+            until_s: answer.report.known_until_s(),
             seed: request.seed,
         },
     );

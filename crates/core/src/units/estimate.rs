@@ -97,6 +97,12 @@ impl Estimate {
         self.interval(0.9).unwrap_or([f64::NAN; 2])
     }
 
+    /// The median alone.
+    #[must_use]
+    pub fn without_intervals(&self) -> Self {
+        Self { median: self.median, intervals: Vec::new() }
+    }
+
     /// The same estimate in another unit.
     ///
     /// - `factor`: positive; median and ends are multiplied by it.

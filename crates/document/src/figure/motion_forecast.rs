@@ -13,7 +13,9 @@ use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_core::vehicle::VehicleState;
 use impactlab_networks::response::{MotionDistribution, STEP_S};
 use impactlab_study::PredictMotionAnswer;
-use impactlab_study::analysis::{Analysis, DensityMap, MOTION_BAND_LEVELS, MotionBands};
+use impactlab_study::analysis::{
+    Analysis, DensityMap, MOTION_BAND_LEVELS, MotionBand, MotionBands,
+};
 
 /// Opacity of the band at each of [`MOTION_BAND_LEVELS`].
 const BAND_OPACITIES: [f32; MOTION_BAND_LEVELS.len()] = [0.18, 0.25];
@@ -46,6 +48,8 @@ pub struct MotionForecastFigure<'a> {
     pub footprint: Footprint,
     /// Time at which outlines and readouts are given, s.
     pub time_s: f64,
+    /// Time of a second contact, which is not computed, s: no probability is shown after it.
+    pub until_s: f64,
     /// System of units of the axes.
     pub units: UnitSystem,
     /// What restricts the forecast.
@@ -73,9 +77,21 @@ impl<'a> MotionForecastFigure<'a> {
             simulation: None,
             footprint: analysis.footprint,
             time_s,
+            until_s: answer.report.known_until_s(),
             units,
             caveats,
         }
+    }
+
+    /// The density, if it is not one of positions after a second contact.
+    fn known_density(&self) -> Option<&'a DensityMap> {
+        self.density.filter(|map| map.window_s[1] <= self.until_s)
+    }
+
+    /// The intervals up to a second contact.
+    fn known_bands(&self) -> impl Iterator<Item = (&'a f64, &'a MotionBand)> + use<'a> {
+        let (bands, until_s) = (self.bands, self.until_s);
+        bands.time_s.iter().zip(&bands.intervals).filter(move |(time_s, _)| **time_s <= until_s)
     }
 
     /// The same with the recorded and the simulated motion beside the forecast, as far as there are any.
@@ -124,11 +140,11 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     };
     let at = instant(input);
     let mut elements: Vec<FigureElement> = input
-        .density
+        .known_density()
         .map(|map| FigureElement::HeatMap(heat_map(map, &shown)))
         .into_iter()
         .collect();
-    for region in input.density.iter().flat_map(|map| &map.regions) {
+    for region in input.known_density().iter().flat_map(|map| &map.regions) {
         let name = format!("{:.0} % region", 100.0 * region.level);
         let outline = |points: &Vec<[f64; 2]>| {
             let points = points.iter().map(|point| shown(*point)).collect();
@@ -190,21 +206,23 @@ pub fn forecast_surroundings(input: &MotionForecastFigure<'_>) -> [[f64; 2]; 2] 
 }
 
 /// Value on the central path and ends of the 90 % interval at the time of the figure, in the unit
-/// of the axis: “Y 3.2 (2.9 … 3.6)”.
+/// of the axis: “Y 3.2 (2.9 … 3.6)”. The value alone after a second contact.
 pub fn forecast_readout(input: &MotionForecastFigure<'_>, channel: ForecastChannel) -> String {
     let ForecastChannel { channel, axis } = channel;
     let unit = channel.quantity().display_unit(input.units);
     let at_s = input.time_s;
-    let bands = input.bands.time_s.iter().zip(&input.bands.intervals);
     let off = |(time_s, _): &(&f64, _)| (**time_s - at_s).abs();
-    let band = bands.min_by(|a, b| off(a).total_cmp(&off(b))).map(|(_, band)| band);
-    let (Some(state), Some(band)) = (input.central.get(instant(input)), band) else {
+    let band = input.known_bands().min_by(|a, b| off(a).total_cmp(&off(b)));
+    let band = band.filter(|_| at_s <= input.until_s).map(|(_, band)| band);
+    let Some(state) = input.central.get(instant(input)) else {
         return channel.label().to_owned();
     };
     // The value is rounded before formatting, and adding zero removes the sign of a negative zero.
     let shown = |value: f64| format!("{:.1}", (unit.from_si(value) * 10.0).round() / 10.0 + 0.0);
-    let [low, high] = band[axis][0];
-    let (value, low, high) = (shown(state.planar()[axis]), shown(low), shown(high));
+    let value = shown(state.planar()[axis]);
+    let Some([low, high]) = band.map(|band| band[axis][0].map(shown)) else {
+        return format!("{} {value}", channel.label());
+    };
     format!("{} {value} ({low} … {high})", channel.label())
 }
 
@@ -246,14 +264,14 @@ pub fn forecast_channel_figure(
     let mut elements = Vec::new();
     for (rank, (level, opacity)) in MOTION_BAND_LEVELS.into_iter().zip(BAND_OPACITIES).enumerate() {
         let edge = |end: usize| -> Vec<f64> {
-            let ends = input.bands.intervals.iter().map(|instant| instant[axis][rank][end]);
+            let ends = input.known_bands().map(|(_, instant)| instant[axis][rank][end]);
             ends.map(|value| y.unit.from_si(value)).collect()
         };
         elements.push(FigureElement::Band(Band {
             name: format!("{:.0} % band", 100.0 * level),
             role: Role::Model,
             opacity,
-            x: input.bands.time_s.iter().map(|t| x.unit.from_si(*t)).collect(),
+            x: input.known_bands().map(|(time_s, _)| x.unit.from_si(*time_s)).collect(),
             low: edge(0),
             high: edge(1),
         }));

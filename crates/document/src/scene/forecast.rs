@@ -19,6 +19,8 @@ pub struct ForecastScene<'a> {
     pub forecast: &'a MotionForecast,
     /// Density of the position, with its regions; at an instant, or over a window.
     pub density: Option<&'a Arc<DensityMap>>,
+    /// Time of a second contact, which is not computed, s: no density is shown after it.
+    pub until_s: f64,
     /// How many paths are drawn from the forecast, as ghosts.
     pub n_ghosts: usize,
     /// Seed of these draws.
@@ -53,7 +55,7 @@ pub fn add_forecast(scene: &mut Scene, input: &ForecastScene<'_>) {
     }
     // Behind the cars that are there already.
     scene.cars.splice(0..0, ghosts);
-    if let Some(map) = input.density {
+    if let Some(map) = input.density.filter(|map| map.window_s[1] <= input.until_s) {
         add_density(scene, map);
     }
     let central: Vec<Pose> = input

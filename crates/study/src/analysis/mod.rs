@@ -30,7 +30,7 @@ pub use file::{DriveSetup, analyse_drive, analyse_recording};
 pub(crate) use forecast::bands_of_draws;
 pub use forecast::{ForceForecast, ForecastSettings, Mode, pulse_curves};
 pub use monte_carlo::MonteCarloError;
-pub use motion_bands::{MOTION_BAND_LEVELS, MotionBands};
+pub use motion_bands::{MOTION_BAND_LEVELS, MotionBand, MotionBands};
 pub use motion_density::{DensityMap, DensityTask, Region};
 pub use motion_forecast::{
     MotionForecast, MotionForecastError, MotionForecastSettings, MotionOutcome, StruckVehicle,

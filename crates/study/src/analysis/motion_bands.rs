@@ -7,14 +7,17 @@ use impactlab_networks::response::{MotionDistribution, STEP_S};
 /// Probabilities of the intervals, from the widest to the narrowest.
 pub const MOTION_BAND_LEVELS: [f64; 2] = [0.9, 0.5];
 
+/// Intervals `[lower, upper]` at an instant by quantity and level of [`MOTION_BAND_LEVELS`].
+pub type MotionBand = [[[f64; 2]; MOTION_BAND_LEVELS.len()]; 6];
+
 /// Central intervals of X, Y (m), ψ (rad), v_x, v_y (m/s) and r (rad/s) over time: each end leaves
 /// the same probability outside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionBands {
     /// Times of the instants, s.
     pub time_s: Vec<f64>,
-    /// Intervals `[lower, upper]` by instant, quantity and level of [`MOTION_BAND_LEVELS`].
-    pub intervals: Vec<[[[f64; 2]; MOTION_BAND_LEVELS.len()]; 6]>,
+    /// Intervals of the instants.
+    pub intervals: Vec<MotionBand>,
 }
 
 impl MotionBands {

@@ -1,19 +1,34 @@
 //! The facts of a predicted motion.
 
 use impactlab_core::numerics::share_standard_error;
-use impactlab_core::units::Quantity;
+use impactlab_core::units::{Estimate, Quantity};
 
-use crate::PredictMotionReport;
 use crate::analysis::{MonteCarloError, RivalForce};
 use crate::facts::simulate::sensitivity;
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
+use crate::{FlagReport, PredictMotionReport};
 
 impl PredictMotionReport {
     /// What the answer says: how the motion ends, and what that depends on.
     pub fn facts(&self) -> Vec<FactTable> {
         let tables = [Some(self.motion_table()), self.rival_table(), self.sensitivity_table()];
         tables.into_iter().flatten().collect()
+    }
+
+    /// Until when positions have a probability, s: to the first second contact, which is not computed.
+    pub fn known_until_s(&self) -> f64 {
+        self.flags.iter().map(FlagReport::known_until_s).fold(f64::INFINITY, f64::min)
+    }
+
+    fn is_end_known(&self) -> bool {
+        self.outcome.time_s <= self.known_until_s()
+    }
+
+    /// An estimate of where the vehicle is at the end as it may be told: the median alone after a second
+    /// contact.
+    pub fn at_end(&self, estimate: &Estimate) -> Estimate {
+        if self.is_end_known() { estimate.clone() } else { estimate.without_intervals() }
     }
 
     /// How the motion ends.
@@ -28,10 +43,14 @@ impl PredictMotionReport {
             RivalForce::Same => (Term::RivalSameForce, Term::NetworkCorrects),
             RivalForce::Momentum => (Term::RivalMomentum, Term::OtherForce),
         };
-        let (agree, is_whole) = match (rival.is_in_region(), rival.is_within_known_error()) {
+        // After a second contact no place has a probability.
+        let is_known = self.is_end_known();
+        let is_in_region = is_known && rival.is_in_region();
+        let (agree, is_whole) = match (is_in_region, rival.is_within_known_error()) {
             (true, true) => (Term::MethodsAgree, true),
             (true, false) => (Term::AgreeInRegion, false),
-            (false, true) => (Term::AgreeWithinError, false),
+            (false, true) if is_known => (Term::AgreeWithinError, false),
+            (false, true) => (Term::AgreeWithinErrorAlone, false),
             (false, false) => (Term::MethodsDisagree, false),
         };
         let mut facts = vec![
@@ -42,9 +61,11 @@ impl PredictMotionReport {
             Fact::new(Term::RivalPlace, Value::Place([rival.x_m, rival.y_m])),
             Fact::number(Term::RivalHeading, Quantity::Angle, rival.heading_change_rad),
             Fact::number(Term::Apart, Quantity::Length, rival.apart_m),
-            Fact::new(Term::RivalRegion, Value::Share(rival.region_level)),
             Fact::number(Term::RivalError, Quantity::Length, rival.known_error_m),
         ];
+        if is_known {
+            facts.push(Fact::new(Term::RivalRegion, Value::Share(rival.region_level)));
+        }
         if !is_whole {
             facts.push(Fact::new(Term::WhyApart, Value::Term(why)));
         }
@@ -80,8 +101,12 @@ impl PredictMotionReport {
         if self.n_vehicles > 0 {
             facts.push(Fact::new(Term::VehiclesDrawn, Value::Count(self.n_vehicles)));
         }
+        let is_known = self.is_end_known();
+        let position = |term, quantity, estimate: &Estimate| {
+            Fact::estimate(term, quantity, &self.at_end(estimate))
+        };
         match &self.rest {
-            Some(rest) => facts.extend(rest.facts()),
+            Some(rest) => facts.extend(rest.facts(is_known)),
             None => {
                 let end =
                     if outcome.is_at_rest { Term::AtRestAfter } else { Term::StillMovingAfter };
@@ -89,16 +114,20 @@ impl PredictMotionReport {
             }
         }
         facts.extend([
-            Fact::estimate(Term::EndX, Quantity::Length, &outcome.x_m),
-            Fact::estimate(Term::EndY, Quantity::Length, &outcome.y_m),
-            Fact::estimate(Term::HeadingChange, Quantity::Angle, &outcome.heading_change_rad),
+            position(Term::EndX, Quantity::Length, &outcome.x_m),
+            position(Term::EndY, Quantity::Length, &outcome.y_m),
+            position(Term::HeadingChange, Quantity::Angle, &outcome.heading_change_rad),
             Fact::number(Term::SpeedAtEnd, Quantity::Speed, outcome.speed_m_s),
             Fact::number(Term::YawRateAtEnd, Quantity::AngularVelocity, outcome.yaw_rate_rad_s),
         ]);
-        if self.rest.is_none() {
+        let contacts = self.flags.iter().filter_map(|flag| flag.contact);
+        let second = contacts.filter_map(|contact| contact.probability);
+        facts.extend(second.map(|share| Fact::new(Term::SecondContact, self.chance(share))));
+        if self.rest.is_none() && is_known {
             facts.push(Fact::new(Term::Region90, Value::Area(outcome.region_90_m2)));
         }
-        facts.extend(outcome.monte_carlo.iter().flat_map(MonteCarloError::facts));
+        let error = outcome.monte_carlo.iter().filter(|_| is_known);
+        facts.extend(error.flat_map(MonteCarloError::facts));
         facts.extend([
             Fact::new(Term::QuarterTurn, self.chance(outcome.p_quarter_turn)),
             Fact::new(Term::HalfTurn, self.chance(outcome.p_half_turn)),

@@ -1,11 +1,12 @@
 //! The facts of the simulation of one vehicle.
 
 use impactlab_core::numerics::share_standard_error;
-use impactlab_core::units::Quantity;
+use impactlab_core::units::{Estimate, Quantity};
 
 use crate::analysis::{MonteCarloError, RestOutcome, Sensitivity};
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
+use crate::questions::simulate::flag::is_no_rare_contact;
 use crate::{
     ForceReport, FrictionZoneReport, RestState, SimulateReport, TireMarkReport, VehicleUncertainty,
 };
@@ -144,14 +145,21 @@ impl VehicleUncertainty {
         if self.n_failed > 0 {
             facts.push(Fact::new(Term::LeftOut, Value::Count(self.n_failed)));
         }
+        let is_known =
+            !self.second_contact_probability.is_some_and(|p| is_no_rare_contact(Some(p)));
+        let position = |term, quantity, of: &Estimate| match is_known {
+            true => estimate(term, quantity, of),
+            false => estimate(term, quantity, &of.without_intervals()),
+        };
         facts.extend([
-            estimate(Term::EndX, Quantity::Length, &self.x_m),
-            estimate(Term::EndY, Quantity::Length, &self.y_m),
-            estimate(Term::FinalHeading, Quantity::Angle, &self.yaw_rad),
+            position(Term::EndX, Quantity::Length, &self.x_m),
+            position(Term::EndY, Quantity::Length, &self.y_m),
+            position(Term::FinalHeading, Quantity::Angle, &self.yaw_rad),
             estimate(Term::FinalSpeed, Quantity::Speed, &self.speed_m_s),
         ]);
-        facts.extend(self.rest.iter().flat_map(RestOutcome::facts));
-        facts.extend(self.monte_carlo.iter().flat_map(MonteCarloError::facts));
+        facts.extend(self.rest.iter().flat_map(|rest| rest.facts(is_known)));
+        let error = self.monte_carlo.iter().filter(|_| is_known);
+        facts.extend(error.flat_map(MonteCarloError::facts));
         let n = self.n_draws.saturating_sub(self.n_failed) as f64;
         let chance = |chance| Value::Chance(chance, Some(share_standard_error(chance, n)));
         let second = self.second_contact_probability.map(chance);
@@ -173,18 +181,28 @@ impl MonteCarloError {
 impl RestOutcome {
     /// When, where and after what distance the vehicle comes to rest. Where some of the draws still
     /// move, the upper ends are those of the time for which they were followed.
-    pub(super) fn facts(&self) -> [Fact; 9] {
-        [
+    ///
+    /// - `is_known`: whether no second contact comes before, after which none of this has a probability.
+    pub(super) fn facts(&self, is_known: bool) -> Vec<Fact> {
+        let mut facts = vec![
             Fact::new(Term::ShareAtRest, Value::ShareOfDraws(self.share_at_rest, self.n_draws)),
             Fact::new(Term::RestLimit, Value::Given(Quantity::Time, self.limit_s)),
-            Fact::estimate(Term::TimeToRest, Quantity::Time, &self.time_s),
-            Fact::estimate(Term::DistanceToRest, Quantity::Length, &self.distance_m),
-            Fact::estimate(Term::RestX, Quantity::Length, &self.x_m),
-            Fact::estimate(Term::RestY, Quantity::Length, &self.y_m),
-            Fact::estimate(Term::HeadingAtRest, Quantity::Angle, &self.yaw_rad),
-            Fact::new(Term::Region50, Value::Area(self.region_50_m2)),
-            Fact::new(Term::Region90, Value::Area(self.region_90_m2)),
-        ]
+        ];
+        let estimates = [
+            (Term::TimeToRest, Quantity::Time, &self.time_s),
+            (Term::DistanceToRest, Quantity::Length, &self.distance_m),
+            (Term::RestX, Quantity::Length, &self.x_m),
+            (Term::RestY, Quantity::Length, &self.y_m),
+            (Term::HeadingAtRest, Quantity::Angle, &self.yaw_rad),
+        ];
+        facts.extend(estimates.map(|(term, quantity, estimate)| match is_known {
+            true => Fact::estimate(term, quantity, estimate),
+            false => Fact::estimate(term, quantity, &estimate.without_intervals()),
+        }));
+        let regions = [(Term::Region50, self.region_50_m2), (Term::Region90, self.region_90_m2)];
+        let regions = regions.into_iter().filter(|_| is_known);
+        facts.extend(regions.map(|(term, area_m2)| Fact::new(term, Value::Area(area_m2))));
+        facts
     }
 }
 

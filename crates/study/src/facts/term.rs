@@ -132,6 +132,8 @@ terms! {
         "stimmen teilweise überein: das andere endet in der Fläche von 90 %, aber weiter weg, als es bekanntlich irrt";
     AgreeWithinError: "agree in part: no further apart than the other is known to err, but it ends outside the 90 % region",
         "stimmen teilweise überein: nicht weiter auseinander, als das andere bekanntlich irrt, aber außerhalb der Fläche von 90 %";
+    AgreeWithinErrorAlone: "are no further apart than the other is known to err",
+        "liegen nicht weiter auseinander, als das andere bekanntlich irrt";
     MethodsDisagree: "do not agree", "stimmen nicht überein";
     OtherMethod: "the other method", "das andere Verfahren";
     RivalSameForce: "the 4DOF model without a network, under the same force",

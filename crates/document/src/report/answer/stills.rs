@@ -71,6 +71,7 @@ pub(super) fn forecast_still(
             forecast: &answer.forecast,
             density: Some(density),
             n_ghosts: N_GHOSTS,
+            until_s: report.known_until_s(),
             seed: request.seed,
         },
     );

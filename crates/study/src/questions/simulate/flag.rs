@@ -35,6 +35,8 @@ pub struct FlaggedContact {
     /// Share of the draws in which they do; time, place and speed are then medians. None where
     /// nothing is drawn.
     pub probability: Option<f64>,
+    /// When the first of the draws do, s: 5 % of those that do are earlier.
+    pub from_s: f64,
 }
 
 /// A flag as JSON says it.
@@ -80,11 +82,28 @@ impl FlagReport {
         let caveat = Caveat::new(kind, message).with_value("time [s]", time_s);
         Self { caveat, time_s, wheel: None, contact: None }
     }
+
+    /// Until when positions have a probability, s: to a second contact that is more than a rare one.
+    pub(crate) fn known_until_s(&self) -> f64 {
+        let contact = self.contact.filter(|contact| is_no_rare_contact(contact.probability));
+        contact.map_or(f64::INFINITY, |contact| contact.from_s)
+    }
+}
+
+/// Whether a second contact is no rare one.
+///
+/// - `share`: share of the draws in which the vehicles meet again; `None` where nothing is drawn.
+pub(crate) fn is_no_rare_contact(share: Option<f64>) -> bool {
+    share.is_none_or(|share| share > MOST_SECOND_CONTACTS)
 }
 
 /// What a person should know of a second contact.
 const NOT_COMPUTED: &str = "a second contact, which is not computed; the motions after it are not \
-                            those of the vehicles";
+                            those of the vehicles, and no position after it has a probability";
+
+/// Share of the draws with a second contact from which on positions after it have no probability: half of
+/// what an interval of 90 % leaves out.
+const MOST_SECOND_CONTACTS: f64 = 0.05;
 
 impl From<&SecondContact> for FlagReport {
     fn from(second: &SecondContact) -> Self {
@@ -95,6 +114,7 @@ impl From<&SecondContact> for FlagReport {
             position_m: second.point_m,
             closing_speed_m_s: speed,
             probability: None,
+            from_s: second.time_s,
         };
         let flag = Self::new(CaveatKind::SecondContact, second.time_s, message);
         Self { contact: Some(contact), ..flag }
@@ -132,6 +152,7 @@ impl From<&SecondContacts> for FlagReport {
             position_m: [x, y],
             closing_speed_m_s: speed,
             probability: Some(met.probability),
+            from_s,
         };
         let flag = Self::new(CaveatKind::SecondContact, time_s, message);
         Self { contact: Some(contact), ..flag }
@@ -162,6 +183,24 @@ mod tests {
 
     use super::*;
     use impactlab_core::vehicle::Wheel;
+
+    #[test]
+    fn positions_have_a_probability_until_the_vehicles_meet_again_in_more_than_a_few_draws() {
+        let flag = |probability, from_s| FlagReport {
+            contact: Some(FlaggedContact {
+                position_m: [1.0, 2.0],
+                closing_speed_m_s: 0.5,
+                probability,
+                from_s,
+            }),
+            ..FlagReport::new(CaveatKind::SecondContact, 0.4, String::new())
+        };
+        assert_eq!(flag(Some(0.9), 0.3).known_until_s(), 0.3);
+        assert_eq!(flag(None, 0.3).known_until_s(), 0.3);
+        assert_eq!(flag(Some(0.05), 0.3).known_until_s(), f64::INFINITY);
+        let lift = FlagReport::new(CaveatKind::WheelLift, 0.4, String::new());
+        assert_eq!(lift.known_until_s(), f64::INFINITY);
+    }
 
     #[test]
     fn a_flag_is_written_with_its_numbers_and_is_a_caveat() {
