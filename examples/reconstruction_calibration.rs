@@ -27,7 +27,7 @@ use impactlab_core::vehicle::FrictionZone;
 use impactlab_reconstruct::evidence::{Edr, Evidence, Measured, RestPose, VideoPosition};
 use impactlab_reconstruct::sampler::{SamplerSettings, sample};
 use impactlab_reconstruct::{
-    Cars, Discrepancy, ForwardModel, RankedQuantity, Ranks, ReconstructedQuantity,
+    Cars, Discrepancy, ForwardModel, Posterior, RankedQuantity, Ranks, ReconstructedQuantity,
     ReconstructionTarget,
 };
 use rand::{RngExt, SeedableRng};
@@ -112,8 +112,7 @@ fn ranked(
     let particles = sample(&target, &settings, None, &mut |_| ControlFlow::Continue(()))?;
     let model = target.model();
     let of = |quantity: ReconstructedQuantity, z: &[f64]| {
-        let values = model.prior().values(z);
-        quantity.value(&values, &model.impact(&values))
+        Posterior::from_points(model, &[z.to_vec()]).values(quantity)[0]
     };
     let us: Vec<f64> = QUANTITIES.iter().map(|_| rng.random()).collect();
     let quantities = QUANTITIES.iter().zip(us);

@@ -14,6 +14,7 @@ use crate::evidence::{After, Evidence, ends};
 use crate::{Cars, ImpactState, Latent, LatentValues, Prior};
 use impactlab_core::collision::{Pulse, PulseShape, Side};
 use impactlab_core::data::{ForceAxes, ForceHistory, Sampling};
+use impactlab_core::numerics::interpolate;
 use impactlab_core::ranges::ROAD_FRICTION;
 use impactlab_core::units::STANDARD_GRAVITY_M_S2;
 use impactlab_core::vehicle::{
@@ -177,6 +178,29 @@ impl ForwardModel {
                 path,
                 striking_path: striking_paths.get(idx).cloned(),
             })
+        })
+    }
+
+    /// Yaw rate of the struck car at the end of the contact, rad/s, of each point: that of the impulse less
+    /// what the tires take from it until then.
+    pub fn yaw_rates_after_rad_s(&self, values: &[LatentValues]) -> Vec<f64> {
+        let contact_only = |values: &LatentValues| {
+            let mut prepared = self.prepared(*values);
+            prepared.manoeuvre.duration_s = values.get(Latent::PulseDuration);
+            prepared
+        };
+        let prepared: Vec<Prepared> = values.par_iter().map(contact_only).collect();
+        let runs: Vec<SimulationRun<'_>> = prepared
+            .iter()
+            .map(|motion| SimulationRun { vehicle: &motion.vehicle, manoeuvre: &motion.manoeuvre })
+            .collect();
+        simulate_paths(&runs, self.limit, |idx, path| {
+            let (motion, points) = (&prepared[idx], &path.points);
+            let times: Vec<f64> = points.iter().map(|point| point.time_s).collect();
+            let rates: Vec<f64> = points.iter().map(|point| point.yaw_rate_rad_s).collect();
+            let of_impulse = motion.impact.solution.struck.yaw_rate_rad_s;
+            // The last step may reach beyond the contact.
+            interpolate(&times, &rates, motion.manoeuvre.duration_s).unwrap_or(of_impulse)
         })
     }
 

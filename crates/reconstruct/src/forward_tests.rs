@@ -275,3 +275,24 @@ fn the_wheels_stand_on_the_zones_of_the_ground() {
     let (on_better, of_better) = travelled_m(&icy, &z);
     assert!(on_better < on_ice && of_better.unwrap() > 1.3 * of_ice.unwrap(), "{on_better}");
 }
+
+/// The yaw rate of the impulse alone was given for that after the contact, which the tires hold back.
+#[test]
+fn the_yaw_rate_after_the_impact_is_that_of_the_simulation_at_the_end_of_the_contact() {
+    let target = target(&evidence());
+    let model = target.model();
+    let z = particles(target.dim());
+    let values: Vec<LatentValues> = z.iter().map(|z| model.prior().values(z)).collect();
+    let rates = model.yaw_rates_after_rad_s(&values);
+    let motions = model.motions(&z, |motion| motion);
+    for (rate, motion) in rates.iter().zip(&motions) {
+        let simulated = motion.vehicle.simulate(&motion.manoeuvre, Integrator::Rk4).unwrap().series;
+        let end_s = motion.values.get(Latent::PulseDuration);
+        let yaw_rates = simulated.get(Channel::YawRate).unwrap();
+        let expected = interpolate(simulated.time_s(), yaw_rates, end_s).unwrap();
+        assert!((rate - expected).abs() < 0.01, "{rate} {expected}");
+    }
+    let of_impulse = motions.iter().map(|motion| motion.impact.solution.struck.yaw_rate_rad_s);
+    let less = rates.iter().zip(of_impulse).filter(|(rate, free)| rate.abs() < free.abs());
+    assert!(less.count() > rates.len() / 2, "{rates:?}");
+}

@@ -36,9 +36,9 @@ macro_rules! quantities {
             }
 
             /// Its value of a particle.
-            pub fn value(self, values: &LatentValues, impact: &ImpactState) -> f64 {
-                let value: fn(&LatentValues, &ImpactState) -> f64 = match self { $(Self::$name => $value),+ };
-                value(values, impact)
+            fn value(self, point: &PosteriorPoint<'_>) -> f64 {
+                let value: fn(&PosteriorPoint<'_>) -> f64 = match self { $(Self::$name => $value),+ };
+                value(point)
             }
         }
     };
@@ -46,20 +46,19 @@ macro_rules! quantities {
 
 quantities! {
     /// Speed of the struck car before the impact, m/s.
-    StruckSpeed: "target_speed_m_s", "m/s", |_, impact| impact.struck_speed_m_s;
+    StruckSpeed: "target_speed_m_s", "m/s", |of| of.impact.struck_speed_m_s;
     /// Speed of the striking car before the impact, m/s.
-    StrikingSpeed: "bullet_speed_m_s", "m/s", |_, impact| impact.striking_speed_m_s;
+    StrikingSpeed: "bullet_speed_m_s", "m/s", |of| of.impact.striking_speed_m_s;
     /// Size of the difference of both velocities, m/s.
-    ClosingSpeed: "closing_speed_m_s", "m/s", |_, impact| impact.closing_speed_m_s;
-    /// Heading of the striking car against that of the struck car, rad.
-    HeadingDifference: "heading_difference_rad", "rad", |_, impact| impact.heading_difference_rad;
+    ClosingSpeed: "closing_speed_m_s", "m/s", |of| of.impact.closing_speed_m_s;
+    /// Heading of the striking car against that of the struck car at first contact, rad.
+    HeadingDifference: "heading_difference_rad", "rad", |of| of.impact.heading_difference_rad;
     /// Peak friction of the road.
-    RoadFriction: "road_friction", "", |values, _| values.get(Latent::RoadFriction);
+    RoadFriction: "road_friction", "", |of| of.values.get(Latent::RoadFriction);
     /// Change of velocity of the struck car by the contact, m/s.
-    DeltaVStruck: "delta_v_target_m_s", "m/s", |_, impact| impact.delta_v_struck_m_s();
-    /// Yaw rate of the struck car after the impact, rad/s.
-    StruckYawRate: "target_yaw_rate_after_rad_s", "rad/s",
-        |_, impact| impact.solution.struck.yaw_rate_rad_s;
+    DeltaVStruck: "delta_v_target_m_s", "m/s", |of| of.impact.delta_v_struck_m_s();
+    /// Yaw rate of the struck car at the end of the contact, over which the tires act as well, rad/s.
+    StruckYawRate: "target_yaw_rate_after_rad_s", "rad/s", |of| of.yaw_rate_after_rad_s;
 }
 
 impl ReconstructedQuantity {
@@ -183,8 +182,17 @@ pub struct Posterior {
     pub values: Vec<LatentValues>,
     /// The impact of each particle.
     pub impacts: Vec<ImpactState>,
+    /// Yaw rate of the struck car of each particle at the end of the contact, rad/s.
+    pub yaw_rates_after_rad_s: Vec<f64>,
     /// Independent particles that all of them are worth; none if they are not of the posterior.
     pub ess: f64,
+}
+
+/// What a quantity of a particle follows from.
+struct PosteriorPoint<'a> {
+    values: &'a LatentValues,
+    impact: &'a ImpactState,
+    yaw_rate_after_rad_s: f64,
 }
 
 /// Smallest probability of a mode that is told.
@@ -206,7 +214,8 @@ impl Posterior {
     pub fn from_points(model: &ForwardModel, z: &[Vec<f64>]) -> Self {
         let values: Vec<LatentValues> = z.iter().map(|z| model.prior().values(z)).collect();
         let impacts = values.iter().map(|values| model.impact(values)).collect();
-        Self { ess: values.len() as f64, values, impacts }
+        let yaw_rates_after_rad_s = model.yaw_rates_after_rad_s(&values);
+        Self { ess: values.len() as f64, values, impacts, yaw_rates_after_rad_s }
     }
 
     /// Whether there are enough particles for intervals.
@@ -216,7 +225,16 @@ impl Posterior {
 
     /// Values of a quantity, one for each particle.
     pub fn values(&self, quantity: ReconstructedQuantity) -> Vec<f64> {
-        self.values.iter().zip(&self.impacts).map(|(v, impact)| quantity.value(v, impact)).collect()
+        self.points().map(|point| quantity.value(&point)).collect()
+    }
+
+    fn points(&self) -> impl Iterator<Item = PosteriorPoint<'_>> {
+        let points = self.values.iter().zip(&self.impacts).zip(&self.yaw_rates_after_rad_s);
+        points.map(|((values, impact), yaw_rate_after_rad_s)| PosteriorPoint {
+            values,
+            impact,
+            yaw_rate_after_rad_s: *yaw_rate_after_rad_s,
+        })
     }
 
     /// The interval that holds 90 % of a quantity that the motion depends on; `None` where the case does
@@ -257,13 +275,15 @@ impl Posterior {
         let ess = self.ess * chosen.len() as f64 / self.values.len().max(1) as f64;
         let levels = if ess >= LEAST_ESS_FOR_INTERVALS { &LEVELS[..] } else { &[] };
         let estimate = |quantity: &ReconstructedQuantity| {
-            let value = |&idx: &usize| quantity.value(&self.values[idx], &self.impacts[idx]);
+            let all = self.values(*quantity);
+            let value = |&idx: &usize| all[idx];
             QuantityEstimate::from_values(*quantity, chosen.iter().map(value).collect(), levels)
         };
         ReconstructedQuantity::ALL.iter().filter_map(estimate).collect()
     }
 
-    /// The kinds of courses of events, the most probable one first.
+    /// The kinds of courses of events, the most probable one first; none of particles that are not of the
+    /// posterior.
     ///
     /// - `turned_rad`: by how much the struck car of each particle has turned at rest, rad.
     pub fn modes(&self, particles: &Particles, turned_rad: &[f64]) -> Vec<Mode> {
@@ -271,6 +291,9 @@ impl Posterior {
             (Some(values), Some(turned)) => mode_name(values, *turned),
             _ => String::new(),
         };
+        if self.ess <= 0.0 {
+            return Vec::new();
+        }
         modes_by(particles, name)
             .into_iter()
             .filter(|mode| mode.probability >= SMALLEST_MODE)

@@ -4,7 +4,6 @@ use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
 use impactlab_core::numerics::quantile_of_sorted;
-use impactlab_reconstruct::ReconstructedQuantity;
 use impactlab_study::{Event, ReconstructedPaths, Sampling};
 
 /// Shortest time between two pictures of the particles.
@@ -40,7 +39,7 @@ fn particles(sampling: &Sampling<'_>) -> LiveParticles {
     let model = target.model();
     let speed = |z: &Vec<f64>| {
         let values = model.prior().values(z);
-        ReconstructedQuantity::StruckSpeed.value(&values, &model.impact(&values))
+        model.impact(&values).struck_speed_m_s
     };
     let mut speeds: Vec<f64> = z.iter().map(speed).collect();
     speeds.sort_by(f64::total_cmp);

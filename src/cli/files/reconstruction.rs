@@ -30,9 +30,11 @@ pub(in crate::cli) fn write_reconstruction(
         .chain(["log_likelihood"])
         .map(str::to_owned)
         .collect();
+    let estimates: Vec<Vec<f64>> =
+        quantities.iter().map(|quantity| posterior.values(*quantity)).collect();
     let rows = (0..posterior.values.len()).map(|idx| {
-        let (values, impact) = (&posterior.values[idx], &posterior.impacts[idx]);
-        let estimates = quantities.iter().map(|quantity| quantity.value(values, impact));
+        let values = &posterior.values[idx];
+        let estimates = estimates.iter().map(|column| column[idx]);
         let open = open.iter().map(|latent| values.get(*latent));
         estimates
             .chain(open)

@@ -3,14 +3,13 @@
 
 use rand::RngExt;
 use rand_distr::StandardNormal;
-use rayon::prelude::*;
 
 use crate::figure::{Axis, Band, Figure, FigureElement, LineStyle, Role, Series};
 use impactlab_core::numerics::random_stream;
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_reconstruct::{
-    BudgetItem, QuantityEstimate, ReconstructedQuantity, ReconstructionTarget,
+    BudgetItem, Posterior, QuantityEstimate, ReconstructedQuantity, ReconstructionTarget,
 };
 use impactlab_study::ReconstructAnswer;
 
@@ -27,13 +26,12 @@ const HALF_BAR: f64 = 0.32;
 pub fn prior_values(target: &ReconstructionTarget, quantity: ReconstructedQuantity) -> Vec<f64> {
     let model = target.model();
     let n = model.prior().components().len();
-    let value = |number: usize| {
+    let draw = |number: usize| -> Vec<f64> {
         let mut rng = random_stream(0, "prior of a reconstruction", number as u64);
-        let z: Vec<f64> = (0..n).map(|_| rng.sample(StandardNormal)).collect();
-        let values = model.prior().values(&z);
-        quantity.value(&values, &model.impact(&values))
+        (0..n).map(|_| rng.sample(StandardNormal)).collect()
     };
-    (0..N_PRIOR).into_par_iter().map(value).collect()
+    let z: Vec<Vec<f64>> = (0..N_PRIOR).map(draw).collect();
+    Posterior::from_points(model, &z).values(quantity)
 }
 
 /// A quantity before and after the evidence, as densities, with the 90 % interval.
