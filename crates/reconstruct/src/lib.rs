@@ -29,6 +29,7 @@ mod distribution;
 mod forward;
 mod hand;
 mod hand_checks;
+mod hinges;
 mod impact_state;
 mod latent;
 mod likelihood;
@@ -44,6 +45,7 @@ pub use distribution::Distribution;
 pub use forward::{CollisionMotion, ForwardModel};
 pub use hand::HandCalculation;
 pub use hand_checks::{HandCheck, HandSpeed};
+pub use hinges::{SpeedChange, SpeedHinge};
 pub use impact_state::ImpactState;
 pub use latent::{
     BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues, STRIKING_BRAKES,

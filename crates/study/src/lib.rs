@@ -73,7 +73,7 @@ pub use questions::predict::motion::{
     COARSE_DRAWS, DEFAULT_DRAWS, ForceSource, PredictMotionAnswer, PredictMotionReport,
     PredictMotionRequest,
 };
-pub use questions::reconstruct::paths::ReconstructedPaths;
+pub use questions::reconstruct::paths::{NamedPath, ReconstructedPaths};
 pub use questions::reconstruct::request::{
     EvidenceChoice, ReconstructAnswer, ReconstructReport, ReconstructRequest,
 };

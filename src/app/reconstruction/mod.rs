@@ -22,7 +22,7 @@ use std::sync::mpsc::Receiver;
 use crate::app::question_job::QuestionJob;
 use impactlab_core::vehicle::{Path, TireMark};
 use impactlab_reconstruct::evidence::Evidence;
-use impactlab_study::{ReconstructRequest, ReconstructedPaths};
+use impactlab_study::{NamedPath, ReconstructRequest};
 
 /// A path that is followed in the scene.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -104,12 +104,20 @@ impl ReconstructionSession {
         let paths = self.answer()?.paths_of(self.mode);
         match self.followed {
             FollowedParticle::Median => {
-                Some((ReconstructedPaths::MEDIAN.to_owned(), paths.median.as_ref()?))
+                let median = paths.median.as_ref()?;
+                Some((median.name.clone(), &median.path))
             }
             FollowedParticle::Draw(idx) => {
                 Some((format!("draw {}", idx + 1), paths.drawn.get(idx)?))
             }
         }
+    }
+
+    /// Paths of the other courses of events, beside that of the most probable one.
+    pub fn other_paths(&self) -> &[NamedPath] {
+        let is_median = self.followed == FollowedParticle::Median;
+        let answer = self.answer().filter(|_| is_median);
+        answer.map_or(&[], |answer| answer.paths_of(self.mode).others.as_slice())
     }
 
     /// The marks that tires leave along the path that is followed, where they are known.

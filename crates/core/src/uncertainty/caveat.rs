@@ -46,6 +46,9 @@ pub enum CaveatKind {
     FewParticles,
     /// The draws are so few that their intervals are uncertain themselves.
     FewDraws,
+    /// The evidence leaves several courses of events possible: what holds over all of them may be true of
+    /// none.
+    SeveralCourses,
     /// How often the intervals hold the truth has hardly been tried.
     HardlyValidated,
     /// Cases or draws could not be used and are left out.
@@ -137,6 +140,7 @@ impl CaveatKind {
             Self::EvidenceUnexplained => "evidence unexplained",
             Self::FewParticles => "few particles",
             Self::FewDraws => "few draws",
+            Self::SeveralCourses => "several courses of events",
             Self::HardlyValidated => "hardly validated",
             Self::LeftOut => "left out",
             Self::TrainedOn => "trained on",

@@ -9,7 +9,7 @@ use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_core::vehicle::{Path as VehiclePath, PathPoint, TireMark};
 use impactlab_reconstruct::Cars;
 use impactlab_reconstruct::evidence::{Evidence, Measured};
-use impactlab_study::{ReconstructAnswer, ReconstructedPaths};
+use impactlab_study::{NamedPath, ReconstructAnswer, ReconstructedPaths};
 
 /// Name of the struck car at rest in the legend.
 pub const STRUCK_AT_REST: &str = "struck car at rest, 90 % ellipse";
@@ -38,20 +38,27 @@ pub struct ReconstructionScene<'a> {
     pub drawn: &'a [VehiclePath],
     /// The path in front of them.
     pub followed: Option<FollowedPath<'a>>,
-    /// The marks that the tires leave along that path.
+    /// Paths of other courses of events, with the car at their ends.
+    pub others: &'a [NamedPath],
+    /// The marks that the tires leave along the path in front.
     pub marks: &'a [TireMark],
 }
 
 impl<'a> ReconstructionScene<'a> {
-    /// The scene of an answer, with a particle of median speed at its end.
+    /// The scene of an answer, with a particle of median speed at its end; one of each where several
+    /// courses of events are possible.
     pub fn new(answer: &'a ReconstructAnswer, paths: &'a ReconstructedPaths) -> Self {
-        let name = ReconstructedPaths::MEDIAN;
-        let at_end = |path: &'a VehiclePath| FollowedPath { name, path, time_s: f64::INFINITY };
+        let at_end = |NamedPath { name, path }: &'a NamedPath| FollowedPath {
+            name,
+            path,
+            time_s: f64::INFINITY,
+        };
         Self {
             evidence: answer.target.evidence(),
             cars: answer.target.model().cars(),
             drawn: &paths.drawn,
             followed: paths.median.as_ref().map(at_end),
+            others: &paths.others,
             marks: &paths.marks,
         }
     }
@@ -87,11 +94,15 @@ pub fn reconstruction_scene_figure(
         FigureElement::line("tire marks, computed", Role::Simulation, points)
     }));
     elements.extend(evidence_elements(scene, &shown, units));
-    if let Some(FollowedPath { name, path: followed, time_s }) = scene.followed {
-        elements.push(path(name, Role::Model, followed));
+    let others = scene.others.iter().enumerate().map(|(idx, NamedPath { name, path })| {
+        (Role::Variant(idx + 1), FollowedPath { name, path, time_s: f64::INFINITY })
+    });
+    let front = scene.followed.map(|followed| (Role::Model, followed));
+    for (role, FollowedPath { name, path: followed, time_s }) in others.chain(front) {
+        elements.push(path(name, role, followed));
         if let Some(pose) = pose_on(followed, time_s) {
             let footprint = Footprint::from(&scene.cars.struck.parameters.geometry);
-            let (role, style) = (Role::Model, LineStyle::Solid);
+            let style = LineStyle::Solid;
             elements.extend(vehicle_outline(name, role, style, &footprint, &pose, x.unit));
         }
     }

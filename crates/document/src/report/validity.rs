@@ -136,6 +136,7 @@ fn remedy(kind: CaveatKind, wording: &Wording) -> &'static str {
         CaveatKind::EvidenceUnexplained => words.remedy_evidence_unexplained,
         CaveatKind::FewParticles => words.remedy_few_particles,
         CaveatKind::FewDraws => words.remedy_few_draws,
+        CaveatKind::SeveralCourses => words.remedy_several_courses,
         CaveatKind::HardlyValidated => words.remedy_hardly_validated,
         CaveatKind::LeftOut => words.remedy_left_out,
         CaveatKind::TrainedOn => words.remedy_trained_on,

@@ -14,7 +14,7 @@ use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::{Path, TireMark, VehicleParameters};
 use impactlab_reconstruct::Cars;
 use impactlab_reconstruct::evidence::{Evidence, RestPose};
-use impactlab_study::{ReconstructAnswer, ReconstructedPaths};
+use impactlab_study::{NamedPath, ReconstructAnswer, ReconstructedPaths};
 
 /// Longest interval at which the motion along a path is kept, s.
 const STEP_S: f64 = 0.05;
@@ -30,7 +30,9 @@ pub struct ReconstructionParts<'a> {
     pub drawn: &'a [Path],
     /// The path that the car drives, with its name.
     pub followed: Option<(&'a str, &'a Path)>,
-    /// The marks that tires leave along that path.
+    /// Paths of other courses of events, which cars drive that shine through.
+    pub others: &'a [NamedPath],
+    /// The marks that tires leave along the path that the car drives.
     pub marks: &'a [TireMark],
     /// System of units of the labels.
     pub units: UnitSystem,
@@ -39,7 +41,8 @@ pub struct ReconstructionParts<'a> {
 }
 
 impl<'a> ReconstructionParts<'a> {
-    /// What the scene of an answer shows, with a particle of median speed that drives.
+    /// What the scene of an answer shows, with a particle of median speed that drives; one of each where
+    /// several courses of events are possible.
     pub fn new(
         answer: &'a ReconstructAnswer,
         paths: &'a ReconstructedPaths,
@@ -50,7 +53,8 @@ impl<'a> ReconstructionParts<'a> {
             evidence: answer.target.evidence(),
             cars: answer.target.model().cars(),
             drawn: &paths.drawn,
-            followed: paths.median.as_ref().map(|path| (ReconstructedPaths::MEDIAN, path)),
+            followed: paths.median.as_ref().map(|of| (of.name.as_str(), &of.path)),
+            others: &paths.others,
             marks: &paths.marks,
             units,
             caveats,
@@ -90,13 +94,17 @@ pub fn reconstruction_scene(input: &ReconstructionParts<'_>) -> Scene {
             add_rest(&mut scene, rest, &shape, [name, tag]);
         }
     }
+    for (idx, NamedPath { name, path }) in input.others.iter().enumerate() {
+        let (motion, role) = (motion_of(path, &shape.body), SceneRole::Variant(idx + 1));
+        add(&mut scene, [name, "struck"], role, CarLook::Ghost, &shape, motion);
+    }
     if let Some((name, path)) = input.followed {
         let motion = motion_of(path, &shape.body);
         let named = [name, "struck"];
         add(&mut scene, named, SceneRole::Simulated, CarLook::Solid, &shape, motion);
     }
-    let solid = scene.cars.iter().filter(|car| car.look == CarLook::Solid);
-    scene.end_s = solid.map(|car| car.motion.end_s()).fold(0.0, f64::max);
+    let driving = scene.cars.iter().filter(|car| car.role != SceneRole::Evidence);
+    scene.end_s = driving.map(|car| car.motion.end_s()).fold(0.0, f64::max);
     scene
 }
 

@@ -2,7 +2,8 @@
 
 use impactlab_core::units::Quantity;
 use impactlab_reconstruct::{
-    BudgetItem, EvidenceFit, HandCheck, MarkComparison, Mode, QuantityEstimate,
+    BudgetItem, EvidenceFit, HandCheck, MarkComparison, Mode, QuantityEstimate, SpeedChange,
+    SpeedHinge,
 };
 
 use crate::ReconstructReport;
@@ -11,14 +12,15 @@ use crate::facts::table::{PREDICTED, RECONSTRUCTED};
 use crate::facts::{Fact, FactTable, Term, Value};
 
 impl ReconstructReport {
-    /// What the answer says: the speeds, the courses of events, how well the evidence is explained, and
-    /// what further evidence would bring.
+    /// What the answer says: the courses of events where there are several, what the speeds hinge on, the
+    /// speeds, how well the evidence is explained, and what further evidence would bring.
     pub fn facts(&self) -> Vec<FactTable> {
         let courses = (self.modes.len() > 1).then(|| self.course_table());
         let tables = [
+            courses,
+            self.hinge_table(),
             Some(self.speed_table()),
             self.hand_table(),
-            courses,
             Some(self.fit_table()),
             self.mark_table(),
             self.budget_table(),
@@ -36,6 +38,22 @@ impl ReconstructReport {
             Fact::new(Term::EffectiveSamples, Value::Fixed(self.ess, 0)),
         ]);
         FactTable::new(Term::Speeds, facts).with_levels(RECONSTRUCTED)
+    }
+
+    /// By how much the speeds move if one quantity is larger, by the particles; none with too few of them.
+    pub fn hinge_table(&self) -> Option<FactTable> {
+        let row = |hinge: &SpeedHinge| {
+            let step = Value::Sigma(hinge.quantity(), hinge.step);
+            let name = vec![Value::Phrase(hinge.input.label().to_owned()), step];
+            let change = |of: SpeedChange| {
+                Value::Measured(Quantity::Speed, of.change_m_s, of.standard_error_m_s)
+            };
+            let values = vec![change(hinge.struck_speed), change(hinge.striking_speed)];
+            Fact::row(Value::Joined(name, " + "), values)
+        };
+        let rows = self.hinges.iter().map(row).collect();
+        let columns = [Term::StruckCar, Term::StrikingCar];
+        FactTable::new(Term::Hinges, rows).with_columns(&columns).unless_empty()
     }
 
     /// What one computes by hand, each number from its own part of the evidence; none if nothing holds.

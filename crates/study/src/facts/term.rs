@@ -217,6 +217,8 @@ terms! {
         "Was die Spuren über die Geschwindigkeiten sagen, vor dem Aufprall, wenn nicht anders gesagt";
     ByHand: "By hand, each number from its own part of the evidence",
         "Von Hand gerechnet, jede Zahl aus einem eigenen Teil der Spuren";
+    Hinges: "What the speeds hinge on: by how much they move if one quantity is larger",
+        "Wovon die Geschwindigkeiten abhängen: um wie viel sie sich ändern, wenn eine Größe größer ist";
     OneSigma: "± one standard deviation", "± eine Standardabweichung";
     HoldsBy: "from", "aus";
     Motions: "simulated motions", "simulierte Bewegungen";
@@ -227,6 +229,7 @@ terms! {
     IfThis: "If this happened", "Wenn es so war";
     StandardError: "standard error", "Standardfehler", "By the number of particles";
     StruckCar: "struck car", "gestoßenes Fzg.", "Its speed before the impact";
+    StrikingCar: "striking car", "stoßendes Fzg.", "Its speed before the impact";
     Fit: "Items of the evidence: found and expected", "Spuren: vorgefunden und erwartet";
     Found: "found", "gefunden", "What was found, or how far it lies off";
     Expected: "expected", "erwartet", "Median over the particles of what would be found";

@@ -66,6 +66,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         (None, Some(answer)) => answer.paths_of(of.mode).drawn.as_slice(),
         (None, None) => &[],
     };
+    let others = if followed.is_some() { of.other_paths() } else { &[] };
     let marks = of.followed_marks().filter(|_| followed.is_some()).unwrap_or_default();
     let figure = {
         let followed = followed.as_ref();
@@ -75,7 +76,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
             time_s: session.playback.time_s,
         });
         let (evidence, cars) = (&preview.evidence, &preview.cars);
-        let scene = ReconstructionScene { evidence, cars, drawn, followed, marks };
+        let scene = ReconstructionScene { evidence, cars, drawn, followed, others, marks };
         reconstruction_scene_figure(&scene, &caveats, view.units)
     };
     if !view.reconstruction.shows_cars {
@@ -101,6 +102,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         cars: &preview.cars,
         drawn,
         followed: followed.as_ref().map(|(name, path)| (name.as_str(), *path)),
+        others,
         marks,
         units: view.units,
         caveats: &caveats,

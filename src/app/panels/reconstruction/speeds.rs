@@ -23,8 +23,8 @@ use impactlab_study::{Answer, ReconstructReport};
 const MARGINAL_HEIGHT: f32 = 190.0;
 const PAIR_HEIGHT: f32 = 230.0;
 
-/// Draws the quantities with their intervals and distributions, the fit of the evidence, the courses of
-/// events, and what further evidence would bring.
+/// Draws the courses of events where there are several, the quantities with their intervals and
+/// distributions, the fit of the evidence, and what further evidence would bring.
 pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
     let of = &session.reconstruction;
@@ -47,6 +47,10 @@ pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let report = &answer.answer.report;
         let caveats = report.caveats.clone().outdated_if(is_outdated || of.run.is_running());
         faded_if(ui, is_outdated, |ui| {
+            restrictions_ui(ui, &report.caveats);
+            if report.modes.len() > 1 {
+                modes_ui(ui, report, of.mode, view.units, commands);
+            }
             numbers_ui(ui, report, view.units, commands);
             let units = view.units;
             let options = |id: &str, height| FigureOptions {
@@ -70,22 +74,23 @@ pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             let found: Vec<FactTable> = found.into_iter().flatten().collect();
             ui.add_space(looks::PART);
             facts_ui(ui, "evidence", &found, units);
-            modes_ui(ui, report, of.mode, units, commands);
+            if report.modes.len() == 1 {
+                modes_ui(ui, report, of.mode, units, commands);
+            }
             budget_ui(ui, &answer.answer, &caveats, units, commands);
         });
     });
 }
 
-/// Draws what restricts the answer, the table of quantities, and what was assumed.
+/// Draws what the speeds hinge on, the table of quantities, and what was assumed.
 fn numbers_ui(
     ui: &mut Ui,
     report: &Answer<ReconstructReport>,
     units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
-    restrictions_ui(ui, &report.caveats);
-    let tables: Vec<FactTable> =
-        std::iter::once(report.speed_table()).chain(report.hand_table()).collect();
+    let tables = [report.hinge_table(), Some(report.speed_table()), report.hand_table()];
+    let tables: Vec<FactTable> = tables.into_iter().flatten().collect();
     facts_ui(ui, &report.case, &tables, units);
     evidence_assumptions_ui(ui, &report.caveats, commands);
 }

@@ -21,7 +21,9 @@ pub(super) fn evidence_blocks(report: &ReconstructReport, context: Context<'_>) 
         table(&report.fit_table()),
     ];
     blocks.extend(compared_marks(report, context));
-    blocks.extend([table(&report.course_table()), Block::paragraph(words.modes_text)]);
+    if !report.modes.is_empty() {
+        blocks.extend([table(&report.course_table()), Block::paragraph(words.modes_text)]);
+    }
     blocks.extend(report.course_tables().iter().map(table));
     blocks
 }

@@ -35,6 +35,13 @@ pub(super) fn part(
     let words = wording.words;
     let ess = wording.fixed(report.ess, 0);
     let mut blocks = vec![Block::paragraph(fill(words.ask_reconstruct, &[("name", &report.case)]))];
+    if report.modes.len() > 1 {
+        blocks.push(Block::paragraph(words.several_courses));
+        blocks.push(facts_table(&report.course_table(), context));
+    }
+    if let Some(hinges) = report.hinge_table() {
+        blocks.extend([facts_table(&hinges, context), Block::paragraph(words.hinges_text)]);
+    }
     let speeds = report.speed_table();
     match report.has_intervals() {
         true => blocks.extend(facts_with_meanings(&speeds, words.meaning_posterior, context)),

@@ -121,6 +121,12 @@ pub(super) const WORDS: Words = Words {
         im Mittel, wenn eine Größe zusätzlich gemessen würde.",
     fit_text: "p ist die Wahrscheinlichkeit, dass Messung und Modell stärker abweichen als hier; unter \
         {level} gilt eine Spur als nicht erklärt.",
+    several_courses: "Mehr als ein Ablauf ist möglich. Jeder hat eigene Werte in Abschnitt 4; die unten \
+        stehenden über alle können für keinen davon zutreffen.",
+    hinges_text: "Eine Ausgleichsgerade durch die Partikel sagt, um wie viel sich eine Geschwindigkeit im Mittel \
+        ändert, wenn eine Größe um so viel größer ist, unter Berücksichtigung der Spuren; ± ist der \
+        Standardfehler der Geraden. Der Reibbeiwert der Fahrbahn steht immer dort, andere Größen, wo die \
+        Gerade mehr als Zufall ist.",
     modes_text: "Der Standardfehler ist der aus der Zahl der Partikel. Abläufe unter 1 % fehlen.",
     no_evidence: "Keine Frage dieses Falls beruht auf vorgefundenen Spuren: es gibt nichts anzupassen.",
     mark_value: "{n} Punkte von {first} bis {last}, je ± {sigma}",
@@ -182,6 +188,7 @@ pub(super) const WORDS: Words = Words {
     remedy_evidence_unexplained: "Diese Spur und ihre Standardabweichung prüfen; einen anderen Ablauf erwägen.",
     remedy_few_particles: "Mit mehr Partikeln erneut fragen.",
     remedy_few_draws: "Mit mehr Ziehungen erneut fragen.",
+    remedy_several_courses: "Die Werte jedes Ablaufs für sich verwenden; Spuren suchen, die zwischen ihnen entscheiden.",
     remedy_hardly_validated: "Das Intervall nur mit diesem Vorbehalt angeben.",
     remedy_left_out: "Die fehlenden Fälle oder Ziehungen ansehen.",
     remedy_trained_on: "Das Netz an Fällen beurteilen, die es nicht kennt.",

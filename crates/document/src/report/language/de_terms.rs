@@ -326,6 +326,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("few particles", "wenige Partikel"),
     ("few draws", "wenige Ziehungen"),
     ("doubtful data", "zweifelhafte Daten"),
+    ("several courses of events", "mehrere Abläufe"),
     ("hardly validated", "kaum validiert"),
     ("left out", "ausgelassen"),
     ("trained on", "im Training enthalten"),

@@ -119,6 +119,11 @@ pub(super) const WORDS: Words = Words {
         a quantity were measured as well.",
     fit_text: "p is the probability that measurement and model err by more than they do here; an item \
         below {level} counts as unexplained.",
+    several_courses: "More than one course of events is possible. Each has figures of its own in section 4; those \
+        over all of them, below, may be true of none.",
+    hinges_text: "A line through the particles by least squares says by how much a speed moves on the average \
+        if one quantity is larger by so much, given the evidence; ± is the standard error of the line. The \
+        friction of the road always stands there, others where the line is clear of chance.",
     modes_text: "The standard error is that of the number of particles. Courses of less than 1 % are left \
         out.",
     no_evidence: "No question of this case rests on evidence that was found: there is nothing to fit.",
@@ -179,6 +184,7 @@ pub(super) const WORDS: Words = Words {
     remedy_evidence_unexplained: "Check this item and its standard deviation; consider another course of events.",
     remedy_few_particles: "Ask again with more particles.",
     remedy_few_draws: "Ask again with more draws.",
+    remedy_several_courses: "Use the figures of each course of events; look for evidence that decides between them.",
     remedy_hardly_validated: "Report the interval with this reservation.",
     remedy_left_out: "Look at the cases or draws that are left out.",
     remedy_trained_on: "Judge the network by cases that it has not seen.",

@@ -1,6 +1,7 @@
 //! Paths of particles of a reconstruction, simulated again for pictures.
 
 use crate::ReconstructAnswer;
+use impactlab_core::units::NumberFormat;
 use impactlab_core::vehicle::{Path, TireMark};
 use impactlab_reconstruct::{Mode, QuantityEstimate, ReconstructionTarget};
 
@@ -12,25 +13,53 @@ const N_PATHS: usize = 40;
 pub struct ReconstructedPaths {
     /// Paths of the struck car, some of the particles.
     pub drawn: Vec<Path>,
-    /// Path of the particle whose speed of the struck car is nearest to the median.
-    pub median: Option<Path>,
-    /// The marks that the tires of the struck car leave in the motion of that particle.
+    /// Path of the particle whose speed of the struck car is nearest to the median; of the most probable
+    /// one of several courses of events.
+    pub median: Option<NamedPath>,
+    /// The same of each other course of events.
+    pub others: Vec<NamedPath>,
+    /// The marks that the tires of the struck car leave in the motion of `median`.
     pub marks: Vec<TireMark>,
+}
+
+/// A path with its name in a legend.
+#[derive(Debug, Clone)]
+pub struct NamedPath {
+    /// The name.
+    pub name: String,
+    /// The path.
+    pub path: Path,
 }
 
 impl ReconstructedPaths {
     /// What the path of a particle of median speed is called.
-    pub const MEDIAN: &str = "a particle of median speed";
+    const MEDIAN: &str = "a particle of median speed";
 
     /// Simulates paths of an answer's particles.
     pub fn from_answer(answer: &ReconstructAnswer) -> Self {
         let all: Vec<usize> = (0..answer.particles.z.len()).collect();
-        Self::among(answer, &all, &answer.report.quantities)
+        let drawn = drawn(answer, &all);
+        let report = &answer.report;
+        let name = |mode: &Mode| {
+            let chance = NumberFormat::default().percent(mode.probability);
+            format!("{chance}: {}", mode.name)
+        };
+        match report.modes.as_slice() {
+            [first, rest @ ..] if !rest.is_empty() => {
+                let of =
+                    |mode: &Mode| followed(answer, name(mode), &mode.members, &mode.quantities);
+                let (median, marks) = of(first).unzip();
+                let others = rest.iter().filter_map(|mode| Some(of(mode)?.0)).collect();
+                Self { drawn, median, others, marks: marks.unwrap_or_default() }
+            }
+            _ => Self::new(drawn, followed(answer, Self::MEDIAN, &all, &report.quantities)),
+        }
     }
 
     /// Simulates paths of the particles of one course of events.
     pub fn from_mode(answer: &ReconstructAnswer, mode: &Mode) -> Self {
-        Self::among(answer, &mode.members, &mode.quantities)
+        let followed = followed(answer, Self::MEDIAN, &mode.members, &mode.quantities);
+        Self::new(drawn(answer, &mode.members), followed)
     }
 
     /// Simulates paths of particles that are still moving, of which there is no median.
@@ -41,22 +70,32 @@ impl ReconstructedPaths {
         Self { drawn, ..Self::default() }
     }
 
-    fn among(
-        answer: &ReconstructAnswer,
-        members: &[usize],
-        quantities: &[QuantityEstimate],
-    ) -> Self {
-        let z = &answer.particles.z;
-        let every = members.len().div_ceil(N_PATHS).max(1);
-        let some = members.iter().step_by(every);
-        let chosen: Vec<Vec<f64>> = some.filter_map(|idx| z.get(*idx).cloned()).collect();
-        let model = answer.target.model();
-        let drawn = model.motions(&chosen, |motion| motion.path);
-        let nearest = answer.posterior.nearest_to_median(members, quantities);
-        let nearest = nearest.and_then(|idx| z.get(idx)).map(std::slice::from_ref);
-        let followed =
-            nearest.map(|z| model.motions(z, |motion| (motion.tire_marks(), motion.path)));
-        let (marks, median) = followed.and_then(|mut followed| followed.pop()).unzip();
-        Self { drawn, median, marks: marks.unwrap_or_default() }
+    fn new(drawn: Vec<Path>, followed: Option<(NamedPath, Vec<TireMark>)>) -> Self {
+        let (median, marks) = followed.unzip();
+        Self { drawn, median, others: Vec::new(), marks: marks.unwrap_or_default() }
     }
+}
+
+/// Paths of some of the particles of these numbers.
+fn drawn(answer: &ReconstructAnswer, members: &[usize]) -> Vec<Path> {
+    let z = &answer.particles.z;
+    let every = members.len().div_ceil(N_PATHS).max(1);
+    let some = members.iter().step_by(every);
+    let chosen: Vec<Vec<f64>> = some.filter_map(|idx| z.get(*idx).cloned()).collect();
+    answer.target.model().motions(&chosen, |motion| motion.path)
+}
+
+/// The path of that one of some particles whose speed is nearest to their median, with its tire marks.
+fn followed(
+    answer: &ReconstructAnswer,
+    name: impl Into<String>,
+    members: &[usize],
+    quantities: &[QuantityEstimate],
+) -> Option<(NamedPath, Vec<TireMark>)> {
+    let nearest = answer.posterior.nearest_to_median(members, quantities)?;
+    let z = std::slice::from_ref(answer.particles.z.get(nearest)?);
+    let model = answer.target.model();
+    let mut motions = model.motions(z, |motion| (motion.tire_marks(), motion.path));
+    let (marks, path) = motions.pop()?;
+    Some((NamedPath { name: name.into(), path }, marks))
 }

@@ -18,6 +18,7 @@ use impactlab_core::program;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_core::site::Site;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
+use impactlab_core::units::NumberFormat;
 use impactlab_core::vehicle::FrictionZone;
 use impactlab_reconstruct::domain::{check_damage, outside_domain};
 use impactlab_reconstruct::evidence::Evidence;
@@ -27,7 +28,7 @@ use impactlab_reconstruct::sampler::{
 use impactlab_reconstruct::{
     BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCheck, HandSpeed,
     LEAST_ESS_FOR_INTERVALS, MarkComparison, Mode, Posterior, PriorComponent, QuantityEstimate,
-    ReconstructionTarget,
+    ReconstructionTarget, SpeedHinge,
 };
 
 /// Effective sample size below which intervals may be too narrow.
@@ -86,6 +87,8 @@ pub struct ReconstructReport {
     /// The quantities with their intervals, which are left out where the particles are worth less than
     /// 100 independent ones or are not of the posterior.
     pub quantities: Vec<QuantityEstimate>,
+    /// What the speeds hinge on, the friction of the road first; nothing with too few particles.
+    pub hinges: Vec<SpeedHinge>,
     /// Courses of events that the evidence leaves possible, the most probable one first.
     pub modes: Vec<Mode>,
     /// How well each item of the evidence is explained.
@@ -293,6 +296,8 @@ impl Question for ReconstructRequest {
         let before = by_hand.iter().find(|check| check.speed == HandSpeed::Struck);
         let by_hand_m_s = before.map(|check| [check.value_m_s, check.sigma_m_s]);
         let mut caveats = Caveats::from(of_particles(&particles));
+        let modes = posterior.modes(&particles, &turned_rad);
+        caveats.extend(several_courses(&modes));
         caveats.extend(outside);
         caveats.extend(of_fit(&fit));
         caveats.push(of_validation(target.model().zones()));
@@ -300,9 +305,10 @@ impl Question for ReconstructRequest {
         let quantities = posterior.quantities();
         let report = ReconstructReport {
             case: target.evidence().case.clone(),
-            marks: compared_marks(&target, &particles, &posterior, &quantities),
+            marks: compared_marks(&target, &particles, &posterior, &quantities, &modes),
             quantities,
-            modes: posterior.modes(&particles, &turned_rad),
+            hinges: posterior.hinges(),
+            modes,
             fit,
             budget: posterior.budget(self.seed),
             ess: particles.ess,
@@ -319,16 +325,42 @@ impl Question for ReconstructRequest {
     }
 }
 
-/// The marks that were found beside those of the particle of median speed.
+/// That the evidence leaves more than one course of events possible.
+fn several_courses(modes: &[Mode]) -> Option<Caveat> {
+    let format = NumberFormat::default();
+    let course = |mode: &Mode| {
+        let chance = format.chance(mode.probability, Some(mode.standard_error));
+        format!("{} with {chance}", mode.name)
+    };
+    let courses: Vec<String> = modes.iter().map(course).collect();
+    (modes.len() > 1).then(|| {
+        let text = format!(
+            "{} courses of events are possible ({}): a median or an interval over all of them may be true of \
+             none; use those of each course",
+            modes.len(),
+            courses.join("; ")
+        );
+        Caveat::new(CaveatKind::SeveralCourses, text)
+            .with_value("courses of events", modes.len() as f64)
+            .with_range([1.0, 1.0])
+    })
+}
+
+/// The marks that were found beside those of the particle of median speed, or of that of the most probable
+/// of several courses of events.
 fn compared_marks(
     target: &ReconstructionTarget,
     particles: &Particles,
     posterior: &Posterior,
     quantities: &[QuantityEstimate],
+    modes: &[Mode],
 ) -> Vec<MarkComparison> {
     let found = &target.evidence().marks;
     let all: Vec<usize> = (0..particles.z.len()).collect();
-    let median = posterior.nearest_to_median(&all, quantities);
+    let median = match modes.first() {
+        Some(course) => posterior.nearest_to_median(&course.members, &course.quantities),
+        None => posterior.nearest_to_median(&all, quantities),
+    };
     let Some(z) = median.and_then(|idx| particles.z.get(idx)).filter(|_| !found.is_empty()) else {
         return Vec::new();
     };
