@@ -345,14 +345,18 @@ fn tables_for_hve_have_its_units_and_signs() {
     assert!((size - 3026.0).abs() < 40.0, "{size} N s");
     // The struck vehicle is hit from its right and pushed to its left: negative y of SAE.
     assert!(sum(2) < 0.0 && pulse.iter().all(|row| row.iter().all(|v| v.is_finite())));
-    assert!(text.contains("# the yaw moment Mz is missing"), "{text}");
+    // What is not a column is not said to be unknown beside what it follows from.
+    assert!(text.contains("Mz is missing as a column: it follows from the point"), "{text}");
+    assert!(text.contains("axes of SAE J670, of the vehicle: x forward, y right"), "{text}");
     assert!(text.contains("# point of contact: x -"), "{text}");
     let mass_kg = analysis.vehicle.mass.mass_kg;
     let row = pulse.iter().max_by(|a, b| a[2].abs().total_cmp(&b[2].abs())).expect("rows");
     let side_g = row[2] * lbf_n / mass_kg / 9.806_65;
     assert!((row[4] - side_g).abs() < 1e-3, "{row:?}: {side_g} g");
 
-    let (header, motion) = rows(&String::from_utf8(motion).expect("UTF-8"));
+    let text = String::from_utf8(motion).expect("UTF-8");
+    assert!(text.contains("X and Y of the ground, Y to the right of X"), "{text}");
+    let (header, motion) = rows(&text);
     assert_eq!(header[..3], ["Time (sec)", "X (ft)", "Y (ft)"]);
     let series = &analysis.simulation.as_ref().expect("a motion").series;
     assert_eq!(motion.len(), series.n_samples());

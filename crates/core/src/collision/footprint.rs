@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ranges::OFF_OUTLINE;
-use crate::vehicle::GeometryParameters;
+use crate::vehicle::{GeometryParameters, VehicleParameters};
 
 /// Position and heading of a vehicle in world axes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -163,6 +163,26 @@ impl From<&GeometryParameters> for Footprint {
 }
 
 impl Footprint {
+    /// A vehicle with this outline; [`VehicleParameters::stated`] says which sizes are not those of its
+    /// source any more.
+    #[must_use]
+    pub fn given_to(self, mut vehicle: VehicleParameters) -> VehicleParameters {
+        let geometry = &mut vehicle.geometry;
+        for (key, now_m, before_m) in [
+            ("geometry.outer_length_m", self.length_m, &mut geometry.outer_length_m),
+            ("geometry.outer_width_m", self.width_m, &mut geometry.outer_width_m),
+            ("geometry.cg_to_front_end_m", self.cg_from_front_m, &mut geometry.cg_to_front_end_m),
+        ] {
+            let was_m = std::mem::replace(before_m, now_m);
+            if (was_m - now_m).abs() > 1e-9 {
+                let text = format!("said with the collision, instead of {was_m} m");
+                vehicle.stated.insert(key.to_owned(), text);
+                vehicle.estimates.remove(key);
+            }
+        }
+        vehicle
+    }
+
     /// Checks that the outline has an area and that the CG lies inside it.
     ///
     /// # Errors

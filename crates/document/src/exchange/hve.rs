@@ -35,6 +35,13 @@ const MOTION_COLUMNS: [&str; 8] = [
     "Roll (deg)",
 ];
 
+/// Axes of the force on a vehicle.
+const PULSE_AXES: &str =
+    "axes of SAE J670, of the vehicle: x forward, y right, Mz clockwise from above";
+/// Axes of the motion of a vehicle.
+const MOTION_AXES: &str = "axes of SAE J670: X and Y of the ground, Y to the right of X; yaw clockwise from above; \
+                           velocities along x forward and y right of the vehicle; roll to the right";
+
 /// Writes the contact force on the struck vehicle over time, with the acceleration that it alone causes
 /// at the centre of gravity, and its yaw moment if it is recorded.
 ///
@@ -49,9 +56,11 @@ pub fn hve_pulse(
         || ExchangeError::Unknown { name: analysis.name.clone(), what: "contact force over time" };
     let force = analysis.force.as_ref().ok_or_else(unknown)?;
     let mass_kg = analysis.vehicle.mass.mass_kg;
-    head(out, &analysis.name, "collision force on the struck vehicle", restrictions)?;
+    let what = ["collision force on the struck vehicle", PULSE_AXES];
+    head(out, &analysis.name, what, restrictions)?;
     writeln!(out, "# mass {:.1} lb", to("lb", Quantity::Mass, mass_kg))?;
     writeln!(out, "# each row has {}", sampling_text(force.sampling))?;
+    writeln!(out, "# accelerations are those by this force alone, without the tires")?;
     let moment = force.mz_n_m.as_ref();
     for line in moment_lines(analysis, moment.is_some()) {
         writeln!(out, "# {line}")?;
@@ -85,7 +94,8 @@ pub fn hve_motion(
 ) -> Result<(), ExchangeError> {
     let unknown = || ExchangeError::Unknown { name: analysis.name.clone(), what: "motion" };
     let series = motion(analysis).ok_or_else(unknown)?;
-    head(out, &analysis.name, "motion of the struck vehicle, centre of gravity", restrictions)?;
+    let what = ["motion of the struck vehicle, centre of gravity", MOTION_AXES];
+    head(out, &analysis.name, what, restrictions)?;
     writeln!(out, "{}", MOTION_COLUMNS.join("\t"))?;
     let value = |channel: Channel, idx: usize| {
         series.get(channel).and_then(|values| values.get(idx)).copied().unwrap_or(f64::NAN)
@@ -118,12 +128,13 @@ pub fn hve_motion(
 fn head(
     out: &mut dyn Write,
     name: &str,
-    what: &str,
+    [what, axes]: [&str; 2],
     restrictions: Option<&str>,
 ) -> Result<(), ExchangeError> {
     writeln!(out, "# {}: {what}", one_line(name))?;
-    writeln!(out, "# axes of SAE J670: x forward, y right, yaw clockwise from above")?;
+    writeln!(out, "# {axes}")?;
     if let Some(restrictions) = restrictions {
+        writeln!(out, "# the restrictions are in metres and SI units, with y and Y to the left")?;
         writeln!(out, "# restrictions: {}", one_line(restrictions))?;
     }
     Ok(())
@@ -133,23 +144,30 @@ fn head(
 fn moment_lines(analysis: &Analysis, has_moment: bool) -> Vec<String> {
     if has_moment {
         return vec![
-            "the point of contact is missing; Mz is about the centre of gravity".to_owned(),
+            "the yaw moment Mz is about the centre of gravity; no point of contact is needed"
+                .to_owned(),
         ];
     }
-    let missing = "the yaw moment Mz is missing: the force does not say it".to_owned();
-    let place = match &analysis.struck {
-        None => "the point of contact is missing".to_owned(),
+    let (missing, place) = match &analysis.struck {
+        None => (
+            "the yaw moment Mz is missing: nothing says it",
+            "the point of contact is missing".to_owned(),
+        ),
         Some(struck) => {
             let ContactPoint { x_body_m, y_body_m, height_m } = struck.contact;
             let [x, y, z] =
                 [x_body_m, -y_body_m, height_m].map(|m| to("ft", Quantity::Length, m) + 0.0);
-            format!(
+            let place = format!(
                 "point of contact: x {x:.3} ft, y {y:.3} ft from the centre of gravity, {z:.3} ft above the \
-                 ground; Mz follows from it"
+                 ground"
+            );
+            (
+                "the yaw moment Mz is missing as a column: it follows from the point of contact",
+                place,
             )
         }
     };
-    vec![missing, place]
+    vec![missing.to_owned(), place]
 }
 
 fn sampling_text(sampling: Sampling) -> &'static str {

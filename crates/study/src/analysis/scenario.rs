@@ -61,8 +61,10 @@ pub fn analyse_scenario(
     let start = |vehicle: &ScenarioVehicle, preset: &VehicleParameters, pose: &Pose| {
         let [x_body_m, y_body_m] = pose.body_from_world(geometry.contact_point_world_m);
         let contact = ContactPoint { x_body_m, y_body_m, height_m: pulse.contact_height_m };
+        let of_mass = preset.clone().with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2));
         StruckVehicle {
-            vehicle: preset.clone().with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2)),
+            // One car has one size: that of the collision.
+            vehicle: vehicle.footprint().given_to(of_mass),
             initial: initial_state(vehicle, pose),
             contact,
             controls: Controls::default(),
@@ -145,10 +147,32 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use impactlab_core::collision::{ContactLocation, MovingFootprint, Side, overlap_m};
+    use impactlab_core::collision::{ContactLocation, Footprint, MovingFootprint, Side, overlap_m};
     use impactlab_core::data::{Channel, TimeSeries};
     use impactlab_core::numerics::interpolate;
     use impactlab_core::vehicle::{Ending, HeldSteer, Integrator, Preset};
+
+    /// A report gave the struck car 4.9 m in one section and 4.52 m in another.
+    #[test]
+    fn a_car_has_the_size_that_the_scenario_says() {
+        let scenario = Scenario::example();
+        let settings = Settings {
+            struck: Preset::Reference.parameters(),
+            striking: Preset::Bullet2000.parameters(),
+            ending: Ending::default(),
+            integrator: Integrator::Rk4,
+            duration_s: 0.5,
+            ends_at_rest: false,
+            friction_zones: Vec::new(),
+        };
+        let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
+        assert_eq!(Footprint::from(&analysis.vehicle.geometry), scenario.struck.footprint());
+        let before_m = settings.struck.geometry.outer_length_m;
+        assert!(before_m != scenario.struck.length_m, "{before_m} m");
+        let stated = &analysis.vehicle.stated["geometry.outer_length_m"];
+        assert_eq!(*stated, format!("said with the collision, instead of {before_m} m"));
+        assert!(!analysis.vehicle.estimates.contains_key("geometry.outer_length_m"));
+    }
 
     #[test]
     fn a_pit_turns_the_struck_and_both_go_on() {

@@ -43,7 +43,10 @@ pub(super) fn vehicle_rows(
     let sheet = vehicle.sheet.as_ref();
     let estimates = sheet.map_or_else(Vec::new, |sheet| sheet.estimates());
     if !estimates.is_empty() {
-        for row in &mut inputs {
+        let is_stated = |row: &&mut InputRow| {
+            !vehicle.stated.values().any(|of| row.source == wording.quoted(of))
+        };
+        for row in inputs.iter_mut().filter(is_stated) {
             // Which of the parameters a rule gave is told by the rows of the estimates below.
             row.source = wording.words.follows_from_sheet.to_owned();
         }
