@@ -44,3 +44,36 @@ fn each_format_is_written_and_nothing_is_replaced_unasked() {
         assert!(!out.exists());
     }
 }
+
+#[test]
+fn a_reconstruction_is_written_with_what_was_found_and_the_path_of_each_course() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let evidence = ["export", "tests/data/evidence/spin.toml", "--particles", "60", "--out"];
+    for (file, format) in [("a.dxf", "dxf"), ("a.glb", "glb"), ("a.csv", "motion")] {
+        let out = folder.path().join(file);
+        let report = answer(&[&evidence[..], &[text(&out)]].concat());
+        assert_eq!(report["format"], format);
+        let notes = report["notes"].to_string();
+        assert!(notes.contains("no intervals are given"), "{notes}");
+    }
+    let read = |file: &str| fs::read(folder.path().join(file)).expect("a file");
+    let drawing = String::from_utf8_lossy(&read("a.dxf")).into_owned();
+    for part in ["SIMULATED_PATH", "SIMULATED_OUTLINE", "EVIDENCE_LINE", "few particles"] {
+        assert!(drawing.contains(part), "{part}");
+    }
+    let table = String::from_utf8(read("a.csv")).expect("UTF-8");
+    let mut lines = table.lines();
+    assert!(lines.next().is_some_and(|header| header.starts_with("course,time_s,x_m,y_m,yaw_rad")));
+    let last = lines.last().expect("rows");
+    // The car comes to rest some 45 m on.
+    let cells: Vec<&str> = last.rsplit(',').collect();
+    assert!(cells.len() >= 8 && last.contains("few particles"), "{last}");
+    let scene = read("a.glb");
+    assert!(scene.windows(22).any(|part| part == b"no intervals are given"), "restrictions");
+    let hve = folder.path().join("a.txt");
+    let args = [&evidence[..], &[text(&hve), "--format", "hve-pulse"]].concat();
+    let output = program().args(&args).output().expect("it starts");
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!output.status.success() && error.contains("contact force over time"), "{error}");
+    assert!(!hve.exists());
+}

@@ -7,22 +7,30 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use crate::cli::CliError;
+use crate::cli::commands::render_film::{SampledArgs, reconstruction};
+use crate::cli::commands::render_reconstruction::{ExportedReconstruction, exported};
 use crate::cli::commands::render_scene::{BuiltScene, CaseArgs, build};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{OverwriteArg, number};
-use impactlab_core::data::{write_atomically, write_restricted_series_csv};
+use impactlab_core::data::{write_atomically, write_restricted_series_csv, write_restricted_table};
 use impactlab_core::ranges::INSTANT;
 use impactlab_core::units::UnitSystem;
+use impactlab_core::vehicle::PathPoint;
 use impactlab_document::exchange::{
     DxfOptions, ExchangeError, GltfFrame, dxf, glb, hve_motion, hve_pulse,
 };
+use impactlab_document::scene::{FilmTiming, Scene};
+use impactlab_study::ReconstructRequest;
 
-/// Write the scene or the motion of a case for other programs: DXF, glTF, CSV, tables for HVE
+/// Write the scene or the motion of a case, or a reconstruction, for other programs: DXF, glTF, CSV, tables
+/// for HVE
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct ExportArgs {
     #[command(flatten)]
     case: CaseArgs,
+    #[command(flatten)]
+    sampled: SampledArgs,
     /// What is written; if not given, it follows from the ending of the file
     #[arg(long, value_enum)]
     format: Option<FormatArg>,
@@ -42,10 +50,13 @@ Examples:
   impactlab export datasets/trajectories-fea --case FE_c002 --at 0 --at 1 --at 2 --out paths.dxf
   impactlab export pit-right-rear --out scene.glb
   impactlab export datasets/trajectories-fea --case FE_c002 --format hve-pulse --out pulse.txt
+  impactlab export assets/examples/reconstruction.toml --out found.dxf
 
 Formats: dxf is in metres, a layer for each role, restrictions as text; glb has the cars with their
 animation, Y up, for Blender and browsers; motion is CSV in SI units; hve-pulse and hve-motion are rows
 with tabs between them in the units and axes of HVE, to be pasted into its tables.
+Of evidence: what was found, and the car on the path of a particle of median speed, one of each course of
+events; in CSV these paths. A reconstruction has no table for HVE.
 
 JSON: out, format, title, notes";
 
@@ -86,16 +97,28 @@ pub(in crate::cli) fn run(
         return Err(CliError::OutlinesOfDrawing);
     }
     console.check_target(Some(&args.out), args.overwrite.into())?;
+    if let Some(request) = reconstruction(&args.case, &args.sampled)? {
+        return export_reconstruction(args, (format, &request), console);
+    }
     let built = build(&args.case, None, UnitSystem::Si, console)?;
     for time_s in &args.at {
         built.check_time("--at", *time_s)?;
     }
     write(args, (format, &built))?;
-    let mut notes = built.notes.clone();
+    written(args, (format, &built.scene), built.notes.clone(), console)
+}
+
+/// Says what was written.
+fn written(
+    args: &ExportArgs,
+    (format, scene): (FormatArg, &Scene),
+    mut notes: Vec<String>,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
     if format == FormatArg::Glb {
-        notes.extend(GltfFrame::new(&built.scene).notes());
+        notes.extend(GltfFrame::new(scene).notes());
     }
-    let (out, title, notes) = (&args.out, &built.scene.title, notes.as_slice());
+    let (out, title, notes) = (&args.out, &scene.title, notes.as_slice());
     if console.json {
         print_json(console.out, &Exported { out, format, title, notes })?;
         return Ok(Verdict::Clean);
@@ -105,6 +128,58 @@ pub(in crate::cli) fn run(
         writeln!(console.out, "note: {note}")?;
     }
     Ok(Verdict::Clean)
+}
+
+/// Reconstructs from evidence, writes the file and says so.
+fn export_reconstruction(
+    args: &ExportArgs,
+    (format, request): (FormatArg, &ReconstructRequest),
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let unknown = |what| {
+        let name = args.case.source.path.display().to_string();
+        ExchangeError::Unknown { name, what }
+    };
+    match format {
+        FormatArg::HvePulse => return Err(unknown("contact force over time").into()),
+        FormatArg::HveMotion => return Err(unknown("motion without its uncertainty").into()),
+        FormatArg::Dxf | FormatArg::Glb | FormatArg::Motion => {}
+    }
+    let ExportedReconstruction { scene, paths, notes } = exported(request, console)?;
+    let existing = args.overwrite.into();
+    let mut bytes = Vec::new();
+    match format {
+        FormatArg::Dxf => {
+            let outlines_s = match args.at.is_empty() {
+                true => vec![FilmTiming::from_scene(&scene).from_s, scene.end_s],
+                false => args.at.clone(),
+            };
+            dxf(&scene, &DxfOptions { outlines_s }, &mut bytes)?;
+        }
+        FormatArg::Glb => glb(&scene, &mut bytes)?,
+        _ => {
+            let header = PATH_COLUMNS.map(str::to_owned);
+            let rows =
+                paths.iter().flat_map(|of| of.path.points.iter().map(|at| path_row(&of.name, at)));
+            let restrictions = scene.caveats.text();
+            write_restricted_table(&args.out, existing, &header, rows, restrictions.as_deref())?;
+            return written(args, (format, &scene), notes, console);
+        }
+    }
+    write_atomically(&args.out, existing, |out: &mut dyn Write| -> io::Result<()> {
+        out.write_all(&bytes)
+    })?;
+    written(args, (format, &scene), notes, console)
+}
+
+/// Columns of the paths of a reconstruction.
+const PATH_COLUMNS: [&str; 8] =
+    ["course", "time_s", "x_m", "y_m", "yaw_rad", "vx_body_m_s", "vy_body_m_s", "yaw_rate_rad_s"];
+
+fn path_row(name: &str, at: &PathPoint) -> Vec<String> {
+    let PathPoint { time_s, x_m, y_m, yaw_rad, vx_body_m_s, vy_body_m_s, yaw_rate_rad_s } = *at;
+    let numbers = [time_s, x_m, y_m, yaw_rad, vx_body_m_s, vy_body_m_s, yaw_rate_rad_s];
+    std::iter::once(name.to_owned()).chain(numbers.map(|number| number.to_string())).collect()
 }
 
 /// The format that belongs to the ending of a file.

@@ -57,9 +57,9 @@ pub(super) struct FilmArgs {
     scale: f64,
 }
 
-/// How a reconstruction is sampled, if the film is of one.
+/// How a reconstruction is sampled, if the scene is of one.
 #[derive(Debug, Args)]
-struct SampledArgs {
+pub(super) struct SampledArgs {
     /// Of evidence: the striking car, where the evidence gives no value
     #[arg(long, value_name = "NAME|FILE")]
     striking: Option<VehicleArg>,
@@ -126,12 +126,12 @@ fn scene(args: &FilmArgs, console: &mut Console<'_>) -> Result<(Scene, Vec<Strin
     }
 }
 
-/// The reconstruction that is filmed, if the path is evidence.
+/// The reconstruction that is shown, if the path is evidence.
 ///
 /// # Errors
 /// [`CliError::OptionOfSimulation`] and [`CliError::OptionOfEvidence`] for an option that would have no
 /// effect.
-fn reconstruction(
+pub(super) fn reconstruction(
     case: &CaseArgs,
     sampled: &SampledArgs,
 ) -> Result<Option<ReconstructRequest>, CliError> {

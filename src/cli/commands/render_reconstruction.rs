@@ -16,7 +16,7 @@ use impactlab_document::figure::{
 };
 use impactlab_document::scene::{LoadedGround, ReconstructionParts, Scene, reconstruction_scene};
 use impactlab_reconstruct::ReconstructedQuantity;
-use impactlab_study::{ReconstructAnswer, ReconstructRequest, ReconstructedPaths};
+use impactlab_study::{NamedPath, ReconstructAnswer, ReconstructRequest, ReconstructedPaths};
 
 /// The evidence, and what is drawn.
 #[derive(Debug, Args)]
@@ -116,6 +116,29 @@ pub(super) fn cars_scene(
     let scene = of.cars(&ReconstructedPaths::from_answer(&of.answer), units);
     let notes = of.notes().into_iter().chain(of.far_notes(&scene)).collect();
     Ok((scene, notes))
+}
+
+/// The scene of a reconstruction for other programs: with the paths of a particle of each course of events.
+pub(super) struct ExportedReconstruction {
+    /// The scene, with what restricts it.
+    pub(super) scene: Scene,
+    /// The path of a particle of median speed, or of one of each course of events.
+    pub(super) paths: Vec<NamedPath>,
+    /// Notes on how it was made.
+    pub(super) notes: Vec<String>,
+}
+
+/// Reconstructs a case for other programs.
+pub(super) fn exported(
+    request: &ReconstructRequest,
+    console: &mut Console<'_>,
+) -> Result<ExportedReconstruction, CliError> {
+    let of = Reconstructed::new(request, console)?;
+    let paths = ReconstructedPaths::from_answer(&of.answer);
+    let scene = of.cars(&paths, UnitSystem::Si);
+    let notes = of.notes().into_iter().chain(of.far_notes(&scene)).collect();
+    let paths = paths.median.into_iter().chain(paths.others).collect();
+    Ok(ExportedReconstruction { scene, paths, notes })
 }
 
 /// A reconstruction with what restricts it, and the ground below its cars.
