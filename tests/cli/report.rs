@@ -119,3 +119,42 @@ fn what_is_wrong_with_the_arguments_is_said_and_nothing_is_written() {
         assert!(!out.exists());
     }
 }
+
+/// A case was edited in an editor, and nothing said so.
+#[test]
+fn an_edit_of_a_saved_case_is_said_by_check_and_report() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("pit.impactlab");
+    let mut case = CaseFile::load(Path::new(PIT)).unwrap();
+    case.variants.iter_mut().for_each(|variant| variant.questions.truncate(1));
+    case.save(&path, Existing::Refuse).unwrap();
+    let check = || {
+        let args = ["case", "check", text(&path), "--json"];
+        let output = program().args(args).output().unwrap();
+        (output.status.code(), json(&String::from_utf8(output.stdout).unwrap()))
+    };
+    let (code, saved) = check();
+    assert_eq!((code, &saved["is_as_saved"]), (Some(0), &json("true")));
+    let digest = |path: &Path| impactlab_core::data::write::sha256_hex(&fs::read(path).unwrap());
+    assert_eq!(saved["sha256"], digest(&path));
+    let report = |name: &str| {
+        let out = folder.path().join(name);
+        let args = ["report", text(&path), "--out", text(&out), "--date", "2026-11-24"];
+        let output = program().args(args).output().unwrap();
+        (output.status.code(), fs::read_to_string(&out).unwrap())
+    };
+    let (code, written) = report("saved.md");
+    assert_eq!(code, Some(0));
+    for part in [digest(&path).as_str(), "its content is what the program saved"] {
+        assert!(written.contains(part), "{part}");
+    }
+    let before = fs::read_to_string(&path).unwrap();
+    fs::write(&path, before.replace("PIT at 54 km/h", "PIT at 64 km/h")).unwrap();
+    let (code, edited) = check();
+    assert_eq!((code, &edited["changes"][0]["kind"]), (Some(1), &json("\"case\"")));
+    let (code, written) = report("edited.md");
+    assert_eq!(code, Some(1));
+    for part in [digest(&path).as_str(), "itself was edited without the program"] {
+        assert!(written.contains(part), "{part}");
+    }
+}

@@ -78,6 +78,7 @@ fn the_report_on_screen_is_the_one_of_the_case_file() {
     };
     let outcome = report_case(
         &case,
+        None,
         std::slice::from_ref(&case.shown),
         &settings,
         &Library::default(),

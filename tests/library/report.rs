@@ -35,7 +35,7 @@ pub fn english() -> ReportSettings {
 
 pub fn report(case: &CaseFile, settings: &ReportSettings) -> (ReportDocument, CaseReport) {
     let mut go_on = |_: impactlab_study::Event<'_>| ControlFlow::Continue(());
-    let outcome = report_case(case, &[], settings, &Library::default(), &mut go_on);
+    let outcome = report_case(case, None, &[], settings, &Library::default(), &mut go_on);
     outcome.expect("a case").complete().expect("nobody cancels")
 }
 

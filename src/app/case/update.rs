@@ -20,7 +20,7 @@ use impactlab_core::data::write::{ModelDigest, sha256_hex};
 use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, Severity, read_utf8};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
-use impactlab_study::case_file::{CaseFile, UsedModel, pack};
+use impactlab_study::case_file::{CaseFile, CaseOnDisk, UsedModel, pack};
 use impactlab_study::{MotionSource, Request, SeriesFile};
 
 /// The finished example case.
@@ -273,7 +273,9 @@ impl State {
             Ok(read) => read,
             Err(why) => return self.say(Severity::Error, why),
         };
-        for change in file.changes() {
+        let edited = CaseOnDisk::from_text(&text, &path).change();
+        let opened = if edited.is_some() { "opened; edited since it was saved" } else { "opened" };
+        for change in file.changes().into_iter().chain(edited) {
             self.say(Severity::Warning, change.to_string());
         }
         self.take_file(file);
@@ -281,7 +283,7 @@ impl State {
         self.case.on_disk = Some(sha256_hex(text.as_bytes()));
         self.show_variant();
         self.case.saved = Some(self.case_fingerprint());
-        self.case.file.note("opened");
+        self.case.file.note(opened);
         self.remember_case(path);
     }
 

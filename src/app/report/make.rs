@@ -7,7 +7,7 @@ use impactlab_core::error_chain;
 use impactlab_core::jobs::{Progress, ProgressCallback};
 use impactlab_document::report::{Pixels, ReportDocument, ReportSettings, report_case};
 use impactlab_draw::report_picture;
-use impactlab_study::case_file::{CaseFile, Change};
+use impactlab_study::case_file::{CaseFile, CaseOnDisk, Change};
 use impactlab_study::{Event, Library};
 
 /// What a report was made of. Another origin gives another report.
@@ -45,6 +45,7 @@ pub type DrawnPicture = Result<Pixels, String>;
 /// A message for the user.
 pub(super) fn make_report(
     case: &CaseFile,
+    on_disk: Option<&CaseOnDisk>,
     origin: ReportOrigin,
     library: &Library,
     tell: &mut ProgressCallback<'_>,
@@ -53,8 +54,8 @@ pub(super) fn make_report(
         Event::Progress(progress) => tell(progress),
         Event::Training(_) | Event::Sampling(_) => std::ops::ControlFlow::Continue(()),
     };
-    let answered =
-        report_case(case, origin.variants.as_slice(), &origin.settings, library, &mut observer);
+    let (variants, settings) = (origin.variants.as_slice(), &origin.settings);
+    let answered = report_case(case, on_disk, variants, settings, library, &mut observer);
     let (document, report) = match answered.map_err(|error| error_chain(&error))? {
         Outcome::Complete(answered) => answered,
         Outcome::Cancelled => return Ok(Outcome::Cancelled),

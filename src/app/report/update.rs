@@ -10,6 +10,7 @@ use crate::app::state::State;
 use crate::app::tasks::TaskKey;
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::Severity;
+use impactlab_study::case_file::CaseOnDisk;
 
 impl State {
     /// What a report would be made of now.
@@ -55,12 +56,16 @@ impl State {
                 "data or networks are still being read; make the report when they are",
             );
         }
+        let own = self.case.path.clone().filter(|_| !self.is_case_changed());
         let case = self.captured_case();
         let library = Arc::clone(&self.session.library);
         self.session.report.is_running = true;
         self.session.tasks.start(
             TaskKey::Report,
-            move |tell| make_report(&case, origin, &library, tell),
+            move |tell| {
+                let on_disk = own.as_deref().and_then(|path| CaseOnDisk::read(path).ok());
+                make_report(&case, on_disk.as_ref(), origin, &library, tell)
+            },
             |result| Command::Report(ReportCommand::Made(result)),
         );
     }

@@ -13,7 +13,8 @@ use crate::cli::text::print_answer;
 use impactlab_core::units::UnitSystem;
 use impactlab_study::Report;
 use impactlab_study::case_file::{
-    AnsweredQuestion, CaseFile, CaseReport, Change, UsedFile, VariantReport, pack, unpack,
+    AnsweredQuestion, CaseFile, CaseOnDisk, CaseReport, Change, UsedFile, VariantReport, pack,
+    unpack,
 };
 
 /// Run, check, pack or unpack a case, as the window saves it
@@ -53,16 +54,17 @@ Example:
 
 JSON: impactlab schema case --answer says every key with its unit
 
-Exit code 1 if a question has no answer, or if a file or a network is not what it was when the case was
-saved.";
+Exit code 1 if a question has no answer, or if the case, a file or a network is not what it was when the
+case was saved.";
 
 /// Say what is in a case, and whether its files are what they were
 #[derive(Debug, Args)]
 #[command(after_help = "\
 JSON: name, notes, shown, variants [{name, questions [..]}], files [{path, bytes, sha256}], models
-  [{network, name, sha256}], log [{time, event}], changes [{kind, path}]
+  [{network, name, sha256}], log [{time, event}], sha256 (of the file itself), is_as_saved (whether nobody
+  has edited it since; null without a seal), changes [{kind, path}]
 
-Exit code 1 if a file is missing or has changed.")]
+Exit code 1 if a file is missing or has changed, or if the case itself was edited since it was saved.")]
 struct CheckArgs {
     /// The case
     #[arg(value_name = "CASE.impactlab")]
@@ -99,11 +101,16 @@ pub(in crate::cli) fn run(args: &CaseArgs, console: &mut Console<'_>) -> Result<
         CaseCommand::Run(args) => run_case(args, console),
         CaseCommand::Check(args) => check_case(args, console),
         CaseCommand::Pack(args) => {
-            let case = CaseFile::load(&args.case)?;
+            let mut case = CaseFile::load(&args.case)?;
             console.check_target(Some(&args.out), args.overwrite.into())?;
             console.reads(std::slice::from_ref(&args.case))?;
+            let edited = CaseOnDisk::read(&args.case)?.change();
+            if edited.is_some() {
+                case.note("packed; edited since it was saved");
+            }
             pack(&case, &args.out, args.overwrite.into())?;
             writeln!(console.out, "{} written", shown_path(&args.out))?;
+            print_changes(console.out, edited.as_slice())?;
             Ok(Verdict::Clean)
         }
         CaseCommand::Unpack(args) => {
@@ -117,7 +124,8 @@ pub(in crate::cli) fn run(args: &CaseArgs, console: &mut Console<'_>) -> Result<
 fn run_case(args: &RunArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
     let case = CaseFile::load(&args.case)?;
     let report = under_bar(|observer| case.ask(&args.variant, &console.library, observer))?;
-    let report = report.complete().ok_or(CliError::Cancelled)?;
+    let mut report = report.complete().ok_or(CliError::Cancelled)?;
+    report.changes.extend(CaseOnDisk::read(&args.case)?.change());
     console.print(&report, |out| print_case(out, &report, args.units.into()))?;
     Ok(Verdict::from_problems(!report.is_clean()))
 }
@@ -127,14 +135,24 @@ fn run_case(args: &RunArgs, console: &mut Console<'_>) -> Result<Verdict, CliErr
 struct CheckedCase<'a> {
     #[serde(flatten)]
     case: &'a CaseFile,
+    sha256: &'a str,
+    is_as_saved: Option<bool>,
     changes: &'a [Change],
 }
 
 fn check_case(args: &CheckArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
     let case = CaseFile::load(&args.case)?;
-    let changes = case.changes();
-    console.print(&CheckedCase { case: &case, changes: &changes }, |out| {
+    let own = CaseOnDisk::read(&args.case)?;
+    let changes: Vec<Change> = case.changes().into_iter().chain(own.change()).collect();
+    let checked = CheckedCase {
+        case: &case,
+        sha256: &own.file.sha256,
+        is_as_saved: own.is_as_saved,
+        changes: &changes,
+    };
+    console.print(&checked, |out| {
         writeln!(out, "{}", case.name)?;
+        writeln!(out, "the case itself, {} bytes, SHA-256 {}", own.file.bytes, own.file.sha256)?;
         if !case.notes.is_empty() {
             writeln!(out, "{}", case.notes)?;
         }

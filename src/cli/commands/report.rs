@@ -13,7 +13,7 @@ use impactlab_core::data::write_atomically;
 use impactlab_document::report::{
     Drawing, Language, Paper, ReportDate, ReportFormat, ReportSettings, report_case,
 };
-use impactlab_study::case_file::{CaseFile, Change, Variant};
+use impactlab_study::case_file::{CaseFile, CaseOnDisk, Change, Variant};
 use impactlab_study::{EvidenceChoice, InputKind, ReconstructRequest};
 
 /// Write the report of a case: answers, inputs, evidence, method, validity, sources
@@ -65,8 +65,8 @@ same bytes.
 
 JSON: out, title, date, sections, pictures, unanswered, changes [{kind, path | network and name}]
 
-Exit code 1 if a question has no answer, or if a file or a network is not what it was when the case was
-saved. The report is written then too, and says so.";
+Exit code 1 if a question has no answer, or if the case, a file or a network is not what it was when the
+case was saved. The report is written then too, and says so.";
 
 const LANGUAGES: Words<Language> =
     &[("en", "English", Language::En), ("de", "German", Language::De)];
@@ -101,8 +101,11 @@ pub(in crate::cli) fn run(
     console.reads(std::slice::from_ref(&args.case))?;
     console.reads(&case.input_files())?;
     let settings = args.settings()?;
+    let is_case = InputKind::from_path(&args.case) == InputKind::Case;
+    let on_disk = is_case.then(|| CaseOnDisk::read(&args.case)).transpose()?;
     let outcome = under_bar(|observer| {
-        report_case(&case, args.variant.as_slice(), &settings, &console.library, observer)
+        let (on_disk, variants) = (on_disk.as_ref(), args.variant.as_slice());
+        report_case(&case, on_disk, variants, &settings, &console.library, observer)
     })?;
     let (document, report) = outcome.complete().ok_or(CliError::Cancelled)?;
     let bytes = document

@@ -19,7 +19,7 @@ use crate::report::{
 use impactlab_core::data::Outcome;
 use impactlab_core::error_chain;
 use impactlab_core::units::UnitSystem;
-use impactlab_study::case_file::{CaseError, CaseFile, CaseReport};
+use impactlab_study::case_file::{CaseError, CaseFile, CaseOnDisk, CaseReport};
 use impactlab_study::{Library, Observer};
 
 /// A variant with what its questions contribute.
@@ -32,12 +32,14 @@ pub(super) struct VariantParts {
 
 /// Asks every question of a case once and makes the report of the answers.
 ///
+/// - `on_disk`: the file of the case, if the case is as it stands there;
 /// - `variants`: names of the variants that are asked; empty for all.
 ///
 /// # Errors
 /// [`CaseError::NoVariant`].
 pub fn report_case(
     case: &CaseFile,
+    on_disk: Option<&CaseOnDisk>,
     variants: &[String],
     settings: &ReportSettings,
     library: &Library,
@@ -57,14 +59,17 @@ pub fn report_case(
             _ => parts.push(VariantParts { name: variant.name.clone(), answers: vec![part] }),
         }
     })?;
-    let Outcome::Complete(report) = outcome else { return Ok(Outcome::Cancelled) };
-    let builder = Builder { case, report: &report, settings, wording: &wording, paths: &paths };
+    let Outcome::Complete(mut report) = outcome else { return Ok(Outcome::Cancelled) };
+    report.changes.extend(on_disk.and_then(CaseOnDisk::change));
+    let builder =
+        Builder { case, on_disk, report: &report, settings, wording: &wording, paths: &paths };
     let document = builder.document(&parts);
     Ok(Outcome::Complete((document, report)))
 }
 
 struct Builder<'a> {
     case: &'a CaseFile,
+    on_disk: Option<&'a CaseOnDisk>,
     report: &'a CaseReport,
     settings: &'a ReportSettings,
     wording: &'a Wording,
@@ -349,7 +354,13 @@ impl Builder<'_> {
                 answers.push((name, part.provenance.clone()));
             }
         }
-        provenance_blocks(self.case, self.report, &answers, self.wording, self.paths)
+        provenance_blocks(
+            (self.case, self.on_disk),
+            self.report,
+            &answers,
+            self.wording,
+            self.paths,
+        )
     }
 }
 

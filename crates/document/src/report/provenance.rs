@@ -4,7 +4,7 @@ use crate::report::numbers::{Wording, fill};
 use crate::report::parts::PartProvenance;
 use crate::report::paths::ShownPaths;
 use crate::report::{Block, Table};
-use impactlab_study::case_file::{CaseFile, CaseReport, Change, UsedFile, UsedModel};
+use impactlab_study::case_file::{CaseFile, CaseOnDisk, CaseReport, Change, UsedFile, UsedModel};
 
 /// What has changed since the case was saved, as one notice; none if nothing has.
 pub(super) fn change_notice(
@@ -16,6 +16,7 @@ pub(super) fn change_notice(
     let text = |change: &Change| match change {
         Change::Missing { path, .. } => fill(words.change_missing, &[("path", &paths.name(path))]),
         Change::Changed { path } => fill(words.change_changed, &[("path", &paths.name(path))]),
+        Change::Case { path } => fill(words.change_case, &[("path", &paths.name(path))]),
         Change::Model { network, name } => {
             fill(words.change_model, &[("network", network), ("name", &paths.shown(name))])
         }
@@ -29,7 +30,7 @@ pub(super) fn change_notice(
 ///
 /// - `answers`: each answer by its name, with its provenance.
 pub(super) fn provenance_blocks(
-    case: &CaseFile,
+    (case, on_disk): (&CaseFile, Option<&CaseOnDisk>),
     report: &CaseReport,
     answers: &[(String, PartProvenance)],
     wording: &Wording,
@@ -41,6 +42,7 @@ pub(super) fn provenance_blocks(
     let is_saved = !(case.log.is_empty() && case.files.is_empty() && case.models.is_empty());
     let saved = is_saved.then(|| Block::paragraph(fill(words.case_saved_by, &versions)));
     let mut blocks: Vec<Block> = saved.into_iter().collect();
+    blocks.extend(is_saved.then(|| Block::paragraph(own_file(on_disk, wording, paths))));
     blocks.extend(change_notice(&report.changes, wording, paths));
     let row = |(name, provenance): &(String, PartProvenance)| {
         let seeds = match provenance.seeds.is_empty() {
@@ -56,6 +58,27 @@ pub(super) fn provenance_blocks(
     blocks.push(models(report, wording, paths));
     blocks.push(Block::paragraph(words.reproduce_text));
     blocks
+}
+
+/// The file of the case itself, by its content.
+fn own_file(on_disk: Option<&CaseOnDisk>, wording: &Wording, paths: &ShownPaths) -> String {
+    let words = wording.words;
+    let Some(CaseOnDisk { file, is_as_saved }) = on_disk else {
+        return words.case_in_no_file.to_owned();
+    };
+    let state = match is_as_saved {
+        Some(true) => words.case_as_saved,
+        Some(false) => words.case_edited,
+        None => words.case_without_seal,
+    };
+    let bytes = file.bytes.to_string();
+    let values = [
+        ("path", &*paths.name(&file.path)),
+        ("bytes", &bytes),
+        ("sha256", &file.sha256),
+        ("state", state),
+    ];
+    fill(words.case_file, &values)
 }
 
 /// The files as they are now, also those that were not there when the case was saved.

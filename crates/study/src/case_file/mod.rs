@@ -8,6 +8,7 @@
 //!   are absolute. A case and its files can be moved together.
 //! - [`CaseFile::changes`] says which files are missing or hold something else than when the case was
 //!   saved.
+//! - [`CaseOnDisk`] says whether the file itself is as the program has written it.
 //! - [`CaseFile::ask`] answers every question of every variant, as the commands of the questions do.
 //! - [`pack`] and [`unpack`] make one zip of a case and all its files, and a folder of that again.
 //! - A variant is its questions, which the window edits. What several of them have in common, such as the
@@ -21,6 +22,8 @@ mod used;
 
 mod store;
 
+mod on_disk;
+
 mod common;
 
 mod package;
@@ -28,11 +31,13 @@ mod package;
 mod run;
 
 use schemars::JsonSchema;
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 use crate::Request;
 
 pub use error::CaseError;
+pub use on_disk::CaseOnDisk;
 pub use package::{file_stem, pack, unpack};
 pub use run::{AnswerListener, AnsweredQuestion, CaseReport, VariantReport};
 pub use store::CASE_ENDING;
@@ -67,6 +72,11 @@ pub struct CaseFile {
     /// What was done and when.
     #[serde(default)]
     pub log: Vec<LogEntry>,
+    /// SHA-256 of all else in the file, by which an edit without the program is known. It is written with
+    /// the text of the file and belongs to that alone.
+    #[serde(default, skip_serializing)]
+    #[schemars(with = "Option<String>")]
+    seal: IgnoredAny,
 }
 
 /// One way in which it may have happened.
@@ -124,6 +134,7 @@ impl CaseFile {
             files: Vec::new(),
             models: Vec::new(),
             log: Vec::new(),
+            seal: IgnoredAny,
         }
     }
 

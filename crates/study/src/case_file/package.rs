@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
+use crate::case_file::on_disk::sealed;
 use crate::case_file::used::{files_in, files_of_site};
 use crate::case_file::{CASE_ENDING, CaseError, CaseFile};
 use impactlab_core::data::write::check_inputs;
@@ -68,7 +69,7 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<(), CaseEr
     };
     let wrong = |source| CaseError::Syntax { path: to.to_owned(), source };
     let packed = case.with_paths(&placed).map_err(wrong)?;
-    let text = serde_json::to_string_pretty(&packed).map_err(wrong)? + "\n";
+    let text = sealed(&serde_json::to_string_pretty(&packed).map_err(wrong)?);
     let name = file_stem(&case.name);
     Ok(write_atomically(to, existing, |out| {
         let mut zip = ZipWriter::new_stream(out);

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde_json::Value;
 
+use crate::case_file::on_disk::sealed;
 use crate::case_file::paths::{absolute, relative, replace_strings};
 use crate::case_file::{CaseError, CaseFile};
 use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, read_utf8, write_atomically};
@@ -59,7 +60,7 @@ impl CaseFile {
         case.with_paths(&to_absolute).map_err(wrong)
     }
 
-    /// The text of the case's file.
+    /// The text of the case's file, with its seal.
     ///
     /// - `path`: of the file, absolute.
     ///
@@ -76,7 +77,7 @@ impl CaseFile {
         };
         let mut case = self.with_paths(&to_relative).map_err(wrong)?;
         case.program = impactlab_core::program::version().to_owned();
-        Ok(serde_json::to_string_pretty(&case).map_err(wrong)? + "\n")
+        Ok(sealed(&serde_json::to_string_pretty(&case).map_err(wrong)?))
     }
 
     /// Writes a case, whole or not at all.

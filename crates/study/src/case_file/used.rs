@@ -45,6 +45,11 @@ pub enum Change {
         /// The file or folder.
         path: PathBuf,
     },
+    /// The case itself was edited without the program.
+    Case {
+        /// Its file.
+        path: PathBuf,
+    },
     /// A network of the same name is another one.
     Model {
         /// Which network it is.
@@ -60,6 +65,9 @@ impl fmt::Display for Change {
             Self::Missing { path, why } => write!(f, "{}: is missing ({why})", path.display()),
             Self::Changed { path } => {
                 write!(f, "{}: has changed since the case was saved", path.display())
+            }
+            Self::Case { path } => {
+                write!(f, "{}: has been edited since the program saved it", path.display())
             }
             Self::Model { network, name } => write!(
                 f,

@@ -21,7 +21,8 @@ impl PredictMotionReport {
         self.flags.iter().map(FlagReport::known_until_s).fold(f64::INFINITY, f64::min)
     }
 
-    fn is_end_known(&self) -> bool {
+    /// Whether positions at the end have a probability.
+    pub fn is_end_known(&self) -> bool {
         self.outcome.time_s <= self.known_until_s()
     }
 

@@ -32,7 +32,13 @@ pub(super) fn part(
     let mut blocks = vec![Block::paragraph(fill(words.ask_motion, &names))];
     let is_one = report.n_forces <= 1 && report.n_vehicles == 0;
     let meaning = if is_one { words.meaning_motion_one } else { words.meaning_motion };
-    blocks.extend(facts_with_meanings(&report.motion_table(), meaning, context));
+    match report.is_end_known() {
+        true => blocks.extend(facts_with_meanings(&report.motion_table(), meaning, context)),
+        false => {
+            blocks.push(facts_table(&report.motion_table(), context));
+            blocks.push(Block::paragraph(words.after_second_contact));
+        }
+    }
     blocks.extend(report.rival_table().iter().map(|table| facts_table(table, context)));
     let shares = report.sensitivity_table();
     let draws = [

@@ -77,7 +77,11 @@ pub(super) fn forecast_still(
     );
     let (scene, note) = on_ground(scene, request.motion.site.as_deref(), context);
     let time_s = report.outcome.time_s;
-    let caption = fill(wording.words.forecast_scene_picture, &[("name", &report.scenario)]);
+    let template = match report.is_end_known() {
+        true => wording.words.forecast_scene_picture,
+        false => wording.words.forecast_paths_picture,
+    };
+    let caption = fill(template, &[("name", &report.scenario)]);
     let still = SceneStill { scene, time_s, view: ViewKind::Above, near_m: None };
     PartPicture::still(caption + &note, still)
 }

@@ -25,6 +25,7 @@ pub(super) const WORDS: Words = Words {
         den jetzigen Stand und können von den damaligen abweichen.",
     change_missing: "die Datei {path} fehlt",
     change_changed: "die Datei {path} wurde geändert",
+    change_case: "die Falldatei {path} selbst wurde ohne das Programm bearbeitet",
     change_model: "das {network}-Netz „{name}“ ist ein anderes",
     unanswered_notice: "{n} von {all} Fragen sind unbeantwortet; die Gründe stehen unten.",
     no_answer: "Keine Antwort: {error}",
@@ -100,6 +101,10 @@ pub(super) const WORDS: Words = Words {
     learned_duration: "Das Bewegungsnetz hat aus Bewegungen von bis zu {time} gelernt; was danach kommt, ist \
         die Physik mit den gelernten Stärken.",
     forecast_scene_picture: "Vorhersage von „{name}“ von oben: Bahnen, Dichte und Bereiche von 50 und 90 % am Ende",
+    forecast_paths_picture: "Vorhersage von „{name}“ von oben: Bahnen; keine Dichte, da sich die Fahrzeuge vor dem \
+        Ende erneut berühren",
+    after_second_contact: "Die Fahrzeuge berühren sich vor dem Ende erneut, und dieser Kontakt wird nicht berechnet: \
+        wohin sie danach kommen, hat keine Wahrscheinlichkeit, und die Mediane sind die einer Bewegung ohne ihn.",
     forecast_yaw_picture: "Vorhersage von „{name}“: Gierwinkel über der Zeit mit Bändern",
     meaning_posterior: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, unter \
         Berücksichtigung der Spuren, wenn die Annahmen in Abschnitt 3 und die Modelle in \
@@ -312,6 +317,11 @@ pub(super) const WORDS: Words = Words {
         was Ziehungen verschiebt. Ein Bericht desselben Falls mit demselben Datum hat dieselben Bytes.",
     case_saved_by: "Der Fall wurde mit Version {version} gespeichert; dieser Bericht stammt von Version \
         {now}.",
+    case_file: "Falldatei {path}: {bytes} Bytes, SHA-256 {sha256}; {state}.",
+    case_as_saved: "ihr Inhalt ist der, den das Programm gespeichert hat",
+    case_edited: "sie wurde bearbeitet, seit das Programm sie gespeichert hat",
+    case_without_seal: "sie trägt kein Siegel des Programms: von Hand oder mit einer früheren Version geschrieben",
+    case_in_no_file: "Der Fall, wie er hier ist, steht in keiner Datei.",
     log_caption: "Was wann geschah, UTC",
     time: "Zeit",
     event: "Vorgang",

@@ -22,6 +22,7 @@ pub(super) const WORDS: Words = Words {
         of now and may differ from those of then.",
     change_missing: "the file {path} is missing",
     change_changed: "the file {path} has changed",
+    change_case: "the case file {path} itself was edited without the program",
     change_model: "the {network} network “{name}” is another one",
     unanswered_notice: "{n} of {all} questions have no answer; why is said below.",
     no_answer: "No answer: {error}",
@@ -99,6 +100,10 @@ pub(super) const WORDS: Words = Words {
         the physics with the strengths that it knows.",
     forecast_scene_picture: "Forecast of “{name}” from above: paths, and density with the regions of 50 and 90 % at \
         the end",
+    forecast_paths_picture: "Forecast of “{name}” from above: paths; no density, since the vehicles meet again \
+        before the end",
+    after_second_contact: "The vehicles meet again before the end, and that contact is not computed: where they go \
+        after it has no probability, and the medians are those of a motion without it.",
     forecast_yaw_picture: "Forecast of “{name}”: heading over time with its bands",
     meaning_posterior: "{quantity}: between {low} and {high} with a probability of 90 %, given the evidence, if \
         the assumptions of section 3 and the models of section 5 hold.",
@@ -301,6 +306,11 @@ pub(super) const WORDS: Words = Words {
         kind of processor; another one may round the last digits differently, which shifts draws. A \
         report of the same case with the same date has the same bytes.",
     case_saved_by: "The case was saved by version {version}; this report was made by version {now}.",
+    case_file: "Case file {path}: {bytes} bytes, SHA-256 {sha256}; {state}.",
+    case_as_saved: "its content is what the program saved",
+    case_edited: "it was edited since the program saved it",
+    case_without_seal: "it has no seal of the program: it was written by hand or by an earlier version",
+    case_in_no_file: "The case as it is here stands in no file.",
     log_caption: "What was done and when, UTC",
     time: "Time",
     event: "Event",
