@@ -37,6 +37,7 @@ mod panes;
 mod playback;
 mod project;
 mod question_job;
+mod reading;
 mod reconstruction;
 mod recording;
 mod renderer;
@@ -69,6 +70,7 @@ use egui::util::undoer::Undoer;
 use egui::{Context, Ui, ViewportCommand};
 use egui_tiles::Tree;
 
+use crate::app::reading::ReadingRecord;
 use crate::app::store::{OpenedState, Store, open_state};
 use impactlab_core::data::Severity;
 use impactlab_core::error_chain;
@@ -77,7 +79,7 @@ use impactlab_draw::scene::gpu::WindowDevice;
 use impactlab_draw::{DensityGpu, theme};
 
 pub use archive::{ArchiveEntry, ArchiveKind, ArchiveStatus, ModelsDialog, Removal};
-pub use case::{CaseCommand, Leaving, OpenCase, VariantCommand};
+pub use case::{CaseCommand, Leaving, OpenCase, TrustedCase, VariantCommand};
 pub use chain::Link;
 pub use command::{Command, ComparisonCommand, ModelsCommand, TrainingCommand};
 pub use contents::{ContentsEntry, Group};
@@ -188,6 +190,13 @@ impl App {
             (true, false) => last_open,
             (true, true) => shipped_datasets().into_iter().collect(),
         };
+        let own_folder = data_folder.as_deref().filter(|_| store.is_some());
+        let (record, unread) = own_folder.map(ReadingRecord::open).unwrap_or_default();
+        state.session.tasks.record_reading(record);
+        let to_open = match has_paths {
+            true => to_open,
+            false => state.leave_unread(to_open, &unread),
+        };
         if let Some(folder) = data_folder {
             // Trainings are stored by the window that stores its state.
             state.open_data_folder(folder, store.is_some());
@@ -291,6 +300,7 @@ impl eframe::App for App {
         if let (Some(store), Ok(text)) = (&mut self.store, self.state.save()) {
             store.finish(&text);
         }
+        self.state.session.tasks.end_reading();
     }
 }
 

@@ -13,6 +13,7 @@ use egui::Context;
 
 use crate::app::command::Command;
 use crate::app::network::Network;
+use crate::app::reading::ReadingRecord;
 use impactlab_core::jobs::{Job, Progress, ProgressCallback};
 
 /// Which work a task does. There is one task of each at a time; a new one takes the place of the other,
@@ -25,12 +26,14 @@ pub enum TaskKey {
     Write(PathBuf),
     /// The case is written.
     SaveCase,
+    /// The files of the case are compared with what they were.
+    CheckCase,
     /// A film is made and written.
     Film(PathBuf),
     /// The report of the case is made.
     Report,
-    /// The ground of the scene is read.
-    Ground,
+    /// The ground of the scene is read, by its path.
+    Ground(PathBuf),
     /// The table or the curve of a file is read for the import dialog.
     Import,
     /// The desktop asks the user for a path.
@@ -98,12 +101,32 @@ pub struct Tasks {
     running: Vec<(TaskKey, Box<dyn Work>)>,
     /// The commands of tasks that could not be started.
     ended: Vec<Command>,
+    /// Where it is written down what is being read.
+    reading: ReadingRecord,
 }
 
 impl Tasks {
     /// Lets tasks draw a window again when they have news.
     pub fn wake(&mut self, window: Context) {
         self.window = Some(window);
+    }
+
+    /// Writes down what is being read from now on.
+    pub(in crate::app) fn record_reading(&mut self, record: ReadingRecord) {
+        self.reading = record;
+    }
+
+    /// Forgets what is being read, because the program ends as it should.
+    pub(in crate::app) fn end_reading(&mut self) {
+        self.reading.write(std::iter::empty());
+    }
+
+    /// Writes down what is being read.
+    ///
+    /// - `coming`: what will be read besides.
+    fn write_reading(&mut self, coming: Option<&TaskKey>) {
+        let running = self.running.iter().map(|(key, _)| key);
+        self.reading.write(running.chain(coming).filter_map(TaskKey::read_path));
     }
 
     /// Starts a task on a thread of normal priority.
@@ -117,6 +140,7 @@ impl Tasks {
         work: impl FnOnce(&mut ProgressCallback<'_>) -> Result<T, String> + Send + 'static,
         then: impl FnOnce(Result<T, String>) -> C + 'static,
     ) {
+        self.write_reading(Some(&key));
         let job = Job::spawn(key.thread_name(), self.waker(), work);
         self.add(key, job, then);
     }
@@ -163,6 +187,7 @@ impl Tasks {
                 false
             }
         });
+        self.write_reading(None);
         commands
     }
 
@@ -186,6 +211,7 @@ impl Tasks {
     /// Cancels a task whose result is not wanted any more: it ends without a command.
     pub fn stop(&mut self, key: &TaskKey) {
         self.running.retain(|(of, _)| of != key);
+        self.write_reading(None);
     }
 
     /// Whether a file is being written of what is shown.
@@ -207,14 +233,23 @@ impl Tasks {
 }
 
 impl TaskKey {
+    /// The path that is read for the state at each start, if the task does that.
+    fn read_path(&self) -> Option<&Path> {
+        match self {
+            Self::Load(path) | Self::Ground(path) => Some(path),
+            _ => None,
+        }
+    }
+
     fn thread_name(&self) -> &'static str {
         match self {
             Self::Load(_) => "load",
             Self::Write(_) => "write",
             Self::SaveCase => "save case",
+            Self::CheckCase => "check case",
             Self::Film(_) => "film",
             Self::Report => "report",
-            Self::Ground => "ground",
+            Self::Ground(_) => "ground",
             Self::Import => "import",
             Self::FileDialog => "file dialog",
             Self::LoadModel(_) => "load model",
@@ -279,8 +314,9 @@ mod tests {
         tasks.start(TaskKey::Cost, |_| Ok("second"), command_of);
         drop(sender);
         assert_eq!(settled(&mut tasks), ["Info second"]);
-        tasks.start(TaskKey::Ground, |_| Ok("read"), command_of);
-        tasks.stop(&TaskKey::Ground);
+        let ground = TaskKey::Ground("site.toml".into());
+        tasks.start(ground.clone(), |_| Ok("read"), command_of);
+        tasks.stop(&ground);
         assert!(settled(&mut tasks).is_empty());
         tasks.start(TaskKey::FileDialog, |_| Ok(()), |_| None::<Command>);
         assert!(settled(&mut tasks).is_empty());

@@ -13,7 +13,7 @@ use impactlab_document::scene::FilmTimingError;
 use impactlab_networks::force::ForceError;
 use impactlab_networks::learning::LearningError;
 use impactlab_study::StudyError;
-use impactlab_study::case_file::CaseError;
+use impactlab_study::case_file::{CaseError, Reach};
 
 /// A command that could not do its work.
 #[derive(Debug, thiserror::Error)]
@@ -21,6 +21,16 @@ pub enum CliError {
     /// A case cannot be read, written or packed.
     #[error(transparent)]
     Case(Box<CaseError>),
+    /// A case does more than read files in its own folder, and nobody has said that it may.
+    #[error(
+        "{}: {reach}; --trust allows this, for a case of which you know who made it", path.display()
+    )]
+    Untrusted {
+        /// The case.
+        path: PathBuf,
+        /// What it does.
+        reach: Box<Reach>,
+    },
     /// Standard output is closed or full.
     #[error("the output cannot be written")]
     Output(#[from] io::Error),

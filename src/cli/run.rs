@@ -4,7 +4,8 @@ use std::ffi::OsString;
 use std::io::{self, BufWriter, Write};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::cli::CliError;
 use crate::cli::commands::{
@@ -71,7 +72,7 @@ enum CliCommand {
 /// Returns exit code 0 (ok), 1 (the work failed or found problems) or 2 (wrong usage).
 pub fn run() -> ExitCode {
     impactlab_core::program::set_version(crate::VERSION);
-    let cli = match Cli::try_parse() {
+    let cli = match Cli::try_parse().and_then(Cli::with_request) {
         Ok(cli) => cli,
         Err(help_or_error) => {
             // Nobody is left to tell if the output is closed.
@@ -100,6 +101,45 @@ pub fn run() -> ExitCode {
             let _ = writeln!(io::stderr(), "error: {}", within_line(&error_chain(&error)));
             ExitCode::FAILURE
         }
+    }
+}
+
+impl Cli {
+    /// Refuses to print a question of a command that has none of its own.
+    fn with_request(self) -> Result<Self, clap::Error> {
+        let has_request = match &self.command {
+            None
+            | Some(
+                CliCommand::App(_)
+                | CliCommand::Render(_)
+                | CliCommand::Export(_)
+                | CliCommand::Vehicles(_)
+                | CliCommand::Licences(_)
+                | CliCommand::Ranges(_)
+                | CliCommand::Schema(_),
+            ) => false,
+            Some(CliCommand::Case(args)) => args.asks(),
+            Some(
+                CliCommand::Check(_)
+                | CliCommand::Ask(_)
+                | CliCommand::Impact(_)
+                | CliCommand::Simulate(_)
+                | CliCommand::Train(_)
+                | CliCommand::FineTune(_)
+                | CliCommand::Condition(_)
+                | CliCommand::Predict(_)
+                | CliCommand::Evaluate(_)
+                | CliCommand::Compare(_)
+                | CliCommand::Reconstruct(_)
+                | CliCommand::Report(_),
+            ) => true,
+        };
+        if self.print_request && !has_request {
+            let message =
+                "--print-request: this command asks no question that `impactlab ask` could answer";
+            return Err(Cli::command().error(ErrorKind::ArgumentConflict, message));
+        }
+        Ok(self)
     }
 }
 

@@ -144,3 +144,32 @@ fn a_case_file_has_the_keys_of_its_schema() {
     let of_case = schema("case", "--request");
     assert_eq!(unknown_keys(&of_case, &[&of_case], &case, ""), [""; 0]);
 }
+
+#[test]
+fn a_command_prints_its_question_or_refuses_to_and_writes_nothing() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let case = "assets/examples/pit.impactlab";
+    let site = "assets/sites/country-road/site.toml";
+    for args in [
+        &["case", "check", case][..],
+        &["case", "pack", case, "--out", text(&out)],
+        &["case", "unpack", "a.zip", "--out", text(&out)],
+        &["render", "scene", SCENARIO, "--time", "1", "--out", "a.png"],
+        &["export", SCENARIO, "--site", site, "--out", "a.dxf"],
+        &["vehicles"],
+        &["ranges"],
+        &["schema"],
+        &["licences"],
+        &["app"],
+        &[],
+    ] {
+        let refused = program().args(args).arg("--print-request").output().unwrap();
+        let error = String::from_utf8(refused.stderr).unwrap();
+        assert_eq!(refused.status.code(), Some(2), "{args:?}: {error}");
+        assert!(error.contains("asks no question"), "{args:?}: {error}");
+        assert!(refused.stdout.is_empty() && !out.exists(), "{args:?}");
+    }
+    let asked = program().args(["case", "run", case, "--print-request"]).output().unwrap();
+    assert_eq!(json(&ok(asked))[0]["questions"][0]["question"], "impact");
+}

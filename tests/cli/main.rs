@@ -30,5 +30,6 @@ mod report;
 mod response;
 mod restrictions;
 mod staged;
+mod trust;
 mod writes;
 mod writes_killed;

@@ -19,7 +19,7 @@ use impactlab_core::data::{Existing, Severity};
 use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_core::vehicle::{Braking, Ending};
-use impactlab_study::case_file::{CaseFile, unpack};
+use impactlab_study::case_file::{CaseFile, Variant, unpack};
 use impactlab_study::{CheckRequest, ForceSource, Library, ModelChoice, Report, Request};
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
@@ -329,10 +329,44 @@ fn a_file_that_somebody_else_has_changed_is_not_replaced_unasked() {
     apply(&mut harness, Command::Case(CaseCommand::Save));
     harness.run_steps(3);
     harness.get_by_label("Replace pit.impactlab?");
+    let said = &state(&harness).session.messages.last().expect("a message").text;
+    assert!(said.contains("pit.impactlab was changed by somebody else"), "{said}");
     harness.get_by_label("Keep it").click();
     harness.run_steps(3);
     assert_eq!(fs::read_to_string(&path).expect("text"), "theirs");
     assert!(state(&harness).is_case_changed());
+}
+
+#[test]
+fn a_case_that_reads_elsewhere_is_asked_about_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("case/a.impactlab");
+    fs::create_dir(folder.path().join("case")).expect("a folder");
+    let check = CheckRequest { paths: vec![folder.path().join("secret")], all: false, map: None };
+    let questions = vec![check.into()];
+    let variant = Variant { name: "base".to_owned(), questions, ..Variant::default() };
+    CaseFile::new("a", variant).save(&path, Existing::Refuse).expect("written");
+    let mut harness = pit();
+    let open = Command::Open(vec![path.clone()]);
+    apply(&mut harness, open.clone());
+    harness.run_steps(3);
+    harness.get_by_label("Open a.impactlab?");
+    harness.get_by_label("Do not open").click();
+    harness.run_steps(3);
+    assert_eq!(state(&harness).case.path, None);
+    apply(&mut harness, open.clone());
+    harness.run_steps(3);
+    harness.get_by_label("Open and allow this").click();
+    harness.run_steps(3);
+    assert_eq!(state(&harness).case.path.as_ref(), Some(&path));
+    // What was allowed is remembered, over a restart too.
+    let (restored, _) = State::restore(&state(&harness).save().expect("text")).expect("a state");
+    *harness.state_mut().state_mut() = restored;
+    apply(&mut harness, Command::Case(CaseCommand::LeaveUnasked(Leaving::New)));
+    apply(&mut harness, open);
+    harness.run_steps(3);
+    assert_eq!(state(&harness).case.path.as_ref(), Some(&path));
+    assert!(!state(&harness).session.dialogs.is_any_open());
 }
 
 #[test]

@@ -197,3 +197,28 @@ fn a_state_that_is_no_file_or_too_large_blocks_nothing() {
     }
     assert_eq!(names(folder.path()), ["large", "pipe"]);
 }
+
+#[test]
+fn what_was_being_read_when_the_program_died_is_not_opened_unasked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [state_file, force] = ["state.json", "force.csv"].map(|name| folder.path().join(name));
+    fs::copy("datasets/fea/forces/c001.csv", &force).expect("a force");
+    let mut harness = open_with(&[force.to_str().expect("text")], Some(state_file.clone()));
+    let file = state_file.clone();
+    step_until(&mut harness, "the stored state", move |state| {
+        is_idle(state) && fs::read_to_string(&file).is_ok_and(|text| text.contains("force.csv"))
+    });
+    drop(harness);
+    let record = folder.path().join("reading.json");
+    assert!(!record.exists(), "nothing is being read any more");
+    fs::write(&record, serde_json::to_string(&[&force]).expect("JSON")).expect("written");
+    let mut harness = open_with(&[], Some(state_file));
+    harness.run_steps(3);
+    harness.get_by_label("Not opened again");
+    assert!(state(&harness).session.sources.is_empty());
+    harness.get_by_label("Open all the same").click();
+    step_until(&mut harness, "the force", |state| {
+        is_idle(state) && state.session.sources.iter().any(|source| source.path == force)
+    });
+    assert!(!record.exists());
+}

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use impactlab_core::data::Existing;
+use impactlab_core::data::write::WriterLock;
 use impactlab_study::case_file::{CaseError, CaseFile, Change, UsedFile, Variant, pack, unpack};
 use impactlab_study::{
     Drive, Event, ImpactRequest, Library, MotionSource, Report, Request, ScenarioChoice,
@@ -254,4 +255,130 @@ fn a_site_goes_with_everything_it_names_and_is_found_in_a_package() {
     let photo = site.expect("a site").parent().expect("a folder").join("photos/road.png");
     fs::write(&photo, "changed").expect("written");
     assert!(opened.changes().contains(&Change::Changed { path: photo }), "{:?}", opened.changes());
+}
+
+/// A zip of these files, of which each has a name, a mode and a content.
+fn zip_of(path: &Path, entries: &[(&str, u32, &[u8])]) {
+    let mut zip = zip::ZipWriter::new(fs::File::create(path).expect("a file"));
+    for (name, mode, content) in entries {
+        let options = zip::write::SimpleFileOptions::default().unix_permissions(*mode);
+        zip.start_file(*name, options).expect("an entry");
+        std::io::Write::write_all(&mut zip, content).expect("written");
+    }
+    zip.finish().expect("a zip");
+}
+
+#[test]
+fn what_is_no_package_is_refused_before_anything_of_it_is_on_disk() {
+    let folder = folder("hostile");
+    let text = case(Path::new("/nowhere/force.csv")).to_text(&folder.join("c.impactlab"));
+    let text = text.expect("text");
+    let case: (&str, u32, &[u8]) = ("c.impactlab", 0o644, text.as_bytes());
+    let file = |name| (name, 0o644, &b"x"[..]);
+    let (package, to) = (folder.join("a.zip"), folder.join("to"));
+    for (entries, message) in [
+        (vec![case, file("../out.txt")], "\"../out.txt\" is no part of a package"),
+        (vec![case, file("files/../../out.txt")], "is no part of a package"),
+        (vec![case, file("files/./out.txt")], "is no part of a package"),
+        (vec![case, file("/nowhere/out.txt")], "is no part of a package"),
+        (vec![case, file("files//nowhere/out.txt")], "is no part of a package"),
+        (vec![case, file("..\\out.txt")], "is no part of a package"),
+        (vec![case, file("files\\out.txt")], "is no part of a package"),
+        (vec![case, file(".bashrc")], "is no part of a package"),
+        (vec![case, file("other/out.txt")], "is no part of a package"),
+        (vec![("/nowhere/c.impactlab", 0o644, text.as_bytes())], "is no part of a package"),
+        (vec![file("files/a")], "it has no case"),
+        (vec![case, ("d.impactlab", 0o644, text.as_bytes())], "it has several cases"),
+        (vec![case, ("files/0/link", 0o120_777, b"/etc/passwd")], "neither a file nor a folder"),
+        (vec![case, ("files/pipe", 0o010_666, b"")], "neither a file nor a folder"),
+    ] {
+        zip_of(&package, &entries);
+        // The writer of the zip sets the kind of a file itself.
+        let mut bytes = fs::read(&package).expect("a zip");
+        for (name, mode, _) in entries.iter().filter(|(_, mode, _)| mode >> 12 > 0) {
+            let at = directory_entry(&bytes, name);
+            bytes[at + 40..at + 42].copy_from_slice(&(*mode as u16).to_le_bytes());
+        }
+        fs::write(&package, bytes).expect("a zip");
+        let error = unpack(&package, &to).expect_err(message);
+        assert!(
+            matches!(&error, CaseError::NoPackage { why, .. } if why.contains(message)),
+            "{error}"
+        );
+        let left = fs::read_dir(&folder).expect("a folder").count();
+        assert_eq!(left, 1, "{message}: only the zip is there");
+    }
+    // A file that says that it is large, and one that is larger than it says.
+    for (size, message) in [(300 << 20, "it unpacks to 300 MiB, expected 256 MiB"), (1, "as large")]
+    {
+        zip_of(&package, &[case, ("files/0/a.csv", 0o644, &[7; 100])]);
+        let mut bytes = fs::read(&package).expect("a zip");
+        let at = directory_entry(&bytes, "files/0/a.csv");
+        bytes[at + 24..at + 28].copy_from_slice(&u32::to_le_bytes(size));
+        fs::write(&package, bytes).expect("a zip");
+        let error = unpack(&package, &to).expect_err(message).to_string();
+        assert!(error.contains(message), "{error}");
+        assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 1, "{message}");
+    }
+}
+
+/// Where the entry of a file begins in the directory of a zip.
+fn directory_entry(bytes: &[u8], name: &str) -> usize {
+    let is_entry = |at: &usize| {
+        bytes[*at..].starts_with(b"PK\x01\x02") && bytes[*at + 46..].starts_with(name.as_bytes())
+    };
+    (0..bytes.len() - 46).find(is_entry).expect("an entry")
+}
+
+#[test]
+fn files_of_a_package_that_share_their_bytes_are_refused() {
+    let folder = folder("overlap");
+    let text = case(Path::new("/nowhere/force.csv")).to_text(&folder.join("c.impactlab"));
+    let package = folder.join("a.zip");
+    let text = text.expect("text");
+    zip_of(
+        &package,
+        &[
+            ("c.impactlab", 0o644, text.as_bytes()),
+            ("files/a", 0o644, &[7; 5000]),
+            ("files/b", 0o644, &[7; 5000]),
+        ],
+    );
+    let mut bytes = fs::read(&package).expect("a zip");
+    let [a, b] = ["files/a", "files/b"].map(|name| directory_entry(&bytes, name) + 42);
+    // The entry of the last file leads to the bytes of the one before.
+    bytes.copy_within(a..a + 4, b);
+    fs::write(&package, bytes).expect("a zip");
+    let error = unpack(&package, &folder.join("to")).expect_err("overlapping").to_string();
+    assert!(error.contains("share their bytes"), "{error}");
+    assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 1);
+}
+
+#[test]
+fn what_a_killed_unpacking_has_left_is_swept_and_a_living_one_is_not() {
+    let folder = folder("swept");
+    let case = case(&force_file(&folder));
+    pack(&case, &folder.join("a.zip"), Existing::Refuse).expect("packed");
+    let [dead, living] = ["dead", "living"].map(|n| folder.join(format!(".impactlab-unpack-{n}")));
+    for staging in [&dead, &living] {
+        fs::create_dir_all(staging.join("files")).expect("a folder");
+    }
+    let _lock = WriterLock::lock_file(&living).expect("a lock");
+    unpack(&folder.join("a.zip"), &folder.join("to")).expect("unpacked");
+    assert!(!dead.exists() && living.exists());
+    let hidden = fs::read_dir(&folder).expect("a folder").flatten();
+    let hidden = hidden.filter(|entry| entry.file_name().to_string_lossy().starts_with('.'));
+    assert_eq!(hidden.count(), 2, "the folder of the living one and its lock");
+}
+
+#[test]
+fn a_package_has_the_files_of_questions_and_nothing_else_that_a_case_names() {
+    let folder = folder("packed");
+    fs::write(folder.join("secret"), "x").expect("written");
+    let mut case = case(&force_file(&folder));
+    case.variants[0].forms = serde_json::json!({"x": [folder.join("secret")]});
+    let files = pack(&case, &folder.join("a.zip"), Existing::Refuse).expect("packed");
+    let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
+    assert_eq!(names, ["files/0/force.csv"]);
+    assert_eq!(files[0].path, folder.join("force.csv"));
 }

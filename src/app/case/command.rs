@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::app::case::trust::TrustedCase;
 use crate::app::found::Found;
-use impactlab_study::case_file::CaseFile;
+use impactlab_study::case_file::{CaseFile, Change, Reach};
 
 /// An action on the case as a whole.
 #[derive(Debug, Clone)]
@@ -16,6 +17,10 @@ pub enum CaseCommand {
     Leave(Leaving),
     /// The same without asking.
     LeaveUnasked(Leaving),
+    /// Allow what a case does beyond reading files in its folder, and open it.
+    OpenTrusted(Box<TrustedCase>),
+    /// Say what has become of the files of the case with this file.
+    Changed(PathBuf, Vec<Change>),
     /// Take the case that was written, or say why it was not.
     Saved(Result<Found<SavedCase>, String>),
 }
@@ -57,6 +62,8 @@ pub struct SavedCase {
     pub(super) path: PathBuf,
     /// SHA-256 of the text of the file.
     pub(super) on_disk: String,
+    /// What it does beyond reading files in its own folder.
+    pub(super) reach: Reach,
     /// What the case holds.
     pub(super) fingerprint: String,
 }

@@ -3,12 +3,14 @@
 mod bar;
 mod command;
 mod leaving;
+mod trust;
 mod update;
 mod version_1;
 
 pub use bar::case_bar_ui;
 pub use command::{CaseCommand, Leaving, VariantCommand};
 pub use leaving::leaving_ui;
+pub use trust::{TrustedCase, trust_ui};
 
 use std::path::PathBuf;
 

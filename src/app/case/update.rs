@@ -20,7 +20,7 @@ use impactlab_core::data::write::{ModelDigest, sha256_hex};
 use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, Severity, read_utf8};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
-use impactlab_study::case_file::{CaseFile, CaseOnDisk, UsedModel, pack};
+use impactlab_study::case_file::{CaseFile, CaseOnDisk, PackedFile, UsedModel, pack};
 use impactlab_study::{MotionSource, Request, SeriesFile};
 
 /// The finished example case.
@@ -37,6 +37,13 @@ impl State {
             CaseCommand::SaveAndLeave => self.save_and_leave(),
             CaseCommand::Leave(to) => self.leave(to, context),
             CaseCommand::LeaveUnasked(to) => self.go(to, context),
+            CaseCommand::OpenTrusted(trusted) => self.open_trusted(*trusted),
+            CaseCommand::Changed(path, changes) if self.case.path.as_ref() == Some(&path) => {
+                for change in changes {
+                    self.say(Severity::Warning, change.to_string());
+                }
+            }
+            CaseCommand::Changed(..) => {}
             CaseCommand::Saved(result) => self.take_saved_case(result),
         }
     }
@@ -47,6 +54,11 @@ impl State {
         match self.case.path.clone() {
             None => self.ask(Purpose::Save(Output::Case)),
             Some(path) if self.is_case_file_foreign() => {
+                let why = format!(
+                    "{} was changed by somebody else since it was opened or saved here; what is there now is lost if it is replaced",
+                    path.display()
+                );
+                self.say(Severity::Warning, why);
                 self.session.dialogs.open(Dialog::Replace(Output::Case, path));
             }
             Some(path) => self.save_case(path, Existing::Replace),
@@ -245,7 +257,7 @@ impl State {
         let beside = std::env::current_dir().unwrap_or_default().join("example.impactlab");
         match CaseFile::parse(EXAMPLE, &beside) {
             Ok(file) => {
-                self.take_file(file);
+                self.take_case(OpenCase::from_file(file));
                 self.show_variant();
                 self.case.saved = Some(self.case_fingerprint());
                 self.view.workspaces.show_pane(Pane::MotionForecast);
@@ -255,13 +267,13 @@ impl State {
     }
 
     /// Puts a case that was read in the place of the one that is open.
-    fn take_file(&mut self, file: CaseFile) {
-        let (case, problems) = OpenCase::from_file(file);
+    fn take_case(&mut self, (case, problems): (OpenCase, Vec<String>)) {
         self.case = case;
         problems.into_iter().for_each(|problem| self.say(Severity::Warning, problem));
     }
 
-    /// Opens a case in the place of the one that is open.
+    /// Opens a case in the place of the one that is open. One that does more than read files in its own
+    /// folder is opened once the user has allowed it.
     pub(in crate::app) fn open_case(&mut self, path: &Path) {
         let read = || -> Result<_, String> {
             let path = std::path::absolute(path).map_err(|error| error.to_string())?;
@@ -273,18 +285,34 @@ impl State {
             Ok(read) => read,
             Err(why) => return self.say(Severity::Error, why),
         };
-        let edited = CaseOnDisk::from_text(&text, &path).change();
-        let opened = if edited.is_some() { "opened; edited since it was saved" } else { "opened" };
-        for change in file.changes().into_iter().chain(edited) {
-            self.say(Severity::Warning, change.to_string());
+        let opened = OpenCase::from_file(file);
+        if !self.may_reach(&path, opened.0.file.reach(&path)) {
+            return;
         }
-        self.take_file(file);
+        self.take_case(opened);
+        self.look_for_changes(path.clone());
         self.case.path = Some(path.clone());
         self.case.on_disk = Some(sha256_hex(text.as_bytes()));
         self.show_variant();
         self.case.saved = Some(self.case_fingerprint());
-        self.case.file.note(opened);
+        let edited = CaseOnDisk::from_text(&text, &path).change();
+        let event = if edited.is_some() { "opened; edited since it was saved" } else { "opened" };
+        edited.iter().for_each(|change| self.say(Severity::Warning, change.to_string()));
+        self.case.file.note(event);
         self.remember_case(path);
+    }
+
+    /// Starts to compare the files of the case with what they were when it was saved.
+    fn look_for_changes(&mut self, path: PathBuf) {
+        let file = self.case.file.clone();
+        self.session.tasks.start(
+            TaskKey::CheckCase,
+            move |_| Ok(file.changes()),
+            |changes| match changes {
+                Ok(changes) => Command::Case(CaseCommand::Changed(path, changes)),
+                Err(why) => Command::Say(Severity::Error, why),
+            },
+        );
     }
 
     fn remember_case(&mut self, path: PathBuf) {
@@ -318,7 +346,8 @@ impl State {
             let text = file.to_text(&path).map_err(|error| error_chain(&error))?;
             file.save(&path, existing).map_err(|error| error_chain(&error))?;
             let on_disk = sha256_hex(text.as_bytes());
-            Ok(Found::new(SavedCase { file, path, on_disk, fingerprint }))
+            let reach = file.reach(&path);
+            Ok(Found::new(SavedCase { file, path, on_disk, reach, fingerprint }))
         };
         self.session
             .tasks
@@ -330,15 +359,27 @@ impl State {
         self.capture();
         self.case.file.note(format!("packed into {}", path.display()));
         let file = self.case.file.clone();
-        self.start_writing(path, move |to| {
-            pack(&file, to, existing).map_err(|error| error_chain(&error))
-        });
+        let key = TaskKey::Write(path.clone());
+        self.session.tasks.start(
+            key,
+            move |_| {
+                let files = pack(&file, &path, existing).map_err(|error| error_chain(&error))?;
+                let from = |file: &PackedFile| file.path.display().to_string();
+                let files: Vec<String> = files.iter().map(from).collect();
+                Ok(format!("{} written, with the case and {}", path.display(), listed(&files)))
+            },
+            |packed| match packed {
+                Ok(text) => Command::Say(Severity::Info, text),
+                Err(why) => Command::Say(Severity::Error, why),
+            },
+        );
     }
 
     /// Receives the case that was written. What was changed since is not in its file.
     pub(in crate::app) fn take_saved_case(&mut self, written: Result<Found<SavedCase>, String>) {
         match written.map(Found::take) {
-            Ok(SavedCase { file, path, on_disk, fingerprint }) => {
+            Ok(SavedCase { file, path, on_disk, reach, fingerprint }) => {
+                self.trust_own(path.clone(), reach);
                 let case = &mut self.case;
                 case.file.name = file.name;
                 case.file.files = file.files;
@@ -371,5 +412,17 @@ impl State {
             let why = "a network of this case was trained here and is in no file: save it (File, Save … model) so that the case can be run elsewhere";
             self.say(Severity::Warning, why);
         }
+    }
+}
+
+/// The files in a package, the first ones by their paths.
+fn listed(files: &[String]) -> String {
+    const MAX_LISTED: usize = 10;
+    match files.len() {
+        0 => "no other file".to_owned(),
+        n if n > MAX_LISTED => {
+            format!("{n} files: {} and {} more", files[..MAX_LISTED].join(", "), n - MAX_LISTED)
+        }
+        _ => files.join(", "),
     }
 }

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 
 use crate::app::archive::ModelsDialog;
-use crate::app::case::Leaving;
+use crate::app::case::{Leaving, TrustedCase};
 use crate::app::dialog::PathDialog;
 use crate::app::film::FilmForm;
 use crate::app::import::ImportDialog;
@@ -27,6 +27,10 @@ pub enum Dialog {
         /// Whether the user goes there as soon as the case is saved.
         once_saved: bool,
     },
+    /// Whether a case may do more than read files in its own folder.
+    Trust(Box<TrustedCase>),
+    /// Whether to open what was being read when the program last ended without a word.
+    Unread(Vec<PathBuf>),
     /// For a path, where the desktop has no file dialog.
     Path(PathDialog),
     /// A name, or whether to remove something, in the Models pane.

@@ -2,12 +2,13 @@
 
 use egui::{Id, Modal, Ui};
 
-use crate::app::case::leaving_ui;
+use crate::app::case::{leaving_ui, trust_ui};
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::licences::licences_ui;
 use crate::app::menu::messages_ui;
 use crate::app::panels::{film_ui, models_dialog_ui};
+use crate::app::reading::unread_ui;
 use crate::app::replace::replace_ui;
 use crate::app::state::State;
 
@@ -34,6 +35,8 @@ impl Dialog {
             Self::Messages => "messages",
             Self::Replace(..) => "replace dialog",
             Self::Leave { .. } => "leaving dialog",
+            Self::Trust(_) => "trust dialog",
+            Self::Unread(_) => "unread dialog",
             Self::Path(_) => "path dialog",
             Self::Models(_) => "models dialog",
             Self::Film(_) => "film dialog",
@@ -51,6 +54,8 @@ fn dialog_ui(ui: &mut Ui, dialog: &mut Dialog, state: &mut State, commands: &mut
         Dialog::Messages => messages_ui(ui, state, commands),
         Dialog::Replace(output, path) => replace_ui(ui, (output, path), commands),
         Dialog::Leave { to, .. } => leaving_ui(ui, to, state, commands),
+        Dialog::Trust(trusted) => trust_ui(ui, trusted, commands),
+        Dialog::Unread(paths) => unread_ui(ui, paths, commands),
         Dialog::Path(dialog) => dialog.ui(ui, commands),
         Dialog::Models(dialog) => models_dialog_ui(ui, dialog, commands),
         Dialog::Film(form) => {

@@ -58,7 +58,7 @@ impl GroundSession {
                 self.is_loading = true;
                 let read_path = path.clone();
                 tasks.start(
-                    TaskKey::Ground,
+                    TaskKey::Ground(path.clone()),
                     move |_| match LoadedGround::load(&path) {
                         Ok(ground) => Ok(Arc::new(ground)),
                         Err(error) => Err(error_chain(&error)),

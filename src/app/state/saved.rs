@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use crate::app::case::TrustedCase;
 use crate::app::force::ForceView;
 use crate::app::import::ColumnMaps;
 use crate::app::network::Network;
@@ -78,6 +79,8 @@ pub struct View {
     pub trained: Network,
     /// The cases that were opened or saved last, the latest first.
     pub recent: Vec<PathBuf>,
+    /// The cases that may do more than read files in their own folder.
+    pub trusted: Vec<TrustedCase>,
     /// The column maps of earlier files, by their headers.
     pub column_maps: ColumnMaps,
     /// Seconds of the motion that are played in a second.
@@ -107,6 +110,7 @@ impl Default for View {
             report: ReportView::default(),
             trained: Network::default(),
             recent: Vec::new(),
+            trusted: Vec::new(),
             column_maps: ColumnMaps::default(),
             playback_speed: 1.0,
             motion_channels: MOTION_CHANNELS.to_vec(),

@@ -1,20 +1,20 @@
 //! `impactlab case`: asks a case its questions, and hands it over with its files.
 
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::cli::console::{Console, Verdict, shown_path, under_bar};
-use crate::cli::options::{OverwriteArg, UnitsArg};
+use crate::cli::console::{Console, Verdict, print_json, shown_path, under_bar, within_line};
+use crate::cli::options::{OverwriteArg, TrustArg, UnitsArg};
 use crate::cli::text::print_answer;
 use impactlab_core::units::UnitSystem;
 use impactlab_study::Report;
 use impactlab_study::case_file::{
-    AnsweredQuestion, CaseFile, CaseOnDisk, CaseReport, Change, UsedFile, VariantReport, pack,
-    unpack,
+    AnsweredQuestion, CaseFile, CaseOnDisk, CaseReport, Change, PackedFile, Reach, UsedFile,
+    VariantReport, pack, unpack,
 };
 
 /// Run, check, pack or unpack a case, as the window saves it
@@ -42,6 +42,8 @@ struct RunArgs {
     /// Only this variant; several if given again
     #[arg(long, value_name = "NAME")]
     variant: Vec<String>,
+    #[command(flatten)]
+    trust: TrustArg,
     /// Units of the text
     #[arg(long, value_enum, default_value_t)]
     units: UnitsArg,
@@ -62,21 +64,32 @@ case was saved.";
 #[command(after_help = "\
 JSON: name, notes, shown, variants [{name, questions [..]}], files [{path, bytes, sha256}], models
   [{network, name, sha256}], log [{time, event}], sha256 (of the file itself), is_as_saved (whether nobody
-  has edited it since; null without a seal), changes [{kind, path}]
+  has edited it since; null without a seal), changes [{kind, path}], reach {reads [..], writes [..],
+  trains}
 
-Exit code 1 if a file is missing or has changed, or if the case itself was edited since it was saved.")]
+What the case does beyond reading files in its own folder is reach. None of its files is read then, and
+nothing is said of changes of theirs, unless --trust is given.
+
+Exit code 1 if a file is missing or has changed, if the case itself was edited since it was saved, or if
+the case does more than read files in its own folder.")]
 struct CheckArgs {
     /// The case
     #[arg(value_name = "CASE.impactlab")]
     case: PathBuf,
+    #[command(flatten)]
+    trust: TrustArg,
 }
 
-/// Write one zip of a case and every file that it uses
+/// Write one zip of a case and every file that its questions use, and list them
 #[derive(Debug, Args)]
+#[command(after_help = "\
+JSON: out, files [{name, path}]: the name of each file in the zip, and where it was read")]
 struct PackArgs {
     /// The case
     #[arg(value_name = "CASE.impactlab")]
     case: PathBuf,
+    #[command(flatten)]
+    trust: TrustArg,
     /// The zip
     #[arg(long, value_name = "FILE.zip")]
     out: PathBuf,
@@ -95,24 +108,19 @@ struct UnpackArgs {
     out: PathBuf,
 }
 
+impl CaseArgs {
+    /// Whether the command asks questions.
+    pub(in crate::cli) fn asks(&self) -> bool {
+        matches!(self.command, CaseCommand::Run(_))
+    }
+}
+
 /// Carries out the command.
 pub(in crate::cli) fn run(args: &CaseArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
     match &args.command {
         CaseCommand::Run(args) => run_case(args, console),
         CaseCommand::Check(args) => check_case(args, console),
-        CaseCommand::Pack(args) => {
-            let mut case = CaseFile::load(&args.case)?;
-            console.check_target(Some(&args.out), args.overwrite.into())?;
-            console.reads(std::slice::from_ref(&args.case))?;
-            let edited = CaseOnDisk::read(&args.case)?.change();
-            if edited.is_some() {
-                case.note("packed; edited since it was saved");
-            }
-            pack(&case, &args.out, args.overwrite.into())?;
-            writeln!(console.out, "{} written", shown_path(&args.out))?;
-            print_changes(console.out, edited.as_slice())?;
-            Ok(Verdict::Clean)
-        }
+        CaseCommand::Pack(args) => pack_case(args, console),
         CaseCommand::Unpack(args) => {
             let case = unpack(&args.package, &args.out)?;
             writeln!(console.out, "{}", shown_path(&case))?;
@@ -123,11 +131,43 @@ pub(in crate::cli) fn run(args: &CaseArgs, console: &mut Console<'_>) -> Result<
 
 fn run_case(args: &RunArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
     let case = CaseFile::load(&args.case)?;
+    if console.print_request {
+        print_json(console.out, &case.variants)?;
+        return Ok(Verdict::Clean);
+    }
+    args.trust.check(&case, &args.case)?;
     let report = under_bar(|observer| case.ask(&args.variant, &console.library, observer))?;
     let mut report = report.complete().ok_or(CliError::Cancelled)?;
     report.changes.extend(CaseOnDisk::read(&args.case)?.change());
     console.print(&report, |out| print_case(out, &report, args.units.into()))?;
     Ok(Verdict::from_problems(!report.is_clean()))
+}
+
+/// What `case pack` tells.
+#[derive(Serialize)]
+struct Package<'a> {
+    out: &'a Path,
+    files: &'a [PackedFile],
+}
+
+fn pack_case(args: &PackArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
+    let mut case = CaseFile::load(&args.case)?;
+    args.trust.check(&case, &args.case)?;
+    console.check_target(Some(&args.out), args.overwrite.into())?;
+    console.reads(std::slice::from_ref(&args.case))?;
+    let edited = CaseOnDisk::read(&args.case)?.change();
+    if edited.is_some() {
+        case.note("packed; edited since it was saved");
+    }
+    let files = pack(&case, &args.out, args.overwrite.into())?;
+    console.print(&Package { out: &args.out, files: &files }, |out| {
+        for PackedFile { name, path } in &files {
+            writeln!(out, "{name}: {}", shown_path(path))?;
+        }
+        writeln!(out, "{} written", shown_path(&args.out))?;
+        print_changes(out, edited.as_slice())
+    })?;
+    Ok(Verdict::Clean)
 }
 
 /// What `case check` tells.
@@ -138,17 +178,23 @@ struct CheckedCase<'a> {
     sha256: &'a str,
     is_as_saved: Option<bool>,
     changes: &'a [Change],
+    #[serde(skip_serializing_if = "Reach::is_empty")]
+    reach: &'a Reach,
 }
 
 fn check_case(args: &CheckArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
     let case = CaseFile::load(&args.case)?;
+    let reach = case.reach(&args.case);
+    let is_untrusted = args.trust.check(&case, &args.case).is_err();
     let own = CaseOnDisk::read(&args.case)?;
-    let changes: Vec<Change> = case.changes().into_iter().chain(own.change()).collect();
+    let of_files = if is_untrusted { Vec::new() } else { case.changes() };
+    let changes: Vec<Change> = of_files.into_iter().chain(own.change()).collect();
     let checked = CheckedCase {
         case: &case,
         sha256: &own.file.sha256,
         is_as_saved: own.is_as_saved,
         changes: &changes,
+        reach: &reach,
     };
     console.print(&checked, |out| {
         writeln!(out, "{}", case.name)?;
@@ -169,9 +215,15 @@ fn check_case(args: &CheckArgs, console: &mut Console<'_>) -> Result<Verdict, Cl
         for entry in &case.log {
             writeln!(out, "{} {}", entry.time, entry.event)?;
         }
+        for phrase in reach.phrases() {
+            writeln!(out, "warning: {}", within_line(&phrase))?;
+        }
+        if is_untrusted {
+            writeln!(out, "none of its files was looked at; --trust does")?;
+        }
         print_changes(out, &changes)
     })?;
-    Ok(Verdict::from_problems(!changes.is_empty()))
+    Ok(Verdict::from_problems(is_untrusted || !changes.is_empty()))
 }
 
 fn print_changes(out: &mut dyn Write, changes: &[Change]) -> io::Result<()> {

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, shown_path, under_bar};
-use crate::cli::options::{OverwriteArg, UnitsArg, Words, one_of};
+use crate::cli::options::{OverwriteArg, TrustArg, UnitsArg, Words, one_of};
 use impactlab_core::data::write_atomically;
 use impactlab_document::report::{
     Drawing, Language, Paper, ReportDate, ReportFormat, ReportSettings, report_case,
@@ -28,6 +28,8 @@ pub(in crate::cli) struct ReportArgs {
     out: PathBuf,
     #[command(flatten)]
     overwrite: OverwriteArg,
+    #[command(flatten)]
+    trust: TrustArg,
     /// Of an evidence file: number of particles; a case says it itself
     #[arg(long, value_name = "N")]
     particles: Option<usize>,
@@ -98,6 +100,9 @@ pub(in crate::cli) fn run(
     }
     console.check_target(Some(&args.out), args.overwrite.into())?;
     let case = args.case()?;
+    if InputKind::from_path(&args.case) == InputKind::Case {
+        args.trust.check(&case, &args.case)?;
+    }
     console.reads(std::slice::from_ref(&args.case))?;
     console.reads(&case.input_files())?;
     let settings = args.settings()?;

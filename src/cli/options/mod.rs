@@ -8,6 +8,7 @@ mod overwrite;
 mod quantity;
 mod source;
 mod training;
+mod trust;
 
 pub(super) use choices::{
     BadCasesArg, EQUATIONS, INTEGRATORS, SAMPLINGS, SPLITS, UnitsArg, VehicleArg, Words, one_of,
@@ -19,3 +20,4 @@ pub(super) use overwrite::OverwriteArg;
 pub(super) use quantity::{contact_point, count, film_section, number, size_px, window_s};
 pub(super) use source::SourceArgs;
 pub(super) use training::TrainingArgs;
+pub(super) use trust::TrustArg;

@@ -9,6 +9,7 @@
 //! - [`CaseFile::changes`] says which files are missing or hold something else than when the case was
 //!   saved.
 //! - [`CaseOnDisk`] says whether the file itself is as the program has written it.
+//! - [`CaseFile::reach`] says what it does beyond reading files in its own folder, before anything is asked.
 //! - [`CaseFile::ask`] answers every question of every variant, as the commands of the questions do.
 //! - [`pack`] and [`unpack`] make one zip of a case and all its files, and a folder of that again.
 //! - A variant is its questions, which the window edits. What several of them have in common, such as the
@@ -19,6 +20,8 @@ mod error;
 mod paths;
 
 mod used;
+
+mod reach;
 
 mod store;
 
@@ -38,7 +41,8 @@ use crate::Request;
 
 pub use error::CaseError;
 pub use on_disk::CaseOnDisk;
-pub use package::{file_stem, pack, unpack};
+pub use package::{PackedFile, file_stem, pack, unpack};
+pub use reach::Reach;
 pub use run::{AnswerListener, AnsweredQuestion, CaseReport, VariantReport};
 pub use store::CASE_ENDING;
 pub(crate) use store::FORMAT;

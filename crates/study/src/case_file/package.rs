@@ -5,19 +5,23 @@
 //! files/0/force.csv       the first file that it uses, under its own name
 //! files/1/fea/…           a folder, with everything in it
 //! ```
+//!
+//! Nothing else is in a package, and one that has something else is refused before anything of it is on
+//! disk.
 
 use std::fs::{self, File};
 use std::io::{self, BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
 use crate::case_file::on_disk::sealed;
 use crate::case_file::used::{files_in, files_of_site};
 use crate::case_file::{CASE_ENDING, CaseError, CaseFile};
-use impactlab_core::data::write::check_inputs;
-use impactlab_core::data::{Existing, write_atomically};
+use impactlab_core::data::write::{WriterLock, check_inputs};
+use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, open_file, read_utf8, write_atomically};
 
 /// Folder of the files within a package.
 const FILES: &str = "files";
@@ -26,17 +30,29 @@ const FILES: &str = "files";
 const MAX_FILES: usize = 100_000;
 const MAX_BYTES: u64 = 8 << 30;
 
-/// A file that goes into a package.
-struct Entry {
-    name: String,
-    from: PathBuf,
+/// A package may unpack to this many bytes, and to this multiple of its own size more. Tables of numbers
+/// shrink to a tenth.
+const FREE_BYTES: u64 = 256 << 20;
+const MAX_RATIO: u64 = 100;
+
+/// Beginning of the names of folders in which packages are being unpacked.
+const STAGING: &str = ".impactlab-unpack-";
+
+/// A file that went into a package.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct PackedFile {
+    /// Its name in the package.
+    pub name: String,
+    /// Where it was read.
+    pub path: PathBuf,
 }
 
-/// Packs a case and every file that it uses into a zip, whole or not at all.
+/// Packs a case and every file that it uses into a zip, whole or not at all, and returns the files in their
+/// order. Who may be handed them is for the caller to ask ([`CaseFile::reach`]).
 ///
 /// # Errors
 /// [`CaseError::Missing`] for a file that is not there, [`CaseError::Zip`], [`CaseError::Data`].
-pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<(), CaseError> {
+pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<Vec<PackedFile>, CaseError> {
     if let Some(path) = case.missing_inputs().into_iter().next() {
         return Err(CaseError::Missing { path });
     }
@@ -50,18 +66,20 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<(), CaseEr
         if used.is_dir() {
             let io = |source| CaseError::Io { path: used.clone(), source };
             let inner = files_in(&used).map_err(io)?;
-            entries.extend(
-                inner.into_iter().map(|inner| Entry {
-                    name: format!("{place}/{inner}"),
-                    from: used.join(inner),
-                }),
-            );
+            entries.extend(inner.into_iter().map(|inner| PackedFile {
+                name: format!("{place}/{inner}"),
+                path: used.join(inner),
+            }));
         } else if used.is_file() {
-            entries.push(Entry { name: place.clone(), from: used.clone() });
+            entries.push(PackedFile { name: place.clone(), path: used.clone() });
         } else {
             return Err(missing());
         }
         places.push((used, format!("./{place}")));
+    }
+    if entries.len() >= MAX_FILES {
+        let why = format!("it would have more than {MAX_FILES} files");
+        return Err(CaseError::NoPackage { path: to.to_owned(), why });
     }
     let placed = |text: &str| {
         let found = places.iter().find(|(used, _)| used == Path::new(text));
@@ -71,18 +89,20 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<(), CaseEr
     let packed = case.with_paths(&placed).map_err(wrong)?;
     let text = sealed(&serde_json::to_string_pretty(&packed).map_err(wrong)?);
     let name = file_stem(&case.name);
-    Ok(write_atomically(to, existing, |out| {
+    write_atomically(to, existing, |out| {
         let mut zip = ZipWriter::new_stream(out);
         let options = SimpleFileOptions::default();
         zip.start_file(format!("{name}.{CASE_ENDING}"), options).map_err(io::Error::other)?;
         io::Write::write_all(&mut zip, text.as_bytes())?;
-        for Entry { name, from } in &entries {
+        for PackedFile { name, path } in &entries {
             zip.start_file(name.as_str(), options.large_file(true)).map_err(io::Error::other)?;
-            io::copy(&mut File::open(from)?, &mut zip)?;
+            let (mut file, _) = open_file(path, u64::MAX).map_err(io::Error::other)?;
+            io::copy(&mut file, &mut zip)?;
         }
         zip.finish().map_err(io::Error::other)?;
         Ok(())
-    })?)
+    })?;
+    Ok(entries)
 }
 
 /// Where each file goes in a package: into a folder of its own, but what a site names beside the site, so
@@ -137,11 +157,13 @@ pub fn file_stem(name: &str) -> String {
     if plain.is_empty() { "case".to_owned() } else { plain.to_owned() }
 }
 
-/// Unpacks a package into a new folder, whole or not at all, and returns the path of its case.
+/// Unpacks a package into a new folder, whole or not at all, and returns the path of its case. What a killed
+/// run has left beside the folder is removed.
 ///
 /// # Errors
-/// [`CaseError::FolderExists`], [`CaseError::NoPackage`] for a zip without a case or with names that lead
-/// out of the folder, [`CaseError::Zip`], [`CaseError::Io`].
+/// [`CaseError::FolderExists`], [`CaseError::NoPackage`] for a zip without a case, with anything that is no
+/// part of a package, or that unpacks to too much, [`CaseError::Zip`], [`CaseError::Io`],
+/// [`CaseError::Data`].
 pub fn unpack(package: &Path, folder: &Path) -> Result<PathBuf, CaseError> {
     if folder.symlink_metadata().is_ok() {
         return Err(CaseError::FolderExists { path: folder.to_owned() });
@@ -150,65 +172,132 @@ pub fn unpack(package: &Path, folder: &Path) -> Result<PathBuf, CaseError> {
         let path = path.to_owned();
         move |source| CaseError::Io { path, source }
     };
-    let zipped = |source| CaseError::Zip { path: package.to_owned(), source };
-    let none = |why: &str| CaseError::NoPackage { path: package.to_owned(), why: why.to_owned() };
-    let file = File::open(package).map_err(io(package))?;
-    let mut archive = ZipArchive::new(BufReader::new(file)).map_err(zipped)?;
-    if archive.len() > MAX_FILES {
-        return Err(none("it has too many files"));
-    }
-    let mut names = archive.file_names().flatten();
-    let is_case =
-        |name: &str| Path::new(name).extension().is_some_and(|ending| ending == CASE_ENDING);
-    let case = names.find(|name| is_case(name.as_ref()));
-    let case = case.ok_or_else(|| none("it has no case"))?.into_owned();
-    drop(names);
+    let (file, bytes) = open_file(package, MAX_BYTES)?;
+    let mut archive = ZipArchive::new(BufReader::new(file))
+        .map_err(|source| CaseError::Zip { path: package.to_owned(), source })?;
+    let case = check_contents(&mut archive, package, bytes)?;
     let absolute = std::path::absolute(folder).map_err(io(folder))?;
     let parent = absolute.parent().unwrap_or(Path::new("/"));
+    sweep_staging(parent);
     let staging =
-        tempfile::Builder::new().prefix(".impactlab-").tempdir_in(parent).map_err(io(parent))?;
-    let mut left = MAX_BYTES;
+        tempfile::Builder::new().prefix(STAGING).tempdir_in(parent).map_err(io(parent))?;
+    let lock = WriterLock::lock_file(staging.path())?;
     for i in 0..archive.len() {
-        extract(&mut archive, i, staging.path(), &mut left, package)?;
+        extract(&mut archive, i, [staging.path(), &absolute], package)?;
     }
-    CaseFile::load(&staging.path().join(&case))?;
-    let staged = staging.keep();
-    if let Err(source) = fs::rename(&staged, &absolute) {
-        // What was unpacked is of no use there.
-        let _ = fs::remove_dir_all(&staged);
-        return Err(CaseError::Io { path: folder.to_owned(), source });
-    }
+    // What is wrong with it is told of the place that it would have.
+    let text = read_utf8(&staging.path().join(&case), MAX_RESULTS_BYTES)?;
+    CaseFile::parse(&text, &absolute.join(&case))?;
+    fs::rename(staging.path(), &absolute).map_err(io(folder))?;
+    // Its place is taken by the folder.
+    let _ = staging.keep();
+    drop(lock);
     Ok(absolute.join(case))
 }
 
-/// Unpacks one file of a package.
+/// Checks everything that a package says of its content, and returns the name of its case. Nothing is
+/// unpacked.
+fn check_contents(
+    archive: &mut ZipArchive<impl Read + Seek>,
+    package: &Path,
+    package_bytes: u64,
+) -> Result<String, CaseError> {
+    let none = |why: String| CaseError::NoPackage { path: package.to_owned(), why };
+    let zipped = |source| CaseError::Zip { path: package.to_owned(), source };
+    if archive.len() > MAX_FILES {
+        return Err(none(format!("it has more than {MAX_FILES} files")));
+    }
+    let (mut total, mut cases) = (0_u64, Vec::new());
+    for i in 0..archive.len() {
+        let entry = archive.by_index_raw(i).map_err(zipped)?;
+        let name = entry.name().map_err(zipped)?.into_owned();
+        match parts_of(&name)[..] {
+            _ if entry.unix_mode().is_some_and(is_special) => {
+                return Err(none(format!("{name:?} is neither a file nor a folder")));
+            }
+            [case] if is_case(case) && !entry.is_dir() => cases.push(case.to_owned()),
+            [FILES, ..] => {}
+            _ => return Err(none(format!("{name:?} is no part of a package"))),
+        }
+        total = total.saturating_add(entry.size());
+    }
+    let limit = (FREE_BYTES + package_bytes.saturating_mul(MAX_RATIO)).min(MAX_BYTES);
+    if total > limit {
+        let [total, limit] = [total, limit].map(|bytes| bytes >> 20);
+        return Err(none(format!("it unpacks to {total} MiB, expected {limit} MiB at the most")));
+    }
+    if archive.has_overlapping_files().map_err(zipped)? {
+        return Err(none("files in it share their bytes".to_owned()));
+    }
+    match &cases[..] {
+        [case] => Ok(case.clone()),
+        [] => Err(none("it has no case".to_owned())),
+        _ => Err(none("it has several cases".to_owned())),
+    }
+}
+
+/// The parts of a name in a package; none if it leads anywhere but down.
+fn parts_of(name: &str) -> Vec<&str> {
+    let parts: Vec<&str> = name.strip_suffix('/').unwrap_or(name).split('/').collect();
+    let is_plain = |part: &&str| {
+        let means_more = |c: char| matches!(c, '\\' | '\0') || (cfg!(windows) && c == ':');
+        !matches!(*part, "" | "." | "..") && !part.contains(means_more)
+    };
+    if parts.iter().all(is_plain) { parts } else { Vec::new() }
+}
+
+fn is_case(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|ending| ending == CASE_ENDING)
+}
+
+/// Whether the mode of a file is that of a link, a pipe or a device.
+fn is_special(mode: u32) -> bool {
+    !matches!(mode & 0o170_000, 0 | 0o100_000 | 0o040_000)
+}
+
+/// Unpacks one file of a package that was checked.
 ///
-/// - `left`: bytes that may still be unpacked.
+/// - `staging`, `place`: the folder into which it is unpacked, and the one that this becomes.
 fn extract(
     archive: &mut ZipArchive<impl Read + Seek>,
     i: usize,
-    folder: &Path,
-    left: &mut u64,
+    [staging, place]: [&Path; 2],
     package: &Path,
 ) -> Result<(), CaseError> {
-    let path = || package.to_owned();
-    let entry = archive.by_index(i).map_err(|source| CaseError::Zip { path: path(), source })?;
-    let Some(name) = entry.enclosed_name() else {
-        let why = format!("{:?} leads out of it", entry.name());
-        return Err(CaseError::NoPackage { path: path(), why });
-    };
-    let to = folder.join(name);
-    let io = |source| CaseError::Io { path: to.clone(), source };
+    let zipped = |source| CaseError::Zip { path: package.to_owned(), source };
+    let entry = archive.by_index(i).map_err(zipped)?;
+    let name = entry.name().map_err(zipped)?.into_owned();
+    let below: PathBuf = parts_of(&name).iter().collect();
+    let to = staging.join(&below);
+    let io = |source| CaseError::Io { path: place.join(&below), source };
     if entry.is_dir() {
         return fs::create_dir_all(&to).map_err(io);
     }
-    fs::create_dir_all(to.parent().unwrap_or(folder)).map_err(io)?;
+    fs::create_dir_all(to.parent().unwrap_or(staging)).map_err(io)?;
     let mut out = File::create_new(&to).map_err(io)?;
-    let n = io::copy(&mut entry.take(*left), &mut out).map_err(io)?;
-    *left -= n;
-    if *left == 0 {
-        let why = format!("it holds more than {} GB", MAX_BYTES >> 30);
-        return Err(CaseError::NoPackage { path: path(), why });
+    let size = entry.size();
+    // One byte beyond the size that was checked is enough to see that it is wrong.
+    let copied = io::copy(&mut entry.take(size.saturating_add(1)), &mut out);
+    let is_damaged = match &copied {
+        Ok(n) => *n != size,
+        Err(error) => error.raw_os_error().is_none(),
+    };
+    if is_damaged {
+        let why = format!("{name:?} is damaged, or not as large as it says");
+        return Err(CaseError::NoPackage { path: package.to_owned(), why });
     }
+    copied.map_err(io)?;
     Ok(())
+}
+
+/// Removes the folders that killed runs were unpacking into; those of living ones are locked.
+fn sweep_staging(parent: &Path) {
+    for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
+        let is_staging = entry.file_name().to_string_lossy().starts_with(STAGING)
+            && entry.file_type().is_ok_and(|kind| kind.is_dir());
+        if is_staging && let Ok(_lock) = WriterLock::lock_file(&entry.path()) {
+            // One that cannot be removed stands in nobody's way.
+            let _ = fs::remove_dir_all(entry.path());
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! The files that a case uses, and whether they are still what they were.
 
+use std::collections::HashSet;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -8,13 +9,16 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::case_file::paths::absolute_paths;
-use crate::case_file::{CaseError, CaseFile};
+use crate::case_file::{CaseError, CaseFile, Variant};
 use crate::{InputKind, Request};
 use impactlab_core::data::write::{FileDigest, sha256_hex};
 use impactlab_core::site::Site;
 
 /// Why a file is missing that the case has no content of.
 const NOT_THERE: &str = "it was not there when the case was saved either";
+
+/// Files and folders below a folder that are looked at to find out where it leads.
+const MAX_ENTRIES: usize = 500_000;
 
 /// A file or a folder that a case uses, by its content.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -122,6 +126,24 @@ pub(super) fn files_in(folder: &Path) -> io::Result<Vec<String>> {
     Ok(names)
 }
 
+/// Every link in a folder and the folders in it, none left out but what is behind a link; `None` if there is
+/// too much in it to look at.
+pub(super) fn links_in(folder: &Path) -> Option<Vec<PathBuf>> {
+    let (mut links, mut open, mut n) = (Vec::new(), vec![folder.to_owned()], 0);
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+            n += 1;
+            match entry.file_type() {
+                _ if n > MAX_ENTRIES => return None,
+                Ok(kind) if kind.is_symlink() => links.push(entry.path()),
+                Ok(kind) if kind.is_dir() => open.push(entry.path()),
+                _ => {}
+            }
+        }
+    }
+    Some(links)
+}
+
 /// Orthophoto, world file and drawing of a site; none for any other file.
 pub(super) fn files_of_site(path: &Path) -> Vec<PathBuf> {
     match InputKind::from_path(path).is_ground() {
@@ -131,18 +153,32 @@ pub(super) fn files_of_site(path: &Path) -> Vec<PathBuf> {
 }
 
 impl CaseFile {
-    /// The files and folders that the variants name, with those that a site names, and without those that
-    /// the program has made for itself.
+    /// The files and folders that questions and views name, with those that a site names. One that is not
+    /// there counts if it was there when the case was saved.
     pub fn used_paths(&self) -> Vec<PathBuf> {
-        let values = serde_json::to_value(&self.variants).unwrap_or_default();
-        let is_known = |path: &PathBuf| self.files.iter().any(|file| file.path == *path);
-        let mut paths = absolute_paths(&values);
+        let known: HashSet<&Path> = self.files.iter().map(|file| file.path.as_path()).collect();
+        let mut paths = self.named_paths();
         let of_sites: Vec<PathBuf> = paths.iter().flat_map(|path| files_of_site(path)).collect();
         paths.extend(of_sites);
-        paths.retain(|path| path.parent().is_some() && (path.exists() || is_known(path)));
+        paths.retain(|path| {
+            path.is_absolute()
+                && path.parent().is_some()
+                && (known.contains(path.as_path()) || path.exists())
+        });
         paths.sort();
         paths.dedup();
         paths
+    }
+
+    /// The files and folders that stand in the questions, also those that are not asked, and in how the
+    /// window draws them. Nothing is read.
+    pub(super) fn named_paths(&self) -> Vec<PathBuf> {
+        let in_variant = |variant: &Variant| {
+            let questions = variant.questions.iter().chain(&variant.unasked);
+            let named = questions.flat_map(Request::named_paths).collect::<Vec<_>>();
+            named.into_iter().chain(absolute_paths(&variant.view))
+        };
+        self.variants.iter().flat_map(in_variant).collect()
     }
 
     /// Every file that an answer to the case rests on, with those within its data sets.
@@ -180,12 +216,9 @@ impl CaseFile {
 
     /// The files that questions name and that are not there, also those that never were.
     pub(super) fn missing_inputs(&self) -> Vec<PathBuf> {
-        let questions = || self.variants.iter().flat_map(|variant| &variant.questions);
-        let value = |question| serde_json::to_value(question).unwrap_or_default();
-        // Networks are named by their paths alone; all else a question says itself.
-        let mut paths: Vec<PathBuf> =
-            questions().flat_map(|question| absolute_paths(&value(question))).collect();
-        paths.extend(questions().flat_map(Request::input_files));
+        let questions = self.variants.iter().flat_map(|variant| &variant.questions);
+        let named = |question: &Request| [question.named_paths(), question.input_files()].concat();
+        let mut paths: Vec<PathBuf> = questions.flat_map(named).collect();
         paths.retain(|path| !path.exists());
         paths.sort();
         paths.dedup();
