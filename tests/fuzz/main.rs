@@ -10,6 +10,7 @@
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "what a run of hours has done")]
 
+mod archives;
 mod ground;
 mod harness;
 mod json_files;
