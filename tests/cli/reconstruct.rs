@@ -20,7 +20,7 @@ fn report(args: &[&str]) -> Value {
 fn speeds_have_intervals_and_the_same_seed_gives_the_same() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("out");
-    let args = ["reconstruct", EVIDENCE, "--particles", "60", "--seed", "3", "--json"];
+    let args = ["reconstruct", EVIDENCE, "--particles", "120", "--seed", "3", "--json"];
     let with_files = [&args[..], &["--out", text(&out)]].concat();
     let (mut first, mut second) = (report(&with_files), report(&args));
     for name in [
@@ -38,6 +38,7 @@ fn speeds_have_intervals_and_the_same_seed_gives_the_same() {
         assert!(low < high && low <= of["median"].as_f64().unwrap(), "{of}");
         assert!(end("interval_95", 0) <= low && high <= end("interval_95", 1), "{of}");
     }
+    assert_eq!(first["hinges"][0]["input"], "road_friction");
     for key in ["modes", "fit", "budget", "badges"] {
         assert!(first[key].is_array(), "{key}");
     }
@@ -50,6 +51,23 @@ fn speeds_have_intervals_and_the_same_seed_gives_the_same() {
         of.as_object_mut().unwrap().remove("out");
     }
     assert_eq!(first, second);
+}
+
+/// The answer of sixty particles held a speed "with a probability of 90 %".
+#[test]
+fn few_particles_have_no_interval_and_say_what_to_do() {
+    let args = ["reconstruct", EVIDENCE, "--particles", "60", "--seed", "3"];
+    let report = report(&[&args[..], &["--json"]].concat());
+    assert!(report["ess"].as_f64().unwrap() < 100.0, "{}", report["ess"]);
+    for quantity in report["quantities"].as_array().unwrap() {
+        assert!(quantity["median"].is_number(), "{quantity}");
+        assert_eq!(quantity["intervals"], Value::Array(Vec::new()), "{quantity}");
+        assert!(quantity.get("interval_90").is_none(), "{quantity}");
+    }
+    assert_eq!(report["budget"], Value::Array(Vec::new()));
+    let printed = ok(program().args(args).output().unwrap());
+    assert!(printed.contains("no intervals are given"), "{printed}");
+    assert!(!printed.contains("90 %  "), "{printed}");
 }
 
 #[test]

@@ -2,6 +2,7 @@ use std::ops::ControlFlow;
 
 use super::*;
 use crate::examples::spin;
+use crate::facts::{Term, Value};
 use crate::questions::reconstruct::assumed::assumptions;
 use impactlab_core::uncertainty::{CaveatKind, CaveatSubject};
 use impactlab_reconstruct::Latent;
@@ -19,7 +20,7 @@ fn answer(request: &ReconstructRequest) -> ReconstructAnswer {
 
 #[test]
 fn a_tiny_case_is_reconstructed_the_same_way_each_time() {
-    let request = request(60);
+    let request = request(120);
     let report = answer(&request).report;
     assert_eq!(report, answer(&request).report);
     for name in [
@@ -41,10 +42,36 @@ fn a_tiny_case_is_reconstructed_the_same_way_each_time() {
     let probability: f64 = report.modes.iter().map(|mode| mode.probability).sum();
     assert!((0.9..=1.0 + 1e-9).contains(&probability), "{:?}", report.modes);
     assert!(report.fit.iter().all(|item| !item.is_unexplained()), "{:?}", report.fit);
-    assert!(!report.budget.is_empty() && report.n_simulations > 60);
+    assert!(!report.budget.is_empty() && report.n_simulations > 120);
+    // What the speeds hinge on and the courses of events stand before the speeds.
+    let titles: Vec<_> = report.facts().into_iter().map(|table| table.title).collect();
+    let place = |term: Term| titles.iter().position(|title| *title == Value::Term(term));
+    assert!(place(Term::Hinges) < place(Term::Speeds), "{titles:?}");
+    assert_eq!(report.hinges[0].input, Latent::RoadFriction);
     // The request comes back from JSON.
     let text = serde_json::to_string(&request).unwrap();
     assert_eq!(serde_json::from_str::<ReconstructRequest>(&text).unwrap(), request);
+}
+
+/// A place of rest alone that a car reaches in three ways: the median lies where none of them is.
+#[test]
+fn several_courses_of_events_come_before_any_median_with_a_badge_and_a_path_each() {
+    let file =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/guide/examples/position_alone.toml");
+    let evidence = EvidenceChoice::File(file.into());
+    let answer =
+        answer(&ReconstructRequest { particles: 150, ..ReconstructRequest::new(evidence) });
+    let report = &answer.report;
+    assert!(report.modes.len() > 1, "{:?}", report.modes);
+    let badge = report.caveats.iter().find(|of| of.kind == CaveatKind::SeveralCourses).unwrap();
+    assert!(badge.is_warning() && badge.text.contains(&report.modes[1].name), "{badge}");
+    assert_eq!(report.facts()[0].title, Value::Term(Term::Courses));
+    assert!(report.modes.iter().all(|mode| mode.standard_error > 0.005), "{:?}", report.modes);
+    let paths = crate::ReconstructedPaths::from_answer(&answer);
+    assert_eq!(paths.others.len(), report.modes.len() - 1);
+    for (path, mode) in paths.median.iter().chain(&paths.others).zip(&report.modes) {
+        assert!(path.name.ends_with(&mode.name), "{} {}", path.name, mode.name);
+    }
 }
 
 #[test]
@@ -67,6 +94,7 @@ fn a_stop_keeps_what_was_sampled_and_says_that_it_is_not_the_posterior() {
     let report = outcome.unwrap().complete().unwrap().report;
     let stopped = report.caveats.iter().find(|caveat| caveat.kind == CaveatKind::FewParticles);
     assert!(stopped.unwrap().text.contains("stopped"), "{:?}", report.caveats);
+    assert!(!report.has_intervals() && report.modes.is_empty() && report.hinges.is_empty());
 }
 
 #[test]
