@@ -22,6 +22,10 @@ const FITTING: f64 = 0.2;
 const UNDECIDED: f64 = 2.0;
 const BOTH_SMALL: f64 = 0.05;
 
+/// What velocities in other units give, read in m/s, over the length of the path.
+const UNITS: [(f64, &str); 4] =
+    [(3.6, "km/h"), (2.236_94, "mph"), (3.280_84, "ft/s"), (1000.0, "mm/s")];
+
 /// Length of the path below which nothing is compared, m.
 const SHORTEST_PATH_M: f64 = 1.0;
 
@@ -121,11 +125,21 @@ impl VelocityFit {
             VelocityAxes::World => ("world", "body"),
         };
         match self {
-            Self::Neither(ratio) if !(0.8..1.25).contains(&ratio) => write!(
-                f,
-                "v_x and v_y contradict the path: they give {ratio:.2} times its length; check \
-                 their unit"
-            ),
+            Self::Neither(ratio) if !(0.8..1.25).contains(&ratio) => {
+                write!(
+                    f,
+                    "v_x and v_y contradict the path: they give {ratio:.2} times its length"
+                )?;
+                match UNITS.iter().find(|(factor, ..)| (ratio / factor - 1.0).abs() < FITTING) {
+                    Some((_, unit)) => {
+                        write!(
+                            f,
+                            ", as if {unit} were read as m/s: map vx=COLUMN:{unit},vy=COLUMN:{unit}"
+                        )
+                    }
+                    None => f.write_str("; check their unit"),
+                }
+            }
             Self::Neither(_) => write!(
                 f,
                 "v_x and v_y contradict the path in body axes and in world axes; check the \
