@@ -210,7 +210,14 @@ impl VehicleParameters {
         let refused = |key: &str, value: f64, expected: &str| {
             let is_written = |record_key: &&str| file.contains(record_key);
             match origin(key).filter(is_written) {
-                None => file.wrong_value(key, &value.to_string(), expected),
+                None => match (self.estimates.get(key), origin(key)) {
+                    (Some(rule), Some(record_key)) => file.wrong_value(
+                        key,
+                        &value.to_string(),
+                        &format!("{expected}; it was estimated: {rule}; say {record_key}"),
+                    ),
+                    _ => file.wrong_value(key, &value.to_string(), expected),
+                },
                 Some(record_key) => file.wrong_value(
                     record_key,
                     &value.to_string(),
