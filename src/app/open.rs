@@ -39,6 +39,8 @@ impl State {
                 | InputKind::Vehicle
                 | InputKind::Scenario
                 | InputKind::Network
+                | InputKind::Request
+                | InputKind::Checkpoint
                 | InputKind::Settings
                 | InputKind::UnknownToml) => self.open_file(path, kind),
                 InputKind::Dataset | InputKind::Folder | InputKind::Series => {

@@ -390,6 +390,7 @@ terms! {
     Note: "note", "Hinweis";
     Name: "name", "Name";
     Contents: "contents", "Inhalt";
+    Command: "command", "Befehl";
     ColumnsRead: "Columns that are read", "Gelesene Spalten";
     ColumnsFound: "Columns that are found", "Gefundene Spalten";
     Column: "column", "Spalte";

@@ -3,10 +3,10 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use crate::InputKind;
 use crate::case_file::CaseFile;
+use crate::{InputKind, Request};
 use impactlab_core::collision::Scenario;
-use impactlab_core::data::TomlFile;
+use impactlab_core::data::{MAX_SETTINGS_BYTES, TomlFile, read_utf8};
 use impactlab_core::error_chain;
 use impactlab_core::site::{Site, read_drawing, read_picture};
 use impactlab_core::vehicle::VehicleParameters;
@@ -31,6 +31,10 @@ pub enum InputFile {
     Network(String),
     /// A comparison of response networks.
     Comparison(Box<Comparison>),
+    /// A question.
+    Request(Box<Request>),
+    /// The state of an unfinished reconstruction, which its question goes on from.
+    Checkpoint,
     /// The settings of a training, which the training itself checks.
     Settings,
 }
@@ -100,6 +104,8 @@ impl InputFile {
             InputKind::Site | InputKind::Orthophoto => read(kind, Site::load(path), Self::Site),
             InputKind::Network => read(kind, kind_of_file(path), |kind| Self::Network(*kind)),
             InputKind::Comparison => read(kind, Comparison::load(path), Self::Comparison),
+            InputKind::Request => read_request(path),
+            InputKind::Checkpoint => Ok(Self::Checkpoint),
             InputKind::Settings => read(kind, TomlFile::read(path), |_| Self::Settings),
             InputKind::UnknownToml => match TomlFile::read(path) {
                 Ok(_) => Err(InputError::NotRecognised { path: path.to_owned() }),
@@ -119,9 +125,11 @@ impl InputFile {
             Self::Scenario(scenario) => scenario.name.clone(),
             Self::Vehicle(vehicle) => vehicle.name.clone(),
             Self::Site(site) => site.name.clone(),
-            Self::Network(_) | Self::Comparison(_) | Self::Settings => {
-                path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
-            }
+            Self::Network(_)
+            | Self::Comparison(_)
+            | Self::Request(_)
+            | Self::Checkpoint
+            | Self::Settings => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
         }
     }
 
@@ -149,6 +157,19 @@ impl InputFile {
             }
             Self::Network(kind) => Ok(vec![kind.clone()]),
             _ => Ok(Vec::new()),
+        }
+    }
+}
+
+fn read_request(path: &Path) -> Result<InputFile, InputError> {
+    let kind = InputKind::Request;
+    let text =
+        read_utf8(path, MAX_SETTINGS_BYTES).map_err(|error| InputError::new(kind, &error))?;
+    match serde_json::from_str(&text) {
+        Ok(request) => Ok(InputFile::Request(Box::new(request))),
+        Err(error) => {
+            let message = format!("{}: {error}", path.display());
+            Err(InputError::Wrong { kind, message })
         }
     }
 }

@@ -21,6 +21,9 @@ const HEAD_BYTES: u64 = 4096;
 /// Ending of the names of trained networks.
 pub const MODEL_ENDING: &str = "safetensors";
 
+/// What stands at the beginning of the state of a reconstruction.
+const CHECKPOINT: &[u8] = b"impactlab reconstruction";
+
 /// Keys and tables at the top of a TOML file that belong to one kind of file.
 const TOML_KEYS: [(InputKind, &[&str]); 5] = [
     (
@@ -87,6 +90,10 @@ pub enum InputKind {
     Network,
     /// The comparison of response networks.
     Comparison,
+    /// A question that `--print-request` wrote.
+    Request,
+    /// The state in which a reconstruction was broken off.
+    Checkpoint,
     /// Settings of a training.
     Settings,
     /// A TOML file without a key of any kind.
@@ -138,6 +145,27 @@ impl InputKind {
         matches!(self, Self::Dataset | Self::Folder | Self::Series)
     }
 
+    /// A command that takes such a file; `None` if the file is not used by itself.
+    pub fn command(self) -> Option<&'static str> {
+        Some(match self {
+            Self::Dataset => "impactlab train force --data FOLDER",
+            Self::Case => "impactlab report FILE",
+            Self::Evidence => "impactlab reconstruct FILE",
+            Self::Scenario => "impactlab impact FILE",
+            Self::Vehicle => "impactlab simulate --vehicle FILE",
+            Self::Request => "impactlab ask FILE",
+            Self::Checkpoint => "impactlab reconstruct EVIDENCE --resume",
+            Self::Network => "impactlab evaluate force (or response) --model FILE",
+            Self::Settings => "impactlab train force --config FILE",
+            Self::Site
+            | Self::Orthophoto
+            | Self::Comparison
+            | Self::Folder
+            | Self::UnknownToml
+            | Self::Series => return None,
+        })
+    }
+
     /// Whether it is a TOML file.
     pub fn is_toml(self) -> bool {
         matches!(
@@ -170,6 +198,8 @@ impl fmt::Display for InputKind {
             Self::Orthophoto => "an orthophoto",
             Self::Network => "a trained network",
             Self::Comparison => "a comparison of response networks",
+            Self::Request => "a question",
+            Self::Checkpoint => "the state of an unfinished reconstruction",
             Self::Settings => "the settings of a training",
             Self::UnknownToml => "a TOML file of no known kind",
             Self::Series => "a table of time series",
@@ -189,11 +219,20 @@ fn from_content(path: &Path) -> Option<InputKind> {
     if head.get(8) == Some(&b'{') && head.first() != Some(&b'{') && head.get(7) == Some(&0) {
         return Some(InputKind::Network);
     }
+    // A CBOR map whose first entry says what it is.
+    let is_map = head.first().is_some_and(|byte| (0xa0..=0xbf).contains(byte));
+    if is_map && head.windows(CHECKPOINT.len()).any(|bytes| bytes == CHECKPOINT) {
+        return Some(InputKind::Checkpoint);
+    }
     let text = String::from_utf8_lossy(&head);
     let text = text.trim_start_matches('\u{feff}').trim_start();
     if text.starts_with('{') {
         let is_case = has_ending(path, CASE_ENDING) || text.contains(&format!("\"{FORMAT}\""));
-        return Some(if is_case { InputKind::Case } else { InputKind::Comparison });
+        return Some(match text.contains("\"question\"") {
+            _ if is_case => InputKind::Case,
+            true => InputKind::Request,
+            false => InputKind::Comparison,
+        });
     }
     from_toml(path, text)
 }
@@ -278,6 +317,10 @@ mod tests {
         let case = include_bytes!("../../../../../assets/examples/pit.impactlab");
         assert_eq!(kind_of_text("case.json", case), InputKind::Case);
         assert_eq!(kind_of_text("photo.dat", b"\x89PNG\r\n\x1a\n"), InputKind::Orthophoto);
+        let question = b"{\"question\": \"check\", \"paths\": []}";
+        assert_eq!(kind_of_text("q.json", question), InputKind::Request);
+        let state = b"\xa5\x64kind\x78\x1aimpactlab reconstruction 2\x67version";
+        assert_eq!(kind_of_text("run", state), InputKind::Checkpoint);
         let force = b"time_s,fx_n,fy_n\n0,0,0\n0.1,1,2\n";
         assert_eq!(kind_of_text("force.toml.csv", force), InputKind::Series);
         // The preamble of a data logger.
