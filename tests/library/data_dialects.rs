@@ -96,7 +96,7 @@ fn other_encodings_are_read() {
 
 #[test]
 fn what_was_assumed_and_left_out_is_noted() {
-    let loaded = read("t,Fx [kN],fy,v,Mz [kg],x\n0,1,1,1,1,0\n1,1,1,1,1,0\n", "");
+    let loaded = read("t,Fx [N],fy,v,Mz [kg],x\n0,1,1,1,1,0\n1,1,1,1,1,0\n", "");
     let notes: Vec<String> = loaded.notes.iter().map(Note::to_string).collect();
     assert_eq!(
         notes,

@@ -9,6 +9,7 @@ mod data_bad_input;
 mod data_budgets;
 mod data_dialects;
 mod data_import;
+mod data_maps;
 mod data_quality;
 mod data_shipped;
 mod data_writes;

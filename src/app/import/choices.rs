@@ -73,7 +73,7 @@ impl Choices {
         let columns = proposals.into_iter().map(ColumnChoice::new).collect();
         let mut choices = Self { columns, other_force_is_zero: false };
         for (channel, source) in map.iter() {
-            let plain = |number| vec![SignedColumn { number, is_negated: false }];
+            let plain = |number| vec![SignedColumn { number, is_negated: false, unit: None }];
             let terms = match &source.column {
                 ColumnRef::Number(number) => plain(*number),
                 ColumnRef::Name(name) => {
@@ -81,6 +81,8 @@ impl Choices {
                     plain(named.map_or(0, |column| column.proposal.number))
                 }
                 ColumnRef::Sum(columns) => columns.clone(),
+                // What is computed from several columns is found by their names, without a choice.
+                ColumnRef::Computed(..) => continue,
                 ColumnRef::Zero => {
                     choices.other_force_is_zero = true;
                     continue;
@@ -90,7 +92,7 @@ impl Choices {
                 let of_number = |of: &&mut ColumnChoice| of.proposal.number == term.number;
                 if let Some(column) = choices.columns.iter_mut().find(of_number) {
                     column.choose(Some(channel));
-                    column.unit = source.unit.or(column.unit);
+                    column.unit = term.unit.or(source.unit).or(column.unit);
                     column.is_negated = term.is_negated;
                 }
             }
@@ -136,15 +138,11 @@ impl Choices {
             questions.push(format!("choose a column for {label}, or say that {label} is zero"));
         }
         for (channel, columns) in by_channel {
-            let first = columns.first().and_then(|column| column.unit);
-            let is_force = matches!(channel.quantity(), Quantity::Force | Quantity::Moment);
-            if columns.len() > 1 && !is_force {
+            // A time may be in seconds and nanoseconds.
+            let is_summed = channel == Channel::Time
+                || matches!(channel.quantity(), Quantity::Force | Quantity::Moment);
+            if columns.len() > 1 && !is_summed {
                 questions.push(format!("{} is chosen for several columns", channel.label()));
-            } else if columns.iter().any(|column| column.unit != first) {
-                questions.push(format!(
-                    "the columns that are added up to {} differ in their units",
-                    channel.label()
-                ));
             }
         }
         questions
@@ -153,16 +151,18 @@ impl Choices {
     /// The map that makes these choices.
     pub fn map(&self, settings: &ReadSettings) -> ColumnMap {
         let source = |columns: &[&ColumnChoice]| {
+            let unit = columns.first().and_then(|column| column.unit);
+            let is_common = columns.iter().all(|column| column.unit == unit);
             let terms = columns.iter().map(|column| SignedColumn {
                 number: column.proposal.number,
                 is_negated: column.is_negated,
+                unit: column.unit.filter(|_| !is_common),
             });
             let column = match columns {
                 [only] if !only.is_negated => ColumnRef::Number(only.proposal.number),
                 _ => ColumnRef::Sum(terms.collect()),
             };
-            let unit = columns.first().and_then(|column| column.unit);
-            ColumnSource { column, unit }
+            ColumnSource { column, unit: unit.filter(|_| is_common) }
         };
         let chosen = self.by_channel();
         let mut map: ColumnMap =

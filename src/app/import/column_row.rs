@@ -57,7 +57,12 @@ pub(super) fn column_ui(ui: &mut Ui, column: &mut ColumnChoice) {
     });
     shown.response.labelled_by(name.id);
     let Some(channel) = column.channel else { return };
-    let units = channel.quantity().units();
+    // A column of a force may hold its impulse up to each instant.
+    let impulses = match channel.quantity() {
+        Quantity::Force => Quantity::Impulse.units(),
+        _ => &[],
+    };
+    let units = channel.quantity().units().iter().chain(impulses);
     ui.horizontal(|ui| {
         let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
         let selected = match column.unit {

@@ -21,7 +21,7 @@ pub(in crate::cli) struct CheckArgs {
     /// List the cases without a flag, too
     #[arg(long)]
     all: bool,
-    /// For single files, which column is what: time=1:ms,fx=Kraft X:kN,fy=3
+    /// For single files, which column is what: time=1:ms,fx=Kraft X:kN,fy=3:kN
     #[arg(long)]
     map: Option<ColumnMap>,
 }

@@ -9,33 +9,39 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::error::quoted;
-use crate::data::{Channel, ReadSettings, spelling};
+use crate::data::{Channel, Formula, ReadSettings, spelling};
 use crate::units::Unit;
 
 /// What stands for a column if a channel is zero throughout.
 const NO_COLUMN: &str = "none";
 
 /// A reference to a column of a file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum ColumnRef {
     /// The number of the column, counted from 1.
     Number(usize),
     /// The header of the column, with or without the unit that it contains.
     Name(String),
     /// Columns that are added up, `2+5`, or whose sign is changed, `-3`: the forces of several
-    /// contacts between two vehicles, the force on the other vehicle.
+    /// contacts between two vehicles, the force on the other vehicle, a time in seconds and
+    /// nanoseconds.
     Sum(Vec<SignedColumn>),
+    /// Columns from which the channel is computed, `quaternion(4 5 6 7)`.
+    Computed(Formula, Vec<usize>),
     /// No column, `none`: the channel is zero throughout.
     Zero,
 }
 
 /// A term of a sum of columns.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SignedColumn {
     /// The number of the column, counted from 1.
     pub number: usize,
     /// Whether the sign of its numbers is changed.
     pub is_negated: bool,
+    /// The unit of its numbers where the terms have units of their own, `1:s+2:µs`; otherwise that of
+    /// the sum applies.
+    pub unit: Option<Unit>,
 }
 
 /// The column from which a channel is read, and its unit.
@@ -175,26 +181,61 @@ fn divided(part: &str) -> Result<(&str, &str), MapError> {
 fn choice(name: &str, column: &str) -> Result<(Channel, ColumnSource), MapError> {
     let channel =
         spelling::channel(name).ok_or_else(|| MapError::Channel { name: name.to_owned() })?;
+    if let Some(columns) = signed_columns(channel, column) {
+        return sum(channel, columns);
+    }
     let with_unit = column.rsplit_once(':').and_then(|(column, text)| {
         let unit = spelling::unit(channel.quantity(), text.trim())?;
         Some((column.trim(), Some(unit)))
     });
     let (column, unit) = with_unit.unwrap_or((column, None));
-    let column = match (column.parse(), signed_columns(column)) {
-        (Ok(0), _) => return Err(MapError::ColumnZero { channel }),
-        (Ok(number), _) => ColumnRef::Number(number),
-        (Err(_), Some(columns)) if columns.iter().any(|column| column.number == 0) => {
-            return Err(MapError::ColumnZero { channel });
-        }
-        (Err(_), Some(columns)) => ColumnRef::Sum(columns),
-        (Err(_), None) if column == NO_COLUMN => ColumnRef::Zero,
-        (Err(_), None) => ColumnRef::Name(column.to_owned()),
+    // The unit itself may have a sign in it, `4:N-m`.
+    if let Some(columns) = signed_columns(channel, column) {
+        let (channel, source) = sum(channel, columns)?;
+        return Ok((channel, ColumnSource { unit, ..source }));
+    }
+    let column = match computed(column) {
+        Some((formula, numbers)) => ColumnRef::Computed(formula, numbers),
+        None if column == NO_COLUMN => ColumnRef::Zero,
+        None => ColumnRef::Name(column.to_owned()),
     };
     Ok((channel, ColumnSource { column, unit }))
 }
 
-/// The terms of `2+5-7` or `-3`; `None` if the text is no such sum.
-fn signed_columns(text: &str) -> Option<Vec<SignedColumn>> {
+/// The choice of one column by its number, or of several that are added up. The unit of the last term
+/// is that of all if no other term has one.
+fn sum(
+    channel: Channel,
+    mut columns: Vec<SignedColumn>,
+) -> Result<(Channel, ColumnSource), MapError> {
+    if columns.iter().any(|column| column.number == 0) {
+        return Err(MapError::ColumnZero { channel });
+    }
+    let n_units = columns.iter().filter(|column| column.unit.is_some()).count();
+    let mut unit = None;
+    if n_units == 1
+        && let Some(last) = columns.last_mut()
+    {
+        unit = last.unit.take();
+    }
+    let column = match columns[..] {
+        [SignedColumn { number, is_negated: false, .. }] => ColumnRef::Number(number),
+        _ => ColumnRef::Sum(columns),
+    };
+    Ok((channel, ColumnSource { column, unit }))
+}
+
+/// The formula and its columns in `quaternion(4 5 6 7)`; `None` if the text is none.
+fn computed(text: &str) -> Option<(Formula, Vec<usize>)> {
+    let (name, rest) = text.split_once('(')?;
+    let formula = Formula::ALL.into_iter().find(|formula| formula.name() == name.trim())?;
+    let numbers = rest.strip_suffix(')')?.split_whitespace().map(|number| number.parse().ok());
+    let numbers: Vec<usize> = numbers.collect::<Option<_>>()?;
+    (numbers.len() == formula.n_columns()).then_some((formula, numbers))
+}
+
+/// The terms of `2`, `2+5-7`, `-3` or `1:s+2:µs`; `None` if the text is no such sum.
+fn signed_columns(channel: Channel, text: &str) -> Option<Vec<SignedColumn>> {
     let is_sign = |c: char| matches!(c, '+' | '-');
     let signed = match text.starts_with(is_sign) {
         true => text.to_owned(),
@@ -204,10 +245,16 @@ fn signed_columns(text: &str) -> Option<Vec<SignedColumn>> {
     let ends = starts.iter().skip(1).copied().chain([signed.len()]);
     let term = |(start, end): (&usize, usize)| {
         let term = signed.get(*start..end)?;
-        let digits = term.get(1..)?.trim();
+        let (digits, unit) = match term.get(1..)?.split_once(':') {
+            Some((digits, unit)) => {
+                (digits, Some(spelling::unit(channel.quantity(), unit.trim())?))
+            }
+            None => (term.get(1..)?, None),
+        };
+        let digits = digits.trim();
         let is_number = digits.bytes().all(|byte| byte.is_ascii_digit());
         let number = digits.parse().ok().filter(|_| is_number)?;
-        Some(SignedColumn { number, is_negated: term.starts_with('-') })
+        Some(SignedColumn { number, is_negated: term.starts_with('-'), unit })
     };
     starts.iter().zip(ends).map(term).collect()
 }
@@ -223,8 +270,13 @@ impl fmt::Display for ColumnRef {
                     (false, 0) => "",
                     (false, _) => "+",
                 };
-                write!(f, "{sign}{}", column.number)
+                write!(f, "{sign}{}", column.number)?;
+                column.unit.map_or(Ok(()), |unit| write!(f, ":{}", unit.symbol))
             }),
+            Self::Computed(formula, numbers) => {
+                let numbers: Vec<String> = numbers.iter().map(usize::to_string).collect();
+                write!(f, "{}({})", formula.name(), numbers.join(" "))
+            }
             Self::Zero => f.write_str(NO_COLUMN),
         }
     }
@@ -295,12 +347,19 @@ mod tests {
             "sheet=2,header=5,units=6,shift=-0.012:s,y_axis=right,velocities=world,time=1,fx=2+5-7:kN",
             "header=none,fx=-3:kN,fy=none",
             "sheet=Messung 2,fx=Kraft-X",
+            "time=5:s+6:µs,x=east(2 3),y=north(2 3),yaw=quaternion(7 8 9 10)",
+            "fx=2:N s,fy=-3:kN s",
         ] {
             assert_eq!(text.parse::<ColumnMap>().unwrap().to_string(), text);
         }
+        let with_sign: ColumnMap = "mz=4:N-m".parse().unwrap();
+        assert_eq!(with_sign.to_string(), "mz=4:N m");
         let map: ColumnMap = "fx=2+5-7,shift=-12:ms".parse().unwrap();
-        let terms = [(2, false), (5, false), (7, true)]
-            .map(|(number, is_negated)| SignedColumn { number, is_negated });
+        let terms = [(2, false), (5, false), (7, true)].map(|(number, is_negated)| SignedColumn {
+            number,
+            is_negated,
+            unit: None,
+        });
         assert_eq!(map.get(Channel::Fx).unwrap().column, ColumnRef::Sum(terms.to_vec()));
         assert_eq!(map.settings.time_shift_s, Some(-0.012));
         for (text, message) in [

@@ -1,6 +1,9 @@
 //! The way in which a text file writes a table: separator, decimal sign and comments. It is
 //! determined from the first lines of the file, because programs differ in it.
 
+use std::borrow::Cow;
+
+use csv::{ReaderBuilder, StringRecord, Trim};
 use serde::{Deserialize, Serialize};
 
 /// The separator between two fields of a line.
@@ -52,21 +55,42 @@ impl Separator {
     }
 }
 
+/// Splits a line into its fields. A separator inside quotation marks does not divide a field.
+pub(super) fn split(line: &str, separator: Separator) -> Vec<Cow<'_, str>> {
+    if !line.contains('"') {
+        return separator.fields(line).map(Cow::Borrowed).collect();
+    }
+    let line = match separator {
+        Separator::Blanks => line.replace('\t', " "),
+        _ => line.to_owned(),
+    };
+    let mut reader = ReaderBuilder::new()
+        .delimiter(separator.byte())
+        .has_headers(false)
+        .trim(Trim::All)
+        .buffer_capacity(line.len() + 1)
+        .from_reader(line.as_bytes());
+    let mut record = StringRecord::new();
+    // Reading from memory fails for invalid UTF-8 only, which a `str` cannot contain.
+    let _ = reader.read_record(&mut record);
+    let is_cell = |cell: &&str| separator != Separator::Blanks || !cell.is_empty();
+    record.iter().filter(is_cell).map(|cell| Cow::Owned(cell.to_owned())).collect()
+}
+
 impl Dialect {
     /// Determines separator and decimal sign from the first lines of a table.
     ///
     /// The separator is the one with which most fields are numbers. At equality, in particular if
     /// there are no numbers, it is the one with most fields in the first line. The decimal sign is
-    /// a comma if numbers with a comma occur and numbers with a point do not, and if the comma is
-    /// not the separator.
+    /// a comma if numbers with a comma occur and numbers with a point do not; where the comma is the
+    /// separator too, they stand in quotation marks.
     ///
     /// - `known`: the separator, if it is known.
     pub(crate) fn sniff(lines: &[&str], known: Option<Separator>) -> Self {
         let score = |separator: &Separator| {
-            let decimal_comma = *separator != Separator::Comma;
-            let fields = lines.iter().flat_map(|line| separator.fields(line));
-            let numbers = fields.filter(|field| parse_number(field, decimal_comma).is_some());
-            let first = lines.first().map_or(0, |line| separator.fields(line).count());
+            let fields = lines.iter().flat_map(|line| split(line, *separator));
+            let numbers = fields.filter(|field| parse_number(field, true).is_some());
+            let first = lines.first().map_or(0, |line| split(line, *separator).len());
             // Words contain blanks between them, so that a second field by blanks is weak evidence:
             // blanks score less than another separator that gives two fields.
             let blanks = *separator == Separator::Blanks;
@@ -76,14 +100,16 @@ impl Dialect {
         let last_to_first = Separator::ALL.into_iter().rev();
         let found = || last_to_first.max_by_key(score).unwrap_or(Separator::Comma);
         let separator = known.unwrap_or_else(found);
-        let fields = || lines.iter().flat_map(|line| separator.fields(line));
+        let fields = || lines.iter().flat_map(|line| split(line, separator));
         let written_with = |sign: char| {
-            fields().any(|field| field.contains(sign) && parse_number(field, sign == ',').is_some())
+            fields()
+                .any(|field| field.contains(sign) && parse_number(&field, sign == ',').is_some())
         };
-        Self {
-            separator,
-            decimal_comma: separator != Separator::Comma && written_with(',') && !written_with('.'),
-        }
+        // Where commas divide the fields, those in a quoted number may divide its thousands.
+        let may_be_decimal =
+            || separator != Separator::Comma || fields().any(|field| is_decimal(&field));
+        let decimal_comma = written_with(',') && !written_with('.') && may_be_decimal();
+        Self { separator, decimal_comma }
     }
 
     /// The number in a cell; `None` if the cell does not hold a finite number.
@@ -100,6 +126,30 @@ pub(crate) fn comment(line: &str) -> Option<&str> {
         .iter()
         .find_map(|sign| line.strip_prefix(sign))
         .map(|rest| rest.trim_start_matches(['#', '%', '!', '$', '/']).trim())
+}
+
+/// Whether the comma of a number with one is that of its decimals and not of its thousands.
+fn is_decimal(field: &str) -> bool {
+    let Some((whole, fraction)) = field.split_once(',') else { return false };
+    let whole = whole.trim_start_matches(['+', '-']);
+    parse_number(field, true).is_some() && (whole.starts_with('0') || fraction.len() != 3)
+}
+
+/// A number whose exponent of three digits has no letter before it, as Fortran writes `1.0-103`, with the
+/// letter.
+fn with_exponent(text: &str) -> String {
+    let at = text.len().saturating_sub(4);
+    match text.get(..at).zip(text.get(at..)) {
+        Some((mantissa, exponent))
+            if mantissa.contains('.')
+                && mantissa.ends_with(|c: char| c.is_ascii_digit() || c == '.')
+                && exponent.starts_with(['+', '-'])
+                && exponent.get(1..).is_some_and(|e| e.bytes().all(|b| b.is_ascii_digit())) =>
+        {
+            format!("{mantissa}e{exponent}")
+        }
+        _ => text.to_owned(),
+    }
 }
 
 /// Parses a finite number; `None` for any other text. With `decimal_comma` both `0,5` and `0.5` are
@@ -124,7 +174,7 @@ fn parse_number(text: &str, decimal_comma: bool) -> Option<f64> {
                 Some(fraction) => format!("{whole}.{fraction}"),
                 None => whole.to_owned(),
             };
-            let plain = plain.replace(['d', 'D'], "e");
+            let plain = with_exponent(&plain.replace(['d', 'D'], "e"));
             plain.parse().ok().filter(|_| fits)?
         }
     };
@@ -143,6 +193,10 @@ mod tests {
             ("1.5", Some(1.5)),
             ("1.5D+03", Some(1500.0)),
             ("1,5E-3", Some(1.5e-3)),
+            ("1.5-103", Some(1.5e-103)),
+            ("-1.5+103", Some(-1.5e103)),
+            ("2026-103", None),
+            ("1.5-1033", None),
             ("1.000,5", None),
             ("1,000,5", None),
             ("1,", None),
@@ -169,6 +223,9 @@ mod tests {
             ("  t   fx\n  0.1  2.5\n", Separator::Blanks, false),
             ("t fx\n0,1 2,5\n", Separator::Blanks, true),
             ("\"t\",\"fx\"\n\"0.1\",\"2.5\"\n", Separator::Comma, false),
+            ("\"t\",\"fx\"\n\"0,1\",\"2,5\"\n", Separator::Comma, true),
+            ("\"t\",\"fx\"\n\"0,001\",\"2,500\"\n", Separator::Comma, true),
+            ("t,fx\n1,\"2,500\"\n2,\"12,500\"\n", Separator::Comma, false),
             ("name of case,side\na b,left\n", Separator::Comma, false),
             ("case;side\na;left\n", Separator::Semicolon, false),
         ] {

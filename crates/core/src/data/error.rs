@@ -8,7 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::data::write::WriteError;
-use crate::data::{Channel, SeriesError, spelling};
+use crate::data::{Channel, ColumnMap, SeriesError, spelling};
 use crate::ranges::{OutOfRange, Range};
 use crate::units::Quantity;
 
@@ -227,6 +227,18 @@ pub enum DataError {
         /// Header of the earlier column.
         other: String,
     },
+    /// Something has to be said before the file can be read.
+    #[error("{}:{line}: {what}; e.g. --map \"{map}\", or in the mapping dialog", path.display())]
+    Open {
+        /// The file that was read.
+        path: PathBuf,
+        /// Line of the header.
+        line: u64,
+        /// What is open, in words.
+        what: String,
+        /// A mapping that answers it.
+        map: Box<ColumnMap>,
+    },
     /// The unit of a column does not measure the channel that the column holds.
     #[error("{}:{line}:{column}: {name} is in {unit}, expected a unit of {} ({}); correct the header or map the column with its unit, e.g. --map {}={column}:{}",
         path.display(), spelling::quantity_name(*quantity), spelling::symbols(*quantity), channel.short_name(), quantity.si_unit().symbol, name = quoted(name), unit = quoted(unit))]
@@ -246,8 +258,8 @@ pub enum DataError {
         /// The quantity that the channel measures.
         quantity: Quantity,
     },
-    /// A cell does not hold a finite number.
-    #[error("{}:{line}:{column}: {name} is {text}, expected a finite number{}", path.display(), in_unit(unit), name = quoted(name), text = quoted(text))]
+    /// A cell does not hold a number, or not such a one.
+    #[error("{}:{line}:{column}: {name} is {text}, expected {expected}", path.display(), name = quoted(name), text = quoted(text))]
     Cell {
         /// The file that was read or written.
         path: PathBuf,
@@ -259,8 +271,8 @@ pub enum DataError {
         name: String,
         /// The text of the cell.
         text: String,
-        /// The unit of the column for the message; empty if none is known.
-        unit: &'static str,
+        /// What is expected, in words.
+        expected: Box<str>,
     },
     /// The line that is to hold the header or the units is blank, or too far down.
     #[error("{}:{line}: nothing is found here, expected {what} in one of the first lines", path.display())]
@@ -450,6 +462,15 @@ pub enum DataError {
 }
 
 impl DataError {
+    /// A mapping that answers what is open about a file.
+    pub fn answer(&self) -> Option<&ColumnMap> {
+        match self {
+            Self::InSheet { error, .. } => error.answer(),
+            Self::Open { map, .. } => Some(map),
+            _ => None,
+        }
+    }
+
     /// Whether a mapping of columns to channels and units by the user may solve the problem.
     pub fn needs_mapping(&self) -> bool {
         if let Self::InSheet { error, .. } = self {
@@ -460,6 +481,7 @@ impl DataError {
             Self::NoHeader { .. }
                 | Self::MissingColumn { .. }
                 | Self::AmbiguousColumn { .. }
+                | Self::Open { .. }
                 | Self::UnknownUnit { .. }
                 | Self::ImplausibleValue { .. }
                 | Self::NoSuchLine { .. }
@@ -534,13 +556,6 @@ pub(crate) fn quoted(text: &str) -> String {
     }
 }
 
-fn in_unit(unit: &str) -> String {
-    match unit {
-        "" => String::new(),
-        _ => format!(" in {unit}"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -554,7 +569,7 @@ mod tests {
             column: 28,
             name: "Kraft: X".to_owned(),
             text: "n/a".to_owned(),
-            unit: "kN",
+            expected: "a finite number in kN".into(),
         };
         let empty = DataError::Empty { path: path.clone() };
         let row = DataError::RaggedRow { path: path.clone(), line: 3, expected: 2, got: 4 };

@@ -87,10 +87,24 @@ pub(crate) fn refuse_known_text(path: &Path, text: &str) -> Result<(), DataError
     if let Some((_, format, remedy)) = known {
         return Err(other(path, format, remedy));
     }
-    match lines.by_ref().take(EXAMINED_LINES).find_map(solver_output) {
+    let known = |line: &str| crash_data_retrieval(line).or_else(|| solver_output(line));
+    match lines.by_ref().take(EXAMINED_LINES).find_map(known) {
         Some((format, remedy)) => Err(other(path, format, remedy)),
         None => Ok(()),
     }
+}
+
+/// The export of a crash data retrieval tool to which a line belongs, and what to do with it.
+fn crash_data_retrieval(line: &str) -> Option<(&'static str, &'static str)> {
+    let line = line.to_lowercase();
+    let marks = ["cdr file information", "user entered vin", "imaged with crash data retrieval"];
+    let is_one = !line.starts_with('#') && marks.iter().any(|mark| line.contains(mark));
+    is_one.then_some((
+        "the report of a Bosch CDR tool",
+        "copy its table before the crash into a CSV file with a header such as \
+         \"time [s],speed [km/h],steering wheel angle [deg]\", or enter its values as [edr] in the evidence of a \
+         reconstruction",
+    ))
 }
 
 /// The output of LS-DYNA to which a line belongs, and what to do with it.

@@ -4,10 +4,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use csv::{ReaderBuilder, StringRecord, Trim};
-
 use crate::data::budget::{MAX_CELL_BYTES, MAX_COLUMNS, MAX_LINE_BYTES};
-use crate::data::dialect::{Dialect, Separator, comment};
+use crate::data::dialect::{Dialect, Separator, comment, split};
 use crate::data::spelling::{self, Meaning};
 use crate::data::table::CASE_COLUMN;
 use crate::data::{DataError, HeaderLine, ReadSettings};
@@ -55,6 +53,11 @@ struct SplitLine<'a> {
 impl<'a> SplitLine<'a> {
     fn new(line: Line<'a>, dialect: Dialect) -> Self {
         let cells = split(line.text, dialect.separator);
+        let cells: Vec<String> = cells.into_iter().map(std::borrow::Cow::into_owned).collect();
+        Self::from_cells(line, cells, dialect)
+    }
+
+    fn from_cells(line: Line<'a>, cells: Vec<String>, dialect: Dialect) -> Self {
         let n_numbers = cells.iter().filter(|cell| dialect.number(cell).is_some()).count();
         let n_names = || cells.iter().filter(|cell| is_name(cell)).count();
         let is_text = n_numbers == 0 || n_names() > n_numbers;
@@ -94,28 +97,6 @@ pub(super) fn first_lines(text: &str) -> Vec<Line<'_>> {
         .take(SNIFFED_LINES)
         .take_while(is_within)
         .collect()
-}
-
-/// Splits a line into its fields. A separator inside quotation marks does not divide a field.
-fn split(line: &str, separator: Separator) -> Vec<String> {
-    if !line.contains('"') {
-        return separator.fields(line).map(str::to_owned).collect();
-    }
-    let line = match separator {
-        Separator::Blanks => line.replace('\t', " "),
-        _ => line.to_owned(),
-    };
-    let mut reader = ReaderBuilder::new()
-        .delimiter(separator.byte())
-        .has_headers(false)
-        .trim(Trim::All)
-        .buffer_capacity(line.len() + 1)
-        .from_reader(line.as_bytes());
-    let mut record = StringRecord::new();
-    // Reading from memory fails for invalid UTF-8 only, which a `str` cannot contain.
-    let _ = reader.read_record(&mut record);
-    let is_cell = |cell: &&str| separator != Separator::Blanks || !cell.is_empty();
-    record.iter().filter(is_cell).map(str::to_owned).collect()
 }
 
 /// Checks the number and the length of the fields of the first lines.
@@ -170,8 +151,14 @@ pub(super) fn find_header<'a>(
     dialect: Dialect,
     settings: &ReadSettings,
 ) -> Result<(Header, Option<Line<'a>>), DataError> {
-    let split: Vec<SplitLine<'a>> =
+    let mut split: Vec<SplitLine<'a>> =
         lines.iter().map(|line| SplitLine::new(*line, dialect)).collect();
+    let n_columns = width(&split);
+    for line in split.iter_mut().filter(|line| line.line.is_comment) {
+        if let Some(cells) = labelled(line.line.text, &line.cells, n_columns) {
+            *line = SplitLine::from_cells(line.line, cells, dialect);
+        }
+    }
     let at_line = |wanted: u64, what: &'static str| {
         let found = split.iter().find(|line| line.line.number == wanted);
         found.ok_or_else(|| DataError::NoSuchLine { path: path.to_owned(), line: wanted, what })
@@ -185,9 +172,24 @@ pub(super) fn find_header<'a>(
         Some(HeaderLine::None) => None,
     };
     Ok(match names {
-        Some(names) => below_names(&split, names, units),
+        Some(names) => below_names(&split, names, units, width),
         None => without_names(&split, width, first_number, units),
     })
+}
+
+/// The cells of a comment that is labelled, such as `columns: time fx fy` or `name: time  name: fx`, without
+/// its labels; `None` if it has none.
+fn labelled(text: &str, cells: &[String], n_columns: usize) -> Option<Vec<String>> {
+    let label = text.split_whitespace().next().filter(|label| label.ends_with(':'))?;
+    let repeated: Vec<String> =
+        text.split(label).skip(1).map(|cell| cell.trim().to_owned()).collect();
+    match () {
+        () if repeated.len() == n_columns && n_columns > 1 => Some(repeated),
+        () if cells.first().is_some_and(|cell| cell == label) && cells.len() == n_columns + 1 => {
+            cells.get(1..).map(<[String]>::to_vec)
+        }
+        () => None,
+    }
 }
 
 /// The header of a table whose columns have no names, and the first line of its rows.
@@ -212,11 +214,13 @@ fn without_names<'a>(
 /// The header in the line of the names, and the first line of the rows below it.
 ///
 /// - `units`: the line of the units, if the user has said it; otherwise it is the line beneath the
-///   names if that looks like one.
+///   names if that looks like one;
+/// - `width`: number of columns of the rows.
 fn below_names<'s, 'a>(
     split: &'s [SplitLine<'a>],
     names: &SplitLine<'a>,
     mut units: Option<&'s SplitLine<'a>>,
+    width: usize,
 ) -> (Header, Option<Line<'a>>) {
     let last = units.map_or(0, |line| line.line.number).max(names.line.number);
     let mut below = split
@@ -236,7 +240,7 @@ fn below_names<'s, 'a>(
     let header = Header {
         line: names.line.number,
         is_written: true,
-        names: named(&names.cells),
+        names: named(&names.cells, width),
         units: units.map(|line| line.cells.clone()).unwrap_or_default(),
         units_line: units.map(|line| line.line.number),
     };
@@ -316,9 +320,10 @@ fn is_name(cell: &str) -> bool {
 }
 
 /// The names of the columns in a header line; a column without a name is called `column` and its
-/// number.
-fn named(cells: &[String]) -> Vec<String> {
-    let cells = cells.iter().take(n_named(cells));
+/// number. Blank cells at the end are columns as far as the rows reach.
+fn named(cells: &[String], width: usize) -> Vec<String> {
+    let n_written = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
+    let cells = cells.iter().take(n_written.max(width));
     let name = |(i, cell): (usize, &String)| match cell.as_str() {
         "" => format!("column {}", i + 1),
         _ => cell.clone(),
@@ -331,7 +336,7 @@ impl Header {
         Self {
             line,
             is_written: false,
-            names: named(&vec![String::new(); width + 1]),
+            names: named(&vec![String::new(); width], width),
             ..Self::default()
         }
     }

@@ -7,8 +7,9 @@ use std::path::Path;
 
 use crate::data::velocity_fit::in_body_axes;
 use crate::data::{
-    Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, ReadSettings, Sampling,
-    SeriesError, Table, TimeSeries, VelocityAxes, contradictions, velocity_fit,
+    Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Formula, Note, ReadSettings,
+    Sampling, SeriesError, Table, Term, TimeSeries, VelocityAxes, clock, contradictions, impulse,
+    velocity_fit,
 };
 use crate::numerics::counted_turns_rad;
 use crate::ranges::{
@@ -280,9 +281,12 @@ fn load_columns(
         return Err(DataError::TooFewRows { path: path(), line, expected, got });
     }
     let settings = map.map(|map| (*map.settings).clone()).unwrap_or_default();
+    if let Some(time) = columns.by_channel.get(&Channel::Time) {
+        clock::check_unit(table, time, map)?;
+    }
     let mut series = TimeSeries::default();
     for column in columns.by_channel.values() {
-        let values = si_values(table, column, &settings)?;
+        let values = si_values(table, column, series.time_s(), &settings)?;
         match column.channel {
             Channel::Time => {
                 let time = TimeSeries::new(values);
@@ -296,6 +300,10 @@ fn load_columns(
             channel => insert(&mut series, channel, values, table)?,
         }
     }
+    let used: Vec<&ColumnUse> = columns.by_channel.values().collect();
+    impulse::check_force(table, &series, &used, map)?;
+    impulse::check_zero(table, &series, &used, map)?;
+    clock::check_controls(table, &series, kind, map)?;
     let read_as = settings.velocities.unwrap_or(VelocityAxes::Body);
     let fit = velocity_fit(&series).filter(|fit| !fit.allows(read_as));
     if read_as == VelocityAxes::World {
@@ -310,6 +318,10 @@ fn load_columns(
         }
     }
     let Columns { by_channel, mut notes } = columns;
+    notes.extend(table.format().map(|text| Note::Format { text }));
+    let is_shifted = settings.time_shift_s.is_some();
+    let begins_s = clock::offered_shift_s(&series).filter(|_| !is_shifted);
+    notes.extend(begins_s.map(|shift_s| Note::Begins { first_s: 0.0 - shift_s }));
     notes.extend(fit.map(|fit| Note::Velocities { fit, read_as }));
     notes.extend(contradictions(&series).into_iter().map(Note::Contradiction));
     let columns = by_channel.into_values().collect();
@@ -333,16 +345,55 @@ fn insert(
     series.insert(channel, values).map_err(|source| DataError::Series { path: path(), source })
 }
 
+/// The numbers of a column in SI units.
+fn term_values(
+    table: &Table,
+    column: &ColumnUse,
+    term: &Term,
+    time_s: &[f64],
+) -> Result<Vec<f64>, DataError> {
+    let idx = term.number.saturating_sub(1);
+    if column.channel == Channel::Time
+        && let Some(times) = clock::times_of_day_s(table, idx)
+    {
+        return times.map_err(|row_idx| table.cell_error(row_idx, idx, "a time of day"));
+    }
+    let mut values = table.numbers(idx, term.unit.symbol)?;
+    values.iter_mut().for_each(|value| *value = term.sign * term.unit.to_si(*value));
+    match term.unit.quantity == Quantity::Impulse {
+        true => Ok(impulse::rate_n(&values, time_s)),
+        false => Ok(values),
+    }
+}
+
+/// The numbers of a channel that is computed from several columns.
+fn computed_values(
+    table: &Table,
+    column: &ColumnUse,
+    formula: Formula,
+) -> Result<Vec<f64>, DataError> {
+    let numbers = |term: &Term| table.numbers(term.number.saturating_sub(1), "");
+    let terms: Vec<Vec<f64>> = column.terms.iter().map(numbers).collect::<Result<_, _>>()?;
+    let idx = column.number.saturating_sub(1);
+    formula.values(&terms).map_err(|row_idx| table.cell_error(row_idx, idx, formula.expected()))
+}
+
 /// The numbers of a channel in SI units and in the axes of this program.
+///
+/// - `time_s`: the instants, as far as they have been read.
 fn si_values(
     table: &Table,
     column: &ColumnUse,
+    time_s: &[f64],
     settings: &ReadSettings,
 ) -> Result<Vec<f64>, DataError> {
     let mut sum: Option<Vec<f64>> = None;
-    for term in &column.terms {
-        let mut values = table.numbers(term.number.saturating_sub(1), term.unit.symbol)?;
-        values.iter_mut().for_each(|value| *value = term.sign * term.unit.to_si(*value));
+    if let Some(formula) = column.formula {
+        sum = Some(computed_values(table, column, formula)?);
+    }
+    let terms = column.terms.iter().filter(|_| column.formula.is_none());
+    for term in terms {
+        let values = term_values(table, column, term, time_s)?;
         match &mut sum {
             None => sum = Some(values),
             Some(sum) => sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value),

@@ -55,6 +55,33 @@ pub(crate) fn meaning(header: &str) -> Meaning {
     }
 }
 
+/// The name in a header without its unit and without a number at its end, by which `Fx`, `Fx.1` and
+/// `Fx_2 [kN]` are the same.
+pub(crate) fn stem(header: &str) -> String {
+    let (name, _) = numbered(header).unwrap_or((header, ""));
+    letters_and_digits(name.split(OPENING).next().unwrap_or(name))
+}
+
+/// The name and the rest of a header whose name ends in a number, such as `Fx.1` or `Fx 2 [kN]`.
+fn numbered(header: &str) -> Option<(&str, &str)> {
+    let end = header.find(OPENING).unwrap_or(header.len());
+    let (name, rest) = header.split_at(end);
+    let name = name.trim_end();
+    let bare = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let bare =
+        if bare.len() < name.len() { bare.trim_end_matches([' ', '.', '_', '-', '#']) } else { "" };
+    (!bare.is_empty()).then_some((bare, rest))
+}
+
+/// The meaning of a header that ends in a number, if it is that of a force or moment: of one contact of
+/// several.
+pub(crate) fn numbered_force(header: &str) -> Option<Meaning> {
+    let (name, rest) = numbered(header)?;
+    let meaning = meaning(&format!("{name}{rest}"));
+    let Meaning::Channel(channel, _) = meaning else { return None };
+    matches!(channel.quantity(), Quantity::Force | Quantity::Moment).then_some(meaning)
+}
+
 /// The beginnings of a header that name a channel and are followed by another character than a
 /// letter or digit, with what follows. A beginning that ends within brackets is left out.
 fn divisions(header: &str) -> Vec<(Channel, &str)> {
@@ -150,8 +177,13 @@ fn unit_of_key(quantity: Quantity, key: &str) -> Option<Unit> {
         (Quantity::Moment, "ftlb" | "ftlbs" | "lbft" | "lbsft" | "ftlbf") => "lbfft",
         (_, key) => key,
     };
-    let mut units = UNITS.iter().filter(|(measured, ..)| *measured == quantity);
-    units.find(|(_, spelling, _)| !key.is_empty() && spelling == key).map(|(.., unit)| *unit)
+    let find = |quantity| {
+        let mut units = UNITS.iter().filter(|(measured, ..)| *measured == quantity);
+        units.find(|(_, spelling, _)| !key.is_empty() && spelling == key).map(|(.., unit)| *unit)
+    };
+    // A column of a force may hold what it has summed up to.
+    let integral = || (quantity == Quantity::Force).then(|| find(Quantity::Impulse)).flatten();
+    find(quantity).or_else(integral)
 }
 
 /// All units with their keys.
@@ -233,7 +265,7 @@ fn is_unit_key(key: &str) -> bool {
     Quantity::ALL.iter().any(|quantity| unit_of_key(*quantity, key).is_some())
 }
 
-fn letters_and_digits(text: &str) -> String {
+pub(crate) fn letters_and_digits(text: &str) -> String {
     let letters = text.chars().filter(|c| c.is_alphanumeric());
     letters.flat_map(char::to_lowercase).collect()
 }

@@ -13,6 +13,7 @@ use crate::data::header::{Header, Line, check_fields, find_header, first_lines};
 use crate::data::rows::Rows;
 use crate::data::spelling;
 use crate::data::text::{Text, read_text};
+use crate::data::vbo;
 use crate::data::workbook::{Sheet, is_archive, read_sheet};
 use crate::data::{DataError, ReadSettings};
 
@@ -38,6 +39,8 @@ pub struct Table {
     beginning: Vec<(u64, String)>,
     /// The sheet of a workbook.
     sheet: Option<Sheet>,
+    /// What the file is, if it is of a format of its own.
+    format: Option<&'static str>,
 }
 
 impl Table {
@@ -70,6 +73,11 @@ impl Table {
         if let Some(sheet) = &settings.sheet {
             let (path, wanted, found) = (path.to_owned(), sheet.to_string(), Vec::new());
             return Err(DataError::NoSheet { path, wanted, found });
+        }
+        if let Some(rows) = vbo::as_table(&text.text) {
+            let text = Text { text: rows, ..text };
+            let table = Self::parse(path, text, Some(Separator::Tab), settings)?;
+            return Ok(Self { format: Some(vbo::DESCRIPTION), ..table });
         }
         refuse_known_text(path, &text.text)?;
         Self::parse(path, text, None, settings)
@@ -109,8 +117,8 @@ impl Table {
         let (body, first_line) = body.map_or((text.len(), 0), |body| (body.start, body.number));
         let beginning = lines.iter().take(SHOWN_LINES).map(|line| shown_line(line)).collect();
         let rows = Rows::read(path, text, body, first_line, dialect, header.names.len())?;
-        let (path, sheet) = (path.to_owned(), None);
-        Ok(Self { path, encoding, dialect, header, rows, beginning, sheet })
+        let (path, sheet, format) = (path.to_owned(), None, None);
+        Ok(Self { path, encoding, dialect, header, rows, beginning, sheet, format })
     }
 
     /// Path of the file.
@@ -155,6 +163,11 @@ impl Table {
     /// The sheet from which the table was read; `None` for a text file.
     pub fn sheet(&self) -> Option<&Sheet> {
         self.sheet.as_ref()
+    }
+
+    /// What the file is, in words, if it is of a format of its own; `None` for a plain table.
+    pub fn format(&self) -> Option<&'static str> {
+        self.format
     }
 
     /// An error in this table. In a sheet its place is the cell.
@@ -235,20 +248,35 @@ impl Table {
     /// [`DataError::Cell`] at the first cell that does not hold a finite number.
     pub fn numbers(&self, column_idx: usize, unit: &'static str) -> Result<Vec<f64>, DataError> {
         let number = |row_idx| {
-            self.number(row_idx, column_idx).ok_or_else(|| DataError::Cell {
-                path: self.path.clone(),
-                line: self.line(row_idx),
-                column: column_idx + 1,
-                name: self.header.names.get(column_idx).cloned().unwrap_or_default(),
-                text: self.cell(row_idx, column_idx).into_owned(),
-                unit,
-            })
+            let number = self.number(row_idx, column_idx);
+            let expected = || match unit {
+                "" => "a finite number".to_owned(),
+                _ => format!("a finite number in {unit}"),
+            };
+            number.ok_or_else(|| self.cell_error(row_idx, column_idx, &expected()))
         };
         let mut numbers = Vec::with_capacity(self.n_rows());
         for row_idx in 0..self.n_rows() {
             numbers.push(number(row_idx)?);
         }
         Ok(numbers)
+    }
+
+    /// The error for a cell that does not hold what is expected.
+    pub(super) fn cell_error(
+        &self,
+        row_idx: usize,
+        column_idx: usize,
+        expected: &str,
+    ) -> DataError {
+        DataError::Cell {
+            path: self.path.clone(),
+            line: self.line(row_idx),
+            column: column_idx + 1,
+            name: self.header.names.get(column_idx).cloned().unwrap_or_default(),
+            text: self.cell(row_idx, column_idx).into_owned(),
+            expected: expected.into(),
+        }
     }
 }
 

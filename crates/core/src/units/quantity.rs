@@ -176,7 +176,8 @@ impl Quantity {
             };
         }
         match self {
-            Self::Time => units!(Time: "s" = 1.0, "ms" = 1e-3, "µs" = 1e-6, "min" = 60.0),
+            Self::Time => units!(Time: "s" = 1.0, "ms" = 1e-3, "µs" = 1e-6, "ns" = 1e-9,
+                "min" = 60.0),
             Self::Length => units!(Length: "m" = 1.0, "mm" = 1e-3, "cm" = 1e-2, "km" = 1e3,
                 "ft" = FOOT_M, "in" = INCH_M),
             Self::Speed => units!(Speed: "m/s" = 1.0, "mm/s" = 1e-3, "mm/ms" = 1.0,

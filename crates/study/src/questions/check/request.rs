@@ -200,15 +200,20 @@ impl CheckReport {
     }
 }
 
-/// A path that cannot be read; if its columns are the reason, with what they look like.
+/// A path that cannot be read; if its columns are the reason, with what they look like. An open question
+/// comes with its answer instead.
 fn problem(path: &Path, kind: InputKind, error: &DataError) -> PathProblem {
     let is_about_columns = error.needs_mapping() || matches!(error, DataError::NoSuchColumn { .. });
+    let is_about_columns = is_about_columns && error.answer().is_none();
     let columns = is_about_columns.then(|| propose_columns(path).ok()).flatten();
     PathProblem {
         path: path.to_owned(),
         kind,
         message: InputError::new(kind, error).to_string(),
-        map: columns.as_deref().and_then(ProposedColumn::map),
+        map: match error.answer() {
+            Some(answer) => Some(answer.to_string()),
+            None => columns.as_deref().and_then(ProposedColumn::map),
+        },
         columns: columns.map(|columns| columns.iter().map(ProposedColumn::from_proposal).collect()),
     }
 }

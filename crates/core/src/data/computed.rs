@@ -1,0 +1,83 @@
+//! Channels that are computed from several columns, found by the headers of these.
+
+use crate::data::columns::{ColumnUse, Term};
+use crate::data::spelling::letters_and_digits;
+use crate::data::{Channel, Formula, Table};
+
+/// Headers of latitude and longitude.
+const LATITUDE: [&str; 3] = ["latitude", "lat", "gpslat"];
+const LONGITUDE: [&str; 5] = ["longitude", "lon", "long", "lng", "gpslon"];
+
+/// Headers of the four numbers of a quaternion, w first.
+const QUATERNIONS: [[&str; 4]; 4] = [
+    ["qw", "qx", "qy", "qz"],
+    ["quatw", "quatx", "quaty", "quatz"],
+    ["quaternionw", "quaternionx", "quaterniony", "quaternionz"],
+    ["orientationw", "orientationx", "orientationy", "orientationz"],
+];
+
+/// The channels of a table that are computed from several of its columns.
+pub(super) fn columns(table: &Table) -> Vec<ColumnUse> {
+    let keys: Vec<String> = table.header().iter().map(|name| key(name)).collect();
+    let position = |names: &[&str]| {
+        let is = |key: &String| {
+            let has_end = |name: &&str| key == name || (name.len() > 4 && key.ends_with(name));
+            names.iter().any(has_end)
+        };
+        keys.iter().position(is).map(|idx| idx + 1)
+    };
+    let mut found = Vec::new();
+    if let Some(place) = position(&LATITUDE).zip(position(&LONGITUDE)) {
+        let numbers = [place.0, place.1];
+        for (channel, formula) in [(Channel::X, Formula::East), (Channel::Y, Formula::North)] {
+            found.push(column(table, channel, formula, &numbers));
+        }
+    }
+    let quaternion = |names: &[&str; 4]| {
+        let numbers = names.map(|name| position(&[name]));
+        numbers.into_iter().collect::<Option<Vec<usize>>>()
+    };
+    if let Some(numbers) = QUATERNIONS.iter().find_map(quaternion) {
+        found.push(column(table, Channel::Yaw, Formula::Quaternion, &numbers));
+    }
+    found
+}
+
+/// The letters of a header without its unit.
+fn key(name: &str) -> String {
+    let name = name.split(['[', '(']).next().unwrap_or(name).trim();
+    let lower = name.to_lowercase();
+    let name = lower.strip_suffix("_deg").or(lower.strip_suffix(" deg")).unwrap_or(&lower);
+    letters_and_digits(name)
+}
+
+/// A channel that a formula gives.
+///
+/// - `numbers`: the numbers of the columns, counted from 1, in the order of the formula.
+pub(super) fn column(
+    table: &Table,
+    channel: Channel,
+    formula: Formula,
+    numbers: &[usize],
+) -> ColumnUse {
+    let unit = channel.quantity().si_unit();
+    let names = numbers.iter().filter_map(|number| table.header().get(number.checked_sub(1)?));
+    let names: Vec<&str> = names.map(String::as_str).collect();
+    ColumnUse {
+        channel,
+        number: numbers.first().copied().unwrap_or_default(),
+        name: format!("{} of {}", formula.name(), names.join(", ")),
+        unit,
+        unit_is_stated: true,
+        terms: numbers.iter().map(|&number| Term { number, sign: 1.0, unit }).collect(),
+        formula: Some(formula),
+    }
+}
+
+/// Whether a formula gives this channel.
+pub(super) fn is_of(formula: Formula, channel: Channel) -> bool {
+    match formula {
+        Formula::Quaternion => channel == Channel::Yaw,
+        Formula::East | Formula::North => matches!(channel, Channel::X | Channel::Y),
+    }
+}

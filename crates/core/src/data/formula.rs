@@ -1,0 +1,159 @@
+//! Channels that follow from several columns: the yaw angle of a quaternion, and places in metres from
+//! latitude and longitude.
+
+/// What is computed from several columns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Formula {
+    /// The yaw angle of a unit quaternion, `quaternion(w x y z)`.
+    Quaternion,
+    /// The way to the east of the first row, m, from degrees: `east(latitude longitude)`.
+    East,
+    /// The way to the north of the first row, m, from degrees: `north(latitude longitude)`.
+    North,
+}
+
+/// Semi-major axis of the ellipsoid WGS 84, m.
+const EARTH_RADIUS_M: f64 = 6_378_137.0;
+/// Square of its first eccentricity.
+const ECCENTRICITY_2: f64 = 6.694_379_990_141e-3;
+/// Deviation of the length of a quaternion from 1 from which it is none.
+const UNIT_LENGTH: f64 = 0.05;
+
+impl Formula {
+    pub(super) const ALL: [Self; 3] = [Self::Quaternion, Self::East, Self::North];
+
+    /// Its name in the text of a map.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Quaternion => "quaternion",
+            Self::East => "east",
+            Self::North => "north",
+        }
+    }
+
+    /// Number of columns from which it is computed.
+    pub fn n_columns(self) -> usize {
+        match self {
+            Self::Quaternion => 4,
+            Self::East | Self::North => 2,
+        }
+    }
+
+    /// What the columns have to hold, for a message.
+    pub(super) fn expected(self) -> &'static str {
+        match self {
+            Self::Quaternion => "the columns w, x, y and z of a quaternion of length 1",
+            Self::East | Self::North => {
+                "a latitude from −90° to 90° and a longitude from −180° to 180°, in degrees"
+            }
+        }
+    }
+
+    /// The values in all rows; the error is the index of the row in which the columns hold something
+    /// else.
+    ///
+    /// - `columns`: the numbers of each of [`Formula::n_columns`] columns.
+    pub(super) fn values(self, columns: &[Vec<f64>]) -> Result<Vec<f64>, usize> {
+        match (self, columns) {
+            (Self::Quaternion, [w, x, y, z]) => {
+                let rows = w.iter().zip(x).zip(y).zip(z).enumerate();
+                rows.map(|(row, (((w, x), y), z))| yaw_rad([*w, *x, *y, *z]).ok_or(row)).collect()
+            }
+            (Self::East | Self::North, [latitude, longitude]) => {
+                let places =
+                    latitude.iter().zip(longitude).map(|(lat, lon)| Place::new(*lat, *lon));
+                let origin = latitude.first().zip(longitude.first());
+                let Some((lat, lon)) = origin else { return Ok(Vec::new()) };
+                let origin = Place::new(*lat, *lon).ok_or(0_usize)?;
+                let way = |place: Place| match self {
+                    Self::East => origin.to_east_m(place),
+                    _ => origin.to_north_m(place),
+                };
+                places.enumerate().map(|(row, place)| place.map(way).ok_or(row)).collect()
+            }
+            _ => Err(0),
+        }
+    }
+}
+
+/// ψ = atan2(2 (w z + x y), 1 − 2 (y² + z²)) of a rotation from body to world axes.
+fn yaw_rad([w, x, y, z]: [f64; 4]) -> Option<f64> {
+    let length = (w * w + x * x + y * y + z * z).sqrt();
+    let yaw_rad = (2.0 * (w * z + x * y)).atan2(w * w + x * x - y * y - z * z);
+    ((length - 1.0).abs() < UNIT_LENGTH).then_some(yaw_rad)
+}
+
+/// A place on the ellipsoid. The altitude is that of the ellipsoid.
+#[derive(Clone, Copy)]
+struct Place {
+    latitude_rad: f64,
+    longitude_rad: f64,
+}
+
+impl Place {
+    fn new(latitude_deg: f64, longitude_deg: f64) -> Option<Self> {
+        let is_place = latitude_deg.abs() <= 90.0 && longitude_deg.abs() <= 180.0;
+        let [latitude_rad, longitude_rad] = [latitude_deg, longitude_deg].map(f64::to_radians);
+        is_place.then_some(Self { latitude_rad, longitude_rad })
+    }
+
+    /// From the centre of the earth, m.
+    fn geocentric_m(self) -> [f64; 3] {
+        let (sin, cos) = self.latitude_rad.sin_cos();
+        let radius_m = EARTH_RADIUS_M / (1.0 - ECCENTRICITY_2 * sin * sin).sqrt();
+        let (sin_lon, cos_lon) = self.longitude_rad.sin_cos();
+        [
+            radius_m * cos * cos_lon,
+            radius_m * cos * sin_lon,
+            radius_m * (1.0 - ECCENTRICITY_2) * sin,
+        ]
+    }
+
+    fn difference_m(self, other: Self) -> [f64; 3] {
+        let ([x, y, z], [x0, y0, z0]) = (other.geocentric_m(), self.geocentric_m());
+        [x - x0, y - y0, z - z0]
+    }
+
+    /// To another place along the tangent plane, eastwards.
+    fn to_east_m(self, other: Self) -> f64 {
+        let [x, y, _] = self.difference_m(other);
+        let (sin, cos) = self.longitude_rad.sin_cos();
+        cos * y - sin * x
+    }
+
+    /// The same northwards.
+    fn to_north_m(self, other: Self) -> f64 {
+        let [x, y, z] = self.difference_m(other);
+        let (sin_lon, cos_lon) = self.longitude_rad.sin_cos();
+        let (sin, cos) = self.latitude_rad.sin_cos();
+        cos * z - sin * (cos_lon * x + sin_lon * y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A minute of arc at 52° is 1854.5 m to the north and 1144.0 m to the east (WGS 84).
+    #[test]
+    fn minutes_of_arc_have_their_lengths() {
+        let columns = [vec![52.0, 52.0 + 1.0 / 60.0, 52.0], vec![-1.0, -1.0, -1.0 + 1.0 / 60.0]];
+        let north = Formula::North.values(&columns).unwrap();
+        let east = Formula::East.values(&columns).unwrap();
+        assert!((north[1] - 1854.5).abs() < 0.5 && east[1].abs() < 1e-6, "{north:?} {east:?}");
+        assert!((east[2] - 1144.6).abs() < 1.0 && north[2].abs() < 0.2, "{north:?} {east:?}");
+        let in_minutes = [vec![3120.0], vec![-60.0]];
+        assert_eq!(Formula::North.values(&in_minutes), Err(0));
+    }
+
+    #[test]
+    fn a_quaternion_has_its_yaw() {
+        let half = 0.35_f64;
+        let columns =
+            [vec![half.cos(), 0.5], vec![0.0, 0.0], vec![0.0, 0.0], vec![half.sin(), 0.0]];
+        assert_eq!(Formula::Quaternion.values(&columns), Err(1));
+        let first: Vec<Vec<f64>> = columns.iter().map(|column| column[..1].to_vec()).collect();
+        let yaw = Formula::Quaternion.values(&first).unwrap();
+        assert!((yaw[0] - 0.7).abs() < 1e-12, "{yaw:?}");
+    }
+}

@@ -1,0 +1,126 @@
+//! Reads the files of Racelogic's data loggers (VBO) as tables.
+//!
+//! A VBO file has sections in brackets. Latitude and longitude are in minutes of arc, the latter positive
+//! to the west; the time is HHMMSS.ss, the heading a compass course and the velocity in km/h.
+
+use crate::data::Separator;
+use crate::data::dialect::Dialect;
+
+/// What a remark says of such a file.
+pub(super) const DESCRIPTION: &str = "a Racelogic VBO file: places from latitude and longitude, yaw from \
+     the course over ground, v_x from the velocity along it";
+
+const DAY_S: f64 = 86_400.0;
+
+/// A column of the file: its kind, and the name and unit that it gets.
+enum Column {
+    Time,
+    Latitude,
+    Longitude,
+    Heading,
+    Other,
+}
+
+/// The text as a table whose fields are separated by tabs, with every row in the line in which it stands;
+/// `None` if it is no VBO file.
+pub(super) fn as_table(text: &str) -> Option<String> {
+    let is_section = |line: &str, name: &'static str| line.trim().eq_ignore_ascii_case(name);
+    let start = text.lines().position(|line| is_section(line, "[data]"))?;
+    let section = |name: &'static str| {
+        let lines =
+            text.lines().take(start).skip_while(move |line| !is_section(line, name)).skip(1);
+        lines
+            .map(str::trim)
+            .take_while(|line| !line.starts_with('['))
+            .filter(|line| !line.is_empty())
+    };
+    let names: Vec<&str> = section("[column names]").flat_map(str::split_whitespace).collect();
+    if names.is_empty() {
+        return None;
+    }
+    let units: Vec<&str> = section("[channel units]").collect();
+    let n_plain = names.len().saturating_sub(units.len());
+    let columns: Vec<(Column, String)> = names
+        .iter()
+        .enumerate()
+        .map(|(idx, name)| {
+            column(name, idx.checked_sub(n_plain).and_then(|at| units.get(at).copied()))
+        })
+        .collect();
+    let header: Vec<&str> = columns.iter().map(|(_, name)| name.as_str()).collect();
+    let mut table = "\n".repeat(start);
+    table.push_str(&header.join("\t"));
+    let (mut last_s, mut days_s) = (0.0, 0.0);
+    for line in text.lines().skip(start + 1) {
+        table.push('\n');
+        let mut cells = Vec::new();
+        for (idx, cell) in line.split_whitespace().enumerate() {
+            let plain = Dialect { separator: Separator::Blanks, decimal_comma: false };
+            let number = plain.number(cell);
+            let converted = match (columns.get(idx).map(|(column, _)| column), number) {
+                (Some(Column::Time), Some(clock)) => seconds(clock).map(|time_s| {
+                    if time_s + days_s < last_s - DAY_S / 2.0 {
+                        days_s += DAY_S;
+                    }
+                    last_s = time_s + days_s;
+                    last_s
+                }),
+                (Some(Column::Latitude), Some(minutes)) => Some(minutes / 60.0),
+                (Some(Column::Longitude), Some(minutes)) => Some(0.0 - minutes / 60.0),
+                (Some(Column::Heading), Some(heading_deg)) => Some(90.0 - heading_deg),
+                _ => None,
+            };
+            cells.push(converted.map_or_else(|| cell.to_owned(), |number| number.to_string()));
+        }
+        table.push_str(&cells.join("\t"));
+    }
+    table.push('\n');
+    Some(table)
+}
+
+fn column(name: &str, unit: Option<&str>) -> (Column, String) {
+    let named = |name: &str| name.to_owned();
+    match name.to_lowercase().as_str() {
+        "time" => (Column::Time, named("time [s]")),
+        "lat" | "latitude" => (Column::Latitude, named("latitude [deg]")),
+        "long" | "longitude" => (Column::Longitude, named("longitude [deg]")),
+        "heading" => (Column::Heading, named("yaw [deg]")),
+        "velocity" => (Column::Other, named("vx [km/h]")),
+        _ => match unit {
+            Some(unit) => (Column::Other, format!("{name} [{unit}]")),
+            None => (Column::Other, named(name)),
+        },
+    }
+}
+
+/// Seconds since midnight of HHMMSS.ss; `None` for a number that is none.
+fn seconds(clock: f64) -> Option<f64> {
+    let (hours, minutes, seconds) =
+        ((clock / 1e4).floor(), (clock % 1e4 / 100.0).floor(), clock % 100.0);
+    let is_clock = (0.0..24.0).contains(&hours) && minutes < 60.0 && seconds < 61.0;
+    // The remainder of a binary number has digits that nobody wrote.
+    is_clock.then(|| ((hours * 3600.0 + minutes * 60.0 + seconds) * 1e6).round() / 1e6)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_keep_their_lines_and_get_their_units() {
+        let text = "File created\n\n[channel units]\ndeg/s\n[column names]\n\
+            sats time lat long velocity heading Yaw_Rate\n[data]\n\
+            011 235959.90 +03120.0 +00060.0 054.000 090.00 +17.2\n\
+            011 000000.00 +03120.6 -00060.0 054.000 000.00 +17.2\n";
+        let table = as_table(text).unwrap();
+        let lines: Vec<&str> = table.lines().collect();
+        assert_eq!(
+            lines[6],
+            "sats\ttime [s]\tlatitude [deg]\tlongitude [deg]\tvx [km/h]\tyaw [deg]\tYaw_Rate [deg/s]"
+        );
+        assert_eq!(lines[7], "011\t86399.9\t52\t-1\t054.000\t0\t+17.2");
+        assert_eq!(lines[8], "011\t86400\t52.01\t1\t054.000\t90\t+17.2");
+        assert_eq!(as_table("[data]\n1 2\n"), None);
+        assert_eq!(as_table("t,fx\n1,2\n"), None);
+    }
+}

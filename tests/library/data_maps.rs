@@ -1,0 +1,215 @@
+//! Columns of which the header does not say all: what is read of them, and what is asked with which answer.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::f64::consts::PI;
+use std::fs;
+
+use impactlab_core::data::{
+    Channel, ColumnMap, DataError, ForceHistory, Loaded, Note, read_any_series,
+};
+
+fn read(text: &str, map: &str) -> Result<Loaded, DataError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("f.csv");
+    fs::write(&path, text).unwrap();
+    let map: ColumnMap = map.parse().unwrap();
+    read_any_series(&path, (!map.to_string().is_empty()).then_some(&map))
+}
+
+/// The map that answers what is asked of a file.
+fn answer(text: &str, map: &str) -> String {
+    let error = read(text, map).unwrap_err();
+    error.answer().unwrap_or_else(|| panic!("{error}")).to_string()
+}
+
+fn impulse_n_s(text: &str, map: &str) -> f64 {
+    let loaded = read(text, map).unwrap();
+    let [x, y] =
+        ForceHistory::from_series(&loaded.series, loaded.force_sampling()).unwrap().impulse_n_s();
+    x.hypot(y)
+}
+
+/// Rows of a half sine of 40 kN over 0.1 s, with as many columns as `cells` gives.
+fn pulse(header: &str, cells: impl Fn(f64, f64) -> String) -> String {
+    let row = |i: i32| {
+        let time_s = f64::from(i) * 1e-3;
+        format!("{}\n", cells(time_s, 40e3 * (PI * (time_s / 0.1).min(1.0)).sin()))
+    };
+    std::iter::once(format!("{header}\n")).chain((0..=120).map(row)).collect()
+}
+
+/// 2/π · 40 kN · 0.1 s.
+const IMPULSE_N_S: f64 = 2546.5;
+
+fn values(loaded: &Loaded, channel: Channel) -> Vec<f64> {
+    loaded.series.get(channel).unwrap().to_vec()
+}
+
+#[test]
+fn forces_of_one_name_are_asked_for_and_added_up() {
+    for header in ["time,Fx,Fy,Fx,Fy", "time,Fx,Fy,Fx.1,Fy.1", "time,Fx1,Fy1,Fx2,Fy2"] {
+        let text = pulse(header, |t, f| format!("{t},0,{f},0,{f}"));
+        assert_eq!(answer(&text, ""), "fx=2+4,fy=3+5", "{header}");
+        let impulse = impulse_n_s(&text, &answer(&text, ""));
+        assert!((impulse - 2.0 * IMPULSE_N_S).abs() < 5.0, "{impulse}");
+    }
+    let text =
+        pulse("time,Fx [N],Fy [N],Fx [kN],Fy [kN]", |t, f| format!("{t},0,{f},0,{}", f / 1e3));
+    assert_eq!(answer(&text, ""), "fx=2:N+4:kN,fy=3:N+5:kN");
+    let impulse = impulse_n_s(&text, &answer(&text, ""));
+    assert!((impulse - 2.0 * IMPULSE_N_S).abs() < 5.0, "{impulse}");
+}
+
+#[test]
+fn a_time_beside_each_force_is_one_time_or_asked_for() {
+    let same = pulse("Time,Fx,Time,Fy", |t, f| format!("{t},0,{t},{f}"));
+    assert!((impulse_n_s(&same, "") - IMPULSE_N_S).abs() < 3.0);
+    let other = pulse("Time,Fx,Time,Fy", |t, f| format!("{t},0,{},{f}", t + 0.01));
+    assert_eq!(answer(&other, ""), "time=1");
+}
+
+#[test]
+fn a_unit_of_one_component_is_asked_for_the_other() {
+    let text = pulse("time,Fx,Fy,Mz\ns,kN,,", |t, f| format!("{t},0,{},0", f / 1e3));
+    assert_eq!(answer(&text, ""), "fy=3:kN");
+    assert!((impulse_n_s(&text, "fy=3:kN") - IMPULSE_N_S).abs() < 3.0);
+    // Newtons are what is assumed in any case.
+    let stated = pulse("time,Fx [N],Fy", |t, f| format!("{t},0,{f}"));
+    assert!((impulse_n_s(&stated, "") - IMPULSE_N_S).abs() < 3.0);
+}
+
+#[test]
+fn an_impulse_in_the_columns_of_a_force_is_recognised() {
+    let text = pulse("time,Fx,Fy", |t, _| {
+        let share = (1.0 - (PI * (t / 0.1).min(1.0)).cos()) / 2.0;
+        format!("{t},{},{}", 500.0 * share, 2000.0 * share)
+    });
+    assert_eq!(answer(&text, ""), "fx=2:N s,fy=3:N s");
+    let impulse = impulse_n_s(&text, &answer(&text, ""));
+    assert!((impulse - 2061.6).abs() < 2.0, "{impulse}");
+    // Who says that it is a force is believed.
+    assert!(read(&text, "fx=2:N,fy=3:N").is_ok());
+    let shifted = pulse("time,Fx,Fy,,", |t, f| format!("{t},0,0,0,{f}"));
+    assert!(read(&shifted, "").is_ok());
+    let shifted = pulse("time,Fx,Fy,,", |t, f| format!("{t},0,0,{},{f}", 0.5 * f));
+    assert_eq!(answer(&shifted, ""), "fx=4,fy=5");
+}
+
+/// Rows of a straight drive at 15 m/s every 0.02 s.
+fn drive(header: &str, cells: impl Fn(f64, f64) -> String) -> String {
+    let row = |i: i32| format!("{}\n", cells(f64::from(i) * 0.02, f64::from(i) * 0.3));
+    std::iter::once(format!("{header}\n")).chain((0..60).map(row)).collect()
+}
+
+#[test]
+fn roll_pitch_and_yaw_are_told_from_rates() {
+    let text = drive("time,x,y,z,r,p,y", |t, x| format!("{t},{x},0,0,0.1,0.4,0.02"));
+    let loaded = read(&text, "").unwrap();
+    assert_eq!(values(&loaded, Channel::Roll)[0], 0.1);
+    assert_eq!(values(&loaded, Channel::Yaw)[0], 0.02);
+    assert_eq!(loaded.series.get(Channel::YawRate), None);
+    let text = drive("time,x,y,u,v,r", |t, x| format!("{t},{x},0,15,0,0.02"));
+    let loaded = read(&text, "").unwrap();
+    assert_eq!(values(&loaded, Channel::YawRate)[0], 0.02);
+    assert_eq!(values(&loaded, Channel::Vx)[0], 15.0);
+}
+
+#[test]
+fn seconds_and_their_fraction_are_one_time() {
+    for (header, per_s) in [
+        ("secs,nsecs,x,y", 1_000_000_000),
+        ("time_s,time_us,x,y", 1_000_000),
+        ("stamp_sec,stamp_nanosec,x,y", 1_000_000_000),
+    ] {
+        let text = drive(header, |t, x| {
+            let after_ms = 860 + (t * 1e3).round() as u64;
+            let (whole, part_ms) = (1_332_019_828 + after_ms / 1000, after_ms % 1000);
+            format!("{whole},{},{x},0", part_ms * (per_s / 1000))
+        });
+        let loaded = read(&text, "").unwrap();
+        let time_s = loaded.series.time_s();
+        assert!((time_s[59] - time_s[0] - 1.18).abs() < 1e-6, "{header}: {time_s:?}");
+        let begins = |note: &Note| note.to_string().contains("shift=-1332019828.86:s");
+        assert!(loaded.notes.iter().any(begins), "{:?}", loaded.notes);
+    }
+    let text = drive("time,x,y", |t, x| format!("{:.0},{x},0", (1_332_019_828.0 + t) * 1e9));
+    let map = answer(&text, "");
+    assert!(map.ends_with("time=1:ns") && map.starts_with("shift=-1332019828"), "{map}");
+    let loaded = read(&text, &map).unwrap();
+    assert!((loaded.series.time_s()[59] - 1.18).abs() < 1e-6);
+}
+
+#[test]
+fn times_of_day_go_on_over_midnight() {
+    let text = drive("time,x,y", |t, x| {
+        let time_s = (86_399.5 + t) % 86_400.0;
+        let (hours, minutes) = ((time_s / 3600.0).floor(), (time_s / 60.0).floor() % 60.0);
+        format!("{hours:02}:{minutes:02}:{:05.2},{x},0", time_s % 60.0)
+    });
+    let time_s = read(&text, "").unwrap().series.time_s().to_vec();
+    assert!((time_s[59] - time_s[0] - 1.18).abs() < 1e-6, "{time_s:?}");
+}
+
+#[test]
+fn controls_that_do_not_begin_at_zero_are_asked_for() {
+    let edr = "Time [s],Steering Wheel Angle [deg]\n-5,0\n-4,-12\n-3,-75\n0,-100\n";
+    assert_eq!(answer(edr, ""), "shift=5:s");
+    assert_eq!(read(edr, "shift=5:s").unwrap().series.time_s()[0], 0.0);
+    assert_eq!(read(edr, "shift=0:s").unwrap().series.time_s()[0], -5.0);
+    let late = "time_s,brake_fl [N m]\n100,0\n101,800\n103,800\n";
+    assert_eq!(answer(late, ""), "shift=-100:s");
+    let held = "time_s,brake_fl [N m]\n0.5,800\n1,800\n";
+    assert_eq!(answer(held, ""), "shift=-0.5:s");
+    assert!(read("time_s,brake_fl [N m]\n0.5,0\n1,800\n", "").is_ok());
+}
+
+#[test]
+fn spellings_of_numbers_and_headers_are_read() {
+    let comma = |number: f64| format!("\"{number:.3}\"").replace('.', ",");
+    let quoted =
+        pulse("\"t\",\"fx\",\"fy\"", |t, f| format!("{},{},{}", comma(t), comma(0.0), comma(f)));
+    assert!((impulse_n_s(&quoted, "") - IMPULSE_N_S).abs() < 3.0);
+    let in_comments = pulse(
+        "# group: 1\n# id: c1 id: c2 id: c3\n# name: Time  name: Fx  name: Fy\n# unit: s unit: kN unit: kN",
+        |t, f| format!(" {t:.3} 0.0 {:.4}", f / 1e3),
+    );
+    assert!((impulse_n_s(&in_comments, "") - IMPULSE_N_S).abs() < 3.0);
+    let trailing = pulse("time,Fx,Fy,,,", |t, f| format!("{t},0,{f}"));
+    assert!((impulse_n_s(&trailing, "") - IMPULSE_N_S).abs() < 3.0);
+    let fortran = "t fx fy\n0.0D+00 0.0 1.0-103\n1.0D-01 0.0 1.0D+03\n2.0D-01 0.0 0.0\n";
+    assert_eq!(values(&read(fortran, "").unwrap(), Channel::Fy), [1e-103, 1000.0, 0.0]);
+}
+
+#[test]
+fn places_and_headings_follow_from_several_columns() {
+    let text = drive("time,latitude,longitude,qw,qx,qy,qz", |t, x| {
+        format!("{t},{},-1.0,{},0,0,{}", 52.0 + x / 111_267.0, 0.35_f64.cos(), 0.35_f64.sin())
+    });
+    let loaded = read(&text, "").unwrap();
+    let y = values(&loaded, Channel::Y);
+    assert!((y[59] - 17.7).abs() < 0.02 && values(&loaded, Channel::X)[59].abs() < 1e-6, "{y:?}");
+    assert!((values(&loaded, Channel::Yaw)[0] - 0.7).abs() < 1e-9);
+    let map = "time=1,x=east(2 3),y=north(2 3),yaw=quaternion(4 5 6 7)";
+    assert_eq!(read(&text, map).unwrap().series, loaded.series);
+    let minutes = text.replace(",52.", ",3120.");
+    let error = read(&minutes, "").unwrap_err().to_string();
+    assert!(error.contains("expected a latitude from −90° to 90°"), "{error}");
+}
+
+#[test]
+fn a_racelogic_file_is_read_and_a_crash_report_is_named() {
+    let header = "File created on 25/11/2026\n\n[header]\ntime\n\n[column names]\n\
+        sats time lat long velocity heading\n\n[data]";
+    let text = drive(header, |t, x| {
+        format!("011 {:.2} +03120.0 {:.7} 054.0 090.0", 95_956.0 + t, 60.0 - x / 1145.2)
+    });
+    let loaded = read(&text, "").unwrap();
+    let x = values(&loaded, Channel::X);
+    assert!((x[59] - 17.7).abs() < 0.02, "{x:?}");
+    assert!((values(&loaded, Channel::Vx)[0] - 15.0).abs() < 1e-9);
+    assert!(values(&loaded, Channel::Yaw)[0].abs() < 1e-9);
+    assert!(loaded.notes.iter().any(|note| note.to_string().contains("Racelogic VBO")));
+    let error = read("CDR File Information\nUser Entered VIN,1G1\n", "").unwrap_err().to_string();
+    assert!(error.contains("is the report of a Bosch CDR tool; copy its table"), "{error}");
+}
