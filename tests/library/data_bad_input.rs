@@ -123,7 +123,7 @@ fn bad_force_files_are_refused_with_their_place() {
         ),
         (
             b"time [fortnight],fx_n,fy_n\n0,1,1\n0.1,1,1\n",
-            r#"f.csv:1:1: "time [fortnight]" is in "fortnight", expected a unit of time (s, ms, \u{b5}s, min); correct the header or map the column with its unit, e.g. --map time=1:s"#,
+            r#"f.csv:1:1: "time [fortnight]" is in "fortnight", expected a unit of time (s, ms, \u{b5}s, ns, min); correct the header or map the column with its unit, e.g. --map time=1:s"#,
         ),
         (
             b"t;fx;fy\ns;kN;kg\n0;1;1\n1;1;1\n",

@@ -132,16 +132,16 @@ fn the_kind_of_a_file_is_seen_from_its_columns() {
 fn a_dialog_is_shown_the_columns_and_can_take_the_guesses() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("f.csv");
-    fs::write(&path, "Zeit [ms];Kraft 1;Fy [kN]\n0;0,5;7\n1;1,5;8\n").unwrap();
+    fs::write(&path, "Zeit [ms];Kraft 1;Fy [N]\n0;0,5;7\n1;1,5;8\n").unwrap();
     let mut proposals = propose_columns(&path).unwrap();
     let names: Vec<&str> = proposals.iter().map(|column| column.name.as_str()).collect();
-    assert_eq!(names, ["Zeit [ms]", "Kraft 1", "Fy [kN]"]);
+    assert_eq!(names, ["Zeit [ms]", "Kraft 1", "Fy [N]"]);
     assert_eq!(proposals[1].samples, ["0,5", "1,5"]);
     let channels = proposals.iter().map(|column| column.guess.map(|(channel, _)| channel));
     assert!(channels.eq([Some(Channel::Time), None, Some(Channel::Fy)]));
     proposals[1].guess = Some((Channel::Fx, None));
     let map = map_from_proposals(&proposals);
-    assert_eq!(map.to_string(), "time=1:ms,fx=2,fy=3:kN");
+    assert_eq!(map.to_string(), "time=1:ms,fx=2,fy=3:N");
     let loaded = read_force_file(&path, Some(&map)).unwrap();
     assert_eq!(loaded.series.require(Channel::Fx).unwrap(), [0.5, 1.5]);
 }
