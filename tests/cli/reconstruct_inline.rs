@@ -19,7 +19,7 @@ fn reconstructed(evidence: &str) -> Value {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("inline.toml");
     fs::write(&path, evidence).unwrap();
-    let args = ["reconstruct", text(&path), "--particles", "150", "--json"];
+    let args = ["reconstruct", text(&path), "--particles", "300", "--json"];
     json(&ok(program().args(args).output().unwrap()))
 }
 
