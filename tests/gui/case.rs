@@ -143,7 +143,7 @@ fn questions_that_were_edited_in_the_file_are_those_of_the_window() {
     for (from, to) in [
         ("\"restitution\": 0.15", "\"restitution\": 0.35"),
         ("\"duration_s\": 4.0", "\"duration_s\": 3.0"),
-        ("\"draws\": 30", "\"draws\": 20"),
+        ("\"draws\": 100", "\"draws\": 20"),
     ] {
         assert_eq!(text.matches(from).count(), 1, "{from} stands once in {text}");
         text = text.replace(from, to);

@@ -219,8 +219,8 @@ fn from_content(path: &Path) -> Option<InputKind> {
     if head.get(8) == Some(&b'{') && head.first() != Some(&b'{') && head.get(7) == Some(&0) {
         return Some(InputKind::Network);
     }
-    // A CBOR map whose first entry says what it is.
-    let is_map = head.first().is_some_and(|byte| (0xa0..=0xbf).contains(byte));
+    // A CBOR map whose first entry says what it is, after a checksum of 64 characters.
+    let is_map = head.get(64).is_some_and(|byte| (0xa0..=0xbf).contains(byte));
     if is_map && head.windows(CHECKPOINT.len()).any(|bytes| bytes == CHECKPOINT) {
         return Some(InputKind::Checkpoint);
     }
@@ -319,8 +319,9 @@ mod tests {
         assert_eq!(kind_of_text("photo.dat", b"\x89PNG\r\n\x1a\n"), InputKind::Orthophoto);
         let question = b"{\"question\": \"check\", \"paths\": []}";
         assert_eq!(kind_of_text("q.json", question), InputKind::Request);
-        let state = b"\xa5\x64kind\x78\x1aimpactlab reconstruction 2\x67version";
-        assert_eq!(kind_of_text("run", state), InputKind::Checkpoint);
+        let run = b"\xa5\x64kind\x78\x1aimpactlab reconstruction 3\x67version";
+        let state = [&[b'0'; 64][..], run].concat();
+        assert_eq!(kind_of_text("run", &state), InputKind::Checkpoint);
         let force = b"time_s,fx_n,fy_n\n0,0,0\n0.1,1,2\n";
         assert_eq!(kind_of_text("force.toml.csv", force), InputKind::Series);
         // The preamble of a data logger.
