@@ -191,6 +191,48 @@ fn outside_of_the_training_the_stated_restitution_decides() {
     assert!(impulses[0] * 1.08 < impulses[1] && impulses[1] * 1.3 < impulses[2], "{impulses:?}");
 }
 
+/// A body of 1 kg against one of 458 t, where the friction of the paper shows most.
+const GAINING: &str = "\
+name = 'n'
+[target]
+mass_kg = 1
+yaw_inertia_kg_m2 = 0.72
+length_m = 1.2
+width_m = 2.19
+cg_from_front_m = 0.6
+heading_rad = 0
+speed_m_s = 150
+[bullet]
+mass_kg = 458391
+yaw_inertia_kg_m2 = 8590007
+length_m = 16.64
+width_m = 3.86
+cg_from_front_m = 5.0
+heading_rad = 6.373
+vx_m_s = 150
+vy_m_s = 150
+[contact]
+from = 'side'
+side = 'right'
+offset_m = -0.567
+restitution = 0.4655
+restitution_form = 'common_velocity'
+friction_limit = 1.247
+";
+
+/// With the friction as the paper prints it such a collision gained 510 kJ without a word.
+#[test]
+fn an_impact_that_gains_energy_has_a_badge() {
+    let folder = TempDir::new().unwrap();
+    let scenario = write(&folder, "gaining.toml", GAINING);
+    let limit = answer(&["impact", text(&scenario)]);
+    let paper = answer(&["impact", "--paper", text(&scenario)]);
+    let has_badge = |report: &Value| report["badges"].to_string().contains("energy_gain");
+    let lost_j = |report: &Value| report["dissipated_energy_j"].as_f64().unwrap();
+    assert!(lost_j(&limit) >= 0.0 && !has_badge(&limit), "{limit}");
+    assert!(lost_j(&paper) < -1.0 && has_badge(&paper), "{paper}");
+}
+
 /// In staged small-overlap crashes at 64 km/h the restitution is 0 to 0.28 with a mean of 0.09; it was that of a
 /// slow push, whose normal closing speed they have.
 #[test]

@@ -33,6 +33,19 @@ pub(crate) fn overlap_caveat(geometry: &ScenarioGeometry) -> Option<Caveat> {
     Some(caveat)
 }
 
+/// An impact that gives energy to the vehicles, as sliding friction as the paper prints it can.
+pub(crate) fn energy_gain_caveat(dissipated_j: f64) -> Option<Caveat> {
+    // Rounding is far below.
+    let is_gain = dissipated_j < -1.0;
+    is_gain.then(|| {
+        let text = "the contact gives kinetic energy to the vehicles, which no contact does: the friction \
+                    of this model pushes them instead of holding them back; do not rely on it";
+        Caveat::new(CaveatKind::EnergyGain, text)
+            .with_value("energy lost in the contact [J]", dissipated_j)
+            .with_range([0.0, f64::INFINITY])
+    })
+}
+
 /// A record of a force that ends during the contact.
 pub(crate) fn cut_record_caveat(force: &ForceHistory) -> Option<Caveat> {
     let at_s = cut_at_s(force)?;

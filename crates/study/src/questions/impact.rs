@@ -136,6 +136,7 @@ impl Question for ImpactRequest {
             .into_iter()
             .chain(assumed::contact_default(&scenario, &impact))
             .chain(restrictions::overlap_caveat(&geometry))
+            .chain(restrictions::energy_gain_caveat(solution.dissipated_energy_j))
             .collect();
         let report = ImpactReport {
             name: scenario.name.clone(),
