@@ -71,7 +71,8 @@ impl SpeedHinge {
 
     /// Whether a speed moves by more than chance.
     fn is_clear(&self) -> bool {
-        let is_clear = |of: SpeedChange| of.change_m_s.abs() > CLEAR * of.standard_error_m_s;
+        let is_clear =
+            |change: SpeedChange| change.change_m_s.abs() > CLEAR * change.standard_error_m_s;
         is_clear(self.struck_speed) || is_clear(self.striking_speed)
     }
 
@@ -100,7 +101,7 @@ impl Posterior {
             Some(SpeedHinge { input, step, struck_speed, striking_speed })
         };
         let all: Vec<SpeedHinge> = STEPS.iter().filter_map(hinge).collect();
-        let is_friction = |of: &SpeedHinge| of.input == Latent::RoadFriction;
+        let is_friction = |hinge: &SpeedHinge| hinge.input == Latent::RoadFriction;
         let (mut hinges, others): (Vec<SpeedHinge>, Vec<SpeedHinge>) =
             all.into_iter().partition(is_friction);
         let mut others: Vec<SpeedHinge> = others.into_iter().filter(SpeedHinge::is_clear).collect();
@@ -115,7 +116,7 @@ impl Posterior {
 /// not vary.
 fn slope(x: &[f64], y: &[f64], ess: f64) -> Option<[f64; 2]> {
     let n = x.len().min(y.len()) as f64;
-    let mean = |of: &[f64]| of.iter().sum::<f64>() / n;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / n;
     let (x_mean, y_mean) = (mean(x), mean(y));
     let product = |a: &[f64], a_mean: f64, b: &[f64], b_mean: f64| {
         a.iter().zip(b).map(|(a, b)| (a - a_mean) * (b - b_mean)).sum::<f64>() / n

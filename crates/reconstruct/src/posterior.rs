@@ -46,19 +46,19 @@ macro_rules! quantities {
 
 quantities! {
     /// Speed of the struck car before the impact, m/s.
-    StruckSpeed: "target_speed_m_s", "m/s", |of| of.impact.struck_speed_m_s;
+    StruckSpeed: "target_speed_m_s", "m/s", |point| point.impact.struck_speed_m_s;
     /// Speed of the striking car before the impact, m/s.
-    StrikingSpeed: "bullet_speed_m_s", "m/s", |of| of.impact.striking_speed_m_s;
+    StrikingSpeed: "bullet_speed_m_s", "m/s", |point| point.impact.striking_speed_m_s;
     /// Size of the difference of both velocities, m/s.
-    ClosingSpeed: "closing_speed_m_s", "m/s", |of| of.impact.closing_speed_m_s;
+    ClosingSpeed: "closing_speed_m_s", "m/s", |point| point.impact.closing_speed_m_s;
     /// Heading of the striking car against that of the struck car at first contact, rad.
-    HeadingDifference: "heading_difference_rad", "rad", |of| of.impact.heading_difference_rad;
+    HeadingDifference: "heading_difference_rad", "rad", |point| point.impact.heading_difference_rad;
     /// Peak friction of the road.
-    RoadFriction: "road_friction", "", |of| of.values.get(Latent::RoadFriction);
+    RoadFriction: "road_friction", "", |point| point.values.get(Latent::RoadFriction);
     /// Change of velocity of the struck car by the contact, m/s.
-    DeltaVStruck: "delta_v_target_m_s", "m/s", |of| of.impact.delta_v_struck_m_s();
+    DeltaVStruck: "delta_v_target_m_s", "m/s", |point| point.impact.delta_v_struck_m_s();
     /// Yaw rate of the struck car at the end of the contact, over which the tires act as well, rad/s.
-    StruckYawRate: "target_yaw_rate_after_rad_s", "rad/s", |of| of.yaw_rate_after_rad_s;
+    StruckYawRate: "target_yaw_rate_after_rad_s", "rad/s", |point| point.yaw_rate_after_rad_s;
 }
 
 impl ReconstructedQuantity {

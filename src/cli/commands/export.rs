@@ -159,8 +159,9 @@ fn export_reconstruction(
         FormatArg::Glb => glb(&scene, &mut bytes)?,
         _ => {
             let header = PATH_COLUMNS.map(str::to_owned);
-            let rows =
-                paths.iter().flat_map(|of| of.path.points.iter().map(|at| path_row(&of.name, at)));
+            let rows = paths
+                .iter()
+                .flat_map(|path| path.path.points.iter().map(|at| path_row(&path.name, at)));
             let restrictions = scene.caveats.text();
             write_restricted_table(&args.out, existing, &header, rows, restrictions.as_deref())?;
             return written(args, (format, &scene), notes, console);

@@ -336,8 +336,10 @@ impl Columns {
                 continue;
             }
             let open: Vec<&ColumnUse> = columns().filter(is_open).collect();
-            let names: Vec<String> =
-                open.iter().map(|of| format!("column {} {:?}", of.number, of.name)).collect();
+            let names: Vec<String> = open
+                .iter()
+                .map(|column| format!("column {} {:?}", column.number, column.name))
+                .collect();
             let [symbol, si] = [stated.unit.symbol, open[0].unit.symbol];
             let what = format!(
                 "column {} {:?} is in {symbol} and {} names no unit; say in which it is, {symbol} or {si}",
@@ -443,7 +445,7 @@ impl Columns {
             }
         }
         let Some((_, columns)) = repeated().next() else { return Ok(()) };
-        let numbers: Vec<String> = columns.iter().map(|of| of.number.to_string()).collect();
+        let numbers: Vec<String> = columns.iter().map(|column| column.number.to_string()).collect();
         let what = format!(
             "columns {} are all called {:?}; if they are the forces of several contacts, they are added \
              up, otherwise choose one",
@@ -452,7 +454,8 @@ impl Columns {
         );
         let answers = repeated().map(|(channel, columns)| {
             let stated = |column: &ColumnUse| column.unit_is_stated.then_some(column.unit);
-            let terms: Vec<_> = columns.iter().map(|of| (of.number, stated(of))).collect();
+            let terms: Vec<_> =
+                columns.iter().map(|column| (column.number, stated(column))).collect();
             (*channel, sum(&terms))
         });
         Err(open_question(table, map, what, answers))

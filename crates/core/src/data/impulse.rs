@@ -43,8 +43,10 @@ pub(super) fn check_force(
     map: Option<&ColumnMap>,
 ) -> Result<(), DataError> {
     for [x, y] in COMPONENTS {
-        let used: Vec<&&ColumnUse> =
-            columns.iter().filter(|of| [x, y].contains(&of.channel) && of.number > 0).collect();
+        let used: Vec<&&ColumnUse> = columns
+            .iter()
+            .filter(|column| [x, y].contains(&column.channel) && column.number > 0)
+            .collect();
         let (Some(fx), Some(fy)) = (series.get(x), series.get(y)) else { continue };
         if used.iter().any(|column| column.unit_is_stated) || !is_impulse(fx, fy) {
             continue;
@@ -94,7 +96,8 @@ pub(super) fn check_zero(
         series.get(channel).is_some_and(|values: &[f64]| values.iter().all(|value| *value == 0.0))
     };
     for components in COMPONENTS {
-        let is_read = |of: &&&ColumnUse| components.contains(&of.channel) && of.terms.len() == 1;
+        let is_read =
+            |column: &&&ColumnUse| components.contains(&column.channel) && column.terms.len() == 1;
         let used: Vec<&&ColumnUse> = columns.iter().filter(is_read).collect();
         let is_chosen = |channel| map.is_some_and(|map| map.get(channel).is_some());
         if !components.into_iter().all(is_zero) || components.into_iter().any(is_chosen) {
@@ -119,8 +122,10 @@ pub(super) fn check_zero(
             numbers.join(", ")
         );
         let answers = components.iter().zip(&unnamed).map(|(channel, idx)| {
-            let unit =
-                used.iter().find(|of| of.channel == *channel).and_then(|of| of.source().unit);
+            let unit = used
+                .iter()
+                .find(|column| column.channel == *channel)
+                .and_then(|column| column.source().unit);
             let column = crate::data::ColumnRef::Number(idx + 1);
             (*channel, ColumnSource { column, unit })
         });

@@ -78,8 +78,10 @@ mod tests {
                 .collect::<Vec<_>>()
         };
         let expect = |header: &str, channels: &[(&str, Channel)]| {
-            let expected: Vec<String> =
-                channels.iter().map(|(name, of)| format!("{name}={}", of.short_name())).collect();
+            let expected: Vec<String> = channels
+                .iter()
+                .map(|(name, channel)| format!("{name}={}", channel.short_name()))
+                .collect();
             assert_eq!(meant(header), expected, "{header}");
         };
         expect("time,x,y,z,r,p,y", &[("r", Roll), ("y", Yaw)]);

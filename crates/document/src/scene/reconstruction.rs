@@ -53,7 +53,7 @@ impl<'a> ReconstructionParts<'a> {
             evidence: answer.target.evidence(),
             cars: answer.target.model().cars(),
             drawn: &paths.drawn,
-            followed: paths.median.as_ref().map(|of| (of.name.as_str(), &of.path)),
+            followed: paths.median.as_ref().map(|path| (path.name.as_str(), &path.path)),
             others: &paths.others,
             marks: &paths.marks,
             units,

@@ -147,9 +147,9 @@ impl VehicleUncertainty {
         }
         let is_known =
             !self.second_contact_probability.is_some_and(|p| is_no_rare_contact(Some(p)));
-        let position = |term, quantity, of: &Estimate| match is_known {
-            true => estimate(term, quantity, of),
-            false => estimate(term, quantity, &of.without_intervals()),
+        let position = |term, quantity, found: &Estimate| match is_known {
+            true => estimate(term, quantity, found),
+            false => estimate(term, quantity, &found.without_intervals()),
         };
         facts.extend([
             position(Term::EndX, Quantity::Length, &self.x_m),

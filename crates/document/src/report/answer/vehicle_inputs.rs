@@ -44,7 +44,7 @@ pub(super) fn vehicle_rows(
     let estimates = sheet.map_or_else(Vec::new, |sheet| sheet.estimates());
     if !estimates.is_empty() {
         let is_stated = |row: &&mut InputRow| {
-            !vehicle.stated.values().any(|of| row.source == wording.quoted(of))
+            !vehicle.stated.values().any(|source| row.source == wording.quoted(source))
         };
         for row in inputs.iter_mut().filter(is_stated) {
             // Which of the parameters a rule gave is told by the rows of the estimates below.

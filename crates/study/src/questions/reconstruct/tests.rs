@@ -63,7 +63,8 @@ fn several_courses_of_events_come_before_any_median_with_a_badge_and_a_path_each
         answer(&ReconstructRequest { particles: 150, ..ReconstructRequest::new(evidence) });
     let report = &answer.report;
     assert!(report.modes.len() > 1, "{:?}", report.modes);
-    let badge = report.caveats.iter().find(|of| of.kind == CaveatKind::SeveralCourses).unwrap();
+    let badge =
+        report.caveats.iter().find(|caveat| caveat.kind == CaveatKind::SeveralCourses).unwrap();
     assert!(badge.is_warning() && badge.text.contains(&report.modes[1].name), "{badge}");
     assert_eq!(report.facts()[0].title, Value::Term(Term::Courses));
     assert!(report.modes.iter().all(|mode| mode.standard_error > 0.005), "{:?}", report.modes);
