@@ -2,21 +2,14 @@
 //! user, the headers and a row of units.
 
 use std::collections::BTreeMap;
-use std::fmt;
-use std::path::Path;
 
+use crate::data::mapped_column::mapped_column;
 use crate::data::spelling::{self, Meaning};
 use crate::data::{
-    Channel, ColumnMap, ColumnRef, ColumnSource, Contradiction, DataError, Formula,
-    RESTRICTIONS_COLUMN, SignedColumn, Table, VelocityAxes, VelocityFit, clock, computed, letters,
+    Channel, ColumnMap, ColumnRef, ColumnSource, DataError, Formula, Note, RESTRICTIONS_COLUMN,
+    SignedColumn, Table, clock, computed, letters,
 };
 use crate::units::{Quantity, Unit};
-
-/// Number of sample values of a column that a mapping dialog shows.
-const SHOWN_SAMPLES: usize = 5;
-
-/// Number of columns without a channel that a remark names.
-const SHOWN_IGNORED: usize = 100;
 
 /// Components of one vector, or of one kind at all wheels, which have one unit.
 const SIBLINGS: [&[Channel]; 8] = [
@@ -29,9 +22,6 @@ const SIBLINGS: [&[Channel]; 8] = [
     &[Channel::BrakeFl, Channel::BrakeFr, Channel::BrakeRl, Channel::BrakeRr],
     &[Channel::DriveFl, Channel::DriveFr, Channel::DriveRl, Channel::DriveRr],
 ];
-
-/// Number of characters of a header that a remark shows.
-const SHOWN_CHARS: usize = 60;
 
 /// A column that was read, with the channel and the unit that it was read as.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,208 +54,13 @@ pub struct Term {
     pub unit: Unit,
 }
 
-/// A remark on a file that was read, shown to the user.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Note {
-    /// The unit of a column is not stated, so that the SI unit was assumed.
-    UnitAssumed(ColumnUse),
-    /// A column was left out because its unit does not measure the channel. The channel is not
-    /// needed; otherwise the file is refused.
-    WrongUnit {
-        /// The channel that the header names.
-        channel: Channel,
-        /// The number of the column, counted from 1.
-        number: usize,
-        /// The header of the column.
-        name: String,
-        /// The unit as written in the file.
-        unit: String,
-    },
-    /// Columns whose headers name no channel were left out.
-    Ignored {
-        /// The headers of these columns.
-        names: Vec<String>,
-    },
-    /// What the file says restricts its numbers: it was written by this program.
-    Restrictions {
-        /// The text of the column [`RESTRICTIONS_COLUMN`].
-        text: String,
-    },
-    /// Text to the right of the last column was left out.
-    TextBeyond {
-        /// The number of rows with such text.
-        n_rows: usize,
-    },
-    /// The two components of a vector are stated in different units.
-    MixedUnits {
-        /// The component along x.
-        x: ColumnUse,
-        /// The component along y.
-        y: ColumnUse,
-    },
-    /// The velocities do not fit the path in the axes in which they were read.
-    Velocities {
-        /// How they fit.
-        fit: VelocityFit,
-        /// The axes in which they were read.
-        read_as: VelocityAxes,
-    },
-    /// Columns of a motion contradict each other.
-    Contradiction(Contradiction),
-    /// The file is of a format of its own.
-    Format {
-        /// What it is and how it is read, in words.
-        text: &'static str,
-    },
-    /// The record begins at another instant than zero.
-    Begins {
-        /// Its first instant, s.
-        first_s: f64,
-    },
-}
-
-impl Note {
-    /// Whether numbers that were read may be wrong, so that the user should be asked.
-    pub fn is_doubt(&self) -> bool {
-        matches!(self, Self::UnitAssumed(_) | Self::MixedUnits { .. }) || self.is_contradiction()
-    }
-
-    /// Whether numbers that were read contradict each other, so that nothing can be made of them.
-    pub fn is_contradiction(&self) -> bool {
-        matches!(self, Self::Velocities { .. } | Self::Contradiction(_))
-    }
-}
-
-impl fmt::Display for Note {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::UnitAssumed(column) => write!(
-                f,
-                "column {} {:?} names no unit; taken as {}",
-                column.number, column.name, column.unit.symbol
-            ),
-            Self::WrongUnit { channel, number, name, unit } => write!(
-                f,
-                "column {number} {name:?} is left out: {unit:?} is no unit of {}",
-                spelling::quantity_name(channel.quantity())
-            ),
-            Self::Ignored { names } => {
-                let shown: Vec<&str> =
-                    names.iter().take(SHOWN_IGNORED).map(|name| beginning(name)).collect();
-                write!(f, "not recognised: {}", shown.join(", "))?;
-                match names.len().saturating_sub(SHOWN_IGNORED) {
-                    0 => Ok(()),
-                    more => write!(f, " and {more} more"),
-                }
-            }
-            Self::MixedUnits { x, y } => write!(
-                f,
-                "column {} {:?} is read in {} and column {} {:?} in {}: two components of one \
-                 vector are rarely recorded in different units; check the header",
-                x.number, x.name, x.unit.symbol, y.number, y.name, y.unit.symbol
-            ),
-            Self::Restrictions { text } => write!(f, "the file says of itself: {text}"),
-            Self::TextBeyond { n_rows } => {
-                write!(f, "{n_rows} rows have text to the right of the last column; it is not read")
-            }
-            Self::Velocities { fit, read_as } => fit.explain(*read_as, f),
-            Self::Contradiction(contradiction) => contradiction.fmt(f),
-            Self::Format { text } => f.write_str(text),
-            Self::Begins { first_s } => f.write_str(&clock::shift_text(*first_s)),
-        }
-    }
-}
-
-/// The beginning of a header, as long as a remark shows it.
-fn beginning(name: &str) -> &str {
-    let end = name.char_indices().nth(SHOWN_CHARS).map(|(at, _)| at);
-    end.and_then(|end| name.get(..end)).unwrap_or(name)
-}
-
-/// A column of a file as a mapping dialog shows it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ColumnProposal {
-    /// The number of the column, counted from 1.
-    pub number: usize,
-    /// The header of the column; `column 1` and so on if the file has no header.
-    pub name: String,
-    /// The first values of the column, as written in the file.
-    pub samples: Vec<String>,
-    /// The channel and unit that the header suggests; the unit is `None` if the file states none.
-    pub guess: Option<(Channel, Option<Unit>)>,
-    /// The cell of the column in the row of units.
-    units_cell: Option<String>,
-}
-
-impl ColumnProposal {
-    /// The unit that header or row of units state for a channel of `quantity`; `None` if they state
-    /// none.
-    ///
-    /// # Errors
-    /// The text of a unit that does not measure `quantity`.
-    pub fn stated_unit(&self, quantity: Quantity) -> Result<Option<Unit>, String> {
-        stated_unit(&self.name, self.units_cell.as_deref(), quantity)
-    }
-
-    /// The channel that is worth a proposal in a dialog: the guess, or what words in the header
-    /// suggest, such as a force without a direction. The user has to look at it.
-    pub fn suggestion(&self) -> Option<Channel> {
-        let guessed = self.guess.map(|(channel, _)| channel);
-        guessed.or_else(|| spelling::suggestion(&self.name))
-    }
-}
-
-/// Reads a file and returns its columns, with the channel that each header suggests.
-///
-/// # Errors
-/// [`DataError`] if the file cannot be read as a table.
-pub fn propose_columns(path: &Path) -> Result<Vec<ColumnProposal>, DataError> {
-    Ok(proposals(&Table::read(path)?))
-}
-
-/// The columns of a table, with the channel that each header suggests.
-pub fn proposals(table: &Table) -> Vec<ColumnProposal> {
-    let rows: Vec<_> = table.rows().take(SHOWN_SAMPLES).map(|(_, cells)| cells).collect();
-    let columns = table.header().iter().zip(meanings(table)).enumerate();
-    let proposal = |(column_idx, (name, meaning)): (usize, (&String, Meaning))| ColumnProposal {
-        number: column_idx + 1,
-        name: name.clone(),
-        samples: rows.iter().filter_map(|cells| Some(cells.get(column_idx)?.to_string())).collect(),
-        guess: match meaning {
-            Meaning::Channel(channel, unit) => Some((channel, unit)),
-            Meaning::WrongUnit(..) | Meaning::Unknown => None,
-        },
-        units_cell: table.unit_text(column_idx).map(str::to_owned),
-    };
-    columns.map(proposal).collect()
-}
-
-/// The mapping that accepts the suggested channel and unit of every column. Forces that several columns
-/// hold are added up; any other channel that several columns may hold is left to be chosen.
-pub fn map_from_proposals(proposals: &[ColumnProposal]) -> ColumnMap {
-    let mut by_channel: BTreeMap<Channel, Vec<(usize, Option<Unit>)>> = BTreeMap::new();
-    for proposal in proposals {
-        if let Some((channel, unit)) = proposal.guess {
-            by_channel.entry(channel).or_default().push((proposal.number, unit));
-        }
-    }
-    let choice = |(channel, columns): (Channel, Vec<(usize, Option<Unit>)>)| match columns[..] {
-        [(number, unit)] => {
-            Some((channel, ColumnSource { column: ColumnRef::Number(number), unit }))
-        }
-        _ if is_summed(channel) => Some((channel, sum(&columns))),
-        _ => None,
-    };
-    by_channel.into_iter().filter_map(choice).collect()
-}
-
 /// Whether several columns of a channel may be parts of one sum: what several contacts exert.
-fn is_summed(channel: Channel) -> bool {
+pub(super) fn is_summed(channel: Channel) -> bool {
     matches!(channel.quantity(), Quantity::Force | Quantity::Moment)
 }
 
 /// The sum of columns with their units.
-fn sum(columns: &[(usize, Option<Unit>)]) -> ColumnSource {
+pub(super) fn sum(columns: &[(usize, Option<Unit>)]) -> ColumnSource {
     let common = columns.first().and_then(|(_, unit)| *unit);
     let is_common = columns.iter().all(|(_, unit)| *unit == common);
     let term = |(number, unit): &(usize, Option<Unit>)| SignedColumn {
@@ -499,7 +294,12 @@ impl Columns {
     }
 }
 
-fn column_use(channel: Channel, number: usize, name: String, stated: Option<Unit>) -> ColumnUse {
+pub(super) fn column_use(
+    channel: Channel,
+    number: usize,
+    name: String,
+    stated: Option<Unit>,
+) -> ColumnUse {
     let unit = stated.unwrap_or_else(|| channel.quantity().si_unit());
     let terms = vec![Term { number, sign: 1.0, unit }];
     let unit_is_stated = stated.is_some();
@@ -585,7 +385,7 @@ pub(super) fn open_question(
 }
 
 /// The channel and unit of every column.
-fn meanings(table: &Table) -> Vec<Meaning> {
+pub(super) fn meanings(table: &Table) -> Vec<Meaning> {
     let letters = letters::channels(table.header());
     let columns = letters.into_iter().enumerate();
     let meaning = |(column_idx, letter): (usize, Option<Option<Channel>>)| match letter {
@@ -621,99 +421,9 @@ fn column_meaning(table: &Table, column_idx: usize) -> Meaning {
     }
 }
 
-fn mapped_column(
-    table: &Table,
-    channel: Channel,
-    source: &ColumnSource,
-) -> Result<ColumnUse, DataError> {
-    let signed = |number| SignedColumn { number, is_negated: false, unit: None };
-    let columns = match &source.column {
-        ColumnRef::Number(number) => vec![signed(*number)],
-        ColumnRef::Name(wanted) => {
-            let names = table.header();
-            let exact = names.iter().position(|name| name == wanted);
-            let fits = |name: &String| spelling::same_name(name, wanted);
-            let found = exact.or_else(|| names.iter().position(fits));
-            vec![signed(found.map_or(0, |idx| idx + 1))]
-        }
-        ColumnRef::Sum(columns) => columns.clone(),
-        ColumnRef::Computed(formula, numbers) => {
-            let is_column = |number: &usize| (1..=table.header().len()).contains(number);
-            let fits = computed::is_of(*formula, channel) && numbers.iter().all(is_column);
-            let column = fits.then(|| computed::column(table, channel, *formula, numbers));
-            return column.ok_or_else(|| no_such_column(table, channel, source));
-        }
-        ColumnRef::Zero => {
-            let unit = channel.quantity().si_unit();
-            let (number, name) = (0, "zero throughout".to_owned());
-            let terms = Vec::new();
-            let (unit_is_stated, formula) = (true, None);
-            return Ok(ColumnUse { channel, number, name, unit, unit_is_stated, terms, formula });
-        }
-    };
-    let mut used: Option<ColumnUse> = None;
-    for SignedColumn { number, is_negated, unit } in columns {
-        let (name, stated) = unit_of_mapped(table, channel, source, number, unit)?;
-        let unit = stated.unwrap_or_else(|| channel.quantity().si_unit());
-        let term = Term { number, sign: if is_negated { -1.0 } else { 1.0 }, unit };
-        let sign = if is_negated { "−" } else { "+" };
-        match &mut used {
-            None if is_negated => {
-                let column = column_use(channel, number, format!("{sign}{name}"), stated);
-                used = Some(ColumnUse { terms: vec![term], ..column });
-            }
-            None => used = Some(column_use(channel, number, name, stated)),
-            Some(sum) => {
-                sum.name = format!("{} {sign} {name}", sum.name);
-                sum.unit_is_stated &= stated.is_some();
-                sum.terms.push(term);
-            }
-        }
-    }
-    used.ok_or_else(|| no_such_column(table, channel, source))
-}
-
-fn no_such_column(table: &Table, channel: Channel, source: &ColumnSource) -> DataError {
-    DataError::NoSuchColumn {
-        path: table.path().to_owned(),
-        line: table.header_line(),
-        channel,
-        column: source.column.to_string(),
-        found: table.header().to_vec(),
-    }
-}
-
-/// The header of a mapped column, and the unit that the user or the file states.
-fn unit_of_mapped(
-    table: &Table,
-    channel: Channel,
-    source: &ColumnSource,
-    number: usize,
-    of_term: Option<Unit>,
-) -> Result<(String, Option<Unit>), DataError> {
-    let idx = number.checked_sub(1);
-    let found = idx.and_then(|idx| Some((idx, table.header().get(idx)?.clone())));
-    let (idx, name) = found.ok_or_else(|| no_such_column(table, channel, source))?;
-    if let Some(unit) = of_term.or(source.unit) {
-        return Ok((name, Some(unit)));
-    }
-    match stated_unit(&name, table.unit_text(idx), channel.quantity()) {
-        Ok(unit) => Ok((name, unit)),
-        Err(unit) => Err(DataError::UnknownUnit {
-            path: table.path().to_owned(),
-            line: table.header_line(),
-            column: number,
-            name,
-            channel,
-            unit,
-            quantity: channel.quantity(),
-        }),
-    }
-}
-
 /// The unit that the file states for a column, in the row of units or in the header. The error is
 /// the text of a unit that does not measure `quantity`.
-fn stated_unit(
+pub(super) fn stated_unit(
     name: &str,
     units_cell: Option<&str>,
     quantity: Quantity,

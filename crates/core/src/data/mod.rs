@@ -34,7 +34,10 @@ mod impulse;
 mod json;
 mod letters;
 mod loose;
+mod mapped_column;
+mod note;
 mod open;
+mod proposals;
 mod quality;
 mod read_settings;
 mod rows;
@@ -61,9 +64,7 @@ pub use case_braking::CaseBraking;
 pub use channel::Channel;
 pub use column_map::{ColumnMap, ColumnRef, ColumnSource, MapError, SignedColumn};
 pub(crate) use columns::Columns;
-pub use columns::{
-    ColumnProposal, ColumnUse, Note, Term, map_from_proposals, proposals, propose_columns,
-};
+pub use columns::{ColumnUse, Term};
 pub use consistency::{Contradiction, contradictions};
 pub use contact::{
     CONTACT_SHARE_OF_PEAK, ContactOutside, MIN_GAP_S, TIME_TOLERANCE_S, check_contact_within,
@@ -80,7 +81,9 @@ pub use loose::{
     FileKind, Loaded, read_any_series, read_force_file, read_motion_log, read_series,
     read_steer_file, read_trajectory_file, read_wheels_file, series_of_table,
 };
+pub use note::Note;
 pub use open::{Opened, open};
+pub use proposals::{ColumnProposal, map_from_proposals, proposals, propose_columns};
 pub use quality::{Flag, FlagKind, Severity, check_case, check_file, check_series};
 pub use read_settings::{HeaderLine, ReadSettings, SheetRef, VelocityAxes};
 pub use series::{SeriesError, TimeSeries};

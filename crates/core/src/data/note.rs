@@ -1,0 +1,129 @@
+//! Remarks on a file that was read.
+
+use std::fmt;
+
+use crate::data::{Channel, ColumnUse, Contradiction, VelocityAxes, VelocityFit, clock, spelling};
+
+/// Number of columns without a channel that a remark names.
+const SHOWN_IGNORED: usize = 100;
+
+/// Number of characters of a header that a remark shows.
+const SHOWN_CHARS: usize = 60;
+
+/// A remark on a file that was read, shown to the user.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Note {
+    /// The unit of a column is not stated, so that the SI unit was assumed.
+    UnitAssumed(ColumnUse),
+    /// A column was left out because its unit does not measure the channel. The channel is not
+    /// needed; otherwise the file is refused.
+    WrongUnit {
+        /// The channel that the header names.
+        channel: Channel,
+        /// The number of the column, counted from 1.
+        number: usize,
+        /// The header of the column.
+        name: String,
+        /// The unit as written in the file.
+        unit: String,
+    },
+    /// Columns whose headers name no channel were left out.
+    Ignored {
+        /// The headers of these columns.
+        names: Vec<String>,
+    },
+    /// What the file says restricts its numbers: it was written by this program.
+    Restrictions {
+        /// The text of the column [`RESTRICTIONS_COLUMN`](crate::data::RESTRICTIONS_COLUMN).
+        text: String,
+    },
+    /// Text to the right of the last column was left out.
+    TextBeyond {
+        /// The number of rows with such text.
+        n_rows: usize,
+    },
+    /// The two components of a vector are stated in different units.
+    MixedUnits {
+        /// The component along x.
+        x: ColumnUse,
+        /// The component along y.
+        y: ColumnUse,
+    },
+    /// The velocities do not fit the path in the axes in which they were read.
+    Velocities {
+        /// How they fit.
+        fit: VelocityFit,
+        /// The axes in which they were read.
+        read_as: VelocityAxes,
+    },
+    /// Columns of a motion contradict each other.
+    Contradiction(Contradiction),
+    /// The file is of a format of its own.
+    Format {
+        /// What it is and how it is read, in words.
+        text: &'static str,
+    },
+    /// The record begins at another instant than zero.
+    Begins {
+        /// Its first instant, s.
+        first_s: f64,
+    },
+}
+
+impl Note {
+    /// Whether numbers that were read may be wrong, so that the user should be asked.
+    pub fn is_doubt(&self) -> bool {
+        matches!(self, Self::UnitAssumed(_) | Self::MixedUnits { .. }) || self.is_contradiction()
+    }
+
+    /// Whether numbers that were read contradict each other, so that nothing can be made of them.
+    pub fn is_contradiction(&self) -> bool {
+        matches!(self, Self::Velocities { .. } | Self::Contradiction(_))
+    }
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UnitAssumed(column) => write!(
+                f,
+                "column {} {:?} names no unit; taken as {}",
+                column.number, column.name, column.unit.symbol
+            ),
+            Self::WrongUnit { channel, number, name, unit } => write!(
+                f,
+                "column {number} {name:?} is left out: {unit:?} is no unit of {}",
+                spelling::quantity_name(channel.quantity())
+            ),
+            Self::Ignored { names } => {
+                let shown: Vec<&str> =
+                    names.iter().take(SHOWN_IGNORED).map(|name| beginning(name)).collect();
+                write!(f, "not recognised: {}", shown.join(", "))?;
+                match names.len().saturating_sub(SHOWN_IGNORED) {
+                    0 => Ok(()),
+                    more => write!(f, " and {more} more"),
+                }
+            }
+            Self::MixedUnits { x, y } => write!(
+                f,
+                "column {} {:?} is read in {} and column {} {:?} in {}: two components of one \
+                 vector are rarely recorded in different units; check the header",
+                x.number, x.name, x.unit.symbol, y.number, y.name, y.unit.symbol
+            ),
+            Self::Restrictions { text } => write!(f, "the file says of itself: {text}"),
+            Self::TextBeyond { n_rows } => {
+                write!(f, "{n_rows} rows have text to the right of the last column; it is not read")
+            }
+            Self::Velocities { fit, read_as } => fit.explain(*read_as, f),
+            Self::Contradiction(contradiction) => contradiction.fmt(f),
+            Self::Format { text } => f.write_str(text),
+            Self::Begins { first_s } => f.write_str(&clock::shift_text(*first_s)),
+        }
+    }
+}
+
+/// The beginning of a header, as long as a remark shows it.
+fn beginning(name: &str) -> &str {
+    let end = name.char_indices().nth(SHOWN_CHARS).map(|(at, _)| at);
+    end.and_then(|end| name.get(..end)).unwrap_or(name)
+}

@@ -1,0 +1,89 @@
+//! What a mapping dialog is offered: the columns of a file, each with the channel that its header suggests.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::data::columns::{is_summed, meanings, stated_unit, sum};
+use crate::data::spelling::{self, Meaning};
+use crate::data::{Channel, ColumnMap, ColumnRef, ColumnSource, DataError, Table};
+use crate::units::{Quantity, Unit};
+
+/// Number of sample values of a column that a mapping dialog shows.
+const SHOWN_SAMPLES: usize = 5;
+
+/// A column of a file as a mapping dialog shows it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColumnProposal {
+    /// The number of the column, counted from 1.
+    pub number: usize,
+    /// The header of the column; `column 1` and so on if the file has no header.
+    pub name: String,
+    /// The first values of the column, as written in the file.
+    pub samples: Vec<String>,
+    /// The channel and unit that the header suggests; the unit is `None` if the file states none.
+    pub guess: Option<(Channel, Option<Unit>)>,
+    /// The cell of the column in the row of units.
+    units_cell: Option<String>,
+}
+
+impl ColumnProposal {
+    /// The unit that header or row of units state for a channel of `quantity`; `None` if they state
+    /// none.
+    ///
+    /// # Errors
+    /// The text of a unit that does not measure `quantity`.
+    pub fn stated_unit(&self, quantity: Quantity) -> Result<Option<Unit>, String> {
+        stated_unit(&self.name, self.units_cell.as_deref(), quantity)
+    }
+
+    /// The channel that is worth a proposal in a dialog: the guess, or what words in the header
+    /// suggest, such as a force without a direction. The user has to look at it.
+    pub fn suggestion(&self) -> Option<Channel> {
+        let guessed = self.guess.map(|(channel, _)| channel);
+        guessed.or_else(|| spelling::suggestion(&self.name))
+    }
+}
+
+/// Reads a file and returns its columns, with the channel that each header suggests.
+///
+/// # Errors
+/// [`DataError`] if the file cannot be read as a table.
+pub fn propose_columns(path: &Path) -> Result<Vec<ColumnProposal>, DataError> {
+    Ok(proposals(&Table::read(path)?))
+}
+
+/// The columns of a table, with the channel that each header suggests.
+pub fn proposals(table: &Table) -> Vec<ColumnProposal> {
+    let rows: Vec<_> = table.rows().take(SHOWN_SAMPLES).map(|(_, cells)| cells).collect();
+    let columns = table.header().iter().zip(meanings(table)).enumerate();
+    let proposal = |(column_idx, (name, meaning)): (usize, (&String, Meaning))| ColumnProposal {
+        number: column_idx + 1,
+        name: name.clone(),
+        samples: rows.iter().filter_map(|cells| Some(cells.get(column_idx)?.to_string())).collect(),
+        guess: match meaning {
+            Meaning::Channel(channel, unit) => Some((channel, unit)),
+            Meaning::WrongUnit(..) | Meaning::Unknown => None,
+        },
+        units_cell: table.unit_text(column_idx).map(str::to_owned),
+    };
+    columns.map(proposal).collect()
+}
+
+/// The mapping that accepts the suggested channel and unit of every column. Forces that several columns
+/// hold are added up; any other channel that several columns may hold is left to be chosen.
+pub fn map_from_proposals(proposals: &[ColumnProposal]) -> ColumnMap {
+    let mut by_channel: BTreeMap<Channel, Vec<(usize, Option<Unit>)>> = BTreeMap::new();
+    for proposal in proposals {
+        if let Some((channel, unit)) = proposal.guess {
+            by_channel.entry(channel).or_default().push((proposal.number, unit));
+        }
+    }
+    let choice = |(channel, columns): (Channel, Vec<(usize, Option<Unit>)>)| match columns[..] {
+        [(number, unit)] => {
+            Some((channel, ColumnSource { column: ColumnRef::Number(number), unit }))
+        }
+        _ if is_summed(channel) => Some((channel, sum(&columns))),
+        _ => None,
+    };
+    by_channel.into_iter().filter_map(choice).collect()
+}
