@@ -2,22 +2,15 @@
 //! that writes delimited text. The columns are found by their headers or by a mapping of the user
 //! and converted to SI units.
 
-use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
+use crate::data::si_values::si_values;
 use crate::data::velocity_fit::in_body_axes;
 use crate::data::{
-    Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Formula, Note, ReadSettings,
-    Sampling, SeriesError, Table, Term, TimeSeries, VelocityAxes, clock, contradictions, impulse,
-    velocity_fit,
+    Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, ReadSettings, Sampling,
+    SeriesError, Table, TimeSeries, VelocityAxes, clock, contradictions, impulse, velocity_fit,
 };
-use crate::numerics::counted_turns_rad;
-use crate::ranges::{
-    ACCELERATION_SAMPLE, ANGLE_SAMPLE, ANGULAR_VELOCITY_SAMPLE, BRAKE_TORQUE, FORCE_SAMPLE,
-    INSTANT, LENGTH_SAMPLE, MOMENT_SAMPLE, Range, SPEED, STEER_ANGLE, STEERING_WHEEL_ANGLE,
-    TIME_STEP,
-};
-use crate::units::Quantity;
+use crate::ranges::TIME_STEP;
 
 /// Smallest number of rows of a time series.
 const MIN_ROWS: usize = 2;
@@ -293,10 +286,6 @@ fn load_columns(
                 series = time.map_err(|error| out_of_order(table, column, error))?;
                 check_steps(table, column, series.time_s())?;
             }
-            // Everything that interpolates, compares or draws a heading takes it without jumps.
-            channel if compass_quantity(channel) == Some(Quantity::Angle) => {
-                insert(&mut series, channel, counted_turns_rad(values), table)?;
-            }
             channel => insert(&mut series, channel, values, table)?,
         }
     }
@@ -345,128 +334,6 @@ fn insert(
     series.insert(channel, values).map_err(|source| DataError::Series { path: path(), source })
 }
 
-/// The numbers of a column in SI units.
-fn term_values(
-    table: &Table,
-    column: &ColumnUse,
-    term: &Term,
-    time_s: &[f64],
-) -> Result<Vec<f64>, DataError> {
-    let idx = term.number.saturating_sub(1);
-    if column.channel == Channel::Time
-        && let Some(times) = clock::times_of_day_s(table, idx)
-    {
-        return times.map_err(|row_idx| table.cell_error(row_idx, idx, "a time of day"));
-    }
-    let mut values = table.numbers(idx, term.unit.symbol)?;
-    values.iter_mut().for_each(|value| *value = term.sign * term.unit.to_si(*value));
-    match term.unit.quantity == Quantity::Impulse {
-        true => Ok(impulse::rate_n(&values, time_s)),
-        false => Ok(values),
-    }
-}
-
-/// The numbers of a channel that is computed from several columns.
-fn computed_values(
-    table: &Table,
-    column: &ColumnUse,
-    formula: Formula,
-) -> Result<Vec<f64>, DataError> {
-    let numbers = |term: &Term| table.numbers(term.number.saturating_sub(1), "");
-    let terms: Vec<Vec<f64>> = column.terms.iter().map(numbers).collect::<Result<_, _>>()?;
-    let idx = column.number.saturating_sub(1);
-    formula.values(&terms).map_err(|row_idx| table.cell_error(row_idx, idx, formula.expected()))
-}
-
-/// The numbers of a channel in SI units and in the axes of this program.
-///
-/// - `time_s`: the instants, as far as they have been read.
-fn si_values(
-    table: &Table,
-    column: &ColumnUse,
-    time_s: &[f64],
-    settings: &ReadSettings,
-) -> Result<Vec<f64>, DataError> {
-    let mut sum: Option<Vec<f64>> = None;
-    if let Some(formula) = column.formula {
-        sum = Some(computed_values(table, column, formula)?);
-    }
-    let terms = column.terms.iter().filter(|_| column.formula.is_none());
-    for term in terms {
-        let values = term_values(table, column, term, time_s)?;
-        match &mut sum {
-            None => sum = Some(values),
-            Some(sum) => sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value),
-        }
-    }
-    let mut values = sum.unwrap_or_else(|| vec![0.0; table.n_rows()]);
-    let shift_s = settings.time_shift_s.filter(|_| column.channel == Channel::Time);
-    let is_mirrored = settings.y_to_right && changes_sign_with_y(column.channel);
-    let compass = compass_quantity(column.channel).filter(|_| settings.compass_headings);
-    let range = samples_range(column.channel);
-    for (row_idx, value) in values.iter_mut().enumerate() {
-        *value += shift_s.unwrap_or(0.0);
-        if is_mirrored {
-            *value = 0.0 - *value; // No negative zero.
-        }
-        match compass {
-            Some(Quantity::Angle) => *value = FRAC_PI_2 - *value,
-            Some(_) => *value = 0.0 - *value,
-            None => {}
-        }
-        if let Some(range) = range.filter(|range| !range.contains(*value)) {
-            return Err(DataError::ImplausibleValue {
-                path: table.path().to_owned(),
-                line: table.line(row_idx),
-                column: column.number,
-                name: column.name.clone(),
-                value: *value,
-                range: Box::new(range),
-            });
-        }
-    }
-    Ok(values)
-}
-
-/// What kind of heading a channel is, an angle or its rate; `None` if it is none.
-fn compass_quantity(channel: Channel) -> Option<Quantity> {
-    use Channel::{StrikingYaw, StrikingYawRate, StruckYaw, StruckYawRate, Yaw, YawRate};
-    let is_heading = matches!(
-        channel,
-        Yaw | YawRate | StruckYaw | StruckYawRate | StrikingYaw | StrikingYawRate
-    );
-    is_heading.then(|| channel.quantity())
-}
-
-/// Whether a channel has the other sign in axes whose y points to the right and whose z points down
-/// (SAE J670). A roll is the same in both.
-fn changes_sign_with_y(channel: Channel) -> bool {
-    use Channel::{
-        Ay, Fy, FyBody, Mz, Steer, SteerFl, SteerFr, SteeringWheel, StrikingVy, StrikingYaw,
-        StrikingYawRate, StruckVy, StruckYaw, StruckYawRate, Vy, Y, Yaw, YawRate,
-    };
-    matches!(
-        channel,
-        Y | Yaw
-            | Vy
-            | YawRate
-            | Ay
-            | Fy
-            | FyBody
-            | Mz
-            | Steer
-            | SteerFl
-            | SteerFr
-            | SteeringWheel
-            | StruckVy
-            | StruckYaw
-            | StruckYawRate
-            | StrikingVy
-            | StrikingYaw
-            | StrikingYawRate
-    )
-}
-
 /// Checks the time between the samples.
 fn check_steps(table: &Table, column: &ColumnUse, time_s: &[f64]) -> Result<(), DataError> {
     for (row_idx, pair) in time_s.windows(2).enumerate() {
@@ -478,36 +345,6 @@ fn check_steps(table: &Table, column: &ColumnUse, time_s: &[f64]) -> Result<(), 
         })?;
     }
     Ok(())
-}
-
-/// The values that the samples of a channel may have; `None` for a quantity that no channel has.
-/// Values that are merely unusual are flagged by [`crate::data::check_file`].
-fn samples_range(channel: Channel) -> Option<Range> {
-    Some(match (channel, channel.quantity()) {
-        (Channel::Steer | Channel::SteerFl | Channel::SteerFr, _) => STEER_ANGLE,
-        (Channel::SteeringWheel, _) => STEERING_WHEEL_ANGLE,
-        (Channel::BrakeFl | Channel::BrakeFr | Channel::BrakeRl | Channel::BrakeRr, _) => {
-            BRAKE_TORQUE
-        }
-        (_, Quantity::Force) => FORCE_SAMPLE,
-        (_, Quantity::Moment) => MOMENT_SAMPLE,
-        (_, Quantity::Speed) => SPEED,
-        (_, Quantity::Acceleration) => ACCELERATION_SAMPLE,
-        (_, Quantity::AngularVelocity) => ANGULAR_VELOCITY_SAMPLE,
-        (_, Quantity::Angle) => ANGLE_SAMPLE,
-        (_, Quantity::Length) => LENGTH_SAMPLE,
-        (_, Quantity::Time) => INSTANT,
-        // No channel measures these.
-        (
-            _,
-            Quantity::Mass
-            | Quantity::MomentOfInertia
-            | Quantity::Impulse
-            | Quantity::AngularImpulse
-            | Quantity::Energy
-            | Quantity::Ratio,
-        ) => return None,
-    })
 }
 
 fn out_of_order(table: &Table, time: &ColumnUse, error: SeriesError) -> DataError {

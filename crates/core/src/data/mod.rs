@@ -42,6 +42,7 @@ mod quality;
 mod read_settings;
 mod rows;
 mod series;
+mod si_values;
 mod spelling;
 mod table;
 mod text;
