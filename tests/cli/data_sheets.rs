@@ -153,3 +153,22 @@ fn a_multibody_car_is_called_by_its_file_or_its_folder() {
     assert_eq!(named("datasets/trajectories-fleet/buggy"), "buggy (multibody, 1120 kg)");
     assert_eq!(named("datasets/trajectories-fea"), "Reference car (multibody, 2000 kg)");
 }
+
+/// A 1:10 car was refused for the drag area of a car of full size, under a key that its sheet does not have.
+#[test]
+fn a_model_of_a_car_has_estimates_of_its_scale() {
+    let folder = TempDir::new().unwrap();
+    let model = sheet(
+        &folder,
+        "mass_kg = 4\nlength_m = 0.6\nwidth_m = 0.3\nwheelbase_m = 0.33\ncg_height_m = 0.07\n\
+         yaw_inertia_kg_m2 = 0.05\nfriction = 1",
+    );
+    let steer = folder.path().join("steer.csv");
+    fs::write(&steer, "t [s],steer [deg]\n0,0\n0.2,10\n2,10\n").unwrap();
+    let steer = steer.to_str().unwrap();
+    let args = ["--speed", "3", "--duration", "2", "--steer", steer, "--vehicle", &model];
+    let report = json(&[&["simulate"][..], &args].concat());
+    assert!(report["end"]["speed_m_s"].as_f64().unwrap() > 1.5, "{report}");
+    let assumed = report["assumptions"].to_string();
+    assert!(assumed.contains("in the scale of the width squared"), "{assumed}");
+}

@@ -99,12 +99,27 @@ impl Rule {
     }
 }
 
+/// Outer widths of the classes, m.
+const WIDTHS_M: [f64; 5] = [1.842, 1.759, 1.896, 1.836, 1.966];
+
 fn relative(median: f64, deviation: f64, text: &'static str, source: &'static str) -> Rule {
     Rule { median, scatter: Scatter::Relative(deviation), text, source }
 }
 
 fn absolute(median: f64, deviation: f64, text: &'static str, source: &'static str) -> Rule {
     Rule { median, scatter: Scatter::Absolute(deviation), text, source }
+}
+
+/// Scale of a vehicle that is less than half as wide as those of its class, such as a model of a car: its
+/// width over theirs; 1 of all others.
+fn model_scale(class: VehicleClass, values: &SheetValues<'_>) -> f64 {
+    let scale = values.get(SheetQuantity::Width) / class.pick(WIDTHS_M);
+    if scale < 0.5 { scale } else { 1.0 }
+}
+
+/// One text for the vehicles of a class, and one for models of them.
+fn of_scale(scale: f64, usual: &'static str, model: &'static str) -> &'static str {
+    if scale < 1.0 { model } else { usual }
 }
 
 /// Outer size, mass, and where the axles are.
@@ -131,7 +146,7 @@ fn size(quantity: SheetQuantity, class: VehicleClass, values: &SheetValues<'_>) 
         Q::Width => match values.known(Q::Track) {
             Some(track) => relative(track / track_share, 0.016, "track / 0.851", LIBRARY),
             None => relative(
-                class.pick([1.842, 1.759, 1.896, 1.836, 1.966]),
+                class.pick(WIDTHS_M),
                 class.pick([0.056, 0.030, 0.041, 0.070, 0.030]),
                 "by class",
                 LIBRARY,
@@ -214,13 +229,17 @@ fn inertia(quantity: SheetQuantity, class: VehicleClass, values: &SheetValues<'_
 
 fn suspension(quantity: SheetQuantity, class: VehicleClass, values: &SheetValues<'_>) -> Rule {
     use SheetQuantity as Q;
+    let scale = model_scale(class, values);
     match quantity {
         Q::SprungMass => {
             absolute(0.85 * values.get(Q::Mass), 0.035 * values.get(Q::Mass), "0.85 m", MULTIBODY)
         }
-        Q::WheelRadius => {
-            relative(class.pick([0.33, 0.31, 0.36, 0.36, 0.34]), 0.06, "by class", MULTIBODY)
-        }
+        Q::WheelRadius => relative(
+            class.pick([0.33, 0.31, 0.36, 0.36, 0.34]) * scale,
+            0.06,
+            of_scale(scale, "by class", "by class, in the scale of the width"),
+            MULTIBODY,
+        ),
         Q::WheelInertia => relative(
             WHEEL_MASS_SHARE * values.get(Q::Mass) * values.get(Q::WheelRadius).powi(2),
             0.10,
@@ -228,9 +247,13 @@ fn suspension(quantity: SheetQuantity, class: VehicleClass, values: &SheetValues
             MULTIBODY,
         ),
         Q::RollAxisHeight => absolute(
-            class.pick([0.12, 0.10, 0.14, 0.14, 0.12]),
-            class.pick([0.05, 0.04, 0.06, 0.06, 0.05]),
-            "usual for the suspensions of the class",
+            class.pick([0.12, 0.10, 0.14, 0.14, 0.12]) * scale,
+            class.pick([0.05, 0.04, 0.06, 0.06, 0.05]) * scale,
+            of_scale(
+                scale,
+                "usual for the suspensions of the class",
+                "usual for the class, in the scale of the width",
+            ),
             ASSUMED,
         ),
         Q::RollGradient => relative(5.7, 0.23, "5.7 deg/g for all classes", MULTIBODY),
@@ -262,11 +285,14 @@ fn tires(quantity: SheetQuantity, class: VehicleClass, values: &SheetValues<'_>)
         Q::Friction => absolute(0.80, 0.06, "dry asphalt", ASSUMED),
         Q::SlidingRatio => relative(0.80, 0.065, "0.8 for all classes", MULTIBODY),
         Q::RollingResistance => relative(0.011, 0.15, "passenger-car tires on asphalt", ASSUMED),
-        _ => relative(
-            class.pick([0.80, 0.65, 1.00, 1.05, 1.00]),
-            class.pick([0.25, 0.10, 0.15, 0.15, 0.15]),
-            "by class",
-            ASSUMED,
-        ),
+        _ => {
+            let scale = model_scale(class, values);
+            relative(
+                class.pick([0.80, 0.65, 1.00, 1.05, 1.00]) * scale * scale,
+                class.pick([0.25, 0.10, 0.15, 0.15, 0.15]),
+                of_scale(scale, "by class", "by class, in the scale of the width squared"),
+                ASSUMED,
+            )
+        }
     }
 }
