@@ -12,7 +12,8 @@ use crate::app::project::Project;
 use crate::app::state::Subject;
 use crate::app::widgets::{EmptyField, caveats_ui, facts_ui, optional_quantity, quantity_field};
 use impactlab_core::collision::{
-    ContactLocation, PulseShape, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle, Side,
+    ContactLocation, DEFAULT_FRICTION_LIMIT, PulseShape, RestitutionForm, Scenario,
+    ScenarioContact, ScenarioVehicle, Side, default_restitution_in_words,
 };
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::{
@@ -114,9 +115,9 @@ fn vehicle_form(ui: &mut Ui, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
 
 /// Draws the fields of restitution and friction.
 fn surface_form(ui: &mut Ui, contact: &mut ScenarioContact, units: UnitSystem) {
-    let hint = "empty: that of the speed at which the vehicles close, 0.38 up to 5 m/s and 0.1 from \
-                15 m/s on";
-    stated_field(ui, "Restitution e", hint, &mut contact.restitution, &RESTITUTION, units);
+    let hint =
+        format!("empty: by the speed at which they close, {}", default_restitution_in_words());
+    stated_field(ui, "Restitution e", &hint, &mut contact.restitution, &RESTITUTION, units);
     let name = ui.label("Restitution acts");
     ComboBox::from_id_salt("restitution form")
         .selected_text(contact.restitution_form.label())
@@ -142,8 +143,9 @@ fn surface_form(ui: &mut Ui, contact: &mut ScenarioContact, units: UnitSystem) {
             quantity_field(ui, "Share of critical ratio", share, &FRICTION_OF_CRITICAL, units);
         }
         None => {
-            let (limit, hint) = (&mut contact.friction_limit, "empty: 0.3");
-            stated_field(ui, "Friction limit μ_c", hint, limit, &FRICTION_LIMIT, units);
+            let hint = format!("empty: {DEFAULT_FRICTION_LIMIT}");
+            let limit = &mut contact.friction_limit;
+            stated_field(ui, "Friction limit μ_c", &hint, limit, &FRICTION_LIMIT, units);
         }
     }
 }
@@ -160,7 +162,7 @@ fn stated_field(
     units: UnitSystem,
 ) {
     let name = ui.label(label);
-    let empty = EmptyField { text: "by default", start_si: 0.3 };
+    let empty = EmptyField { text: "by default", start_si: DEFAULT_FRICTION_LIMIT };
     let field = optional_quantity(ui, value, empty, range, units);
     field.labelled_by(name.id).on_hover_text(hint);
     ui.end_row();

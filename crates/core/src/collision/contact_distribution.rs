@@ -9,7 +9,7 @@ use crate::collision::ImpliedContact;
 /// [`DEFAULT_FRICTION_LIMIT`] it gives the smallest mean error of the impulse vector over the
 /// training cases of the shipped finite-element runs in which the vehicles do not hook, 17.1 %
 /// (`examples/fit_contact.rs`). They are pushes at the rear quarter, whose contact points close at
-/// 1.0 to 5.2 m/s.
+/// up to 5.2 m/s.
 pub const DEFAULT_RESTITUTION: f64 = 0.38;
 
 /// Friction limit that is used if none is given; see [`DEFAULT_RESTITUTION`].
@@ -41,6 +41,15 @@ pub fn default_restitution(closing_m_s: f64) -> f64 {
 pub fn restitution_bounds(closing_m_s: f64) -> [f64; 2] {
     let [slow, fast] = RESTITUTION_BOUNDS;
     [0, 1].map(|i| over_closing_speed([slow[i], fast[i]], closing_m_s))
+}
+
+/// What [`default_restitution`] is, in words.
+pub fn default_restitution_in_words() -> String {
+    let [slow, fast] = RESTITUTION_SPEEDS_M_S;
+    format!(
+        "{DEFAULT_RESTITUTION} up to {slow} m/s, fitted to finite-element runs, and {HARD_RESTITUTION} from \
+         {fast} m/s on, as in staged crashes"
+    )
 }
 
 fn over_closing_speed([slow, fast]: [f64; 2], closing_m_s: f64) -> f64 {

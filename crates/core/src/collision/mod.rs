@@ -57,7 +57,7 @@ pub use channel_filter::{
 };
 pub use contact_distribution::{
     ContactDistribution, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, HARD_RESTITUTION,
-    RESTITUTION_SPEEDS_M_S, default_restitution, restitution_bounds,
+    RESTITUTION_SPEEDS_M_S, default_restitution, default_restitution_in_words, restitution_bounds,
 };
 pub use dented_outline::DentedOutlines;
 pub use footprint::{Footprint, FootprintError, OffOutline, Pose, Side};

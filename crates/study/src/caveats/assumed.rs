@@ -1,8 +1,7 @@
 //! Values that a question leaves open and the program chose.
 
 use impactlab_core::collision::{
-    DEFAULT_RESTITUTION, HARD_RESTITUTION, Impact, RESTITUTION_SPEEDS_M_S, Scenario,
-    ScenarioGeometry, TOUCH_TOLERANCE_M,
+    Impact, Scenario, ScenarioGeometry, TOUCH_TOLERANCE_M, default_restitution_in_words,
 };
 use impactlab_core::uncertainty::{Caveat, CaveatSubject};
 use impactlab_core::vehicle::sheet::{Estimate, SheetQuantity};
@@ -59,15 +58,14 @@ pub(crate) fn contact_default(scenario: &Scenario, impact: &Impact) -> Option<Ca
     let has_restitution = contact.restitution.is_some();
     let has_friction = contact.friction_limit.or(contact.friction_of_critical).is_some();
     let closing_m_s = impact.closing_speed_m_s();
-    let [slow, fast] = RESTITUTION_SPEEDS_M_S;
     let at_this_speed = format!(
         "the default at {closing_m_s:.1} m/s, the speed at which the contact points close in all \
-         directions: {DEFAULT_RESTITUTION} up to {slow} m/s, fitted to finite-element runs, and \
-         {HARD_RESTITUTION} from {fast} m/s on, as in staged crashes"
+         directions: {}",
+        default_restitution_in_words()
     );
     let e = format!("e = {}", three_digits(surface.restitution));
     let mu = format!("μ_c = {}", surface.friction_limit);
-    let by_runs = "the default, fitted to finite-element runs that close at up to 5.2 m/s";
+    let by_runs = "the default, fitted to finite-element runs of slow pushes";
     let (values, reason) = match (has_restitution, has_friction) {
         (true, true) => return None,
         (false, true) => (e, at_this_speed),
