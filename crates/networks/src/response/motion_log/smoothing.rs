@@ -7,7 +7,7 @@ use crate::response::motion_log::contact::find_contact;
 use crate::response::motion_log::tracks::{LogWindow, TrackScales, Tracks};
 use crate::response::{LogError, MotionLog};
 use impactlab_core::data::{Channel, SeriesError};
-use impactlab_core::numerics::{TrackPoint, continued_rad};
+use impactlab_core::numerics::TrackPoint;
 use impactlab_core::vehicle::VehicleState;
 use impactlab_core::vehicle::frames::{body_from_world, world_from_body};
 
@@ -89,9 +89,9 @@ impl MotionLog {
     }
 
     fn yaw(&self) -> Result<Tracks, SeriesError> {
-        let yaw = continued_rad(self.series.require(Channel::Yaw)?);
+        let yaw = self.series.require(Channel::Yaw)?;
         let rate = self.series.get(Channel::YawRate);
-        let samples = Tracks::samples_of(self.series.time_s(), &yaw, rate);
+        let samples = Tracks::samples_of(self.series.time_s(), yaw, rate);
         Ok(Tracks { samples: vec![samples], prior_std: ANGLE_PRIOR })
     }
 
