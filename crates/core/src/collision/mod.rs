@@ -33,6 +33,7 @@ mod pdof;
 mod restitution_line;
 
 mod contact_distribution;
+mod contact_work;
 mod dented_outline;
 mod footprint;
 mod impact_case;
@@ -59,11 +60,12 @@ pub use contact_distribution::{
     ContactDistribution, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, HARD_RESTITUTION,
     RESTITUTION_SPEEDS_M_S, default_restitution, default_restitution_in_words, restitution_bounds,
 };
+pub use contact_work::contact_work_j;
 pub use dented_outline::DentedOutlines;
 pub use footprint::{Footprint, FootprintError, OffOutline, Pose, Side};
 pub use impact::{
     BodyAfter, ContactSurface, FrictionModel, Impact, ImpactBody, ImpactError, ImpactSolution,
-    Regime, RestitutionForm, contact_work_j,
+    Regime, RestitutionForm,
 };
 pub use impact_case::ImpactCase;
 pub use implied_contact::{ImpliedContact, ImpliedContacts};
