@@ -36,6 +36,7 @@ mod likelihood;
 mod modes;
 mod posterior;
 mod prior;
+mod quantity;
 
 pub use budget::Narrowing;
 pub use calibration::{RankedQuantity, Ranks, ranks_of_cases};
@@ -53,7 +54,6 @@ pub use latent::{
 };
 pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
 pub use modes::{ParticleMode, cluster_keys, modes_by};
-pub use posterior::{
-    BudgetItem, LEAST_ESS_FOR_INTERVALS, Mode, Posterior, QuantityEstimate, ReconstructedQuantity,
-};
+pub use posterior::{BudgetItem, LEAST_ESS_FOR_INTERVALS, Mode, Posterior};
 pub use prior::{Prior, PriorComponent, PriorSource};
+pub use quantity::{QuantityEstimate, ReconstructedQuantity};

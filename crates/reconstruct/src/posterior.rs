@@ -2,145 +2,20 @@
 //! would bring.
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
+use crate::quantity::{LEVELS, PosteriorPoint};
 use crate::sampler::Particles;
 use crate::{
-    EvidenceFit, ForwardModel, ImpactState, Latent, LatentValues, Narrowing, ReconstructionTarget,
-    modes_by,
+    EvidenceFit, ForwardModel, ImpactState, Latent, LatentValues, Narrowing, QuantityEstimate,
+    ReconstructedQuantity, ReconstructionTarget, modes_by,
 };
-use impactlab_core::numerics::{quantile_of_sorted, unwrapped_rad};
-use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem};
-
-macro_rules! quantities {
-    ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $value:expr;)+) => {
-        /// A quantity that a reconstruction asks for.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-        #[serde(rename_all = "snake_case")]
-        pub enum ReconstructedQuantity {
-            $($(#[$doc])* $name,)+
-        }
-
-        impl ReconstructedQuantity {
-            /// All of them.
-            pub const ALL: &'static [Self] = &[$(Self::$name),+];
-
-            /// Name with its unit.
-            pub const fn key(self) -> &'static str {
-                match self { $(Self::$name => $key),+ }
-            }
-
-            /// Symbol of the unit; empty for a pure number.
-            pub const fn unit(self) -> &'static str {
-                match self { $(Self::$name => $unit),+ }
-            }
-
-            /// Its value of a particle.
-            fn value(self, point: &PosteriorPoint<'_>) -> f64 {
-                let value: fn(&PosteriorPoint<'_>) -> f64 = match self { $(Self::$name => $value),+ };
-                value(point)
-            }
-        }
-    };
-}
-
-quantities! {
-    /// Speed of the struck car before the impact, m/s.
-    StruckSpeed: "target_speed_m_s", "m/s", |point| point.impact.struck_speed_m_s;
-    /// Speed of the striking car before the impact, m/s.
-    StrikingSpeed: "bullet_speed_m_s", "m/s", |point| point.impact.striking_speed_m_s;
-    /// Size of the difference of both velocities, m/s.
-    ClosingSpeed: "closing_speed_m_s", "m/s", |point| point.impact.closing_speed_m_s;
-    /// Heading of the striking car against that of the struck car at first contact, rad.
-    HeadingDifference: "heading_difference_rad", "rad", |point| point.impact.heading_difference_rad;
-    /// Peak friction of the road.
-    RoadFriction: "road_friction", "", |point| point.values.get(Latent::RoadFriction);
-    /// Change of velocity of the struck car by the contact, m/s.
-    DeltaVStruck: "delta_v_target_m_s", "m/s", |point| point.impact.delta_v_struck_m_s();
-    /// Yaw rate of the struck car at the end of the contact, over which the tires act as well, rad/s.
-    StruckYawRate: "target_yaw_rate_after_rad_s", "rad/s", |point| point.yaw_rate_after_rad_s;
-}
-
-impl ReconstructedQuantity {
-    /// What it is called.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::StruckSpeed => "speed of the struck car",
-            Self::StrikingSpeed => "speed of the striking car",
-            Self::ClosingSpeed => "closing speed",
-            Self::HeadingDifference => "relative heading of the cars",
-            Self::RoadFriction => "friction of the road",
-            Self::DeltaVStruck => "Δv of the struck car",
-            Self::StruckYawRate => "yaw rate after the impact",
-        }
-    }
-
-    /// What kind of quantity it is.
-    pub fn quantity(self) -> Quantity {
-        match self {
-            Self::StruckSpeed | Self::StrikingSpeed | Self::ClosingSpeed | Self::DeltaVStruck => {
-                Quantity::Speed
-            }
-            Self::HeadingDifference => Quantity::Angle,
-            Self::RoadFriction => Quantity::Ratio,
-            Self::StruckYawRate => Quantity::AngularVelocity,
-        }
-    }
-}
-
-/// Levels of the intervals of a quantity.
-pub(crate) const LEVELS: [f64; 4] = [0.5, 0.8, 0.9, 0.95];
+use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 
 /// Independent particles that an interval needs: five of these then lie beyond each end of the interval
 /// of 90 %. With fewer the ends are those of single particles.
 pub const LEAST_ESS_FOR_INTERVALS: f64 = 100.0;
-
-/// A quantity with its intervals, which leave out as much below as above; without any where too few
-/// particles are known of it.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-#[serde(into = "WrittenEstimate")]
-pub struct QuantityEstimate {
-    /// Name with its unit.
-    pub name: &'static str,
-    /// Symbol of the unit; empty for a pure number.
-    pub unit: &'static str,
-    /// Median and intervals.
-    pub estimate: Estimate,
-}
-
-/// A [`QuantityEstimate`] as it is written, with the keys of version 0.1, which a later version will
-/// not write.
-#[derive(Serialize, JsonSchema)]
-struct WrittenEstimate {
-    /// Name with its unit.
-    name: &'static str,
-    /// Symbol of the unit; empty for a pure number.
-    unit: &'static str,
-    /// Median and intervals.
-    #[serde(flatten)]
-    estimate: Estimate,
-    /// Former key: ends of the interval of 50 %.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    interval_50: Option<[f64; 2]>,
-    /// Former key: ends of the interval of 80 %.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    interval_80: Option<[f64; 2]>,
-    /// Former key: ends of the interval of 90 %.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    interval_90: Option<[f64; 2]>,
-    /// Former key: ends of the interval of 95 %.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    interval_95: Option<[f64; 2]>,
-}
-
-impl From<QuantityEstimate> for WrittenEstimate {
-    fn from(quantity: QuantityEstimate) -> Self {
-        let QuantityEstimate { name, unit, estimate } = quantity;
-        let [interval_50, interval_80, interval_90, interval_95] =
-            LEVELS.map(|level| estimate.interval(level));
-        Self { name, unit, estimate, interval_50, interval_80, interval_90, interval_95 }
-    }
-}
 
 /// A kind of course of events that the evidence leaves possible.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -186,13 +61,6 @@ pub struct Posterior {
     pub yaw_rates_after_rad_s: Vec<f64>,
     /// Independent particles that all of them are worth; none if they are not of the posterior.
     pub ess: f64,
-}
-
-/// What a quantity of a particle follows from.
-struct PosteriorPoint<'a> {
-    values: &'a LatentValues,
-    impact: &'a ImpactState,
-    yaw_rate_after_rad_s: f64,
 }
 
 /// Smallest probability of a mode that is told.
@@ -377,56 +245,6 @@ impl BudgetItem {
     pub fn shown(&self, units: UnitSystem) -> String {
         let sigma = NumberFormat::english(units).sigma(self.quantity(), self.sigma);
         format!("{}, ± {sigma}", self.measurement())
-    }
-}
-
-impl QuantityEstimate {
-    /// Which quantity it is.
-    fn reconstructed(&self) -> Option<ReconstructedQuantity> {
-        ReconstructedQuantity::ALL.iter().copied().find(|quantity| quantity.key() == self.name)
-    }
-
-    /// What it is called.
-    pub fn label(&self) -> &'static str {
-        self.reconstructed().map_or(self.name, ReconstructedQuantity::label)
-    }
-
-    /// What kind of quantity it is.
-    pub fn quantity(&self) -> Quantity {
-        self.reconstructed().map_or(Quantity::Ratio, ReconstructedQuantity::quantity)
-    }
-
-    /// Intervals of equally likely values; `None` without values. Those of an angle continue from its
-    /// median without a jump, and may end beyond half a turn.
-    ///
-    /// - `levels`: probabilities of the intervals, ascending.
-    fn from_values(
-        quantity: ReconstructedQuantity,
-        values: Vec<f64>,
-        levels: &[f64],
-    ) -> Option<Self> {
-        let mut values = match quantity.quantity() {
-            Quantity::Angle => unwrapped_rad(&values),
-            _ => values,
-        };
-        values.sort_by(f64::total_cmp);
-        Self::with_levels(quantity, levels, |share| quantile_of_sorted(&values, share))
-    }
-
-    /// Median and intervals of a distribution; `None` if it has no quantiles.
-    ///
-    /// - `at`: the value below which the quantity lies with a probability.
-    pub fn by(quantity: ReconstructedQuantity, at: impl Fn(f64) -> Option<f64>) -> Option<Self> {
-        Self::with_levels(quantity, &LEVELS, at)
-    }
-
-    fn with_levels(
-        quantity: ReconstructedQuantity,
-        levels: &[f64],
-        at: impl Fn(f64) -> Option<f64>,
-    ) -> Option<Self> {
-        let estimate = Estimate::from_quantiles(levels, at)?;
-        Some(Self { name: quantity.key(), unit: quantity.unit(), estimate })
     }
 }
 
