@@ -213,3 +213,21 @@ fn a_racelogic_file_is_read_and_a_crash_report_is_named() {
     let error = read("CDR File Information\nUser Entered VIN,1G1\n", "").unwrap_err().to_string();
     assert!(error.contains("is the report of a Bosch CDR tool; copy its table"), "{error}");
 }
+
+#[test]
+fn a_heading_that_a_recorder_keeps_within_a_turn_is_read_without_jumps() {
+    let rows = |wrapped: [f64; 4]| {
+        let row = |(i, yaw): (usize, &f64)| format!("0.{i},{i},0,{yaw}\n");
+        let rows: String = wrapped.iter().enumerate().map(row).collect();
+        format!("t [s],x [m],y [m],yaw [deg]\n{rows}")
+    };
+    let yaw_deg = |text: String| -> Vec<f64> {
+        let loaded = read(&text, "").unwrap();
+        let yaw = loaded.series.get(Channel::Yaw).unwrap();
+        yaw.iter().map(|yaw| yaw.to_degrees().round()).collect()
+    };
+    assert_eq!(yaw_deg(rows([170.0, 178.0, -174.0, -166.0])), [170.0, 178.0, 186.0, 194.0]);
+    assert_eq!(yaw_deg(rows([10.0, 2.0, 354.0, 346.0])), [10.0, 2.0, -6.0, -14.0]);
+    // This one counts its turns: a fast spin, seldom recorded.
+    assert_eq!(yaw_deg(rows([0.0, 200.0, 400.0, 600.0])), [0.0, 200.0, 400.0, 600.0]);
+}
