@@ -248,6 +248,11 @@ fn without_a_restitution_it_is_that_of_the_closing_speed_in_all_directions() {
         assert!((used - expected).abs() < 0.03, "{speed}: {used}");
         let reason = report["assumptions"].to_string();
         assert!(reason.contains("in all directions"), "{reason}");
+        // Where the force is that of the momentum solution, it rests on this as well.
+        let predicted = answer(&["predict", "force", "--scenario", text(&open)]);
+        let share = predicted["applicability"].as_f64().unwrap();
+        let is_said = predicted["assumptions"].to_string().contains("in all directions");
+        assert_eq!(is_said, share < 1.0, "{predicted}");
     }
 }
 

@@ -28,11 +28,12 @@ pub const HARD_RESTITUTION: f64 = 0.1;
 const RESTITUTION_BOUNDS: [[f64; 2]; 2] = [[0.24, 0.66], [0.0, 0.3]];
 
 /// The coefficient of restitution where none is given: [`DEFAULT_RESTITUTION`] up to the first of
-/// [`RESTITUTION_SPEEDS_M_S`], [`HARD_RESTITUTION`] from the second on, and linear in between.
+/// [`RESTITUTION_SPEEDS_M_S`], [`HARD_RESTITUTION`] from the second on, and linear in between, to the
+/// thousandth.
 ///
 /// - `closing_m_s`: speed at which the contact points approach each other, in all directions, m/s.
 pub fn default_restitution(closing_m_s: f64) -> f64 {
-    over_closing_speed([DEFAULT_RESTITUTION, HARD_RESTITUTION], closing_m_s)
+    (1e3 * over_closing_speed([DEFAULT_RESTITUTION, HARD_RESTITUTION], closing_m_s)).round() / 1e3
 }
 
 /// Lowest and highest coefficient of restitution to be expected at a closing speed.

@@ -142,6 +142,8 @@ struct CollisionInput {
     impact: Option<(Impact, f64)>,
     /// What a scenario says of the contact.
     contact: Option<ScenarioContact>,
+    /// Restitution and friction that it leaves open.
+    default: Option<Caveat>,
     /// What the network does not use of what the question says.
     unused: Vec<Caveat>,
     /// That its outlines overlap.
@@ -169,7 +171,8 @@ impl ForceQuestion {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<CollisionInput>, StudyError> {
-        let (mut unused, mut overlap, mut contact) = (Vec::new(), None, None);
+        let (mut unused, mut overlap) = (Vec::new(), None);
+        let (mut contact, mut default) = (None, None);
         let across = |numbers: &ForceScenario| Some((numbers.likely_impact()?, 0.0));
         let (name, numbers, impact) = match self {
             Self::Scenario(choice) => {
@@ -182,6 +185,7 @@ impl ForceQuestion {
                 let numbers = ForceScenario::from_scenario(&scenario);
                 let numbers = numbers.map_err(|source| choice.unsolved(source))?;
                 let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
+                default = assumed::contact_default(&scenario, &impact);
                 (scenario.name, numbers, Some((impact, scenario.struck.heading_rad)))
             }
             Self::Case { dataset: root, case } => {
@@ -199,7 +203,15 @@ impl ForceQuestion {
                 (name.clone(), numbers.as_ref().clone(), across(numbers))
             }
         };
-        Ok(Outcome::Complete(CollisionInput { name, numbers, impact, contact, unused, overlap }))
+        Ok(Outcome::Complete(CollisionInput {
+            name,
+            numbers,
+            impact,
+            contact,
+            default,
+            unused,
+            overlap,
+        }))
     }
 }
 
@@ -231,7 +243,8 @@ impl Question for PredictForceRequest {
         let Outcome::Complete(collision) = numbers else {
             return Ok(Outcome::Cancelled);
         };
-        let CollisionInput { name, numbers, mut impact, contact, mut unused, overlap } = collision;
+        let CollisionInput { name, numbers, mut impact, contact, default, mut unused, overlap } =
+            collision;
         let mut collision = numbers;
         if let Some(body) = &self.body {
             collision.striking_body = Some(body.clone());
@@ -250,6 +263,7 @@ impl Question for PredictForceRequest {
         let prediction = model.predict(&collision)?;
         let share = prediction.applicability;
         unused.extend(contact.iter().flat_map(|contact| contact_by_force_network(contact, share)));
+        unused.extend(default.filter(|_| share < 1.0));
         let settings = ForecastSettings { n_curves: self.samples, seed: self.seed };
         let forecast =
             ForceForecast::new(&prediction.mixture, settings).map_err(ForceError::from)?;

@@ -11,6 +11,7 @@ use crate::analysis::{
     RivalForce, SecondContacts, Sensitivity, StruckVehicle, forecast_collision, forecast_forces,
 };
 use crate::ask::checks::{check, check_count};
+use crate::caveats::assumed::contact_default;
 use crate::caveats::restrictions;
 use crate::caveats::unused::{
     by_force_network, by_forecast, contact_by_force_network, zones_by_network,
@@ -277,7 +278,7 @@ impl Question for PredictMotionRequest {
         let mut caveats: Caveats = simulated.caveats.into_iter().filter(holds_here).collect();
         caveats.extend(unused);
         let provenance = self.provenance(library)?;
-        caveats.extend(self.unused_of_contact(&forecast)?);
+        caveats.extend(self.contact_caveats(&forecast)?);
         let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.caveats);
         let report = PredictMotionReport {
             implied_contact: self.implied_contact(&forecast)?,
@@ -344,14 +345,19 @@ impl PredictMotionRequest {
         }
     }
 
-    /// What a predicted force does not use of what the scenario says of the contact.
-    fn unused_of_contact(&self, forecast: &MotionForecast) -> Result<Vec<Caveat>, StudyError> {
+    /// What a predicted force does not use of what the scenario says of the contact, and what stands for
+    /// what it leaves open.
+    fn contact_caveats(&self, forecast: &MotionForecast) -> Result<Vec<Caveat>, StudyError> {
         let (Some(force), MotionSource::Scenario { scenario, .. }) =
             (&forecast.force, &self.motion.source)
         else {
             return Ok(Vec::new());
         };
-        Ok(contact_by_force_network(&scenario.load()?.contact, force.applicability))
+        let collision = scenario.load()?;
+        let impact = collision.impact().map_err(|source| scenario.unsolved(source))?;
+        let open = contact_default(&collision, &impact).filter(|_| force.applicability < 1.0);
+        let unused = contact_by_force_network(&collision.contact, force.applicability);
+        Ok(unused.into_iter().chain(open).collect())
     }
 
     /// Whether the motion of the source is a recorded one.
