@@ -81,7 +81,7 @@ pub fn jackknife_errors<const N: usize>(
 ///
 /// ```
 /// # use impactlab_core::numerics::share_standard_error;
-/// assert!((share_standard_error(1.0, 100.0) - 0.0133).abs() < 1e-4);
+/// assert!((share_standard_error(1.0, 100.0) - 0.0135).abs() < 1e-4);
 /// assert!((share_standard_error(0.3, 1e6) - (0.3_f64 * 0.7 / 1e6).sqrt()).abs() < 1e-8);
 /// ```
 pub fn share_standard_error(share: f64, n: f64) -> f64 {
