@@ -15,9 +15,11 @@ use impactlab_document::report::{
     Block, Language, Paper, PictureContent, Pixels, ReportDate, ReportDocument, ReportSettings,
     SectionKind, VALIDATION_TABLES, pdf, report_case,
 };
+use impactlab_study::analysis::PulseSetup;
 use impactlab_study::case_file::{CaseFile, CaseReport, Variant, pack, unpack};
 use impactlab_study::{
-    EvidenceChoice, ImpactRequest, Library, Question, ReconstructRequest, Report, ScenarioChoice,
+    EvidenceChoice, ForceSource, ImpactRequest, Library, ModelChoice, MotionSource,
+    PredictMotionRequest, Question, ReconstructRequest, Report, ScenarioChoice,
     SimulateDatasetRequest, VehicleChoice,
 };
 
@@ -437,4 +439,26 @@ fn the_errors_of_the_4dof_model_are_those_that_this_build_makes() {
         );
         assert!(stated.contains(&&*line), "measured: {line}");
     }
+}
+
+/// What the two methods say of one collision stood apart, and that they do not agree on page five.
+#[test]
+fn where_methods_disagree_the_first_page_says_so() {
+    let source = MotionSource::Scenario {
+        scenario: ScenarioChoice::File(PathBuf::from("pit-right-rear")),
+        pulse: PulseSetup::default(),
+    };
+    let force = ForceSource::Predicted(ModelChoice::default());
+    let question = PredictMotionRequest { draws: 5, ..PredictMotionRequest::new(source, force) };
+    let variant = Variant { questions: vec![question.into()], ..Variant::default() };
+    let (document, answers) = report(&CaseFile::new("PIT", variant), &english());
+    let Some(Report::PredictMotion(answer)) = answers.variants[0].reports().next() else {
+        panic!("an answer");
+    };
+    let rival = answer.rival.as_ref().expect("the 4DOF model");
+    assert!(!rival.is_within_known_error(), "{rival:?}");
+    let blocks = &document.section(SectionKind::Answers).expect("answers").blocks;
+    let Some(Block::Notice { text }) = blocks.first() else { panic!("{:?}", blocks.first()) };
+    assert!(text.contains("network and physics do not say the same"), "{text}");
+    assert_says(&document, "Do the methods agree?");
 }

@@ -18,6 +18,7 @@ use crate::report::{
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::error_chain;
+use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::UnitSystem;
 use impactlab_study::case_file::{CaseError, CaseFile, CaseOnDisk, CaseReport};
 use impactlab_study::{Library, Observer};
@@ -127,6 +128,7 @@ impl Builder<'_> {
         let mut blocks = Vec::new();
         blocks.extend(change_notice(&self.report.changes, self.wording, self.paths));
         blocks.extend(self.unanswered(variants));
+        blocks.extend(self.disagreements(variants));
         blocks.push(Block::paragraph(fill(words.intro, &values)));
         blocks.push(Block::paragraph(match settings.units {
             UnitSystem::Si => words.units_si,
@@ -185,16 +187,36 @@ impl Builder<'_> {
         }
         written.push((variant, part));
         let warnings = part.caveats.iter().filter(|caveat| caveat.is_warning());
-        let notices = warnings.map(|caveat| {
-            let label = self.wording.term(caveat.kind.label());
-            let text = self.wording.quoted(&caveat.text);
-            Block::notice(format!("{}: {label}: {text}", words.warning))
-        });
+        let notices = warnings.map(|caveat| Block::notice(self.warning(caveat)));
         let (question, rest) = part.answer.split_at(part.answer.len().min(1));
         blocks.extend(question.iter().cloned());
         blocks.extend(notices);
         blocks.extend(rest.iter().cloned());
         blocks
+    }
+
+    fn warning(&self, caveat: &Caveat) -> String {
+        let (warning, label) = (self.wording.words.warning, self.wording.term(caveat.kind.label()));
+        format!("{warning}: {label}: {}", self.wording.quoted(&caveat.text))
+    }
+
+    /// Where two methods do not say the same of one collision, for the first page.
+    fn disagreements(&self, variants: &[VariantParts]) -> Vec<Block> {
+        let mut said = BTreeSet::new();
+        for variant in variants {
+            for part in variant.answers.iter().flatten() {
+                let apart = part.caveats.iter();
+                let apart = apart.filter(|caveat| caveat.kind == CaveatKind::Disagreement);
+                said.extend(apart.map(|caveat| {
+                    let warning = self.warning(caveat);
+                    match variants.len() > 1 {
+                        true => format!("{}, {}: {warning}", variant.name, part.title),
+                        false => format!("{}: {warning}", part.title),
+                    }
+                }));
+            }
+        }
+        said.into_iter().map(Block::notice).collect()
     }
 
     /// How many questions have no answer.

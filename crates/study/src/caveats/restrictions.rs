@@ -16,8 +16,6 @@ use impactlab_core::units::{percent, significant};
 use impactlab_core::vehicle::REST_SPEED_M_S;
 use impactlab_networks::response::{OutsideDomain, STEP_S};
 
-/// The region of a forecast in which the 4DOF model ends if the two agree.
-const AGREEMENT_LEVEL: f64 = 0.99;
 /// Largest standard error of the end of an interval by the number of draws, as a share of the width.
 const MOST_CHANCE: f64 = 0.1;
 
@@ -240,7 +238,7 @@ pub(crate) fn contact_caveat(implied: &ImpliedContactReport) -> Option<Caveat> {
 /// A forecast in whose bands the other method does not end, by more than that method is known to err.
 fn disagreement_caveat(rival: &Rival) -> Option<Caveat> {
     let Rival { apart_m, time_s, known_error_m, .. } = *rival;
-    if rival.region_level <= AGREEMENT_LEVEL || rival.is_within_known_error() {
+    if rival.is_in_region() || rival.is_within_known_error() {
         return None;
     }
     let force = match rival.force {
@@ -248,9 +246,8 @@ fn disagreement_caveat(rival: &Rival) -> Option<Caveat> {
         RivalForce::Momentum => "under the impulse of the momentum solution",
     };
     let text = format!(
-        "the 4DOF model {force} is {apart_m:.1} m away after {time_s:.2} s, outside the {:.0} % region, \
-         more than it is known to err: network and physics do not say the same",
-        100.0 * AGREEMENT_LEVEL
+        "the 4DOF model {force} is {apart_m:.1} m away after {time_s:.2} s, outside the 90 % region and more \
+         than it is known to err: network and physics do not say the same"
     );
     let caveat = Caveat::new(CaveatKind::Disagreement, text)
         .with_value("distance to the 4DOF model [m]", apart_m)
