@@ -2,12 +2,17 @@
 
 use super::*;
 
-/// The example case as the window makes it: the PIT, with a driver who brakes, and with a lighter car.
+/// The example case as the window makes it: the PIT with the force that is predicted, with a driver who brakes,
+/// and with a lighter car.
 fn example(harness: &mut Harness<'_, App>) {
     let answered = |harness: &mut Harness<'_, App>| {
         harness.run_steps(2);
         step_until(harness, "the forecast", is_answered);
     };
+    // The same force as where the command line is asked.
+    let project = &mut harness.state_mut().state_mut().project;
+    project.predict_motion.force = ForceSource::Predicted(ModelChoice::default());
+    answered(harness);
     variant(harness, VariantCommand::Rename("coasts".to_owned()));
     variant(harness, VariantCommand::Duplicate);
     variant(harness, VariantCommand::Rename("driver brakes".to_owned()));
