@@ -98,7 +98,7 @@ fn texts(document: &ReportDocument) -> Vec<String> {
             vec![text.clone()]
         }
         Block::List { items } => items.clone(),
-        Block::Table(table) => table.rows.concat(),
+        Block::Table(table) => [vec![table.caption.clone()], table.rows.concat()].concat(),
         Block::Picture(picture) => vec![picture.caption.clone(), picture.alt.clone()],
     };
     document.sections.iter().flat_map(|section| &section.blocks).flat_map(of_block).collect()
