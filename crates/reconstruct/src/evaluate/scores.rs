@@ -4,7 +4,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::QuantityEstimate;
-use crate::evaluate::{KnownEvidence, ReconstructionMethod, SpeedEstimates, TrueSpeeds};
+use crate::evaluate::{
+    EstimatedQuantity, KnownEvidence, MethodEstimates, ReconstructionMethod, TrueQuantities,
+};
+use impactlab_core::numerics::wrap_angle_rad;
+use impactlab_core::units::Quantity;
 
 /// A quantity beside its true value.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -33,24 +37,30 @@ pub struct CaseScore {
     pub ess: Option<f64>,
     /// Motions that were simulated.
     pub n_simulations: usize,
-    /// The speeds that the method knows.
+    /// The quantities that the method knows.
     pub quantities: Vec<ScoredQuantity>,
 }
 
 impl CaseScore {
-    /// The score of the estimates of a case. A speed without a distribution is left out.
+    /// The score of the estimates of a case. A quantity without a distribution or a true value is left
+    /// out; an angle is compared with the turn of the truth that is nearest to its median.
     pub fn new(
         case: &str,
         known: KnownEvidence,
-        estimates: &SpeedEstimates,
-        truth: &TrueSpeeds,
+        estimates: &MethodEstimates,
+        truth: &TrueQuantities,
     ) -> Self {
-        let scored = estimates.speeds.iter().filter_map(|speed| {
-            let truth = truth.speed_m_s(speed.quantity)?;
-            let estimate = speed.distribution.estimate(speed.quantity)?;
-            Some(ScoredQuantity { estimate, truth, crps: speed.distribution.crps(truth)? })
+        let scored = estimates.quantities.iter().filter_map(|estimated| {
+            let EstimatedQuantity { quantity, distribution } = estimated;
+            let estimate = distribution.estimate(*quantity)?;
+            let mut truth = truth.value(*quantity)?;
+            if quantity.quantity() == Quantity::Angle {
+                let median = estimate.estimate.median;
+                truth = median + wrap_angle_rad(truth - median);
+            }
+            Some(ScoredQuantity { estimate, truth, crps: distribution.crps(truth)? })
         });
-        let SpeedEstimates { method, seconds, ess, n_simulations, .. } = *estimates;
+        let MethodEstimates { method, seconds, ess, n_simulations, .. } = *estimates;
         let (case, quantities) = (case.to_owned(), scored.collect());
         Self { case, known, method, seconds, ess, n_simulations, quantities }
     }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::ReconstructedQuantity;
 use impactlab_core::data::{DataError, TomlError, TomlFile, TomlTable, list_folder};
 use impactlab_core::numerics::sha256_hex;
-use impactlab_core::ranges::{EVIDENCE_SPEED, SPEED};
+use impactlab_core::ranges::{EVIDENCE_SPEED, HEADING, SPEED, YAW_RATE};
 
 /// Which cases of a folder.
 ///
@@ -79,20 +79,27 @@ impl StagedCollisions {
     }
 }
 
-/// The speeds before the impact as they were, m/s.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrueSpeeds {
-    /// Of the struck car.
+/// What had happened.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct TrueQuantities {
+    /// Speed of the struck car before the impact, m/s.
     pub struck_m_s: f64,
-    /// Of the striking car.
+    /// Speed of the striking car before the impact, m/s.
     pub striking_m_s: f64,
-    /// Size of the difference of both velocities.
+    /// Size of the difference of both velocities, m/s.
     pub closing_m_s: f64,
+    /// Heading of the striking car against that of the struck car, rad, where it is said.
+    pub heading_difference_rad: Option<f64>,
+    /// Change of velocity of the struck car by the contact alone, m/s, where it is said.
+    pub delta_v_struck_m_s: Option<f64>,
+    /// Yaw rate of the struck car at the end of the contact, rad/s, where it is said.
+    pub yaw_rate_after_rad_s: Option<f64>,
 }
 
-impl TrueSpeeds {
-    /// Reads what had happened; of both cars `speed_before_m_s` and `velocity_before_m_s`. Other keys
-    /// are not looked at.
+impl TrueQuantities {
+    /// Reads what had happened; of both cars `speed_before_m_s` and `velocity_before_m_s`, and
+    /// where they are said `delta_v_contact_m_s` and `yaw_rate_after_rad_s` of the struck car and
+    /// `heading_rad` of the striking car. Other keys are not looked at.
     ///
     /// # Errors
     /// [`TomlError`] with file, line and key.
@@ -108,21 +115,32 @@ impl TrueSpeeds {
             let mut car = top.table(key)?;
             let speed_m_s = car.require("speed_before", &EVIDENCE_SPEED)?;
             let velocity = car.point("velocity_before_m_s", &SPEED)?;
-            Ok((speed_m_s, velocity.ok_or_else(|| car.missing("velocity_before_m_s"))?))
+            let velocity = velocity.ok_or_else(|| car.missing("velocity_before_m_s"))?;
+            Ok((speed_m_s, velocity, car))
         };
-        let (struck_m_s, struck) = car("struck_car")?;
-        let (striking_m_s, striking) = car("striking_car")?;
-        let closing_m_s = (striking[0] - struck[0]).hypot(striking[1] - struck[1]);
-        Ok(Self { struck_m_s, striking_m_s, closing_m_s })
+        let (struck_m_s, struck, mut struck_car) = car("struck_car")?;
+        let (striking_m_s, striking, mut striking_car) = car("striking_car")?;
+        let delta_v = struck_car.point("delta_v_contact_m_s", &SPEED)?;
+        Ok(Self {
+            struck_m_s,
+            striking_m_s,
+            closing_m_s: (striking[0] - struck[0]).hypot(striking[1] - struck[1]),
+            heading_difference_rad: striking_car.number("heading", &HEADING)?,
+            delta_v_struck_m_s: delta_v.map(|[x, y]| x.hypot(y)),
+            yaw_rate_after_rad_s: struck_car.number("yaw_rate_after", &YAW_RATE)?,
+        })
     }
 
-    /// The true value of a quantity; `None` if it is no speed before the impact.
-    pub fn speed_m_s(&self, quantity: ReconstructedQuantity) -> Option<f64> {
+    /// The true value of a quantity in SI units; `None` if it is not said.
+    pub fn value(&self, quantity: ReconstructedQuantity) -> Option<f64> {
         match quantity {
             ReconstructedQuantity::StruckSpeed => Some(self.struck_m_s),
             ReconstructedQuantity::StrikingSpeed => Some(self.striking_m_s),
             ReconstructedQuantity::ClosingSpeed => Some(self.closing_m_s),
-            _ => None,
+            ReconstructedQuantity::HeadingDifference => self.heading_difference_rad,
+            ReconstructedQuantity::DeltaVStruck => self.delta_v_struck_m_s,
+            ReconstructedQuantity::StruckYawRate => self.yaw_rate_after_rad_s,
+            ReconstructedQuantity::RoadFriction => None,
         }
     }
 }
@@ -142,14 +160,24 @@ mod tests {
     }
 
     #[test]
-    fn the_closing_speed_is_the_size_of_the_difference_of_both_velocities() {
+    fn the_truth_is_read_with_the_closing_speed_of_both_velocities() {
         let text = "case = \"x\"\n[struck_car]\nspeed_before_m_s = 10\nmass_kg = 1\n\
                     velocity_before_m_s = [10, 0]\n[striking_car]\nspeed_before_m_s = 13.6\n\
                     velocity_before_m_s = [13, 4]\n";
-        let truth = |text: &str| TrueSpeeds::from_toml(TomlFile { path: Path::new("t"), text });
+        let truth = |text: &str| TrueQuantities::from_toml(TomlFile { path: Path::new("t"), text });
         let found = truth(text).unwrap();
-        assert_eq!(found, TrueSpeeds { struck_m_s: 10.0, striking_m_s: 13.6, closing_m_s: 5.0 });
-        assert_eq!(found.speed_m_s(ReconstructedQuantity::RoadFriction), None);
+        let speeds =
+            TrueQuantities { struck_m_s: 10.0, striking_m_s: 13.6, closing_m_s: 5.0, ..found };
+        assert_eq!(found, speeds);
+        assert_eq!(found.value(ReconstructedQuantity::HeadingDifference), None);
+        assert_eq!(found.value(ReconstructedQuantity::RoadFriction), None);
+        let after = "delta_v_contact_m_s = [3, -4]\nyaw_rate_after_deg_s = 90\n[striking_car]";
+        let more = text.replace("[striking_car]", after) + "heading_deg = 180\n";
+        let found = truth(&more).unwrap();
+        assert_eq!(found.value(ReconstructedQuantity::DeltaVStruck), Some(5.0));
+        let angle = |quantity| found.value(quantity).expect("an angle").to_degrees();
+        assert!((angle(ReconstructedQuantity::StruckYawRate) - 90.0).abs() < 1e-12);
+        assert!((angle(ReconstructedQuantity::HeadingDifference) - 180.0).abs() < 1e-12);
         let error = truth(&text.replace("velocity_before_m_s = [13, 4]", "")).unwrap_err();
         assert!(error.to_string().contains("velocity_before_m_s is missing"), "{error}");
     }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::evaluate::{CaseScore, KnownEvidence, ReconstructionMethod, SPEEDS, ScoredQuantity};
+use crate::evaluate::{CaseScore, KnownEvidence, ReconstructionMethod, SCORED, ScoredQuantity};
 use impactlab_core::numerics::quantile_of_sorted;
 
 /// Effective sample size from which on intervals are relied on.
@@ -25,7 +25,7 @@ pub struct MethodSummary {
     /// Number of cases whose effective sample size is [`SUFFICIENT_ESS`] or more, of a method that
     /// samples.
     pub n_sufficient_ess: Option<usize>,
-    /// The speeds that the method knows.
+    /// The quantities that the method knows.
     pub quantities: Vec<QuantitySummary>,
 }
 
@@ -74,7 +74,7 @@ impl MethodSummary {
         let seconds = sorted(scores.iter().map(|score| score.seconds));
         let ess: Vec<f64> = scores.iter().filter_map(|score| score.ess).collect();
         let n_sufficient = ess.iter().filter(|ess| **ess >= SUFFICIENT_ESS).count();
-        let quantities = SPEEDS.iter().filter_map(|speed| {
+        let quantities = SCORED.iter().filter_map(|speed| {
             let scored: Vec<&ScoredQuantity> =
                 scores.iter().filter_map(|score| score.quantity(speed.key())).collect();
             QuantitySummary::new(&scored)
@@ -132,21 +132,24 @@ fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::ReconstructedQuantity;
-    use crate::evaluate::{EstimatedSpeed, SpeedDistribution, SpeedEstimates, TrueSpeeds};
+    use crate::evaluate::{
+        EstimatedQuantity, MethodEstimates, QuantityDistribution, TrueQuantities,
+    };
     use crate::evidence::Measured;
+    use impactlab_core::numerics::wrap_angle_rad;
 
     /// A case whose struck car was estimated at 20 ± 2 m/s.
     fn score(truth_m_s: f64, seconds: f64, ess: f64) -> CaseScore {
-        let distribution = SpeedDistribution::Normal(Measured { value: 20.0, sigma: 2.0 });
+        let distribution = QuantityDistribution::Normal(Measured { value: 20.0, sigma: 2.0 });
         let quantity = ReconstructedQuantity::StruckSpeed;
-        let estimates = SpeedEstimates {
+        let estimates = MethodEstimates {
             method: ReconstructionMethod::Reconstruction,
             seconds,
             ess: Some(ess),
             n_simulations: 7,
-            speeds: vec![EstimatedSpeed { quantity, distribution }],
+            quantities: vec![EstimatedQuantity { quantity, distribution }],
         };
-        let truth = TrueSpeeds { struck_m_s: truth_m_s, striking_m_s: 0.0, closing_m_s: 0.0 };
+        let truth = TrueQuantities { struck_m_s: truth_m_s, ..TrueQuantities::default() };
         CaseScore::new("case", KnownEvidence::RestOnly, &estimates, &truth)
     }
 
@@ -172,15 +175,35 @@ mod tests {
     }
 
     #[test]
+    fn a_heading_is_compared_with_the_nearest_turn_of_the_truth() {
+        let quantity = ReconstructedQuantity::HeadingDifference;
+        let draws = (-10..=10).map(|k| wrap_angle_rad((179.0 + f64::from(k)).to_radians()));
+        let distribution = QuantityDistribution::from_draws(quantity, draws.collect());
+        let estimates = MethodEstimates {
+            method: ReconstructionMethod::Reconstruction,
+            seconds: 1.0,
+            ess: None,
+            n_simulations: 7,
+            quantities: vec![EstimatedQuantity { quantity, distribution }],
+        };
+        let heading = Some((-179_f64).to_radians());
+        let truth = TrueQuantities { heading_difference_rad: heading, ..TrueQuantities::default() };
+        let score = CaseScore::new("case", KnownEvidence::RestOnly, &estimates, &truth);
+        let [scored] = score.quantities.try_into().unwrap();
+        assert!((scored.error().to_degrees() + 2.0).abs() < 1e-9, "{scored:?}");
+        assert!((scored.width_90().to_degrees() - 18.0).abs() < 1e-9, "{scored:?}");
+    }
+
+    #[test]
     fn a_speed_without_a_distribution_is_left_out() {
         let mut none = score(20.0, 1.0, 1.0);
         none.quantities.clear();
         let summary = MethodSummary::from_scores(&[none, score(20.0, 1.0, 1.0)]);
         assert_eq!((summary[0].n_cases, summary[0].quantities[0].n), (2, 1));
         for distribution in [
-            SpeedDistribution::Draws(Vec::new()),
-            SpeedDistribution::Normal(Measured { value: 20.0, sigma: 0.0 }),
-            SpeedDistribution::Normal(Measured { value: 20.0, sigma: f64::NAN }),
+            QuantityDistribution::Draws(Vec::new()),
+            QuantityDistribution::Normal(Measured { value: 20.0, sigma: 0.0 }),
+            QuantityDistribution::Normal(Measured { value: 20.0, sigma: f64::NAN }),
         ] {
             assert_eq!((distribution.quantile(0.5), distribution.crps(1.0)), (None, None));
         }

@@ -2,14 +2,14 @@
 
 use impactlab_core::units::Quantity;
 use impactlab_reconstruct::ReconstructedQuantity;
-use impactlab_reconstruct::evaluate::{MethodSummary, QuantitySummary, SPEEDS};
+use impactlab_reconstruct::evaluate::{MethodSummary, QuantitySummary, SCORED};
 
 use crate::facts::training::left_out;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::{EvaluateReconstructionReport, word};
 
 impl EvaluateReconstructionReport {
-    /// What the answer says: how well each method finds each speed, what time it takes, and which
+    /// What the answer says: how well each method finds each quantity, what time it takes, and which
     /// cases are left out.
     pub fn facts(&self) -> Vec<FactTable> {
         let cases = vec![Value::Count(self.n_cases), Value::Phrase(word(&self.split))];
@@ -29,18 +29,18 @@ impl EvaluateReconstructionReport {
                 Term::Percentile90,
                 Term::SufficientEss,
             ]);
-        let speeds = SPEEDS.into_iter().filter_map(|speed| self.speed_table(speed));
+        let scored = SCORED.into_iter().filter_map(|quantity| self.quantity_table(quantity));
         let first = FactTable::new(Term::StagedCollisions, facts);
-        let tables = std::iter::once(first).chain(speeds).chain([times]);
+        let tables = std::iter::once(first).chain(scored).chain([times]);
         tables.chain(left_out(&self.left_out)).collect()
     }
 
-    fn speed_table(&self, speed: ReconstructedQuantity) -> Option<FactTable> {
+    fn quantity_table(&self, quantity: ReconstructedQuantity) -> Option<FactTable> {
         let row = |summary: &MethodSummary| {
-            let of = summary.quantities.iter().find(|of| of.name == speed.key())?;
-            Some(speed_row(summary, of))
+            let of = summary.quantities.iter().find(|of| of.name == quantity.key())?;
+            Some(quantity_row(summary, of, quantity.quantity()))
         };
-        let title = [Value::Phrase(speed.label().to_owned()), Term::SpeedsBesideTruth.into()];
+        let title = [Value::Phrase(quantity.label().to_owned()), Term::TruthsInIntervals.into()];
         let table = FactTable::new(
             Value::Joined(title.to_vec(), ": "),
             self.summary.iter().filter_map(row).collect(),
@@ -61,10 +61,10 @@ impl EvaluateReconstructionReport {
     }
 }
 
-fn speed_row(summary: &MethodSummary, of: &QuantitySummary) -> Fact {
+fn quantity_row(summary: &MethodSummary, of: &QuantitySummary, quantity: Quantity) -> Fact {
     let coverage = [of.coverage_50, of.coverage_80, of.coverage_90, of.coverage_95];
     let sizes = [of.median_absolute_error, of.median_error, of.median_width_90, of.mean_crps];
-    let sizes = sizes.map(|si| Value::Decimals(Quantity::Speed, si, 2));
+    let sizes = sizes.map(|si| Value::Decimals(quantity, si, 2));
     let values = [Value::Phrase(summary.method.label().to_owned()), Value::Count(of.n)];
     let values = values.into_iter().chain(coverage.map(Value::Share)).chain(sizes);
     Fact::row(Value::Phrase(summary.known.label().to_owned()), values.collect())
@@ -95,7 +95,7 @@ mod tests {
     #[test]
     fn each_speed_that_a_method_knows_has_a_table_in_the_chosen_units() {
         let quantity = QuantitySummary {
-            name: SPEEDS[0].key(),
+            name: SCORED[0].key(),
             unit: "m/s",
             n: 4,
             coverage_50: 0.5,

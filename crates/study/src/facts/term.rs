@@ -321,7 +321,7 @@ terms! {
     StagedCollisions: "Reconstructions beside the truth", "Rekonstruktionen neben der Wahrheit";
     Stopped: "stopped", "abgebrochen";
     StoppedEarly: "before all cases were done", "bevor alle Fälle fertig waren";
-    SpeedsBesideTruth: "truths within the intervals, and errors of the medians",
+    TruthsInIntervals: "truths within the intervals, and errors of the medians",
         "wahre Werte in den Intervallen, und Fehler der Mediane";
     CaseTimes: "Time of a case", "Rechenzeit eines Falls";
     KnownEvidence: "known", "bekannt", "How much of the evidence was used";

@@ -21,7 +21,7 @@ use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_reconstruct::evaluate::{
     CaseScore, KnownEvidence, MethodSummary, ReconstructionMethod, StagedCollisions, StagedSplit,
-    TrueSpeeds,
+    TrueQuantities,
 };
 
 /// Asks how well the speeds of staged collisions are reconstructed.
@@ -196,7 +196,7 @@ impl Estimated {
     fn scored(&mut self, staged: &StagedCollisions) -> Vec<CaseScore> {
         let mut scores = Vec::new();
         for done in &self.done {
-            match TrueSpeeds::load(&staged.truth_file(&done.case)) {
+            match TrueQuantities::load(&staged.truth_file(&done.case)) {
                 Ok(truth) => scores.extend(
                     done.methods
                         .iter()

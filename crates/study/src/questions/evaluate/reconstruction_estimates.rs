@@ -18,7 +18,7 @@ use impactlab_core::numerics::sha256_hex;
 use impactlab_core::program;
 use impactlab_reconstruct::HandCalculation;
 use impactlab_reconstruct::baseline::{OptimumSettings, PointOptimum};
-use impactlab_reconstruct::evaluate::{KnownEvidence, SpeedEstimates};
+use impactlab_reconstruct::evaluate::{KnownEvidence, MethodEstimates};
 use impactlab_reconstruct::evidence::Evidence;
 
 /// Draws from the normal distribution about the optimum of the swarm.
@@ -34,15 +34,15 @@ pub(crate) struct CaseQuestion<'a> {
     pub(crate) evidence: PathBuf,
 }
 
-/// The speeds of a case by every method.
+/// The estimates of a case by every method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CaseEstimates {
     /// Name of the case.
     pub(crate) case: String,
     /// How much of its evidence was used.
     pub(crate) known: KnownEvidence,
-    /// The speeds by each method.
-    pub(crate) methods: Vec<SpeedEstimates>,
+    /// The estimates by each method.
+    pub(crate) methods: Vec<MethodEstimates>,
 }
 
 /// Cases that are kept in files as soon as they are finished. Those of another build of the program are
@@ -93,7 +93,7 @@ impl CaseQuestion<'_> {
         if is_stopped {
             return Ok(Outcome::Cancelled);
         }
-        let ours = SpeedEstimates::from_posterior(
+        let ours = MethodEstimates::from_posterior(
             &answer.posterior,
             answer.report.ess,
             answer.report.n_simulations,
@@ -101,14 +101,14 @@ impl CaseQuestion<'_> {
         );
         let started = Instant::now();
         let hand = HandCalculation::new(evidence, answer.target.model().cars(), &[]);
-        let by_hand = SpeedEstimates::by_hand(hand.as_ref(), started.elapsed().as_secs_f64());
+        let by_hand = MethodEstimates::by_hand(hand.as_ref(), started.elapsed().as_secs_f64());
         let mut methods = vec![ours, by_hand];
         if evaluation.swarm {
             let started = Instant::now();
             let settings = OptimumSettings { seed: evaluation.seed, ..OptimumSettings::default() };
             let found = PointOptimum::find(&answer.target, settings);
             let seconds = started.elapsed().as_secs_f64();
-            methods.push(SpeedEstimates::by_swarm(
+            methods.push(MethodEstimates::by_swarm(
                 &answer.target,
                 found.as_ref(),
                 SWARM_DRAWS,

@@ -1,4 +1,4 @@
-//! The speeds before the impact as one method estimates them.
+//! What had happened as one method estimates it.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -8,17 +8,21 @@ use crate::evidence::Measured;
 use crate::{
     HandCalculation, Posterior, QuantityEstimate, ReconstructedQuantity, ReconstructionTarget,
 };
-use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_core::numerics::{quantile_of_sorted, unwrapped_rad};
 use impactlab_core::uncertainty::{NormalMixture, NormalPart, sample_crps};
+use impactlab_core::units::Quantity;
 
-/// The speeds that are compared with the truth.
-pub const SPEEDS: [ReconstructedQuantity; 3] = [
+/// The quantities that are compared with the truth.
+pub const SCORED: [ReconstructedQuantity; 6] = [
     ReconstructedQuantity::StruckSpeed,
     ReconstructedQuantity::ClosingSpeed,
     ReconstructedQuantity::StrikingSpeed,
+    ReconstructedQuantity::HeadingDifference,
+    ReconstructedQuantity::DeltaVStruck,
+    ReconstructedQuantity::StruckYawRate,
 ];
 
-/// How the speeds are estimated.
+/// How a collision is reconstructed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ReconstructionMethod {
@@ -31,28 +35,28 @@ pub enum ReconstructionMethod {
     Swarm,
 }
 
-/// The distribution of a speed, m/s.
+/// The distribution of a quantity, in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum SpeedDistribution {
+pub enum QuantityDistribution {
     /// Equally likely values in increasing order.
     Draws(Vec<f64>),
     /// A normal distribution.
     Normal(Measured),
 }
 
-/// A speed with its distribution.
+/// A quantity with its distribution.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct EstimatedSpeed {
-    /// Which speed.
+pub struct EstimatedQuantity {
+    /// Which quantity.
     pub quantity: ReconstructedQuantity,
-    /// Its distribution, m/s.
-    pub distribution: SpeedDistribution,
+    /// Its distribution.
+    pub distribution: QuantityDistribution,
 }
 
-/// The speeds of one case by one method.
+/// The estimates of one case by one method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SpeedEstimates {
+pub struct MethodEstimates {
     /// How they are estimated.
     pub method: ReconstructionMethod,
     /// Time that it has taken, s.
@@ -61,8 +65,8 @@ pub struct SpeedEstimates {
     pub ess: Option<f64>,
     /// Motions that were simulated.
     pub n_simulations: usize,
-    /// The speeds that the method knows.
-    pub speeds: Vec<EstimatedSpeed>,
+    /// The quantities that the method knows.
+    pub quantities: Vec<EstimatedQuantity>,
 }
 
 impl ReconstructionMethod {
@@ -79,14 +83,17 @@ impl ReconstructionMethod {
     }
 }
 
-impl SpeedDistribution {
-    /// Equally likely values.
-    pub fn from_draws(mut draws: Vec<f64>) -> Self {
+impl QuantityDistribution {
+    /// Equally likely values of a quantity; those of an angle continue without a jump.
+    pub fn from_draws(quantity: ReconstructedQuantity, mut draws: Vec<f64>) -> Self {
+        if quantity.quantity() == Quantity::Angle {
+            draws = unwrapped_rad(&draws);
+        }
         draws.sort_by(f64::total_cmp);
         Self::Draws(draws)
     }
 
-    /// The value below which the speed lies with a probability; `None` without values, and of a
+    /// The value below which the quantity lies with a probability; `None` without values, and of a
     /// normal distribution without a positive standard deviation.
     pub fn quantile(&self, probability: f64) -> Option<f64> {
         match self {
@@ -95,11 +102,12 @@ impl SpeedDistribution {
         }
     }
 
-    /// Continuous ranked probability score against the truth, m/s; `None` likewise.
-    pub fn crps(&self, truth_m_s: f64) -> Option<f64> {
+    /// Continuous ranked probability score against the truth, in the unit of the quantity; `None`
+    /// likewise.
+    pub fn crps(&self, truth: f64) -> Option<f64> {
         match self {
-            Self::Draws(draws) => (!draws.is_empty()).then(|| sample_crps(draws, truth_m_s)),
-            Self::Normal(measured) => Some(normal(*measured)?.crps(truth_m_s)),
+            Self::Draws(draws) => (!draws.is_empty()).then(|| sample_crps(draws, truth)),
+            Self::Normal(measured) => Some(normal(*measured)?.crps(truth)),
         }
     }
 
@@ -114,8 +122,8 @@ fn normal(measured: Measured) -> Option<NormalMixture> {
     NormalMixture::new(vec![part]).ok()
 }
 
-impl SpeedEstimates {
-    /// The speeds of particles.
+impl MethodEstimates {
+    /// The quantities of particles.
     ///
     /// - `ess`, `n_simulations`: their effective sample size, and the motions that they have cost.
     pub fn from_posterior(
@@ -125,15 +133,16 @@ impl SpeedEstimates {
         seconds: f64,
     ) -> Self {
         let method = ReconstructionMethod::Reconstruction;
-        Self { method, seconds, ess: Some(ess), n_simulations, speeds: speeds(posterior) }
+        let quantities = quantities(posterior);
+        Self { method, seconds, ess: Some(ess), n_simulations, quantities }
     }
 
     /// The speeds by hand; none where the rest position is not known.
     pub fn by_hand(hand: Option<&HandCalculation>, seconds: f64) -> Self {
         let estimates = |hand: &HandCalculation| {
-            let speed = |quantity, measured| EstimatedSpeed {
+            let speed = |quantity, measured| EstimatedQuantity {
                 quantity,
-                distribution: SpeedDistribution::Normal(measured),
+                distribution: QuantityDistribution::Normal(measured),
             };
             vec![
                 speed(ReconstructedQuantity::StruckSpeed, hand.struck_speed_m_s),
@@ -146,11 +155,11 @@ impl SpeedEstimates {
             seconds,
             ess: None,
             n_simulations: 0,
-            speeds: hand.map(estimates).unwrap_or_default(),
+            quantities: hand.map(estimates).unwrap_or_default(),
         }
     }
 
-    /// The speeds of the most probable point, by draws from the normal distribution about it; none
+    /// The quantities of the most probable point, by draws from the normal distribution about it; none
     /// where the evidence is impossible wherever the swarm has looked.
     ///
     /// - `n_draws`, `seed`: number and seed of the draws.
@@ -162,21 +171,21 @@ impl SpeedEstimates {
         seconds: f64,
     ) -> Self {
         let drawn = found.and_then(|found| found.draws(n_draws, seed));
-        let speeds_at = |z: Vec<Vec<f64>>| speeds(&Posterior::from_points(struck.model(), &z));
+        let at = |z: Vec<Vec<f64>>| quantities(&Posterior::from_points(struck.model(), &z));
         Self {
             method: ReconstructionMethod::Swarm,
             seconds,
             ess: None,
             n_simulations: found.map_or(0, |found| found.n_evaluations),
-            speeds: drawn.map(speeds_at).unwrap_or_default(),
+            quantities: drawn.map(at).unwrap_or_default(),
         }
     }
 }
 
-fn speeds(posterior: &Posterior) -> Vec<EstimatedSpeed> {
-    let estimate = |quantity: ReconstructedQuantity| EstimatedSpeed {
+fn quantities(posterior: &Posterior) -> Vec<EstimatedQuantity> {
+    let estimate = |quantity: ReconstructedQuantity| EstimatedQuantity {
         quantity,
-        distribution: SpeedDistribution::from_draws(posterior.values(quantity)),
+        distribution: QuantityDistribution::from_draws(quantity, posterior.values(quantity)),
     };
-    SPEEDS.map(estimate).into()
+    SCORED.map(estimate).into()
 }
