@@ -19,6 +19,7 @@ mod exchange;
 mod force_baselines;
 mod force_domain;
 mod force_model;
+mod measurements;
 mod model_budgets;
 mod ranges;
 mod report;

@@ -29,6 +29,7 @@ mod ask;
 mod caveats;
 #[cfg(test)]
 mod examples;
+mod measured;
 mod questions;
 
 pub use ask::answer::Answer;
@@ -46,6 +47,7 @@ pub use ask::question::{Event, Observer, Question, Sampling};
 pub use ask::request::{AnyAnswer, Report, Request};
 pub use ask::schema::{JsonKind, json_kinds};
 pub use ask::word::word;
+pub use measured::{HeldIntervals, Measured, Measurement, Measurements, ValidationTable};
 pub use questions::check::report::{
     CaseFlag, CheckReport, ColumnReport, DatasetReport, FileReport, InputFileReport, PathProblem,
     ProposedColumn, RecordedForceReport,

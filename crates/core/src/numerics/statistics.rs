@@ -90,6 +90,33 @@ pub fn share_standard_error(share: f64, n: f64) -> f64 {
     (share_more * (1.0 - share_more) / n_more).sqrt()
 }
 
+/// Bounds of 95 % confidence of a share of which `hits` of `n` were counted.
+///
+/// ```text
+/// (p̂ + z²/2n ± z √(p̂ (1 − p̂)/n + z²/4n²)) / (1 + z²/n),   z = 1.96
+/// ```
+///
+/// Source: Wilson, Journal of the American Statistical Association 22 (1927), 209 to 212.
+///
+/// - returns [0, 1] without a count.
+///
+/// ```
+/// # use impactlab_core::numerics::wilson_interval;
+/// let [from, to] = wilson_interval(19, 25);
+/// assert!((from - 0.566).abs() < 1e-3 && (to - 0.885).abs() < 1e-3);
+/// let [from, to] = wilson_interval(25, 25);
+/// assert!((from - 0.867).abs() < 1e-3 && to == 1.0);
+/// ```
+pub fn wilson_interval(hits: usize, n: usize) -> [f64; 2] {
+    if n == 0 {
+        return [0.0, 1.0];
+    }
+    let (z2, n, share) = (1.959_963_985_f64.powi(2), n as f64, hits as f64 / n as f64);
+    let centre = share + z2 / (2.0 * n);
+    let half = (z2 * share * (1.0 - share) / n + (z2 / (2.0 * n)).powi(2)).sqrt();
+    [centre - half, centre + half].map(|end| (end / (1.0 + z2 / n)).clamp(0.0, 1.0))
+}
+
 /// Quantile of values in increasing order, by linear interpolation between neighbouring values: the
 /// probability 0 gives the smallest value, 1 the largest. A probability outside this range is
 /// limited to it.

@@ -48,7 +48,6 @@ pub use document::{
 };
 pub use impactlab_core::units::Language;
 pub use settings::{DateError, Paper, ReportDate, ReportSettings};
-pub use validation::{VALIDATION_TABLES, ValidationTable};
 pub use write::{
     Drawing, FormatError, PdfError, Pixels, ReportFormat, WriteError, column_widths, pdf,
 };

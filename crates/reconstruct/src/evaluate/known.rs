@@ -31,6 +31,15 @@ impl KnownEvidence {
         }
     }
 
+    /// What such evidence is alike among the staged collisions that reconstructions were measured on.
+    pub fn like(evidence: &Evidence) -> Self {
+        match (&evidence.edr, evidence.marks.is_empty()) {
+            (Some(_), _) => Self::Everything,
+            (None, false) => Self::WithoutEdr,
+            (None, true) => Self::RestOnly,
+        }
+    }
+
     /// What is used of the evidence.
     pub fn select(self, evidence: &Evidence) -> Evidence {
         match self {

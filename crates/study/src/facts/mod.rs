@@ -13,6 +13,7 @@ mod compare;
 mod contact;
 mod evaluate_force;
 mod evaluate_reconstruction;
+mod held;
 mod impact;
 mod predict_force;
 mod predict_motion;

@@ -3,13 +3,16 @@
 use impactlab_core::units::Quantity;
 
 use crate::PredictForceReport;
+use crate::facts::held::held_intervals;
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
+use crate::measured::Measured;
 
 impl PredictForceReport {
     /// What the answer says: the force with its intervals, and the courses that the contact may take.
     pub fn facts(&self) -> Vec<FactTable> {
-        [Some(self.force_table()), self.course_table()].into_iter().flatten().collect()
+        let held = held_intervals(Measured::ForceNetwork, &self.model);
+        [Some(self.force_table()), self.course_table(), held].into_iter().flatten().collect()
     }
 
     /// The force with its intervals.

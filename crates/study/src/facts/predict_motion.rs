@@ -4,15 +4,19 @@ use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
 
 use crate::analysis::{MonteCarloError, RivalForce};
+use crate::facts::held::held_intervals;
 use crate::facts::simulate::sensitivity;
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
+use crate::measured::Measured;
 use crate::{FlagReport, PredictMotionReport};
 
 impl PredictMotionReport {
     /// What the answer says: how the motion ends, and what that depends on.
     pub fn facts(&self) -> Vec<FactTable> {
-        let tables = [Some(self.motion_table()), self.rival_table(), self.sensitivity_table()];
+        let held = held_intervals(Measured::ResponseNetwork, &self.response_model);
+        let tables =
+            [Some(self.motion_table()), self.rival_table(), self.sensitivity_table(), held];
         tables.into_iter().flatten().collect()
     }
 

@@ -10,6 +10,7 @@ use crate::ReconstructReport;
 use crate::facts::simulate::zones;
 use crate::facts::table::{PREDICTED, RECONSTRUCTED};
 use crate::facts::{Fact, FactTable, Term, Value};
+use crate::measured::{Measured, Measurement};
 
 impl ReconstructReport {
     /// What the answer says: the courses of events where there are several, what the speeds hinge on, the
@@ -24,6 +25,8 @@ impl ReconstructReport {
             Some(self.fit_table()),
             self.mark_table(),
             self.budget_table(),
+            Measurement::shipped(Measured::reconstruction_of(self.known))
+                .and_then(Measurement::held_table),
         ];
         tables.into_iter().flatten().collect()
     }

@@ -323,6 +323,12 @@ terms! {
     StoppedEarly: "before all cases were done", "bevor alle Fälle fertig waren";
     TruthsInIntervals: "truths within the intervals, and errors of the medians",
         "wahre Werte in den Intervallen, und Fehler der Mediane";
+    HeldIntervals: "How often such intervals held", "Wie oft solche Intervalle zutrafen",
+        "Cases with a known truth: the shares whose intervals held it";
+    In50: "in 50 %", "in 50 %", "Share of the cases whose interval of 50 % held the true value";
+    In90: "in 90 %", "in 90 %", "Share of the cases whose interval of 90 % held the true value";
+    ConfidenceFrom: "at least", "mindestens", "Lower bound of 95 % confidence of that share, after Wilson";
+    ConfidenceTo: "at most", "höchstens", "Upper bound of 95 % confidence of that share, after Wilson";
     CaseTimes: "Time of a case", "Rechenzeit eines Falls";
     KnownEvidence: "known", "bekannt", "How much of the evidence was used";
     Method: "method", "Verfahren";

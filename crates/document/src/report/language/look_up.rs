@@ -31,9 +31,9 @@ pub(in crate::report) fn phrase_of(language: Language, text: &str) -> Option<Str
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::VALIDATION_TABLES;
     use impactlab_core::vehicle::sheet::SheetQuantity;
     use impactlab_reconstruct::{Latent, ReconstructedQuantity};
+    use impactlab_study::Measurements;
 
     #[test]
     fn every_label_of_the_program_has_a_german_one() {
@@ -43,7 +43,12 @@ mod tests {
         for label in latents.chain(quantities).chain(sheet) {
             assert!(phrase_of(Language::De, label).is_some(), "{label}");
         }
-        let lines = VALIDATION_TABLES.iter().flat_map(|table| table.lines);
+        let measured = Measurements::shipped();
+        for held in measured.iter().flat_map(|measurement| &measurement.held) {
+            assert!(phrase_of(Language::De, &held.quantity).is_some(), "{}", held.quantity);
+        }
+        let tables = measured.iter().flat_map(|measurement| &measurement.tables);
+        let lines = tables.flat_map(|table| &table.lines);
         for cell in lines.flat_map(|line| line.split('|')).map(str::trim) {
             let has_words = cell.chars().filter(|c| c.is_alphabetic()).count() > 1;
             assert!(!has_words || phrase_of(Language::De, cell).is_some(), "{cell}");

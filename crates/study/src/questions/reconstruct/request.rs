@@ -21,6 +21,7 @@ use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_core::units::NumberFormat;
 use impactlab_core::vehicle::FrictionZone;
 use impactlab_reconstruct::domain::{check_damage, outside_domain};
+use impactlab_reconstruct::evaluate::KnownEvidence;
 use impactlab_reconstruct::evidence::Evidence;
 use impactlab_reconstruct::sampler::{
     Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, sample,
@@ -113,6 +114,8 @@ pub struct ReconstructReport {
     /// The parts of the ground with their own friction.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub friction_zones: Vec<FrictionZoneReport>,
+    /// What the evidence is alike among the staged collisions that reconstructions were measured on.
+    pub known: KnownEvidence,
     /// What was taken to be likely before.
     pub priors: Vec<PriorComponent>,
 }
@@ -305,6 +308,7 @@ impl Question for ReconstructRequest {
         let quantities = posterior.quantities();
         let report = ReconstructReport {
             case: target.evidence().case.clone(),
+            known: KnownEvidence::like(target.evidence()),
             marks: compared_marks(&target, &particles, &posterior, &quantities, &modes),
             quantities,
             hinges: posterior.hinges(),

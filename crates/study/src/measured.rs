@@ -1,0 +1,138 @@
+//! What the models were measured against, and how far they were off: the error rates that answers and
+//! reports state.
+//!
+//! All of it stands in `assets/validation.toml`, which `cargo run --release --example validation` writes.
+//! Beside each measurement stand the digest of the data that it was made with and a few numbers that a
+//! build must still compute, so that a test fails if data or program have changed and the measurement was
+//! not made again. (A digest of the source would change with every comment.)
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use serde::{Deserialize, Serialize};
+
+use impactlab_reconstruct::evaluate::KnownEvidence;
+
+const FILE: &str = include_str!("../../../assets/validation.toml");
+
+static MEASUREMENTS: LazyLock<Result<Measurements, toml::de::Error>> =
+    LazyLock::new(|| toml::from_str(FILE));
+
+/// All measurements.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Measurements {
+    /// Each of them.
+    #[serde(rename = "measurement")]
+    pub all: Vec<Measurement>,
+}
+
+/// One measurement, with what it was made of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Measurement {
+    /// What was measured.
+    pub subject: Measured,
+    /// When, as `YYYY-MM-DD`.
+    pub date: String,
+    /// The command that measures it.
+    pub command: String,
+    /// The files and folders that it reads.
+    pub data: Vec<String>,
+    /// SHA-256 over their names and contents.
+    pub data_sha256: String,
+    /// Numbers that a build must still compute, by name.
+    pub probe: BTreeMap<String, f64>,
+    /// The tables of `docs/VALIDATION.md` that it fills, as far as a report shows them.
+    #[serde(rename = "table")]
+    pub tables: Vec<ValidationTable>,
+    /// How often intervals of an answer held the true value.
+    #[serde(rename = "held", default, skip_serializing_if = "Vec::is_empty")]
+    pub held: Vec<HeldIntervals>,
+}
+
+/// What a measurement is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Measured {
+    /// Impulses of the momentum solution.
+    Impact,
+    /// Motions of the 4DOF model.
+    FourDof,
+    /// Forces of the shipped network.
+    ForceNetwork,
+    /// Motions of the shipped network, of cars that it has not seen.
+    ResponseNetwork,
+    /// Reconstructions from all of the evidence.
+    ReconstructionOfEverything,
+    /// Reconstructions without the event data recorder.
+    ReconstructionWithoutEdr,
+    /// Reconstructions from the rest poses alone.
+    ReconstructionOfRest,
+}
+
+/// Lines of a table of `docs/VALIDATION.md`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ValidationTable {
+    /// The heading in that document below which it stands.
+    pub heading: String,
+    /// Header and rows, each a line of that document.
+    pub lines: Vec<String>,
+}
+
+/// In how many cases the interval of a quantity held the true value.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HeldIntervals {
+    /// The quantity.
+    pub quantity: String,
+    /// In how many cases the interval of 50 % held.
+    pub in_50: usize,
+    /// … of 90 %.
+    pub in_90: usize,
+    /// Number of cases.
+    pub n: usize,
+}
+
+impl Measured {
+    /// The measurement of reconstructions from such evidence.
+    pub fn reconstruction_of(known: KnownEvidence) -> Self {
+        match known {
+            KnownEvidence::Everything => Self::ReconstructionOfEverything,
+            KnownEvidence::WithoutEdr => Self::ReconstructionWithoutEdr,
+            KnownEvidence::RestOnly => Self::ReconstructionOfRest,
+        }
+    }
+}
+
+impl Measurements {
+    /// Those of the shipped program.
+    pub fn shipped() -> &'static [Measurement] {
+        MEASUREMENTS.as_ref().map_or(&[], |measurements| &measurements.all)
+    }
+}
+
+impl Measurement {
+    /// The measurement of a subject in the shipped program.
+    pub fn shipped(subject: Measured) -> Option<&'static Self> {
+        Measurements::shipped().iter().find(|measurement| measurement.subject == subject)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_file_is_read_and_every_subject_has_a_table() {
+        let measurements = MEASUREMENTS.as_ref().unwrap();
+        assert_eq!(measurements.all.len(), 7);
+        for measurement in &measurements.all {
+            assert!(!measurement.tables.is_empty() && !measurement.probe.is_empty());
+            for held in &measurement.held {
+                assert!(held.in_50 <= held.in_90 && held.in_90 <= held.n, "{held:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,307 @@
+//! The rows of the tables.
+
+use std::error::Error;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use impactlab_core::collision::{DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, RestitutionForm};
+use impactlab_core::data::Dataset;
+use impactlab_core::numerics::{Summary, quantile_of_sorted, wilson_interval};
+use impactlab_core::vehicle::Integrator;
+use impactlab_networks::force::{ContactLaw, ForceCase};
+use impactlab_networks::learning::{TEST_SHARE, split};
+use impactlab_reconstruct::ReconstructedQuantity;
+use impactlab_reconstruct::evaluate::{KnownEvidence, StagedCollisions, StagedSplit};
+use impactlab_study::{
+    EvaluateForceRequest, Event, HeldIntervals, Library, Measured, ModelChoice, Question,
+    SimulateDatasetRequest, VehicleChoice,
+};
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::{Found, Row};
+
+impl Row {
+    /// - `n_names`: how many of the first cells name it.
+    fn new(cells: &[String], n_names: usize) -> Self {
+        let name = format!("| {} |", cells[..n_names].join(" | "));
+        Self { name, line: format!("| {} |", cells.join(" | ")) }
+    }
+}
+
+/// What takes minutes: impulses, motions of the 4DOF model, and the force network.
+pub(crate) fn quick(datasets: &Path) -> Result<Vec<Found>, Box<dyn Error>> {
+    Ok(vec![impact(&datasets.join("fea"))?, four_dof(datasets)?, force(&datasets.join("fea"))?])
+}
+
+fn answer<Q: Question>(question: &Q) -> Result<Q::Answer, Box<dyn Error>> {
+    let mut go_on = |_: Event<'_>| ControlFlow::Continue(());
+    let answer = question.answer(&Library::default(), &mut go_on)?;
+    Ok(answer.complete().ok_or("cancelled")?)
+}
+
+/// Errors of the impulse with the default surface, and with the one that fits best where restitution acts
+/// on the common velocity.
+fn impact(path: &Path) -> Result<Found, Box<dyn Error>> {
+    let cases = cases(path)?;
+    let split = split(&cases, 0, TEST_SHARE);
+    let of = |indices: &[usize]| -> Vec<&ForceCase> {
+        indices.iter().filter_map(|&idx| cases.get(idx)).collect()
+    };
+    let train: Vec<&ForceCase> =
+        of(&split.train).into_iter().filter(|case| case.is_clean()).collect();
+    let test = of(&split.test);
+    let forms = [
+        (RestitutionForm::Normal, "restitution on the normal component", DEFAULT_FRICTION_LIMIT),
+        (RestitutionForm::CommonVelocity, "restitution from the common velocity", 0.31),
+    ];
+    let mut rows = Vec::new();
+    for (form, name, friction_limit) in forms {
+        let of_default = if form == RestitutionForm::Normal { " (the default)" } else { "" };
+        let error = |case: &&ForceCase| {
+            let restitution = DEFAULT_RESTITUTION;
+            let law = ContactLaw::at_closing_speed(0.0);
+            let mut impact =
+                case.scenario.impact(ContactLaw { restitution, friction_limit, ..law })?;
+            impact.surface.restitution_form = form;
+            let ([px, py], [qx, qy]) = (impact.solve().ok()?.impulse_world_n_s, case.impulse_n_s);
+            Some(100.0 * (px - qx).hypot(py - qy) / qx.hypot(qy))
+        };
+        let share = |cases: &[&ForceCase]| {
+            let errors = Summary::from_values(cases.iter().filter_map(error));
+            errors.map_or_else(String::new, |of| format!("{:.1} ({:.1})", of.median, of.mean))
+        };
+        let surface = format!("{DEFAULT_RESTITUTION:.2}, {friction_limit:.2}{of_default}");
+        rows.push(Row::new(&[name.to_owned(), surface, share(&train), share(&test)], 1));
+    }
+    Ok(Found { subject: Measured::Impact, tables: vec![rows], held: Vec::new() })
+}
+
+/// Errors of each of both sets of the reference car.
+fn four_dof(datasets: &Path) -> Result<Found, Box<dyn Error>> {
+    let mut rows = Vec::new();
+    for set in ["trajectories-fea", "trajectories-pulse"] {
+        let question = SimulateDatasetRequest {
+            dataset: datasets.join(set),
+            case: None,
+            vehicle: VehicleChoice::Automatic,
+            equations: None,
+            integrator: Integrator::default(),
+        };
+        let cases = answer(&question)?.report.report.cases;
+        let path = cases.iter().map(|case| case.error.average_error_m);
+        let path = Summary::from_values(path).ok_or("no cases")?;
+        let ends = cases.iter().map(|case| case.error.final_error_m);
+        let ends = Summary::from_values(ends).ok_or("no cases")?;
+        let violations: usize = cases.iter().map(|case| case.violations).sum();
+        let numbers = [path.mean, path.std, path.median].map(|error| format!("{error:.3}"));
+        let mut cells = vec![format!("{set}, all"), path.n.to_string()];
+        cells.extend(numbers);
+        cells.extend([format!("{:.2}", ends.median), violations.to_string()]);
+        rows.push(Row::new(&cells, 1));
+    }
+    Ok(Found { subject: Measured::FourDof, tables: vec![rows], held: Vec::new() })
+}
+
+/// Errors of the shipped force network and of two of its baselines on the test cases, and how often its
+/// intervals held.
+fn force(path: &Path) -> Result<Found, Box<dyn Error>> {
+    let question = EvaluateForceRequest::new(ModelChoice::default(), path);
+    let report = serde_json::to_value(answer(&question)?.report)?;
+    let number = |place: &str| -> Result<f64, Box<dyn Error>> {
+        let number = report.pointer(place).and_then(Value::as_f64);
+        Ok(number.ok_or_else(|| format!("no number {place}"))?)
+    };
+    let models = [
+        ("force network", "/overall"),
+        ("classic pulse", "/baselines/pulse/overall"),
+        ("Gaussian processes", "/baselines/statistical/overall"),
+    ];
+    let errors =
+        ["history_error", "rmse_over_peak", "impulse_error", "peak_error", "duration_error"];
+    let mut rows = Vec::new();
+    for (name, place) in models {
+        let mut cells = vec![name.to_owned()];
+        for error in errors {
+            let [median, mean] = ["median", "mean"].map(|of| format!("{place}/{error}/{of}"));
+            cells.push(format!("{:.1} ({:.1})", 100.0 * number(&median)?, 100.0 * number(&mean)?));
+        }
+        rows.push(Row::new(&cells, 1));
+    }
+    let n = number("/n_test")? as usize;
+    let quantities = [("impulse", "impulse_n_s"), ("peak", "peak_n"), ("duration", "duration_s")];
+    let (mut shares, mut held) = (Vec::new(), Vec::new());
+    for (name, key) in [("F(t)", "force_n")].into_iter().chain(quantities) {
+        let mut cells = vec![name.to_owned()];
+        for level in 0..4 {
+            let share = 100.0 * number(&format!("/overall/{key}/{level}/share"))?;
+            let error = 100.0 * number(&format!("/overall/{key}/{level}/standard_error"))?;
+            let lowest = 100.0 * wilson_interval(n, n)[0];
+            cells.push(match share > 99.999 {
+                true => format!("100 (≥ {lowest:.0})"),
+                false => format!("{share:.0} ± {error:.0}"),
+            });
+        }
+        shares.push(Row::new(&cells, 1));
+    }
+    for (name, key) in quantities {
+        let count = |level: usize| -> Result<usize, Box<dyn Error>> {
+            Ok((n as f64 * number(&format!("/overall/{key}/{level}/share"))?).round() as usize)
+        };
+        held.push(HeldIntervals {
+            quantity: name.to_owned(),
+            in_50: count(0)?,
+            in_90: count(2)?,
+            n,
+        });
+    }
+    Ok(Found { subject: Measured::ForceNetwork, tables: vec![rows, shares], held })
+}
+
+/// A quantity of a case beside its true value.
+struct Scored {
+    case: String,
+    median: f64,
+    truth: f64,
+    crps: f64,
+    intervals: Vec<[f64; 2]>,
+}
+
+/// Quantities of reconstructions: the name in the tables, the quantity, and how many of the unit of the
+/// table a unit of SI is.
+const QUANTITIES: [(&str, ReconstructedQuantity, f64); 6] = [
+    ("struck car [km/h]", ReconstructedQuantity::StruckSpeed, 3.6),
+    ("closing speed [km/h]", ReconstructedQuantity::ClosingSpeed, 3.6),
+    ("striking car [km/h]", ReconstructedQuantity::StrikingSpeed, 3.6),
+    ("Δv of the struck car [km/h]", ReconstructedQuantity::DeltaVStruck, 3.6),
+    (
+        "relative heading [°]",
+        ReconstructedQuantity::HeadingDifference,
+        180.0 / std::f64::consts::PI,
+    ),
+    ("yaw rate after [°/s]", ReconstructedQuantity::StruckYawRate, 180.0 / std::f64::consts::PI),
+];
+
+/// The tables of a file of `impactlab evaluate reconstruction`, for each part of the evidence in it.
+pub(crate) fn reconstructions(path: &Path, datasets: &Path) -> Result<Vec<Found>, Box<dyn Error>> {
+    let report: Value = serde_json::from_str(&fs::read_to_string(path)?)?;
+    let text = |value: &Value, key: &str| -> Result<String, Box<dyn Error>> {
+        Ok(value[key].as_str().ok_or_else(|| format!("no {key}"))?.to_owned())
+    };
+    let staged = StagedCollisions::open(Path::new(&text(&report, "data")?))?;
+    let scores = report["cases"].as_array().ok_or("no cases")?;
+    let parts = [
+        (staged.names_in(StagedSplit::Reported), "reported"),
+        (staged.names_in(StagedSplit::Tuning), "tuning"),
+        (names_of_other_runs(&staged, datasets)?, "other runs"),
+    ];
+    let mut found = Vec::new();
+    for known in KnownEvidence::ALL {
+        let word = serde_json::to_value(known)?;
+        let is_of = |score: &&Value| score["known"] == word && score["method"] == "reconstruction";
+        let scores: Vec<&Value> = scores.iter().filter(is_of).collect();
+        if scores.is_empty() {
+            continue;
+        }
+        let (mut rows, mut held) = (Vec::new(), Vec::new());
+        for (name, quantity, unit) in QUANTITIES {
+            let of_case = |score: &&Value| {
+                let all = score["quantities"].as_array()?;
+                let of = all.iter().find(|of| of["name"] == quantity.key())?;
+                let number = |key: &str| of[key].as_f64();
+                let ends = |of: &Value| Some([of["low"].as_f64()?, of["high"].as_f64()?]);
+                Some(Scored {
+                    case: score["case"].as_str()?.to_owned(),
+                    median: number("median")?,
+                    truth: number("truth")?,
+                    crps: number("crps")?,
+                    intervals: of["intervals"].as_array()?.iter().filter_map(ends).collect(),
+                })
+            };
+            let scored: Vec<Scored> = scores.iter().filter_map(of_case).collect();
+            for (names, part) in &parts {
+                let scored: Vec<&Scored> =
+                    scored.iter().filter(|of| names.contains(&of.case)).collect();
+                let counts = held_by_level(&scored)?;
+                let n = scored.len();
+                let labels = [name, "reconstruction", *part].map(str::to_owned);
+                let cells = counts.map(|count| share(count, n));
+                let cells = labels.into_iter().chain(cells).chain(errors(&scored, unit)?);
+                rows.push(Row::new(&cells.collect::<Vec<_>>(), 3));
+                if *part == "reported" {
+                    let quantity = quantity.label().to_owned();
+                    held.push(HeldIntervals { quantity, in_50: counts[0], in_90: counts[2], n });
+                }
+            }
+        }
+        let subject = Measured::reconstruction_of(KnownEvidence::deserialize(word)?);
+        found.push(Found { subject, tables: vec![rows], held });
+    }
+    Ok(found)
+}
+
+/// The cases whose finite-element run is not among those that the prior of restitution and friction was
+/// fitted to, the training cases of `fea`.
+fn names_of_other_runs(
+    staged: &StagedCollisions,
+    datasets: &Path,
+) -> Result<Vec<String>, Box<dyn Error>> {
+    let cases = cases(&datasets.join("fea"))?;
+    let train = split(&cases, 0, TEST_SHARE).train;
+    let fitted: Vec<String> = train.iter().map(|idx| format!("fea/{}", cases[*idx].name)).collect();
+    let mut names = Vec::new();
+    for name in staged.names() {
+        let truth: toml::Table = toml::from_str(&fs::read_to_string(staged.truth_file(name))?)?;
+        let run = truth["fea_case"].as_str().ok_or("no fea_case")?;
+        if !fitted.iter().any(|of| of == run) {
+            names.push(name.clone());
+        }
+    }
+    Ok(names)
+}
+
+fn cases(path: &Path) -> Result<Vec<ForceCase>, Box<dyn Error>> {
+    let mut go_on = |_| ControlFlow::Continue(());
+    let dataset = Dataset::load(path, &mut go_on)?.complete().ok_or("cancelled")?;
+    Ok(ForceCase::from_dataset(&dataset).0)
+}
+
+/// How many intervals of 50, 80, 90 and 95 % hold the truth.
+fn held_by_level(scored: &[&Scored]) -> Result<[usize; 4], Box<dyn Error>> {
+    if scored.iter().any(|of| of.intervals.len() != 4) {
+        return Err("expected intervals of four levels".into());
+    }
+    let holds = |level: usize| {
+        let held = |of: &&&Scored| {
+            let [low, high] = of.intervals[level];
+            (low..=high).contains(&of.truth)
+        };
+        scored.iter().filter(held).count()
+    };
+    Ok([0, 1, 2, 3].map(holds))
+}
+
+/// A share with its bounds of 95 % confidence, in per cent.
+fn share(count: usize, n: usize) -> String {
+    let [from, to] = wilson_interval(count, n).map(|end| 100.0 * end);
+    format!("{:.0} ({from:.0}–{to:.0})", 100.0 * count as f64 / n as f64)
+}
+
+/// Median size of the error, bias, width of 90 % and CRPS.
+fn errors(scored: &[&Scored], unit: f64) -> Result<[String; 4], Box<dyn Error>> {
+    let median = |value: fn(&Scored) -> f64| -> Result<f64, Box<dyn Error>> {
+        let mut values: Vec<f64> = scored.iter().map(|of| unit * value(of)).collect();
+        values.sort_by(f64::total_cmp);
+        Ok(quantile_of_sorted(&values, 0.5).ok_or("no cases")?)
+    };
+    let bias = median(|of| of.median - of.truth)?;
+    let bias = format!("{}{:.1}", if bias < 0.0 { "−" } else { "+" }, bias.abs());
+    let crps = scored.iter().map(|of| unit * of.crps).sum::<f64>() / scored.len() as f64;
+    Ok([
+        format!("{:.1}", median(|of| (of.median - of.truth).abs())?),
+        bias,
+        format!("{:.1}", median(|of| of.intervals[2][1] - of.intervals[2][0])?),
+        format!("{crps:.2}"),
+    ])
+}
