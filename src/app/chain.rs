@@ -167,8 +167,7 @@ fn outcome_link(
             let report = &motion.answer.report;
             let outcome = &report.outcome;
             let format = NumberFormat::english(units);
-            let shown =
-                |end: &Estimate| format.estimate_in_words(Quantity::Length, &report.at_end(end));
+            let shown = |end: &Estimate| format.estimate_in_words(Quantity::Length, end);
             let figure = format!("X {}, Y {}", shown(&outcome.x_m), shown(&outcome.y_m));
             let when = match report.known_until_s() < outcome.time_s {
                 true => "after a second contact, which is not computed: no intervals".to_owned(),

@@ -317,8 +317,11 @@ fn a_data_set_with_brakes_is_replayed_with_them() {
 /// A forecast to rest of a scenario with an ending, in a folder of its own.
 fn to_rest(folder: &std::path::Path, ending: &str, args: &[&str]) -> serde_json::Value {
     let path = folder.join("scenario.toml");
+    // The striking vehicle crosses slowly behind the struck one and does not meet it again.
     let pit = fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap();
-    fs::write(&path, pit + ending).unwrap();
+    let crossing = pit.replace("heading_deg = 18", "heading_deg = 50");
+    let crossing = crossing.replace("speed_km_h = 62", "speed_m_s = 4");
+    fs::write(&path, crossing + ending).unwrap();
     let out = folder.join("out");
     let fixed = ["predict", "--scenario", text(&path), "--until-rest", "--overwrite", "--out"];
     answer(&[&fixed[..], &[text(&out)], args].concat())

@@ -9,7 +9,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 use impactlab_networks::response::evaluate::Comparison;
-use serde_json::Value;
+use serde_json::{Value, json as value};
 use tempfile::TempDir;
 
 use crate::program::{
@@ -142,20 +142,34 @@ fn evaluation_and_comparison_have_their_keys() {
 #[test]
 fn a_prediction_writes_trajectory_density_and_outcome() {
     let place = workplace();
+    let predict = |duration: &str, out: &Path| {
+        let mut command = program();
+        command.args(["predict", "--scenario", SCENARIO, "--draws", "3", "--json"]);
+        command.args(["--duration", duration]);
+        command.arg("--response-model").arg(&place.tuned).arg("--out").arg(out);
+        json(&ok(command.output().unwrap()))
+    };
     let out = place.folder.path().join("prediction");
-    let mut command = program();
-    command.args(["predict", "--scenario", SCENARIO, "--draws", "3", "--duration", "2", "--json"]);
-    command.arg("--response-model").arg(&place.tuned).arg("--out").arg(&out);
-    let answer = json(&ok(command.output().unwrap()));
+    let answer = predict("0.26", &out);
     let outcome = &answer["outcome"];
-    assert_eq!((&answer["n_forces"], &outcome["time_s"]), (&Value::from(3), &Value::from(2.0)));
+    assert_eq!((&answer["n_forces"], &outcome["time_s"]), (&Value::from(3), &Value::from(0.26)));
     let x = &outcome["x_m"];
     let [low, high] = [0, 1].map(|end| x["ninety"][end].as_f64().unwrap());
     assert!(low < x["median"].as_f64().unwrap() && x["median"].as_f64().unwrap() < high);
     let probability = outcome["p_quarter_turn"].as_f64().unwrap();
     assert!((0.0..=1.0).contains(&probability));
     let trajectory = fs::read_to_string(out.join("trajectory.csv")).unwrap();
-    assert_eq!(trajectory.lines().count(), 1 + 201);
+    assert_eq!(trajectory.lines().count(), 1 + 27);
+    // After a second contact, which is not computed, no position has a probability, in no file.
+    let beyond = place.folder.path().join("beyond");
+    let answer = predict("2", &beyond);
+    let outcome = &answer["outcome"];
+    assert!(outcome["x_m"]["median"].is_number() && outcome["x_m"]["intervals"] == value!([]));
+    assert!(outcome["region_90_m2"].is_null() && !beyond.join("density.csv").exists());
+    let rows = fs::read_to_string(beyond.join("trajectory.csv")).unwrap();
+    let spread = |at: usize| rows.lines().nth(1 + at).unwrap().split(',').nth(3).unwrap().len();
+    assert_eq!((rows.lines().count(), spread(200)), (1 + 201, 0));
+    assert!(spread(10) > 0, "before the second contact");
     let density = fs::read_to_string(out.join("density.csv")).unwrap();
     let mut points = density.lines().skip(1).map(|line| {
         // The last column says what restricts the forecast.

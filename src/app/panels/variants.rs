@@ -96,8 +96,7 @@ fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 8] {
     let rest = report.and_then(|report| report.rest.as_ref());
     let format = NumberFormat::english(units);
     let spread = |quantity: Quantity, of: fn(&MotionOutcome) -> &Estimate| {
-        forecast
-            .map(|report| format.estimate_in_words(quantity, &report.at_end(of(&report.outcome))))
+        forecast.map(|report| format.estimate_in_words(quantity, of(&report.outcome)))
     };
     [
         variant.name.clone(),

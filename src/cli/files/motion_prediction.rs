@@ -25,7 +25,8 @@ pub(in crate::cli) struct MotionFiles<'a> {
     pub(in crate::cli) units: UnitSystem,
 }
 
-/// Writes tables, density map and pictures, and gives their names.
+/// Writes tables, density map and pictures, and gives their names. There is no density map of a window
+/// that ends after a second contact, which is not computed.
 pub(in crate::cli) fn write_motion_prediction(
     wanted: &MotionFiles<'_>,
     answer: &PredictMotionAnswer,
@@ -37,11 +38,15 @@ pub(in crate::cli) fn write_motion_prediction(
     let caveats = answer.report.caveats.clone();
     let restrictions = caveats.text();
     let restrictions = restrictions.as_deref();
-    write_trajectory(&path(&trajectory), forecast, &bands, restrictions)?;
+    let known_s = answer.report.known_until_s();
+    write_trajectory(&path(&trajectory), forecast, &bands, known_s, restrictions)?;
     let window_s = wanted.window_s.unwrap_or([forecast.outcome.time_s; 2]);
     let density = DensityTask::new(&forecast.distribution, window_s).on_cpu();
-    write_density(&path(&map), &density, restrictions)?;
-    let mut files = vec![trajectory, map];
+    let mut files = vec![trajectory];
+    if window_s[1] <= known_s {
+        write_density(&path(&map), &density, restrictions)?;
+        files.push(map);
+    }
     let input = MotionForecastFigure {
         title: &answer.report.scenario,
         density: Some(&density),
@@ -73,10 +78,15 @@ fn write_png(figure: &Figure, path: &Path) -> Result<(), CliError> {
     Ok(())
 }
 
+/// Writes the motion over time. After a second contact, which is not computed, cells of standard deviations
+/// and intervals stay empty.
+///
+/// - `known_s`: until when positions have a probability, s.
 fn write_trajectory(
     path: &Path,
     forecast: &MotionForecast,
     bands: &MotionBands,
+    known_s: f64,
     restrictions: Option<&str>,
 ) -> Result<(), CliError> {
     let mut header = vec!["time_s".to_owned()];
@@ -92,12 +102,18 @@ fn write_trajectory(
     let rows = forecast.central.iter().enumerate().map(|(at, central)| {
         let covariance = distribution.covariance(at);
         let (central, mean) = (central.planar(), distribution.mean(at).planar());
-        let mut row = vec![format!("{:.2}", at as f64 * STEP_S)];
+        let time_s = at as f64 * STEP_S;
+        let spread = |value: f64| match time_s <= known_s {
+            true => format!("{value:.6}"),
+            false => String::new(),
+        };
+        let mut row = vec![format!("{time_s:.2}")];
         for (axis, (central, mean)) in central.into_iter().zip(mean).enumerate() {
             let std = covariance[(axis, axis)].max(0.0).sqrt();
-            row.extend([central, mean, std].map(|value| format!("{value:.6}")));
+            row.extend([central, mean].map(|value| format!("{value:.6}")));
+            row.push(spread(std));
             for edges in bands.intervals.get(at).map(|of| of[axis]).into_iter().flatten() {
-                row.extend(edges.map(|edge| format!("{edge:.6}")));
+                row.extend(edges.map(spread));
             }
         }
         row

@@ -85,7 +85,7 @@ impl MonteCarloError {
             let some: Vec<MotionEnd> =
                 ends.iter().enumerate().filter(stays).map(|(_, end)| *end).collect();
             let rest = RestOutcome::from_ends(&some, limit_s);
-            [rest.map_or(f64::NAN, |rest| rest.region_90_m2)]
+            [rest.and_then(|rest| rest.region_90_m2).unwrap_or(f64::NAN)]
         };
         (n >= 2).then(|| Self {
             interval_share: values.into_iter().map(share).fold(0.0, f64::max),

@@ -127,8 +127,9 @@ pub struct MotionOutcome {
     pub speed_m_s: f64,
     /// Size of the yaw rate, rad/s: mean over the central paths under each force.
     pub yaw_rate_rad_s: f64,
-    /// Area of the smallest region that holds the position with a probability of 90 %, m².
-    pub region_90_m2: f64,
+    /// Area of the smallest region that holds the position with a probability of 90 %, m²; none after a
+    /// second contact, which is not computed.
+    pub region_90_m2: Option<f64>,
     /// Probability that the change of heading is at least 90° to either side at that time.
     pub p_quarter_turn: f64,
     /// Probability that the change of heading is at least 180° to either side at that time.
@@ -452,7 +453,7 @@ fn outcome(
         heading_change_rad: heading.estimate().mapped(|yaw_rad| yaw_rad - start.yaw_rad),
         speed_m_s: pace.speed_m_s,
         yaw_rate_rad_s: pace.yaw_rate_rad_s,
-        region_90_m2: position.region_m2(0.9),
+        region_90_m2: Some(position.region_m2(0.9)),
         p_quarter_turn: heading.p_outside(start.yaw_rad - FRAC_PI_2, start.yaw_rad + FRAC_PI_2),
         p_half_turn: heading.p_outside(start.yaw_rad - PI, start.yaw_rad + PI),
         monte_carlo: None,

@@ -57,15 +57,27 @@ pub struct RestOutcome {
     pub y_m: Estimate,
     /// Heading, rad; a full turn counts as 2π.
     pub yaw_rad: Estimate,
-    /// Area of the smallest region that holds the position with a probability of 50 %, m².
-    pub region_50_m2: f64,
-    /// Area of the smallest region that holds the position with a probability of 90 %, m².
-    pub region_90_m2: f64,
+    /// Area of the smallest region that holds the position with a probability of 50 %, m²; none
+    /// after a second contact, which is not computed.
+    pub region_50_m2: Option<f64>,
+    /// Area of the smallest region that holds the position with a probability of 90 %, m²;
+    /// likewise.
+    pub region_90_m2: Option<f64>,
     /// Median speed of those that still move at the limit of time, m/s; none if all are at rest.
     pub moving_speed_m_s: Option<f64>,
 }
 
 impl RestOutcome {
+    /// The same without what no longer holds after a second contact, which is not computed: intervals and
+    /// regions.
+    pub(crate) fn after_contact(&self) -> Self {
+        let [x_m, y_m, yaw_rad, time_s, distance_m] =
+            [&self.x_m, &self.y_m, &self.yaw_rad, &self.time_s, &self.distance_m]
+                .map(Estimate::without_intervals);
+        let (region_50_m2, region_90_m2) = (None, None);
+        Self { x_m, y_m, yaw_rad, time_s, distance_m, region_50_m2, region_90_m2, ..*self }
+    }
+
     /// The outcome over draws; `None` without any.
     pub fn from_ends(ends: &[MotionEnd], limit_s: f64) -> Option<Self> {
         if ends.is_empty() {
@@ -85,8 +97,8 @@ impl RestOutcome {
             x_m: spread(|end| end.x_m),
             y_m: spread(|end| end.y_m),
             yaw_rad: spread(|end| end.yaw_rad),
-            region_50_m2: position.region_m2(0.5),
-            region_90_m2: position.region_m2(0.9),
+            region_50_m2: Some(position.region_m2(0.5)),
+            region_90_m2: Some(position.region_m2(0.9)),
             moving_speed_m_s: (!moving.is_empty()).then(|| Estimate::from_draws(moving).median),
         })
     }

@@ -3,7 +3,7 @@
 use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
 
-use crate::analysis::{MonteCarloError, RivalForce};
+use crate::analysis::{MonteCarloError, MotionOutcome, RestOutcome, RivalForce};
 use crate::facts::held::held_intervals;
 use crate::facts::simulate::sensitivity;
 use crate::facts::table::PREDICTED;
@@ -30,10 +30,19 @@ impl PredictMotionReport {
         self.outcome.time_s <= self.known_until_s()
     }
 
-    /// An estimate of where the vehicle is at the end as it may be told: the median alone after a second
-    /// contact.
-    pub fn at_end(&self, estimate: &Estimate) -> Estimate {
-        if self.is_end_known() { estimate.clone() } else { estimate.without_intervals() }
+    /// Takes from the end of the motion what has no probability after a second contact: intervals and
+    /// regions, so that no reader of the answer finds them.
+    pub(crate) fn without_probabilities_after_contact(mut self) -> Self {
+        if !self.is_end_known() {
+            let outcome = &self.outcome;
+            let [x_m, y_m, heading_change_rad] =
+                [&outcome.x_m, &outcome.y_m, &outcome.heading_change_rad]
+                    .map(Estimate::without_intervals);
+            let (region_90_m2, outcome) = (None, self.outcome);
+            self.outcome = MotionOutcome { x_m, y_m, heading_change_rad, region_90_m2, ..outcome };
+            self.rest = self.rest.as_ref().map(RestOutcome::after_contact);
+        }
+        self
     }
 
     /// How the motion ends.
@@ -107,9 +116,6 @@ impl PredictMotionReport {
             facts.push(Fact::new(Term::VehiclesDrawn, Value::Count(self.n_vehicles)));
         }
         let is_known = self.is_end_known();
-        let position = |term, quantity, estimate: &Estimate| {
-            Fact::estimate(term, quantity, &self.at_end(estimate))
-        };
         match &self.rest {
             Some(rest) => facts.extend(rest.facts(is_known)),
             None => {
@@ -119,18 +125,17 @@ impl PredictMotionReport {
             }
         }
         facts.extend([
-            position(Term::EndX, Quantity::Length, &outcome.x_m),
-            position(Term::EndY, Quantity::Length, &outcome.y_m),
-            position(Term::HeadingChange, Quantity::Angle, &outcome.heading_change_rad),
+            Fact::estimate(Term::EndX, Quantity::Length, &outcome.x_m),
+            Fact::estimate(Term::EndY, Quantity::Length, &outcome.y_m),
+            Fact::estimate(Term::HeadingChange, Quantity::Angle, &outcome.heading_change_rad),
             Fact::number(Term::SpeedAtEnd, Quantity::Speed, outcome.speed_m_s),
             Fact::number(Term::YawRateAtEnd, Quantity::AngularVelocity, outcome.yaw_rate_rad_s),
         ]);
         let contacts = self.flags.iter().filter_map(|flag| flag.contact);
         let second = contacts.filter_map(|contact| contact.probability);
         facts.extend(second.map(|share| Fact::new(Term::SecondContact, self.chance(share))));
-        if self.rest.is_none() && is_known {
-            facts.push(Fact::new(Term::Region90, Value::Area(outcome.region_90_m2)));
-        }
+        let region = outcome.region_90_m2.filter(|_| self.rest.is_none() && is_known);
+        facts.extend(region.map(|area_m2| Fact::new(Term::Region90, Value::Area(area_m2))));
         let error = outcome.monte_carlo.iter().filter(|_| is_known);
         facts.extend(error.flat_map(MonteCarloError::facts));
         facts.extend([

@@ -201,6 +201,7 @@ impl RestOutcome {
         }));
         let regions = [(Term::Region50, self.region_50_m2), (Term::Region90, self.region_90_m2)];
         let regions = regions.into_iter().filter(|_| is_known);
+        let regions = regions.filter_map(|(term, area_m2)| Some((term, area_m2?)));
         facts.extend(regions.map(|(term, area_m2)| Fact::new(term, Value::Area(area_m2))));
         facts
     }

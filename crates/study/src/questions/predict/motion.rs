@@ -288,6 +288,7 @@ impl Question for PredictMotionRequest {
         };
         caveats.extend(restrictions::predicted_motion_caveats(&report, predicted));
         caveats.extend(of_force);
+        let report = report.without_probabilities_after_contact();
         let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
     }
