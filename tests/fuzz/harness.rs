@@ -100,7 +100,7 @@ impl Answer {
 }
 
 /// The first number in a value that is not finite, with what stands around it.
-fn not_finite(value: &impl Debug) -> Option<String> {
+pub fn not_finite(value: &impl Debug) -> Option<String> {
     let text = format!("{value:?}").replace("\\\\", "").replace("\\\"", "");
     // Every other part stands in quotation marks.
     text.split('"').step_by(2).find_map(|part| {

@@ -6,6 +6,8 @@
 //! not finite, and an error that lacks the name of the file, names a line beyond it or is longer than
 //! a person reads. A file with a fault is kept, and its path is printed.
 //!
+//! Beside them, collisions at random are put through the questions that are asked about one.
+//!
 //! `CONTRIBUTING.md` says how to run a format for hours.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "what a run of hours has done")]
@@ -16,6 +18,7 @@ mod harness;
 mod json_files;
 mod models;
 mod mutation;
+mod scenarios;
 mod sealed;
 mod tables;
 mod texts;
