@@ -188,8 +188,12 @@ impl OpenedPath {
 
     /// Whether the user, or a map that he chose before, has to say how the file is read.
     fn needs_map(&self) -> bool {
-        let is_about_columns = |failure: &PathProblem| failure.columns.is_some();
-        self.is_doubtful || self.failure.as_ref().is_some_and(is_about_columns)
+        self.is_doubtful || self.failure.as_ref().is_some_and(Self::is_about_columns)
+    }
+
+    /// Whether a map may solve a problem: it is about columns, or a map is known that answers it.
+    pub fn is_about_columns(failure: &PathProblem) -> bool {
+        failure.columns.is_some() || failure.map.is_some()
     }
 }
 

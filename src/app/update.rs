@@ -67,7 +67,7 @@ impl State {
                 if let Some(failure) = failure {
                     self.say(Severity::Error, failure.message.clone());
                 }
-                let failed = failure.filter(|failure| failure.columns.is_some());
+                let failed = failure.filter(|failure| OpenedPath::is_about_columns(failure));
                 let without_map = failed.map(|failure| failure.path.clone());
                 match opened.is_doubtful {
                     true => (Vec::new(), Some(source.path.clone())),

@@ -57,12 +57,12 @@ fn a_yaw_rate_in_degrees_and_clockwise_is_not_learned_from() {
     });
     let checked = impactlab(&["check", text(&file)]);
     assert!(checked.out.contains("-0.017 times"), "{}", checked.out);
-    assert!(checked.out.contains("yaw_rate=-COLUMN:deg/s"), "{}", checked.out);
+    assert!(checked.out.contains("yaw_rate=-7:deg/s"), "{}", checked.out);
     let out = folder.path().join("car.model");
     let learn = ["condition", "response", "--log", text(&file), "--vehicle", "generic-car"];
     let ran = impactlab(&[&learn[..], &["--out", text(&out)]].concat());
     assert_ne!(ran.code, 0, "{}", ran.out);
-    assert!(ran.err.contains("yaw_rate=-COLUMN:deg/s"), "{}", ran.err);
+    assert!(ran.err.contains("yaw_rate=-7:deg/s"), "{}", ran.err);
     assert!(!out.exists());
     let mended = impactlab(&["check", text(&file), "--map", "yaw_rate=-7:deg/s"]);
     assert!(!mended.out.contains("times what the yaw rate says"), "{}", mended.out);

@@ -23,23 +23,23 @@ pub fn german_export(header: &str) -> String {
     text
 }
 
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
+pub fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
     harness.state().state()
 }
 
 /// Waits until the dialog shows what its choices give.
-fn settle(harness: &mut Harness<'_, App>) {
+pub fn settle(harness: &mut Harness<'_, App>) {
     step_until(harness, "the dialog", |state| {
         state.session.dialogs.import().is_some_and(|dialog| dialog.is_settled())
     });
 }
 
-fn map(harness: &Harness<'_, App>) -> String {
+pub fn map(harness: &Harness<'_, App>) -> String {
     state(harness).session.dialogs.import().map_or(String::new(), |dialog| dialog.map().to_string())
 }
 
 /// Chooses an entry of the list at a label; of several lists with this label, the one with `index`.
-fn choose(harness: &mut Harness<'_, App>, (label, index): (&str, usize), entry: &str) {
+pub fn choose(harness: &mut Harness<'_, App>, (label, index): (&str, usize), entry: &str) {
     // A list that is used without a pointer stays open, and its next click closes it.
     for _ in 0..2 {
         let lists = harness.get_all_by_role_and_label(Role::ComboBox, label);
@@ -63,7 +63,7 @@ fn entries<'a>(
         .filter(move |node| node.accesskit_node().label().is_some_and(|text| text == label))
 }
 
-fn write(folder: &Path, name: &str, text: &str) -> (PathBuf, String) {
+pub fn write(folder: &Path, name: &str, text: &str) -> (PathBuf, String) {
     let path = folder.join(name);
     std::fs::write(&path, text).expect("a file");
     let text = path.to_str().expect("a plain name").to_owned();

@@ -11,6 +11,7 @@ mod force_network;
 mod ground;
 mod harness;
 mod import;
+mod import_corrections;
 mod looks;
 mod models;
 mod network_figures;

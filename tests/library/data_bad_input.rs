@@ -72,7 +72,7 @@ fn bad_force_files_are_refused_with_their_place() {
         ),
         (
             b"# one\n\ntime_s,fx_n,fy_n\n\n0.2,1,1\n# two\n\n0.1,1,1\n",
-            "f.csv:8:1: time is 0.1 s after 0.2 s in the row before, expected a later time; sort the rows and remove doubles",
+            "f.csv:8:1: time is 0.1 s after 0.2 s in the row before, expected a later time; sort the rows and remove doubles, or let a clock go on that begins again there",
         ),
         (
             b"fx_n,fy_n,time_s\n1,1,0\n1,1,0.1\n1,1,0.1\n",

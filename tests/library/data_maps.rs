@@ -190,6 +190,9 @@ fn places_and_headings_follow_from_several_columns() {
     let y = values(&loaded, Channel::Y);
     assert!((y[59] - 17.7).abs() < 0.02 && values(&loaded, Channel::X)[59].abs() < 1e-6, "{y:?}");
     assert!((values(&loaded, Channel::Yaw)[0] - 0.7).abs() < 1e-9);
+    let note = "x and y are metres to the east and to the north of the first row (latitude 52°, longitude \
+        -1°), in the plane that touches the ellipsoid WGS 84 there";
+    assert!(loaded.notes.iter().any(|of| of.to_string() == note), "{:?}", loaded.notes);
     let map = "time=1,x=east(2 3),y=north(2 3),yaw=quaternion(4 5 6 7)";
     assert_eq!(read(&text, map).unwrap().series, loaded.series);
     let minutes = text.replace(",52.", ",3120.");

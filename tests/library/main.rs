@@ -7,6 +7,7 @@ mod any_car;
 mod case_file;
 mod data_bad_input;
 mod data_budgets;
+mod data_corrections;
 mod data_dialects;
 mod data_import;
 mod data_maps;

@@ -5,19 +5,23 @@ use std::sync::Arc;
 
 use crate::app::command::Command;
 use crate::app::found::Found;
-use crate::app::import::answer::ImportAnswer;
+use crate::app::import::answer::{ImportAnswer, ReadPreview};
 use crate::app::import::choices::Choices;
-use crate::app::import::preview::Preview;
+use crate::app::import::preview::{Preview, Refusal};
 use crate::app::tasks::{TaskKey, Tasks};
-use impactlab_core::data::{ColumnMap, ReadSettings, Table, VelocityAxes, VelocityFit, proposals};
+use impactlab_core::data::{
+    ColumnMap, Correction, ReadSettings, Table, VelocityAxes, VelocityFit, proposals,
+};
 use impactlab_core::error_chain;
 use impactlab_core::units::UnitSystem;
 
 /// The dialog in which the user says how a file is read.
 pub struct ImportDialog {
     pub(super) path: PathBuf,
-    /// The map with which the file was opened before, until its table is read.
+    /// The map with which the file was opened before.
     first_map: Option<ColumnMap>,
+    /// Whether the choices are still those of `first_map`, or what the headers suggest.
+    is_untouched: bool,
     pub(super) settings: ReadSettings,
     /// The table, and the settings with which it was read.
     pub(super) table: Option<(ReadSettings, Result<Arc<Table>, String>)>,
@@ -25,7 +29,9 @@ pub struct ImportDialog {
     pub(super) beginning: Vec<(u64, String)>,
     pub(super) choices: Choices,
     /// The curve, and the map with which it was read.
-    pub(super) preview: Option<(ColumnMap, Result<Arc<Preview>, String>)>,
+    pub(super) preview: Option<(ColumnMap, ReadPreview)>,
+    /// The corrections that were made, each with the map before it.
+    pub(super) corrected: Vec<(Correction, ColumnMap)>,
     is_reading: bool,
     /// Whether the user has said in which axes the velocities are.
     pub(super) says_velocities: bool,
@@ -44,10 +50,12 @@ impl ImportDialog {
             says_velocities: settings.velocities.is_some(),
             settings,
             first_map: map,
+            is_untouched: true,
             table: None,
             beginning: Vec::new(),
             choices: Choices::default(),
             preview: None,
+            corrected: Vec::new(),
             is_reading: false,
             units: UnitSystem::default(),
         }
@@ -66,6 +74,47 @@ impl ImportDialog {
     /// The map of the choices as they are.
     pub fn map(&self) -> ColumnMap {
         self.choices.map(&self.settings)
+    }
+
+    /// Reads the file anew, with the choices that the dialog began with.
+    pub(super) fn reset(&mut self) {
+        let units = self.units;
+        *self = Self::open(self.path.clone(), self.first_map.take());
+        self.units = units;
+    }
+
+    /// Makes a correction.
+    pub(super) fn correct(&mut self, correction: Correction) {
+        let before = self.map();
+        let mut map = before.clone();
+        correction.apply(&mut map);
+        self.take_map(&map);
+        self.corrected.push((correction, before));
+    }
+
+    /// Takes a correction back, and with it those that were made after it to the same columns.
+    ///
+    /// - `idx`: its place in the list.
+    pub(super) fn take_back(&mut self, idx: usize) {
+        let Some((wanted, _)) = self.corrected.get(idx).cloned() else { return };
+        let later = self.corrected.split_off(idx);
+        let (undone, kept): (Vec<_>, Vec<_>) =
+            later.into_iter().partition(|(correction, _)| correction.overlaps(&wanted));
+        let mut map = self.map();
+        for (correction, before) in undone.iter().rev() {
+            correction.undo(&mut map, before);
+        }
+        self.corrected.extend(kept);
+        self.take_map(&map);
+    }
+
+    /// Takes the choices and settings of a map.
+    fn take_map(&mut self, map: &ColumnMap) {
+        let columns = std::mem::take(&mut self.choices.columns);
+        let proposals = columns.into_iter().map(|column| column.proposal).collect();
+        self.choices = Choices::from_map(proposals, map);
+        self.says_velocities |= self.settings.velocities != map.settings.velocities;
+        self.settings = (*map.settings).clone();
     }
 
     /// Starts to read what has changed.
@@ -88,7 +137,8 @@ impl ImportDialog {
             let (table, map) = (Arc::clone(table), self.map());
             self.start(tasks, move || {
                 let preview = Preview::new(&table, &map, units).map(Arc::new);
-                ImportAnswer::Preview(map, preview.map_err(|error| error_chain(&error)))
+                let preview = preview.map_err(|error| Arc::new(Refusal::new(&error, &map)));
+                ImportAnswer::Preview(map, preview)
             });
         }
     }
@@ -121,10 +171,13 @@ impl ImportDialog {
             Ok(ImportAnswer::Table(settings, table)) => {
                 if let Ok(table) = &table {
                     let found = proposals(table);
-                    self.choices = match self.first_map.take() {
-                        Some(map) => Choices::from_map(found, &map),
+                    let map = self.first_map.as_ref().filter(|_| self.is_untouched);
+                    self.choices = match map {
+                        Some(map) => Choices::from_map(found, map),
                         None => Choices::suggested(found),
                     };
+                    self.is_untouched = false;
+                    self.corrected.clear();
                     self.beginning = table.beginning().to_vec();
                 }
                 self.table = Some((settings, table));

@@ -1,5 +1,5 @@
 //! Draws the import dialog: first lines, header and units, a channel and a unit for each column, clock and
-//! axes on the left; the curve as it will be read on the right.
+//! axes on the left; on the right the curve as it will be read (`preview_ui`).
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use impactlab_core::data::{
     Channel, ColumnMap, FileKind, HeaderLine, ReadSettings, Severity, Sheet, SheetRef,
     VelocityAxes, VelocityFit,
 };
-use impactlab_draw::{FigureOptions, figure_ui, theme};
+use impactlab_draw::theme;
 
 /// Size of the dialog and of its parts, points.
 const WIDTH: f32 = 1060.0;
@@ -32,8 +32,6 @@ const GAP: f32 = 4.0 * looks::GRID;
 const LINES_HEIGHT: f32 = 110.0;
 
 const COLUMNS_HEIGHT: f32 = 220.0;
-
-const CURVE_HEIGHT: f32 = 260.0;
 
 impl ImportDialog {
     /// Draws the dialog and adds a command when the user confirms or cancels.
@@ -187,8 +185,9 @@ impl ImportDialog {
             let label = format!("{} is zero throughout", channel.label());
             ui.checkbox(&mut self.choices.other_force_is_zero, label);
         }
-        let n_of =
-            |channel| self.choices.columns.iter().filter(|of| of.channel == Some(channel)).count();
+        let n_of = |channel| {
+            self.choices.columns.iter().filter(|of| of.channel() == Some(channel)).count()
+        };
         for channel in [Channel::Fx, Channel::Fy, Channel::FxBody, Channel::FyBody, Channel::Mz] {
             if n_of(channel) > 1 {
                 let text = format!("{}: {} columns are added up", channel.label(), n_of(channel));
@@ -225,12 +224,8 @@ impl ImportDialog {
         });
     }
 
-    fn has(&self, channel: Channel) -> bool {
-        self.choices.columns.iter().any(|column| column.channel == Some(channel))
-    }
-
     fn headings_ui(&mut self, ui: &mut Ui) {
-        if !self.has(Channel::Yaw) {
+        if !self.choices.has(Channel::Yaw) {
             return;
         }
         let name = ui.label("Headings are");
@@ -250,7 +245,7 @@ impl ImportDialog {
     }
 
     fn velocities_ui(&mut self, ui: &mut Ui) {
-        if !(self.has(Channel::Vx) && self.has(Channel::Vy)) {
+        if !(self.choices.has(Channel::Vx) && self.choices.has(Channel::Vy)) {
             return;
         }
         let name = ui.label("v_x, v_y are in");
@@ -282,50 +277,6 @@ impl ImportDialog {
         ui.end_row();
     }
 
-    /// Draws the curve as it will be read, with its numbers and what is doubtful about them.
-    fn preview_ui(&mut self, ui: &mut Ui) {
-        let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-        let questions = self.choices.open_questions();
-        if !questions.is_empty() && matches!(self.table, Some((_, Ok(_)))) {
-            ui.strong("To be said before the file can be opened");
-            for question in questions {
-                ui.colored_label(warning, format!("• {question}"));
-            }
-            return;
-        }
-        match &self.preview {
-            None => drop(ui.weak("the curve as it will be read")),
-            Some((_, Err(problem))) => {
-                let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-                ui.colored_label(color, problem);
-            }
-            Some((_, Ok(preview))) => {
-                ui.strong(match preview.kind {
-                    FileKind::Force => "A force, as it will be read",
-                    FileKind::Trajectory => "A trajectory, as it will be read",
-                    FileKind::Steer => "Steering, as it will be read",
-                    FileKind::Wheels => "Torques at the wheels, as they will be read",
-                });
-                let options = FigureOptions {
-                    id: "import".to_owned(),
-                    height: Some(CURVE_HEIGHT),
-                    ..FigureOptions::default()
-                };
-                figure_ui(ui, &preview.figure, &options);
-                Grid::new("import numbers").num_columns(2).striped(true).show(ui, |ui| {
-                    for (name, text) in &preview.numbers {
-                        ui.label(*name);
-                        ui.strong(text);
-                        ui.end_row();
-                    }
-                });
-                for doubt in &preview.doubts {
-                    ui.colored_label(warning, format!("• {doubt}"));
-                }
-            }
-        }
-    }
-
     /// Draws what a force or a motion does not say about the struck vehicle.
     fn left_open_ui(&self, ui: &mut Ui, project: &mut Project) {
         let Some((_, Ok(preview))) = &self.preview else { return };
@@ -344,7 +295,7 @@ impl ImportDialog {
         });
     }
 
-    fn buttons_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+    fn buttons_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         // The curve that is shown must be that of what is opened.
         let is_shown = |(map, preview): &(ColumnMap, Result<_, _>)| {
             preview.is_ok() && *map == self.map() && self.choices.open_questions().is_empty()
@@ -354,6 +305,11 @@ impl ImportDialog {
             let open = egui::Button::new("Open with these columns");
             if ui.add_enabled(is_ready, open).clicked() {
                 commands.push(Command::OpenMapped(self.path.clone(), self.map()));
+            }
+            let reset = egui::Button::new("Reset");
+            let reset = ui.add_enabled(self.is_settled(), reset);
+            if reset.on_hover_text("The choices that the dialog began with").clicked() {
+                self.reset();
             }
             if ui.button("Cancel").clicked() {
                 commands.push(Command::CloseDialog);

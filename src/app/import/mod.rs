@@ -7,6 +7,7 @@ mod column_row;
 mod dialog;
 mod dialog_ui;
 mod preview;
+mod preview_ui;
 mod remembered;
 
 pub use answer::ImportAnswer;

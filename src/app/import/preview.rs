@@ -1,9 +1,10 @@
 //! The curve as a file will be read with the choices of the import dialog, and its main numbers.
 
 use impactlab_core::data::{
-    Channel, ColumnMap, DataError, FileKind, Flag, ForceHistory, Loaded, Severity, Table,
-    TimeSeries, VelocityFit, check_file, contact_interval, series_of_table, velocity_fit,
+    Channel, ColumnMap, Correction, DataError, FileKind, Flag, ForceHistory, Loaded, Severity,
+    Table, TimeSeries, VelocityFit, check_file, contact_interval, series_of_table, velocity_fit,
 };
+use impactlab_core::error_chain;
 use impactlab_core::numerics::quantile_of_sorted;
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem, significant};
@@ -22,10 +23,32 @@ pub struct Preview {
     pub figure: Figure,
     /// The main numbers, by their names.
     pub numbers: Vec<(&'static str, String)>,
-    /// What makes the numbers doubtful, in words.
-    pub doubts: Vec<String>,
+    /// What makes the numbers doubtful, and what else can be corrected.
+    pub remarks: Vec<Remark>,
     /// The axes in which the velocities fit the path, as they stand in the file.
     pub fit: Option<VelocityFit>,
+}
+
+/// A remark on what was read.
+pub struct Remark {
+    pub text: String,
+    /// Whether the numbers may be wrong.
+    pub is_doubt: bool,
+    /// Changes of the map of which each corrects it.
+    pub corrections: Vec<Correction>,
+}
+
+/// Why a table cannot be read with a map.
+pub struct Refusal {
+    pub text: String,
+    /// The change of the map that answers what is open.
+    pub correction: Option<Correction>,
+}
+
+impl Refusal {
+    pub fn new(error: &DataError, map: &ColumnMap) -> Self {
+        Self { text: error_chain(error), correction: error.correction(Some(map)) }
+    }
 }
 
 impl Preview {
@@ -40,13 +63,22 @@ impl Preview {
         let fit = series_of_table(table, Some(&as_recorded)).ok();
         let fit = fit.and_then(|loaded| velocity_fit(&loaded.series));
         let flags = check_file(&loaded).into_iter().filter(|of| of.severity > Severity::Info);
-        let notes = loaded.notes.iter().filter(|note| note.is_doubt());
-        let doubts = flags.map(|flag: Flag| flag.to_string());
+        let flags = flags.map(|flag: Flag| Remark {
+            text: flag.to_string(),
+            is_doubt: true,
+            corrections: Vec::new(),
+        });
+        let notes = loaded.notes.iter().map(|note| Remark {
+            text: note.to_string(),
+            is_doubt: note.is_doubt(),
+            corrections: note.corrections(),
+        });
+        let notes = notes.filter(|note| note.is_doubt || !note.corrections.is_empty());
         Ok(Self {
             kind: loaded.kind,
             figure: figure(&loaded, units),
             numbers: numbers(&loaded, units),
-            doubts: doubts.chain(notes.map(ToString::to_string)).collect(),
+            remarks: flags.chain(notes).collect(),
             fit,
         })
     }

@@ -4,8 +4,10 @@
 use crate::data::columns::{ColumnUse, Term, open_question};
 use crate::data::spelling::{self, letters_and_digits};
 use crate::data::{
-    Channel, ColumnMap, ColumnRef, ColumnSource, DataError, FileKind, Table, TimeSeries,
+    Channel, ColumnMap, ColumnRef, ColumnSource, Correction, DataError, FileKind, Note, Table,
+    TimeSeries,
 };
+use crate::numerics::quantile_of_sorted;
 use crate::units::Quantity;
 
 const HOUR_S: f64 = 3600.0;
@@ -135,6 +137,40 @@ fn time_of_day_s(text: &str) -> Option<(f64, f64)> {
     }
 }
 
+/// Seconds after which a clock of plain numbers begins again at 0: at the minute, the hour and midnight.
+const PERIODS_S: [f64; 3] = [60.0, HOUR_S, DAY_S];
+
+/// Longest step over such a beginning, in steps that are usual.
+const LONGEST_STEP: f64 = 5.0;
+
+/// Lets a time go on whose seconds begin again at 0 after a minute, an hour or a day. A time that goes back
+/// for another reason stays as it is.
+///
+/// - `time_s`: as it stands in the file, without a shift, s;
+/// - returns the remark on it if it was changed.
+pub(super) fn go_on(time_s: &mut [f64]) -> Option<Note> {
+    let steps = || time_s.windows(2).map(|pair| pair[1] - pair[0]);
+    let n_turns = steps().filter(|step_s| *step_s < 0.0).count();
+    if n_turns == 0 {
+        return None;
+    }
+    let mut forward: Vec<f64> = steps().filter(|step_s| *step_s > 0.0).collect();
+    forward.sort_by(f64::total_cmp);
+    let longest_s = LONGEST_STEP * quantile_of_sorted(&forward, 0.5)?;
+    let fits = |period_s: &f64| {
+        let turn = |step_s: f64| step_s >= 0.0 || (0.0..=longest_s).contains(&(step_s + period_s));
+        time_s.iter().all(|t| (-ZERO_S..*period_s).contains(t)) && steps().all(turn)
+    };
+    let period_s = PERIODS_S.into_iter().find(fits)?;
+    let (mut turned_s, mut last_s) = (0.0, f64::NEG_INFINITY);
+    for time_s in time_s {
+        turned_s += if *time_s < last_s { period_s } else { 0.0 };
+        last_s = *time_s;
+        *time_s += turned_s;
+    }
+    Some(Note::GoesOn { period_s, n_turns })
+}
+
 /// Asks for the unit of a clock that nobody has stated and that counts parts of seconds since 1970.
 ///
 /// # Errors
@@ -181,41 +217,74 @@ pub(super) fn check_controls(
     kind: FileKind,
     map: Option<&ColumnMap>,
 ) -> Result<(), DataError> {
-    let is_said = map.is_some_and(|map| map.settings.time_shift_s.is_some());
-    if is_said || !matches!(kind, FileKind::Steer | FileKind::Wheels) {
-        return Ok(());
-    }
-    let [Some(first_s), Some(last_s)] = [series.time_s().first(), series.time_s().last()] else {
-        return Ok(());
-    };
-    let is_held = || {
-        let mut columns = series.channels().filter_map(|channel| series.get(channel)?.first());
-        *first_s > ZERO_S && columns.any(|value| *value != 0.0)
-    };
-    if offered_shift_s(series).is_none() && !is_held() {
-        return Ok(());
-    }
+    let Some(shift_s) = controls_shift_s(series, kind, map) else { return Ok(()) };
+    let last_s = series.time_s().last().copied().unwrap_or(0.0 - shift_s);
+    let first_s = 0.0 - shift_s;
     let what = format!(
         "the record runs from {first_s} s to {last_s} s, and a motion begins at 0 s; say by how much its \
          times are shifted, or shift=0:s if they are not"
     );
     let mut map = map.cloned().unwrap_or_default();
-    map.settings.time_shift_s = Some(0.0 - first_s);
+    map.settings.time_shift_s = Some(shift_s);
     Err(open_question(table, Some(&map), what, []))
+}
+
+/// The shift that lets controls begin at 0 of which a motion that begins there would hold or leave out a part;
+/// `None` if they do not, or if the map says where they begin.
+pub(super) fn controls_shift_s(
+    series: &TimeSeries,
+    kind: FileKind,
+    map: Option<&ColumnMap>,
+) -> Option<f64> {
+    let is_said = map.is_some_and(|map| map.settings.time_shift_s.is_some());
+    if is_said || !matches!(kind, FileKind::Steer | FileKind::Wheels) {
+        return None;
+    }
+    let first_s = series.time_s().first().copied()?;
+    let is_held = || {
+        let mut columns = series.channels().filter_map(|channel| series.get(channel)?.first());
+        first_s > ZERO_S && columns.any(|value| *value != 0.0)
+    };
+    (offered_shift_s(series).is_some() || is_held()).then_some(0.0 - first_s)
 }
 
 /// What says that a record begins elsewhere than at 0.
 pub(super) fn shift_text(first_s: f64) -> String {
     let clock = if UNIX_S.contains(&first_s) { ", on a clock that counts since 1970" } else { "" };
-    format!(
-        "the record begins at {first_s} s{clock}; it begins at 0 with the map shift={}:s",
-        0.0 - first_s
-    )
+    let shift = shift_to_zero(first_s);
+    format!("the record begins at {first_s} s{clock}; it begins at 0 with the map {shift}")
+}
+
+/// The shift with which a record begins at 0.
+pub(super) fn shift_to_zero(first_s: f64) -> Correction {
+    Correction::shift(0.0 - first_s)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn seconds_that_begin_again_go_on() {
+        for (period_s, step_s) in [(60.0, 1.0), (60.0, 0.5), (3600.0, 1.0), (86_400.0, 2.0)] {
+            let true_s = |i: u32| period_s - 3.0 * step_s + f64::from(i) * step_s;
+            let mut time_s: Vec<f64> = (0..200).map(|i| true_s(i) % period_s).collect();
+            let n_turns = ((true_s(199)) / period_s).floor() as usize;
+            let note = go_on(&mut time_s);
+            assert_eq!(note, Some(Note::GoesOn { period_s, n_turns }));
+            let expected: Vec<f64> = (0..200).map(true_s).collect();
+            assert_eq!(time_s, expected, "{period_s}");
+        }
+        for mut unknown in [
+            vec![0.0, 1.0, 2.0, 3.0],
+            vec![57.0, 58.0, 0.0, 1.0, 30.0, 2.0, 3.0],
+            vec![5.0, 6.0, 7.0, 3.0, 4.0],
+        ] {
+            let before = unknown.clone();
+            assert_eq!(go_on(&mut unknown), None);
+            assert_eq!(unknown, before);
+        }
+    }
 
     #[test]
     fn times_of_day_are_read() {

@@ -127,6 +127,11 @@ impl ColumnMap {
         self.sources.insert(channel, source);
     }
 
+    /// Takes back the choice for a channel.
+    pub fn remove(&mut self, channel: Channel) {
+        self.sources.remove(&channel);
+    }
+
     /// The column that was chosen for a channel; `None` if none was chosen.
     pub fn get(&self, channel: Channel) -> Option<&ColumnSource> {
         self.sources.get(&channel)
@@ -282,16 +287,20 @@ impl fmt::Display for ColumnRef {
     }
 }
 
+impl fmt::Display for ColumnSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.column)?;
+        self.unit.map_or(Ok(()), |unit| write!(f, ":{}", unit.symbol))
+    }
+}
+
 impl fmt::Display for ColumnMap {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let settings = self.settings.to_string();
         f.write_str(&settings)?;
         for (i, (channel, source)) in self.iter().enumerate() {
             let comma = if i > 0 || !settings.is_empty() { "," } else { "" };
-            write!(f, "{comma}{}={}", channel.short_name(), source.column)?;
-            if let Some(unit) = source.unit {
-                write!(f, ":{}", unit.symbol)?;
-            }
+            write!(f, "{comma}{}={source}", channel.short_name())?;
         }
         Ok(())
     }

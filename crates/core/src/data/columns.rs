@@ -307,24 +307,33 @@ pub(super) fn column_use(
 }
 
 impl ColumnUse {
-    /// The column as a map names it.
+    /// The column as a map names it, with the units of its terms where these differ.
     fn column_ref(&self) -> ColumnRef {
-        match self.terms[..] {
-            [Term { number, sign, .. }] if sign > 0.0 => ColumnRef::Number(number),
-            _ => {
+        let numbers = || self.terms.iter().map(|term| term.number).collect();
+        let is_common = self.has_one_unit();
+        match (self.formula, &self.terms[..]) {
+            (Some(formula), _) => ColumnRef::Computed(formula, numbers()),
+            (None, []) => ColumnRef::Zero,
+            (None, [Term { number, sign, .. }]) if *sign > 0.0 => ColumnRef::Number(*number),
+            (None, terms) => {
                 let term = |term: &Term| SignedColumn {
                     number: term.number,
                     is_negated: term.sign < 0.0,
-                    unit: None,
+                    unit: (!is_common).then_some(term.unit),
                 };
-                ColumnRef::Sum(self.terms.iter().map(term).collect())
+                ColumnRef::Sum(terms.iter().map(term).collect())
             }
         }
     }
 
+    fn has_one_unit(&self) -> bool {
+        self.terms.iter().all(|term| term.unit == self.unit)
+    }
+
     /// The column with its unit, if it is stated, as a map names it.
     pub(super) fn source(&self) -> ColumnSource {
-        let unit = self.unit_is_stated.then_some(self.unit);
+        let has_unit = self.unit_is_stated && self.formula.is_none() && !self.terms.is_empty();
+        let unit = (has_unit && self.has_one_unit()).then_some(self.unit);
         ColumnSource { column: self.column_ref(), unit }
     }
 }

@@ -1,8 +1,10 @@
 //! Channels that are computed from several columns, found by the headers of these.
 
+use std::collections::BTreeMap;
+
 use crate::data::columns::{ColumnUse, Term};
 use crate::data::spelling::letters_and_digits;
-use crate::data::{Channel, Formula, Table};
+use crate::data::{Channel, Formula, Note, Table};
 
 /// Headers of latitude and longitude.
 const LATITUDE: [&str; 3] = ["latitude", "lat", "gpslat"];
@@ -72,6 +74,20 @@ pub(super) fn column(
         terms: numbers.iter().map(|&number| Term { number, sign: 1.0, unit }).collect(),
         formula: Some(formula),
     }
+}
+
+/// Says from where positions are counted that follow from latitude and longitude.
+pub(super) fn note(table: &Table, columns: &BTreeMap<Channel, ColumnUse>) -> Option<Note> {
+    let is_place = |channel: &Channel| {
+        let formula = columns.get(channel)?.formula?;
+        matches!(formula, Formula::East | Formula::North).then_some(&columns[channel].terms)
+    };
+    let &[latitude, longitude] = [Channel::X, Channel::Y].iter().find_map(is_place)?.as_slice()
+    else {
+        return None;
+    };
+    let number = |term: Term| table.number(0, term.number.checked_sub(1)?);
+    Some(Note::Places { origin_deg: [number(latitude)?, number(longitude)?] })
 }
 
 /// Whether a formula gives this channel.

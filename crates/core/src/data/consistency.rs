@@ -29,7 +29,7 @@ const FITTING: f64 = 0.2;
 /// Share of the turn that may remain when a factor is taken out, so that there is one at all.
 const EXPLAINED: f64 = 0.35;
 /// Deviation of a slope from a known factor.
-const FACTOR_REACH: f64 = 0.15;
+pub(super) const FACTOR_REACH: f64 = 0.15;
 /// Speed from which the direction of motion is known from positions, m/s.
 const DRIVING_M_S: f64 = 3.0;
 /// Turn of the course from which it can tell a compass or a mirror, rad.
@@ -64,7 +64,10 @@ pub enum Contradiction {
     /// The yaw angle is a compass heading, clockwise from the Y axis.
     Compass,
     /// The vehicle turns to one side and its path to the other.
-    Mirrored,
+    Mirrored {
+        /// The position that has the wrong sign if the yaw angle has the right one.
+        axis: Channel,
+    },
     /// The yaw angle changes by this many times what the path does, though the vehicle follows its heading.
     YawUnit {
         /// The factor.
@@ -183,7 +186,8 @@ fn against_path(series: &TimeSeries) -> Option<Contradiction> {
     if against < RELATION_RAD {
         return match () {
             () if is(FRAC_PI_2) => Some(Contradiction::Compass),
-            () if is(0.0) || is(PI) => Some(Contradiction::Mirrored),
+            () if is(0.0) => Some(Contradiction::Mirrored { axis: Channel::Y }),
+            () if is(PI) => Some(Contradiction::Mirrored { axis: Channel::X }),
             () => None,
         };
     }
@@ -255,51 +259,59 @@ fn known_factor(slope: f64) -> Option<&'static str> {
     FACTORS.iter().find(|(factor, _)| is(*factor) || is(1.0 / factor)).map(|(_, words)| *words)
 }
 
+impl Contradiction {
+    /// What can be done where no change of the map is known to help.
+    pub(super) fn advice(self) -> &'static str {
+        match self {
+            Self::YawRate { .. } => "check both columns and their units",
+            Self::YawRateUnrelated => "check which columns they are",
+            Self::Compass => "turn the headings into yaw angles",
+            Self::Mirrored { .. } => "change the sign of one of them",
+            Self::YawUnit { .. } => "check its unit",
+            Self::Held { .. } => "keep one row for each",
+        }
+    }
+}
+
 impl fmt::Display for Contradiction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::YawRate { factor } => {
                 write!(f, "the yaw angle changes by {factor:.3} times what the yaw rate says")?;
                 let is_mirrored = factor < 0.0;
-                let sign = if is_mirrored { "-" } else { "" };
                 match known_factor(factor) {
                     Some(words) if factor.abs() < 0.05 && words.starts_with("degrees") => write!(
                         f,
-                        ", as if degrees were read as radians{}: map yaw_rate={sign}COLUMN:deg/s",
+                        ", as if degrees were read as radians{}",
                         if is_mirrored { " and clockwise as counterclockwise" } else { "" }
                     ),
-                    Some(words) => {
-                        write!(f, ", as between {words}: map the unit of yaw or yaw_rate")
-                    }
+                    Some(words) => write!(f, ", as between {words}"),
                     None if (factor + 1.0).abs() < FACTOR_REACH => {
-                        write!(f, ": one of them is clockwise: map yaw_rate=-COLUMN or yaw=-COLUMN")
+                        write!(f, ": one of them is clockwise")
                     }
-                    None => write!(f, "; check both columns and their units"),
+                    None => Ok(()),
                 }
             }
-            Self::YawRateUnrelated => write!(
-                f,
-                "yaw angle and yaw rate have nothing to do with each other; check which columns they are"
-            ),
+            Self::YawRateUnrelated => {
+                write!(f, "yaw angle and yaw rate have nothing to do with each other")
+            }
             Self::Compass => write!(
                 f,
                 "the yaw angle is a compass heading, clockwise from north, over a path with x to the \
-                 east: map headings=compass"
+                 east"
             ),
-            Self::Mirrored => write!(
-                f,
-                "the path turns to one side where the yaw angle turns to the other: map y=-COLUMN or \
-                 yaw=-COLUMN"
-            ),
+            Self::Mirrored { .. } => {
+                write!(f, "the path turns to one side where the yaw angle turns to the other")
+            }
             Self::YawUnit { factor } => write!(
                 f,
                 "the yaw angle turns by {factor:.1} times what the path does, as if degrees were read as \
-                 radians: map yaw=COLUMN:deg"
+                 radians"
             ),
             Self::Held { rows } => write!(
                 f,
                 "each position stands in about {rows:.0} rows, though the vehicle drives: positions were \
-                 held between fixes; keep one row for each"
+                 held between fixes"
             ),
         }
     }
@@ -339,7 +351,7 @@ mod tests {
 
     #[test]
     fn a_yaw_rate_in_degrees_is_named_with_its_factor_and_its_side() {
-        for (sign, words) in [(1.0, "yaw_rate=COLUMN:deg/s"), (-1.0, "yaw_rate=-COLUMN:deg/s")] {
+        for (sign, words) in [(1.0, "read as radians"), (-1.0, "clockwise as counterclockwise")] {
             let found = changed(Channel::YawRate, |rate| sign * rate.to_degrees());
             let [Contradiction::YawRate { factor }] = found[..] else { panic!("{found:?}") };
             assert!((factor * 57.295_78 - sign).abs() < 1e-3, "{factor}");
@@ -357,7 +369,9 @@ mod tests {
             _ => value,
         }));
         assert_eq!(compass, [Contradiction::Compass]);
-        assert_eq!(changed(Channel::Y, |y| -y), [Contradiction::Mirrored]);
+        let mirrored = |axis| [Contradiction::Mirrored { axis }];
+        assert_eq!(changed(Channel::Y, |y| -y), mirrored(Channel::Y));
+        assert_eq!(changed(Channel::X, |x| -x), mirrored(Channel::X));
         let degrees = contradictions(&bend(|channel, value| match channel {
             Channel::Yaw | Channel::YawRate => value.to_degrees(),
             _ => value,

@@ -8,7 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::data::write::WriteError;
-use crate::data::{Channel, ColumnMap, SeriesError, spelling};
+use crate::data::{Channel, ColumnMap, Correction, SeriesError, spelling};
 use crate::ranges::{OutOfRange, Range};
 use crate::units::Quantity;
 
@@ -156,6 +156,14 @@ pub enum DataError {
         /// The name of the sheet.
         sheet: String,
         /// The error, whose line and column are those of the sheet.
+        error: Box<DataError>,
+    },
+    /// An error in a file whose map is given by an option of its own.
+    #[error("{}", error.to_string().replace("--map ", &format!("{option} ")))]
+    OfOption {
+        /// The option with its dashes, such as `--steer-map`.
+        option: &'static str,
+        /// The error.
         error: Box<DataError>,
     },
     /// The file contains control characters that do not occur in text.
@@ -317,7 +325,7 @@ pub enum DataError {
         what: String,
     },
     /// The time of a row is not later than that of the row before it.
-    #[error("{}:{line}:{column}: time is {after_s} s after {before_s} s in the row before, expected a later time; sort the rows and remove doubles", path.display())]
+    #[error("{}:{line}:{column}: time is {after_s} s after {before_s} s in the row before, expected a later time; sort the rows and remove doubles{}", path.display(), or_go_on(*before_s, *after_s))]
     TimeOrder {
         /// The file that was read or written.
         path: PathBuf,
@@ -462,18 +470,32 @@ pub enum DataError {
 }
 
 impl DataError {
+    /// The same error where the map of the file is given by another option than `--map`.
+    ///
+    /// - `option`: with its dashes.
+    pub fn of_option(self, option: &'static str) -> Self {
+        Self::OfOption { option, error: Box::new(self) }
+    }
+
     /// A mapping that answers what is open about a file.
     pub fn answer(&self) -> Option<&ColumnMap> {
         match self {
-            Self::InSheet { error, .. } => error.answer(),
+            Self::InSheet { error, .. } | Self::OfOption { error, .. } => error.answer(),
             Self::Open { map, .. } => Some(map),
             _ => None,
         }
     }
 
+    /// The change of a map that answers what is open about a file.
+    ///
+    /// - `map`: the map with which it was read.
+    pub fn correction(&self, map: Option<&ColumnMap>) -> Option<Correction> {
+        Correction::from_answer(map, self.answer()?)
+    }
+
     /// Whether a mapping of columns to channels and units by the user may solve the problem.
     pub fn needs_mapping(&self) -> bool {
-        if let Self::InSheet { error, .. } = self {
+        if let Self::InSheet { error, .. } | Self::OfOption { error, .. } = self {
             return error.needs_mapping();
         }
         matches!(
@@ -498,6 +520,11 @@ impl DataError {
             _ => Self::Io { path, source },
         }
     }
+}
+
+/// What helps where a time goes back, as that of a clock that begins again.
+fn or_go_on(before_s: f64, after_s: f64) -> &'static str {
+    if after_s < before_s { ", or let a clock go on that begins again there" } else { "" }
 }
 
 /// The text of an error in a sheet: instead of `file:line:column`, it names file, sheet and cell.

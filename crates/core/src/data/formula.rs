@@ -12,6 +12,23 @@ pub enum Formula {
     North,
 }
 
+/// What a column holds from which a channel is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FormulaPart {
+    /// The latitude, degrees to the north.
+    Latitude,
+    /// The longitude, degrees to the east.
+    Longitude,
+    /// The real part of a quaternion.
+    QuaternionW,
+    /// Its part along x.
+    QuaternionX,
+    /// Its part along y.
+    QuaternionY,
+    /// Its part along z.
+    QuaternionZ,
+}
+
 /// Semi-major axis of the ellipsoid WGS 84, m.
 const EARTH_RADIUS_M: f64 = 6_378_137.0;
 /// Square of its first eccentricity.
@@ -31,12 +48,20 @@ impl Formula {
         }
     }
 
+    /// What the columns hold from which it is computed, in their order.
+    pub fn parts(self) -> &'static [FormulaPart] {
+        use FormulaPart::{
+            Latitude, Longitude, QuaternionW, QuaternionX, QuaternionY, QuaternionZ,
+        };
+        match self {
+            Self::Quaternion => &[QuaternionW, QuaternionX, QuaternionY, QuaternionZ],
+            Self::East | Self::North => &[Latitude, Longitude],
+        }
+    }
+
     /// Number of columns from which it is computed.
     pub fn n_columns(self) -> usize {
-        match self {
-            Self::Quaternion => 4,
-            Self::East | Self::North => 2,
-        }
+        self.parts().len()
     }
 
     /// What the columns have to hold, for a message.

@@ -4,11 +4,11 @@
 
 use std::path::Path;
 
-use crate::data::si_values::si_values;
+use crate::data::si_values::{instants_s, si_values};
 use crate::data::velocity_fit::in_body_axes;
 use crate::data::{
     Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, ReadSettings, Sampling,
-    SeriesError, Table, TimeSeries, VelocityAxes, clock, contradictions, impulse, velocity_fit,
+    SeriesError, Table, TimeSeries, VelocityAxes, clock, computed, corrections, degrees, impulse,
 };
 use crate::ranges::TIME_STEP;
 
@@ -278,23 +278,29 @@ fn load_columns(
         clock::check_unit(table, time, map)?;
     }
     let mut series = TimeSeries::default();
+    let mut goes_on = None;
     for column in columns.by_channel.values() {
-        let values = si_values(table, column, series.time_s(), &settings)?;
-        match column.channel {
-            Channel::Time => {
-                let time = TimeSeries::new(values);
-                series = time.map_err(|error| out_of_order(table, column, error))?;
-                check_steps(table, column, series.time_s())?;
-            }
-            channel => insert(&mut series, channel, values, table)?,
+        if column.channel == Channel::Time {
+            let (time_s, note) = instants_s(table, column, &settings)?;
+            goes_on = note;
+            let time = TimeSeries::new(time_s);
+            series = time.map_err(|error| out_of_order(table, column, error))?;
+            check_steps(table, column, series.time_s())?;
+            continue;
         }
+        let values = si_values(table, column, series.time_s(), &settings);
+        let values = values.map_err(|error| {
+            let shift_s = clock::controls_shift_s(&series, kind, map);
+            degrees::asked(table, column, map, shift_s, error)
+        })?;
+        insert(&mut series, column.channel, values, table)?;
     }
     let used: Vec<&ColumnUse> = columns.by_channel.values().collect();
     impulse::check_force(table, &series, &used, map)?;
     impulse::check_zero(table, &series, &used, map)?;
     clock::check_controls(table, &series, kind, map)?;
     let read_as = settings.velocities.unwrap_or(VelocityAxes::Body);
-    let fit = velocity_fit(&series).filter(|fit| !fit.allows(read_as));
+    let found = corrections::notes(table, &columns.by_channel, &settings, &series);
     if read_as == VelocityAxes::World {
         let needed = [Channel::Yaw, Channel::Vx, Channel::Vy];
         if let Some(channel) = needed.into_iter().find(|channel| series.get(*channel).is_none()) {
@@ -308,11 +314,12 @@ fn load_columns(
     }
     let Columns { by_channel, mut notes } = columns;
     notes.extend(table.format().map(|text| Note::Format { text }));
+    notes.extend(goes_on);
     let is_shifted = settings.time_shift_s.is_some();
     let begins_s = clock::offered_shift_s(&series).filter(|_| !is_shifted);
     notes.extend(begins_s.map(|shift_s| Note::Begins { first_s: 0.0 - shift_s }));
-    notes.extend(fit.map(|fit| Note::Velocities { fit, read_as }));
-    notes.extend(contradictions(&series).into_iter().map(Note::Contradiction));
+    notes.extend(computed::note(table, &by_channel));
+    notes.extend(found);
     let columns = by_channel.into_values().collect();
     Ok(Loaded {
         kind,

@@ -22,7 +22,10 @@ mod columns;
 mod computed;
 mod consistency;
 mod contact;
+mod correction;
+mod corrections;
 mod dataset;
+mod degrees;
 mod dialect;
 mod error;
 mod file;
@@ -71,12 +74,13 @@ pub use contact::{
     CONTACT_SHARE_OF_PEAK, ContactOutside, MIN_GAP_S, TIME_TOLERANCE_S, check_contact_within,
     contact_interval, contact_pulses, cut_at_s,
 };
+pub use correction::Correction;
 pub use dataset::{CASES_FILE, Case, Dataset, DatasetKind, Outcome};
 pub use dialect::{Dialect, Separator};
 pub use error::DataError;
 pub use file::{list_folder, open_file, read_bytes, read_utf8};
 pub use force_history::{CumulativeImpulse, ForceAxes, ForceHistory, Sampling};
-pub use formula::Formula;
+pub use formula::{Formula, FormulaPart};
 pub use json::{finite_or_null, finite_or_nulls, null_as_nan, nulls_as_nan};
 pub use loose::{
     FileKind, Loaded, read_any_series, read_force_file, read_motion_log, read_series,

@@ -2,7 +2,10 @@
 
 use std::fmt;
 
-use crate::data::{Channel, ColumnUse, Contradiction, VelocityAxes, VelocityFit, clock, spelling};
+use crate::data::correction::one_of;
+use crate::data::{
+    Channel, ColumnUse, Contradiction, Correction, VelocityAxes, VelocityFit, clock, spelling,
+};
 
 /// Number of columns without a channel that a remark names.
 const SHOWN_IGNORED: usize = 100;
@@ -55,13 +58,32 @@ pub enum Note {
         fit: VelocityFit,
         /// The axes in which they were read.
         read_as: VelocityAxes,
+        /// Changes of the map of which each makes them fit.
+        corrections: Vec<Correction>,
     },
     /// Columns of a motion contradict each other.
-    Contradiction(Contradiction),
+    Contradiction {
+        /// What contradicts what.
+        found: Contradiction,
+        /// Changes of the map of which each removes it.
+        corrections: Vec<Correction>,
+    },
     /// The file is of a format of its own.
     Format {
         /// What it is and how it is read, in words.
         text: &'static str,
+    },
+    /// Positions follow from latitude and longitude.
+    Places {
+        /// Latitude and longitude of the first row, degrees.
+        origin_deg: [f64; 2],
+    },
+    /// The seconds of the time begin again at 0, and were let go on.
+    GoesOn {
+        /// After so many of them, s.
+        period_s: f64,
+        /// How often they do.
+        n_turns: usize,
     },
     /// The record begins at another instant than zero.
     Begins {
@@ -78,7 +100,18 @@ impl Note {
 
     /// Whether numbers that were read contradict each other, so that nothing can be made of them.
     pub fn is_contradiction(&self) -> bool {
-        matches!(self, Self::Velocities { .. } | Self::Contradiction(_))
+        matches!(self, Self::Velocities { .. } | Self::Contradiction { .. })
+    }
+
+    /// Changes of the map of which each corrects what the remark says; the likeliest comes first.
+    pub fn corrections(&self) -> Vec<Correction> {
+        match self {
+            Self::Velocities { corrections, .. } | Self::Contradiction { corrections, .. } => {
+                corrections.clone()
+            }
+            Self::Begins { first_s } => vec![clock::shift_to_zero(*first_s)],
+            _ => Vec::new(),
+        }
     }
 }
 
@@ -114,11 +147,42 @@ impl fmt::Display for Note {
             Self::TextBeyond { n_rows } => {
                 write!(f, "{n_rows} rows have text to the right of the last column; it is not read")
             }
-            Self::Velocities { fit, read_as } => fit.explain(*read_as, f),
-            Self::Contradiction(contradiction) => contradiction.fmt(f),
+            Self::Velocities { fit, read_as, corrections } => {
+                fit.explain(*read_as, f)?;
+                write_remedy(f, corrections, fit.advice())
+            }
+            Self::Contradiction { found, corrections } => {
+                found.fmt(f)?;
+                write_remedy(f, corrections, found.advice())
+            }
             Self::Format { text } => f.write_str(text),
+            Self::Places { origin_deg: [latitude, longitude] } => write!(
+                f,
+                "x and y are metres to the east and to the north of the first row (latitude {latitude}°, \
+                 longitude {longitude}°), in the plane that touches the ellipsoid WGS 84 there"
+            ),
+            Self::GoesOn { period_s, n_turns } => {
+                let times =
+                    if *n_turns == 1 { "once".to_owned() } else { format!("{n_turns} times") };
+                write!(
+                    f,
+                    "the seconds of the time begin again at 0 after {period_s} s, {times}; they were let go on"
+                )
+            }
             Self::Begins { first_s } => f.write_str(&clock::shift_text(*first_s)),
         }
+    }
+}
+
+/// Writes the maps of which one helps, or what to do if none is known.
+fn write_remedy(
+    f: &mut fmt::Formatter<'_>,
+    corrections: &[Correction],
+    advice: &str,
+) -> fmt::Result {
+    match corrections {
+        [] => write!(f, "; {advice}"),
+        _ => write!(f, "; map {}", one_of(corrections)),
     }
 }
 

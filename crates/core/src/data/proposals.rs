@@ -5,7 +5,9 @@ use std::path::Path;
 
 use crate::data::columns::{is_summed, meanings, stated_unit, sum};
 use crate::data::spelling::{self, Meaning};
-use crate::data::{Channel, ColumnMap, ColumnRef, ColumnSource, DataError, Table};
+use crate::data::{
+    Channel, ColumnMap, ColumnRef, ColumnSource, DataError, FormulaPart, Table, computed,
+};
 use crate::units::{Quantity, Unit};
 
 /// Number of sample values of a column that a mapping dialog shows.
@@ -22,6 +24,8 @@ pub struct ColumnProposal {
     pub samples: Vec<String>,
     /// The channel and unit that the header suggests; the unit is `None` if the file states none.
     pub guess: Option<(Channel, Option<Unit>)>,
+    /// What the header says that the column holds of what channels are computed from.
+    pub part: Option<FormulaPart>,
     /// The cell of the column in the row of units.
     units_cell: Option<String>,
 }
@@ -55,6 +59,13 @@ pub fn propose_columns(path: &Path) -> Result<Vec<ColumnProposal>, DataError> {
 /// The columns of a table, with the channel that each header suggests.
 pub fn proposals(table: &Table) -> Vec<ColumnProposal> {
     let rows: Vec<_> = table.rows().take(SHOWN_SAMPLES).map(|(_, cells)| cells).collect();
+    let computed = computed::columns(table);
+    let part = |number: usize| {
+        computed.iter().find_map(|column| {
+            let at = column.terms.iter().position(|term| term.number == number)?;
+            column.formula?.parts().get(at).copied()
+        })
+    };
     let columns = table.header().iter().zip(meanings(table)).enumerate();
     let proposal = |(column_idx, (name, meaning)): (usize, (&String, Meaning))| ColumnProposal {
         number: column_idx + 1,
@@ -64,6 +75,7 @@ pub fn proposals(table: &Table) -> Vec<ColumnProposal> {
             Meaning::Channel(channel, unit) => Some((channel, unit)),
             Meaning::WrongUnit(..) | Meaning::Unknown => None,
         },
+        part: part(column_idx + 1),
         units_cell: table.unit_text(column_idx).map(str::to_owned),
     };
     columns.map(proposal).collect()

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::data::{
-    Channel, ColumnUse, DataError, Formula, ReadSettings, Table, Term, clock, impulse,
+    Channel, ColumnUse, DataError, Formula, Note, ReadSettings, Table, Term, clock, impulse,
 };
 use crate::numerics::counted_turns_rad;
 use crate::ranges::{
@@ -11,6 +11,23 @@ use crate::ranges::{
     INSTANT, LENGTH_SAMPLE, MOMENT_SAMPLE, Range, SPEED, STEER_ANGLE, STEERING_WHEEL_ANGLE,
 };
 use crate::units::Quantity;
+
+/// The instants of a table, s, with a remark if the seconds of the file begin again and were let go on.
+pub(super) fn instants_s(
+    table: &Table,
+    column: &ColumnUse,
+    settings: &ReadSettings,
+) -> Result<(Vec<f64>, Option<Note>), DataError> {
+    let mut time_s = si_values(table, column, &[], settings)?;
+    let shift_s = settings.time_shift_s.unwrap_or(0.0);
+    let mut in_file_s = time_s.clone();
+    in_file_s.iter_mut().for_each(|at_s| *at_s -= shift_s);
+    let note = clock::go_on(&mut in_file_s);
+    if note.is_some() {
+        time_s = in_file_s.into_iter().map(|at_s| at_s + shift_s).collect();
+    }
+    Ok((time_s, note))
+}
 
 /// The numbers of a channel in SI units and in the axes of this program.
 ///

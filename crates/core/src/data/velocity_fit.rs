@@ -15,7 +15,7 @@ const N_WINDOWS: usize = 12;
 
 /// Error up to which velocities fit the path. Positions that are taken beside the centre of gravity
 /// and the noise of receivers give some per cent.
-const FITTING: f64 = 0.2;
+pub(super) const FITTING: f64 = 0.2;
 
 /// Ratio of the errors up to which both axes fit equally well, and errors up to which they do
 /// whatever the ratio, as in straight motion along x.
@@ -125,33 +125,40 @@ impl VelocityFit {
             VelocityAxes::World => ("world", "body"),
         };
         match self {
-            Self::Neither(ratio) if !(0.8..1.25).contains(&ratio) => {
+            Self::Neither(ratio) if is_other_length(ratio) => {
                 write!(
                     f,
                     "v_x and v_y contradict the path: they give {ratio:.2} times its length"
                 )?;
                 match UNITS.iter().find(|(factor, ..)| (ratio / factor - 1.0).abs() < FITTING) {
-                    Some((_, unit)) => {
-                        write!(
-                            f,
-                            ", as if {unit} were read as m/s: map vx=COLUMN:{unit},vy=COLUMN:{unit}"
-                        )
-                    }
-                    None => f.write_str("; check their unit"),
+                    Some((_, unit)) => write!(f, ", as if {unit} were read as m/s"),
+                    None => Ok(()),
                 }
             }
-            Self::Neither(_) => write!(
-                f,
-                "v_x and v_y contradict the path in body axes and in world axes; check the \
-                 directions of y and yaw"
-            ),
-            _ => write!(
-                f,
-                "v_x and v_y were read as {axes} axes, but fit the path in {other} axes; map them \
-                 so, velocities={other}"
-            ),
+            Self::Neither(_) => {
+                write!(f, "v_x and v_y contradict the path in body axes and in world axes")
+            }
+            _ => {
+                write!(f, "v_x and v_y were read as {axes} axes, but fit the path in {other} axes")
+            }
         }
     }
+
+    /// What can be done where no change of the map is known to help.
+    pub(super) fn advice(self) -> &'static str {
+        match self {
+            Self::Neither(ratio) if is_other_length(ratio) => "check their unit",
+            Self::Neither(_) => "check the directions of y and yaw",
+            _ => "say in which axes they are",
+        }
+    }
+}
+
+/// Whether velocities give a path of another length than the positions do.
+///
+/// - `ratio`: that of the lengths.
+pub(super) fn is_other_length(ratio: f64) -> bool {
+    !(0.8..1.25).contains(&ratio)
 }
 
 #[cfg(test)]
