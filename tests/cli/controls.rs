@@ -25,7 +25,8 @@ fn the_seconds_before_an_impact_do_not_steer_the_seconds_after_it() {
     let refused = simulate(text(&file), &steer);
     assert_ne!(refused.code, 0, "{}", refused.out);
     let error = refused.error_line();
-    assert!(error.contains("from -5 s to 0 s") && error.contains("shift=5:s"), "{error}");
+    assert!(error.contains("from -5 s to 0 s"), "{error}");
+    assert!(error.contains("e.g. --steer-map \"shift=5:s\""), "{error}");
     let shifted = [&["--json", "--steer-map", "shift=5:s"][..], &steer].concat();
     let shifted = simulate(text(&file), &shifted);
     assert_eq!(shifted.code, 0, "{}", shifted.err);
@@ -39,7 +40,34 @@ fn brakes_that_are_recorded_long_after_the_motion_are_refused() {
     let file = write(&folder, "late.csv", "time [s],brake_fl [N m]\n100,0\n101,800\n103,800\n");
     let refused = simulate(text(&file), &["--wheels"]);
     assert_ne!(refused.code, 0, "{}", refused.out);
-    assert!(refused.error_line().contains("shift=-100:s"), "{}", refused.err);
+    assert!(refused.error_line().contains("e.g. --wheels-map \"shift=-100:s\""), "{}", refused.err);
+    let shifted = ["--wheels-map", "shift=-100:s", "--wheels"];
+    let shifted = simulate(text(&file), &[&["--json"][..], &shifted].concat());
+    assert_eq!(shifted.code, 0, "{}", shifted.err);
+    let braked_m_s = json(&shifted.out)["end"]["speed_m_s"].as_f64().unwrap();
+    let coasting = json(&simulate("--json", &[]).out)["end"]["speed_m_s"].as_f64().unwrap();
+    assert!(braked_m_s < coasting - 1.0, "{braked_m_s} {coasting}");
+}
+
+/// A file without units was refused for the angle alone, so that the shift was asked for only afterwards.
+#[test]
+fn unit_and_shift_of_a_record_without_units_are_offered_together() {
+    let folder = TempDir::new().unwrap();
+    let text_without = BEFORE_IMPACT.replace(" [s]", "").replace(" [deg]", "");
+    let file = write(&folder, "edr.csv", &text_without);
+    let steer = ["--json", "--steering-ratio", "16", "--steer"];
+    let refused = simulate(text(&file), &steer);
+    assert_ne!(refused.code, 0, "{}", refused.out);
+    let map = "shift=5:s,steering_wheel=2:deg";
+    let error = refused.error_line();
+    assert!(error.contains(&format!("e.g. --steer-map \"{map}\"")), "{error}");
+    assert!(error.contains("column 2 \"Steering Wheel Angle\" names no unit"), "{error}");
+    let mended = simulate(text(&file), &[&["--steer-map", map][..], &steer].concat());
+    let with_units = write(&folder, "units.csv", BEFORE_IMPACT);
+    let shifted = ["--steer-map", "shift=5:s"];
+    let stated = simulate(text(&with_units), &[&shifted[..], &steer].concat());
+    let yaw_rad = |ran: &Ran| json(&ran.out)["end"]["yaw_rad"].as_f64().unwrap();
+    assert_eq!(yaw_rad(&mended), yaw_rad(&stated), "{}", mended.err);
 }
 
 #[test]

@@ -32,7 +32,7 @@ use impactlab_study::{
 #[command(group(ArgGroup::new("source").required(true).multiple(true)
     .args(["dataset", "scenario", "trajectory", "force", "steer", "fishhook", "wheels", "speed"])))]
 #[command(group(ArgGroup::new("start").multiple(true)
-    .args(["speed", "vy", "yaw_rate", "steer", "steer_map", "fishhook", "wheels", "force"])))]
+    .args(["speed", "vy", "yaw_rate", "steer", "steer_map", "fishhook", "wheels", "wheels_map", "force"])))]
 #[command(group(ArgGroup::new("steering")
     .args(["steer", "fishhook", "steer_angle", "steering_wheel"])))]
 pub(in crate::cli) struct SimulateArgs {
@@ -136,6 +136,9 @@ struct SingleArgs {
     /// drive_fl … drive_rr, forwards; N m or with a unit
     #[arg(long, value_name = "FILE")]
     wheels: Option<PathBuf>,
+    /// Which column of the file of torques is what: time=1:s,brake_fl=2:N m
+    #[arg(long, value_name = "MAP", requires = "wheels")]
+    wheels_map: Option<ColumnMap>,
     /// Contact force ON the vehicle over time: CSV with time and fx, fy (world axes) or fx_body,
     /// fy_body (heading axes)
     #[arg(long, value_name = "F.csv")]
@@ -292,6 +295,6 @@ fn source(args: &SimulateArgs) -> MotionSource {
             false => None,
         },
         fishhook: single.fishhook,
-        wheels: single.wheels.clone().map(SeriesFile::new),
+        wheels: single.wheels.clone().map(|path| file(path, &single.wheels_map)),
     })
 }

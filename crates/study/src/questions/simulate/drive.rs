@@ -99,7 +99,8 @@ impl Drive {
         let duration_s = settings.duration_s;
         let steer = match &self.steer {
             Some(file) if !self.fishhook => {
-                let loaded = read_steer_file(&file.path, file.map.as_ref())?;
+                let loaded = read_steer_file(&file.path, file.map.as_ref())
+                    .map_err(|error| error.of_option("--steer-map"))?;
                 let steer = steer_history(file, &loaded.series, self.steering_ratio)?;
                 let acts = |sample: usize| steer.steer_rad.get(sample).is_some_and(|a| *a != 0.0);
                 caveats.extend(covered(file, &loaded, duration_s, acts)?);
@@ -111,7 +112,8 @@ impl Drive {
         caveats.extend(held);
         let wheels = match &self.wheels {
             Some(file) => {
-                let loaded = read_wheels_file(&file.path, file.map.as_ref())?;
+                let loaded = read_wheels_file(&file.path, file.map.as_ref())
+                    .map_err(|error| error.of_option("--wheels-map"))?;
                 let wheels = wheel_history(&loaded.series, &settings.struck);
                 let free = [WheelEffort::none(); 4];
                 let acts = |sample: usize| wheels.wheels.get(sample).is_some_and(|at| *at != free);
