@@ -172,3 +172,41 @@ fn a_model_of_a_car_has_estimates_of_its_scale() {
     let assumed = report["assumptions"].to_string();
     assert!(assumed.contains("in the scale of the width squared"), "{assumed}");
 }
+
+/// The striking car of full size that stands in for one of 1:10 was far too light for its axles.
+#[test]
+fn a_collision_of_two_models_of_cars_is_predicted() {
+    let folder = TempDir::new().unwrap();
+    let model = sheet(
+        &folder,
+        "mass_kg = 4\nlength_m = 0.6\nwidth_m = 0.3\nwheelbase_m = 0.33\ncg_height_m = 0.07\n\
+         yaw_inertia_kg_m2 = 0.05\nfriction = 1",
+    );
+    let body = |heading_deg: f64, speed_km_h: f64| {
+        format!(
+            "mass_kg = 4\nyaw_inertia_kg_m2 = 0.05\nlength_m = 0.6\nwidth_m = 0.3\n\
+             cg_from_front_m = 0.3\nheading_deg = {heading_deg}\nspeed_km_h = {speed_km_h}\n"
+        )
+    };
+    let scenario = folder.path().join("models.toml");
+    let contact = "from = \"side\"\nside = \"right\"\noffset_m = -0.1\nrestitution = 0.15\n\
+                   friction_limit = 0.4\n";
+    let text = format!(
+        "name = \"models\"\n[target]\n{}[bullet]\n{}[contact]\n{contact}",
+        body(0.0, 10.0),
+        body(18.0, 14.0)
+    );
+    fs::write(&scenario, text).unwrap();
+    let scenario = scenario.to_str().unwrap();
+    let report =
+        json(&["simulate", "--scenario", scenario, "--vehicle", &model, "--duration", "1"]);
+    // 10 km/h and the 1.1 km/h across that it gets: 2.8 m/s, which a second of rolling hardly slows.
+    let speed_m_s = report["end"]["speed_m_s"].as_f64().unwrap();
+    assert!((2.2..2.9).contains(&speed_m_s), "{speed_m_s}");
+    let folder = folder.path().join("prediction");
+    let prediction = folder.to_str().unwrap();
+    let few = ["--draws", "10", "--vehicle-draws", "10", "--duration", "1"];
+    let args = ["predict", "--scenario", scenario, "--vehicle", &model, "--out", prediction];
+    out(&[&args[..], &few].concat());
+    assert!(folder.read_dir().unwrap().count() > 1);
+}

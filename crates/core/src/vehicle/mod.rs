@@ -14,6 +14,7 @@ mod parameters;
 mod preset;
 mod rest;
 mod scaled_mass;
+mod scaled_size;
 pub mod sheet;
 mod state;
 mod tire;

@@ -61,7 +61,9 @@ pub fn analyse_scenario(
     let start = |vehicle: &ScenarioVehicle, preset: &VehicleParameters, pose: &Pose| {
         let [x_body_m, y_body_m] = pose.body_from_world(geometry.contact_point_world_m);
         let contact = ContactPoint { x_body_m, y_body_m, height_m: pulse.contact_height_m };
-        let of_mass = preset.clone().with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2));
+        // A car of full size that stands in for a model would be far too light for its size.
+        let of_size = preset.clone().at_model_scale(vehicle.footprint().length_m);
+        let of_mass = of_size.with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2));
         StruckVehicle {
             // One car has one size: that of the collision.
             vehicle: vehicle.footprint().given_to(of_mass),
