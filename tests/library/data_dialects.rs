@@ -184,3 +184,41 @@ fn a_failed_write_leaves_the_file_as_it_was() {
     assert_eq!(fs::read_to_string(&path).unwrap(), "before");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
+
+/// These were read as tables, whose header or number of fields was refused then.
+#[test]
+fn files_of_tests_scenes_and_drawings_are_called_by_their_names() {
+    let scene = "is a scene of bodies (glTF); a motion has to be given as numbers, as CSV";
+    let drawing =
+        "is a drawing (DXF); name it in a site file as the ground of a scene, [dxf] file = \"…\"";
+    let mme = "is a file of ISO-MME (ISO/TS 13499); export the channels over time as CSV";
+    let folder = tempfile::tempdir().unwrap();
+    for (name, content, message) in [
+        ("car.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"scenes\": []}\n", scene),
+        ("car.glb", "glTF\u{2}\0\0\0", scene),
+        ("road.dxf", "999\nmade by\n  0\nSECTION\n  2\nHEADER\n", drawing),
+        ("binary.dxf", "AutoCAD Binary DXF\r\n\u{1a}\0", drawing),
+        ("a.svg", "<svg xmlns=\"x\"></svg>\n", "is a picture (SVG); a curve has to be given"),
+        ("test.mme", "Data format edition number    :1.6\nLaboratory name               :A\n", mme),
+        (
+            "test.chn",
+            "Instrumentation standard      :ISO 6487\nNumber of channels            :2\n",
+            mme,
+        ),
+        (
+            "test.001",
+            "Test object number            :1\nName of the channel           :HEAD\n0.1\n0.2\n",
+            mme,
+        ),
+    ] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, content).unwrap();
+        let error = read_any_series(&path, None).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("{}: {message}", path.display())), "{error}");
+    }
+    // A table of numbers with such words is a table.
+    let path = folder.path().join("t.csv");
+    std::fs::write(&path, "# Laboratory name: A\ntime_s,fx_n,fy_n\n0,0,0\n0.1,5,1\n0.2,0,0\n")
+        .unwrap();
+    assert_eq!(read_any_series(&path, None).unwrap().series.n_samples(), 3);
+}

@@ -12,10 +12,12 @@ const EXAMINED_LINES: usize = 60;
 const EXPORT: &str = "export the channels over time as CSV";
 const EXPORT_FORCE: &str = "export the force over time as CSV (time, x, y)";
 const EXPORT_MOTION: &str = "export the motion of a node over time as CSV (time, x, y, yaw)";
+const AS_NUMBERS: &str = "a motion has to be given as numbers, as CSV";
+const IN_SITE: &str = "name it in a site file as the ground of a scene, [dxf] file = \"…\"";
 const AS_WORKBOOK: &str = "save the sheet as .xlsx or as CSV";
 
 /// The first bytes of formats that are not read: the bytes, what they are, and what to do.
-const MAGIC: [(&[u8], &str, &str); 26] = [
+const MAGIC: [(&[u8], &str, &str); 28] = [
     (b"MATLAB 7.3", "a MATLAB file", "save the signals with writetable as CSV"),
     (b"MATLAB 5.0", "a MATLAB file", "save the signals with writetable as CSV"),
     (b"\x89HDF\r\n\x1a\n", "an HDF5 file", EXPORT),
@@ -41,11 +43,14 @@ const MAGIC: [(&[u8], &str, &str); 26] = [
     (b"MDF     ", "a measurement file (MDF)", EXPORT),
     (b"LOGG", "a bus log of Vector (BLF)", EXPORT),
     (b"\x7fELF", "a program", "is it the right file?"),
+    (b"glTF", "a scene of bodies (glTF)", AS_NUMBERS),
+    (b"AutoCAD Binary DXF", "a drawing (DXF)", IN_SITE),
     (b"{\\rtf", "a text document (RTF)", "save the table as CSV"),
 ];
 
 /// Beginnings of the first line of text formats that are not read.
-const FIRST_LINES: [(&str, &str, &str); 5] = [
+const FIRST_LINES: [(&str, &str, &str); 6] = [
+    ("<svg", "a picture (SVG)", "a curve has to be given as numbers, as CSV"),
     ("<?xml", "an XML file", EXPORT),
     ("<html", "a web page", "save the table as CSV"),
     ("<!doctype", "a web page", "save the table as CSV"),
@@ -83,6 +88,15 @@ pub(crate) fn refuse_known_binary(path: &Path, first: &[u8]) -> Result<(), DataE
 pub(crate) fn refuse_known_text(path: &Path, text: &str) -> Result<(), DataError> {
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
     let first = lines.clone().next().unwrap_or_default().to_lowercase();
+    if is_gltf(text) {
+        return Err(other(path, "a scene of bodies (glTF)", AS_NUMBERS));
+    }
+    if is_drawing(lines.clone()) {
+        return Err(other(path, "a drawing (DXF)", IN_SITE));
+    }
+    if is_iso_mme(lines.clone()) {
+        return Err(other(path, "a file of ISO-MME (ISO/TS 13499)", EXPORT));
+    }
     let known = FIRST_LINES.into_iter().find(|(start, ..)| first.starts_with(start));
     if let Some((_, format, remedy)) = known {
         return Err(other(path, format, remedy));
@@ -92,6 +106,43 @@ pub(crate) fn refuse_known_text(path: &Path, text: &str) -> Result<(), DataError
         Some((format, remedy)) => Err(other(path, format, remedy)),
         None => Ok(()),
     }
+}
+
+/// Whether a text is a glTF file: JSON with the mandatory `asset` and its version.
+pub fn is_gltf(text: &str) -> bool {
+    let has = |word: &str| text.contains(word);
+    let has_contents =
+        ["\"scenes\"", "\"nodes\"", "\"meshes\"", "\"buffers\""].into_iter().any(has);
+    text.trim_start().starts_with('{') && has("\"asset\"") && has("\"version\"") && has_contents
+}
+
+/// Whether lines that are not blank begin as those of a DXF file do: the group code 0 and a section.
+fn is_drawing<'a>(mut lines: impl Iterator<Item = &'a str>) -> bool {
+    let is_comment = |code: &str| code == "999";
+    let mut next = lines.next();
+    while next.is_some_and(is_comment) {
+        lines.next();
+        next = lines.next();
+    }
+    next == Some("0") && lines.next().is_some_and(|name| name.eq_ignore_ascii_case("section"))
+}
+
+/// Whether lines that are not blank begin as those of ISO-MME do, a name, blanks, a colon and a value: the
+/// information on a test, on its channels, or a channel.
+fn is_iso_mme<'a>(lines: impl Iterator<Item = &'a str>) -> bool {
+    const KEYS: [&str; 8] = [
+        "data format edition number",
+        "laboratory name",
+        "test object number",
+        "instrumentation standard",
+        "number of channels",
+        "name of the channel",
+        "channel code",
+        "name of channel 001",
+    ];
+    let key = |line: &str| Some(line.split_once(':')?.0.trim().to_lowercase());
+    let is_key = |line: &str| key(line).is_some_and(|key| KEYS.contains(&key.as_str()));
+    lines.take(EXAMINED_LINES).filter(|line| is_key(line)).count() >= 2
 }
 
 /// The export of a crash data retrieval tool to which a line belongs, and what to do with it.

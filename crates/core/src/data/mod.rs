@@ -80,6 +80,7 @@ pub use dialect::{Dialect, Separator};
 pub use error::DataError;
 pub use file::{list_folder, open_file, read_bytes, read_utf8};
 pub use force_history::{CumulativeImpulse, ForceAxes, ForceHistory, Sampling};
+pub use foreign::is_gltf;
 pub use formula::{Formula, FormulaPart};
 pub use json::{finite_or_null, finite_or_nulls, null_as_nan, nulls_as_nan};
 pub use loose::{

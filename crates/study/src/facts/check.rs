@@ -115,7 +115,7 @@ impl InputFileReport {
     fn table(&self) -> FactTable {
         let name = Fact::text(Term::Name, &self.name);
         let contents = self.contents.iter().map(|part| Fact::text(Term::Contents, part));
-        let command = self.kind.command().map(|command| Fact::text(Term::Command, command));
+        let command = self.command().map(|command| Fact::text(Term::Command, command));
         let facts = std::iter::once(name).chain(contents).chain(command).collect();
         FactTable::new(title(&self.path, word(&self.kind)), facts)
     }

@@ -1,7 +1,9 @@
 //! The errors of writing files.
 
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
+
+use crate::data::write::folder::STAGING;
 
 /// The reason why a file or a folder is not written.
 #[derive(Debug, thiserror::Error)]
@@ -77,7 +79,7 @@ pub enum WriteError {
         folder: PathBuf,
     },
     /// The operating system reports an error.
-    #[error("{}: cannot be written", path.display())]
+    #[error("{}: cannot be written", without_staging(path).display())]
     Io {
         /// The file or folder.
         path: PathBuf,
@@ -90,6 +92,47 @@ impl WriteError {
     /// An error of the operating system at `path`.
     pub(super) fn io(path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
-        move |source| Self::Io { path, source }
+        move |source| Self::Io { path, source: of_system(source) }
+    }
+}
+
+/// The error without the temporary file that `tempfile` adds to its text, which nobody asked for.
+fn of_system(error: io::Error) -> io::Error {
+    let text = error.to_string();
+    match text.split_once(" at path \"") {
+        Some((text, _)) if error.raw_os_error().is_none() => {
+            io::Error::new(error.kind(), text.to_owned())
+        }
+        _ => error,
+    }
+}
+
+/// The path that a file in a staging folder is made for.
+fn without_staging(path: &Path) -> PathBuf {
+    let is_kept = |part: &Component<'_>| {
+        let name = part.as_os_str().to_string_lossy();
+        !(name.starts_with(STAGING[0]) && name.ends_with(STAGING[1]))
+    };
+    path.components().filter(is_kept).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error_chain;
+
+    #[test]
+    fn an_error_names_the_file_that_was_asked_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let missing = folder.path().join("missing");
+        let target = missing.join("a.csv");
+        let error = tempfile::Builder::new().suffix(".tmp").tempfile_in(&missing).unwrap_err();
+        assert!(error.to_string().contains(".tmp"), "{error}");
+        let system = io::Error::from_raw_os_error(error.raw_os_error().unwrap_or(2));
+        let text = error_chain(&WriteError::io(&target)(error));
+        assert_eq!(text, format!("{}: cannot be written: {system}", target.display()));
+        let staged = missing.join(".impactlab-x1.tmp").join("a.csv");
+        let text = WriteError::io(&staged)(io::Error::from_raw_os_error(28)).to_string();
+        assert_eq!(text, format!("{}: cannot be written", target.display()));
     }
 }

@@ -16,7 +16,7 @@ use crate::data::write::{
 };
 
 /// Beginning and end of the names of staging folders.
-const STAGING: [&str; 2] = [".impactlab-", ".tmp"];
+pub(super) const STAGING: [&str; 2] = [".impactlab-", ".tmp"];
 
 /// A folder whose files are being made.
 ///

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::StudyError;
 use crate::case_file::{CASE_ENDING, FORMAT};
-use impactlab_core::data::{CASES_FILE, DatasetKind, TomlFile, open_file};
+use impactlab_core::data::{CASES_FILE, DatasetKind, TomlFile, is_gltf, open_file};
 use impactlab_core::site::{is_picture, is_picture_file};
 
 /// Bytes at the start of a file by which its kind is found out; a settings file is read whole.
@@ -226,6 +226,9 @@ fn from_content(path: &Path) -> Option<InputKind> {
     }
     let text = String::from_utf8_lossy(&head);
     let text = text.trim_start_matches('\u{feff}').trim_start();
+    if is_gltf(text) {
+        return Some(InputKind::Series);
+    }
     if text.starts_with('{') {
         let is_case = has_ending(path, CASE_ENDING) || text.contains(&format!("\"{FORMAT}\""));
         return Some(match text.contains("\"question\"") {
@@ -322,6 +325,8 @@ mod tests {
         let run = b"\xa5\x64kind\x78\x1aimpactlab reconstruction 3\x67version";
         let state = [&[b'0'; 64][..], run].concat();
         assert_eq!(kind_of_text("run", &state), InputKind::Checkpoint);
+        let scene = b"{\"asset\": {\"version\": \"2.0\"}, \"scenes\": [], \"nodes\": []}";
+        assert_eq!(kind_of_text("car.gltf", scene), InputKind::Series);
         let force = b"time_s,fx_n,fy_n\n0,0,0\n0.1,1,2\n";
         assert_eq!(kind_of_text("force.toml.csv", force), InputKind::Series);
         // The preamble of a data logger.

@@ -41,6 +41,20 @@ pub struct InputFileReport {
     pub contents: Vec<String>,
 }
 
+impl InputFileReport {
+    /// A command that takes the file; `None` if it is not used by itself.
+    pub fn command(&self) -> Option<&'static str> {
+        match self.contents.first().map(String::as_str).filter(|_| self.kind == InputKind::Network)
+        {
+            Some("force network") => Some("impactlab evaluate force --model FILE"),
+            Some("response network") => Some("impactlab evaluate response --model FILE"),
+            Some("training of a force network") => Some("impactlab train force --resume"),
+            Some("training of a response network") => Some("impactlab train response --resume"),
+            _ => self.kind.command(),
+        }
+    }
+}
+
 /// A data set.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct DatasetReport {
@@ -328,4 +342,28 @@ fn channels<S: Serializer>(channels: &[Channel], serializer: S) -> Result<S::Ok,
         channel: channel.short_name(),
         unit: channel.quantity().si_unit().symbol,
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The checkpoint of a training is no network that can be evaluated.
+    #[test]
+    fn a_network_names_the_command_that_takes_it() {
+        let command = |kind, contents: &[&str]| {
+            let contents = contents.iter().map(|part| (*part).to_owned()).collect();
+            let (path, name) = (PathBuf::from("f"), "f".to_owned());
+            InputFileReport { path, kind, name, contents }.command()
+        };
+        for (contents, expected) in [
+            ("force network", "impactlab evaluate force --model FILE"),
+            ("response network", "impactlab evaluate response --model FILE"),
+            ("training of a force network", "impactlab train force --resume"),
+            ("training of a response network", "impactlab train response --resume"),
+        ] {
+            assert_eq!(command(InputKind::Network, &[contents]), Some(expected));
+        }
+        assert_eq!(command(InputKind::Case, &["force network"]), Some("impactlab report FILE"));
+    }
 }
