@@ -23,6 +23,9 @@ sources! {
     /// R. M. Brach, R. M. Brach, *Vehicle Accident Analysis and Reconstruction Methods*, 2nd ed.,
     /// SAE International, 2011. Planar impact mechanics, restitution and impulse ratio.
     Brach2011;
+    /// K. L. Campbell, *Energy basis for collision severity*, SAE Technical Paper 740565, 1974. Crush
+    /// that is linear in the speed of a barrier test; the force per width A + B δ.
+    Campbell1974;
     /// M. Carpenter, J. Welcher, *Planar impact with the no-slide condition and a friction limit*,
     /// SAE Technical Paper 2019-01-0422, 2019. Restitution from the point of common velocity,
     /// friction limit, worked barrier example.
@@ -35,9 +38,16 @@ sources! {
     /// vehicles sold in Canada, as served by the vPIC interface of the NHTSA and collected, rounded to
     /// 1 cm, in the public repository `shifter907/allcarsdb` (`data/body_configs.csv`).
     Cvs2024;
+    /// Engineering Dynamics Corporation, *EDSMAC: Simulation of Automobile Collisions* and *EDSMAC4*,
+    /// program manuals of the HVE environment. Force of two outlines from their crush, share of the crush
+    /// that is given back, printed example, stiffness of printed cars.
+    EdsmacManual;
     /// Esri, *World files for raster datasets*, ArcGIS documentation, 2024. The six numbers of a world
     /// file; the last two are the middle of the left top pixel.
     EsriWorldFiles;
+    /// J. R. Funk, J. M. Cormier, C. E. Bain, *Analytical model for investigating low-speed sideswipe
+    /// collisions*, SAE Technical Paper 2004-01-1185, 2004. Staged sideswipes that last about a second.
+    FunkCormierBain2004;
     /// A. Gelman, X.-L. Meng, H. Stern, *Posterior predictive assessment of model fitness via realized
     /// discrepancies*, Statistica Sinica 6, 1996.
     GelmanMengStern1996;

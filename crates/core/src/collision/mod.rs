@@ -7,6 +7,7 @@
 //! - `scenario` and its files: two vehicles that are about to collide, as a user describes them;
 //! - `contact_distribution`: how uncertain restitution and friction are;
 //! - [`crush`]: force over time from the crush of both vehicles;
+//! - [`contact`]: the contact of any two faces, and both vehicles on their tires to the end;
 //! - `pulse`: classic pulse shapes that carry a given impulse;
 //! - `channel_filter`: the low-pass filter of crash tests (SAE J211);
 //! - `impulse_clusters`: groups of collisions of similar impulse.
@@ -45,6 +46,7 @@ mod scenario_preset;
 mod scenario_write;
 mod second_contact;
 
+pub mod contact;
 pub mod crush;
 
 mod pulse;

@@ -1,0 +1,310 @@
+//! How stiff the faces of a vehicle are: values of printed cars, a rule for other cars, and what a test
+//! against a rigid barrier says.
+//!
+//! ```text
+//! A = m b₀ b₁/L      B = m b₁²/L      b₁ = (V − b₀)/C̄      C̄ = (C₁/2 + C₂ + … + C₅ + C₆/2)/5
+//! ```
+//!
+//! m is the mass of the car, L the width of its crushed face, V the speed of the test, b₀ the speed up
+//! to which nothing is crushed, C₁ to C₆ the crush at six equidistant places.
+//! Source: [`Campbell1974`](crate::bibliography::Campbell1974); the printed cars are those of
+//! [`EdsmacManual`](crate::bibliography::EdsmacManual).
+
+use crate::collision::Side;
+use crate::collision::contact::law::{FaceLaw, FaceLawError, FaceParameters, Recovery};
+use crate::vehicle::{VehicleClass, VehicleParameters};
+
+/// A and B of a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FaceStiffness {
+    /// A: load at which the face begins to crush, N/m.
+    pub onset_n_per_m: f64,
+    /// B: growth of the load with the depth of the crush, N/m².
+    pub stiffness_n_per_m2: f64,
+}
+
+/// One value for each face of a vehicle; both sides have the same.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ByFace<T> {
+    /// Of the front.
+    pub front: T,
+    /// Of the left and of the right side.
+    pub side: T,
+    /// Of the rear.
+    pub rear: T,
+}
+
+impl<T> ByFace<T> {
+    /// The value of a side of the outline.
+    pub fn at(&self, side: Side) -> &T {
+        match side {
+            Side::Front => &self.front,
+            Side::Left | Side::Right => &self.side,
+            Side::Rear => &self.rear,
+        }
+    }
+
+    /// Converts the value of each face.
+    pub fn map<U>(self, convert: impl Fn(T) -> U) -> ByFace<U> {
+        ByFace { front: convert(self.front), side: convert(self.side), rear: convert(self.rear) }
+    }
+}
+
+/// The laws of the faces of a vehicle.
+pub type FaceLaws = ByFace<FaceLaw>;
+
+/// Standard deviation of the logarithm of A and B, which vary together, of cars of a class. Sides "vary
+/// widely, even within a given class" (SAE 2020-01-0640, 49 tests); the numbers were chosen.
+pub const STIFFNESS_LOG_SIGMA: ByFace<f64> = ByFace { front: 0.25, side: 0.4, rear: 0.35 };
+
+/// Length δ_e of the elastic branch, m: from bumpers to doors. Chosen, 0.03 to 0.07 m are plausible.
+pub const ELASTIC_DEPTH_M: ByFace<f64> = ByFace { front: 0.03, side: 0.07, rear: 0.03 };
+
+/// Deflection beyond which the load grows no further, m. Chosen: about the deepest crush of the tests
+/// behind A and B, so that a deep overlap is not extrapolated.
+pub const SATURATION_DEPTH_M: ByFace<f64> = ByFace { front: 1.0, side: 0.6, rear: 1.0 };
+
+/// A car whose stiffness is printed.
+struct PrintedCar {
+    mass_kg: f64,
+    stiffness: ByFace<FaceStiffness>,
+}
+
+/// - `[A, B]` of front, side and rear, N/cm and N/cm², as printed.
+const fn printed(mass_kg: f64, [front, side, rear]: [[f64; 2]; 3]) -> PrintedCar {
+    const fn face([onset_n_cm, stiffness_n_cm2]: [f64; 2]) -> FaceStiffness {
+        FaceStiffness { onset_n_per_m: onset_n_cm * 1e2, stiffness_n_per_m2: stiffness_n_cm2 * 1e4 }
+    }
+    let stiffness = ByFace { front: face(front), side: face(side), rear: face(rear) };
+    PrintedCar { mass_kg, stiffness }
+}
+
+/// Ford Escort 1991–96, a hatchback.
+const HATCHBACK: PrintedCar = printed(1125.0, [[515.6, 70.9], [154.5, 41.2], [313.5, 29.6]]);
+/// Nissan Sentra 1995–99, a small saloon.
+const SMALL_SALOON: PrintedCar = printed(1150.0, [[432.1, 50.5], [175.1, 45.6], [284.2, 34.1]]);
+/// BMW 740iL, a large saloon.
+const LARGE_SALOON: PrintedCar = printed(1922.0, [[505.6, 78.2], [239.9, 65.5], [512.1, 95.1]]);
+/// Chevrolet K-5 Blazer, an off-road vehicle.
+const OFF_ROADER: PrintedCar = printed(2207.0, [[516.6, 60.3], [136.6, 27.6], [509.0, 84.8]]);
+
+impl FaceStiffness {
+    /// Mean of the logarithms of A and of B.
+    ///
+    /// - `share`: weight of `other`, 0 to 1.
+    fn between(self, other: Self, share: f64) -> Self {
+        let mix = |a: f64, b: f64| a * (b / a).powf(share);
+        Self {
+            onset_n_per_m: mix(self.onset_n_per_m, other.onset_n_per_m),
+            stiffness_n_per_m2: mix(self.stiffness_n_per_m2, other.stiffness_n_per_m2),
+        }
+    }
+
+    fn scaled(self, factor: f64) -> Self {
+        Self {
+            onset_n_per_m: self.onset_n_per_m * factor,
+            stiffness_n_per_m2: self.stiffness_n_per_m2 * factor,
+        }
+    }
+}
+
+impl ByFace<FaceStiffness> {
+    fn between(self, other: Self, share: f64) -> Self {
+        Self {
+            front: self.front.between(other.front, share),
+            side: self.side.between(other.side, share),
+            rear: self.rear.between(other.rear, share),
+        }
+    }
+}
+
+/// Medians of A and B of a vehicle of which only class and mass are known.
+///
+/// Passenger cars, and vehicles of no stated class: between the two small cars and the large saloon
+/// the logarithms are linear in that of the mass. Other classes have the values of the off-road vehicle.
+/// Outside of these masses, and for other classes, A and B are in proportion to the mass: a car with
+/// the same b₀ and b₁, so that it is crushed as deep at the same speed.
+///
+/// - `mass_kg`: more than 0.
+pub fn class_stiffness(class: VehicleClass, mass_kg: f64) -> ByFace<FaceStiffness> {
+    match class {
+        VehicleClass::Any | VehicleClass::Car => {
+            let small = HATCHBACK.stiffness.between(SMALL_SALOON.stiffness, 0.5);
+            let low_kg = (HATCHBACK.mass_kg * SMALL_SALOON.mass_kg).sqrt();
+            let high_kg = LARGE_SALOON.mass_kg;
+            let inside_kg = mass_kg.clamp(low_kg, high_kg);
+            let share = (inside_kg / low_kg).ln() / (high_kg / low_kg).ln();
+            let stiffness = small.between(LARGE_SALOON.stiffness, share);
+            stiffness.map(|face| face.scaled(mass_kg / inside_kg))
+        }
+        VehicleClass::Suv | VehicleClass::Pickup | VehicleClass::Van => {
+            OFF_ROADER.stiffness.map(|face| face.scaled(mass_kg / OFF_ROADER.mass_kg))
+        }
+    }
+}
+
+impl ByFace<FaceStiffness> {
+    /// The laws of the faces with the usual elastic branch, saturation and recovery.
+    ///
+    /// # Errors
+    /// [`FaceLawError`] if a number is out of range.
+    pub fn laws(self) -> Result<FaceLaws, FaceLawError> {
+        let law = |stiffness: FaceStiffness, elastic_depth_m, saturation_depth_m| {
+            FaceLaw::new(FaceParameters {
+                onset_n_per_m: stiffness.onset_n_per_m,
+                stiffness_n_per_m2: stiffness.stiffness_n_per_m2,
+                elastic_depth_m,
+                saturation_depth_m,
+                recovery: Recovery::default(),
+            })
+        };
+        let (elastic, saturation) = (ELASTIC_DEPTH_M, SATURATION_DEPTH_M);
+        Ok(ByFace {
+            front: law(self.front, elastic.front, saturation.front)?,
+            side: law(self.side, elastic.side, saturation.side)?,
+            rear: law(self.rear, elastic.rear, saturation.rear)?,
+        })
+    }
+}
+
+impl FaceLaws {
+    /// The laws of a vehicle by the rule for its class and mass, see [`class_stiffness`].
+    ///
+    /// # Errors
+    /// [`FaceLawError`] if the mass is not more than 0.
+    pub fn by_class(vehicle: &VehicleParameters) -> Result<Self, FaceLawError> {
+        let class = vehicle.sheet.as_ref().map_or(VehicleClass::Any, |sheet| sheet.class);
+        class_stiffness(class, vehicle.mass.mass_kg).laws()
+    }
+
+    /// The laws at a number of standard deviations of their scatter, see [`STIFFNESS_LOG_SIGMA`].
+    ///
+    /// - `latents`: standard normal values.
+    #[must_use]
+    pub fn drawn(self, latents: ByFace<f64>) -> Self {
+        let sigma = STIFFNESS_LOG_SIGMA;
+        Self {
+            front: self.front.scaled((sigma.front * latents.front).exp()),
+            side: self.side.scaled((sigma.side * latents.side).exp()),
+            rear: self.rear.scaled((sigma.rear * latents.rear).exp()),
+        }
+    }
+}
+
+/// A test of a car against a rigid barrier, over the whole width of a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BarrierTest {
+    /// Mass m of the car, kg.
+    pub mass_kg: f64,
+    /// Width L of the crushed face, m.
+    pub width_m: f64,
+    /// Speed V of the impact, m/s.
+    pub speed_m_s: f64,
+    /// Speed b₀ up to which nothing is crushed, m/s; 5 mph where nobody says it.
+    pub no_damage_speed_m_s: f64,
+    /// Crush C₁ to C₆ at six equidistant places across the face, m.
+    pub crush_m: [f64; 6],
+}
+
+impl BarrierTest {
+    /// C̄: mean depth of the crush, m.
+    pub fn mean_crush_m(&self) -> f64 {
+        let [c1, c2, c3, c4, c5, c6] = self.crush_m;
+        (c1 / 2.0 + c2 + c3 + c4 + c5 + c6 / 2.0) / 5.0
+    }
+
+    /// A and B of the face.
+    ///
+    /// # Errors
+    /// [`FaceLawError`] names the first number that is out of range.
+    pub fn stiffness(&self) -> Result<FaceStiffness, FaceLawError> {
+        let mean_crush_m = self.mean_crush_m();
+        let over_b0_m_s = self.speed_m_s - self.no_damage_speed_m_s;
+        let positive = |value: f64| value.is_finite() && value > 0.0;
+        let b0 = self.no_damage_speed_m_s;
+        for (is_good, name, value, expected) in [
+            (positive(self.mass_kg), "mass_kg", self.mass_kg, "more than 0"),
+            (positive(self.width_m), "width_m", self.width_m, "more than 0"),
+            (b0.is_finite() && b0 >= 0.0, "no_damage_speed_m_s", b0, "0 or more"),
+            (positive(over_b0_m_s), "speed_m_s", self.speed_m_s, "more than no_damage_speed_m_s"),
+            (positive(mean_crush_m), "mean crush", mean_crush_m, "more than 0"),
+        ] {
+            if !is_good {
+                return Err(FaceLawError { name, value, expected });
+            }
+        }
+        let b1 = over_b0_m_s / mean_crush_m;
+        let mass_per_width = self.mass_kg / self.width_m;
+        Ok(FaceStiffness {
+            onset_n_per_m: mass_per_width * b0 * b1,
+            stiffness_n_per_m2: mass_per_width * b1 * b1,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The 2018 Toyota Camry of NHTSA test v10146, 57.09 km/h, over the width of the car.
+    const CAMRY: BarrierTest = BarrierTest {
+        mass_kg: 1719.0,
+        width_m: 1.837,
+        speed_m_s: 57.09 / 3.6,
+        no_damage_speed_m_s: 5.0 * 0.447_04,
+        crush_m: [0.380, 0.466, 0.511, 0.518, 0.489, 0.370],
+    };
+
+    #[test]
+    fn a_barrier_test_gives_the_stiffness_and_the_stiffness_the_speed() {
+        let stiffness = CAMRY.stiffness().unwrap();
+        let (a, b) = (stiffness.onset_n_per_m, stiffness.stiffness_n_per_m2);
+        assert!((a / 604e2 - 1.0).abs() < 2e-3 && (b / 78.0e4 - 1.0).abs() < 2e-3, "{stiffness:?}");
+        // The energy that the law takes up to the mean crush, with A²/(2B) as its constant, is that
+        // of the test.
+        let depth = CAMRY.mean_crush_m();
+        let absorbed_j = CAMRY.width_m * (a * depth + b * depth * depth / 2.0 + a * a / b / 2.0);
+        let speed_m_s = (2.0 * absorbed_j / CAMRY.mass_kg).sqrt();
+        assert!((speed_m_s - CAMRY.speed_m_s).abs() < 1e-9, "{speed_m_s}");
+        for (bad, name) in [
+            (BarrierTest { mass_kg: 0.0, ..CAMRY }, "mass_kg"),
+            (BarrierTest { width_m: f64::NAN, ..CAMRY }, "width_m"),
+            (BarrierTest { speed_m_s: 2.0, ..CAMRY }, "speed_m_s"),
+            (BarrierTest { crush_m: [0.0; 6], ..CAMRY }, "mean crush"),
+        ] {
+            assert_eq!(bad.stiffness().unwrap_err().name, name);
+        }
+    }
+
+    #[test]
+    fn printed_cars_have_their_own_values_and_heavier_cars_more_of_them() {
+        let large = class_stiffness(VehicleClass::Car, 1922.0);
+        let off_road = class_stiffness(VehicleClass::Suv, 2207.0);
+        for (got, expected) in [(large, LARGE_SALOON.stiffness), (off_road, OFF_ROADER.stiffness)] {
+            for side in Side::ALL {
+                let (got, expected) = (got.at(side), expected.at(side));
+                let off = got.stiffness_n_per_m2 / expected.stiffness_n_per_m2 - 1.0;
+                assert!(off.abs() < 1e-12, "{side:?}: {got:?}, printed {expected:?}");
+            }
+        }
+        for class in [VehicleClass::Car, VehicleClass::Suv] {
+            let mut before = 0.0;
+            for i in 0..40 {
+                let mass_kg = 600.0 + 75.0 * f64::from(i);
+                let front = class_stiffness(class, mass_kg).rear.onset_n_per_m;
+                assert!(front > before, "{class:?} of {mass_kg} kg: {front} after {before}");
+                before = front;
+            }
+        }
+    }
+
+    #[test]
+    fn a_draw_scales_each_face_by_its_own_scatter() {
+        let laws = class_stiffness(VehicleClass::Car, 1500.0).laws().unwrap();
+        let drawn = laws.drawn(ByFace { front: 1.0, side: -2.0, rear: 0.0 });
+        let ratio = |side| drawn.at(side).onset_n_per_m() / laws.at(side).onset_n_per_m();
+        assert!((ratio(Side::Front) - 0.25_f64.exp()).abs() < 1e-12);
+        assert!((ratio(Side::Right) - (-0.8_f64).exp()).abs() < 1e-12);
+        assert_eq!(drawn.rear, laws.rear);
+    }
+}
