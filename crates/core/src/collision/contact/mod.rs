@@ -1,6 +1,8 @@
 //! The crush contact of two vehicles.
 //!
-//! - `law`, `stiffness`: the load of a face over its deflection, and how stiff faces are.
+//! - `law`, `stiffness`: the load of a face over its deflection, and how stiff faces are;
+//! - `outline`: rounded outlines, cut into elements;
+//! - `bodies`, `force`: the force between two outlines, and the history of their elements.
 //!
 //! It generalises [`crush`](crate::collision::crush), which is fitted to one nose against one side, to
 //! any face against any face.
@@ -8,10 +10,20 @@
 mod law;
 mod stiffness;
 
+mod bodies;
+mod force;
+mod outline;
+
+pub use bodies::{
+    CONTACT_DAMPING_S_M, CONTACT_FRICTION, CONTACT_FRICTION_SIGMA, CONTACT_HEIGHT_M, ContactBody,
+    ContactConditions, FULL_FRICTION_SPEED_M_S, PlanarMotion,
+};
+pub use force::{ContactForce, PairContact};
 pub use law::{
     CRUSHED_RECOVERY, ELASTIC_RECOVERY, FaceLaw, FaceLawError, FaceParameters, PressedStrips,
     RECOVERY_END_M, Recovery, Strip, press_together,
 };
+pub use outline::{ContactOutline, OutlineElement, USUAL_CORNER_RADIUS_M, USUAL_ELEMENT_M};
 pub use stiffness::{
     BarrierTest, ByFace, ELASTIC_DEPTH_M, FaceLaws, FaceStiffness, SATURATION_DEPTH_M,
     STIFFNESS_LOG_SIGMA, class_stiffness,

@@ -1,0 +1,463 @@
+//! The contact force of two outlines at given poses and velocities.
+//!
+//! Each element of one vehicle that lies inside of the outline of the other one is a strip of its
+//! face law, in series with the strip at its foot, for the overlap D of the outlines as they were
+//! before any deformation (`law.rs`, `outline.rs`). Two half passes are taken, the elements of the
+//! struck vehicle in the outline of the striking one and the reverse, each with half the force:
+//!
+//! ```text
+//! N = ½ p w max(0, −n_element · n_face)      along the normal of the entered face
+//! T = −μ_c N clip(v_t/ζ, ±1)                 along its tangent
+//! ```
+//!
+//! Where a face is pressed in again, below its greatest deflection, p is multiplied by 1 + c v_n, with
+//! the speed of approach v_n, up to p_h. The face law by itself gives everything back there, so that
+//! vehicles that push each other would bounce without end. Unloading is that of the face law.
+//!
+//! Each half pass has the histories of the strips on both of its sides to itself: the overlaps of the two
+//! passes differ by a few per cent, which is as much as a crushed strip gives back.
+//!
+//! Both act at the place where the two deformed faces meet, so that force and moment on one vehicle are
+//! the opposite of those on the other one to the last digit.
+//! Of each outline one face at a time is entered: that which is penetrated least along the direction
+//! in which the outlines overlap,
+//!
+//! ```text
+//! min over faces of D_max/(−n_face · N)        N: direction of Σ w n over the elements inside
+//! ```
+//!
+//! with the largest depth D_max of an element below it. The sum of the normals of one outline inside of
+//! the other one is normal to the line between the two places where the outlines cross. So all of a side
+//! that slides along a nose is pressed by the nose, and a corner that is deep in a side near its end
+//! still is in the side.
+//!
+//! Source: two passes and strips in series replace the balance of pressures along radial vectors of
+//! [`EdsmacManual`](crate::bibliography::EdsmacManual); full friction from a sliding speed ζ on is its,
+//! too. Assumes contact at one stated height, and neighbouring elements that do not hold each other.
+//! Leaves out: mounting and hooking of one vehicle on the other one, tearing, wheels, what resists a dent
+//! that is drawn along a face, and two places of contact at a time that lie at different faces of one
+//! vehicle.
+
+use crate::collision::Side;
+use crate::collision::contact::bodies::Relative;
+use crate::collision::contact::law::press_together;
+use crate::collision::contact::outline::Foot;
+use crate::collision::contact::{
+    ContactBody, ContactConditions, FULL_FRICTION_SPEED_M_S, PlanarMotion,
+};
+use crate::vehicle::frames::Heading;
+
+/// Deepest overlap of an element that counts, m; one that is deeper has passed to the other side.
+const LARGEST_OVERLAP_M: f64 = 1.5;
+
+/// Factor on the way along which the face that is entered is penetrated, so that it does not change to
+/// and fro.
+const KEPT_FACE: f64 = 0.7;
+
+/// Least share of the direction of overlap that counts along the normal of a face.
+const LEAST_SHARE: f64 = 0.02;
+
+/// Compliance on unloading of the strip that gives back least, m²/N.
+const LEAST_COMPLIANCE_M2_PER_N: f64 = 1e-12;
+
+/// What the vehicles do to each other at an instant. The striking vehicle has the opposite force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactForce {
+    /// Force `[F_X, F_Y]` on the struck vehicle, world axes, N.
+    pub force_world_n: [f64; 2],
+    /// Yaw moments on the struck and on the striking vehicle about their CGs, N m.
+    pub yaw_moments_n_m: [f64; 2],
+    /// Mean place of the forces of the elements, weighted by them, world axes, m.
+    pub point_world_m: [f64; 2],
+    /// Sum N of the normal loads of both half passes, N.
+    pub normal_load_n: f64,
+    /// Largest overlap of an element that carries a load, m.
+    pub overlap_m: f64,
+    /// Stiffness of the contact on unloading, N/m.
+    pub unloading_stiffness_n_per_m: f64,
+    /// Power that friction turns into heat, W.
+    pub friction_power_w: f64,
+    /// Power of the approach of the faces against the normal loads, W; negative as they part.
+    pub normal_power_w: f64,
+}
+
+/// What an element remembers.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct ElementMemory {
+    /// h in the half pass of its own vehicle, and as a partner in the other one, m.
+    greatest_m: [f64; 2],
+    /// Overlap D and load p at the last evaluation, m and N/m.
+    overlap_m: f64,
+    load_n_per_m: f64,
+    /// Elastic energy that it and its partner store for it, J.
+    stored_j: f64,
+}
+
+/// A greatest deflection that has grown.
+#[derive(Debug, Clone, Copy)]
+struct Grown {
+    vehicle: usize,
+    element: usize,
+    /// 0 for the half pass of the vehicle, 1 for the other one.
+    role: usize,
+    greatest_m: f64,
+}
+
+/// An element inside of the other outline.
+#[derive(Debug, Clone, Copy)]
+struct InsideElement {
+    idx: usize,
+    /// Its reference point from the middle of the other outline, in body axes of the other vehicle, m.
+    point_m: [f64; 2],
+}
+
+impl ElementMemory {
+    fn deepest_m(&self) -> f64 {
+        self.greatest_m[0].max(self.greatest_m[1])
+    }
+}
+
+/// Two outlines with the history of their contact. It begins with vehicles that are not damaged.
+#[derive(Debug, Clone)]
+pub struct PairContact<'a> {
+    bodies: [ContactBody<'a>; 2],
+    conditions: ContactConditions,
+    memory: [Vec<ElementMemory>; 2],
+    /// The face of each outline that is entered; `None` while no element of the other one is inside.
+    entered: [Option<Side>; 2],
+    /// Elements of each vehicle inside of the other outline.
+    inside: [Vec<InsideElement>; 2],
+    /// New greatest deflections of an evaluation.
+    grown: Vec<Grown>,
+    is_loaded: bool,
+    law_work_j: f64,
+}
+
+/// The sums over the elements of a half pass, in body axes of the vehicle whose outline is entered.
+#[derive(Debug, Clone, Copy, Default)]
+struct PassSums {
+    /// On the vehicle whose elements they are.
+    force_n: [f64; 2],
+    /// About the CG of the vehicle that is entered, N m.
+    moment_n_m: f64,
+    size_n: f64,
+    size_times_place_n_m: [f64; 2],
+    normal_load_n: f64,
+    overlap_m: f64,
+    unloading_stiffness_n_per_m: f64,
+    friction_power_w: f64,
+    normal_power_w: f64,
+}
+
+impl<'a> PairContact<'a> {
+    /// Two vehicles that are not damaged.
+    ///
+    /// - `bodies`: the struck and the striking vehicle.
+    pub fn new(bodies: [ContactBody<'a>; 2], conditions: ContactConditions) -> Self {
+        let fresh =
+            |body: &ContactBody<'_>| vec![ElementMemory::default(); body.outline.elements().len()];
+        Self {
+            memory: [fresh(&bodies[0]), fresh(&bodies[1])],
+            bodies,
+            entered: [None; 2],
+            inside: [Vec::new(), Vec::new()],
+            conditions,
+            grown: Vec::new(),
+            is_loaded: false,
+            law_work_j: 0.0,
+        }
+    }
+
+    /// Greatest deflections h of the elements of each vehicle, m.
+    pub fn greatest_deflections_m(&self) -> [Vec<f64>; 2] {
+        [0, 1].map(|i| self.memory[i].iter().map(ElementMemory::deepest_m).collect())
+    }
+
+    /// Depth of the dents that stay, (1 − ρ) h, of the elements of each vehicle, m.
+    pub fn dents_m(&self) -> [Vec<f64>; 2] {
+        [0, 1].map(|i| {
+            let elements = self.bodies[i].outline.elements().iter().zip(&self.memory[i]);
+            let dent_m = |face, greatest_m| self.bodies[i].faces.at(face).after(greatest_m).dent_m;
+            elements.map(|(element, memory)| dent_m(element.face, memory.deepest_m())).collect()
+        })
+    }
+
+    /// Elastic energy of both vehicles, J.
+    pub fn stored_energy_j(&self) -> f64 {
+        self.memory.iter().flatten().map(|element| element.stored_j).sum()
+    }
+
+    /// Work of the face laws so far, `Σ w ∫p dD`, J: the elastic energy and what unloading has turned
+    /// into heat. Where elements are pressed straight in, that is the work which the vehicles have done
+    /// against the normal loads. Where they slide along, an overlap may grow without that work: nothing
+    /// resists a dent that is drawn along a face but friction.
+    pub fn law_work_j(&self) -> f64 {
+        self.law_work_j
+    }
+
+    /// Whether the outlines are so far apart that no element can touch within a distance.
+    ///
+    /// - `margin_m`: the distance.
+    pub fn is_apart(&self, motions: &[PlanarMotion; 2], margin_m: f64) -> bool {
+        (0..2).any(|other| {
+            let relative = Relative::new(motions, 1 - other);
+            let [bodies_half_m, own_half_m] =
+                [other, 1 - other].map(|i| self.bodies[i].outline.half_m());
+            let own_middle_m = self.bodies[1 - other].outline.middle_x_m();
+            let [x, y] = relative.entered_from_own([own_middle_m, 0.0]);
+            let [sin, cos] = relative.turn.map(f64::abs);
+            let x = x - self.bodies[other].outline.middle_x_m();
+            let reach_x_m = own_half_m[0] * cos + own_half_m[1] * sin + bodies_half_m[0];
+            let reach_y_m = own_half_m[0] * sin + own_half_m[1] * cos + bodies_half_m[1];
+            x.abs() > reach_x_m + margin_m || y.abs() > reach_y_m + margin_m
+        })
+    }
+
+    /// Evaluates the contact and lets the histories of its elements grow; `None` without a force.
+    ///
+    /// - `motions`: of the struck and the striking vehicle.
+    pub fn advance(&mut self, motions: &[PlanarMotion; 2]) -> Option<ContactForce> {
+        if !self.is_loaded && self.is_apart(motions, 0.0) {
+            self.entered = [None; 2];
+            return None;
+        }
+        let relatives = [0, 1].map(|own| Relative::new(motions, own));
+        let sums_m = [0, 1].map(|own| self.find_inside(own, &relatives[own]));
+        for own in 0..2 {
+            let ([x, y], [dx, dy]) = (relatives[own].turned(sums_m[own]), sums_m[1 - own]);
+            self.enter(1 - own, [x - dx, y - dy]);
+        }
+        let sums = [0, 1].map(|own| self.pass(own, &relatives[own]));
+        for Grown { vehicle, element, role, greatest_m } in self.grown.drain(..) {
+            let known_m = &mut self.memory[vehicle][element].greatest_m[role];
+            *known_m = known_m.max(greatest_m);
+        }
+        self.is_loaded = sums.iter().any(|sums| sums.size_n > 0.0);
+        self.is_loaded.then(|| total(&sums, motions))
+    }
+
+    /// Finds the elements of one vehicle inside of the outline of the other one.
+    ///
+    /// - returns the sum of their normals times widths, in body axes of the vehicle, m.
+    fn find_inside(&mut self, own: usize, relative: &Relative) -> [f64; 2] {
+        let entered = self.bodies[1 - own].outline;
+        let (middle_x_m, [half_length_m, half_width_m]) = (entered.middle_x_m(), entered.half_m());
+        let mut sum_m = [0.0; 2];
+        let mut inside = std::mem::take(&mut self.inside[own]);
+        inside.clear();
+        for (idx, element) in self.bodies[own].outline.elements().iter().enumerate() {
+            let [x, y] = relative.entered_from_own(element.point_body_m);
+            let point_m = [x - middle_x_m, y];
+            if point_m[0].abs() >= half_length_m || point_m[1].abs() >= half_width_m {
+                self.release(own, idx);
+                continue;
+            }
+            for (sum, normal) in sum_m.iter_mut().zip(element.normal_body) {
+                *sum += normal * element.width_m;
+            }
+            inside.push(InsideElement { idx, point_m });
+        }
+        self.inside[own] = inside;
+        sum_m
+    }
+
+    /// Chooses the face of an outline that is entered by the elements inside.
+    ///
+    /// - `along`: direction in which the other vehicle overlaps it, in its body axes, of any length.
+    fn enter(&mut self, entered: usize, along: [f64; 2]) {
+        let outline = self.bodies[entered].outline;
+        let mut largest_m = [f64::NEG_INFINITY; 4];
+        for element in &self.inside[1 - entered] {
+            for (largest, depth) in largest_m.iter_mut().zip(outline.depths_m(element.point_m)) {
+                *largest = largest.max(depth);
+            }
+        }
+        let size = along[0].hypot(along[1]);
+        if self.inside[1 - entered].is_empty() || size <= 0.0 {
+            self.entered[entered] = None;
+            return;
+        }
+        let shares = [-along[0], -along[1], along[0], along[1]].map(|share| share / size);
+        let mut best = (f64::INFINITY, None);
+        for (i, side) in Side::ALL.into_iter().enumerate() {
+            let kept = if self.entered[entered] == Some(side) { KEPT_FACE } else { 1.0 };
+            let way_m = kept * largest_m[i] / shares[i].max(LEAST_SHARE);
+            if way_m < best.0 {
+                best = (way_m, Some(side));
+            }
+        }
+        self.entered[entered] = best.1;
+    }
+
+    /// The elements of one vehicle in the outline of the other one.
+    fn pass(&mut self, own: usize, relative: &Relative) -> PassSums {
+        let mut sums = PassSums::default();
+        let Some(face) = self.entered[1 - own] else { return sums };
+        let entered = self.bodies[1 - own].outline;
+        let inside = std::mem::take(&mut self.inside[own]);
+        for &InsideElement { idx, point_m } in &inside {
+            let element = self.bodies[own].outline.elements()[idx];
+            let normal = relative.turned(element.normal_body);
+            let against =
+                |foot: &Foot| -(normal[0] * foot.normal_body[0] + normal[1] * foot.normal_body[1]);
+            let pressing = |foot: &Foot| foot.depth_m < LARGEST_OVERLAP_M && against(foot) > 0.0;
+            let Some(foot) = entered.foot(face, point_m).filter(pressing) else {
+                self.release(own, idx);
+                continue;
+            };
+            let weight_m = 0.5 * element.width_m * against(&foot);
+            let pressed = self.press(own, idx, foot, weight_m);
+            if pressed.load_n > 0.0 {
+                let [nx, ny] = foot.normal_body;
+                let [x, y] = [point_m[0] + entered.middle_x_m(), point_m[1]];
+                let place_m = [x + pressed.deflection_m * nx, y + pressed.deflection_m * ny];
+                sums.overlap_m = sums.overlap_m.max(foot.depth_m);
+                sums.unloading_stiffness_n_per_m += pressed.unloading_stiffness_n_per_m;
+                sums.add(&pressed, &self.conditions, place_m, foot.normal_body, relative);
+            }
+        }
+        self.inside[own] = inside;
+        sums
+    }
+
+    /// The element has no load any more.
+    fn release(&mut self, own: usize, idx: usize) {
+        let memory = &mut self.memory[own][idx];
+        self.law_work_j -= memory.stored_j;
+        (memory.load_n_per_m, memory.stored_j) = (0.0, 0.0);
+    }
+
+    /// Presses an element and the one at its foot together.
+    ///
+    /// - `weight_m`: width on which the load acts.
+    fn press(&mut self, own: usize, idx: usize, foot: Foot, weight_m: f64) -> PressedElement {
+        let sides = [(own, idx), (1 - own, foot.element)];
+        let face = |(vehicle, element): (usize, usize)| {
+            let body: &ContactBody<'_> = &self.bodies[vehicle];
+            *body.faces.at(body.outline.elements()[element].face)
+        };
+        let laws = sides.map(face);
+        let greatest_m: [f64; 2] = std::array::from_fn(|role| {
+            let (vehicle, element) = sides[role];
+            self.memory[vehicle][element].greatest_m[role]
+        });
+        let strips = [0, 1].map(|i| laws[i].after(greatest_m[i]));
+        let pressed = press_together([&strips[0], &strips[1]], foot.depth_m);
+        let load_n_per_m = pressed.load_n_per_m;
+        if load_n_per_m <= 0.0 {
+            self.release(own, idx);
+            return PressedElement::default();
+        }
+        let mut compliance_m2_per_n = 0.0;
+        let limit_n_per_m = strips[0].load_there_n_per_m.min(strips[1].load_there_n_per_m);
+        let is_below = (0..2).all(|i| pressed.deflections_m[i] <= greatest_m[i]);
+        for i in 0..2 {
+            let (vehicle, element) = sides[i];
+            let deflection_m = pressed.deflections_m[i];
+            let has_grown = deflection_m > greatest_m[i];
+            if has_grown {
+                self.grown.push(Grown { vehicle, element, role: i, greatest_m: deflection_m });
+            }
+            let strip = if has_grown { laws[i].after(deflection_m) } else { strips[i] };
+            compliance_m2_per_n += strip.unloading_compliance_m2_per_n();
+        }
+        let memory = &mut self.memory[own][idx];
+        let before_m = match memory.load_n_per_m > 0.0 {
+            true => memory.overlap_m,
+            false => strips[0].dent_m + strips[1].dent_m,
+        };
+        let mean_load = (load_n_per_m + memory.load_n_per_m) / 2.0;
+        self.law_work_j += weight_m * mean_load * (foot.depth_m - before_m);
+        memory.overlap_m = foot.depth_m;
+        memory.load_n_per_m = load_n_per_m;
+        memory.stored_j = weight_m * load_n_per_m * load_n_per_m * compliance_m2_per_n / 2.0;
+        PressedElement {
+            load_n: load_n_per_m * weight_m,
+            limit_n: is_below.then(|| limit_n_per_m.max(load_n_per_m) * weight_m),
+            deflection_m: pressed.deflections_m[0],
+            unloading_stiffness_n_per_m: weight_m
+                / compliance_m2_per_n.max(LEAST_COMPLIANCE_M2_PER_N),
+        }
+    }
+}
+
+/// An element that is pressed by its partner.
+#[derive(Debug, Clone, Copy, Default)]
+struct PressedElement {
+    /// Normal load without damping, N.
+    load_n: f64,
+    /// Largest load with damping, N; `None` where a face is pressed in further than before.
+    limit_n: Option<f64>,
+    /// Deflection of the element, m.
+    deflection_m: f64,
+    unloading_stiffness_n_per_m: f64,
+}
+
+impl PassSums {
+    /// Adds an element with its normal load and the friction that it causes.
+    fn add(
+        &mut self,
+        pressed: &PressedElement,
+        conditions: &ContactConditions,
+        place_m: [f64; 2],
+        [nx, ny]: [f64; 2],
+        relative: &Relative,
+    ) {
+        let [vx, vy] = relative.velocity_at_m_s(place_m);
+        let approach_m_s = -(vx * nx + vy * ny);
+        let damping = 1.0 + conditions.damping_s_m * approach_m_s.max(0.0);
+        let load_n = match pressed.limit_n {
+            Some(limit_n) => (pressed.load_n * damping).min(limit_n),
+            None => pressed.load_n,
+        };
+        let sliding_m_s = vy * nx - vx * ny;
+        let share = (sliding_m_s / FULL_FRICTION_SPEED_M_S).clamp(-1.0, 1.0);
+        let across_n = -conditions.friction * load_n * share;
+        let [fx, fy] = [load_n * nx - across_n * ny, load_n * ny + across_n * nx];
+        let size_n = fx.hypot(fy);
+        self.force_n = [self.force_n[0] + fx, self.force_n[1] + fy];
+        self.moment_n_m += place_m[0] * fy - place_m[1] * fx;
+        self.size_n += size_n;
+        for (sum, place) in self.size_times_place_n_m.iter_mut().zip(place_m) {
+            *sum += size_n * place;
+        }
+        self.normal_load_n += load_n;
+        self.friction_power_w -= across_n * sliding_m_s;
+        self.normal_power_w += load_n * approach_m_s;
+    }
+}
+
+/// The force on the struck vehicle from both half passes.
+fn total(sums: &[PassSums; 2], motions: &[PlanarMotion; 2]) -> ContactForce {
+    let positions_m = motions.map(|motion| motion.position_m);
+    let [dx, dy] = [0, 1].map(|axis| positions_m[1][axis] - positions_m[0][axis]);
+    let (mut force_n, mut moment_n_m) = ([0.0; 2], 0.0);
+    let (mut size_n, mut place_m) = (0.0, [0.0; 2]);
+    for (own, of_pass) in sums.iter().enumerate() {
+        let entered = 1 - own;
+        let heading = Heading::new(motions[entered].yaw_rad);
+        // On the struck vehicle.
+        let sign = if own == 0 { 1.0 } else { -1.0 };
+        let [fx, fy] = heading.world_from_body(of_pass.force_n).map(|force| sign * force);
+        force_n = [force_n[0] + fx, force_n[1] + fy];
+        let to_struck_n_m = if entered == 1 { dx * fy - dy * fx } else { 0.0 };
+        moment_n_m += sign * of_pass.moment_n_m + to_struck_n_m;
+        let [px, py] = heading.world_from_body(of_pass.size_times_place_n_m);
+        size_n += of_pass.size_n;
+        for (axis, moment) in [px, py].into_iter().enumerate() {
+            place_m[axis] += moment + of_pass.size_n * positions_m[entered][axis];
+        }
+    }
+    let [fx, fy] = force_n;
+    ContactForce {
+        force_world_n: force_n,
+        yaw_moments_n_m: [moment_n_m, dx * fy - dy * fx - moment_n_m],
+        point_world_m: place_m.map(|place| place / size_n),
+        normal_load_n: sums[0].normal_load_n + sums[1].normal_load_n,
+        overlap_m: sums[0].overlap_m.max(sums[1].overlap_m),
+        unloading_stiffness_n_per_m: sums[0].unloading_stiffness_n_per_m
+            + sums[1].unloading_stiffness_n_per_m,
+        friction_power_w: sums[0].friction_power_w + sums[1].friction_power_w,
+        normal_power_w: sums[0].normal_power_w + sums[1].normal_power_w,
+    }
+}
