@@ -98,8 +98,27 @@ impl<'a> Run<'a> {
         self.inputs.over(start_s, self.step_s).on(&self.ground, state)
     }
 
+    /// Inputs over a step of any length under a collision force that is held over it, instead of that
+    /// of the manoeuvre.
+    pub fn inputs_under(
+        &self,
+        collision: Option<CollisionForce<f64>>,
+        start_s: f64,
+        step_s: f64,
+        state: &[f64; N_STATE],
+    ) -> StepInputs<f64> {
+        let mut inputs = self.inputs.over(start_s, step_s).on(&self.ground, state);
+        inputs.instants.iter_mut().for_each(|instant| instant.collision = collision);
+        inputs
+    }
+
     fn time_s(&self) -> f64 {
         self.output as f64 * OUTPUT_INTERVAL_S
+    }
+
+    /// Whether this is the last output instant of the duration.
+    pub fn is_last(&self) -> bool {
+        self.output + 1 >= self.n_outputs
     }
 
     /// Records this instant, and says whether the motion goes on.
@@ -120,12 +139,21 @@ impl<'a> Run<'a> {
         coming: &VehicleInput<f64>,
         forces: &Forces<f64>,
     ) -> Result<bool, SimulationError> {
+        self.record_pushed(coming, forces, coming.collision.is_some() || coming.is_driven())
+    }
+
+    /// [`Run::record`] where it is known whether the energy may have grown since the last instant.
+    pub fn record_pushed(
+        &mut self,
+        coming: &VehicleInput<f64>,
+        forces: &Forces<f64>,
+        is_pushed: bool,
+    ) -> Result<bool, SimulationError> {
         let (time_s, now) = (self.time_s(), VehicleState::from_array(self.state));
         if !self.state.iter().all(|value| value.is_finite()) {
             return Err(SimulationError::Diverged { time_s });
         }
         self.recorder.record(time_s, &now, coming, forces);
-        let is_pushed = coming.collision.is_some() || coming.is_driven();
         let share = self.energy.gain(self.vehicle, &now, is_pushed);
         let is_conserved = share <= MAX_ENERGY_GAIN; // not where it is NaN
         if !is_conserved {
@@ -135,7 +163,8 @@ impl<'a> Run<'a> {
             self.recorder.energy.get_or_insert(MotionFlag::EnergyGain { time_s });
         }
         let has_settled = self.rest.has_settled(time_s, &now);
-        Ok(!(has_settled && self.ends_at_rest) && self.output + 1 < self.n_outputs)
+        let has_ended = has_settled && self.ends_at_rest;
+        Ok(!has_ended && !self.is_last())
     }
 
     /// Goes on to the next output instant.

@@ -1,8 +1,10 @@
-//! The crush contact of two vehicles.
+//! The crush contact of two vehicles and their motion to the end, with sustained and renewed contact.
 //!
 //! - `law`, `stiffness`: the load of a face over its deflection, and how stiff faces are;
 //! - `outline`: rounded outlines, cut into elements;
-//! - `bodies`, `force`: the force between two outlines, and the history of their elements.
+//! - `bodies`, `force`: the force between two outlines, and the history of their elements;
+//! - `phases`: when they were in contact, with which impulse;
+//! - `coupled`: two 4DOF vehicles on their tires with this force between them.
 //!
 //! It generalises [`crush`](crate::collision::crush), which is fitted to one nose against one side, to
 //! any face against any face.
@@ -14,16 +16,23 @@ mod bodies;
 mod force;
 mod outline;
 
+mod coupled;
+mod phases;
+#[cfg(test)]
+mod test_pairs;
+
 pub use bodies::{
     CONTACT_DAMPING_S_M, CONTACT_FRICTION, CONTACT_FRICTION_SIGMA, CONTACT_HEIGHT_M, ContactBody,
     ContactConditions, FULL_FRICTION_SPEED_M_S, PlanarMotion,
 };
+pub use coupled::{ContactEnergy, PairError, PairMotion, PairVehicle, VehiclePair};
 pub use force::{ContactForce, PairContact};
 pub use law::{
     CRUSHED_RECOVERY, ELASTIC_RECOVERY, FaceLaw, FaceLawError, FaceParameters, PressedStrips,
     RECOVERY_END_M, Recovery, Strip, press_together,
 };
 pub use outline::{ContactOutline, OutlineElement, USUAL_CORNER_RADIUS_M, USUAL_ELEMENT_M};
+pub use phases::{CONTACT_GAP_S, ContactPhase, PhaseOfVehicle};
 pub use stiffness::{
     BarrierTest, ByFace, ELASTIC_DEPTH_M, FaceLaws, FaceStiffness, SATURATION_DEPTH_M,
     STIFFNESS_LOG_SIGMA, class_stiffness,

@@ -1,0 +1,446 @@
+//! Two vehicles on their tires with the contact force of their outlines between them, to the end.
+//!
+//! Both are 4DOF vehicles with their own controls, ground and end. Over each step the contact force is
+//! held, evaluated at the poses that the vehicles reach in the middle of the step with their present
+//! velocities:
+//!
+//! ```text
+//! F = F(q + h/2 q̇, q̇)      then one Runge–Kutta step of length h of both vehicles under F
+//! ```
+//!
+//! Without tires that is the leapfrog method: of second order, and an elastic contact neither gains nor
+//! loses energy by it. Force and moments are equal and opposite, so that momentum and angular momentum
+//! of both vehicles together change by the tires alone.
+//! The step is 0.5 ms in contact and 0.25 ms where ω h would exceed 0.2, with ω from the stiffness of
+//! the contact on unloading and the masses at the contact point; 1 ms while the outlines are apart.
+//! Contact may begin anew at any time.
+
+use crate::collision::contact::phases::PhaseWatch;
+use crate::collision::contact::{
+    ContactBody, ContactConditions, ContactForce, ContactOutline, ContactPhase,
+    FULL_FRICTION_SPEED_M_S, FaceLaws, PairContact, PlanarMotion,
+};
+use crate::vehicle::frames::body_from_world;
+use crate::vehicle::{
+    CollisionForce, ContactPoint, HeldForceRun, Manoeuvre, Motion, N_STATE, OUTPUT_INTERVAL_S,
+    SimulationError, VehicleParameters, VehicleState,
+};
+
+/// Steps of the shortest kind in an output interval.
+const TICKS_PER_OUTPUT: usize = 40;
+
+/// Ticks of a step while the outlines are apart, in contact, and in stiff contact.
+const STEP_TICKS: [usize; 3] = [4, 2, 1];
+
+/// Largest ω h of a contact, and of the decay of velocities in it.
+const MAX_RATE_TIMES_STEP: f64 = 0.2;
+
+/// Distance of the outlines below which steps are those of a contact, m.
+const NEAR_M: f64 = 0.05;
+
+/// One of two vehicles that may touch each other.
+#[derive(Debug, Clone, Copy)]
+pub struct PairVehicle<'a> {
+    /// The vehicle.
+    pub vehicle: &'a VehicleParameters,
+    /// Its initial state, controls, ground and end. It has no collision force of its own.
+    pub manoeuvre: &'a Manoeuvre,
+    /// Outline and face laws.
+    pub body: ContactBody<'a>,
+}
+
+/// Two vehicles that may touch each other.
+#[derive(Debug, Clone, Copy)]
+pub struct VehiclePair<'a> {
+    /// The struck and the striking vehicle.
+    pub vehicles: [PairVehicle<'a>; 2],
+    /// Friction, damping and height of their contact.
+    pub conditions: ContactConditions,
+    /// Into how many parts the steps are divided: 1, or more to see what they change.
+    pub step_divisor: usize,
+}
+
+/// Energy that the contact has taken from the vehicles, J.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ContactEnergy {
+    /// Work of the planar motion of both vehicles against force and yaw moment,
+    /// `−Σ∫(F·dx + M dψ)`. It contains no roll.
+    pub absorbed_j: f64,
+    /// Heat of friction between the outlines, `∫|T v_t| dt`.
+    pub friction_heat_j: f64,
+    /// Heat of crush and unloading: the work against the normal loads, `∫N v_n dt`, less what is stored.
+    pub crush_heat_j: f64,
+    /// Elastic energy that the faces still hold.
+    pub stored_j: f64,
+    /// Work of the face laws, see [`PairContact::law_work_j`].
+    pub law_work_j: f64,
+}
+
+impl ContactEnergy {
+    /// Absorbed energy that appears neither as heat nor as stored energy, J: what velocities change
+    /// within the steps.
+    pub fn residual_j(&self) -> f64 {
+        self.absorbed_j - self.friction_heat_j - self.crush_heat_j - self.stored_j
+    }
+}
+
+/// The motions of two vehicles with all contacts between them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairMotion {
+    /// Of the struck and of the striking vehicle, over the same time.
+    pub motions: [Motion; 2],
+    /// Phases of contact in the order of time.
+    pub phases: Vec<ContactPhase>,
+    /// Energy of all contacts together.
+    pub energy: ContactEnergy,
+    /// Depth of the dents that stay, of the elements of each outline, m.
+    pub dents_m: [Vec<f64>; 2],
+}
+
+/// Reason why two vehicles have no motion.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PairError {
+    /// One of the motions cannot be computed.
+    #[error("{role} vehicle")]
+    Vehicle {
+        /// `struck` or `striking`.
+        role: &'static str,
+        /// Why.
+        #[source]
+        source: SimulationError,
+    },
+    /// A manoeuvre has a collision force of its own.
+    #[error(
+        "the manoeuvre of the {role} vehicle has a collision force, which follows from the contact"
+    )]
+    CollisionForce {
+        /// `struck` or `striking`.
+        role: &'static str,
+    },
+    /// The manoeuvres do not last equally long.
+    #[error(
+        "the manoeuvres of both vehicles last {struck_s} s and {striking_s} s, expected one duration"
+    )]
+    Durations {
+        /// Of the struck vehicle, s.
+        struck_s: f64,
+        /// Of the striking vehicle, s.
+        striking_s: f64,
+    },
+    /// A number of the contact is out of range.
+    #[error("{name} is {value}, expected {expected}")]
+    Range {
+        /// Name of the number.
+        name: &'static str,
+        /// Its value, SI units.
+        value: f64,
+        /// The permitted range.
+        expected: &'static str,
+    },
+}
+
+const ROLES: [&str; 2] = ["struck", "striking"];
+
+impl VehiclePair<'_> {
+    /// Simulates both vehicles until both are at rest, if their manoeuvres end there, or for their
+    /// duration. The result is deterministic.
+    ///
+    /// # Errors
+    /// [`PairError`] if a number is out of range, the manoeuvres do not go together, or a motion cannot
+    /// be computed.
+    pub fn simulate(&self) -> Result<PairMotion, PairError> {
+        let mut run = PairRun::new(self)?;
+        while run.goes_on()? {}
+        run.finish()
+    }
+
+    fn check(&self) -> Result<(), PairError> {
+        let is_some = |value: f64| value.is_finite() && value >= 0.0;
+        for (name, value) in [
+            ("friction", self.conditions.friction),
+            ("damping_s_m", self.conditions.damping_s_m),
+            ("height_m", self.conditions.height_m),
+        ] {
+            if !is_some(value) {
+                return Err(PairError::Range { name, value, expected: "0 or more" });
+            }
+        }
+        if self.step_divisor == 0 {
+            let (name, expected) = ("step_divisor", "1 or more");
+            return Err(PairError::Range { name, value: 0.0, expected });
+        }
+        for (vehicle, role) in self.vehicles.iter().zip(ROLES) {
+            if vehicle.manoeuvre.contact_load.is_some() {
+                return Err(PairError::CollisionForce { role });
+            }
+        }
+        let [struck_s, striking_s] = self.vehicles.map(|it| it.manoeuvre.duration_s);
+        match struck_s == striking_s {
+            true => Ok(()),
+            false => Err(PairError::Durations { struck_s, striking_s }),
+        }
+    }
+}
+
+impl<'a> PairVehicle<'a> {
+    /// A vehicle with an outline and with the face laws of its class and mass.
+    ///
+    /// # Errors
+    /// [`FaceLawError`](crate::collision::contact::FaceLawError) if the mass is not more than 0.
+    pub fn by_class(
+        vehicle: &'a VehicleParameters,
+        manoeuvre: &'a Manoeuvre,
+        outline: &'a ContactOutline,
+    ) -> Result<Self, crate::collision::contact::FaceLawError> {
+        let faces = FaceLaws::by_class(vehicle)?;
+        Ok(Self { vehicle, manoeuvre, body: ContactBody { outline, faces } })
+    }
+}
+
+/// States of both vehicles, in the order of `eq:state_vector`.
+type States = [[f64; N_STATE]; 2];
+
+/// Two motions that are being simulated. They stand at an output instant.
+struct PairRun<'a> {
+    pair: VehiclePair<'a>,
+    runs: [HeldForceRun<'a>; 2],
+    contact: PairContact<'a>,
+    phases: PhaseWatch,
+    /// Number of output instants before this one.
+    output: usize,
+    tick_s: f64,
+    /// Fastest rate of the contact at the last step, 1/s.
+    contact_rate_1_s: f64,
+    was_pushed: bool,
+    absorbed_j: f64,
+    friction_heat_j: f64,
+    normal_work_j: f64,
+}
+
+/// Sums of an output interval.
+#[derive(Default)]
+struct IntervalSums {
+    impulse_world_n_s: [f64; 2],
+    yaw_impulses_n_m_s: [f64; 2],
+    is_pushed: bool,
+}
+
+impl<'a> PairRun<'a> {
+    fn new(pair: &VehiclePair<'a>) -> Result<Self, PairError> {
+        pair.check()?;
+        let run = |i: usize| {
+            let PairVehicle { vehicle, manoeuvre, .. } = pair.vehicles[i];
+            HeldForceRun::new(vehicle, manoeuvre)
+                .map_err(|source| PairError::Vehicle { role: ROLES[i], source })
+        };
+        let bodies = pair.vehicles.map(|vehicle| vehicle.body);
+        let ticks = (TICKS_PER_OUTPUT * pair.step_divisor) as f64;
+        Ok(Self {
+            pair: *pair,
+            runs: [run(0)?, run(1)?],
+            contact: PairContact::new(bodies, pair.conditions),
+            phases: PhaseWatch::new(pair.vehicles.map(|it| it.vehicle.mass.mass_kg)),
+            output: 0,
+            tick_s: OUTPUT_INTERVAL_S / ticks,
+            contact_rate_1_s: 0.0,
+            was_pushed: false,
+            absorbed_j: 0.0,
+            friction_heat_j: 0.0,
+            normal_work_j: 0.0,
+        })
+    }
+
+    /// Goes on to the next output instant and records this one, and says whether there is more to do.
+    fn goes_on(&mut self) -> Result<bool, PairError> {
+        let mut states: States = [0, 1].map(|i| *self.runs[i].state());
+        let mut sums = IntervalSums::default();
+        let is_last = self.runs[0].is_last();
+        if !is_last {
+            let mut left = TICKS_PER_OUTPUT * self.pair.step_divisor;
+            let first = self.output * left;
+            while left > 0 {
+                let ticks = self.step_ticks(&states, left);
+                let start_tick = first + TICKS_PER_OUTPUT * self.pair.step_divisor - left;
+                states = self.step(&states, start_tick, ticks, &mut sums);
+                left -= ticks;
+            }
+        }
+        let mut goes_on = false;
+        for (i, role) in ROLES.into_iter().enumerate() {
+            let mean = sums.is_pushed.then(|| self.mean_force(i, &sums));
+            let moves = self.runs[i]
+                .record(mean, self.was_pushed)
+                .map_err(|source| PairError::Vehicle { role, source })?;
+            goes_on |= moves;
+        }
+        if goes_on {
+            for (run, state) in self.runs.iter_mut().zip(states) {
+                run.advanced_to(state);
+            }
+            self.output += 1;
+        }
+        self.was_pushed = sums.is_pushed;
+        Ok(goes_on)
+    }
+
+    /// Length of the next step in ticks. Steps begin at multiples of their length.
+    fn step_ticks(&self, states: &States, left: usize) -> usize {
+        let [apart, usual, stiff] = STEP_TICKS;
+        let motions = motions(states);
+        let margin_m = NEAR_M + relative_speed_m_s(&motions) * self.tick_s * apart as f64;
+        let wanted = if self.contact.is_apart(&motions, margin_m) {
+            apart
+        } else if self.contact_rate_1_s * self.tick_s * usual as f64 > MAX_RATE_TIMES_STEP {
+            stiff
+        } else {
+            usual
+        };
+        STEP_TICKS
+            .into_iter()
+            .find(|ticks| *ticks <= wanted && left.is_multiple_of(*ticks))
+            .unwrap_or(stiff)
+    }
+
+    /// Takes one step of both vehicles under the contact force in its middle.
+    fn step(
+        &mut self,
+        states: &States,
+        start_tick: usize,
+        ticks: usize,
+        sums: &mut IntervalSums,
+    ) -> States {
+        let start_s = start_tick as f64 * self.tick_s;
+        let step_s = ticks as f64 * self.tick_s;
+        let middle = motions(states).map(|motion| motion.after(step_s / 2.0));
+        let force = self.contact.advance(&middle);
+        self.contact_rate_1_s = force.as_ref().map_or(0.0, |it| self.rate_1_s(it, &middle));
+        self.phases.add([start_s, start_s + step_s], force.as_ref(), &middle);
+        let mut next = *states;
+        for i in 0..2 {
+            let collision = force.map(|force| self.collision_force(i, &force, &middle[i]));
+            next[i] = self.runs[i].stepped(collision, start_s, step_s, &states[i]);
+        }
+        if let Some(force) = force {
+            sums.add(&force, step_s);
+            self.friction_heat_j += force.friction_power_w * step_s;
+            self.normal_work_j += force.normal_power_w * step_s;
+            self.absorbed_j -= work_j(&force, states, &next);
+        }
+        next
+    }
+
+    /// The contact force as the equations of motion take it.
+    ///
+    /// - `middle`: motion of the vehicle in the middle of the step.
+    fn collision_force(
+        &self,
+        vehicle: usize,
+        force: &ContactForce,
+        middle: &PlanarMotion,
+    ) -> CollisionForce<f64> {
+        let sign = if vehicle == 0 { 1.0 } else { -1.0 };
+        let ([px, py], [x, y]) = (force.point_world_m, middle.position_m);
+        let [x_body_m, y_body_m] = body_from_world(middle.yaw_rad, [px - x, py - y]);
+        let height_m = self.pair.conditions.height_m;
+        CollisionForce {
+            force_n: force.force_world_n.map(|force_n| sign * force_n),
+            in_world_axes: true,
+            yaw_moment_n_m: Some(force.yaw_moments_n_m[vehicle]),
+            contact: ContactPoint { x_body_m, y_body_m, height_m },
+        }
+    }
+
+    /// Mean force over an output interval. Its yaw moment is given, so that its place does not count.
+    fn mean_force(&self, vehicle: usize, sums: &IntervalSums) -> CollisionForce<f64> {
+        let sign = if vehicle == 0 { 1.0 } else { -1.0 };
+        let height_m = self.pair.conditions.height_m;
+        CollisionForce {
+            force_n: sums.impulse_world_n_s.map(|impulse| sign * impulse / OUTPUT_INTERVAL_S),
+            in_world_axes: true,
+            yaw_moment_n_m: Some(sums.yaw_impulses_n_m_s[vehicle] / OUTPUT_INTERVAL_S),
+            contact: ContactPoint { x_body_m: 0.0, y_body_m: 0.0, height_m },
+        }
+    }
+
+    /// Rate of the contact: the larger one of ω on unloading and of the decay of velocities by friction
+    /// and damping, 1/s.
+    fn rate_1_s(&self, force: &ContactForce, motions: &[PlanarMotion; 2]) -> f64 {
+        let [fx, fy] = force.force_world_n;
+        let size_n = fx.hypot(fy);
+        let mut inverse_mass_1_kg = 0.0;
+        for (i, motion) in motions.iter().enumerate() {
+            let mass = &self.pair.vehicles[i].vehicle.mass;
+            let [dx, dy] = [0, 1].map(|axis| force.point_world_m[axis] - motion.position_m[axis]);
+            let arm_m = (dx * fy - dy * fx) / size_n;
+            inverse_mass_1_kg += 1.0 / mass.mass_kg + arm_m * arm_m / mass.yaw_inertia_kg_m2;
+        }
+        let ContactConditions { friction, damping_s_m, .. } = self.pair.conditions;
+        let per_speed_s_m = friction / FULL_FRICTION_SPEED_M_S + damping_s_m;
+        let by_damping = per_speed_s_m * force.normal_load_n * inverse_mass_1_kg;
+        by_damping.max((force.unloading_stiffness_n_per_m * inverse_mass_1_kg).sqrt())
+    }
+
+    fn finish(self) -> Result<PairMotion, PairError> {
+        let Self { runs, contact, phases, output, .. } = self;
+        let [struck, striking] = runs;
+        let finish = |run: HeldForceRun<'_>, i: usize| {
+            run.finish().map_err(|source| PairError::Vehicle { role: ROLES[i], source })
+        };
+        let stored_j = contact.stored_energy_j();
+        Ok(PairMotion {
+            motions: [finish(struck, 0)?, finish(striking, 1)?],
+            phases: phases.finish(output as f64 * OUTPUT_INTERVAL_S),
+            energy: ContactEnergy {
+                absorbed_j: self.absorbed_j,
+                friction_heat_j: self.friction_heat_j,
+                crush_heat_j: self.normal_work_j - stored_j,
+                stored_j,
+                law_work_j: contact.law_work_j(),
+            },
+            dents_m: contact.dents_m(),
+        })
+    }
+}
+
+impl IntervalSums {
+    fn add(&mut self, force: &ContactForce, step_s: f64) {
+        self.is_pushed = true;
+        for axis in 0..2 {
+            self.impulse_world_n_s[axis] += force.force_world_n[axis] * step_s;
+        }
+        for (sum, moment) in self.yaw_impulses_n_m_s.iter_mut().zip(force.yaw_moments_n_m) {
+            *sum += moment * step_s;
+        }
+    }
+}
+
+fn motions(states: &States) -> [PlanarMotion; 2] {
+    [0, 1].map(|i| PlanarMotion::from(&VehicleState::from_array(states[i])))
+}
+
+/// Largest speed at which any two points of the outlines may approach each other, m/s.
+fn relative_speed_m_s([struck, striking]: &[PlanarMotion; 2]) -> f64 {
+    let [dx, dy] = [0, 1].map(|axis| striking.velocity_m_s[axis] - struck.velocity_m_s[axis]);
+    let arm_m = 4.0;
+    dx.hypot(dy) + arm_m * (struck.yaw_rate_rad_s.abs() + striking.yaw_rate_rad_s.abs())
+}
+
+/// Work of a held contact force on the planar motion of both vehicles over a step, J.
+fn work_j(force: &ContactForce, from: &States, to: &States) -> f64 {
+    let [fx, fy] = force.force_world_n;
+    let [from, to] = [from, to].map(|states| states.map(VehicleState::from_array));
+    let of_vehicle = |i: usize, sign: f64| {
+        let (from, to) = (&from[i], &to[i]);
+        sign * (fx * (to.x_m - from.x_m) + fy * (to.y_m - from.y_m))
+            + force.yaw_moments_n_m[i] * (to.yaw_rad - from.yaw_rad)
+    };
+    of_vehicle(0, 1.0) + of_vehicle(1, -1.0)
+}
+
+#[cfg(test)]
+#[path = "coupled_tests.rs"]
+mod tests;
+
+#[cfg(test)]
+#[path = "edsmac_tests.rs"]
+mod edsmac_tests;
