@@ -46,7 +46,7 @@ mod tests {
         let measurement = Measurement { held: vec![held], ..measurement.clone() };
         let table = measurement.held_table().unwrap();
         let text = table.to_text(&FactWriter::english(UnitSystem::Si));
-        assert_eq!(text.rows[0].cells, ["peak", "25", "40 %", "76 %", "57 %", "89 %"]);
+        assert_eq!(text.rows[0].cells, ["peak", "25", "40.0 %", "76.0 %", "56.6 %", "88.5 %"]);
         assert!(held_intervals(Measured::ForceNetwork, "other.safetensors").is_none());
         assert!(held_intervals(Measured::ForceNetwork, "shipped").is_some());
     }
