@@ -223,6 +223,9 @@ pub(crate) fn reconstructions(path: &Path, datasets: &Path) -> Result<Vec<Found>
             for (names, part) in &parts {
                 let scored: Vec<&Scored> =
                     scored.iter().filter(|of| names.contains(&of.case)).collect();
+                if scored.is_empty() {
+                    continue;
+                }
                 let counts = held_by_level(&scored)?;
                 let n = scored.len();
                 let labels = [name, "reconstruction", *part].map(str::to_owned);

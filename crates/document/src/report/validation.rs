@@ -37,8 +37,10 @@ pub(super) fn validation_blocks(method: Method, wording: &Wording) -> Vec<Block>
     let heading = Block::heading(2, method.name(wording));
     let tables = captions.iter().enumerate().filter_map(|(idx, (subject, caption))| {
         let earlier = captions[..idx].iter().filter(|(other, _)| other == subject).count();
-        let published = Measurement::shipped(*subject)?.tables.get(earlier)?;
-        Some(Block::Table(table(caption, published, wording)))
+        let measurement = Measurement::shipped(*subject)?;
+        let published = measurement.tables.get(earlier)?;
+        let caption = format!("{caption} ({} {})", words.measured_on, measurement.date);
+        Some(Block::Table(table(&caption, published, wording)))
     });
     [heading, Block::paragraph(text)].into_iter().chain(tables).collect()
 }

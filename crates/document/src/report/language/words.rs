@@ -188,6 +188,7 @@ pub(in crate::report) struct Words {
     pub validation_response: &'static str,
     pub table_response: &'static str,
     pub validation_reconstruction: &'static str,
+    pub measured_on: &'static str,
     pub table_reconstruction: &'static str,
     pub table_without_recorder: &'static str,
     pub table_rest_alone: &'static str,
