@@ -93,13 +93,18 @@ fn the_draws_of_a_simulation_follow_their_seed_and_are_told() {
 #[test]
 fn a_forecast_is_wider_where_the_vehicle_is_not_known() {
     let folder = TempDir::new().unwrap();
+    // The striking vehicle crosses slowly behind the struck one and does not meet it again.
+    let scenario = folder.path().join("crossing.toml");
+    let pit = fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap();
+    let crossing = pit.replace("heading_deg = 18", "heading_deg = 50");
+    fs::write(&scenario, crossing.replace("speed_km_h = 62", "speed_m_s = 4")).unwrap();
     let predict = |draws: &str| {
         let into = folder.path().join(draws);
         let into: &Path = &into;
         json(&[
             "predict",
             "--scenario",
-            SCENARIO,
+            scenario.to_str().unwrap(),
             "--given-force",
             "--vehicle",
             "generic-car",

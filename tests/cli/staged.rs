@@ -58,7 +58,7 @@ fn each_case_and_part_of_the_evidence_stands_beside_the_truth() {
         assert_eq!(target["truth"], truth);
         assert!(target["crps"].as_f64().unwrap() > 0.0, "{target}");
         // The hand knows no speed of the striking car.
-        let n = if row["method"] == "hand" { 2 } else { 3 };
+        let n = if row["method"] == "hand" { 2 } else { 6 };
         assert_eq!(row["quantities"].as_array().unwrap().len(), n);
     }
     // |(30.9674 − 31.5338, 3.8806)|.

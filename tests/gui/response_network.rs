@@ -75,7 +75,7 @@ fn a_predicted_force_spreads_the_forecast_and_playing_moves_it() {
     select(&mut harness, concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea"), "c002");
     let area = |state: &State| {
         let answer = &state.motion_forecast().expect("a forecast").answer;
-        answer.report.outcome.region_90_m2.expect("a region")
+        answer.forecast.outcome.region_90_m2.expect("a region")
     };
     let given = area(state(&harness));
     harness.get_by_label("as predicted").click();
