@@ -67,8 +67,7 @@ fn few_particles_have_no_interval_and_say_what_to_do() {
     assert_eq!(report["budget"], Value::Array(Vec::new()));
     let printed = ok(program().args(args).output().unwrap());
     assert!(printed.contains("no intervals are given"), "{printed}");
-    let (answer, _) = printed.split_once("How often such intervals held").expect("how often");
-    assert!(!answer.contains("90 %  "), "{printed}");
+    assert!(!printed.contains("90 %"), "{printed}");
 }
 
 #[test]

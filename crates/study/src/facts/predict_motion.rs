@@ -14,7 +14,8 @@ use crate::{FlagReport, PredictMotionReport};
 impl PredictMotionReport {
     /// What the answer says: how the motion ends, and what that depends on.
     pub fn facts(&self) -> Vec<FactTable> {
-        let held = held_intervals(Measured::ResponseNetwork, &self.response_model);
+        let held = held_intervals(Measured::ResponseNetwork, &self.response_model)
+            .filter(|_| self.is_end_known());
         let tables =
             [Some(self.motion_table()), self.rival_table(), self.sensitivity_table(), held];
         tables.into_iter().flatten().collect()

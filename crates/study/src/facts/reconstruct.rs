@@ -25,10 +25,15 @@ impl ReconstructReport {
             Some(self.fit_table()),
             self.mark_table(),
             self.budget_table(),
-            Measurement::shipped(Measured::reconstruction_of(self.known))
-                .and_then(Measurement::held_table),
+            self.held_table(),
         ];
         tables.into_iter().flatten().collect()
+    }
+
+    /// How often such intervals held; none where there are no intervals.
+    fn held_table(&self) -> Option<FactTable> {
+        let measured = Measurement::shipped(Measured::reconstruction_of(self.known))?;
+        self.has_intervals().then(|| measured.held_table()).flatten()
     }
 
     /// The quantities with their intervals.
