@@ -11,7 +11,9 @@ use crate::measured::Measured;
 impl PredictForceReport {
     /// What the answer says: the force with its intervals, and the courses that the contact may take.
     pub fn facts(&self) -> Vec<FactTable> {
-        let held = held_intervals(Measured::ForceNetwork, &self.model);
+        // The cases that were counted lie within what the network has learned from.
+        let held = held_intervals(Measured::ForceNetwork, &self.model)
+            .filter(|_| self.applicability >= 1.0);
         [Some(self.force_table()), self.course_table(), held].into_iter().flatten().collect()
     }
 

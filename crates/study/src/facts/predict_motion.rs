@@ -15,7 +15,7 @@ impl PredictMotionReport {
     /// What the answer says: how the motion ends, and what that depends on.
     pub fn facts(&self) -> Vec<FactTable> {
         let held = held_intervals(Measured::ResponseNetwork, &self.response_model)
-            .filter(|_| self.is_end_known());
+            .filter(|_| self.is_end_known() && self.applicability >= 1.0);
         let tables =
             [Some(self.motion_table()), self.rival_table(), self.sensitivity_table(), held];
         tables.into_iter().flatten().collect()
