@@ -1,17 +1,25 @@
 //! A motion under a collision force that follows from the motion itself, such as that of two vehicles
 //! which push each other. The force is held over steps of any length.
 
-use crate::numerics::rk4_step;
+use crate::numerics::{Stage, rk4_step};
+use crate::vehicle::frames::Heading;
+use crate::vehicle::path_batch::{CONTACT_STEP_S as ZONE_STEP_S, RATE_TIMES_STEP, YAW_ARM_M};
 use crate::vehicle::run::{Run, StepInputs};
+use crate::vehicle::tire::SLIP_ANGLE_SPEED_M_S;
 use crate::vehicle::{
-    CollisionForce, Integrator, Manoeuvre, Motion, N_STATE, SimulationError, VehicleParameters,
-    VehicleState, WheelEffort,
+    CollisionForce, Integrator, Manoeuvre, Motion, N_ACCELERATION, N_STATE, SimulationError,
+    VehicleInput, VehicleParameters, VehicleState, WheelEffort,
 };
 
 /// A motion under a collision force that is held over steps. It stands at an output instant; the states
 /// within an output interval belong to the caller.
 pub(crate) struct HeldForceRun<'a> {
     run: Run<'a>,
+    /// K/(λ₀ ε) of [`Self::longest_step_s`], s²/m.
+    step_per_speed_s2_m: f64,
+    roll_step_s: f64,
+    /// Time derivative in the middle of the step before, if a collision force acted.
+    before: Option<[f64; N_STATE]>,
 }
 
 impl<'a> HeldForceRun<'a> {
@@ -24,7 +32,13 @@ impl<'a> HeldForceRun<'a> {
         vehicle: &'a VehicleParameters,
         manoeuvre: &'a Manoeuvre,
     ) -> Result<Self, SimulationError> {
-        Ok(Self { run: Run::new(vehicle, manoeuvre, Integrator::Rk4)? })
+        Ok(Self {
+            run: Run::new(vehicle, manoeuvre, Integrator::Rk4)?,
+            step_per_speed_s2_m: RATE_TIMES_STEP
+                / (vehicle.tire_rate_at_rest_1_s() * SLIP_ANGLE_SPEED_M_S),
+            roll_step_s: vehicle.roll_step_s(),
+            before: None,
+        })
     }
 
     /// State at the output instant, in the order of `eq:state_vector`.
@@ -50,23 +64,133 @@ impl<'a> HeldForceRun<'a> {
         inputs
     }
 
+    /// Input over the coming output interval, without a collision force.
+    pub fn coming(&self) -> VehicleInput<f64> {
+        self.run.coming()
+    }
+
+    /// Longest step that follows the tires at the speed of a state and the roll, s, as along
+    /// [`simulate_paths`](crate::vehicle::simulate_paths); at least the reference step of the vehicle.
+    fn longest_step_s(&self, state: &[f64; N_STATE]) -> f64 {
+        let x = VehicleState::from_array(*state);
+        let speed_m_s = x.vx_body_m_s.hypot(x.vy_body_m_s) + YAW_ARM_M * x.yaw_rate_rad_s.abs();
+        let by_tires_s = self.step_per_speed_s2_m * (speed_m_s + SLIP_ANGLE_SPEED_M_S);
+        let longest_s = by_tires_s.min(self.roll_step_s).max(self.run.step_s);
+        if self.run.has_zones() { longest_s.min(ZONE_STEP_S) } else { longest_s }
+    }
+
     /// State at the end of a step, which is divided where the vehicle has faster modes than it follows.
+    ///
+    /// Without a collision force each part is one of the classical Runge–Kutta method. Under one, whose
+    /// steps are short for the sake of the contact, each takes one evaluation:
+    ///
+    /// ```text
+    /// x_m = x + h/2 ẋ_b        ẋ_b: in the middle of the step before
+    /// v' = v + h a(x_m)        X' = X + h (v + v')/2        in world axes
+    /// ```
+    ///
+    /// so that a force changes the momentum by its impulse, to rounding.
+    ///
+    /// - `residual`: acceleration that the equations of motion leave out: v̇_x, v̇_y, m/s², ṙ, φ̈, rad/s².
     pub fn stepped(
-        &self,
+        &mut self,
         collision: Option<CollisionForce<f64>>,
-        start_s: f64,
-        step_s: f64,
+        [start_s, step_s]: [f64; 2],
         state: &[f64; N_STATE],
+        residual: [f64; N_ACCELERATION],
     ) -> [f64; N_STATE] {
-        let n_parts = (step_s / self.run.step_s - 1e-9).ceil().max(1.0);
+        let longest_s = match collision {
+            Some(_) => self.run.step_s,
+            None => self.longest_step_s(state),
+        };
+        let n_parts = (step_s / longest_s - 1e-9).ceil().max(1.0);
         let part_s = step_s / n_parts;
         let mut x = *state;
         for part in 0..n_parts as usize {
             let inputs = self.inputs(collision, start_s + part as f64 * part_s, part_s, &x);
-            let f = |stage, x: &[f64; N_STATE]| self.run.constants.derivative(x, inputs.at(stage));
-            x = rk4_step(f, &x, part_s);
+            x = match collision {
+                Some(_) => self.pushed(&inputs, &x, part_s, residual),
+                None => self.free(&inputs, &x, part_s, residual),
+            };
         }
         x
+    }
+
+    fn derivative(
+        &self,
+        x: &[f64; N_STATE],
+        u: &VehicleInput<f64>,
+        residual: [f64; N_ACCELERATION],
+    ) -> [f64; N_STATE] {
+        let by_model = self.run.constants.derivative(x, u);
+        VehicleState::from_array(by_model).accelerated(residual).to_array()
+    }
+
+    fn free(
+        &mut self,
+        inputs: &StepInputs<f64>,
+        x: &[f64; N_STATE],
+        step_s: f64,
+        residual: [f64; N_ACCELERATION],
+    ) -> [f64; N_STATE] {
+        self.before = None;
+        rk4_step(|stage, x| self.derivative(x, inputs.at(stage), residual), x, step_s)
+    }
+
+    fn pushed(
+        &mut self,
+        inputs: &StepInputs<f64>,
+        start: &[f64; N_STATE],
+        step_s: f64,
+        residual: [f64; N_ACCELERATION],
+    ) -> [f64; N_STATE] {
+        let u = inputs.at(Stage::Middle);
+        let before = self.before.unwrap_or_else(|| self.derivative(start, u, residual));
+        let half: [f64; N_STATE] = std::array::from_fn(|i| start[i] + step_s / 2.0 * before[i]);
+        let rates = self.derivative(&half, u, residual);
+        self.before = Some(rates);
+        let [x, half, rates] = [*start, half, rates].map(VehicleState::from_array);
+        let acceleration = Heading::new(half.yaw_rad).world_from_body([
+            rates.vx_body_m_s - half.vy_body_m_s * half.yaw_rate_rad_s,
+            rates.vy_body_m_s + half.vx_body_m_s * half.yaw_rate_rad_s,
+        ]);
+        let old = Heading::new(x.yaw_rad).world_from_body([x.vx_body_m_s, x.vy_body_m_s]);
+        let new = [0, 1].map(|axis| old[axis] + step_s * acceleration[axis]);
+        let mean = |old: f64, new: f64| step_s * (old + new) / 2.0;
+        let yaw_rate_rad_s = x.yaw_rate_rad_s + step_s * rates.yaw_rate_rad_s;
+        let roll_rate_rad_s = x.roll_rate_rad_s + step_s * rates.roll_rate_rad_s;
+        let yaw_rad = x.yaw_rad + mean(x.yaw_rate_rad_s, yaw_rate_rad_s);
+        let [vx_body_m_s, vy_body_m_s] = Heading::new(yaw_rad).body_from_world(new);
+        VehicleState {
+            vx_body_m_s,
+            vy_body_m_s,
+            yaw_rad,
+            yaw_rate_rad_s,
+            roll_rad: x.roll_rad + mean(x.roll_rate_rad_s, roll_rate_rad_s),
+            roll_rate_rad_s,
+            x_m: x.x_m + mean(old[0], new[0]),
+            y_m: x.y_m + mean(old[1], new[1]),
+        }
+        .to_array()
+    }
+
+    /// The state at the end of an output interval without a collision force, with the planar energy of
+    /// its beginning where a residual acceleration has made it grow.
+    pub fn without_energy_gain(&self, state: [f64; N_STATE]) -> [f64; N_STATE] {
+        if self.run.coming().is_driven() {
+            return state;
+        }
+        let mut after = VehicleState::from_array(state);
+        let before = VehicleState::from_array(self.run.state);
+        let energy_j = |x: &VehicleState<f64>| self.run.constants.planar_energy_j(x);
+        let (before_j, after_j) = (energy_j(&before), energy_j(&after));
+        if after_j > before_j {
+            let share = (before_j / after_j).sqrt();
+            after.vx_body_m_s *= share;
+            after.vy_body_m_s *= share;
+            after.yaw_rate_rad_s *= share;
+        }
+        after.to_array()
     }
 
     /// Whether the motion ends at this output instant, since its duration is over.
@@ -77,7 +201,8 @@ impl<'a> HeldForceRun<'a> {
     /// Records the output instant, and says whether the vehicle still moves.
     ///
     /// - `mean`: mean collision force over the coming interval; `None` without a force;
-    /// - `was_pushed`: whether a force acted over the interval before.
+    /// - `was_pushed`: whether a force acted over the interval before, or a residual acceleration acts over
+    ///   the coming one, which bounds the energy of the planar motion by itself.
     ///
     /// # Errors
     /// [`SimulationError::Diverged`] or [`SimulationError::EnergyGain`].

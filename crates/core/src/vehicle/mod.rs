@@ -67,7 +67,7 @@ pub use simulate::{
     SimulationError,
 };
 pub use stability::VehicleMismatch;
-pub use state::{N_STATE, VehicleState};
+pub use state::{N_ACCELERATION, N_STATE, VehicleState};
 pub use tire::TIRE_WIDTH_RATIO;
 pub use tire::{TireParameters, WheelEffort, WheelSlip};
 pub use tire_marks::leaves_mark;

@@ -32,10 +32,10 @@ use crate::vehicle::{
 pub const MAX_PATH_STEP_S: f64 = 0.02;
 
 /// Longest step while a contact force acts or where the ground has friction zones, s.
-const CONTACT_STEP_S: f64 = 5e-3;
+pub(super) const CONTACT_STEP_S: f64 = 5e-3;
 
 /// K: step times rate of the tires, of 2.8 at the most for stability.
-const RATE_TIMES_STEP: f64 = 1.4;
+pub(super) const RATE_TIMES_STEP: f64 = 1.4;
 
 /// Speed below which the rest of the way is not followed, m/s.
 const STOPPING_SPEED_M_S: f64 = 0.3;
@@ -45,7 +45,7 @@ const STOPPING_SPEED_M_S: f64 = 0.3;
 const LEAST_DECELERATION_M_S2: f64 = 0.05;
 
 /// Arm by which the yaw rate counts as a speed, m.
-const YAW_ARM_M: f64 = 1.5;
+pub(super) const YAW_ARM_M: f64 = 1.5;
 
 /// Runs that one task takes over.
 const RUNS_PER_TASK: usize = 64;

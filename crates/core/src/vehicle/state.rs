@@ -28,6 +28,9 @@ pub struct VehicleState<T> {
 /// Number of components of the state.
 pub const N_STATE: usize = 8;
 
+/// Number of components of the state that are velocities: v_x, v_y, r, φ̇.
+pub const N_ACCELERATION: usize = 4;
+
 impl<T: Lanes> VehicleState<T> {
     /// Converts the state to an array in the order of `eq:state_vector`, `[8]`.
     #[inline(always)]
@@ -74,6 +77,20 @@ impl<T: Lanes> VehicleState<T> {
     #[inline(always)]
     pub fn map<U: Lanes>(self, convert: impl Fn(T) -> U) -> VehicleState<U> {
         VehicleState::from_array(self.to_array().map(convert))
+    }
+
+    /// A time derivative of the state with further accelerations.
+    ///
+    /// - `acceleration`: v̇_x, v̇_y in m/s², ṙ, φ̈ in rad/s².
+    #[inline(always)]
+    #[must_use]
+    pub fn accelerated(mut self, acceleration: [T; N_ACCELERATION]) -> Self {
+        let [ax, ay, yaw, roll] = acceleration;
+        self.vx_body_m_s += ax;
+        self.vy_body_m_s += ay;
+        self.yaw_rate_rad_s += yaw;
+        self.roll_rate_rad_s += roll;
+        self
     }
 
     /// The components [X, Y, ψ, v_x, v_y, r] of the planar motion, by which trajectories are

@@ -5,14 +5,16 @@
 //! velocities:
 //!
 //! ```text
-//! F = F(q + h/2 q̇, q̇)      then one Runge–Kutta step of length h of both vehicles under F
+//! F = F(q + h/2 q̇, q̇)      then one step of length h of both vehicles under F
 //! ```
 //!
-//! Without tires that is the leapfrog method: of second order, and an elastic contact neither gains nor
-//! loses energy by it. Force and moments are equal and opposite, so that momentum and angular momentum
+//! That is the leapfrog method: of second order, and an elastic contact neither gains nor loses energy by
+//! it. While the vehicles are apart, both take steps of the classical Runge–Kutta method that follow their
+//! speed (`vehicle/held_force.rs`). Force and moments are equal and opposite, so that momentum and angular momentum
 //! of both vehicles together change by the tires alone.
 //! The step is 0.5 ms in contact and 0.25 ms where ω h would exceed 0.2, with ω from the stiffness of
-//! the contact on unloading and the masses at the contact point; 1 ms while the outlines are apart.
+//! the contact on unloading and the masses at the contact point; 1 ms while the outlines are near each
+//! other, and 10 ms while they cannot meet within that time.
 //! Contact may begin anew at any time.
 
 use crate::collision::contact::phases::PhaseWatch;
@@ -22,15 +24,15 @@ use crate::collision::contact::{
 };
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
-    CollisionForce, ContactPoint, HeldForceRun, Manoeuvre, Motion, N_STATE, OUTPUT_INTERVAL_S,
-    SimulationError, VehicleParameters, VehicleState,
+    CollisionForce, ContactPoint, HeldForceRun, Manoeuvre, Motion, N_ACCELERATION, N_STATE,
+    OUTPUT_INTERVAL_S, SimulationError, VehicleInput, VehicleParameters, VehicleState,
 };
 
 /// Steps of the shortest kind in an output interval.
 const TICKS_PER_OUTPUT: usize = 40;
 
-/// Ticks of a step while the outlines are apart, in contact, and in stiff contact.
-const STEP_TICKS: [usize; 3] = [4, 2, 1];
+/// Ticks of a step while the outlines are far from each other, near, in contact, and in stiff contact.
+const STEP_TICKS: [usize; 4] = [TICKS_PER_OUTPUT, 4, 2, 1];
 
 /// Largest ω h of a contact, and of the decay of velocities in it.
 const MAX_RATE_TIMES_STEP: f64 = 0.2;
@@ -150,7 +152,7 @@ impl VehiclePair<'_> {
     /// be computed.
     pub fn simulate(&self) -> Result<PairMotion, PairError> {
         let mut run = PairRun::new(self)?;
-        while run.goes_on()? {}
+        while run.goes_on(&NO_RESIDUAL)? {}
         run.finish()
     }
 
@@ -200,8 +202,11 @@ impl<'a> PairVehicle<'a> {
 /// States of both vehicles, in the order of `eq:state_vector`.
 type States = [[f64; N_STATE]; 2];
 
+/// Residual accelerations of vehicles that move by the equations of motion alone.
+const NO_RESIDUAL: [[f64; N_ACCELERATION]; 2] = [[0.0; N_ACCELERATION]; 2];
+
 /// Two motions that are being simulated. They stand at an output instant.
-struct PairRun<'a> {
+pub struct PairRun<'a> {
     pair: VehiclePair<'a>,
     runs: [HeldForceRun<'a>; 2],
     contact: PairContact<'a>,
@@ -212,6 +217,8 @@ struct PairRun<'a> {
     /// Fastest rate of the contact at the last step, 1/s.
     contact_rate_1_s: f64,
     was_pushed: bool,
+    /// Mean contact force on each vehicle over the interval before.
+    last_mean: [Option<CollisionForce<f64>>; 2],
     absorbed_j: f64,
     friction_heat_j: f64,
     normal_work_j: f64,
@@ -226,7 +233,11 @@ struct IntervalSums {
 }
 
 impl<'a> PairRun<'a> {
-    fn new(pair: &VehiclePair<'a>) -> Result<Self, PairError> {
+    /// Two vehicles at the beginning of their motions.
+    ///
+    /// # Errors
+    /// [`PairError`] if a number is out of range or the manoeuvres do not go together.
+    pub fn new(pair: &VehiclePair<'a>) -> Result<Self, PairError> {
         pair.check()?;
         let run = |i: usize| {
             let PairVehicle { vehicle, manoeuvre, .. } = pair.vehicles[i];
@@ -244,14 +255,44 @@ impl<'a> PairRun<'a> {
             tick_s: OUTPUT_INTERVAL_S / ticks,
             contact_rate_1_s: 0.0,
             was_pushed: false,
+            last_mean: [None; 2],
             absorbed_j: 0.0,
             friction_heat_j: 0.0,
             normal_work_j: 0.0,
         })
     }
 
+    /// Time of the output instant at which the vehicles stand, s.
+    pub fn time_s(&self) -> f64 {
+        self.output as f64 * OUTPUT_INTERVAL_S
+    }
+
+    /// States of the struck and of the striking vehicle at this instant.
+    pub fn states(&self) -> [VehicleState<f64>; 2] {
+        [0, 1].map(|i| VehicleState::from_array(*self.runs[i].state()))
+    }
+
+    /// Input of a vehicle over the coming output interval. Its contact force is the mean over the
+    /// interval before, since that of the coming one follows from the motion.
+    ///
+    /// - `vehicle`: 0 for the struck, 1 for the striking one.
+    pub fn input(&self, vehicle: usize) -> VehicleInput<f64> {
+        VehicleInput { collision: self.last_mean[vehicle], ..self.runs[vehicle].coming() }
+    }
+
+    /// When the vehicles first touched each other, s; `None` if they have not.
+    pub fn first_contact_s(&self) -> Option<f64> {
+        self.phases.first_s()
+    }
+
     /// Goes on to the next output instant and records this one, and says whether there is more to do.
-    fn goes_on(&mut self) -> Result<bool, PairError> {
+    ///
+    /// - `residuals`: accelerations of each vehicle that the equations of motion leave out, held over
+    ///   the interval: v̇_x, v̇_y in m/s², ṙ, φ̈ in rad/s².
+    ///
+    /// # Errors
+    /// [`PairError::Vehicle`] if a motion cannot be computed.
+    pub fn goes_on(&mut self, residuals: &[[f64; N_ACCELERATION]; 2]) -> Result<bool, PairError> {
         let mut states: States = [0, 1].map(|i| *self.runs[i].state());
         let mut sums = IntervalSums::default();
         let is_last = self.runs[0].is_last();
@@ -261,15 +302,19 @@ impl<'a> PairRun<'a> {
             while left > 0 {
                 let ticks = self.step_ticks(&states, left);
                 let start_tick = first + TICKS_PER_OUTPUT * self.pair.step_divisor - left;
-                states = self.step(&states, start_tick, ticks, &mut sums);
+                states = self.step(&states, start_tick, ticks, (&mut sums, residuals));
                 left -= ticks;
+            }
+            if !sums.is_pushed && *residuals != NO_RESIDUAL {
+                states = [0, 1].map(|i| self.runs[i].without_energy_gain(states[i]));
             }
         }
         let mut goes_on = false;
         for (i, role) in ROLES.into_iter().enumerate() {
             let mean = sums.is_pushed.then(|| self.mean_force(i, &sums));
+            self.last_mean[i] = mean;
             let moves = self.runs[i]
-                .record(mean, self.was_pushed)
+                .record(mean, self.was_pushed || residuals[i] != NO_RESIDUAL[i])
                 .map_err(|source| PairError::Vehicle { role, source })?;
             goes_on |= moves;
         }
@@ -285,10 +330,16 @@ impl<'a> PairRun<'a> {
 
     /// Length of the next step in ticks. Steps begin at multiples of their length.
     fn step_ticks(&self, states: &States, left: usize) -> usize {
-        let [apart, usual, stiff] = STEP_TICKS;
+        let [far, apart, usual, stiff] = STEP_TICKS;
         let motions = motions(states);
-        let margin_m = NEAR_M + relative_speed_m_s(&motions) * self.tick_s * apart as f64;
-        let wanted = if self.contact.is_apart(&motions, margin_m) {
+        let speed_m_s = relative_speed_m_s(&motions);
+        let is_apart = |ticks: usize| {
+            let way_m = speed_m_s * self.tick_s * ticks as f64;
+            self.contact.is_apart(&motions, NEAR_M + way_m)
+        };
+        let wanted = if is_apart(far) {
+            far
+        } else if is_apart(apart) {
             apart
         } else if self.contact_rate_1_s * self.tick_s * usual as f64 > MAX_RATE_TIMES_STEP {
             stiff
@@ -307,7 +358,7 @@ impl<'a> PairRun<'a> {
         states: &States,
         start_tick: usize,
         ticks: usize,
-        sums: &mut IntervalSums,
+        (sums, residuals): (&mut IntervalSums, &[[f64; N_ACCELERATION]; 2]),
     ) -> States {
         let start_s = start_tick as f64 * self.tick_s;
         let step_s = ticks as f64 * self.tick_s;
@@ -318,7 +369,7 @@ impl<'a> PairRun<'a> {
         let mut next = *states;
         for i in 0..2 {
             let collision = force.map(|force| self.collision_force(i, &force, &middle[i]));
-            next[i] = self.runs[i].stepped(collision, start_s, step_s, &states[i]);
+            next[i] = self.runs[i].stepped(collision, [start_s, step_s], &states[i], residuals[i]);
         }
         if let Some(force) = force {
             sums.add(&force, step_s);
@@ -380,7 +431,11 @@ impl<'a> PairRun<'a> {
         by_damping.max((force.unloading_stiffness_n_per_m * inverse_mass_1_kg).sqrt())
     }
 
-    fn finish(self) -> Result<PairMotion, PairError> {
+    /// The motions so far.
+    ///
+    /// # Errors
+    /// [`PairError::Vehicle`] if the samples do not form a valid time series.
+    pub fn finish(self) -> Result<PairMotion, PairError> {
         let Self { runs, contact, phases, output, .. } = self;
         let [struck, striking] = runs;
         let finish = |run: HeldForceRun<'_>, i: usize| {

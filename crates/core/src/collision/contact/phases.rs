@@ -60,6 +60,12 @@ impl PhaseWatch {
         Self { masses_kg, ended: Vec::new(), current: None }
     }
 
+    /// When the first phase begins, s; `None` before that.
+    pub fn first_s(&self) -> Option<f64> {
+        let ended = self.ended.first().map(|phase| phase.start_s);
+        ended.or(self.current.map(|phase| phase.start_s))
+    }
+
     /// Adds a step over which a force is held.
     ///
     /// - `motions`: in the middle of the step.

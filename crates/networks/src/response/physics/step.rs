@@ -13,14 +13,14 @@ use serde::{Deserialize, Serialize};
 use impactlab_core::numerics::{Lanes, LanesOver, rk4_step, rk4_step_from};
 use impactlab_core::vehicle::frames::Heading;
 use impactlab_core::vehicle::{
-    N_STATE, VehicleConstants, VehicleInput, VehicleParameters, VehicleState,
+    N_ACCELERATION, N_STATE, VehicleConstants, VehicleInput, VehicleParameters, VehicleState,
 };
 
 /// Length of a step, s: that of the trajectory data sets.
 pub const STEP_S: f64 = 0.01;
 
 /// Numbers of a residual acceleration: v̇_x, v̇_y in m/s², ṙ, φ̈ in rad/s².
-pub const N_RESIDUAL: usize = 4;
+pub const N_RESIDUAL: usize = N_ACCELERATION;
 
 /// Signs of a residual acceleration mirrored at the vehicle's longitudinal plane.
 pub const RESIDUAL_MIRROR: [f64; N_RESIDUAL] = [1.0, -1.0, -1.0, -1.0];
@@ -154,16 +154,8 @@ fn step_from<P: Copy, T: Lanes + LanesOver<P>>(
 
 /// The time derivative of a state with a residual acceleration.
 #[inline(always)]
-fn with_residual<T: Lanes>(
-    derivative: [T; N_STATE],
-    [ax, ay, yaw, roll]: [T; N_RESIDUAL],
-) -> [T; N_STATE] {
-    let mut rate = VehicleState::from_array(derivative);
-    rate.vx_body_m_s += ax;
-    rate.vy_body_m_s += ay;
-    rate.yaw_rate_rad_s += yaw;
-    rate.roll_rate_rad_s += roll;
-    rate.to_array()
+fn with_residual<T: Lanes>(derivative: [T; N_STATE], residual: [T; N_RESIDUAL]) -> [T; N_STATE] {
+    VehicleState::from_array(derivative).accelerated(residual).to_array()
 }
 
 #[inline(always)]
