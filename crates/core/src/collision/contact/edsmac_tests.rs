@@ -2,7 +2,10 @@
 
 use crate::collision::Footprint;
 use crate::collision::contact::test_pairs::{TestCar, alike, on_level_tires, simulate, state_at};
-use crate::collision::contact::{ContactConditions, FaceLaw, Recovery, USUAL_CORNER_RADIUS_M};
+use crate::collision::contact::{ContactConditions, FaceLaw, Recovery};
+
+/// Radius of the corners, m; EDSMAC's outlines are rectangles whose sides are found radially.
+const CORNER_RADIUS_M: f64 = 0.25;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::{DamagedWheel, Ending, SteerHistory, VehicleParameters, VehicleState, Wheel};
 
@@ -75,12 +78,7 @@ impl PrintedCar {
 
     fn car(&self, printed: Printed, element_m: f64) -> TestCar {
         let law = FaceLaw::linear(self.stiffness_n_cm2 * 1e4, Recovery::EDSMAC).unwrap();
-        TestCar::new(
-            self.vehicle(),
-            [USUAL_CORNER_RADIUS_M, element_m],
-            alike(law),
-            printed.state(),
-        )
+        TestCar::new(self.vehicle(), [CORNER_RADIUS_M, element_m], alike(law), printed.state())
     }
 }
 

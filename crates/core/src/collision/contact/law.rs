@@ -32,9 +32,9 @@ pub const RECOVERY_END_M: f64 = 52.5 * 0.0254;
 /// [`EdsmacManual`](crate::bibliography::EdsmacManual).
 pub const CRUSHED_RECOVERY: f64 = 0.046_06;
 
-/// Share ρ that the elastic branch gives back: the middle of 0.10 to 0.16, that is a coefficient of
-/// restitution √ρ of 0.32 to 0.4, as of slow impacts.
-pub const ELASTIC_RECOVERY: f64 = 0.13;
+/// Share ρ that the elastic branch gives back, a coefficient of restitution √ρ of 0.2. Slow impacts of
+/// bumpers have 0.32 to 0.4; pushing pairs, whose faces slide along each other, come out nearer with less.
+pub const ELASTIC_RECOVERY: f64 = 0.04;
 
 /// Load below which there is none, N/m, so that no quotient has a divisor of zero.
 const NO_LOAD_N_PER_M: f64 = 1e-9;
@@ -203,6 +203,28 @@ impl FaceLaw {
         }
     }
 
+    /// The same law with an elastic branch of another length, at most half of the depth of saturation.
+    ///
+    /// - `factor`: on δ_e, more than 0.
+    #[must_use]
+    pub fn with_elastic_depth(self, factor: f64) -> Self {
+        let crushed = self.saturation_n_per_m - self.onset_n_per_m;
+        let saturation_m = self.elastic_depth_m + crushed / self.stiffness_n_per_m2;
+        let elastic_depth_m = (self.elastic_depth_m * factor).min(saturation_m / 2.0);
+        let crushed_m = saturation_m - elastic_depth_m;
+        Self {
+            elastic_depth_m,
+            saturation_n_per_m: self.onset_n_per_m + self.stiffness_n_per_m2 * crushed_m,
+            ..self
+        }
+    }
+
+    /// The same law with another share of recovery of the elastic branch, 0 to 1.
+    #[must_use]
+    pub fn with_elastic_recovery(self, share: f64) -> Self {
+        Self { recovery: Recovery { elastic: share, ..self.recovery }, ..self }
+    }
+
     /// A, N/m.
     pub fn onset_n_per_m(&self) -> f64 {
         self.onset_n_per_m
@@ -211,6 +233,11 @@ impl FaceLaw {
     /// B, N/m².
     pub fn stiffness_n_per_m2(&self) -> f64 {
         self.stiffness_n_per_m2
+    }
+
+    /// ρ_e.
+    pub fn elastic_recovery(&self) -> f64 {
+        self.recovery.elastic
     }
 
     /// δ_e, m.

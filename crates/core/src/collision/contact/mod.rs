@@ -25,15 +25,15 @@ pub use bodies::{
     CONTACT_DAMPING_S_M, CONTACT_FRICTION, CONTACT_FRICTION_SIGMA, CONTACT_HEIGHT_M, ContactBody,
     ContactConditions, FULL_FRICTION_SPEED_M_S, PlanarMotion,
 };
-pub use coupled::{ContactEnergy, PairError, PairMotion, PairVehicle, VehiclePair};
+pub use coupled::{ContactEnergy, PairError, PairMotion, PairRun, PairVehicle, VehiclePair};
 pub use force::{ContactForce, PairContact};
 pub use law::{
     CRUSHED_RECOVERY, ELASTIC_RECOVERY, FaceLaw, FaceLawError, FaceParameters, PressedStrips,
     RECOVERY_END_M, Recovery, Strip, press_together,
 };
-pub use outline::{ContactOutline, OutlineElement, USUAL_CORNER_RADIUS_M, USUAL_ELEMENT_M};
+pub use outline::{ContactOutline, OutlineElement, USUAL_CORNER_SHARE, USUAL_ELEMENT_M};
 pub use phases::{CONTACT_GAP_S, ContactPhase, PhaseOfVehicle};
 pub use stiffness::{
-    BarrierTest, ByFace, ELASTIC_DEPTH_M, FaceLaws, FaceStiffness, SATURATION_DEPTH_M,
-    STIFFNESS_LOG_SIGMA, class_stiffness,
+    BarrierTest, ByFace, ELASTIC_DEPTH_LOG_SIGMA, ELASTIC_DEPTH_M, FaceLaws, FaceStiffness,
+    PRINTED_FACTORS, SATURATION_DEPTH_M, STIFFNESS_LOG_SIGMA, class_stiffness,
 };

@@ -19,9 +19,10 @@ use std::f64::consts::FRAC_PI_2;
 use crate::collision::{Footprint, FootprintError, Side};
 use crate::vehicle::VehicleParameters;
 
-/// Radius of the corners of a car in plan view where nobody says it, m. Chosen: bumpers are rounded by
-/// 0.2 to 0.4 m.
-pub const USUAL_CORNER_RADIUS_M: f64 = 0.25;
+/// Radius of the corners of a car in plan view over its width, where nobody says it: some 0.65 m. It
+/// stands for the bow of the bumpers and for the taper of nose and tail. Fitted to pushing pairs with the
+/// stiffness of the faces.
+pub const USUAL_CORNER_SHARE: f64 = 0.37;
 
 /// Longest element of an outline where nobody says it, m.
 pub const USUAL_ELEMENT_M: f64 = 0.08;
@@ -122,8 +123,8 @@ impl ContactOutline {
     /// [`FootprintError::Range`] if the outer dimensions of the vehicle are out of range.
     pub fn from_vehicle(vehicle: &VehicleParameters) -> Result<Self, FootprintError> {
         let footprint = Footprint::from(&vehicle.geometry);
-        let largest_m = 0.45 * footprint.width_m.min(footprint.length_m);
-        Self::new(footprint, USUAL_CORNER_RADIUS_M.min(largest_m), USUAL_ELEMENT_M)
+        let shorter_m = footprint.width_m.min(footprint.length_m);
+        Self::new(footprint, USUAL_CORNER_SHARE * shorter_m, USUAL_ELEMENT_M)
     }
 
     /// The elements, counter-clockwise from the right end of the front.
