@@ -250,6 +250,21 @@ fn missing_attributes(table: &Table, kind: DatasetKind) -> Vec<DataError> {
     missing.map(problem).collect()
 }
 
+/// The names of all cases of a table with their rows.
+///
+/// # Errors
+/// [`DataError`] for the first row whose name is not valid or not unique, or for a table that is too
+/// large or has no column `case`.
+pub(crate) fn named_cases(table: &Table) -> Result<Vec<(String, Attributes)>, DataError> {
+    check_size(table)?;
+    let mut problems = Vec::new();
+    let rows = named_rows(table, &mut problems)?;
+    match problems.into_iter().next() {
+        Some(problem) => Err(problem),
+        None => Ok(rows.into_iter().map(|row| (row.name, row.attributes)).collect()),
+    }
+}
+
 /// The rows whose names are valid and unique. The errors for the other rows are added to
 /// `problems`.
 ///
@@ -301,7 +316,7 @@ fn bad_attribute(attributes: &Attributes, kind: DatasetKind) -> Option<DataError
 
 /// Whether a case name can be the name of a file inside the folder: it consists of letters, digits
 /// and ` -_.+()` and does not begin with a point.
-fn names_a_file(case: &str) -> bool {
+pub(crate) fn names_a_file(case: &str) -> bool {
     let is_plain = |c: char| c.is_alphanumeric() || " -_.+()".contains(c);
     !case.is_empty() && !case.starts_with('.') && case.chars().all(is_plain)
 }

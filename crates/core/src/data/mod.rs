@@ -76,6 +76,7 @@ pub use contact::{
 };
 pub use correction::Correction;
 pub use dataset::{CASES_FILE, Case, Dataset, DatasetKind, Outcome};
+pub(crate) use dataset::{named_cases, names_a_file};
 pub use dialect::{Dialect, Separator};
 pub use error::DataError;
 pub use file::{list_folder, open_file, read_bytes, read_utf8};

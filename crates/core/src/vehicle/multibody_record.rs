@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use crate::units::STANDARD_GRAVITY_M_S2;
-use crate::vehicle::Equations;
 use crate::vehicle::parameters::{
     GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters,
 };
 use crate::vehicle::tire::{SAME_IN_ALL_DIRECTIONS, TireParameters};
+use crate::vehicle::{DrivenAxle, Equations};
 
 /// Vertical load at which the record states the cornering stiffnesses of the tires, N.
 const TIRE_REFERENCE_LOAD_N: f64 = 4905.0;
@@ -19,10 +19,9 @@ const AIR_DENSITY_KG_M3: f64 = 1.225;
 /// Height of the roll axis above the ground at the CG, m: a usual value for strut and
 /// double-wishbone axles.
 const ROLL_AXIS_HEIGHT_M: f64 = 0.10;
-/// Outer length of the body of the BMW E90, whose subsystems the multibody model uses, m.
-const OUTER_LENGTH_M: f64 = 4.52;
-/// Distance from the front axle of that body to its front end, m.
-const FRONT_OVERHANG_M: f64 = 0.78;
+/// Body of the BMW E90, whose subsystems the first multibody model uses; where the record has none.
+const USUAL_BODY: BodyRecord =
+    BodyRecord { length: 4.52, width: None, front_overhang: 0.78, bumper_height: None };
 
 /// Values of a multibody model at rest in SI units, as the `vehicle.toml` of a trajectory data set
 /// states them.
@@ -38,6 +37,25 @@ pub struct MultibodyRecord {
     tire: TireRecord,
     aero: AeroRecord,
     equivalent: EquivalentRecord,
+    powertrain: Option<PowertrainRecord>,
+    body: Option<BodyRecord>,
+}
+
+/// Plan view of the body, m.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+struct BodyRecord {
+    length: f64,
+    /// Where it is not said, twice the half width of the geometry.
+    width: Option<f64>,
+    /// From the front axle to the front end.
+    front_overhang: f64,
+    /// Middle of the bumper above the ground.
+    bumper_height: Option<f64>,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+struct PowertrainRecord {
+    driven: Option<DrivenAxle>,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -105,6 +123,7 @@ impl MultibodyRecord {
     /// - `folder`: the folder of the file, after which a car is named that its file does not name.
     pub fn parameters(&self, folder: Option<&str>) -> VehicleParameters {
         let Self { mass, geometry, wheel, tire, aero, .. } = self;
+        let body = self.body.unwrap_or(USUAL_BODY);
         let sprung_kg = mass.total_kg - mass.unsprung_kg;
         let unsprung_moment = mass.unsprung_kg * wheel.effective_rolling_radius;
         let sprung_height = (mass.total_kg * geometry.cg_height - unsprung_moment) / sprung_kg;
@@ -131,9 +150,9 @@ impl MultibodyRecord {
                 cg_to_rear_axle_m: geometry.lr,
                 track_width_m: (geometry.track_front + geometry.track_rear) / 2.0,
                 cg_height_m: geometry.cg_height,
-                outer_length_m: OUTER_LENGTH_M,
-                outer_width_m: 2.0 * geometry.half_width,
-                cg_to_front_end_m: geometry.lf + FRONT_OVERHANG_M,
+                outer_length_m: body.length,
+                outer_width_m: body.width.unwrap_or(2.0 * geometry.half_width),
+                cg_to_front_end_m: geometry.lf + body.front_overhang,
             },
             suspension: self.suspension_parameters(sprung_kg, roll_arm_m),
             tires: TireParameters {
@@ -150,10 +169,20 @@ impl MultibodyRecord {
                 wheel_inertia_kg_m2: wheel.wheel_and_tire_spin_inertia,
                 longitudinal_friction_ratio: SAME_IN_ALL_DIRECTIONS,
             },
-            estimates: estimates(),
+            estimates: self.estimates(),
             stated: BTreeMap::new(),
             sheet: None,
         }
+    }
+
+    /// Height of the middle of the bumper above the ground, m, where the record has it.
+    pub fn bumper_height_m(&self) -> Option<f64> {
+        self.body?.bumper_height
+    }
+
+    /// Which wheels the engine drives, where the record has it.
+    pub fn driven_axle(&self) -> Option<DrivenAxle> {
+        self.powertrain.as_ref()?.driven
     }
 
     /// The key of the record from which a parameter of the 4DOF vehicle follows, or the one of several
@@ -201,25 +230,28 @@ impl MultibodyRecord {
             front_roll_stiffness_share: front / (front + rear),
         }
     }
+    fn estimates(&self) -> BTreeMap<String, String> {
+        let is_of_body =
+            |key: &str| matches!(key, "geometry.outer_length_m" | "geometry.cg_to_front_end_m");
+        let is_known = |key: &str| self.body.is_some() && is_of_body(key);
+        let rules = ESTIMATES.into_iter().filter(|(key, _)| !is_known(key));
+        rules.map(|(key, rule)| (key.to_owned(), rule.to_owned())).collect()
+    }
 }
 
-fn estimates() -> BTreeMap<String, String> {
-    [
-        ("geometry.outer_length_m", "body of the E90 saloon; the model has no outer skin"),
-        ("geometry.cg_to_front_end_m", "l_f + 0.78 m front overhang of that body"),
-        ("mass.sprung_mass_kg", "all of \"unsprung and links\" taken as unsprung"),
-        ("mass.roll_inertia_kg_m2", "I_xx of the whole car + m_s h² (parallel axes)"),
-        ("suspension.roll_axis_height_m", "usual for strut and double-wishbone axles"),
-        ("suspension.roll_arm_m", "(m h_cog − m_u r_wheel)/m_s − roll axis height"),
-        ("suspension.roll_stiffness_n_m_rad", "m_s g h (1/roll gradient + 1): meets the gradient"),
-        ("suspension.front_roll_stiffness_share", "springs and bars at the wheels: c w²/2 + bar"),
-        ("tires.friction", "the dataset's usual value; each case states its own"),
-        ("tires.rolling_resistance_s2_m2", "stands for the air drag: ρ C_d A / (2 m g)"),
-    ]
-    .into_iter()
-    .map(|(key, rule)| (key.to_owned(), rule.to_owned()))
-    .collect()
-}
+/// Parameters that no key of the record states, and by which rule they follow.
+const ESTIMATES: [(&str, &str); 10] = [
+    ("geometry.outer_length_m", "body of the E90 saloon; the model has no outer skin"),
+    ("geometry.cg_to_front_end_m", "l_f + 0.78 m front overhang of that body"),
+    ("mass.sprung_mass_kg", "all of \"unsprung and links\" taken as unsprung"),
+    ("mass.roll_inertia_kg_m2", "I_xx of the whole car + m_s h² (parallel axes)"),
+    ("suspension.roll_axis_height_m", "usual for strut and double-wishbone axles"),
+    ("suspension.roll_arm_m", "(m h_cog − m_u r_wheel)/m_s − roll axis height"),
+    ("suspension.roll_stiffness_n_m_rad", "m_s g h (1/roll gradient + 1): meets the gradient"),
+    ("suspension.front_roll_stiffness_share", "springs and bars at the wheels: c w²/2 + bar"),
+    ("tires.friction", "the dataset's usual value; each case states its own"),
+    ("tires.rolling_resistance_s2_m2", "stands for the air drag: ρ C_d A / (2 m g)"),
+];
 
 #[cfg(test)]
 mod tests {

@@ -127,6 +127,14 @@ impl GeometryParameters {
     }
 }
 
+/// What the path of a file calls a car: the name of the file, or of its folder where the file is called
+/// `vehicle.toml`.
+fn car_name(path: &Path) -> Option<&str> {
+    let stem = path.file_stem().and_then(OsStr::to_str);
+    let folder = || path.parent().and_then(Path::file_name).and_then(OsStr::to_str);
+    if stem == Some("vehicle") { folder() } else { stem }
+}
+
 impl VehicleParameters {
     /// Reads a vehicle file and checks the range of every value. The file has the format of this
     /// type, or it is a data sheet with what is known of a car (see [`DataSheet`]), or the data sheet
@@ -148,8 +156,7 @@ impl VehicleParameters {
         let table: toml::Table = file.to()?;
         let is_multibody = table.get("mass").is_some_and(|mass| mass.get("total").is_some());
         let (vehicle, origin): (Self, Origin) = if is_multibody {
-            let folder = path.parent().and_then(Path::file_name).and_then(OsStr::to_str);
-            (file.to::<MultibodyRecord>()?.parameters(folder), MultibodyRecord::origin)
+            (file.to::<MultibodyRecord>()?.parameters(car_name(path)), MultibodyRecord::origin)
         } else if table.contains_key("data_sheet") {
             (DataSheet::from_toml(file)?.vehicle(), DataSheet::origin)
         } else {

@@ -1,0 +1,345 @@
+//! A data set of recorded pairs:
+//!
+//! ```text
+//! cases.csv           a row for each case: the cars, the friction of the road, initial states, contacts
+//! cases/<case>.csv    motions of both cars, what their drivers did, the contact force
+//! vehicles/<car>.toml data sheets
+//! ```
+//!
+//! The struck car is called `target` there, the striking one `bullet`. Columns have SI units and are
+//! found by their names; others than those that are needed may stand beside them.
+
+use std::path::{Path, PathBuf};
+
+use crate::compare::initial_state;
+use crate::data::{
+    AttributeColumn, Attributes, CASES_FILE, Channel, DataError, SeriesError, Table, TimeSeries,
+    TomlError, TomlFile, named_cases, names_a_file,
+};
+use crate::ranges::{CONTACT_HEIGHT, CONTROL_TIME, ROAD_FRICTION};
+use crate::vehicle::{
+    Controls, DrivenAxle, Manoeuvre, MultibodyRecord, OUTPUT_INTERVAL_S, SteerHistory,
+    VehicleParameters, WheelEffort, WheelHistory,
+};
+
+const NO_PAIR: &str = "the pair cannot be simulated";
+const FRICTION: AttributeColumn =
+    AttributeColumn { name: "mu", range: ROAD_FRICTION, is_needed: true };
+const HEIGHT: AttributeColumn =
+    AttributeColumn { name: "contact_height_m", range: CONTACT_HEIGHT, is_needed: false };
+const FIRST_CONTACT: AttributeColumn =
+    AttributeColumn { name: "first_contact_s", range: CONTROL_TIME, is_needed: false };
+
+/// Share of the front axle in the brake torque of a car of which only the sum is recorded: a usual
+/// layout of the brakes of a car.
+const FRONT_BRAKE_SHARE: f64 = 0.62;
+
+/// Words for the cars in the names of columns, struck and striking.
+const CARS: [&str; 2] = ["target", "bullet"];
+
+/// A folder of recorded pairs.
+#[derive(Debug, Clone)]
+pub struct PairRecords {
+    root: PathBuf,
+    rows: Vec<(String, Attributes)>,
+}
+
+/// What the table of cases says of a pair, beside numbers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PairAttributes {
+    /// Kind of the collision, such as `pit`; empty if it is not said.
+    pub kind: String,
+    /// Names of the struck and of the striking car.
+    pub cars: [String; 2],
+    /// Whether the struck car has electronic stability control.
+    pub has_stability_control: bool,
+    /// The case with the same conditions without stability control.
+    pub twin_without_stability_control: Option<String>,
+}
+
+/// The contact of a recorded pair.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordedContact {
+    /// When it begins, s; `None` if it is not said.
+    pub first_s: Option<f64>,
+    /// Start and end of each phase of contact, s; empty if they are not said.
+    pub phases_s: Vec<[f64; 2]>,
+    /// Contact force on the struck car over time, world axes, N: means over the coming 10 ms.
+    pub force_world_n: [Vec<f64>; 2],
+}
+
+/// A recorded pair.
+#[derive(Debug, Clone)]
+pub struct PairCase {
+    /// Its name.
+    pub name: String,
+    /// What the table says of it.
+    pub attributes: PairAttributes,
+    /// The struck and the striking car on the road of the case.
+    pub vehicles: [VehicleParameters; 2],
+    /// Their initial states and what their drivers did, over the time of the record.
+    pub manoeuvres: [Manoeuvre; 2],
+    /// Mean height of their bumpers above the ground, m; `None` if neither file nor table has it.
+    pub contact_height_m: Option<f64>,
+    /// The motions that were recorded: pose, velocities in body axes, yaw rate.
+    pub motions: [TimeSeries; 2],
+    /// Their contact.
+    pub contact: RecordedContact,
+}
+
+/// Reason why a recorded pair cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum PairCaseError {
+    /// A file or a cell of the table.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// A data sheet.
+    #[error(transparent)]
+    Vehicle(#[from] TomlError),
+    /// The samples of a file.
+    #[error("{}", path.display())]
+    Series {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with them.
+        #[source]
+        source: SeriesError,
+    },
+}
+
+impl PairRecords {
+    /// Whether a folder is a data set of pairs: it has `cases.csv`, `cases/` and `vehicles/`.
+    pub fn is_at(root: &Path) -> bool {
+        root.join(CASES_FILE).is_file()
+            && ["cases", "vehicles"].iter().all(|folder| root.join(folder).is_dir())
+    }
+
+    /// Reads the table of cases. No file of a case is read.
+    ///
+    /// # Errors
+    /// [`DataError`] if `cases.csv` cannot be read or a case has no name that can be that of a file.
+    pub fn open(root: &Path) -> Result<Self, DataError> {
+        let table = Table::read_cases(&root.join(CASES_FILE))?;
+        Ok(Self { root: root.to_owned(), rows: named_cases(&table)? })
+    }
+
+    /// Names of the cases in the order of the table.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.rows.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// What the table says of a case; `None` if it has none of this name.
+    pub fn attributes(&self, name: &str) -> Option<PairAttributes> {
+        self.row(name).map(PairAttributes::read)
+    }
+
+    fn row(&self, name: &str) -> Option<&Attributes> {
+        self.rows.iter().find(|(row, _)| row == name).map(|(_, attributes)| attributes)
+    }
+
+    /// Loads a case; `None` if the table has none of this name.
+    ///
+    /// # Errors
+    /// [`PairCaseError`] with file, line and column.
+    pub fn load(&self, name: &str) -> Option<Result<PairCase, PairCaseError>> {
+        self.row(name).map(|row| self.load_row(name, row))
+    }
+
+    fn load_row(&self, name: &str, row: &Attributes) -> Result<PairCase, PairCaseError> {
+        let attributes = PairAttributes::read(row);
+        let friction = row.require(&FRICTION, NO_PAIR)?;
+        let path = self.root.join("cases").join(format!("{name}.csv"));
+        let columns = Columns { table: Table::read(&path)? };
+        let [struck, striking] = [0, 1].map(|i| self.car(row, &attributes.cars[i]));
+        let cars = [struck?, striking?];
+        let in_file = |source| PairCaseError::Series { path: path.clone(), source };
+        let [struck, striking] = CARS.map(|car| columns.motion(car));
+        let motions = [struck?.map_err(in_file)?, striking?.map_err(in_file)?];
+        let time_s = motions[0].time_s();
+        let duration_s = time_s.last().copied().unwrap_or(0.0).max(OUTPUT_INTERVAL_S);
+        let manoeuvre = |i: usize| -> Result<Manoeuvre, PairCaseError> {
+            let controls = columns.controls(CARS[i], time_s, &cars[i])?;
+            let initial = initial_state(&motions[i]).map_err(in_file)?;
+            Ok(Manoeuvre { initial, controls, duration_s, ..Manoeuvre::default() })
+        };
+        let manoeuvres = [manoeuvre(0)?, manoeuvre(1)?];
+        let heights_m = [0, 1].map(|i| cars[i].bumper_height_m);
+        let contact_height_m = match heights_m {
+            [Some(struck), Some(striking)] => Some((struck + striking) / 2.0),
+            _ => row.optional(&HEIGHT)?,
+        };
+        let contact = RecordedContact {
+            first_s: row.optional(&FIRST_CONTACT)?,
+            phases_s: phases_s(row),
+            force_world_n: [
+                columns.numbers("contact_fx_n")?.unwrap_or_default(),
+                columns.numbers("contact_fy_n")?.unwrap_or_default(),
+            ],
+        };
+        Ok(PairCase {
+            name: name.to_owned(),
+            attributes,
+            vehicles: cars.map(|car| car.vehicle.with_friction(friction)),
+            manoeuvres,
+            contact_height_m,
+            motions,
+            contact,
+        })
+    }
+
+    /// The data sheet of a car.
+    fn car(&self, row: &Attributes, name: &str) -> Result<PairCar, PairCaseError> {
+        if !names_a_file(name) {
+            let expected = "the name of a file of the folder vehicles, without .toml";
+            return Err(row.refused("target", format!("{name:?}"), expected.to_owned()).into());
+        }
+        let path = self.root.join("vehicles").join(format!("{name}.toml"));
+        let text = TomlFile::read(&path)?;
+        let vehicle = VehicleParameters::parse(&text, &path)?;
+        let record: Option<MultibodyRecord> = TomlFile { path: &path, text: &text }.to().ok();
+        Ok(PairCar {
+            vehicle,
+            bumper_height_m: record.as_ref().and_then(MultibodyRecord::bumper_height_m),
+            driven: record.as_ref().and_then(MultibodyRecord::driven_axle).unwrap_or_default(),
+        })
+    }
+}
+
+/// A car of a pair.
+struct PairCar {
+    vehicle: VehicleParameters,
+    bumper_height_m: Option<f64>,
+    driven: DrivenAxle,
+}
+
+impl PairAttributes {
+    fn read(row: &Attributes) -> Self {
+        let text = |name: &str| row.text(name).map(str::trim).unwrap_or_default().to_owned();
+        Self {
+            kind: text("kind"),
+            cars: CARS.map(text),
+            has_stability_control: row.flag("esc").unwrap_or(false),
+            twin_without_stability_control: Some(text("esc_twin_of"))
+                .filter(|name| !name.is_empty()),
+        }
+    }
+}
+
+/// Start and end of each phase of contact: numbers with `;` between them. What does not go together is
+/// left out.
+fn phases_s(row: &Attributes) -> Vec<[f64; 2]> {
+    let numbers = |name: &str| -> Vec<f64> {
+        match (row.number(name), row.text(name)) {
+            (Some(number), _) => vec![number],
+            (None, Some(text)) => text.split(';').filter_map(|it| it.trim().parse().ok()).collect(),
+            (None, None) => Vec::new(),
+        }
+    };
+    let (starts, ends) = (numbers("contact_start_s"), numbers("contact_end_s"));
+    if starts.len() != ends.len() {
+        return Vec::new();
+    }
+    starts.into_iter().zip(ends).map(|(start_s, end_s)| [start_s, end_s]).collect()
+}
+
+/// The columns of the file of a case by their names.
+struct Columns {
+    table: Table,
+}
+
+impl Columns {
+    fn idx(&self, name: &str) -> Option<usize> {
+        self.table.header().iter().position(|column| column == name)
+    }
+
+    /// The numbers of a column that may be missing.
+    fn numbers(&self, name: &str) -> Result<Option<Vec<f64>>, DataError> {
+        self.idx(name).map(|idx| self.table.numbers(idx, "")).transpose()
+    }
+
+    fn required(&self, name: &str) -> Result<Vec<f64>, DataError> {
+        self.numbers(name)?.ok_or_else(|| DataError::MissingAttribute {
+            path: self.table.path().to_owned(),
+            line: self.table.header_line(),
+            name: name.to_owned(),
+            consequence: NO_PAIR,
+        })
+    }
+
+    /// The motion of a car; the inner error is about the instants.
+    fn motion(&self, car: &str) -> Result<Result<TimeSeries, SeriesError>, DataError> {
+        use Channel as C;
+        let mut channels = Vec::new();
+        for (channel, name) in [
+            (C::X, "x_m"),
+            (C::Y, "y_m"),
+            (C::Yaw, "yaw_rad"),
+            (C::Vx, "vx_m_s"),
+            (C::Vy, "vy_m_s"),
+            (C::YawRate, "yaw_rate_rad_s"),
+        ] {
+            channels.push((channel, self.required(&format!("{car}_{name}"))?));
+        }
+        for (channel, name) in [(C::Roll, "roll_rad"), (C::RollRate, "roll_rate_rad_s")] {
+            let values = self.numbers(&format!("{car}_{name}"))?;
+            channels.extend(values.map(|values| (channel, values)));
+        }
+        let time_s = self.required("time_s")?;
+        Ok((|| {
+            let mut series = TimeSeries::new(time_s)?;
+            channels
+                .into_iter()
+                .try_for_each(|(channel, values)| series.insert(channel, values))?;
+            series.check_starts_at_zero(OUTPUT_INTERVAL_S / 2.0)?;
+            Ok(series)
+        })())
+    }
+
+    /// What the driver of a car did: steer angle of the front wheels, brake and drive torques.
+    fn controls(&self, word: &str, time_s: &[f64], car: &PairCar) -> Result<Controls, DataError> {
+        let named = |name: &str| self.numbers(&format!("{word}_{name}"));
+        let steer_rad = match (named("steer_rad")?, named("steer_fl_rad")?, named("steer_fr_rad")?)
+        {
+            (Some(steer), ..) => Some(steer),
+            (None, Some(left), Some(right)) => {
+                Some(left.iter().zip(&right).map(|(left, right)| (left + right) / 2.0).collect())
+            }
+            _ => None,
+        };
+        let n = time_s.len();
+        let zeros = || vec![0.0; n];
+        let of_wheels = ["fl", "fr", "rl", "rr"].map(|it| named(&format!("brake_{it}_n_m")));
+        let [fl, fr, rl, rr] = of_wheels;
+        let brakes_n_m = match (fl?, fr?, rl?, rr?) {
+            (Some(fl), Some(fr), Some(rl), Some(rr)) => [fl, fr, rl, rr],
+            _ => {
+                let sum = named("brake_n_m")?.unwrap_or_else(zeros);
+                let share = |share: f64| sum.iter().map(|torque| share * torque / 2.0).collect();
+                let (front, rear): (Vec<f64>, Vec<f64>) =
+                    (share(FRONT_BRAKE_SHARE), share(1.0 - FRONT_BRAKE_SHARE));
+                [front.clone(), front, rear.clone(), rear]
+            }
+        };
+        let drive_n_m = named("drive_n_m")?.unwrap_or_else(zeros);
+        let driven = match car.driven {
+            DrivenAxle::Front => [0.5, 0.5, 0.0, 0.0],
+            DrivenAxle::Rear => [0.0, 0.0, 0.5, 0.5],
+            DrivenAxle::All => [0.25; 4],
+        };
+        let radius_m = car.vehicle.tires.rolling_radius_m;
+        let wheels = |sample: usize| {
+            std::array::from_fn(|wheel| WheelEffort {
+                braking_n: brakes_n_m[wheel][sample].max(0.0) / radius_m,
+                drive_n: driven[wheel] * drive_n_m[sample] / radius_m,
+                locked: 0.0,
+            })
+        };
+        Ok(Controls {
+            steer: steer_rad.map(|steer_rad| SteerHistory { time_s: time_s.to_vec(), steer_rad }),
+            wheels: Some(WheelHistory {
+                time_s: time_s.to_vec(),
+                wheels: (0..n).map(wheels).collect(),
+            }),
+        })
+    }
+}
