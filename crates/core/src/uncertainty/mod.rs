@@ -42,6 +42,7 @@ mod sample;
 mod scores;
 
 mod planar;
+mod planar_draws;
 mod planar_grid;
 mod unscented;
 
@@ -53,6 +54,7 @@ pub use error::MixtureError;
 pub use mixture::{CurveComponent, CurveMixture};
 pub use normal_mixture::{NormalMixture, NormalPart};
 pub use planar::{PlanarMixture, PlanarPart};
+pub use planar_draws::pose_groups;
 pub use planar_grid::{PlanarGrid, PlanarKernel};
 pub use sample::CurveQuantities;
 pub use scores::{distance_n, energy_score_n, sample_crps};

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
-use crate::analysis::rest_outcome::groups;
+use crate::analysis::rest_outcome::poses;
 use crate::analysis::{MonteCarloError, MotionEnd, MotionOutcome, RestOutcome, StruckVehicle};
 use impactlab_core::data::ForceHistory;
 use impactlab_core::units::Estimate;
@@ -159,7 +159,7 @@ fn distribution(
         let states = (0..n_instants).map(at).collect();
         ComponentMotion { weight, states, tail_ratio: Widths::NORMAL.tail_ratio }
     };
-    MotionDistribution::new(groups(ends).par_iter().map(component).collect())
+    MotionDistribution::new(pose_groups(&poses(ends)).par_iter().map(component).collect())
 }
 
 /// Mean and covariance of some motions at an instant.

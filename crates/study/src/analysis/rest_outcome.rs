@@ -3,15 +3,8 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use impactlab_core::uncertainty::{PlanarMixture, PlanarPart};
+use impactlab_core::uncertainty::PlanarMixture;
 use impactlab_core::units::Estimate;
-
-/// Largest number of groups into which draws are divided by where they end.
-const MAX_GROUPS: usize = 24;
-/// Smallest number of draws in a group, so that their covariance means something.
-const LEAST_GROUP: usize = 8;
-/// Length with which a heading is compared with positions, m/rad: half of a car.
-const HEADING_ARM_M: f64 = 2.3;
 
 /// Where one draw of a motion ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +80,7 @@ impl RestOutcome {
             |value: fn(&MotionEnd) -> f64| Estimate::from_draws(ends.iter().map(value).collect());
         let moving: Vec<f64> =
             ends.iter().filter(|end| !end.is_at_rest).map(|end| end.speed_m_s).collect();
-        let position = position_of(ends);
+        let position = PlanarMixture::from_poses(&poses(ends));
         Some(Self {
             n_draws: ends.len(),
             share_at_rest: 1.0 - moving.len() as f64 / ends.len() as f64,
@@ -104,46 +97,9 @@ impl RestOutcome {
     }
 }
 
-/// The distribution of the position in which draws end: a normal distribution for each group.
-fn position_of(ends: &[MotionEnd]) -> PlanarMixture {
-    let part = |group: Vec<usize>| {
-        let points: Vec<[f64; 2]> =
-            group.iter().filter_map(|&idx| ends.get(idx)).map(|end| [end.x_m, end.y_m]).collect();
-        let n = points.len().max(1) as f64;
-        let mean = [0, 1].map(|axis| points.iter().map(|p| p[axis]).sum::<f64>() / n);
-        let product = |a: usize, b: usize| {
-            let sum: f64 = points.iter().map(|p| (p[a] - mean[a]) * (p[b] - mean[b])).sum();
-            sum / (n - 1.0).max(1.0)
-        };
-        PlanarPart { weight: n, mean, covariance: [product(0, 0), product(0, 1), product(1, 1)] }
-    };
-    PlanarMixture::new(groups(ends).into_iter().map(part).collect())
-}
-
-/// Divides draws into groups that end near each other: the largest group is halved at the median of
-/// the quantity in which it is widest, position or heading, as long as there are enough draws.
-pub(super) fn groups(ends: &[MotionEnd]) -> Vec<Vec<usize>> {
-    let numbers = |idx: usize| {
-        let end = ends.get(idx);
-        end.map_or([0.0; 3], |end| [end.x_m, end.y_m, end.yaw_rad * HEADING_ARM_M])
-    };
-    let mut groups: Vec<Vec<usize>> = vec![(0..ends.len()).collect()];
-    while groups.len() < MAX_GROUPS {
-        let largest = (0..groups.len()).max_by_key(|&i| groups[i].len()).unwrap_or(0);
-        if groups[largest].len() < 2 * LEAST_GROUP {
-            break;
-        }
-        let mut group = groups.swap_remove(largest);
-        let width = |axis: usize| {
-            let values = || group.iter().map(|&idx| numbers(idx)[axis]);
-            values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
-        };
-        let axis = (0..3).max_by(|&a, &b| width(a).total_cmp(&width(b))).unwrap_or(0);
-        group.sort_by(|&a, &b| numbers(a)[axis].total_cmp(&numbers(b)[axis]));
-        let upper = group.split_off(group.len() / 2);
-        groups.extend([group, upper]);
-    }
-    groups
+/// Where draws end: X, Y, m, and heading, rad.
+pub(super) fn poses(ends: &[MotionEnd]) -> Vec<[f64; 3]> {
+    ends.iter().map(|end| [end.x_m, end.y_m, end.yaw_rad]).collect()
 }
 
 #[cfg(test)]
@@ -161,25 +117,6 @@ mod tests {
             speed_m_s: 1.0,
             yaw_rate_rad_s: 0.0,
         }
-    }
-
-    #[test]
-    fn groups_hold_every_draw_once_and_those_that_end_alike() {
-        let ends: Vec<MotionEnd> = (0..200)
-            .map(|i| end(f64::from(i % 100) * 0.01, if i < 100 { 0.0 } else { 3.0 }, true))
-            .collect();
-        let groups = groups(&ends);
-        let mut all: Vec<usize> = groups.iter().flatten().copied().collect();
-        all.sort_unstable();
-        assert_eq!(all, (0..200).collect::<Vec<usize>>());
-        assert!(groups.iter().all(|group| group.len() >= LEAST_GROUP), "{groups:?}");
-        // Those that have turned and those that have not are never together.
-        assert!(
-            groups
-                .iter()
-                .all(|group| group.iter().all(|idx| *idx < 100)
-                    || group.iter().all(|idx| *idx >= 100))
-        );
     }
 
     #[test]
