@@ -110,15 +110,41 @@ impl<'a> Dynamics<'a> {
         batch: &mut NetworkBatch,
     ) -> VehicleState<f64> {
         let now = self.model.constants.evaluate(x, u);
+        let correction = self.correction_at(component, latents, (x, &now), time_s, batch);
+        self.network.correction().step_from(&self.model, x, u, &now.derivative, correction)
+    }
+
+    /// The correction over a step at given latent factors, bounded.
+    pub(super) fn correction(
+        &self,
+        component: usize,
+        latents: &[f64; N_LATENTS],
+        x: &VehicleState<f64>,
+        u: &VehicleInput<f64>,
+        time_s: f64,
+        batch: &mut NetworkBatch,
+    ) -> [f64; N_RESIDUAL] {
+        let now = self.model.constants.evaluate(x, u);
+        self.correction_at(component, latents, (x, &now), time_s, batch)
+    }
+
+    /// [`Dynamics::correction`] where the 4DOF model was evaluated already.
+    fn correction_at(
+        &self,
+        component: usize,
+        latents: &[f64; N_LATENTS],
+        (x, now): (&VehicleState<f64>, &VehicleEvaluation<f64>),
+        time_s: f64,
+        batch: &mut NetworkBatch,
+    ) -> [f64; N_RESIDUAL] {
         batch.begin(self.share_at(time_s));
-        let mut terms = self.effects_at(component, x, &now);
+        let mut terms = self.effects_at(component, x, now);
         if batch.share > 0.0 {
-            batch.push(self.features(x, &now, time_s));
+            batch.push(self.features(x, now, time_s));
             self.evaluate_network(batch);
             self.add_remainder(&mut terms, batch, [0, component]);
         }
-        let correction = self.network.bounded(self.free_correction(&terms, latents));
-        self.network.correction().step_from(&self.model, x, u, &now.derivative, correction)
+        self.network.bounded(self.free_correction(&terms, latents))
     }
 
     /// The known effects of a component.

@@ -25,7 +25,10 @@ mod path_draws;
 
 mod to_rest;
 
+mod in_contact;
+
 pub use domain::{Applicability, MotionDomain, OutsideDomain};
+pub use in_contact::CoupledDraw;
 pub use latents::{LATENT_NAMES, LatentScales, N_LATENTS, N_NAMED_LATENTS, Widths};
 pub(crate) use latents::{Latents, N_OF_COLLISION};
 pub use model::ResponseModel;

@@ -1,0 +1,258 @@
+//! The motions of two vehicles over draws of what is not known of them.
+
+use rayon::prelude::*;
+
+use crate::pair::scatter::{PairLatents, PairScatter};
+use crate::response::{CoupledDraw, N_RESIDUAL, Predictor};
+use impactlab_core::collision::contact::{
+    ContactBody, ContactConditions, ContactOutline, ContactPhase, FaceLaws, PairError, PairMotion,
+    PairRun, PairVehicle, VehiclePair,
+};
+use impactlab_core::data::{Channel, Outcome};
+use impactlab_core::jobs::{Progress, ProgressCallback};
+use impactlab_core::vehicle::{Manoeuvre, VehicleParameters, VehicleState};
+
+/// Draws that are computed side by side between two reports of progress.
+const BLOCK_DRAWS: usize = 32;
+
+/// Steer angle below which a vehicle drives straight on, rad.
+const STRAIGHT_RAD: f64 = 0.01;
+
+/// Speed below which what the equations of motion miss fades, m/s.
+const SLOW_M_S: f64 = 5.0;
+
+/// Words by which the draws of both vehicles differ.
+const ROLES: [&str; 2] = ["struck", "striking"];
+
+/// Two vehicles of which a forecast is asked; arrays are struck, striking.
+#[derive(Debug, Clone, Copy)]
+pub struct PairQuestion<'a> {
+    /// The vehicles at their medians.
+    pub vehicles: [&'a VehicleParameters; 2],
+    /// Their initial states, controls, ground and end, without collision forces.
+    pub manoeuvres: [&'a Manoeuvre; 2],
+    /// Their outlines.
+    pub outlines: [&'a ContactOutline; 2],
+    /// Laws of their faces at their medians.
+    pub faces: [FaceLaws; 2],
+    /// Friction, damping and height of their contact at their medians.
+    pub conditions: ContactConditions,
+    /// The response network for each vehicle, which corrects its motion while the vehicles are apart after
+    /// the first contact; `None` for the equations of motion alone.
+    pub predictors: [Option<&'a Predictor>; 2],
+}
+
+/// How many draws, and of what.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairSettings {
+    /// Number of draws.
+    pub n_draws: usize,
+    /// Seed of all draws.
+    pub seed: u64,
+    /// What is not known.
+    pub scatter: PairScatter,
+}
+
+impl Default for PairSettings {
+    fn default() -> Self {
+        Self { n_draws: 200, seed: 0, scatter: PairScatter::default() }
+    }
+}
+
+/// One draw of the motions of both vehicles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairDraw {
+    /// States every 10 ms of the struck and of the striking vehicle.
+    pub states: [Vec<VehicleState<f64>>; 2],
+    /// Phases of contact.
+    pub phases: Vec<ContactPhase>,
+    /// Since when each vehicle is at rest, s; `None` if it still moves at the end.
+    pub rest_s: [Option<f64>; 2],
+}
+
+/// The motions of two vehicles over draws.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairForecast {
+    /// The motion with everything at its median.
+    pub centre: PairMotion,
+    /// The draws that could be computed.
+    pub draws: Vec<PairDraw>,
+    /// How many could not, and why the first of them could not.
+    pub failed: Option<(usize, PairError)>,
+}
+
+/// Follows two vehicles over draws of what is not known of them. The result depends on the question and
+/// the seed alone.
+///
+/// # Errors
+/// [`PairError`] if the motion at the medians or every draw cannot be computed.
+pub fn forecast_pair(
+    question: &PairQuestion<'_>,
+    settings: &PairSettings,
+    report: &mut ProgressCallback<'_>,
+) -> Result<Outcome<PairForecast>, PairError> {
+    let corrections = [0, 1].map(|i| question.predictor(i).map(Predictor::coupled_median));
+    let median = Drawn {
+        vehicles: question.vehicles.map(VehicleParameters::clone),
+        manoeuvres: question.manoeuvres.map(Manoeuvre::clone),
+        faces: question.faces,
+        conditions: question.conditions,
+        missed: [[0.0; 3]; 2],
+    };
+    let centre = question.simulate(&median, corrections)?;
+    let latents = PairLatents::new(settings.n_draws, settings.seed);
+    let mut draws = Vec::with_capacity(settings.n_draws);
+    let mut failed: Option<(usize, PairError)> = None;
+    let all: Vec<usize> = (0..settings.n_draws).collect();
+    for block in all.chunks(BLOCK_DRAWS) {
+        let found: Vec<_> =
+            block.par_iter().map(|&draw| question.draw(draw, &latents, settings)).collect();
+        for motion in found {
+            match motion {
+                Ok(motion) => draws.push(motion),
+                Err(error) => failed.get_or_insert((0, error)).0 += 1,
+            }
+        }
+        let done = block.last().map_or(0, |last| last + 1);
+        let (done, total) = (done as u64, settings.n_draws as u64);
+        if report(Progress::new(done, total, "following both vehicles")).is_break() {
+            return Ok(Outcome::Cancelled);
+        }
+    }
+    match failed {
+        Some((_, error)) if draws.is_empty() => Err(error),
+        failed => Ok(Outcome::Complete(PairForecast { centre, draws, failed })),
+    }
+}
+
+/// What was drawn.
+struct Drawn {
+    vehicles: [VehicleParameters; 2],
+    manoeuvres: [Manoeuvre; 2],
+    faces: [FaceLaws; 2],
+    conditions: ContactConditions,
+    /// What the equations of motion miss of each vehicle: v̇_x, v̇_y, m/s², ṙ, rad/s².
+    missed: [[f64; 3]; 2],
+}
+
+impl<'a> PairQuestion<'a> {
+    fn predictor(&self, vehicle: usize) -> Option<&'a Predictor> {
+        self.predictors[vehicle].filter(|predictor| predictor.corrects_accelerations())
+    }
+
+    fn draw(
+        &self,
+        draw: usize,
+        latents: &PairLatents,
+        settings: &PairSettings,
+    ) -> Result<PairDraw, PairError> {
+        let scatter = &settings.scatter;
+        let drawn = Drawn {
+            vehicles: [0, 1].map(|i| latents.vehicle(draw, i, self.vehicles[i], scatter)),
+            manoeuvres: [0, 1].map(|i| latents.manoeuvre(draw, i, self.manoeuvres[i], scatter)),
+            faces: [0, 1].map(|i| latents.faces(draw, i, self.faces[i], scatter)),
+            missed: [0, 1].map(|i| latents.missed(draw, i, scatter)),
+            conditions: latents.conditions(draw, self.conditions, scatter),
+        };
+        let corrections =
+            [0, 1].map(|i| Some(self.predictor(i)?.coupled_draw(settings.seed, ROLES[i], draw)));
+        self.simulate(&drawn, corrections).map(PairDraw::from_motion)
+    }
+
+    fn simulate(
+        &self,
+        drawn: &Drawn,
+        mut corrections: [Option<CoupledDraw<'_>>; 2],
+    ) -> Result<PairMotion, PairError> {
+        let vehicle = |i: usize| PairVehicle {
+            vehicle: &drawn.vehicles[i],
+            manoeuvre: &drawn.manoeuvres[i],
+            body: ContactBody { outline: self.outlines[i], faces: drawn.faces[i] },
+        };
+        let vehicles = [vehicle(0), vehicle(1)];
+        let pair = VehiclePair { vehicles, conditions: drawn.conditions, step_divisor: 1 };
+        let mut run = PairRun::new(&pair)?;
+        loop {
+            let residuals = [0, 1].map(|i| {
+                let learned = residual(&run, i, corrections[i].as_mut());
+                let [ax, ay, yaw] = missed(&run, i, drawn.missed[i]);
+                [learned[0] + ax, learned[1] + ay, learned[2] + yaw, learned[3]]
+            });
+            if !run.goes_on(&residuals)? {
+                return run.finish();
+            }
+        }
+    }
+}
+
+/// What the network adds to the acceleration of a vehicle over the coming interval: nothing before the
+/// first contact and while the vehicles push each other.
+fn residual(
+    run: &PairRun<'_>,
+    vehicle: usize,
+    correction: Option<&mut CoupledDraw<'_>>,
+) -> [f64; N_RESIDUAL] {
+    let (Some(correction), Some(first_s)) = (correction, run.first_contact_s()) else {
+        return [0.0; N_RESIDUAL];
+    };
+    let input = run.input(vehicle);
+    if input.collision.is_some() {
+        return [0.0; N_RESIDUAL];
+    }
+    let time_s = (run.time_s() - first_s).max(0.0);
+    correction.residual(&run.states()[vehicle], &input, time_s)
+}
+
+/// What the equations of motion miss over the coming interval: nothing of a vehicle that drives straight
+/// on and has not been touched yet, and less and less of one that comes to rest.
+fn missed(run: &PairRun<'_>, vehicle: usize, drawn: [f64; 3]) -> [f64; 3] {
+    let is_straight = || run.input(vehicle).steer_rad.abs() < STRAIGHT_RAD;
+    if run.first_contact_s().is_none() && is_straight() {
+        return [0.0; 3];
+    }
+    let state = run.states()[vehicle];
+    let speed_m_s = state.vx_body_m_s.hypot(state.vy_body_m_s);
+    drawn.map(|missed| missed * (speed_m_s / SLOW_M_S).min(1.0))
+}
+
+impl PairDraw {
+    /// The draw from its motion.
+    fn from_motion(motion: PairMotion) -> Self {
+        let states = [0, 1].map(|i| states_of(&motion, i));
+        let rest_s = [0, 1].map(|i| motion.motions[i].rest_s);
+        Self { states, phases: motion.phases, rest_s }
+    }
+
+    /// When the vehicles first touch each other, s.
+    pub fn first_contact_s(&self) -> Option<f64> {
+        self.phases.first().map(|phase| phase.start_s)
+    }
+
+    /// State of a vehicle at an instant, the last one after the end of its motion.
+    pub fn state(&self, vehicle: usize, instant: usize) -> Option<&VehicleState<f64>> {
+        let states = &self.states[vehicle];
+        states.get(instant).or(states.last())
+    }
+}
+
+/// States of a vehicle every 10 ms.
+fn states_of(motion: &PairMotion, vehicle: usize) -> Vec<VehicleState<f64>> {
+    use Channel as C;
+    let series = &motion.motions[vehicle].series;
+    let column = |channel| series.get(channel).unwrap_or(&[]);
+    let [x, y, yaw, vx, vy, yaw_rate, roll, roll_rate] =
+        [C::X, C::Y, C::Yaw, C::Vx, C::Vy, C::YawRate, C::Roll, C::RollRate].map(column);
+    let at = |values: &[f64], i: usize| values.get(i).copied().unwrap_or(0.0);
+    (0..series.n_samples())
+        .map(|i| VehicleState {
+            vx_body_m_s: at(vx, i),
+            vy_body_m_s: at(vy, i),
+            yaw_rad: at(yaw, i),
+            yaw_rate_rad_s: at(yaw_rate, i),
+            roll_rad: at(roll, i),
+            roll_rate_rad_s: at(roll_rate, i),
+            x_m: at(x, i),
+            y_m: at(y, i),
+        })
+        .collect()
+}

@@ -1,0 +1,150 @@
+//! What the draws of two vehicles come to: courses of events, contacts, where the vehicles are.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::pair::{PairDraw, PairForecast};
+use impactlab_core::uncertainty::PlanarMixture;
+use impactlab_core::vehicle::OUTPUT_INTERVAL_S;
+
+/// Turn from which on a vehicle has spun, rad: a quarter.
+pub const QUARTER_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2;
+
+/// Turn from which on a vehicle faces backwards, rad: a half.
+pub const HALF_TURN_RAD: f64 = std::f64::consts::PI;
+
+/// What becomes of the struck vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Course {
+    /// The vehicles do not touch each other.
+    Missed,
+    /// It turns by less than a quarter.
+    Recovers,
+    /// It turns by a quarter to a half.
+    Turns,
+    /// It turns by more than a half.
+    Spins,
+}
+
+/// A course of events and how likely it is.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+pub struct CourseShare {
+    /// The course.
+    pub course: Course,
+    /// Share of the draws, 0 to 1.
+    pub probability: f64,
+}
+
+impl Course {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Missed, Self::Recovers, Self::Turns, Self::Spins];
+}
+
+impl PairDraw {
+    /// Largest change of the heading of a vehicle from its beginning, rad, beyond a turn.
+    pub fn largest_turn_rad(&self, vehicle: usize) -> f64 {
+        let states = &self.states[vehicle];
+        let first = states.first().map_or(0.0, |state| state.yaw_rad);
+        states.iter().map(|state| (state.yaw_rad - first).abs()).fold(0.0, f64::max)
+    }
+
+    /// What becomes of the struck vehicle.
+    pub fn course(&self) -> Course {
+        match self.largest_turn_rad(0) {
+            _ if self.phases.is_empty() => Course::Missed,
+            turn if turn > HALF_TURN_RAD => Course::Spins,
+            turn if turn > QUARTER_TURN_RAD => Course::Turns,
+            _ => Course::Recovers,
+        }
+    }
+
+    /// Time for which the vehicles are in contact, s.
+    ///
+    /// - `end_s`: where a contact that has not ended is cut off.
+    pub fn contact_s(&self, end_s: f64) -> f64 {
+        self.phases.iter().map(|phase| phase.end_s.unwrap_or(end_s) - phase.start_s).sum()
+    }
+
+    /// Size of the impulse on the struck vehicle over all contacts, N s.
+    pub fn impulse_n_s(&self) -> f64 {
+        let sum =
+            |axis: usize| self.phases.iter().map(|it| it.impulse_world_n_s[axis]).sum::<f64>();
+        sum(0).hypot(sum(1))
+    }
+
+    /// Whether the vehicles are in contact at a time.
+    pub fn is_in_contact(&self, time_s: f64) -> bool {
+        let is_at = |start_s: f64, end_s: Option<f64>| {
+            start_s <= time_s && end_s.is_none_or(|end_s| time_s <= end_s)
+        };
+        self.phases.iter().any(|phase| is_at(phase.start_s, phase.end_s))
+    }
+}
+
+impl PairForecast {
+    /// Share of the draws for which something holds, 0 to 1.
+    pub fn share(&self, holds: impl Fn(&PairDraw) -> bool) -> f64 {
+        let n = self.draws.iter().filter(|draw| holds(draw)).count();
+        n as f64 / self.draws.len().max(1) as f64
+    }
+
+    /// Every course that occurs, the likeliest first.
+    pub fn courses(&self) -> Vec<CourseShare> {
+        let share = |course: Course| {
+            let probability = self.share(|draw| draw.course() == course);
+            (probability > 0.0).then_some(CourseShare { course, probability })
+        };
+        let mut shares: Vec<CourseShare> = Course::ALL.into_iter().filter_map(share).collect();
+        shares.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        shares
+    }
+
+    /// Poses of a vehicle at an instant over the draws: X, Y, m, heading, rad.
+    pub fn poses(&self, vehicle: usize, instant: usize) -> Vec<[f64; 3]> {
+        let states = self.draws.iter().filter_map(|draw| draw.state(vehicle, instant));
+        states.map(|state| [state.x_m, state.y_m, state.yaw_rad]).collect()
+    }
+
+    /// Distribution of the position of a vehicle at an instant.
+    pub fn position(&self, vehicle: usize, instant: usize) -> PlanarMixture {
+        PlanarMixture::from_poses(&self.poses(vehicle, instant))
+    }
+
+    /// Number of the draw that lies in the middle of the others: the least sum of distances of both
+    /// vehicles over all instants to the medians of the positions. It stands for the forecast where one
+    /// motion is asked for, and is one that can happen.
+    pub fn middle(&self) -> Option<usize> {
+        let n_instants = self.n_instants();
+        let mut sums = vec![0.0; self.draws.len()];
+        for instant in (0..n_instants).step_by(MIDDLE_STRIDE) {
+            for vehicle in 0..2 {
+                let poses = self.poses(vehicle, instant);
+                let [x_m, y_m] = [0, 1].map(|axis| {
+                    let mut values: Vec<f64> = poses.iter().map(|pose| pose[axis]).collect();
+                    values.sort_by(f64::total_cmp);
+                    values.get(values.len() / 2).copied().unwrap_or(0.0)
+                });
+                for (sum, pose) in sums.iter_mut().zip(&poses) {
+                    *sum += (pose[0] - x_m).hypot(pose[1] - y_m);
+                }
+            }
+        }
+        (0..sums.len()).min_by(|&a, &b| sums[a].total_cmp(&sums[b]))
+    }
+
+    /// Number of instants of the longest motion.
+    pub fn n_instants(&self) -> usize {
+        let lengths = self.draws.iter().flat_map(|draw| draw.states.iter().map(Vec::len));
+        lengths.max().unwrap_or(0)
+    }
+
+    /// Share of the draws in which the vehicles are in contact, at each of the instants.
+    pub fn contact_shares(&self) -> Vec<f64> {
+        let at = |instant: usize| instant as f64 * OUTPUT_INTERVAL_S;
+        (0..self.n_instants()).map(|i| self.share(|draw| draw.is_in_contact(at(i)))).collect()
+    }
+}
+
+/// Instants of which every so many count for the middle: ten a second.
+const MIDDLE_STRIDE: usize = 10;

@@ -1,0 +1,236 @@
+//! What is not known of two vehicles that push each other, and its draws.
+//!
+//! Every quantity follows from standard normal values of its own, which fill their space evenly over the
+//! draws (Latin hypercube). Factors are lognormal.
+
+use impactlab_core::collision::contact::{
+    ByFace, CONTACT_FRICTION_SIGMA, ContactConditions, ELASTIC_DEPTH_LOG_SIGMA, FaceLaws,
+};
+use impactlab_core::numerics::{latin_normals, random_stream};
+use impactlab_core::vehicle::{Manoeuvre, VehicleParameters};
+
+/// Bounds of the coefficient of friction between vehicles.
+const CONTACT_FRICTION_RANGE: [f64; 2] = [0.1, 0.9];
+
+/// Bounds of the share that the elastic branch gives back.
+const RECOVERY_RANGE: [f64; 2] = [0.0, 0.3];
+
+/// Standard deviations of what is not known of two vehicles that push each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairScatter {
+    /// Factor on those of the faces, see
+    /// [`STIFFNESS_LOG_SIGMA`](impactlab_core::collision::contact::STIFFNESS_LOG_SIGMA).
+    pub faces: f64,
+    /// Of the coefficient of friction between the vehicles.
+    pub contact_friction: f64,
+    /// Of the logarithm of the length of the elastic branch of a vehicle.
+    pub elastic_depth_log: f64,
+    /// Of the share that the elastic branch gives back.
+    pub elastic_recovery: f64,
+    /// Of the logarithm of the friction of the tires of a vehicle.
+    pub tire_friction_log: f64,
+    /// Of the logarithm of the cornering stiffness of an axle.
+    pub cornering_log: f64,
+    /// Of the logarithm of a factor on the steer angle of a vehicle: compliance of its steering.
+    pub steer_log: f64,
+    /// Of the logarithm of a factor on the brake and drive torques of a vehicle.
+    pub torque_log: f64,
+    /// Of what the equations of motion miss of the acceleration of a vehicle that turns or slides,
+    /// along its body axes, m/s².
+    pub missed_m_s2: f64,
+    /// The same of its yaw acceleration, rad/s².
+    pub missed_rad_s2: f64,
+}
+
+impl Default for PairScatter {
+    fn default() -> Self {
+        Self {
+            faces: 1.0,
+            contact_friction: CONTACT_FRICTION_SIGMA,
+            elastic_depth_log: ELASTIC_DEPTH_LOG_SIGMA,
+            elastic_recovery: 0.03,
+            tire_friction_log: 0.05,
+            cornering_log: 0.12,
+            steer_log: 0.05,
+            torque_log: 0.08,
+            missed_m_s2: 0.25,
+            missed_rad_s2: 0.1,
+        }
+    }
+}
+
+impl PairScatter {
+    /// Nothing is uncertain.
+    pub const NONE: Self = Self {
+        faces: 0.0,
+        contact_friction: 0.0,
+        elastic_depth_log: 0.0,
+        elastic_recovery: 0.0,
+        tire_friction_log: 0.0,
+        cornering_log: 0.0,
+        steer_log: 0.0,
+        torque_log: 0.0,
+        missed_m_s2: 0.0,
+        missed_rad_s2: 0.0,
+    };
+
+    /// All standard deviations multiplied by a factor.
+    #[must_use]
+    pub fn widened(self, factor: f64) -> Self {
+        Self {
+            faces: self.faces * factor,
+            contact_friction: self.contact_friction * factor,
+            elastic_depth_log: self.elastic_depth_log * factor,
+            elastic_recovery: self.elastic_recovery * factor,
+            tire_friction_log: self.tire_friction_log * factor,
+            cornering_log: self.cornering_log * factor,
+            steer_log: self.steer_log * factor,
+            torque_log: self.torque_log * factor,
+            missed_m_s2: self.missed_m_s2 * factor,
+            missed_rad_s2: self.missed_rad_s2 * factor,
+        }
+    }
+}
+
+/// Standard normal values of a vehicle.
+const N_OF_VEHICLE: usize = 12;
+
+/// Standard normal values of a draw: friction and recovery of the contact, then both vehicles.
+const N_LATENTS: usize = 2 + 2 * N_OF_VEHICLE;
+
+/// Standard normal values of all draws.
+pub(super) struct PairLatents {
+    /// Of each quantity over the draws.
+    columns: Vec<Vec<f64>>,
+}
+
+impl PairLatents {
+    pub fn new(n_draws: usize, seed: u64) -> Self {
+        let column = |idx: usize| {
+            latin_normals(n_draws, &mut random_stream(seed, "pair of vehicles", idx as u64))
+        };
+        Self { columns: (0..N_LATENTS).map(column).collect() }
+    }
+
+    fn at(&self, draw: usize, idx: usize) -> f64 {
+        self.columns.get(idx).and_then(|column| column.get(draw)).copied().unwrap_or(0.0)
+    }
+
+    /// The conditions of the contact of a draw.
+    pub fn conditions(
+        &self,
+        draw: usize,
+        median: ContactConditions,
+        scatter: &PairScatter,
+    ) -> ContactConditions {
+        let [low, high] = CONTACT_FRICTION_RANGE;
+        let friction = median.friction + scatter.contact_friction * self.at(draw, 0);
+        ContactConditions { friction: friction.clamp(low, high), ..median }
+    }
+
+    /// The faces of a vehicle of a draw.
+    ///
+    /// - `vehicle`: 0 for the struck, 1 for the striking one.
+    pub fn faces(
+        &self,
+        draw: usize,
+        vehicle: usize,
+        median: FaceLaws,
+        scatter: &PairScatter,
+    ) -> FaceLaws {
+        let z = |idx: usize| self.at(draw, 2 + vehicle * N_OF_VEHICLE + idx);
+        let latents = ByFace { front: z(0), side: z(1), rear: z(2) };
+        let depth = (scatter.elastic_depth_log * z(3)).exp();
+        let recovery = scatter.elastic_recovery * self.at(draw, 1);
+        let [low, high] = RECOVERY_RANGE;
+        median.drawn(latents.map(|z| scatter.faces * z)).map(|law| {
+            let share = (law.elastic_recovery() + recovery).clamp(low, high);
+            law.with_elastic_depth(depth).with_elastic_recovery(share)
+        })
+    }
+
+    /// What a driver did, of a draw: the same with factors on steer angles and torques.
+    pub fn manoeuvre(
+        &self,
+        draw: usize,
+        vehicle: usize,
+        median: &Manoeuvre,
+        scatter: &PairScatter,
+    ) -> Manoeuvre {
+        let z = |idx: usize| self.at(draw, 2 + vehicle * N_OF_VEHICLE + 7 + idx);
+        let mut drawn = median.clone();
+        let steer = (scatter.steer_log * z(0)).exp();
+        let torque = (scatter.torque_log * z(1)).exp();
+        if let Some(history) = &mut drawn.controls.steer {
+            history.steer_rad.iter_mut().for_each(|angle| *angle *= steer);
+        }
+        if let Some(history) = &mut drawn.controls.wheels {
+            for wheel in history.wheels.iter_mut().flatten() {
+                wheel.braking_n *= torque;
+                wheel.drive_n *= torque;
+            }
+        }
+        drawn
+    }
+
+    /// What the equations of motion miss of a vehicle of a draw: v̇_x, v̇_y, m/s², ṙ, rad/s².
+    pub fn missed(&self, draw: usize, vehicle: usize, scatter: &PairScatter) -> [f64; 3] {
+        let z = |idx: usize| self.at(draw, 2 + vehicle * N_OF_VEHICLE + 9 + idx);
+        [scatter.missed_m_s2 * z(0), scatter.missed_m_s2 * z(1), scatter.missed_rad_s2 * z(2)]
+    }
+
+    /// A vehicle of a draw: its tires.
+    pub fn vehicle(
+        &self,
+        draw: usize,
+        vehicle: usize,
+        median: &VehicleParameters,
+        scatter: &PairScatter,
+    ) -> VehicleParameters {
+        let z = |idx: usize| self.at(draw, 2 + vehicle * N_OF_VEHICLE + 4 + idx);
+        let mut drawn = median.clone();
+        let tires = &mut drawn.tires;
+        tires.friction *= (scatter.tire_friction_log * z(0)).exp();
+        tires.cornering_coefficient_front_per_rad *= (scatter.cornering_log * z(1)).exp();
+        tires.cornering_coefficient_rear_per_rad *= (scatter.cornering_log * z(2)).exp();
+        drawn
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::vehicle::Preset;
+
+    #[test]
+    fn draws_have_the_stated_scatter_and_none_has_the_medians() {
+        let latents = PairLatents::new(400, 3);
+        let vehicle = Preset::Reference.parameters();
+        let faces = FaceLaws::by_class(&vehicle).unwrap();
+        let conditions = ContactConditions::default();
+        let none = PairScatter::NONE;
+        assert_eq!(latents.conditions(7, conditions, &none), conditions);
+        assert_eq!(latents.vehicle(7, 1, &vehicle, &none), vehicle);
+        let median = latents.faces(7, 0, faces, &none);
+        assert!((median.side.onset_n_per_m() / faces.side.onset_n_per_m() - 1.0).abs() < 1e-12);
+        let scatter = PairScatter::default();
+        let std = |values: Vec<f64>| {
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            let square: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+            (square / (values.len() as f64 - 1.0)).sqrt()
+        };
+        let sides = (0..400).map(|draw| {
+            let drawn = latents.faces(draw, 0, faces, &scatter).side.onset_n_per_m();
+            (drawn / faces.side.onset_n_per_m()).ln()
+        });
+        assert!((std(sides.collect()) - 0.4).abs() < 0.02);
+        let frictions =
+            (0..400).map(|draw| latents.conditions(draw, conditions, &scatter).friction);
+        assert!((std(frictions.collect()) - CONTACT_FRICTION_SIGMA).abs() < 0.01);
+        let tires = (0..400).map(|draw| {
+            (latents.vehicle(draw, 1, &vehicle, &scatter).tires.friction / vehicle.tires.friction)
+                .ln()
+        });
+        assert!((std(tires.collect()) - scatter.tire_friction_log).abs() < 0.005);
+    }
+}
