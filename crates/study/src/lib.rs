@@ -62,6 +62,9 @@ pub use questions::evaluate::force::{
     CrossValidateForceReport, EvaluateForceAnswer, EvaluateForceReport, EvaluateForceRequest,
     EvaluatedForceCases, ForceEvaluation,
 };
+pub use questions::evaluate::pairs::{
+    EvaluatePairsAnswer, EvaluatePairsReport, EvaluatePairsRequest, PairGroup, PairSplit,
+};
 pub use questions::evaluate::reconstruction::{
     EvaluateReconstructionAnswer, EvaluateReconstructionReport, EvaluateReconstructionRequest,
 };

@@ -4,6 +4,7 @@ use clap::{Args, Subcommand};
 
 use crate::cli::CliError;
 use crate::cli::commands::evaluate_force::{self, EvaluateForceArgs};
+use crate::cli::commands::evaluate_pairs::{self, EvaluatePairsArgs};
 use crate::cli::commands::evaluate_reconstruction::{self, EvaluateReconstructionArgs};
 use crate::cli::commands::evaluate_response::{self, EvaluateResponseArgs};
 use crate::cli::console::{Console, Verdict};
@@ -21,6 +22,8 @@ enum Evaluated {
     Force(EvaluateForceArgs),
     /// A response network on trajectories
     Response(EvaluateResponseArgs),
+    /// Forecasts of both cars of recorded pairs, through all contacts to the end
+    Pairs(EvaluatePairsArgs),
     /// Reconstructed speeds of staged collisions, beside the hand calculation and a swarm's optimum
     Reconstruction(EvaluateReconstructionArgs),
 }
@@ -33,6 +36,7 @@ pub(in crate::cli) fn run(
     match &args.what {
         Evaluated::Force(args) => evaluate_force::run(args, console),
         Evaluated::Response(args) => evaluate_response::run(args, console),
+        Evaluated::Pairs(args) => evaluate_pairs::run(args, console),
         Evaluated::Reconstruction(args) => evaluate_reconstruction::run(args, console),
     }
 }

@@ -8,6 +8,7 @@ pub(super) mod compare;
 pub(super) mod condition;
 pub(super) mod evaluate;
 mod evaluate_force;
+mod evaluate_pairs;
 mod evaluate_reconstruction;
 mod evaluate_response;
 pub(super) mod export;

@@ -8,8 +8,8 @@ use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_study::facts::{FactTable, FactWriter};
 use impactlab_study::{
-    Answer, CheckReport, CompareReport, EvaluateReconstructionReport, ForceEvaluation,
-    ImpactReport, PredictForceReport, PredictMotionReport, ReconstructReport,
+    Answer, CheckReport, CompareReport, EvaluatePairsReport, EvaluateReconstructionReport,
+    ForceEvaluation, ImpactReport, PredictForceReport, PredictMotionReport, ReconstructReport,
     ResponseTrainingReport, SimulateDatasetReport, SimulateReport, TrainForceReport,
 };
 
@@ -50,6 +50,7 @@ answers! {
     ResponseTrainingReport: of => of.data.clone();
     ForceEvaluation: of => evaluated(of);
     CompareReport: of => of.comparison.data.clone();
+    EvaluatePairsReport: of => of.data.display().to_string();
     EvaluateReconstructionReport: of => of.data.display().to_string();
 }
 

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize, Serializer};
 use crate::ask::schema::JsonKind;
 use crate::questions::evaluate::compare::CompareReport;
 use crate::{
-    Answer, CheckReport, CheckRequest, CompareRequest, EvaluateForceRequest,
-    EvaluateReconstructionReport, EvaluateReconstructionRequest, EvaluateResponseRequest,
-    FineTuneRequest, ForceEvaluation, ImpactReport, ImpactRequest, Library, Observer,
-    PredictForceReport, PredictForceRequest, PredictMotionReport, PredictMotionRequest, Provenance,
-    Question, ReconstructReport, ReconstructRequest, ResponseTrainingReport, SimulateDatasetReport,
-    SimulateDatasetRequest, SimulateReport, SimulateRequest, StudyError, TrainForceReport,
-    TrainForceRequest, TrainResponseRequest,
+    Answer, CheckReport, CheckRequest, CompareRequest, EvaluateForceRequest, EvaluatePairsReport,
+    EvaluatePairsRequest, EvaluateReconstructionReport, EvaluateReconstructionRequest,
+    EvaluateResponseRequest, FineTuneRequest, ForceEvaluation, ImpactReport, ImpactRequest,
+    Library, Observer, PredictForceReport, PredictForceRequest, PredictMotionReport,
+    PredictMotionRequest, Provenance, Question, ReconstructReport, ReconstructRequest,
+    ResponseTrainingReport, SimulateDatasetReport, SimulateDatasetRequest, SimulateReport,
+    SimulateRequest, StudyError, TrainForceReport, TrainForceRequest, TrainResponseRequest,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::uncertainty::Caveats;
@@ -153,6 +153,8 @@ questions! {
     FineTune(FineTuneRequest) -> ResponseTrainingReport;
     /// How well a force network does.
     EvaluateForce(EvaluateForceRequest) -> ForceEvaluation;
+    /// How well both vehicles of recorded pairs are forecast.
+    EvaluatePairs(EvaluatePairsRequest) -> EvaluatePairsReport;
     /// How well the speeds of staged collisions are reconstructed.
     EvaluateReconstruction(EvaluateReconstructionRequest) -> EvaluateReconstructionReport;
     /// How well a response network does.

@@ -12,6 +12,7 @@ mod check;
 mod compare;
 mod contact;
 mod evaluate_force;
+mod evaluate_pairs;
 mod evaluate_reconstruction;
 mod held;
 mod impact;

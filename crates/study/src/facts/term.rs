@@ -329,6 +329,22 @@ terms! {
     In90: "in 90 %", "in 90 %", "Share of the cases whose interval of 90 % held the true value";
     ConfidenceFrom: "at least", "mindestens", "Lower bound of 95 % confidence of that share, after Wilson";
     ConfidenceTo: "at most", "höchstens", "Upper bound of 95 % confidence of that share, after Wilson";
+    RecordedPairs: "Forecasts beside recorded pairs", "Vorhersagen neben aufgezeichneten Paaren";
+    PairDraws: "draws of each", "Züge je Fall";
+    MeanPathError: "mean error", "mittlerer Fehler",
+        "Mean over the cases of the mean distance of the positions over 4 s from the first contact";
+    MedianPathError: "median error", "Median des Fehlers";
+    MedianEndError: "at the end", "am Ende",
+        "Median over the cases of the distance of the positions at the end of the record";
+    QuarterTurnRight: "90° right", "90° richtig",
+        "Share of the cases in which the likelier side of a turn of 90° was the recorded one";
+    HalfTurnRight: "180° right", "180° richtig", "The same of a turn of 180°";
+    PathIn50: "path in 50 %", "Bahn in 50 %",
+        "Share of the instants at which the region of 50 % held the recorded position";
+    PathIn90: "path in 90 %", "Bahn in 90 %", "The same of the region of 90 %";
+    EndIn50: "end in 50 %", "Ende in 50 %",
+        "Share of the cases in which the region of 50 % held the position at the end of the record";
+    EndIn90: "end in 90 %", "Ende in 90 %", "The same of the region of 90 %";
     CaseTimes: "Time of a case", "Rechenzeit eines Falls";
     KnownEvidence: "known", "bekannt", "How much of the evidence was used";
     Method: "method", "Verfahren";

@@ -126,6 +126,10 @@ impl Request {
                 files.path(&request.data);
                 files.network(&request.model);
             }
+            Self::EvaluatePairs(request) => {
+                files.path(&request.data);
+                files.network(&request.model);
+            }
             Self::EvaluateReconstruction(request) => files.path(&request.data),
             Self::EvaluateResponse(request) => {
                 files.path(&request.data);
