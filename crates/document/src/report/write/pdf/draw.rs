@@ -58,7 +58,7 @@ pub fn pdf(document: &ReportDocument, drawing: Option<&Drawing<'_>>) -> Result<V
     pdf.set_tag_tree(drawn.tag_tree());
     pdf.set_outline(outline(&flow.outline));
     pdf.set_metadata(metadata(document));
-    pdf.finish().map_err(|error| PdfError::Krilla { why: format!("{error:?}") })
+    Ok(pdf.finish()?)
 }
 
 /// The pictures by their numbers, drawn side by side.

@@ -1,5 +1,7 @@
 //! Why a PDF cannot be written.
 
+use krilla::error::KrillaError;
+
 /// A PDF that cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum PdfError {
@@ -26,9 +28,44 @@ pub enum PdfError {
         why: String,
     },
     /// The PDF cannot be put together.
-    #[error("the PDF cannot be put together: {why}")]
-    Krilla {
+    #[error("the PDF cannot be put together: {why}; the report as HTML has the same content")]
+    Assembly {
         /// Why.
-        why: String,
+        why: &'static str,
     },
+}
+
+impl From<KrillaError> for PdfError {
+    /// What the writer of PDF files refuses, in words for somebody who has not seen its code.
+    fn from(error: KrillaError) -> Self {
+        let why = match error {
+            KrillaError::Font(..) => "a font of the program cannot be embedded",
+            KrillaError::Validation(_) => "it would not conform to the standard of the file",
+            KrillaError::Limit(_) => "it is larger than a PDF may be",
+            KrillaError::DuplicateNamedDestination(_)
+            | KrillaError::DuplicateTagId(..)
+            | KrillaError::UnknownTagId(..) => "its links or its structure contradict themselves",
+            KrillaError::Image(..) | KrillaError::SixteenBitImage(..) => {
+                "a picture cannot be embedded"
+            }
+        };
+        Self::Assembly { why }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+
+    #[test]
+    fn a_refused_pdf_is_told_in_words() {
+        let refused = KrillaError::DuplicateNamedDestination(Arc::new("table-3".to_owned()));
+        assert_eq!(
+            PdfError::from(refused).to_string(),
+            "the PDF cannot be put together: its links or its structure contradict themselves; the report \
+             as HTML has the same content"
+        );
+    }
 }
