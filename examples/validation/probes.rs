@@ -63,7 +63,7 @@ pub fn probe(root: &Path, subject: Measured) -> Result<Probe, Box<dyn Error>> {
         Measured::Impact => {
             let scenario = ScenarioChoice::File(PathBuf::from("pit-right-rear"));
             let names = ["/impulse_magnitude_n_s", "/target/delta_yaw_rate_rad_s"];
-            numbers(&ImpactRequest { scenario, paper: false }, &names)
+            numbers(&ImpactRequest::new(scenario), &names)
         }
         Measured::FourDof => {
             let mut all = Probe::new();

@@ -34,6 +34,8 @@ pub struct Latest<Q: Question> {
     /// The latest answer, or the reason why there is none. It belongs to `question` unless
     /// [`Latest::is_waiting`].
     pub answer: Option<AnswerResult<Q>>,
+    /// Number of the latest question that is answered in part, [`Question::IS_COARSE_PART`].
+    n_in_part: u64,
     /// The latest coarse answer with the number of its question, until that is answered in full.
     coarse: Option<(u64, Arc<Q::Answer>)>,
 }
@@ -60,6 +62,7 @@ impl<Q: Question> Default for Latest<Q> {
             question_at: None,
             question: None,
             answer: None,
+            n_in_part: 0,
             coarse: None,
         }
     }
@@ -73,6 +76,9 @@ impl<Q: Question> Latest<Q> {
         for (number, sent) in thread.answers.try_iter() {
             let is_shown = number > self.n_dropped;
             match sent {
+                Sent::Coarse(answer) if is_shown && Q::IS_COARSE_PART => {
+                    (self.n_in_part, self.answer) = (number, Some(Ok(answer)));
+                }
                 Sent::Coarse(answer) if is_shown => self.coarse = Some((number, answer)),
                 Sent::Coarse(_) => {}
                 Sent::Full(answer) => {
@@ -131,9 +137,11 @@ impl<Q: Question> Latest<Q> {
     }
 
     /// Whether the answer to the latest question has not arrived for so long that a person sees it: an
-    /// older answer that is still shown has to be marked then.
+    /// older answer that is still shown has to be marked then. What is shown of the latest question is
+    /// not marked, though a part of it is still to come.
     pub fn is_late(&self) -> bool {
-        self.is_waiting() && self.question_at.is_some_and(|at| at.elapsed() > SEEN)
+        let is_awaited = self.is_waiting() && self.n_in_part != self.n_questions;
+        is_awaited && self.question_at.is_some_and(|at| at.elapsed() > SEEN)
     }
 
     /// The coarse answer that there is until the question is answered in full, and whether it is to the

@@ -73,7 +73,7 @@ impl Default for Project {
         let scenario = ScenarioChoice::Inline(Box::new(Scenario::example()));
         let simulate = SimulateRequest::new(MotionSource::default());
         Self {
-            impact: ImpactRequest { scenario: scenario.clone(), paper: false },
+            impact: ImpactRequest::new(scenario.clone()),
             predict_force: PredictForceRequest::new(ForceQuestion::Scenario(scenario)),
             predict_motion: PredictMotionRequest::new(MotionSource::default(), ForceSource::Given),
             simulate,

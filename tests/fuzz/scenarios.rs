@@ -136,8 +136,8 @@ fn collisions_at_random_have_finite_ordered_answers() {
         let source =
             MotionSource::Scenario { scenario: scenario.clone(), pulse: PulseSetup::default() };
         let mut answers = vec![
-            asked(&ImpactRequest { scenario: scenario.clone(), paper: false }, &library),
-            asked(&ImpactRequest { scenario: scenario.clone(), paper: true }, &library),
+            asked(&ImpactRequest::new(scenario.clone()), &library),
+            asked(&ImpactRequest { paper: true, ..ImpactRequest::new(scenario.clone()) }, &library),
             asked(&SimulateRequest::new(source.clone()), &library),
         ];
         if idx % 10 == 0 {

@@ -36,7 +36,7 @@ fn force_file(folder: &Path) -> PathBuf {
 /// A case of two variants: a scenario of the program, and a force file of its own.
 fn case(force: &Path) -> CaseFile {
     let scenario = ScenarioChoice::File("pit-right-rear".into());
-    let impact = Request::from(ImpactRequest { scenario, paper: false });
+    let impact = Request::from(ImpactRequest::new(scenario));
     let drive =
         Drive { speed_m_s: Some(20.0), force: Some(SeriesFile::new(force)), ..Drive::default() };
     let simulate = SimulateRequest::new(MotionSource::Drive(drive));

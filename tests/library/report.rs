@@ -82,7 +82,7 @@ pub fn staged() -> &'static (tempfile::TempDir, CaseFile, ReportDocument, CaseRe
 
 pub fn impact_case(name: &str, notes: &str) -> CaseFile {
     let scenario = ScenarioChoice::File(PathBuf::from("pit-right-rear"));
-    let question = ImpactRequest { scenario, paper: false };
+    let question = ImpactRequest::new(scenario);
     let variant =
         Variant { name: name.to_owned(), questions: vec![question.into()], ..Variant::default() };
     let mut case = CaseFile::new(name, variant);

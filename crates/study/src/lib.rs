@@ -14,7 +14,7 @@
 //! use impactlab_study::{ImpactRequest, Library, Question, ScenarioChoice};
 //!
 //! let scenario = PathBuf::from("pit-right-rear");
-//! let request = ImpactRequest { scenario: ScenarioChoice::File(scenario), paper: false };
+//! let request = ImpactRequest::new(ScenarioChoice::File(scenario));
 //! let answer = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()))?;
 //! let report = answer.complete().expect("nobody cancelled").report;
 //! assert!(report.struck.delta_v_magnitude_m_s > 1.0);
@@ -74,6 +74,7 @@ pub use questions::predict::force::{
     ForceQuestion, ImpulseReport, PredictForceAnswer, PredictForceReport, PredictForceRequest,
 };
 pub use questions::predict::implied_contact::{ImpliedContactReport, MomentumReport};
+pub use questions::predict::impulse_rival::ImpulseRival;
 pub use questions::predict::motion::{
     COARSE_DRAWS, DEFAULT_DRAWS, ForceSource, PredictMotionAnswer, PredictMotionReport,
     PredictMotionRequest,

@@ -128,7 +128,7 @@ mod tests {
         let path = PathBuf::from(OsStr::from_bytes(b"caf\xe9.toml"));
         let file = |paper| {
             let scenario = ScenarioChoice::File(path.clone());
-            let questions = vec![ImpactRequest { scenario, paper }.into()];
+            let questions = vec![ImpactRequest { paper, ..ImpactRequest::new(scenario) }.into()];
             CaseFile::new("case", Variant { questions, ..Variant::default() })
         };
         assert_ne!(fingerprint_of(&file(false)), fingerprint_of(&file(true)));

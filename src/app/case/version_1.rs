@@ -142,7 +142,7 @@ pub(super) fn take_forms(variant: &mut Variant) -> Result<(), serde_json::Error>
     }
     if let Some(scenario) = shown.scenario.clone().filter(|_| !kinds.has_scenario) {
         let scenario = ScenarioChoice::Inline(scenario);
-        variant.unasked.push(ImpactRequest { scenario, paper: false }.into());
+        variant.unasked.push(ImpactRequest::new(scenario).into());
     }
     variant.unasked.extend(force_question(&shown).filter(|_| !kinds.has_force).map(Request::from));
     let beside = Beside {

@@ -7,7 +7,7 @@ use crate::app::case_table::listed_in;
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::{caveats_ui, value_row};
+use crate::app::widgets::{caveats_ui, facts_ui, value_row};
 use impactlab_core::compare::{ErrorSummary, HORIZONS_S, MotionError};
 use impactlab_core::data::DatasetKind;
 use impactlab_core::numerics::Summary;
@@ -59,6 +59,9 @@ fn case_ui(
     caveats_ui(ui, &report.caveats, commands);
     for note in report.caveats.notes() {
         ui.weak(note);
+    }
+    if let Some(rival) = &report.rival {
+        facts_ui(ui, &report.name, &[rival.table()], units);
     }
     match &report.error {
         Some(error) => drop(Grid::new("case error").striped(true).show(ui, |ui| {

@@ -40,7 +40,7 @@ pub(in crate::cli) fn run(
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     let scenario = ScenarioChoice::File(args.scenario.clone());
-    let request = ImpactRequest { scenario, paper: args.paper };
+    let request = ImpactRequest { paper: args.paper, ..ImpactRequest::new(scenario) };
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     console.print(&answer.report, |out| print_answer(out, &answer.report, args.units.into()))?;
     Ok(Verdict::Clean)

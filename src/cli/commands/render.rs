@@ -283,7 +283,7 @@ fn figure(args: &FigureArgs, console: &mut Console<'_>) -> Result<Verdict, CliEr
         }
         FigureArgs::Impact(args) => {
             let scenario = ScenarioChoice::File(args.scenario.clone());
-            let request = ImpactRequest { scenario, paper: args.paper };
+            let request = ImpactRequest { paper: args.paper, ..ImpactRequest::new(scenario) };
             render_figure::impact(&request, units, console)?
         }
     };

@@ -218,6 +218,7 @@ fn simulate_one(
         until_rest: args.until_rest,
         vehicle_draws: args.single.vehicle_draws,
         seed: args.single.seed,
+        alone: false,
     };
     let existing = args.overwrite.into();
     console.check_target(args.out.as_deref(), existing)?;

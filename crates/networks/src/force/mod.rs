@@ -33,7 +33,10 @@ pub use evaluate::{
 pub use input::{ContactLaw, ForceCase, ForceCaseError, ForceScenario, curve_on_grid};
 pub use metrics::CurvePrediction;
 pub use network::{OpenFeatures, OutsideTraining, Standardisation};
-pub use physics::{CentreCurve, CentreFit, CentreModel, MomentumModel, regression};
+pub use physics::{
+    CentreCurve, CentreFit, CentreModel, MOMENTUM_DIRECTION_STD_RAD, MOMENTUM_IMPULSE_LOG_STD,
+    MomentumModel, regression,
+};
 pub use predict::ForcePrediction;
 pub use regression::ColumnSet;
 pub use train::{

@@ -76,6 +76,10 @@ pub trait Question: Clone + PartialEq + Send + 'static {
         None
     }
 
+    /// Whether a coarse answer is a part of the full one, right in all that it says: it then stands for
+    /// the full one until that comes.
+    const IS_COARSE_PART: bool = false;
+
     /// The report of an answer.
     fn report(answer: &Self::Answer) -> &Self::Report;
 

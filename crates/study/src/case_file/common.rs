@@ -216,7 +216,7 @@ mod tests {
             SimulateRequest { duration_s: duration_s[0], ..SimulateRequest::new(source.clone()) };
         let mut predict = PredictMotionRequest::new(source, ForceSource::Given);
         predict.motion.duration_s = duration_s[1];
-        let impact = ImpactRequest { scenario, paper: false };
+        let impact = ImpactRequest::new(scenario);
         let questions = vec![impact.into(), simulate.into(), predict.into()];
         Variant { name: "base".to_owned(), questions, ..Variant::default() }
     }

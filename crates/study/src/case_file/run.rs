@@ -171,7 +171,7 @@ mod tests {
         let scenario = Scenario::from_toml(PIT, Path::new("pit.toml")).unwrap();
         let scenario = ScenarioChoice::Inline(Box::new(scenario));
         let force = PredictForceRequest::new(ForceQuestion::Scenario(scenario.clone()));
-        let questions = vec![ImpactRequest { scenario, paper: false }.into(), Request::from(force)];
+        let questions = vec![ImpactRequest::new(scenario).into(), Request::from(force)];
         let variant = Variant { name: "one".into(), questions, ..Variant::default() };
         let mut case = CaseFile::new("case", variant);
         let library = Library::default();
@@ -199,7 +199,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(OsStr::from_bytes(b"caf\xe9.toml"));
         std::fs::write(&path, PIT).unwrap();
-        let question = ImpactRequest { scenario: ScenarioChoice::File(path), paper: false };
+        let question = ImpactRequest::new(ScenarioChoice::File(path));
         let variant =
             Variant { name: "one".into(), questions: vec![question.into()], ..Variant::default() };
         let case = CaseFile::new("case", variant);

@@ -4,7 +4,7 @@ use impactlab_core::collision::FrictionModel;
 use impactlab_core::units::Quantity;
 
 use crate::facts::{Fact, FactTable, Term, Value};
-use crate::{BodyReport, ImpactReport};
+use crate::{BodyReport, ImpactReport, ImpulseRival};
 
 /// Overlap or gap of outlines that counts as touching, m.
 const TOUCHING_M: f64 = 5e-4;
@@ -14,8 +14,15 @@ const ROUNDING: f64 = 1e-9;
 const LARGEST_SHARE: f64 = 100.0;
 
 impl ImpactReport {
-    /// What the answer says: the contact, and both vehicles after it.
+    /// What the answer says: the contact, both vehicles after it, and whether the force network gives
+    /// the same impulse.
     pub fn facts(&self) -> Vec<FactTable> {
+        let beside = self.rival.iter().map(ImpulseRival::table);
+        self.solution_tables().into_iter().chain(beside).collect()
+    }
+
+    /// The solution alone: the contact, and both vehicles after it.
+    pub fn solution_tables(&self) -> [FactTable; 2] {
         let [struck, striking] = [self.struck.values(), self.striking.values()];
         let terms = [
             Term::DeltaV,
@@ -29,7 +36,7 @@ impl ImpactReport {
         let rows = both.map(|(term, (a, b))| Fact::row(Value::Term(term), vec![a, b])).collect();
         let vehicles = FactTable::new(Term::VehiclesAfterImpact, rows)
             .with_columns(&[Term::StruckVehicle, Term::StrikingVehicle]);
-        vec![FactTable::new(Term::Impact, self.contact()), vehicles]
+        [FactTable::new(Term::Impact, self.contact()), vehicles]
     }
 
     /// The contact and what it brings about.

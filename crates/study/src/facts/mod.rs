@@ -16,6 +16,7 @@ mod evaluate_pairs;
 mod evaluate_reconstruction;
 mod held;
 mod impact;
+mod impulse_rival;
 mod predict_force;
 mod predict_motion;
 mod reconstruct;

@@ -8,15 +8,18 @@ use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::questions::simulate::flag::is_no_rare_contact;
 use crate::{
-    ForceReport, FrictionZoneReport, RestState, SimulateReport, TireMarkReport, VehicleUncertainty,
+    ForceReport, FrictionZoneReport, ImpulseRival, RestState, SimulateReport, TireMarkReport,
+    VehicleUncertainty,
 };
 
 impl SimulateReport {
-    /// What the answer says: the motion, the marks that it leaves, and how its end varies with what the
+    /// What the answer says: the motion, whether the force network gives the same impulse, the marks, and how its end varies with what the
     /// data sheet leaves open.
     pub fn facts(&self) -> Vec<FactTable> {
         let drawn = self.uncertainty.iter().flat_map(VehicleUncertainty::facts);
-        [self.motion_table()].into_iter().chain(self.mark_table()).chain(drawn).collect()
+        let beside = self.rival.as_ref().map(ImpulseRival::table);
+        let tables = [Some(self.motion_table()), beside, self.mark_table()];
+        tables.into_iter().flatten().chain(drawn).collect()
     }
 
     /// How the motion goes, with every input at its median.

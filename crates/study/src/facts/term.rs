@@ -140,6 +140,29 @@ terms! {
         "das 4DOF-Modell ohne Netz unter derselben Kraft";
     RivalMomentum: "the 4DOF model without a network, under the impulse of the momentum solution",
         "das 4DOF-Modell ohne Netz unter dem Impuls der Impulslösung";
+    ImpulsesAgree: "agree: each lies in the 90 % intervals of the other",
+        "stimmen überein: jedes liegt in den 90-%-Intervallen des anderen";
+    AgreeInNetwork: "agree in part: the momentum solution lies in the 90 % intervals of the force network, which lies further away than the momentum solution is known to err",
+        "stimmen teilweise überein: die Impulslösung liegt in den 90-%-Intervallen des Kraftnetzes, dieses aber weiter weg, als die Impulslösung bekanntlich irrt";
+    AgreeInMomentum: "agree in part: no further apart than the momentum solution is known to err, but that lies outside the 90 % intervals of the force network",
+        "stimmen teilweise überein: nicht weiter auseinander, als die Impulslösung bekanntlich irrt, aber diese liegt außerhalb der 90-%-Intervalle des Kraftnetzes";
+    RivalNetwork: "the force network, of which the momentum solution knows nothing",
+        "das Kraftnetz, von dem die Impulslösung nichts weiß";
+    MomentumImpulse: "size of the impulse, momentum solution", "Betrag des Impulses, Impulslösung",
+        "Its intervals are the errors that it was measured to have on 200 finite-element runs";
+    NetworkImpulse: "size of the impulse, force network", "Betrag des Impulses, Kraftnetz";
+    MomentumDeltaV: "Δv of the struck vehicle, momentum solution",
+        "Δv des gestoßenen Fahrzeugs, Impulslösung", "Impulse over mass";
+    NetworkDeltaV: "Δv of the struck vehicle, force network",
+        "Δv des gestoßenen Fahrzeugs, Kraftnetz", "Impulse over mass";
+    MomentumPdof: "direction of the force, momentum solution", "Richtung der Kraft, Impulslösung",
+        "Clockwise from straight ahead of the struck vehicle, where the force comes from";
+    NetworkPdof: "direction of the force, force network", "Richtung der Kraft, Kraftnetz",
+        "Clockwise from straight ahead of the struck vehicle, where the force comes from";
+    NetworkShare: "share of the force network", "Anteil des Kraftnetzes",
+        "The rest of its answer is the momentum solution with its measured errors";
+    NetworkLearned: "the network has learned how car bodies crush and catch; the momentum solution has one restitution, one friction limit and one contact point",
+        "das Netz hat gelernt, wie Karosserien nachgeben und sich verhaken; die Impulslösung hat eine Stoßziffer, einen Reibbeiwert und einen Kontaktpunkt";
     ComparedAfter: "compared after", "verglichen nach";
     ForecastPlace: "mean of the forecast (X; Y)", "Mittel der Vorhersage (X; Y)";
     RivalPlace: "by the other method (X; Y)", "nach dem anderen Verfahren (X; Y)";

@@ -5,13 +5,19 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::caveats::restrictions;
-use crate::{Answer, Library, Observer, Provenance, Question, ScenarioChoice, StudyError};
+use crate::questions::predict::impulse_rival::Beside;
+use crate::{
+    Answer, ImpulseRival, Library, Observer, Provenance, Question, ScenarioChoice, StudyError,
+};
 use impactlab_core::collision::{
     BodyAfter, FrictionModel, ImpactSolution, PrincipalDirectionOfForce, Regime, RestitutionForm,
     Scenario, StruckSurface,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::uncertainty::Caveats;
+
+/// Seed of the draws from the force network beside the solution.
+const SEED: u64 = 0;
 
 /// Asks for impulse, velocities after the impact, delta-v, energy and direction of force.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -21,6 +27,16 @@ pub struct ImpactRequest {
     /// Whether the friction is always sliding, as the paper prints it.
     #[serde(default)]
     pub paper: bool,
+    /// Whether the momentum solution is asked alone, without the force network beside it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub alone: bool,
+}
+
+impl ImpactRequest {
+    /// The solution of a scenario about which nothing else is said.
+    pub fn new(scenario: ScenarioChoice) -> Self {
+        Self { scenario, paper: false, alone: false }
+    }
 }
 
 /// The solution of an impact in SI units. The impulse acts on the struck vehicle; world axes.
@@ -71,6 +87,8 @@ pub struct ImpactReport {
     /// The striking vehicle after the impact.
     #[serde(rename = "bullet")]
     pub striking: BodyReport,
+    /// The force network beside it; none where it is not asked or has nothing of its own to say.
+    pub rival: Option<ImpulseRival>,
 }
 
 /// One vehicle after the impact, world axes.
@@ -114,14 +132,21 @@ impl Question for ImpactRequest {
         self.scenario.check()
     }
 
+    /// Without the force network, which takes longer than all else.
+    fn coarse(&self) -> Option<Self> {
+        (!self.alone).then(|| Self { alone: true, ..self.clone() })
+    }
+
+    const IS_COARSE_PART: bool = true;
+
     fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
     }
 
     fn solve(
         &self,
-        _library: &Library,
-        _observer: &mut Observer<'_>,
+        library: &Library,
+        observer: &mut Observer<'_>,
     ) -> Result<Outcome<ImpactAnswer>, StudyError> {
         let mut scenario = self.scenario.load()?;
         if self.paper {
@@ -132,11 +157,22 @@ impl Question for ImpactRequest {
         let impact = scenario.impact().map_err(unsolved)?;
         let solution = scenario.solve().map_err(unsolved)?;
         let [x, y] = solution.impulse_world_n_s;
+        let beside = match self.alone {
+            true => Outcome::Complete(Beside::default()),
+            false => {
+                let asked = (&self.scenario, &scenario);
+                Beside::ask(asked, &solution, SEED, library, observer)?
+            }
+        };
+        let Outcome::Complete(Beside { rival, caveat, model }) = beside else {
+            return Ok(Outcome::Cancelled);
+        };
         let caveats: Caveats = assumed::first_touch(&geometry)
             .into_iter()
             .chain(assumed::contact_default(&scenario, &impact))
             .chain(restrictions::overlap_caveat(&geometry))
             .chain(restrictions::energy_gain_caveat(solution.dissipated_energy_j))
+            .chain(caveat)
             .collect();
         let report = ImpactReport {
             name: scenario.name.clone(),
@@ -159,8 +195,13 @@ impl Question for ImpactRequest {
             dissipated_energy_j: solution.dissipated_energy_j,
             struck: (&solution.struck).into(),
             striking: (&solution.striking).into(),
+            rival,
         };
-        let report = Answer { report, caveats, provenance: Provenance::default() };
+        let provenance = match model {
+            Some(model) => Provenance::from_seed(SEED).with_models([model]),
+            None => Provenance::default(),
+        };
+        let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(ImpactAnswer { report, scenario, solution }))
     }
 }

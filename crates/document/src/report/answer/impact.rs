@@ -14,12 +14,14 @@ pub(super) fn part(answer: &ImpactAnswer, context: Context<'_>) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
     let mut blocks = vec![Block::paragraph(fill(words.ask_impact, &[("name", &report.name)]))];
-    blocks.extend(report.facts().iter().map(|table| facts_table(table, context)));
+    blocks.extend(report.solution_tables().iter().map(|table| facts_table(table, context)));
     blocks.push(Block::paragraph(words.no_intervals));
+    blocks.extend(report.rival.iter().map(|rival| facts_table(&rival.table(), context)));
     let caveats = &report.caveats;
     let figure = impact_figure(&answer.scenario, &answer.solution, caveats, wording.units).ok();
     let caption = || fill(words.impact_picture, &[("name", &report.name)]);
     let picture = figure.map(|figure| PartPicture::figure(caption(), figure));
+    let network = report.rival.as_ref().map(|_| Method::ForceNetwork);
     Part {
         kind: words.title_impact.to_owned(),
         title: format!("{}: {}", words.title_impact, report.name),
@@ -27,7 +29,7 @@ pub(super) fn part(answer: &ImpactAnswer, context: Context<'_>) -> Part {
         pictures: picture.into_iter().collect(),
         caveats: report.caveats.clone(),
         provenance: provenance_of(&report.provenance, &[], wording),
-        methods: [Method::Impact].into(),
+        methods: [Method::Impact].into_iter().chain(network).collect(),
         ..Part::default()
     }
 }

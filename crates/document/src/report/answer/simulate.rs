@@ -27,6 +27,8 @@ pub(super) fn part(
     let names = [("name", &*report.name), ("vehicle", &*report.vehicle)];
     let mut blocks = vec![Block::paragraph(fill(words.ask_simulate, &names))];
     blocks.extend(facts_with_meanings(&report.motion_table(), "", context));
+    let beside = report.rival.as_ref();
+    blocks.extend(beside.map(|rival| facts_table(&rival.table(), context)));
     blocks.extend(computed_marks(report, context));
     let mut sensitivity = Vec::new();
     let mut draws = Vec::new();
@@ -40,6 +42,7 @@ pub(super) fn part(
     let noted = |note: &str| fill(words.noted, &[("note", &wording.quoted(note))]);
     blocks.extend(report.caveats.notes().map(|note| Block::paragraph(noted(note))));
     let scenario = report.momentum.as_ref().map(|_| Method::Impact);
+    let network = beside.map(|_| Method::ForceNetwork);
     let sheet = report.uncertainty.as_ref().map(|_| Method::DataSheet);
     Part {
         kind: words.title_simulate.to_owned(),
@@ -54,7 +57,12 @@ pub(super) fn part(
         sensitivity,
         caveats: report.caveats.clone(),
         provenance: provenance_of(&report.provenance, &draws, wording),
-        methods: [Method::FourDof].into_iter().chain(scenario).chain(sheet).collect(),
+        methods: [Method::FourDof]
+            .into_iter()
+            .chain(scenario)
+            .chain(network)
+            .chain(sheet)
+            .collect(),
         ..Part::default()
     }
 }

@@ -37,10 +37,10 @@ use impactlab_core::collision::{
 use impactlab_core::numerics::normal_quantile;
 use impactlab_core::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, CurveComponent, ForceCurve};
 
-/// Root mean square of ζ_P.
-pub(crate) const IMPULSE_LOG_STD: f64 = 0.26;
-/// Root mean square of β, rad.
-pub(crate) const DIRECTION_STD_RAD: f64 = 0.21;
+/// Root mean square of ζ_P, the error of ln |P| of the momentum solution.
+pub const IMPULSE_LOG_STD: f64 = 0.26;
+/// Root mean square of β, the error of the direction of the momentum solution, rad.
+pub const DIRECTION_STD_RAD: f64 = 0.21;
 /// Root mean square of ζ_L: that with which the errors of peak and duration come out as measured.
 pub(crate) const LENGTH_LOG_STD: f64 = 0.46;
 /// Correlations of ζ_P with β and with ζ_L: an impulse that is larger than expected is turned

@@ -14,6 +14,9 @@ mod crush_laws;
 mod residuals;
 
 pub(crate) use bare::BareForce;
+pub use bare::{
+    DIRECTION_STD_RAD as MOMENTUM_DIRECTION_STD_RAD, IMPULSE_LOG_STD as MOMENTUM_IMPULSE_LOG_STD,
+};
 #[cfg(test)]
 pub(crate) use centre::tests::haversine_centre;
 pub use centre::{CentreCurve, CentreFit, CentreModel};

@@ -2,4 +2,5 @@
 
 pub(crate) mod force;
 pub(crate) mod implied_contact;
+pub(crate) mod impulse_rival;
 pub(crate) mod motion;

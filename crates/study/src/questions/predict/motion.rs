@@ -215,7 +215,8 @@ impl Question for PredictMotionRequest {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<PredictMotionAnswer>, StudyError> {
         // The vehicles are drawn for the forecast, not for the simulation beside it.
-        let mut simulation = SimulateRequest { vehicle_draws: 0, ..self.motion.clone() };
+        let mut simulation =
+            SimulateRequest { vehicle_draws: 0, alone: true, ..self.motion.clone() };
         if self.is_recorded() && self.motion.until_rest {
             // The record has its own duration; what goes on to rest is the forecast.
             (simulation.until_rest, simulation.duration_s) = (false, DEFAULT_DURATION_S);

@@ -7,7 +7,8 @@ use serde::Serialize;
 
 use crate::analysis::{Analysis, MotionEnd};
 use crate::{
-    FlagReport, MomentumReport, SimulateRequest, TireMarkReport, VehicleUncertainty, word,
+    FlagReport, ImpulseRival, MomentumReport, SimulateRequest, TireMarkReport, VehicleUncertainty,
+    word,
 };
 use impactlab_core::collision::PrincipalDirectionOfForce;
 use impactlab_core::compare::{MotionError, largest_yaw_change_rad};
@@ -60,6 +61,9 @@ pub struct SimulateReport {
     pub force: Option<ForceReport>,
     /// The momentum solution whose impulse the force carries, world axes; none without a scenario.
     pub momentum: Option<MomentumReport>,
+    /// The force network beside that impulse; none where it is not asked or has nothing of its own to
+    /// say.
+    pub rival: Option<ImpulseRival>,
     /// Change of the velocity of the CG over the contact [x, y], world axes, tires included, m/s.
     pub delta_v_m_s: Option<[f64; 2]>,
     /// Its size, m/s.
@@ -174,6 +178,7 @@ impl SimulateReport {
             duration_s: recorded_s.or(end_s).unwrap_or(request.duration_s),
             force: ForceReport::from_analysis(request, analysis),
             momentum: None,
+            rival: None,
             delta_v_m_s: delta_v,
             delta_v_magnitude_m_s: delta_v.map(|[x, y]| x.hypot(y)),
             end: series.map(EndState::from_series).transpose()?,
@@ -327,7 +332,7 @@ mod tests {
             let scenario = ScenarioChoice::Inline(Box::new(scenario));
             let mut go_on = |_: crate::Event<'_>| ControlFlow::Continue(());
             let library = Library::default();
-            let impact = ImpactRequest { scenario: scenario.clone(), paper: false };
+            let impact = ImpactRequest::new(scenario.clone());
             let impact = impact.answer(&library, &mut go_on).unwrap().complete().unwrap();
             let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
             let motion = SimulateRequest::new(source).answer(&library, &mut go_on).unwrap();

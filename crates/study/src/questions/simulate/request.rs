@@ -13,6 +13,7 @@ use crate::ask::checks::{check, check_all, check_count, check_given};
 use crate::ask::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
 use crate::caveats::unused::by_simulation;
 use crate::caveats::{assumed, restrictions};
+use crate::questions::predict::impulse_rival::Beside;
 use crate::questions::simulate::dataset::take_case;
 use crate::questions::simulate::motion_source::{
     acting_force, contact_height_assumption, pulse_assumptions, recorded_force, start_of_record,
@@ -24,6 +25,7 @@ use crate::{
     SimulateReport, StudyError, VehicleChoice,
 };
 use impactlab_core::collision::Scenario;
+use impactlab_core::data::write::ModelDigest;
 use impactlab_core::data::{ContactOutside, DatasetKind, Outcome};
 use impactlab_core::ranges::{ROAD_FRICTION, SIMULATED_DURATION, VEHICLE_DRAWS};
 use impactlab_core::site::Site;
@@ -71,6 +73,9 @@ pub struct SimulateRequest {
     /// Seed of these draws.
     #[serde(default)]
     pub seed: u64,
+    /// Whether the impulse of a scenario stands alone, without the force network beside it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub alone: bool,
 }
 
 /// Vehicles that are drawn where nobody says how many.
@@ -110,6 +115,7 @@ impl SimulateRequest {
             duration_s: DEFAULT_DURATION_S,
             vehicle_draws: DEFAULT_VEHICLE_DRAWS,
             seed: 0,
+            alone: false,
             ending: None,
             until_rest: false,
         }
@@ -170,6 +176,31 @@ impl SimulateRequest {
 type Analyse<'a> = dyn Fn(&Settings) -> Result<Analysis, AnalysisError> + Sync + 'a;
 
 impl SimulateRequest {
+    /// The force network beside the impulse of a scenario; nothing where that has none, which the
+    /// analysis says.
+    fn beside(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<Beside>, StudyError> {
+        let nothing = Ok(Outcome::Complete(Beside::default()));
+        let MotionSource::Scenario { scenario: choice, .. } = &self.source else { return nothing };
+        let scenario = choice.load()?;
+        match scenario.solve() {
+            Ok(solution) if !self.alone => {
+                Beside::ask((choice, &scenario), &solution, self.seed, library, observer)
+            }
+            _ => nothing,
+        }
+    }
+
+    /// The seed, where anything was drawn, and the network that was asked.
+    fn provenance(&self, report: &SimulateReport, model: Option<ModelDigest>) -> Provenance {
+        let has_draws = report.uncertainty.is_some() || model.is_some();
+        let seed = has_draws.then_some(self.seed);
+        Provenance { seed, ..Provenance::default() }.with_models(model)
+    }
+
     /// What restricts the answer.
     ///
     /// - `overlap`: that the outlines of the scenario overlap, if they do.
@@ -199,6 +230,14 @@ impl Question for SimulateRequest {
         check_all(of_ending.map(|(key, value, range)| (format!("ending.{key}"), value, range)))?;
         self.source.check()
     }
+
+    /// Without the force network, which takes longer than all else.
+    fn coarse(&self) -> Option<Self> {
+        let has_rival = !self.alone && matches!(self.source, MotionSource::Scenario { .. });
+        has_rival.then(|| Self { alone: true, ..self.clone() })
+    }
+
+    const IS_COARSE_PART: bool = true;
 
     fn report(answer: &Self::Answer) -> &Self::Report {
         &answer.report
@@ -279,14 +318,14 @@ impl Question for SimulateRequest {
         caveats.extend(assumed::estimates(&analysis.vehicle).into_iter().chain(notes));
         let mut report = SimulateReport::new(self, &analysis)
             .map_err(|source| failed(AnalysisError::Series(source)))?;
-        report.momentum = momentum;
+        let Outcome::Complete(beside) = self.beside(library, observer)? else {
+            return Ok(Outcome::Cancelled);
+        };
+        (report.momentum, report.rival) = (momentum, beside.rival);
         report.uncertainty =
             vehicle_uncertainty(self.vehicle_draws, self.seed, &settings, &analysis, &analyse);
-        let provenance = match report.uncertainty {
-            Some(_) => Provenance::from_seed(self.seed),
-            None => Provenance::default(),
-        };
-        caveats.extend(self.restrictions(&report, &analysis, overlap));
+        let provenance = self.provenance(&report, beside.model);
+        caveats.extend(self.restrictions(&report, &analysis, overlap).chain(beside.caveat));
         let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
     }
