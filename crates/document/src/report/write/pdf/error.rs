@@ -28,7 +28,7 @@ pub enum PdfError {
         why: String,
     },
     /// The PDF cannot be put together.
-    #[error("the PDF cannot be put together: {why}; the report as HTML has the same content")]
+    #[error("the PDF cannot be put together: {why}; the report as Markdown (.md) has the same content")]
     Assembly {
         /// Why.
         why: &'static str,
@@ -65,7 +65,7 @@ mod tests {
         assert_eq!(
             PdfError::from(refused).to_string(),
             "the PDF cannot be put together: its links or its structure contradict themselves; the report \
-             as HTML has the same content"
+             as Markdown (.md) has the same content"
         );
     }
 }
