@@ -226,6 +226,7 @@ impl State {
             logs: vec![log.path.clone()],
             forces: force.map(|source| source.path.clone()).into_iter().collect(),
             map: log.map.clone(),
+            force_map: force.and_then(|source| source.map.clone()),
             contact: force.and(self.project.start().contact),
             impact_s: None,
             duration_s: DEFAULT_LOG_DURATION_S,

@@ -20,6 +20,7 @@ mod guide;
 mod help;
 mod inputs;
 mod log;
+mod maps;
 mod program;
 mod ranges;
 mod reconstruct;

@@ -406,6 +406,7 @@ fn numbers_of_things_in_questions_are_checked() {
             logs: Vec::new(),
             forces: Vec::new(),
             map: None,
+            force_map: None,
             contact: None,
             impact_s,
             duration_s,

@@ -12,7 +12,7 @@ use crate::cli::options::{
     EndingArgs, OverwriteArg, UnitsArg, VehicleArg, contact_point, count, number, window_s,
 };
 use crate::cli::text::print_answer;
-use impactlab_core::data::{DatasetKind, Existing, write_atomically};
+use impactlab_core::data::{ColumnMap, DatasetKind, Existing, write_atomically};
 use impactlab_core::ranges::{DRAWS, REST_LIMIT, ROAD_FRICTION, VEHICLE_DRAWS};
 use impactlab_core::vehicle::ContactPoint;
 use impactlab_networks::response::STEP_S;
@@ -38,12 +38,18 @@ pub(in crate::cli) struct PredictMotionArgs {
     /// Instead: a recorded motion, whose own force is taken
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["scenario", "dataset"])]
     trajectory: Option<PathBuf>,
+    /// Which column of the recorded motion is what: time=1:ms,x=2:m,fx=Kraft X:kN
+    #[arg(long, value_name = "MAP", requires = "trajectory")]
+    map: Option<ColumnMap>,
     /// The struck vehicle: a preset or a file; a data set has its own, else reference-2000
     #[arg(long, value_name = "NAME|FILE")]
     vehicle: Option<VehicleArg>,
     /// A force history instead of the predicted one
     #[arg(long, value_name = "FORCE.csv")]
     force: Option<PathBuf>,
+    /// Which column of the force file is what: time=1:ms,fx=Kraft X:kN
+    #[arg(long, value_name = "MAP", requires = "force")]
+    force_map: Option<ColumnMap>,
     /// Instead of the predicted force, that of the case, or a classic pulse that carries the impulse
     /// of the scenario
     #[arg(long, conflicts_with = "force")]
@@ -146,6 +152,7 @@ pub(in crate::cli) fn run(
             ..SimulateRequest::new(source(args)?)
         },
         force: force_source(args),
+        force_map: args.force_map.clone(),
         response_model: args.response_model.clone().into(),
         draws: args.draws,
         seed: args.seed,
@@ -197,7 +204,8 @@ fn source(args: &PredictMotionArgs) -> Result<MotionSource, CliError> {
         return Ok(MotionSource::Scenario { scenario, pulse: PulseSetup::default() });
     }
     if let Some(path) = &args.trajectory {
-        let (file, contact) = (SeriesFile::new(path), args.contact);
+        let file = SeriesFile { path: path.clone(), map: args.map.clone() };
+        let contact = args.contact;
         return Ok(MotionSource::Trajectory { file, contact });
     }
     match (args.dataset.clone(), args.case.clone()) {

@@ -49,6 +49,9 @@ struct LogArgs {
     /// Which column of the logs is what: time=1:s,x=2:m,y=3:m,yaw=4:deg
     #[arg(long, value_name = "MAP", requires = "log")]
     map: Option<ColumnMap>,
+    /// Which column of the files of the forces is what: time=1:ms,fx=Kraft X:kN
+    #[arg(long, value_name = "MAP", requires = "force")]
+    force_map: Option<ColumnMap>,
     /// With --force: where the force acts, x, y from the CG in body axes, z above the ground, m;
     /// without it, the force file's own yaw moment
     #[arg(long, value_name = "X,Y,Z", value_parser = contact_point, allow_hyphen_values = true, requires = "force")]
@@ -83,6 +86,7 @@ impl LogArgs {
             logs: self.log.clone(),
             forces: self.force.clone(),
             map: self.map.clone(),
+            force_map: self.force_map.clone(),
             contact: self.contact,
             impact_s: self.impact,
             duration_s: self.duration,

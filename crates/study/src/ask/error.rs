@@ -423,6 +423,16 @@ impl StudyError {
         Self::UnknownVehicle { name: name.to_owned(), presets }
     }
 
+    /// The same error where the map of a file is given by another option than `--map`.
+    ///
+    /// - `option`: with its dashes.
+    pub(crate) fn of_option(self, option: &'static str) -> Self {
+        match self {
+            Self::Data(error) => Self::Data(error.of_option(option)),
+            other => other,
+        }
+    }
+
     /// Whether the saved run of a reconstruction is at fault, and not the question.
     pub fn is_of_checkpoint(&self) -> bool {
         match self {

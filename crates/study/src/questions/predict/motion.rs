@@ -1,6 +1,6 @@
 //! From a force to the distribution of the motion after the impact: `predict`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use schemars::JsonSchema;
@@ -22,7 +22,7 @@ use crate::{
     MotionSource, Observer, Provenance, Question, SeriesFile, SimulateAnswer, SimulateRequest,
     StudyError, VehicleChoice,
 };
-use impactlab_core::data::{DatasetKind, ForceHistory, Outcome, check_contact_within};
+use impactlab_core::data::{ColumnMap, DatasetKind, ForceHistory, Outcome, check_contact_within};
 use impactlab_core::ranges::{DRAWS, FORECAST_DURATION, REST_LIMIT};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
 use impactlab_networks::force::{ForceModel, ForceScenario, OutsideTraining};
@@ -42,6 +42,9 @@ pub struct PredictMotionRequest {
     pub motion: SimulateRequest,
     /// Which force drives the motion.
     pub force: ForceSource,
+    /// Which column of the force's file is what; without it, the header says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_map: Option<ColumnMap>,
     /// The response network.
     #[serde(default)]
     pub response_model: ModelChoice,
@@ -137,6 +140,7 @@ impl PredictMotionRequest {
                 ..SimulateRequest::new(source)
             },
             force,
+            force_map: None,
             response_model: ModelChoice::default(),
             draws: DEFAULT_DRAWS,
             seed: 0,
@@ -262,7 +266,9 @@ impl Question for PredictMotionRequest {
                 forecast_forces(std::slice::from_ref(own_force), &model, struck, &settings)
             }
             ForceSource::File(path) => {
-                let force = given_force(path, struck, settings.duration_s, library, &mut of_force)?;
+                let file = SeriesFile { path: path.clone(), map: self.force_map.clone() };
+                let force =
+                    given_force(&file, struck, settings.duration_s, library, &mut of_force)?;
                 forecast_forces(&[force], &model, struck, &settings)
             }
             ForceSource::Predicted(choice) => {
@@ -300,13 +306,14 @@ impl Question for PredictMotionRequest {
 /// - `duration_s`: duration of the motion, s, within which the contact lies;
 /// - `caveats`: gets what is wrong with the file.
 fn given_force(
-    path: &Path,
+    file: &SeriesFile,
     struck: &StruckVehicle,
     duration_s: f64,
     library: &Library,
     caveats: &mut Vec<Caveat>,
 ) -> Result<ForceHistory, StudyError> {
-    let loaded = library.series(&SeriesFile::new(path))?;
+    let path = &file.path;
+    let loaded = library.series(file).map_err(|error| error.of_option("--force-map"))?;
     let name = path.display().to_string();
     caveats.extend(restrictions::doubtful_data_caveats(&name, &loaded));
     let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling())

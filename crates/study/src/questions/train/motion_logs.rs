@@ -31,6 +31,9 @@ pub struct MotionLogs {
     /// Which column of the logs is what.
     #[serde(default)]
     pub map: Option<ColumnMap>,
+    /// Which column of the files of the forces is what.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_map: Option<ColumnMap>,
     /// Where the forces act; without it, the yaw moment of the force file.
     #[serde(default)]
     pub contact: Option<ContactPoint>,
@@ -130,7 +133,8 @@ impl MotionLogs {
     /// A force with the point where it acts. A force that does not say where it acts is refused: an
     /// answer can say what it assumes, but a network that has learned from it cannot.
     fn load(&self, path: &Path, vehicle: &VehicleParameters) -> Result<ContactLoad, StudyError> {
-        let loaded = read_any_series(path, None)?;
+        let loaded = read_any_series(path, self.force_map.as_ref())
+            .map_err(|error| error.of_option("--force-map"))?;
         let in_file = |source| StudyError::Series { path: path.to_owned(), source };
         let force =
             ForceHistory::from_series(&loaded.series, loaded.force_sampling()).map_err(in_file)?;
