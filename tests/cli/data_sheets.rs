@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use impactlab_core::vehicle::Preset;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -176,6 +177,14 @@ fn a_model_of_a_car_has_estimates_of_its_scale() {
     assert!(report["end"]["speed_m_s"].as_f64().unwrap() > 1.5, "{report}");
     let assumed = report["assumptions"].to_string();
     assert!(assumed.contains("in the scale of the width squared"), "{assumed}");
+    // A force that does not say where it acts: on a car 1.5 m behind the CG, where no model of 0.6 m is.
+    let force = folder.path().join("force.csv");
+    fs::write(&force, "t [s],fx [N],fy [N]\n0,0,0\n0.01,0,60\n0.02,0,0\n").unwrap();
+    let force = force.to_str().unwrap();
+    let args = ["simulate", "--speed", "3", "--force", force, "--vehicle", &model];
+    let assumed = json(&args)["assumptions"].to_string();
+    let scale = 0.6 / Preset::Reference.parameters().geometry.outer_length_m;
+    assert!(assumed.contains(&format!("x {:.3} m", -1.5 * scale)), "{assumed}");
 }
 
 /// The striking car of full size that stands in for one of 1:10 was far too light for its axles.
@@ -208,6 +217,12 @@ fn a_collision_of_two_models_of_cars_is_predicted() {
     // 10 km/h and the 1.1 km/h across that it gets: 2.8 m/s, which a second of rolling hardly slows.
     let speed_m_s = report["end"]["speed_m_s"].as_f64().unwrap();
     assert!((2.2..2.9).contains(&speed_m_s), "{speed_m_s}");
+    // 0.52 m on cars of the length of the reference car; a model of 0.6 m was struck that high, too.
+    let length_m = Preset::Reference.parameters().geometry.outer_length_m;
+    let height = format!("{:.3} m above the ground", 0.52 * 0.6 / length_m);
+    let assumed = report["assumptions"].to_string();
+    assert!(assumed.contains(&height), "{height}: {assumed}");
+    assert!(assumed.contains("that of cars, 0.52 m, at 1:"), "{assumed}");
     let folder = folder.path().join("prediction");
     let prediction = folder.to_str().unwrap();
     let few = ["--draws", "10", "--vehicle-draws", "10", "--duration", "1"];

@@ -36,13 +36,22 @@ const SCALED_KEYS: [&str; 17] = [
 ];
 
 impl VehicleParameters {
+    /// Scale of a model of the vehicle: its length over that of the vehicle, if that is less than half;
+    /// otherwise 1, since it is a vehicle of its own size.
+    ///
+    /// - `length_m`: outer length of what the vehicle stands in for, m.
+    pub fn model_scale(&self, length_m: f64) -> f64 {
+        let scale = length_m / self.geometry.outer_length_m;
+        if scale > 0.0 && scale < MODEL_SCALE { scale } else { 1.0 }
+    }
+
     /// The vehicle in the scale of a model of it, if the length is less than half of its own; otherwise the
     /// same vehicle. What was scaled counts as estimated.
     ///
     /// - `length_m`: outer length of what it stands in for, m.
     pub fn at_model_scale(mut self, length_m: f64) -> Self {
-        let scale = length_m / self.geometry.outer_length_m;
-        if !(scale > 0.0 && scale < MODEL_SCALE) {
+        let scale = self.model_scale(length_m);
+        if scale == 1.0 {
             return self;
         }
         let text = format!("in the scale of the length, 1:{:.1}", 1.0 / scale);

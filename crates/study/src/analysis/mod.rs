@@ -38,6 +38,7 @@ pub use motion_forecast::{
 };
 pub use rest_outcome::{MotionEnd, RestOutcome};
 pub use rival::{Rival, RivalForce};
+pub(crate) use scenario::scale_of_car;
 pub use scenario::{PulseSetup, analyse_scenario};
 pub use second_contacts::SecondContacts;
 

@@ -11,7 +11,7 @@ use impactlab_core::collision::{
 use impactlab_core::data::{ForceHistory, check_contact_within};
 use impactlab_core::vehicle::frames::body_from_world;
 use impactlab_core::vehicle::{
-    ContactLoad, ContactPoint, Controls, Manoeuvre, Motion, VehicleParameters, VehicleState,
+    ContactLoad, ContactPoint, Controls, Manoeuvre, Motion, Preset, VehicleParameters, VehicleState,
 };
 
 /// Longest sample interval of the pulse, s; a shorter pulse has at least 20 intervals.
@@ -36,6 +36,29 @@ impl Default for PulseSetup {
     }
 }
 
+impl PulseSetup {
+    /// Whether the contact is as high as where nobody says how high it is.
+    pub(crate) fn is_height_open(&self) -> bool {
+        self.contact_height_m == Self::default().contact_height_m
+    }
+
+    /// Height of the contact between two vehicles, m: where nobody says it, that of cars in the scale of
+    /// the smaller one, which may be a model of a car.
+    pub(crate) fn height_m(&self, scenario: &Scenario) -> f64 {
+        if !self.is_height_open() {
+            return self.contact_height_m;
+        }
+        let [struck, striking] = [&scenario.struck, &scenario.striking]
+            .map(|vehicle| scale_of_car(vehicle.footprint().length_m));
+        self.contact_height_m * struck.min(striking)
+    }
+}
+
+/// Scale of a model of a car by its length; 1 for a car.
+pub(crate) fn scale_of_car(length_m: f64) -> f64 {
+    Preset::Reference.parameters().model_scale(length_m)
+}
+
 /// Solves the collision of a scenario, and simulates both vehicles from first contact on under the
 /// impulse of the solution, which is spread over a classic pulse.
 ///
@@ -58,9 +81,10 @@ pub fn analyse_scenario(
     let [px, py] = solution.impulse_world_n_s;
     let force = history([px, py])?;
     check_contact_within(&force, settings.duration_s)?;
+    let height_m = pulse.height_m(scenario);
     let start = |vehicle: &ScenarioVehicle, preset: &VehicleParameters, pose: &Pose| {
         let [x_body_m, y_body_m] = pose.body_from_world(geometry.contact_point_world_m);
-        let contact = ContactPoint { x_body_m, y_body_m, height_m: pulse.contact_height_m };
+        let contact = ContactPoint { x_body_m, y_body_m, height_m };
         // A car of full size that stands in for a model would be far too light for its size.
         let of_size = preset.clone().at_model_scale(vehicle.footprint().length_m);
         let of_mass = of_size.with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2));

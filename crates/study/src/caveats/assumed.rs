@@ -78,14 +78,13 @@ pub(crate) fn contact_default(scenario: &Scenario, impact: &Impact) -> Option<Ca
 /// The contact point that stands for an unknown one.
 pub(crate) fn contact_point(contact: ContactPoint, reason: &str) -> Caveat {
     let ContactPoint { x_body_m, y_body_m, height_m } = contact;
-    let value = format!(
-        "x {x_body_m} m, y {y_body_m} m from the CG (x forward, y left), {height_m} m high"
-    );
+    let [x, y, z] = [x_body_m, y_body_m, height_m].map(three_digits);
+    let value = format!("x {x} m, y {y} m from the CG (x forward, y left), {z} m high");
     Caveat::assumed(CaveatSubject::ContactPoint, value, reason)
 }
 
 /// A number with three digits.
-fn three_digits(value: f64) -> String {
+pub(crate) fn three_digits(value: f64) -> String {
     let size = value.abs();
     let decimals = if size < 1e-9 { 0 } else { (2 - size.log10().floor() as i32).clamp(0, 6) };
     let rounded = format!("{value:.*}", decimals as usize);

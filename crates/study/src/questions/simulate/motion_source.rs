@@ -1,7 +1,7 @@
 //! What drives the motion of a struck vehicle: a case, a recorded motion, a start with files of force
 //! and controls, or a scenario.
 
-use crate::caveats::assumed;
+use crate::caveats::assumed::{self, three_digits};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::PulseSetup;
+use crate::analysis::{PulseSetup, scale_of_car};
 use crate::ask::checks::{check, check_contact};
 use crate::{Drive, Library, ScenarioChoice, SeriesFile, StudyError, word};
 use impactlab_core::data::{Case, Channel, FileKind, ForceAttributes, ForceHistory, Loaded};
@@ -160,8 +160,18 @@ pub(crate) fn acting_force(
     }
     let reason = "the force has no yaw moment (mz) and nothing says where it acts; another point: \
                   --contact";
-    caveats.push(assumed::contact_point(ASSUMED_CONTACT, reason));
-    (force, ASSUMED_CONTACT)
+    let contact = assumed_contact(vehicle);
+    caveats.push(assumed::contact_point(contact, reason));
+    (force, contact)
+}
+
+/// Where a force acts that does not say it: the right rear quarter of a car, in the scale of a model of a
+/// car.
+fn assumed_contact(vehicle: &VehicleParameters) -> ContactPoint {
+    let scale = scale_of_car(vehicle.geometry.outer_length_m);
+    let ContactPoint { x_body_m, y_body_m, height_m } = ASSUMED_CONTACT;
+    let [x_body_m, y_body_m, height_m] = [x_body_m, y_body_m, height_m].map(|m| scale * m);
+    ContactPoint { x_body_m, y_body_m, height_m }
 }
 
 /// What stands for the rates and the roll with which a recorded motion starts, if it does not say
@@ -188,22 +198,27 @@ pub(crate) fn contact_height_assumption(case: &Case) -> Result<Option<Caveat>, S
 }
 
 /// What the pulse of a scenario adds to what the momentum solution says.
-pub(crate) fn pulse_assumptions(pulse: &PulseSetup) -> Vec<Caveat> {
-    if *pulse != PulseSetup::default() {
-        return Vec::new();
-    }
-    let shape = format!("{} of {:.0} ms", pulse.shape.label(), pulse.duration_s * 1e3);
-    let height = format!("{} m above the ground", pulse.contact_height_m);
-    vec![
+///
+/// - `height_m`: of the contact, m.
+pub(crate) fn pulse_assumptions(pulse: &PulseSetup, height_m: f64) -> Vec<Caveat> {
+    let usual = PulseSetup::default();
+    let shape = || {
         Caveat::assumed(
             CaveatSubject::Pulse,
-            shape,
+            format!("{} of {:.0} ms", pulse.shape.label(), pulse.duration_s * 1e3),
             "the momentum solution gives the impulse, not the force over time",
-        ),
-        Caveat::assumed(
-            CaveatSubject::ContactHeight,
-            height,
-            "a scenario does not say how high the vehicles touch",
-        ),
-    ]
+        )
+    };
+    let height = || {
+        let mut reason = "a scenario does not say how high the vehicles touch".to_owned();
+        if height_m < pulse.contact_height_m {
+            let scale = pulse.contact_height_m / height_m;
+            reason += &format!("; that of cars, {} m, at 1:{scale:.1}", pulse.contact_height_m);
+        }
+        let height = format!("{} m above the ground", three_digits(height_m));
+        Caveat::assumed(CaveatSubject::ContactHeight, height, &*reason)
+    };
+    let is_usual = (pulse.shape, pulse.duration_s) == (usual.shape, usual.duration_s);
+    let assumed = [is_usual.then(shape), pulse.is_height_open().then(height)];
+    assumed.into_iter().flatten().collect()
 }

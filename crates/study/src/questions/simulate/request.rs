@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
-    Analysis, AnalysisError, Settings, analyse_case, analyse_drive, analyse_recording,
+    Analysis, AnalysisError, PulseSetup, Settings, analyse_case, analyse_drive, analyse_recording,
     analyse_scenario,
 };
 use crate::ask::checks::{check, check_all, check_count, check_given};
@@ -156,6 +156,23 @@ impl SimulateRequest {
         })
     }
 
+    /// The settings of a scenario, with what its pulse assumes.
+    fn scenario_settings(
+        &self,
+        scenario: &Scenario,
+        pulse: &PulseSetup,
+        caveats: &mut Caveats,
+    ) -> Result<Settings, StudyError> {
+        let open = OpenVehicle::OfScenario(scenario.struck_vehicle.as_deref());
+        let striking = scenario.striking_vehicle.as_deref();
+        caveats.extend(pulse_assumptions(pulse, pulse.height_m(scenario)));
+        let mut settings = self.settings(&open, striking, caveats)?;
+        if let (None, Some(ending)) = (&self.ending, &scenario.ending) {
+            settings.ending.clone_from(ending);
+        }
+        Ok(settings)
+    }
+
     /// The zones of the site.
     fn friction_zones(&self) -> Result<Vec<FrictionZone>, StudyError> {
         let load = |path| InputKind::Site.explain(path, Site::load(path));
@@ -296,14 +313,8 @@ impl Question for SimulateRequest {
                 (settings, Box::new(analyse))
             }
             MotionSource::Scenario { scenario, pulse } => {
-                caveats.extend(pulse_assumptions(pulse));
                 let scenario = scenario.load()?;
-                let open = OpenVehicle::OfScenario(scenario.struck_vehicle.as_deref());
-                let striking = scenario.striking_vehicle.as_deref();
-                let mut settings = self.settings(&open, striking, &mut caveats)?;
-                if let (None, Some(ending)) = (&self.ending, &scenario.ending) {
-                    settings.ending.clone_from(ending);
-                }
+                let settings = self.scenario_settings(&scenario, pulse, &mut caveats)?;
                 (momentum, overlap) = contact_of(&scenario, &mut caveats);
                 (settings, Box::new(move |settings| analyse_scenario(&scenario, pulse, settings)))
             }
