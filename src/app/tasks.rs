@@ -7,6 +7,7 @@
 //! ([`Latest`](crate::app::latest::Latest)), and so do long questions and trainings.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 use egui::Context;
@@ -46,7 +47,9 @@ pub enum TaskKey {
     KeepModel(Network, String),
     /// The list of what is kept is read.
     ListArchive,
-    /// The note or the content of something that is kept is written, by its digest.
+    /// A comparison or an evaluation is kept, by its content.
+    KeepResult(Arc<Vec<u8>>),
+    /// The note of something that is kept is written, by the digest of its content.
     PutIntoArchive(String),
     /// Files of what is kept are removed.
     RemoveArchived(Vec<PathBuf>),
@@ -256,7 +259,7 @@ impl TaskKey {
             Self::SaveModel(_) => "save model",
             Self::KeepModel(..) => "keep model",
             Self::ListArchive | Self::ListTrainings => "list",
-            Self::PutIntoArchive(_) => "keep result",
+            Self::KeepResult(_) | Self::PutIntoArchive(_) => "keep result",
             Self::RemoveArchived(_) => "remove",
             Self::OpenArchived => "open result",
             Self::OpenComparison => "open comparison",

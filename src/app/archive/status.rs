@@ -1,6 +1,7 @@
 //! What is kept, as the window shows it, and the work on it in the background.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::app::archive::event::{ArchiveEvent, OpenedResult, Removal};
 use crate::app::archive::{ArchiveEntry, ArchiveError, ArchiveFolder, ArchiveList};
@@ -81,7 +82,8 @@ impl ArchiveStatus {
     /// - `content`: the report as JSON.
     pub fn keep_result(&self, draft: ArchiveEntry, content: Vec<u8>, tasks: &mut Tasks) {
         let Some(folder) = self.folder.clone() else { return };
-        let key = TaskKey::PutIntoArchive(sha256_hex(&content));
+        let content = Arc::new(content);
+        let key = TaskKey::KeepResult(Arc::clone(&content));
         let work = move |_: &mut ProgressCallback<'_>| {
             let name = draft.name.clone();
             let entry = keep_bytes(&folder, draft, &content);

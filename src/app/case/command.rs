@@ -60,7 +60,7 @@ pub struct SavedCase {
     pub(super) file: CaseFile,
     /// Its file.
     pub(super) path: PathBuf,
-    /// SHA-256 of the text of the file.
+    /// The text of the file.
     pub(super) on_disk: String,
     /// What it does beyond reading files in its own folder.
     pub(super) reach: Reach,

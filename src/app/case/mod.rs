@@ -17,7 +17,6 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::app::project::Project;
-use impactlab_core::data::write::sha256_hex;
 use impactlab_study::ForceQuestion;
 use impactlab_study::case_file::{CaseFile, Variant};
 
@@ -34,7 +33,7 @@ pub struct OpenCase {
     pub file: CaseFile,
     /// Its file; `None` before it is saved for the first time.
     pub path: Option<PathBuf>,
-    /// SHA-256 of the text that was last read from the file or written to it.
+    /// The text that was last read from the file or written to it.
     pub on_disk: Option<String>,
     /// What the case held then, by [`OpenCase::fingerprint`].
     pub saved: Option<String>,
@@ -109,7 +108,7 @@ fn fingerprint_of(file: &CaseFile) -> String {
     // What JSON cannot hold, such as a file name that is not Unicode, is seen all the same.
     let variants = serde_json::to_string(&file.variants);
     let variants = variants.unwrap_or_else(|_| format!("{:?}", file.variants));
-    sha256_hex(format!("{}\n{}\n{variants}", file.name, file.notes).as_bytes())
+    format!("{}\n{}\n{variants}", file.name, file.notes)
 }
 
 #[cfg(test)]

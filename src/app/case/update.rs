@@ -16,7 +16,7 @@ use crate::app::source::Source;
 use crate::app::state::{Session, State, Subject};
 use crate::app::tasks::TaskKey;
 use crate::app::workspaces::Workspace;
-use impactlab_core::data::write::{ModelDigest, sha256_hex};
+use impactlab_core::data::write::ModelDigest;
 use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, Severity, read_utf8};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
@@ -292,12 +292,12 @@ impl State {
         self.take_case(opened);
         self.look_for_changes(path.clone());
         self.case.path = Some(path.clone());
-        self.case.on_disk = Some(sha256_hex(text.as_bytes()));
         self.show_variant();
         self.case.saved = Some(self.case_fingerprint());
         let edited = CaseOnDisk::from_text(&text, &path).change();
         let event = if edited.is_some() { "opened; edited since it was saved" } else { "opened" };
         edited.iter().for_each(|change| self.say(Severity::Warning, change.to_string()));
+        self.case.on_disk = Some(text);
         self.case.file.note(event);
         self.remember_case(path);
     }
@@ -326,7 +326,7 @@ impl State {
     pub(in crate::app) fn is_case_file_foreign(&self) -> bool {
         let Some(path) = &self.case.path else { return false };
         match read_utf8(path, MAX_RESULTS_BYTES) {
-            Ok(text) => self.case.on_disk.as_ref() != Some(&sha256_hex(text.as_bytes())),
+            Ok(text) => self.case.on_disk.as_ref() != Some(&text),
             Err(_) => path.exists(),
         }
     }
@@ -343,9 +343,8 @@ impl State {
         let write = move |_: &mut ProgressCallback<'_>| {
             file.record_files();
             let path = std::path::absolute(&path).map_err(|error| error.to_string())?;
-            let text = file.to_text(&path).map_err(|error| error_chain(&error))?;
+            let on_disk = file.to_text(&path).map_err(|error| error_chain(&error))?;
             file.save(&path, existing).map_err(|error| error_chain(&error))?;
-            let on_disk = sha256_hex(text.as_bytes());
             let reach = file.reach(&path);
             Ok(Found::new(SavedCase { file, path, on_disk, reach, fingerprint }))
         };
