@@ -19,6 +19,7 @@ mod ground;
 mod guide;
 mod help;
 mod inputs;
+mod kinds;
 mod log;
 mod maps;
 mod program;

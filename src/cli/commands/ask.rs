@@ -7,7 +7,7 @@ use clap::Args;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, under_bar};
 use impactlab_core::data::{MAX_SETTINGS_BYTES, read_utf8};
-use impactlab_study::Request;
+use impactlab_study::{InputKind, Request};
 
 /// Answer a question that stands in a JSON file, as --print-request writes it
 #[derive(Debug, Args)]
@@ -28,9 +28,14 @@ its model only through its own command.";
 
 /// Answers the question and prints the report.
 pub(in crate::cli) fn run(args: &AskArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
-    let text = read_utf8(&args.request, MAX_SETTINGS_BYTES)?;
+    let path = &args.request;
+    let is_other = |error: CliError| match InputKind::Request.refuse_other(path) {
+        Ok(()) => error,
+        Err(other) => other.into(),
+    };
+    let text = read_utf8(path, MAX_SETTINGS_BYTES).map_err(|error| is_other(error.into()))?;
     let request: Request = serde_json::from_str(&text)
-        .map_err(|source| CliError::Request { path: args.request.clone(), source })?;
+        .map_err(|source| is_other(CliError::Request { path: path.clone(), source }))?;
     if console.print_request {
         print_json(console.out, &request)?;
         return Ok(Verdict::Clean);

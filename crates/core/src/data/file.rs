@@ -52,7 +52,9 @@ pub fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, DataError> {
 /// The same as for [`read_bytes`], and [`DataError::Io`] if the file is not UTF-8.
 pub fn read_utf8(path: &Path, limit: u64) -> Result<String, DataError> {
     String::from_utf8(read_bytes(path, limit)?).map_err(|error| {
-        let source = std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error());
+        let valid = error.utf8_error().valid_up_to();
+        let why = format!("it is not UTF-8 text from byte {} on", valid + 1);
+        let source = std::io::Error::new(std::io::ErrorKind::InvalidData, why);
         DataError::Io { path: path.to_owned(), source }
     })
 }

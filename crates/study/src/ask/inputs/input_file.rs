@@ -3,10 +3,12 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use serde_json::Value;
+
 use crate::case_file::CaseFile;
 use crate::{InputKind, Request};
 use impactlab_core::collision::Scenario;
-use impactlab_core::data::{MAX_SETTINGS_BYTES, TomlFile, read_utf8};
+use impactlab_core::data::{MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, TomlFile, read_utf8};
 use impactlab_core::error_chain;
 use impactlab_core::site::{Site, read_drawing, read_picture};
 use impactlab_core::vehicle::VehicleParameters;
@@ -49,6 +51,22 @@ pub enum InputError {
         kind: InputKind,
         /// What is wrong, with its causes.
         message: String,
+    },
+    /// It has no content.
+    #[error("{}: is empty", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+    /// It is JSON, but no kind that the program reads.
+    #[error(
+        "{}: is neither a question (as --print-request writes it), a case nor a comparison of response \
+         networks; answers are for other programs: ask the question again to see its answer",
+        path.display()
+    )]
+    NotRecognisedJson {
+        /// The file.
+        path: PathBuf,
     },
     /// It is a TOML file, but it has no key of any kind.
     #[error(
@@ -103,11 +121,17 @@ impl InputFile {
             InputKind::Vehicle => read(kind, VehicleParameters::load(path), Self::Vehicle),
             InputKind::Site | InputKind::Orthophoto => read(kind, Site::load(path), Self::Site),
             InputKind::Network => read(kind, kind_of_file(path), |kind| Self::Network(*kind)),
+            InputKind::Comparison if is_other_json(path) => {
+                Err(InputError::NotRecognisedJson { path: path.to_owned() })
+            }
             InputKind::Comparison => read(kind, Comparison::load(path), Self::Comparison),
             InputKind::Request => read_request(path),
             InputKind::Checkpoint => Ok(Self::Checkpoint),
             InputKind::Settings => read(kind, TomlFile::read(path), |_| Self::Settings),
             InputKind::UnknownToml => match TomlFile::read(path) {
+                Ok(text) if text.trim().is_empty() => {
+                    Err(InputError::Empty { path: path.to_owned() })
+                }
                 Ok(_) => Err(InputError::NotRecognised { path: path.to_owned() }),
                 Err(error) => Err(InputError::new(kind, &error)),
             },
@@ -159,6 +183,13 @@ impl InputFile {
             _ => Ok(Vec::new()),
         }
     }
+}
+
+/// Whether a file is JSON that has not what every comparison has.
+fn is_other_json(path: &Path) -> bool {
+    let text = read_utf8(path, MAX_RESULTS_BYTES).ok();
+    let found = text.and_then(|text| serde_json::from_str::<Value>(&text).ok());
+    found.is_some_and(|found| ["models", "test"].iter().any(|key| found.get(key).is_none()))
 }
 
 fn read_request(path: &Path) -> Result<InputFile, InputError> {

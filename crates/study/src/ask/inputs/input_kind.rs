@@ -129,15 +129,21 @@ impl InputKind {
         path: &Path,
         read: Result<T, E>,
     ) -> Result<T, StudyError> {
-        read.map_err(|error| {
-            let found = Self::from_path(path);
-            // These are what is left where nothing in the file says what it is.
-            let is_guess = matches!(found, Self::UnknownToml | Self::Series | Self::Comparison);
-            if found == self || is_guess || !path.exists() {
-                return error.into();
-            }
-            StudyError::OtherKind { path: path.to_owned(), found, expected: self }
-        })
+        read.map_err(|error| self.refuse_other(path).err().unwrap_or_else(|| error.into()))
+    }
+
+    /// Says of a file that cannot be read as this kind which other kind it is of.
+    ///
+    /// # Errors
+    /// [`StudyError::OtherKind`], where something in the file says so.
+    pub fn refuse_other(self, path: &Path) -> Result<(), StudyError> {
+        let found = Self::from_path(path);
+        // These are what is left where nothing in the file says what it is.
+        let is_guess = matches!(found, Self::UnknownToml | Self::Series | Self::Comparison);
+        if found == self || is_guess || !path.exists() {
+            return Ok(());
+        }
+        Err(StudyError::OtherKind { path: path.to_owned(), found, expected: self })
     }
 
     /// Whether it holds time series, which are read for seconds and checked.

@@ -209,7 +209,10 @@ fn problem(path: &Path, kind: InputKind, error: &DataError) -> PathProblem {
     PathProblem {
         path: path.to_owned(),
         kind,
-        message: InputError::new(kind, error).to_string(),
+        message: match path.exists() {
+            true => InputError::new(kind, error).to_string(),
+            false => error_chain(error),
+        },
         map: match error.answer() {
             Some(answer) => Some(answer.to_string()),
             None => columns.as_deref().and_then(ProposedColumn::map),
