@@ -265,6 +265,63 @@ mod tests {
         }
     }
 
+    /// The same, of which the coarse answer is a part of the full one.
+    #[derive(Clone, PartialEq)]
+    struct HalveInPart(i32);
+
+    impl Question for HalveInPart {
+        type Answer = i32;
+        type Report = i32;
+        const NAME: &'static str = "halve in part";
+        const IS_COARSE_PART: bool = true;
+
+        fn check(&self) -> Result<(), StudyError> {
+            Ok(())
+        }
+
+        fn coarse(&self) -> Option<Self> {
+            Halve(self.0).coarse().map(|Halve(number)| Self(number))
+        }
+
+        fn report(answer: &i32) -> &i32 {
+            answer
+        }
+
+        fn solve(
+            &self,
+            library: &Library,
+            observer: &mut Observer<'_>,
+        ) -> Result<Outcome<i32>, StudyError> {
+            Halve(self.0).solve(library, observer)
+        }
+    }
+
+    /// What is shown of the latest question is not marked as late, though the rest is awaited.
+    #[test]
+    fn a_part_of_the_answer_stands_for_it_until_all_of_it_comes() {
+        let mut latest = Latest::default();
+        latest.ask(HalveInPart(146), &Arc::default(), || {});
+        for _ in 0..1000 {
+            latest.poll();
+            if latest.ok().is_some() {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        assert_eq!(latest.ok().map(|answer| **answer), Some(70));
+        assert!(latest.is_waiting() && latest.coarse().is_none());
+        std::thread::sleep(2 * SEEN);
+        assert!(!latest.is_late());
+        for _ in 0..1000 {
+            latest.poll();
+            if !latest.is_waiting() {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        assert_eq!(latest.ok().map(|answer| **answer), Some(73));
+    }
+
     fn ask(latest: &mut Latest<Halve>, number: i32) {
         latest.ask(Halve(number), &Arc::default(), || {});
     }

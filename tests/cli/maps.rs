@@ -44,16 +44,17 @@ fn outcome(ran: &Ran) -> Value {
 #[test]
 fn a_recorded_motion_without_names_is_predicted_with_its_map() {
     let folder = TempDir::new().unwrap();
-    let plain = without_names(&folder, MOTION, &[0, 1, 2, 3, 11, 12, 13]);
+    let plain = without_names(&folder, MOTION, &[0, 1, 2, 3, 5, 6, 7, 11, 12, 13]);
     let given = ["--given-force", "--trajectory"];
     let refused = predict(&folder, "refused", &[&given[..], &[text(&plain)]].concat());
     assert_ne!(refused.code, 0, "{}", refused.out);
     assert!(refused.error_line().contains("--map time=COLUMN"), "{}", refused.err);
-    let map = "time=1:s,x=2:m,y=3:m,yaw=4:rad,fx_body=5:N,fy_body=6:N,mz=7:N m";
+    let map = "time=1:s,x=2:m,y=3:m,yaw=4:rad,vx=5:m/s,vy=6:m/s,yaw_rate=7:rad/s,fx_body=8:N,\
+               fy_body=9:N,mz=10:N m";
     let mapped = predict(&folder, "m", &[&given[..], &[text(&plain), "--map", map]].concat());
     let named = fs::read_to_string(&plain).unwrap();
     let (_, numbers) = named.split_once('\n').unwrap();
-    let header = "time_s,x_m,y_m,yaw_rad,fx_body_n,fy_body_n,mz_nm";
+    let header = "time_s,x_m,y_m,yaw_rad,vx_m_s,vy_m_s,yaw_rate_rad_s,fx_body_n,fy_body_n,mz_nm";
     let named = write(&folder, "named.csv", &format!("{header}\n{numbers}"));
     let of_header = predict(&folder, "h", &[&given[..], &[text(&named)]].concat());
     assert_eq!(outcome(&mapped), outcome(&of_header));

@@ -28,7 +28,9 @@ pub enum PdfError {
         why: String,
     },
     /// The PDF cannot be put together.
-    #[error("the PDF cannot be put together: {why}; the report as Markdown (.md) has the same content")]
+    #[error(
+        "the PDF cannot be put together: {why}; the report as Markdown (.md) has the same content"
+    )]
     Assembly {
         /// Why.
         why: &'static str,
