@@ -39,6 +39,7 @@ impl State {
                 | InputKind::Vehicle
                 | InputKind::Scenario
                 | InputKind::Network
+                | InputKind::Pairs
                 | InputKind::Request
                 | InputKind::Checkpoint
                 | InputKind::Settings
@@ -73,6 +74,11 @@ impl State {
             }
             // A file of an unknown kind goes to the loader as well, which reports what is wrong with it.
             Ok(InputFile::Network(_)) => self.use_model(Network::Force, Some(path)),
+            Ok(InputFile::Pairs(_)) => {
+                let command = kind.command().unwrap_or_default();
+                let text = format!("{}: {kind}; use {command}", path.display());
+                self.say(Severity::Warning, text);
+            }
             Ok(_) => {
                 let text = format!("{}: {kind} is chosen where it is used", path.display());
                 self.say(Severity::Warning, text);

@@ -22,6 +22,7 @@ mod inputs;
 mod kinds;
 mod log;
 mod maps;
+mod pairs;
 mod program;
 mod ranges;
 mod reconstruct;

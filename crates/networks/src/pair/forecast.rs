@@ -256,3 +256,92 @@ fn states_of(motion: &PairMotion, vehicle: usize) -> Vec<VehicleState<f64>> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use super::*;
+    use impactlab_core::vehicle::{Controls, Preset};
+
+    /// A car that is struck at its right rear by one that comes from behind and steers in.
+    fn manoeuvre(place_m: [f64; 2], [speed_m_s, yaw_rad]: [f64; 2]) -> Manoeuvre {
+        let initial = VehicleState {
+            vx_body_m_s: speed_m_s,
+            x_m: place_m[0],
+            y_m: place_m[1],
+            yaw_rad,
+            ..VehicleState::default()
+        };
+        let controls = Controls::default();
+        Manoeuvre { initial, controls, duration_s: 1.5, ..Manoeuvre::default() }
+    }
+
+    fn forecast(settings: &PairSettings) -> PairForecast {
+        let vehicle = Preset::Reference.parameters();
+        let outline = ContactOutline::from_vehicle(&vehicle).unwrap();
+        let faces = FaceLaws::by_class(&vehicle).unwrap();
+        let struck = manoeuvre([0.0, 0.0], [20.0, 0.0]);
+        let striking = manoeuvre([-3.6, -2.1], [21.5, 0.12]);
+        let question = PairQuestion {
+            vehicles: [&vehicle; 2],
+            manoeuvres: [&struck, &striking],
+            outlines: [&outline; 2],
+            faces: [faces; 2],
+            conditions: ContactConditions::default(),
+            predictors: [None; 2],
+        };
+        let found = forecast_pair(&question, settings, &mut |_| ControlFlow::Continue(()));
+        found.unwrap().complete().unwrap()
+    }
+
+    #[test]
+    fn draws_without_scatter_are_the_centre_and_a_seed_gives_the_same_draws() {
+        let none = PairSettings { n_draws: 3, seed: 5, scatter: PairScatter::NONE };
+        let alike = forecast(&none);
+        assert!(!alike.centre.phases.is_empty(), "the cars meet");
+        for draw in &alike.draws {
+            let centre = states_of(&alike.centre, 0);
+            let off =
+                |a: &VehicleState<f64>, b: &VehicleState<f64>| (a.x_m - b.x_m).hypot(a.y_m - b.y_m);
+            let largest = draw.states[0].iter().zip(&centre).map(|(a, b)| off(a, b));
+            // The scatter of the elastic branch takes another way to the same numbers.
+            assert!(largest.fold(0.0, f64::max) < 1e-6);
+        }
+        let usual = PairSettings { n_draws: 40, seed: 5, ..PairSettings::default() };
+        let drawn = forecast(&usual);
+        assert_eq!(drawn, forecast(&usual));
+        assert_ne!(drawn.draws, forecast(&PairSettings { seed: 6, ..usual }).draws);
+        assert_eq!(drawn.draws.len(), 40);
+        let shares = drawn.contact_shares();
+        assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)));
+        assert!(shares.iter().any(|share| *share > 0.9), "{shares:?}");
+        let sum: f64 = drawn.courses().iter().map(|course| course.probability).sum();
+        assert!((sum - 1.0).abs() < 1e-12);
+        // The middle is one of the draws, and nearer to the others than most of them.
+        assert!(drawn.middle().is_some_and(|idx| idx < 40));
+    }
+
+    #[test]
+    fn a_forecast_that_is_stopped_is_cancelled() {
+        let vehicle = Preset::Reference.parameters();
+        let outline = ContactOutline::from_vehicle(&vehicle).unwrap();
+        let faces = FaceLaws::by_class(&vehicle).unwrap();
+        let apart = [manoeuvre([0.0; 2], [20.0, 0.0]), manoeuvre([-30.0, 0.0], [10.0, 0.0])];
+        let question = PairQuestion {
+            vehicles: [&vehicle; 2],
+            manoeuvres: [&apart[0], &apart[1]],
+            outlines: [&outline; 2],
+            faces: [faces; 2],
+            conditions: ContactConditions::default(),
+            predictors: [None; 2],
+        };
+        let settings = PairSettings { n_draws: 4, ..PairSettings::default() };
+        let stopped = forecast_pair(&question, &settings, &mut |_| ControlFlow::Break(()));
+        assert_eq!(stopped.unwrap(), Outcome::Cancelled);
+        let missed = forecast_pair(&question, &settings, &mut |_| ControlFlow::Continue(()));
+        let missed = missed.unwrap().complete().unwrap();
+        assert_eq!(missed.courses().len(), 1);
+        assert_eq!(missed.courses()[0].course, crate::pair::Course::Missed);
+    }
+}

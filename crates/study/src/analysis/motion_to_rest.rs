@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use crate::analysis::rest_outcome::poses;
 use crate::analysis::{MonteCarloError, MotionEnd, MotionOutcome, RestOutcome, StruckVehicle};
 use impactlab_core::data::ForceHistory;
+use impactlab_core::uncertainty::pose_groups;
 use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::VehicleState;
 use impactlab_networks::response::{

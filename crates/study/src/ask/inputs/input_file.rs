@@ -3,12 +3,16 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
 use serde_json::Value;
 
 use crate::case_file::CaseFile;
 use crate::{InputKind, Request};
 use impactlab_core::collision::Scenario;
-use impactlab_core::data::{MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, TomlFile, read_utf8};
+use impactlab_core::compare::PairRecords;
+use impactlab_core::data::{
+    CASES_FILE, MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, TomlFile, read_utf8,
+};
 use impactlab_core::error_chain;
 use impactlab_core::site::{Site, read_drawing, read_picture};
 use impactlab_core::vehicle::VehicleParameters;
@@ -33,6 +37,8 @@ pub enum InputFile {
     Network(String),
     /// A comparison of response networks.
     Comparison(Box<Comparison>),
+    /// A data set of recorded pairs of vehicles.
+    Pairs(Box<PairRecords>),
     /// A question.
     Request(Box<Request>),
     /// The state of an unfinished reconstruction, which its question goes on from.
@@ -125,6 +131,11 @@ impl InputFile {
                 Err(InputError::NotRecognisedJson { path: path.to_owned() })
             }
             InputKind::Comparison => read(kind, Comparison::load(path), Self::Comparison),
+            InputKind::Pairs => {
+                let is_table = path.file_name().is_some_and(|name| name == CASES_FILE);
+                let folder = if is_table { path.parent().unwrap_or(path) } else { path };
+                read(kind, PairRecords::open(folder), Self::Pairs)
+            }
             InputKind::Request => read_request(path),
             InputKind::Checkpoint => Ok(Self::Checkpoint),
             InputKind::Settings => read(kind, TomlFile::read(path), |_| Self::Settings),
@@ -151,6 +162,7 @@ impl InputFile {
             Self::Site(site) => site.name.clone(),
             Self::Network(_)
             | Self::Comparison(_)
+            | Self::Pairs(_)
             | Self::Request(_)
             | Self::Checkpoint
             | Self::Settings => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
@@ -180,9 +192,29 @@ impl InputFile {
                 Ok(site.contents(drawing.map(|drawing| drawing.summary()).as_ref()))
             }
             Self::Network(kind) => Ok(vec![kind.clone()]),
+            Self::Pairs(records) => pairs_contents(records, kind),
             _ => Ok(Vec::new()),
         }
     }
+}
+
+/// How many cases there are of each kind of collision, with every case read.
+fn pairs_contents(records: &PairRecords, kind: InputKind) -> Result<Vec<String>, InputError> {
+    let names: Vec<&str> = records.names().collect();
+    let problem =
+        |name: &&str| Some(format!("{name}: {}", error_chain(&records.load(name)?.err()?)));
+    let problems: Vec<String> = names.par_iter().filter_map(problem).collect();
+    if let Some(first) = problems.first() {
+        let message =
+            format!("{} of {} cases cannot be read, such as {first}", problems.len(), names.len());
+        return Err(InputError::Wrong { kind, message });
+    }
+    let mut kinds: Vec<String> =
+        names.iter().filter_map(|name| Some(records.attributes(name)?.kind)).collect();
+    kinds.sort();
+    let counted = kinds.chunk_by(|a, b| a == b).filter(|of_kind| !of_kind[0].is_empty());
+    let counted = counted.map(|of_kind| format!("{} {}", of_kind.len(), of_kind[0]));
+    Ok([format!("{} cases", names.len())].into_iter().chain(counted).collect())
 }
 
 /// Whether a file is JSON that has not what every comparison has.

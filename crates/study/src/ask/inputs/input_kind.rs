@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use crate::StudyError;
 use crate::case_file::{CASE_ENDING, FORMAT};
+use impactlab_core::compare::PairRecords;
 use impactlab_core::data::{CASES_FILE, DatasetKind, TomlFile, is_gltf, open_file};
 use impactlab_core::site::{is_picture, is_picture_file};
 
@@ -72,6 +73,8 @@ const TOML_KEYS: [(InputKind, &[&str]); 5] = [
 pub enum InputKind {
     /// The folder of a data set, or the table of its cases.
     Dataset,
+    /// The folder of a data set of recorded pairs of vehicles, or the table of its cases.
+    Pairs,
     /// Another folder, which may hold data sets.
     Folder,
     /// A case with its variants.
@@ -108,6 +111,7 @@ impl InputKind {
         if path.is_dir() {
             return match DatasetKind::from_folder(path) {
                 Some(_) => Self::Dataset,
+                None if PairRecords::is_at(path) => Self::Pairs,
                 None => Self::Folder,
             };
         }
@@ -115,6 +119,9 @@ impl InputKind {
         let is_table = path.file_name().is_some_and(|name| name == CASES_FILE);
         if is_table && DatasetKind::from_folder(folder).is_some() {
             return Self::Dataset;
+        }
+        if is_table && PairRecords::is_at(folder) {
+            return Self::Pairs;
         }
         from_content(path).unwrap_or_else(|| from_name(path))
     }
@@ -155,6 +162,7 @@ impl InputKind {
     pub fn command(self) -> Option<&'static str> {
         Some(match self {
             Self::Dataset => "impactlab train force --data FOLDER",
+            Self::Pairs => "impactlab evaluate pairs FOLDER",
             Self::Case => "impactlab report FILE",
             Self::Evidence => "impactlab reconstruct FILE",
             Self::Scenario => "impactlab impact FILE",
@@ -195,6 +203,7 @@ impl fmt::Display for InputKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Dataset => "a data set",
+            Self::Pairs => "a data set of recorded pairs",
             Self::Folder => "a folder of data sets",
             Self::Case => "a case",
             Self::Evidence => "the evidence of a reconstruction",
@@ -311,6 +320,8 @@ mod tests {
             ("docs/guide/examples/steering.csv", InputKind::Series),
             ("datasets/fea", InputKind::Dataset),
             ("datasets/fea/cases.csv", InputKind::Dataset),
+            ("datasets/pairs", InputKind::Pairs),
+            ("datasets/pairs/cases.csv", InputKind::Pairs),
             ("datasets", InputKind::Folder),
         ] {
             assert_eq!(InputKind::from_path(&root.join(path)), expected, "{path}");

@@ -13,8 +13,8 @@ use crate::{
     InputKind, Library, Observer, PathProblem, ProposedColumn, Provenance, Question, StudyError,
 };
 use impactlab_core::data::{
-    ColumnMap, DataError, Dataset, Flag, Loaded, Opened, Outcome, check_case, check_file, open,
-    propose_columns, read_any_series,
+    ColumnMap, DataError, Dataset, Flag, Loaded, Opened, Outcome, check_case, check_file,
+    list_folder, open, propose_columns, read_any_series,
 };
 use impactlab_core::error_chain;
 use impactlab_core::uncertainty::Caveats;
@@ -115,6 +115,9 @@ impl Question for CheckRequest {
                     report.add(&items, self.all);
                     let problems = problems.iter().map(|error| problem(path, kind, error));
                     report.problems.extend(problems);
+                    for pairs in pairs_within(path) {
+                        report.add_input_file(&pairs, InputKind::Pairs);
+                    }
                     all.extend(items);
                 }
                 Err(error) => report.problems.push(problem(path, kind, &error)),
@@ -125,6 +128,15 @@ impl Question for CheckRequest {
         let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(CheckAnswer { report, items: all }))
     }
+}
+
+/// The data sets of recorded pairs directly in a folder, in the order of their names.
+fn pairs_within(path: &Path) -> Vec<PathBuf> {
+    let inside = if path.is_dir() { list_folder(path).unwrap_or_default() } else { Vec::new() };
+    let mut found: Vec<PathBuf> =
+        inside.into_iter().filter(|path| InputKind::from_path(path) == InputKind::Pairs).collect();
+    found.sort();
+    found
 }
 
 /// What a path holds, checked, and why parts of a folder of data sets cannot be read.
