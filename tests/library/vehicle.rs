@@ -151,7 +151,7 @@ fn steady_cornering_is_that_of_the_linear_bicycle() {
         initial: VehicleState::driving_straight(speed),
         controls: Controls {
             steer: Some(SteerHistory { time_s: vec![0.0, 0.5], steer_rad: vec![0.0, steer] }),
-            wheels: None,
+            ..Controls::default()
         },
         duration_s: 8.0,
         ..Manoeuvre::default()

@@ -111,6 +111,9 @@ sources! {
     /// statement, 49 CFR Part 575, docket NHTSA-2001-9663 notice 3, Federal Register 68 (2003)
     /// 59249–59304. Fishhook with roll rate feedback.
     Nhtsa2003;
+    /// *Standard No. 126; Electronic stability control systems for light vehicles*, Code of Federal
+    /// Regulations, title 49, section 571.126. Sine with dwell: sections S5.2, S7.6, S7.9.
+    Fmvss126;
     /// NHTSA, *Laboratory Test Procedure for Dynamic Rollover: The Fishhook Maneuver Test Procedure*,
     /// New Car Assessment Program, March 2013. Slowly increasing steer, fishhook: sections 3.1, 3.2.
     Nhtsa2013;

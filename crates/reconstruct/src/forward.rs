@@ -265,7 +265,7 @@ impl ForwardModel {
             rise_s: DEFAULT_BRAKE_RISE_S,
             road_wheel_rad: values.get(Latent::SteerAngle),
         };
-        Ending { brake, engine, drive: None, damage, steer: Some(steer) }
+        Ending { brake, engine, damage, steer: Some(steer), ..Ending::default() }
     }
 
     /// The zones of the ground with the friction that a car has in them, within the range of a zone:

@@ -155,6 +155,7 @@ impl EndingArgs {
                 rise_s: self.steer_rise,
                 road_wheel_rad,
             }),
+            ..Ending::default()
         };
         Ok((self.coast || !ending.is_coasting()).then_some(ending))
     }

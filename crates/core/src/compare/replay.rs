@@ -135,7 +135,7 @@ pub fn recorded_manoeuvre(
     Ok(Manoeuvre {
         initial: initial_state(&case.series).map_err(in_case)?,
         contact_load: Some(ContactLoad { force, contact, recorded_moment: true }),
-        controls: Controls { steer: None, wheels: braked(attributes.braking, vehicle) },
+        controls: Controls { wheels: braked(attributes.braking, vehicle), ..Controls::default() },
         duration_s: last.max(OUTPUT_INTERVAL_S),
         ..Manoeuvre::default()
     })

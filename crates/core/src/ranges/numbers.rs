@@ -67,6 +67,51 @@ ranges! {
 }
 
 ranges! {
+    /// Drivers that react to the motion of the vehicle, stability control and anti-lock system.
+    DRIVERS = "drivers and stability control";
+    ESC_FILTER: "filter of the stability control" = real(Quantity::Time, [0.0, 1.0]),
+        "time constant by which the error of the yaw rate is smoothed";
+    ESC_THRESHOLD: "threshold of the stability control" =
+        real(Quantity::AngularVelocity, [0.01, 1.0]),
+        "oversteer beyond which the stability control brakes; 4 to 8 deg/s in cars";
+    ESC_OFF_SHARE: "release of the stability control" = real(Quantity::Ratio, [0.0, 1.0]),
+        "share of the threshold below which the stability control lets go";
+    ESC_SPEED: "lowest speed of the stability control" = real(Quantity::Speed, [0.0, 40.0]),
+        "speed below which the stability control does nothing";
+    ESC_ACCELERATION_SHARE: "limit of the reference yaw rate" = real(Quantity::Ratio, [0.1, 2.0]),
+        "lateral acceleration that the driver may ask for over what the road holds";
+    ESC_FULL_ERROR: "error of full braking" = real(Quantity::AngularVelocity, [0.01, 5.0]),
+        "oversteer at which the stability control brakes as hard as it can";
+    SLIP_RATIO: "slip of a braked wheel" = real(Quantity::Ratio, [0.02, 0.5]),
+        "slip at which a wheel is held; 0.1 to 0.15 in cars";
+    SIDESLIP: "side slip" = real(Quantity::Angle, [0.0, PI / 2.0]),
+        "angle between the heading and the direction of the motion";
+    REAR_BRAKE_SHARE: "rear share of the stability control" = real(Quantity::Ratio, [0.0, 1.0]),
+        "braking of the outer rear wheel over that of the outer front wheel";
+    DEAD_TIME: "dead time" = real(Quantity::Time, [0.0, 2.0]),
+        "time from a command to the first force of the brake";
+    PEAK_SHARE: "share of peak friction" = real(Quantity::Ratio, [0.1, 1.0]),
+        "braking force that an anti-lock system allows over the largest that the road can hold";
+    REACTION_TIME: "reaction time" = real(Quantity::Time, [0.0, 60.0]),
+        "time from the first contact to the first reaction of the driver";
+    SIDESLIP_GAIN: "steering by side slip" = real(Quantity::Ratio, [0.0, 10.0]),
+        "steer angle of the road wheels over the side slip of the vehicle";
+    YAW_RATE_GAIN: "steering by yaw rate" = real(Quantity::Time, [0.0, 5.0]),
+        "steer angle of the road wheels over the yaw rate of the vehicle";
+    LARGEST_STEERING_WHEEL_ANGLE: "largest steering-wheel angle" =
+        real(Quantity::Angle, [0.0, 25.0]),
+        "angle of the steering wheel to either side that the driver does not exceed";
+    STEERING_WHEEL_RATE: "rate of the steering wheel" = real(Quantity::AngularVelocity, [0.1, 50.0]),
+        "angular velocity of the steering wheel that the driver does not exceed";
+    PIT_START: "start of the turn" = real(Quantity::Time, [-2.0, 60.0]),
+        "when the striking driver begins to turn the steering wheel, after the first contact";
+    THROTTLE_LIMIT: "largest acceleration" = real(Quantity::Acceleration, [0.0, 15.0]),
+        "acceleration of the vehicle alone that the engine allows";
+    STRUCK_TURN: "turn of the struck vehicle" = real(Quantity::Angle, [0.0, 2.0 * PI]),
+        "turn since the first contact at which the striking driver lets go";
+}
+
+ranges! {
     /// Instants and durations.
     TIMES = "times";
     INSTANT: "time" = real(Quantity::Time, [-1e10, 1e10]),

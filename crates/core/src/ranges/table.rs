@@ -1,8 +1,8 @@
 //! The list of all ranges.
 
 use crate::ranges::{
-    BODIES, CHANNELS, CONTACT, CONTROLS, DATA_SHEET, EVIDENCE, FORCE_SETTINGS, MOTION, PICTURES,
-    QUESTIONS, RESPONSE_SETTINGS, Range, SITE, TIMES, VEHICLE,
+    BODIES, CHANNELS, CONTACT, CONTROLS, DATA_SHEET, DRIVERS, EVIDENCE, FORCE_SETTINGS, MOTION,
+    PICTURES, QUESTIONS, RESPONSE_SETTINGS, Range, SITE, TIMES, VEHICLE,
 };
 
 /// Ranges that belong together.
@@ -18,6 +18,7 @@ pub struct RangeGroup {
 pub const TABLE: &[RangeGroup] = &[
     MOTION,
     CONTROLS,
+    DRIVERS,
     TIMES,
     CONTACT,
     BODIES,

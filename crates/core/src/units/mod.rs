@@ -11,5 +11,6 @@ pub use format::{
     EstimateText, IntervalText, Language, NumberFormat, percent, significant, trimmed,
 };
 pub use quantity::{
-    MILE_PER_HOUR_M_S, Quantity, STANDARD_GRAVITY_M_S2, US_SURVEY_FOOT, Unit, UnitSystem,
+    KILOMETRE_PER_HOUR_M_S, MILE_PER_HOUR_M_S, Quantity, STANDARD_GRAVITY_M_S2, US_SURVEY_FOOT,
+    Unit, UnitSystem,
 };

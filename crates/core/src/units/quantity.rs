@@ -13,9 +13,11 @@ pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 /// One mile per hour, m/s; exact by definition (international yard and pound agreement, 1959).
 pub const MILE_PER_HOUR_M_S: f64 = 0.447_04;
 
+/// One kilometre per hour, m/s.
+pub const KILOMETRE_PER_HOUR_M_S: f64 = 1.0 / 3.6;
+
 const FOOT_M: f64 = 0.3048;
 const INCH_M: f64 = 0.0254;
-const KILOMETRE_PER_HOUR_M_S: f64 = 1.0 / 3.6;
 const POUND_KG: f64 = 0.453_592_37;
 const POUND_FORCE_N: f64 = POUND_KG * STANDARD_GRAVITY_M_S2;
 const SLUG_KG: f64 = POUND_FORCE_N / FOOT_M;

@@ -5,7 +5,8 @@
 //! Vehicle, forces, steer angle, brakes and end may differ from lane to lane. A motion that ends leaves
 //! its lane, and the next one that waits takes it over. Every motion is to the last digit what
 //! [`VehicleParameters::simulate`] gives, but where a wheel is braked in one lane and rolls freely in
-//! another one: the two ways to its force differ by rounding.
+//! another one: the two ways to its force differ by rounding. Motions with drivers or systems that act on
+//! the wheels go beside each other, so that they are always what they are alone.
 
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
@@ -62,11 +63,12 @@ struct Numbered<T> {
 }
 
 /// Runs that can go side by side: they have the same number of steps, the same form of the equations,
-/// and the same kind of force.
+/// the same kind of force, and all or none have drivers or systems that act on the wheels.
 fn alike(mut runs: Vec<Numbered<Run<'_>>>) -> Vec<Vec<Numbered<Run<'_>>>> {
     let kind = |run: &Numbered<Run<'_>>| {
         let is_printed = run.item.constants.equations == Equations::Paper;
-        (run.item.steps_per_output, is_printed, run.item.kind_of_force())
+        let is_controlled = run.item.has_controlled_wheels();
+        (run.item.steps_per_output, is_printed, is_controlled, run.item.kind_of_force())
     };
     runs.sort_by_key(kind);
     let mut groups: Vec<Vec<Numbered<Run<'_>>>> = Vec::new();

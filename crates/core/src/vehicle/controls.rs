@@ -1,8 +1,9 @@
 //! What steers, drives, brakes and locks the wheels of a vehicle over time.
 
 use crate::numerics::interpolate;
-use crate::vehicle::Wheel;
+use crate::vehicle::drivers::ClosedLoop;
 use crate::vehicle::tire::{LOCKING_SHARE, TireParameters, WheelEffort};
+use crate::vehicle::{VehicleInput, Wheel};
 
 /// Share to which a wheel is locked from which it is said to be.
 const LOCKED_FROM: f64 = 0.5;
@@ -35,31 +36,43 @@ pub struct Controls {
     pub steer: Option<SteerHistory>,
     /// The wheels; with `None` they roll freely.
     pub wheels: Option<WheelHistory>,
+    /// What acts by the motion of the vehicle, beside the histories; nothing with `None`.
+    pub closed_loop: Option<ClosedLoop>,
 }
 
 impl Controls {
     /// Whether the vehicle coasts with its front wheels straight ahead.
     pub fn is_coasting(&self) -> bool {
-        self.wheels.is_none() && !self.is_steered()
+        self.wheels.is_none() && self.closed_loop.is_none() && !self.is_steered()
     }
 
-    /// Whether the front wheels are turned.
+    /// Whether wheels may be driven, braked or locked.
+    pub(super) fn acts_on_wheels(&self) -> bool {
+        self.wheels.is_some() || self.closed_loop.as_ref().is_some_and(ClosedLoop::acts_on_wheels)
+    }
+
+    /// Whether the front wheels are turned, or a driver may turn them.
     pub fn is_steered(&self) -> bool {
         let is_turned = |steer: &SteerHistory| steer.steer_rad.iter().any(|rad| *rad != 0.0);
         self.steer.as_ref().is_some_and(is_turned)
+            || self.closed_loop.as_ref().is_some_and(ClosedLoop::steers)
     }
 
     /// Whether a wheel is driven.
     pub fn is_driven(&self) -> bool {
         let efforts = self.wheels.iter().flat_map(|history| history.wheels.iter().flatten());
         efforts.into_iter().any(|wheel| wheel.drive_n != 0.0)
+            || self.closed_loop.as_ref().is_some_and(ClosedLoop::drives)
     }
 
     /// Whether a wheel is locked at a time, by damage or by a brake that asks for more than the road can
-    /// hold along the plane of the wheel; as in the tire model, with the peak of the friction.
+    /// hold along the plane of the wheel; as in the tire model, with the peak of the friction. Only the
+    /// histories count; those of a motion with drivers or systems are [`Motion::applied_controls`].
     ///
     /// - `velocity_m_s`: velocity of its centre along and across its own plane, m/s;
     /// - `load_n`: its vertical load, N.
+    ///
+    /// [`Motion::applied_controls`]: crate::vehicle::Motion::applied_controls
     pub fn is_locked(
         &self,
         time_s: f64,
@@ -78,6 +91,35 @@ impl Controls {
         let beyond = (effort.braking_n - largest_n) / (largest_n * LOCKING_SHARE + 1e-3);
         let by_brake = beyond.clamp(0.0, 1.0);
         by_brake + (1.0 - by_brake) * effort.locked >= LOCKED_FROM
+    }
+}
+
+/// Steer angle and wheels of a motion at its output instants.
+#[derive(Debug, Default)]
+pub(super) struct AppliedControls {
+    time_s: Vec<f64>,
+    steer_rad: Vec<f64>,
+    wheels: Vec<[WheelEffort<f64>; 4]>,
+}
+
+impl AppliedControls {
+    /// - `coming`: input over the interval that begins.
+    pub fn record(&mut self, time_s: f64, coming: &VehicleInput<f64>) {
+        self.time_s.push(time_s);
+        self.steer_rad.push(coming.steer_rad);
+        self.wheels.push(coming.wheels.unwrap_or([WheelEffort::FREE; 4]));
+    }
+
+    /// The controls as histories. Where nothing acts they are as without histories.
+    pub fn finish(self) -> Controls {
+        let Self { time_s, steer_rad, wheels } = self;
+        let is_steered = steer_rad.iter().any(|rad| *rad != 0.0);
+        let acts = wheels.iter().flatten().any(|wheel| *wheel != WheelEffort::FREE);
+        Controls {
+            steer: is_steered.then(|| SteerHistory { time_s: time_s.clone(), steer_rad }),
+            wheels: acts.then_some(WheelHistory { time_s, wheels }),
+            closed_loop: None,
+        }
     }
 }
 

@@ -9,6 +9,7 @@
 //! ```
 //!
 //! A brake without an anti-lock system that asks for more than the road can hold locks its wheels.
+//! Anti-lock system, stability control and drivers who react to the motion are in `drivers/`.
 //!
 //! [`Gillespie1992`]: crate::bibliography::Gillespie1992
 
@@ -21,6 +22,7 @@ use crate::ranges::{
 };
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::controls::{Controls, SteerHistory, WheelHistory};
+use crate::vehicle::drivers::{AntiLock, ClosedLoop, Countersteer, PitDriver, StabilityControl};
 use crate::vehicle::tire::WheelEffort;
 use crate::vehicle::{VehicleParameters, Wheel};
 
@@ -50,17 +52,26 @@ pub struct Ending {
     /// The front wheels are turned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub steer: Option<HeldSteer>,
+    /// The vehicle has a stability control, and with it an anti-lock system.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub esc: Option<StabilityControl>,
+    /// The driver countersteers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub countersteer: Option<Countersteer>,
+    /// The driver turns the vehicle into another one (PIT).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pit: Option<PitDriver>,
 }
 
-/// Braking by the driver, with all wheels and without an anti-lock system.
+/// Braking by the driver, with all wheels.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Braking {
     /// When the force begins to rise, s after the first contact.
     pub start_s: f64,
     /// Braking force over what the road can hold at most, μ m g, with the friction μ of the vehicle's
-    /// tires: the pedal does not know of friction zones. More than 1 locks all wheels; on a zone with
-    /// less friction less does.
+    /// tires: the pedal does not know of friction zones. Without an anti-lock system more than 1 locks all
+    /// wheels; on a zone with less friction less does.
     pub share_of_friction: f64,
     /// How long the force rises, s.
     #[serde(default = "default_brake_rise_s")]
@@ -72,6 +83,9 @@ pub struct Braking {
     /// wheels go on turning for that time before they lock.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub lock_delay_s: f64,
+    /// Anti-lock system; none if `None`, but for a vehicle with a stability control.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub abs: Option<AntiLock>,
 }
 
 fn is_zero(value: &f64) -> bool {
@@ -185,6 +199,9 @@ impl Ending {
             if brake.lock_delay_s > 0.0 {
                 add("brake.lock_delay_s", brake.lock_delay_s, CONTROL_TIME);
             }
+            for (name, value, range) in brake.abs.iter().flat_map(AntiLock::ranges) {
+                add(&format!("brake.abs.{name}"), value, range);
+            }
         }
         if let Some(engine) = &self.engine {
             add("engine.deceleration_m_s2", engine.deceleration_m_s2, ENGINE_BRAKING);
@@ -205,20 +222,51 @@ impl Ending {
             add("steer.rise_s", steer.rise_s, BRAKE_RISE);
             add("steer.road_wheel_rad", steer.road_wheel_rad, STEER_ANGLE);
         }
+        for (name, value, range) in self.esc.iter().flat_map(StabilityControl::ranges) {
+            add(&format!("esc.{name}"), value, range);
+        }
+        for (name, value, range) in self.countersteer.iter().flat_map(Countersteer::ranges) {
+            add(&format!("countersteer.{name}"), value, range);
+        }
+        for (name, value, range) in self.pit.iter().flat_map(PitDriver::ranges) {
+            add(&format!("pit.{name}"), value, range);
+        }
         numbers
     }
 
-    /// Steer angle and wheels over time for a vehicle.
+    /// The anti-lock system of the service brake: its own, or that of the stability control.
+    pub fn anti_lock(&self) -> Option<AntiLock> {
+        let own = self.brake.and_then(|brake| brake.abs);
+        own.or_else(|| self.esc.map(|_| AntiLock::default()))
+    }
+
+    /// Whether something drives, brakes or locks wheels at its own times. A stability control does not.
+    pub fn acts_on_wheels(&self) -> bool {
+        let by_driver = self.brake.is_some() || self.drive.is_some() || self.pit.is_some();
+        by_driver || self.engine.is_some() || !self.damage.is_empty()
+    }
+
+    /// Whether something steers.
+    pub fn steers(&self) -> bool {
+        self.steer.is_some() || self.countersteer.is_some() || self.pit.is_some()
+    }
+
+    /// Steer angle and wheels over time for a vehicle, and what acts by its motion. A brake with an
+    /// anti-lock system is part of the latter.
     pub fn controls(&self, vehicle: &VehicleParameters) -> Controls {
         let steer = self.steer.map(|steer| SteerHistory {
             time_s: vec![steer.start_s, steer.start_s + steer.rise_s],
             steer_rad: vec![0.0, steer.road_wheel_rad],
         });
-        Controls { steer, wheels: self.wheels(vehicle) }
+        let closed_loop = ClosedLoop::from_ending(self);
+        let is_watched = closed_loop.as_ref().is_some_and(|it| it.brake.is_some());
+        let brake = self.brake.filter(|_| !is_watched);
+        let histories = Self { brake, esc: None, pit: None, ..self.clone() };
+        Controls { steer, wheels: histories.wheels(vehicle), closed_loop }
     }
 
     fn wheels(&self, vehicle: &VehicleParameters) -> Option<WheelHistory> {
-        if (Self { steer: None, ..self.clone() }).is_coasting() {
+        if !self.acts_on_wheels() {
             return None;
         }
         let brake = self.brake.iter().flat_map(|it| it.rises(vehicle).map(|(time_s, _)| time_s));
@@ -273,7 +321,8 @@ const LOCKING_S: f64 = 0.05;
 impl Braking {
     /// Braking by both axles alike that locks the wheels as soon as the road cannot hold them.
     pub const fn new(start_s: f64, share_of_friction: f64, rise_s: f64) -> Self {
-        Self { start_s, share_of_friction, rise_s, front_share: None, lock_delay_s: 0.0 }
+        let (front_share, lock_delay_s, abs) = (None, 0.0, None);
+        Self { start_s, share_of_friction, rise_s, front_share, lock_delay_s, abs }
     }
 
     /// Instants between which the force is linear over time, and its share of μ m g there.
@@ -307,7 +356,7 @@ impl Braking {
     }
 
     /// Braking force of a wheel at an instant, N.
-    fn force_n(&self, vehicle: &VehicleParameters, wheel: Wheel, time_s: f64) -> f64 {
+    pub(super) fn force_n(&self, vehicle: &VehicleParameters, wheel: Wheel, time_s: f64) -> f64 {
         let front = self.front_share.unwrap_or_else(|| self.ideal_front_share(vehicle));
         let of_axle = if wheel.is_front() { front } else { 1.0 - front };
         let weight_n = vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
@@ -334,6 +383,12 @@ impl DrivenAxle {
         self.into()
     }
 
+    /// A force that the driven wheels share, N.
+    pub(super) fn shared_n(self, force_n: f64) -> [f64; 4] {
+        let n_driven = Wheel::ALL.into_iter().filter(|wheel| self.drives(*wheel)).count();
+        Wheel::ALL.map(|wheel| if self.drives(wheel) { force_n / n_driven as f64 } else { 0.0 })
+    }
+
     fn drives(self, wheel: Wheel) -> bool {
         match self {
             Self::All => true,
@@ -345,10 +400,6 @@ impl DrivenAxle {
 
 impl EngineBraking {
     fn force_n(&self, vehicle: &VehicleParameters, wheel: Wheel) -> f64 {
-        let n_driven = Wheel::ALL.into_iter().filter(|wheel| self.axle.drives(*wheel)).count();
-        match self.axle.drives(wheel) {
-            true => vehicle.mass.mass_kg * self.deceleration_m_s2 / n_driven as f64,
-            false => 0.0,
-        }
+        self.axle.shared_n(vehicle.mass.mass_kg * self.deceleration_m_s2)[wheel.index()]
     }
 }

@@ -20,6 +20,8 @@
 //! steer_start_s = 0               # optional
 //! steer_rise_s = 0.3              # optional
 //! ```
+//!
+//! Drivers who react to the motion, stability control and anti-lock system: see `drivers/file.rs`.
 
 use strum::VariantNames;
 
@@ -28,6 +30,7 @@ use crate::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, STEER_ANGLE,
     STEERING_RATIO, STEERING_WHEEL_ANGLE,
 };
+use crate::vehicle::drivers;
 use crate::vehicle::{
     Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
     HeldSteer, Wheel,
@@ -48,8 +51,14 @@ impl Ending {
             damage.extend(read_wheel(&mut section, wheel)?);
         }
         let steer = read_steer(&mut section)?;
+        let esc = drivers::read_esc(&mut section)?;
+        let countersteer = drivers::read_countersteer(&mut section)?;
+        let pit = drivers::read_pit(&mut section)?;
+        if pit.is_some() && steer.is_some() {
+            return Err(section.conflict("steer"));
+        }
         section.finish()?;
-        Ok(Self { brake, engine, drive, damage, steer })
+        Ok(Self { brake, engine, drive, damage, steer, esc, countersteer, pit })
     }
 
     /// The keys and values of a section from which [`Ending::read`] reads the same ending.
@@ -85,6 +94,7 @@ impl Ending {
             add("steer_start_s".to_owned(), steer.start_s.into());
             add("steer_rise_s".to_owned(), steer.rise_s.into());
         }
+        entries.extend(drivers::entries(self));
         entries
     }
 }
@@ -98,12 +108,13 @@ fn read_brake(section: &mut TomlTable<'_>) -> Result<Option<Braking>, TomlError>
     let start_s = section.number("brake_start", &CONTROL_TIME)?;
     let share = section.number("brake_share", &BRAKE_SHARE)?;
     let rise_s = section.number("brake_rise", &BRAKE_RISE)?;
+    let abs = drivers::read_abs(section)?;
     match (start_s, share) {
         (Some(start_s), Some(share_of_friction)) => {
             let rise_s = rise_s.unwrap_or(DEFAULT_BRAKE_RISE_S);
-            Ok(Some(Braking::new(start_s, share_of_friction, rise_s)))
+            Ok(Some(Braking { abs, ..Braking::new(start_s, share_of_friction, rise_s) }))
         }
-        (None, None) if rise_s.is_none() => Ok(None),
+        (None, None) if rise_s.is_none() && abs.is_none() => Ok(None),
         (None, _) => Err(section.missing("brake_start_s")),
         (_, None) => Err(section.missing("brake_share")),
     }

@@ -99,7 +99,7 @@ fn dwell_s(
     let steer = SteerHistory { time_s: vec![0.0, ramp_s], steer_rad: vec![0.0, amplitude_rad] };
     let manoeuvre = Manoeuvre {
         initial: *initial,
-        controls: Controls { steer: Some(steer), wheels: None },
+        controls: Controls { steer: Some(steer), ..Controls::default() },
         duration_s: ramp_s + LONGEST_DWELL_S,
         ..Manoeuvre::default()
     };
@@ -126,7 +126,7 @@ mod tests {
         let steer = SteerHistory { time_s: vec![0.0, 1.0], steer_rad: vec![0.0, angle_rad] };
         let manoeuvre = Manoeuvre {
             initial: VehicleState::driving_straight(speed_m_s),
-            controls: Controls { steer: Some(steer), wheels: None },
+            controls: Controls { steer: Some(steer), ..Controls::default() },
             duration_s: 3.0,
             ..Manoeuvre::default()
         };
@@ -154,7 +154,7 @@ mod tests {
         // There the vehicle leans outwards and hardly rolls on.
         let manoeuvre = Manoeuvre {
             initial,
-            controls: Controls { steer: Some(history.clone()), wheels: None },
+            controls: Controls { steer: Some(history.clone()), ..Controls::default() },
             duration_s: history.time_s[2],
             ..Manoeuvre::default()
         };

@@ -40,7 +40,7 @@ use crate::numerics::{Four, Lanes, LanesOver};
 use crate::vehicle::constants::{BodyConstants, VehicleConstants};
 use crate::vehicle::frames::Heading;
 use crate::vehicle::loads::{LoadTransfer, vertical_loads_n};
-use crate::vehicle::tire::{WheelEffort, WheelSlip};
+use crate::vehicle::tire::{WheelEffort, WheelHold, WheelSlip};
 use crate::vehicle::{Equations, N_STATE, VehicleParameters, VehicleState};
 
 /// Number of fixed-point passes by which vertical loads and tire forces are made consistent.
@@ -186,6 +186,18 @@ impl VehicleParameters {
             SVector::from(constants.evaluate(&state, &u).derivative.to_array())
         };
         num_dual::jacobian(f, &SVector::from(x.to_array()))
+    }
+}
+
+impl VehicleConstants<f64> {
+    /// What the road holds of the wheels at a state and an input.
+    pub(super) fn wheel_holds(
+        &self,
+        x: &VehicleState<f64>,
+        u: &VehicleInput<f64>,
+    ) -> [WheelHold; 4] {
+        let slips = self.wheel_slips(x, &Steer::new(u.steer_rad), u.friction_share.as_ref());
+        slips.holds(self.evaluate(x, u).vertical_loads_n)
     }
 }
 

@@ -18,7 +18,7 @@ fn ice() -> FrictionZone {
 
 fn all_locked() -> Controls {
     let wheels = vec![[WheelEffort { locked: 1.0, ..WheelEffort::none() }; 4]];
-    Controls { wheels: Some(WheelHistory { time_s: vec![0.0], wheels }), steer: None }
+    Controls { wheels: Some(WheelHistory { time_s: vec![0.0], wheels }), ..Controls::default() }
 }
 
 fn locked_from(speed_m_s: f64, friction_zones: Vec<FrictionZone>) -> Manoeuvre {

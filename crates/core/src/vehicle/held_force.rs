@@ -193,6 +193,12 @@ impl<'a> HeldForceRun<'a> {
         after.to_array()
     }
 
+    /// Tells the driver how far the car that this one has struck has turned since the first contact, rad;
+    /// `None` before it. It counts from the next output instant on.
+    pub fn sees_struck_turn(&mut self, struck_turn_rad: Option<f64>) {
+        self.run.sees_struck_turn(struck_turn_rad);
+    }
+
     /// Whether the motion ends at this output instant, since its duration is over.
     pub fn is_last(&self) -> bool {
         self.run.is_last()

@@ -24,6 +24,7 @@ mod four_dof;
 mod friction_zone;
 mod ground;
 
+mod drivers;
 mod ending;
 mod ending_file;
 mod fishhook;
@@ -31,6 +32,7 @@ mod held_force;
 mod recorder;
 mod run;
 mod simulate;
+mod sine_with_dwell;
 mod stability;
 
 mod batch;
@@ -44,6 +46,10 @@ pub use constants::VehicleConstants;
 pub use controlled::ControlledVehicle;
 pub use controls::{Controls, SteerHistory, WheelHistory};
 pub use draws::{Sensitivity, VehicleDraws};
+pub use drivers::{
+    AntiLock, ClosedLoop, Countersteer, Market, PitDriver, PitEnd, StabilityControl,
+    esc_is_standard,
+};
 pub use ending::{
     Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
     HeldSteer,
@@ -65,6 +71,9 @@ pub use sheet::{DataSheet, LibraryVehicle, SheetQuantity, VehicleClass};
 pub use simulate::{
     ContactLoad, Integrator, Manoeuvre, Motion, MotionFlag, OUTPUT_INTERVAL_S, ROLL_LIMIT_RAD,
     SimulationError,
+};
+pub use sine_with_dwell::{
+    SineWithDwellOutcome, sine_with_dwell, sine_with_dwell_amplitudes_rad, sine_with_dwell_outcome,
 };
 pub use stability::VehicleMismatch;
 pub use state::{N_ACCELERATION, N_STATE, VehicleState};

@@ -11,6 +11,7 @@
 //! The fastest modes are those of the tires, whose rates λ fall as 1/|v| (`stability.rs`); h_ref is the
 //! step of [`VehicleParameters::simulate`]. While a contact force acts and where the ground has friction
 //! zones, h is at most 5 ms; the mean of the force over a step keeps the impulse exact.
+//! Where drivers or systems act, a step ends at each of their samples, every 10 ms.
 //! Below 0.3 m/s a car that only slows down is not followed by small steps: it comes to rest at its
 //! present deceleration a, after `|v|/(2 a)` more of its present velocities.
 //! The largest difference to the reference step is measured by the test of this file.
@@ -24,8 +25,8 @@ use crate::vehicle::ground::Ground;
 use crate::vehicle::run::{Inputs, StepInputs};
 use crate::vehicle::tire::SLIP_ANGLE_SPEED_M_S;
 use crate::vehicle::{
-    Integrator, N_STATE, REST_DURATION_S, RestWatch, SimulationRun, VehicleConstants, VehicleInput,
-    VehicleState, WheelEffort,
+    Integrator, N_STATE, OUTPUT_INTERVAL_S, REST_DURATION_S, RestWatch, SimulationRun,
+    VehicleConstants, VehicleInput, VehicleState, WheelEffort,
 };
 
 /// Longest step of a path, s.
@@ -149,13 +150,15 @@ struct Lane<'a> {
     /// Speed at the start of the last step, m/s.
     speed_m_s: f64,
     slow_since_s: Option<f64>,
+    /// How often drivers and systems have seen the motion.
+    n_samples: usize,
     points: Vec<PathPoint>,
 }
 
 impl<'a> Lane<'a> {
     fn new(idx: usize, run: &SimulationRun<'a>) -> Self {
         let (vehicle, manoeuvre) = (run.vehicle, run.manoeuvre);
-        let inputs = Inputs::new(manoeuvre);
+        let inputs = Inputs::with_closed_loop(manoeuvre, vehicle);
         let reference_s = Integrator::Rk4.step_s();
         let initial = manoeuvre.initial;
         Self {
@@ -178,6 +181,7 @@ impl<'a> Lane<'a> {
             state: initial.to_array(),
             speed_m_s: 0.0,
             slow_since_s: None,
+            n_samples: 0,
             points: Vec::new(),
         }
     }
@@ -231,7 +235,22 @@ impl<'a> Lane<'a> {
             if is_short { self.longest_step_s.min(CONTACT_STEP_S) } else { self.longest_step_s };
         let by_tires_s = self.step_per_speed_s2_m * (speed_m_s + SLIP_ANGLE_SPEED_M_S);
         self.step_s = by_tires_s.min(longest_s).max(self.shortest_step_s);
+        if self.inputs.has_closed_loop() {
+            self.sample();
+        }
         None
+    }
+
+    /// Lets drivers and systems see the motion where it is time, and shortens the step such that it ends
+    /// not after their next sample.
+    fn sample(&mut self) {
+        let next_s = self.n_samples as f64 * OUTPUT_INTERVAL_S;
+        if self.time_s >= next_s - 1e-9 {
+            self.inputs.sample(next_s, &self.state, &self.constants, &self.ground);
+            self.n_samples += 1;
+        }
+        let left_s = self.n_samples as f64 * OUTPUT_INTERVAL_S - self.time_s;
+        self.step_s = self.step_s.min(left_s);
     }
 
     /// Time to rest at the deceleration of the last step, s; `None` if the vehicle hardly slows down.
@@ -310,9 +329,10 @@ impl WithSimd for Task<'_, '_> {
                 }
                 steps_side_by_side(simd, &of_lanes)
             });
-            let is_settled = running
-                .iter()
-                .all(|lane| lane.time_s >= lane.last_change_s && !lane.ground.has_zones());
+            let is_settled = running.iter().all(|lane| {
+                let depends_on_motion = lane.ground.has_zones() || lane.inputs.has_closed_loop();
+                lane.time_s >= lane.last_change_s && !depends_on_motion
+            });
             step(simd, &of_all, &inputs, &mut running);
             if !end_lanes(&mut running, self.limit, &mut ended) {
                 constants = Some(of_all);

@@ -165,6 +165,7 @@ impl<'a> Recorder<'a> {
             series,
             flags: self.lift.into_iter().chain(self.roll).chain(self.energy).collect(),
             rest_s,
+            applied_controls: None,
         })
     }
 }

@@ -3,7 +3,8 @@
 use crate::data::{CumulativeImpulse, ForceAxes};
 use crate::numerics::{Stage, euler_step, rk4_step};
 use crate::ranges::SIMULATED_DURATION;
-use crate::vehicle::controls::Controls;
+use crate::vehicle::controls::{AppliedControls, Controls};
+use crate::vehicle::drivers::{ClosedLoop, ClosedLoopRun};
 use crate::vehicle::energy::{EnergyWatch, MAX_ENERGY_GAIN};
 use crate::vehicle::ground::Ground;
 use crate::vehicle::recorder::{Forces, Recorder};
@@ -19,6 +20,8 @@ pub(super) struct Run<'a> {
     vehicle: &'a VehicleParameters,
     pub constants: VehicleConstants<f64>,
     inputs: Inputs<'a>,
+    /// What drivers and systems made of the controls; `None` without them.
+    applied: Option<AppliedControls>,
     ground: Ground<'a>,
     ends_at_rest: bool,
     /// Whether the motion goes on where its energy grows.
@@ -46,14 +49,16 @@ impl<'a> Run<'a> {
         let duration_s = SIMULATED_DURATION.check(manoeuvre.duration_s)?;
         vehicle.check_relations()?;
         manoeuvre.friction_zones.iter().try_for_each(FrictionZone::check)?;
-        let inputs = Inputs::new(manoeuvre);
+        let inputs = Inputs::with_closed_loop(manoeuvre, vehicle);
         let rest = RestWatch::after(inputs.last_change_s());
         let (step_s, steps_per_output) = steps(vehicle, integrator, manoeuvre);
         let n_outputs = (duration_s / OUTPUT_INTERVAL_S).round() as usize + 1;
-        Ok(Self {
+        let applied = inputs.has_closed_loop().then(AppliedControls::default);
+        let mut run = Self {
             vehicle,
             constants: vehicle.constants(),
             inputs,
+            applied,
             ground: Ground::new(&manoeuvre.friction_zones, vehicle),
             ends_at_rest: manoeuvre.ends_at_rest,
             is_baseline: integrator == Integrator::Euler || vehicle.equations == Equations::Paper,
@@ -65,7 +70,26 @@ impl<'a> Run<'a> {
             recorder: Recorder::new(vehicle, n_outputs),
             energy: EnergyWatch::default(),
             rest,
-        })
+        };
+        run.sample();
+        Ok(run)
+    }
+
+    /// Lets drivers and systems see the motion at the instant at which it stands.
+    fn sample(&mut self) {
+        let time_s = self.time_s();
+        self.inputs.sample(time_s, &self.state, &self.constants, &self.ground);
+    }
+
+    /// Tells the driver how far the car that was struck by this one has turned since the first contact,
+    /// rad; it counts from the next output instant on.
+    pub fn sees_struck_turn(&mut self, struck_turn_rad: Option<f64>) {
+        self.inputs.sees_struck_turn(struck_turn_rad);
+    }
+
+    /// Whether drivers or systems act on the wheels.
+    pub fn has_controlled_wheels(&self) -> bool {
+        self.inputs.has_controlled_wheels()
     }
 
     /// Axes of the collision force, and whether its yaw moment is recorded.
@@ -154,6 +178,9 @@ impl<'a> Run<'a> {
             return Err(SimulationError::Diverged { time_s });
         }
         self.recorder.record(time_s, &now, coming, forces);
+        if let Some(applied) = &mut self.applied {
+            applied.record(time_s, coming);
+        }
         let share = self.energy.gain(self.vehicle, &now, is_pushed);
         let is_conserved = share <= MAX_ENERGY_GAIN; // not where it is NaN
         if !is_conserved {
@@ -178,18 +205,21 @@ impl<'a> Run<'a> {
             };
         }
         self.output += 1;
+        self.sample();
     }
 
     /// Goes on to the next output instant, where the state is known.
     pub fn advanced_to(&mut self, state: [f64; N_STATE]) {
         self.state = state;
         self.output += 1;
+        self.sample();
     }
 
     /// # Errors
     /// [`SimulationError::Series`] if the samples do not form a valid time series.
     pub fn finish(self) -> Result<Motion, SimulationError> {
-        self.recorder.finish(&self.rest)
+        let motion = self.recorder.finish(&self.rest)?;
+        Ok(Motion { applied_controls: self.applied.map(AppliedControls::finish), ..motion })
     }
 }
 
@@ -201,7 +231,7 @@ fn steps(
 ) -> (f64, usize) {
     let step_s = integrator.step_s();
     let n_substeps = match integrator {
-        Integrator::Rk4 if manoeuvre.controls.wheels.is_some() => {
+        Integrator::Rk4 if manoeuvre.controls.acts_on_wheels() => {
             vehicle.braked_substeps(step_s, &manoeuvre.friction_zones)
         }
         Integrator::Rk4 => vehicle.substeps(step_s),
@@ -216,6 +246,8 @@ fn steps(
 pub(super) struct Inputs<'a> {
     controls: &'a Controls,
     contact: Option<(CumulativeImpulse, &'a ContactLoad)>,
+    /// Drivers and systems, whose part counts from the first sample on.
+    closed_loop: Option<ClosedLoopRun<'a>>,
 }
 
 /// Inputs over one time step.
@@ -226,33 +258,90 @@ pub(super) struct StepInputs<T> {
 }
 
 impl<'a> Inputs<'a> {
+    /// Inputs by the histories alone.
     pub fn new(manoeuvre: &'a Manoeuvre) -> Self {
         let contact = manoeuvre.contact_load.as_ref();
         Self {
             controls: &manoeuvre.controls,
             contact: contact.map(|load| (load.force.cumulative(), load)),
+            closed_loop: None,
+        }
+    }
+
+    /// Inputs by the histories and by what drivers and systems see of the motion.
+    pub fn with_closed_loop(manoeuvre: &'a Manoeuvre, vehicle: &'a VehicleParameters) -> Self {
+        let closed_loop = manoeuvre.controls.closed_loop.as_ref();
+        let closed_loop = closed_loop.map(|it| ClosedLoopRun::new(it, vehicle));
+        Self { closed_loop, ..Self::new(manoeuvre) }
+    }
+
+    /// Whether there are drivers or systems.
+    pub fn has_closed_loop(&self) -> bool {
+        self.closed_loop.is_some()
+    }
+
+    /// Whether there are some that act on the wheels.
+    pub fn has_controlled_wheels(&self) -> bool {
+        self.closed_loop.as_ref().is_some_and(ClosedLoopRun::acts_on_wheels)
+    }
+
+    /// See [`Run::sees_struck_turn`].
+    fn sees_struck_turn(&mut self, struck_turn_rad: Option<f64>) {
+        if let Some(closed_loop) = &mut self.closed_loop {
+            closed_loop.struck_turn_rad = struck_turn_rad;
+        }
+    }
+
+    /// Lets drivers and systems see the motion. What they ask for is held until the next sample, which
+    /// is taken [`OUTPUT_INTERVAL_S`] later.
+    pub fn sample(
+        &mut self,
+        time_s: f64,
+        state: &[f64; N_STATE],
+        constants: &VehicleConstants<f64>,
+        ground: &Ground<'_>,
+    ) {
+        if self.closed_loop.is_none() {
+            return;
+        }
+        let x = VehicleState::from_array(*state);
+        let mut histories = self.histories_at(time_s);
+        histories.friction_share = ground.friction_share(&x);
+        if let Some(closed_loop) = &mut self.closed_loop {
+            closed_loop.sample(time_s, &x, &histories, constants);
+        }
+    }
+
+    /// The inputs by the histories at an instant, without a collision force.
+    fn histories_at(&self, time_s: f64) -> VehicleInput<f64> {
+        let Controls { steer, wheels, .. } = self.controls;
+        VehicleInput {
+            steer_rad: steer.as_ref().map_or(0.0, |steer| steer.at(time_s)),
+            wheels: wheels.as_ref().and_then(|wheels| wheels.at(time_s)),
+            friction_share: None,
+            collision: None,
         }
     }
 
     pub fn over(&self, start_s: f64, step_s: f64) -> StepInputs<f64> {
-        let Controls { steer, wheels } = self.controls;
         let collision = self.collision_over(start_s, step_s);
         let instants_s = [start_s, start_s + step_s / 2.0, start_s + step_s];
-        let at = |time_s: f64| VehicleInput {
-            steer_rad: steer.as_ref().map_or(0.0, |steer| steer.at(time_s)),
-            wheels: wheels.as_ref().and_then(|wheels| wheels.at(time_s)),
-            friction_share: None,
-            collision,
+        let at = |time_s: f64| {
+            let histories = VehicleInput { collision, ..self.histories_at(time_s) };
+            match &self.closed_loop {
+                Some(closed_loop) => closed_loop.applied_to(histories),
+                None => histories,
+            }
         };
         StepInputs { instants: instants_s.map(at) }
     }
 
     /// Whether something may act from an instant on.
     pub fn may_act_from(&self, start_s: f64) -> bool {
-        let Controls { steer, wheels } = self.controls;
+        let Controls { steer, wheels, closed_loop } = self.controls;
         let is_pushed =
             self.contact.as_ref().is_some_and(|(cumulative, _)| start_s < cumulative.end_s());
-        steer.is_some() || wheels.is_some() || is_pushed
+        steer.is_some() || wheels.is_some() || closed_loop.is_some() || is_pushed
     }
 
     /// Axes of the collision force, and whether its yaw moment is recorded.
@@ -265,11 +354,12 @@ impl<'a> Inputs<'a> {
 
     /// The last instant at which force, steer angle or wheels change, s; 0 if nothing acts.
     pub fn last_change_s(&self) -> f64 {
-        let Controls { steer, wheels } = self.controls;
+        let Controls { steer, wheels, closed_loop } = self.controls;
         let contact = self.contact.as_ref().map(|(cumulative, _)| cumulative.end_s());
         let steer = steer.as_ref().and_then(|steer| steer.time_s.last().copied());
         let wheels = wheels.as_ref().and_then(|wheels| wheels.time_s.last().copied());
-        [contact, steer, wheels].into_iter().flatten().fold(0.0, f64::max)
+        let closed_loop = closed_loop.as_ref().map(ClosedLoop::last_change_s);
+        [contact, steer, wheels, closed_loop].into_iter().flatten().fold(0.0, f64::max)
     }
 
     /// The end of the collision force, s; 0 without one.

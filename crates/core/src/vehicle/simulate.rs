@@ -85,7 +85,8 @@ pub struct Manoeuvre {
 impl Manoeuvre {
     /// Inputs of the equations of motion for `n_steps` steps of `step_s` seconds from t = 0: the
     /// mean of the collision force over each step, and the steer angle at the start of the step.
-    /// They do not contain the friction zones, which depend on where the vehicle is.
+    /// They contain neither the friction zones nor drivers and systems, which depend on the motion; see
+    /// [`VehicleParameters::applied_controls`].
     pub fn inputs(&self, step_s: f64, n_steps: usize) -> Vec<VehicleInput<f64>> {
         let inputs = Inputs::new(self);
         let over = |i: usize| inputs.over(i as f64 * step_s, step_s).instants[0];
@@ -159,6 +160,9 @@ pub struct Motion {
     /// [`REST_SPEED_M_S`]: crate::vehicle::REST_SPEED_M_S
     /// [`REST_YAW_RATE_RAD_S`]: crate::vehicle::REST_YAW_RATE_RAD_S
     pub rest_s: Option<f64>,
+    /// Steer angle and wheels as drivers and systems made them, as histories over the output instants;
+    /// `None` where the controls of the manoeuvre have no [`ClosedLoop`](crate::vehicle::ClosedLoop).
+    pub applied_controls: Option<Controls>,
 }
 
 /// Reason why a simulation gives no motion.
@@ -196,6 +200,19 @@ pub enum SimulationError {
 }
 
 impl VehicleParameters {
+    /// The controls of a manoeuvre as histories: what its drivers and systems do in the motion of this
+    /// vehicle. Controls without any are as they are.
+    ///
+    /// # Errors
+    /// Those of [`VehicleParameters::simulate`].
+    pub fn applied_controls(&self, manoeuvre: &Manoeuvre) -> Result<Controls, SimulationError> {
+        if manoeuvre.controls.closed_loop.is_none() {
+            return Ok(manoeuvre.controls.clone());
+        }
+        let motion = self.simulate(manoeuvre, Integrator::Rk4)?;
+        Ok(motion.applied_controls.unwrap_or_default())
+    }
+
     /// Simulates a manoeuvre from t = 0 for its duration, rounded to a multiple of
     /// [`OUTPUT_INTERVAL_S`]. The result is deterministic.
     ///

@@ -24,7 +24,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::numerics::Lanes;
+use crate::numerics::{Four, Lanes};
 use crate::vehicle::constants::TireConstants;
 
 /// Regularisation ε of the slip angle, m/s. Near standstill the lateral force is proportional to
@@ -138,6 +138,17 @@ pub struct WheelSlip<T> {
     longitudinal_ratio: T,
     /// 1/κ.
     per_longitudinal_ratio: T,
+}
+
+/// What the road holds of a wheel.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct WheelHold {
+    /// Largest force across the wheel, μ(α) F_z, N.
+    pub friction_n: f64,
+    /// Largest braking force F_max, beyond which the wheel locks, N; see [`WheelSlip::force_n`].
+    pub largest_braking_n: f64,
+    /// Slip angle α, rad.
+    pub slip_angle_rad: f64,
 }
 
 /// Forces over vertical load of a wheel that rolls freely: those of [`WheelSlip`], which are in
@@ -407,14 +418,35 @@ impl<T: Lanes> WheelSlip<T> {
     /// How far the wheel is locked, 0 to 1.
     #[inline(always)]
     fn locked_share(&self, vertical_load_n: T, effort: &WheelEffort<T>) -> T {
-        let [u, w] = self.velocity_m_s;
-        let (zero, one) = (u.constant(0.0), u.constant(1.0));
-        // A millimetre per second more than nothing, so that the share is a number at rest.
-        let along = u.abs() / (u * u + w * w + 1e-6).sqrt();
-        let largest_n = self.friction * self.longitudinal_ratio * vertical_load_n * along;
+        let (zero, one) = (self.friction.constant(0.0), self.friction.constant(1.0));
+        let largest_n = self.largest_braking_n(vertical_load_n);
         let beyond = (effort.braking_n - largest_n) / (largest_n * LOCKING_SHARE + 1e-3);
         let by_brake = beyond.clamped(zero, one);
         by_brake + (one - by_brake) * effort.locked
+    }
+
+    /// F_max, N.
+    #[inline(always)]
+    fn largest_braking_n(&self, vertical_load_n: T) -> T {
+        let [u, w] = self.velocity_m_s;
+        // A millimetre per second more than nothing, so that it is a number at rest.
+        let along = u.abs() / (u * u + w * w + 1e-6).sqrt();
+        self.friction * self.longitudinal_ratio * vertical_load_n * along
+    }
+}
+
+impl WheelSlip<Four<f64>> {
+    /// What the road holds of the four wheels.
+    pub(super) fn holds(&self, vertical_loads_n: [f64; 4]) -> [WheelHold; 4] {
+        let loads = Four(vertical_loads_n);
+        let Four(friction_n) = self.friction * loads;
+        let Four(largest_n) = self.largest_braking_n(loads);
+        let Four(angles_rad) = self.slip_angle_rad;
+        std::array::from_fn(|wheel| WheelHold {
+            friction_n: friction_n[wheel],
+            largest_braking_n: largest_n[wheel],
+            slip_angle_rad: angles_rad[wheel],
+        })
     }
 }
 

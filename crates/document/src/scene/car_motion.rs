@@ -268,6 +268,7 @@ mod tests {
             share_of_friction: 1.5,
             rise_s: 0.1,
             front_share: None,
+            abs: None,
             lock_delay_s: 0.0,
         };
         let (motion, _) = driven(&Ending { brake: Some(brake), ..Ending::default() }, 25.0);

@@ -222,6 +222,8 @@ pub struct PairRun<'a> {
     absorbed_j: f64,
     friction_heat_j: f64,
     normal_work_j: f64,
+    /// Heading of the struck vehicle at the first contact, rad; `None` before it.
+    first_contact_yaw_rad: Option<f64>,
 }
 
 /// Sums of an output interval.
@@ -259,6 +261,7 @@ impl<'a> PairRun<'a> {
             absorbed_j: 0.0,
             friction_heat_j: 0.0,
             normal_work_j: 0.0,
+            first_contact_yaw_rad: None,
         })
     }
 
@@ -318,7 +321,13 @@ impl<'a> PairRun<'a> {
                 .map_err(|source| PairError::Vehicle { role, source })?;
             goes_on |= moves;
         }
+        if sums.is_pushed {
+            let yaw_rad = VehicleState::from_array(*self.runs[0].state()).yaw_rad;
+            self.first_contact_yaw_rad.get_or_insert(yaw_rad);
+        }
         if goes_on {
+            let yaw_rad = VehicleState::from_array(states[0]).yaw_rad;
+            self.runs[1].sees_struck_turn(self.first_contact_yaw_rad.map(|first| yaw_rad - first));
             for (run, state) in self.runs.iter_mut().zip(states) {
                 run.advanced_to(state);
             }

@@ -105,7 +105,7 @@ impl LoggedImpact {
         let manoeuvre = Manoeuvre {
             initial: states.first().copied().unwrap_or_default(),
             contact_load: load,
-            controls: Controls { steer: steer(&log.series, start_s), wheels: None },
+            controls: Controls { steer: steer(&log.series, start_s), ..Controls::default() },
             duration_s: settings.duration_s,
             ..Manoeuvre::default()
         };

@@ -1,0 +1,125 @@
+//! Drivers and systems along a motion.
+
+use crate::vehicle::drivers::stability_control::StabilityState;
+use crate::vehicle::drivers::striking_driver::PitState;
+use crate::vehicle::drivers::{AntiLock, ClosedLoop, StabilityControl};
+use crate::vehicle::tire::{WheelEffort, WheelHold};
+use crate::vehicle::{
+    Braking, VehicleConstants, VehicleInput, VehicleParameters, VehicleState, Wheel,
+};
+
+/// Drivers and systems along a motion, with what they ask for until the next sample.
+#[derive(Debug, Clone)]
+pub(in crate::vehicle) struct ClosedLoopRun<'a> {
+    closed_loop: &'a ClosedLoop,
+    vehicle: &'a VehicleParameters,
+    esc: StabilityState,
+    pit: PitState,
+    /// How far a car that was struck by this one has turned since the first contact, rad.
+    pub struck_turn_rad: Option<f64>,
+    steer_rad: Option<f64>,
+    braking_n: [f64; 4],
+    drive_n: [f64; 4],
+}
+
+impl<'a> ClosedLoopRun<'a> {
+    pub fn new(closed_loop: &'a ClosedLoop, vehicle: &'a VehicleParameters) -> Self {
+        Self {
+            closed_loop,
+            vehicle,
+            esc: StabilityState::default(),
+            pit: PitState::default(),
+            struck_turn_rad: None,
+            steer_rad: None,
+            braking_n: [0.0; 4],
+            drive_n: [0.0; 4],
+        }
+    }
+
+    /// Whether it brakes or drives wheels. Then wheels have efforts at all times, so that the motion takes
+    /// one way through the equations, by itself and beside others.
+    pub fn acts_on_wheels(&self) -> bool {
+        self.closed_loop.acts_on_wheels()
+    }
+
+    /// The inputs of the histories with what was asked for at the last sample.
+    pub fn applied_to(&self, mut histories: VehicleInput<f64>) -> VehicleInput<f64> {
+        histories.steer_rad = self.steer_rad.unwrap_or(histories.steer_rad);
+        if self.acts_on_wheels() {
+            let wheels = histories.wheels.get_or_insert([WheelEffort::FREE; 4]);
+            for (idx, wheel) in wheels.iter_mut().enumerate() {
+                wheel.braking_n += self.braking_n[idx];
+                wheel.drive_n += self.drive_n[idx];
+            }
+        }
+        histories
+    }
+
+    /// Takes a sample of the motion.
+    ///
+    /// - `histories`: inputs by the histories alone, without a collision force: the systems know the
+    ///   loads of the wheels as they follow from the forces of the road.
+    pub fn sample(
+        &mut self,
+        time_s: f64,
+        x: &VehicleState<f64>,
+        histories: &VehicleInput<f64>,
+        constants: &VehicleConstants<f64>,
+    ) {
+        let ClosedLoop { esc, abs, brake, countersteer, pit } = self.closed_loop;
+        let before = self.applied_to(*histories);
+        let mut pedals: [Option<Braking>; 2] = [*brake, None];
+        self.steer_rad = None;
+        if let Some(driver) = pit {
+            let (vehicle, turn_rad) = (self.vehicle, self.struck_turn_rad);
+            let demand = self.pit.sample(driver, vehicle, time_s, x, before.steer_rad, turn_rad);
+            (self.steer_rad, self.drive_n, pedals[1]) =
+                (demand.steer_rad, demand.drive_n, demand.brake);
+        }
+        if let Some(driver) = countersteer {
+            let steer_rad = || driver.steer_rad(time_s, x, before.steer_rad);
+            self.steer_rad = self.steer_rad.or_else(steer_rad);
+        }
+        if !self.acts_on_wheels() {
+            return;
+        }
+        let steer_rad = self.steer_rad.unwrap_or(histories.steer_rad);
+        let holds = constants.wheel_holds(x, &VehicleInput { steer_rad, ..before });
+        let speed_m_s = x.vx_body_m_s.hypot(x.vy_body_m_s);
+        let by_esc = esc.as_ref().map(|esc| {
+            let asked_n = self.esc.sample(esc, self.vehicle, time_s, x, steer_rad);
+            self.held_at_slip_n(esc, &asked_n, &holds)
+        });
+        let efforts = histories.wheels.unwrap_or([WheelEffort::FREE; 4]);
+        for wheel in Wheel::ALL {
+            let idx = wheel.index();
+            let of_pedal = |pedal: &Braking| pedal.force_n(self.vehicle, wheel, time_s);
+            let pedal_n: f64 = pedals.iter().flatten().map(of_pedal).fold(0.0, f64::max);
+            let (other_n, largest_n) = (efforts[idx].braking_n, holds[idx].largest_braking_n);
+            let allowed_n = |abs: &AntiLock| abs.allowed_n(pedal_n, other_n, largest_n, speed_m_s);
+            let by_pedal_n = abs.as_ref().map_or(pedal_n, allowed_n);
+            self.braking_n[idx] = by_esc.map_or(by_pedal_n, |by_esc| by_pedal_n.max(by_esc[idx]));
+        }
+    }
+
+    /// The forces that a stability control asks for, limited by the slip at which it holds the wheels, N.
+    fn held_at_slip_n(
+        &self,
+        esc: &StabilityControl,
+        asked_n: &[f64; 4],
+        holds: &[WheelHold; 4],
+    ) -> [f64; 4] {
+        let tires = &self.vehicle.tires;
+        let abs = self.closed_loop.abs.unwrap_or_default();
+        Wheel::ALL.map(|wheel| {
+            let WheelHold { friction_n, largest_braking_n, slip_angle_rad } = holds[wheel.index()];
+            let coefficient = match wheel.is_front() {
+                true => tires.cornering_coefficient_front_per_rad,
+                false => tires.cornering_coefficient_rear_per_rad,
+            };
+            let held_n = friction_n * tires.longitudinal_friction_ratio;
+            let by_slip_n = esc.slip_held_n(held_n, coefficient / tires.friction, slip_angle_rad);
+            asked_n[wheel.index()].min(by_slip_n).min(abs.share_of_peak * largest_braking_n)
+        })
+    }
+}

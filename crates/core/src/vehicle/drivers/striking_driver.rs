@@ -1,0 +1,229 @@
+//! A driver who turns the own car into the rear quarter of another one (precision immobilization
+//! technique, PIT).
+//!
+//! The driver runs beside the other car at its speed, turns the steering wheel by a quarter to half a turn
+//! within 0.2 to 0.5 s, and holds the throttle such that the speed is kept:
+//!
+//! ```text
+//! F_drive = m min((v₀ − v_x)/T, a_max), 0 or more        v₀: speed at the start, T = 0.5 s
+//! ```
+//!
+//! When the struck car has turned by a stated angle since the first contact, or after a stated time, the
+//! driver straightens the wheels and coasts, or straightens them and brakes, or keeps pushing.
+//! Source of the technique: policies and training documents of police agencies, which describe matched
+//! speeds and a turn of the steering wheel by a quarter to half a turn; the values are ours.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::ranges::{
+    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, PIT_START, Range, STEER_ANGLE, STEERING_RATIO,
+    STEERING_WHEEL_ANGLE, STRUCK_TURN, THROTTLE_LIMIT,
+};
+use crate::vehicle::drivers::numbers::{Number, named, uniform};
+use crate::vehicle::drivers::struck_driver::turned_towards;
+use crate::vehicle::{
+    Braking, DEFAULT_BRAKE_RISE_S, DrivenAxle, USUAL_STEERING_RATIO, VehicleParameters,
+    VehicleState, Wheel,
+};
+
+/// T: time constant by which the driver keeps the speed, s.
+const THROTTLE_TIME_S: f64 = 0.5;
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// What the driver does once the struck car has turned.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    Default,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+    strum::VariantNames,
+    JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum PitEnd {
+    /// Turns the wheels straight and lets the car coast.
+    Straighten,
+    /// Turns the wheels straight and brakes.
+    #[default]
+    Brake,
+    /// Holds steering wheel and throttle to the end.
+    KeepPushing,
+}
+
+impl PitEnd {
+    /// All of them.
+    pub const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
+
+    /// Its word in a file and in a list.
+    pub fn word(self) -> &'static str {
+        self.into()
+    }
+}
+
+/// The driver of the striking car in a PIT.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct PitDriver {
+    /// When the steering wheel begins to turn, s after the first contact; less than 0 before it.
+    pub start_s: f64,
+    /// Angle of the steering wheel, rad, positive to the left: 90° to 180° to either side.
+    pub steering_wheel_rad: f64,
+    /// Time in which it turns, s: 0.2 to 0.5 s.
+    pub turn_s: f64,
+    /// Angle of the steering wheel over that of the road wheels. Road wheels turn by at most 0.9 rad.
+    pub steering_ratio: f64,
+    /// The axle that is driven.
+    pub axle: DrivenAxle,
+    /// Largest acceleration of the car alone by its engine, m/s².
+    pub largest_acceleration_m_s2: f64,
+    /// What the driver does in the end.
+    pub end: PitEnd,
+    /// Turn of the struck car since the first contact at which the driver ends the pushing, rad, to
+    /// either side. It counts only where both cars are followed together.
+    pub struck_turn_rad: f64,
+    /// Time after the first contact at which the driver ends the pushing in any case, s; none if `None`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub longest_s: Option<f64>,
+    /// Braking force over the largest that the road can hold, of a driver who brakes in the end.
+    pub brake_share: f64,
+}
+
+impl Default for PitDriver {
+    fn default() -> Self {
+        Self {
+            start_s: 0.0,
+            steering_wheel_rad: 135.0 * DEGREE,
+            turn_s: 0.35,
+            steering_ratio: USUAL_STEERING_RATIO,
+            axle: DrivenAxle::default(),
+            largest_acceleration_m_s2: 3.0,
+            end: PitEnd::default(),
+            struck_turn_rad: 45.0 * DEGREE,
+            longest_s: None,
+            brake_share: 0.8,
+        }
+    }
+}
+
+impl PitDriver {
+    /// Number of standard normal variables that [`PitDriver::drawn`] takes.
+    pub const N_DRAWN: usize = 5;
+
+    /// An unknown driver, who steers to the side and from the moment that are known. Uniform are the angle
+    /// of the steering wheel (90° to 180°), the time of the turn (0.2 to 0.5 s), the largest acceleration
+    /// (2 to 4 m/s²) and the turn of the struck car (30° to 90°); each end has the same probability.
+    pub fn drawn(&self, z: [f64; Self::N_DRAWN]) -> Self {
+        let [angle, turn, acceleration, struck_turn, end] = z;
+        let angle_rad = uniform(angle, [90.0, 180.0]) * DEGREE;
+        let n_ends = PitEnd::ALL.len();
+        let end_idx = uniform(end, [0.0, n_ends as f64]) as usize;
+        Self {
+            steering_wheel_rad: angle_rad.copysign(self.steering_wheel_rad),
+            turn_s: uniform(turn, [0.2, 0.5]),
+            largest_acceleration_m_s2: uniform(acceleration, [2.0, 4.0]),
+            struck_turn_rad: uniform(struck_turn, [30.0, 90.0]) * DEGREE,
+            end: PitEnd::ALL[end_idx.min(n_ends - 1)],
+            ..*self
+        }
+    }
+
+    /// Every number with its name without the unit, and its range.
+    pub(in crate::vehicle) fn numbers(&mut self) -> [Number<'_>; 7] {
+        [
+            ("start", &mut self.start_s, PIT_START),
+            ("steering_wheel", &mut self.steering_wheel_rad, STEERING_WHEEL_ANGLE),
+            ("turn", &mut self.turn_s, BRAKE_RISE),
+            ("steering_ratio", &mut self.steering_ratio, STEERING_RATIO),
+            ("largest_acceleration", &mut self.largest_acceleration_m_s2, THROTTLE_LIMIT),
+            ("struck_turn", &mut self.struck_turn_rad, STRUCK_TURN),
+            ("brake_share", &mut self.brake_share, BRAKE_SHARE),
+        ]
+    }
+
+    /// Every number with its name and its range.
+    pub fn ranges(&self) -> Vec<(String, f64, Range)> {
+        let mut copy = *self;
+        let longest = self.longest_s.map(|it| ("longest_s".to_owned(), it, CONTROL_TIME));
+        named(copy.numbers()).into_iter().chain(longest).collect()
+    }
+
+    /// Full steer angle of the road wheels, rad.
+    pub fn road_wheel_rad(&self) -> f64 {
+        (self.steering_wheel_rad / self.steering_ratio).clamp(STEER_ANGLE.low, STEER_ANGLE.high)
+    }
+}
+
+/// What the driver remembers from sample to sample.
+#[derive(Debug, Clone, Default)]
+pub(super) struct PitState {
+    /// Speed that is kept, m/s.
+    speed_m_s: Option<f64>,
+    /// Since when the driver has ended the pushing, s.
+    ended_s: Option<f64>,
+    /// Whether the wheels are straight again.
+    is_straight: bool,
+}
+
+/// What the driver asks for.
+pub(super) struct PitDemand {
+    /// Steer angle of the road wheels, rad; `None` once they are straight after the pushing, so that
+    /// something else may steer.
+    pub steer_rad: Option<f64>,
+    /// Drive forces of the wheels, N.
+    pub drive_n: [f64; 4],
+    /// Braking by the pedal.
+    pub brake: Option<Braking>,
+}
+
+impl PitState {
+    /// Takes a sample.
+    ///
+    /// - `steer_rad`: steer angle of the road wheels until now;
+    /// - `struck_turn_rad`: how far the struck car has turned since the first contact; `None` where it is
+    ///   not followed, or not touched yet.
+    pub fn sample(
+        &mut self,
+        driver: &PitDriver,
+        vehicle: &VehicleParameters,
+        time_s: f64,
+        x: &VehicleState<f64>,
+        steer_rad: f64,
+        struck_turn_rad: Option<f64>,
+    ) -> PitDemand {
+        let speed_m_s = *self.speed_m_s.get_or_insert(x.vx_body_m_s);
+        let has_turned = struck_turn_rad.is_some_and(|turn| turn.abs() >= driver.struck_turn_rad);
+        let is_over = driver.longest_s.is_some_and(|longest_s| time_s >= longest_s - 1e-9);
+        if driver.end != PitEnd::KeepPushing && (has_turned || is_over) {
+            self.ended_s.get_or_insert(time_s);
+        }
+        let full_rad = driver.road_wheel_rad();
+        let Some(ended_s) = self.ended_s else {
+            let turned = ((time_s - driver.start_s) / driver.turn_s).clamp(0.0, 1.0);
+            let wanted_m_s2 = (speed_m_s - x.vx_body_m_s) / THROTTLE_TIME_S;
+            let drive_m_s2 = wanted_m_s2.clamp(0.0, driver.largest_acceleration_m_s2);
+            return PitDemand {
+                steer_rad: Some(full_rad * turned),
+                drive_n: driver.axle.shared_n(vehicle.mass.mass_kg * drive_m_s2),
+                brake: None,
+            };
+        };
+        self.is_straight |= steer_rad == 0.0 && time_s > ended_s;
+        let rate_rad_s = full_rad.abs() / driver.turn_s;
+        let is_braking = driver.end == PitEnd::Brake;
+        PitDemand {
+            steer_rad: (!self.is_straight).then(|| turned_towards(steer_rad, 0.0, rate_rad_s)),
+            drive_n: [0.0; Wheel::ALL.len()],
+            brake: is_braking
+                .then(|| Braking::new(ended_s, driver.brake_share, DEFAULT_BRAKE_RISE_S)),
+        }
+    }
+}
