@@ -100,10 +100,10 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
     Ok(Analysis {
         name: case.name.clone(),
         footprint,
+        controls: motion.applied_controls.clone().unwrap_or_else(|| controls.clone()),
         simulation: Some(motion),
         vehicle: vehicle.clone(),
         force: Some(force),
-        controls: controls.clone(),
         friction_zones: settings.friction_zones.clone(),
         struck: Some(StruckVehicle {
             vehicle,

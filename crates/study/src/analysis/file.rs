@@ -49,9 +49,11 @@ pub fn analyse_drive(
     controls.steer = steer.or(controls.steer);
     controls.wheels = wheels.or(controls.wheels);
     let motion = simulate(initial, settings.duration_s, load.as_ref(), controls.clone(), settings)?;
+    let applied = motion.applied_controls.clone().unwrap_or_else(|| controls.clone());
     Ok(Analysis {
         simulation: Some(motion),
         notes,
+        controls: applied,
         ..not_simulated(name, Some(initial), controls, load, settings)
     })
 }
@@ -94,8 +96,11 @@ pub fn analyse_recording(
     let error = simulation.as_ref().map(between).transpose()?;
     let reference = Some(file.series.clone());
     let controls = settings.ending.controls(&settings.struck);
+    let applied = simulation.as_ref().and_then(|motion| motion.applied_controls.clone());
+    let controls_of_motion = applied.unwrap_or_else(|| controls.clone());
     let analysis = not_simulated(name, initial, controls, load, settings);
-    Ok(Analysis { simulation, reference, error, notes, ..analysis })
+    let controls = controls_of_motion;
+    Ok(Analysis { simulation, reference, error, notes, controls, ..analysis })
 }
 
 /// Simulates the struck vehicle; a recorded yaw moment takes precedence over that of the contact

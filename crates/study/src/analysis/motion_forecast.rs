@@ -169,9 +169,16 @@ impl StruckVehicle {
         }
     }
 
-    /// Inputs of the vehicle at each time step under a force.
-    pub(super) fn inputs(&self, force: &ForceHistory, duration_s: f64) -> Vec<VehicleInput<f64>> {
-        let manoeuvre = Manoeuvre {
+    /// Inputs of the vehicle at each time step under a force. Drivers and systems do what they do in the
+    /// motion of the 4DOF model under this force.
+    ///
+    /// - returns `None` where that motion cannot be computed.
+    pub(super) fn inputs(
+        &self,
+        force: &ForceHistory,
+        duration_s: f64,
+    ) -> Option<Vec<VehicleInput<f64>>> {
+        let mut manoeuvre = Manoeuvre {
             initial: self.initial,
             contact_load: Some(ContactLoad {
                 force: force.clone(),
@@ -183,7 +190,8 @@ impl StruckVehicle {
             ends_at_rest: false,
             friction_zones: Vec::new(),
         };
-        manoeuvre.inputs(STEP_S, (duration_s / STEP_S).round() as usize)
+        manoeuvre.controls = self.vehicle.applied_controls(&manoeuvre).ok()?;
+        Some(manoeuvre.inputs(STEP_S, (duration_s / STEP_S).round() as usize))
     }
 }
 
@@ -343,7 +351,7 @@ fn propagated(
     let forecast = |part: usize| {
         let (force, predictor) =
             (forces.get(part % forces.len())?, predictors.get(part % predictors.len())?);
-        let inputs = struck.inputs(force, settings.duration_s);
+        let inputs = struck.inputs(force, settings.duration_s)?;
         Some(Part {
             motion: predictor.motion(&struck.initial, &inputs),
             path: predictor.central_path(&struck.initial, &inputs),

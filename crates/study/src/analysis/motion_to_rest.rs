@@ -92,7 +92,7 @@ impl ToRest<'_> {
     fn part(&self, part: usize, n_parts: usize) -> Option<Part> {
         let force = self.forces.get(part % self.forces.len())?;
         let predictor = self.predictors.get(part % self.predictors.len())?;
-        let inputs = self.struck.inputs(force, self.limit_s);
+        let inputs = self.struck.inputs(force, self.limit_s)?;
         let initial = &self.struck.initial;
         let search = RestSearch {
             seed: self.seed,

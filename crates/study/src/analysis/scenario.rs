@@ -116,7 +116,7 @@ pub fn analyse_scenario(
         vehicle: struck.vehicle.clone(),
         footprint: scenario.struck.footprint(),
         force: Some(force),
-        controls: struck.controls.clone(),
+        controls: motion.applied_controls.clone().unwrap_or_else(|| struck.controls.clone()),
         friction_zones: settings.friction_zones.clone(),
         struck: Some(struck),
         simulation: Some(motion),

@@ -15,7 +15,7 @@ use impactlab_core::collision::{
     FrictionModel, Pose, RestitutionForm, Scenario, ScenarioContact, ScenarioGeometry,
     ScenarioVehicle,
 };
-use impactlab_core::uncertainty::Caveat;
+use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::percent;
 use impactlab_core::vehicle::{Preset, VehicleParameters};
 
@@ -33,6 +33,17 @@ pub(crate) fn zones_by_network(struck: &StruckVehicle) -> Option<Caveat> {
             format!("friction zones: {}", names.join(", ")),
             "the response network has learned motions on one ground: the forecast has the friction of \
              the vehicle's tires everywhere",
+        )
+    })
+}
+
+/// How drivers and systems act in a forecast with a response network, if there are some.
+pub(crate) fn drivers_by_network(struck: &StruckVehicle) -> Option<Caveat> {
+    struck.controls.closed_loop.as_ref().map(|_| {
+        Caveat::new(
+            CaveatKind::Note,
+            "stability control and anti-lock system act in the forecast as in the motion of the 4DOF \
+             model under the same force; they do not react to what the network adds to it",
         )
     })
 }
@@ -213,7 +224,6 @@ pub(crate) fn by_forecast(request: &PredictMotionRequest) -> Vec<Caveat> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impactlab_core::uncertainty::CaveatKind;
     use impactlab_core::vehicle::{ContactPoint, Controls, FrictionZone, VehicleState};
 
     #[test]

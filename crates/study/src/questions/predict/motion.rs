@@ -14,7 +14,7 @@ use crate::ask::checks::{check, check_count};
 use crate::caveats::assumed::contact_default;
 use crate::caveats::restrictions;
 use crate::caveats::unused::{
-    by_force_network, by_forecast, contact_by_force_network, zones_by_network,
+    by_force_network, by_forecast, contact_by_force_network, drivers_by_network, zones_by_network,
 };
 use crate::questions::simulate::dataset::take_case;
 use crate::{
@@ -240,6 +240,7 @@ impl Question for PredictMotionRequest {
             return Err(StudyError::NoForce { name: name() });
         };
         unused.extend(zones_by_network(struck));
+        unused.extend(drivers_by_network(struck));
         let model = library.response_model(&self.response_model)?;
         // A fleet has braked and dragged wheels, none that are steered or driven.
         let controls = &struck.controls;

@@ -127,9 +127,8 @@ impl Drive {
 
     /// Checks that not two things steer the vehicle, nor brake or drive it.
     fn check_one_control(&self, ending: &Ending) -> Result<(), StudyError> {
-        let steers = [self.steer.is_some(), self.fishhook, ending.steer.is_some()];
-        let has_wheels = !(Ending { steer: None, ..ending.clone() }).is_coasting();
-        let wheels = [self.wheels.is_some(), has_wheels];
+        let steers = [self.steer.is_some(), self.fishhook, ending.steers()];
+        let wheels = [self.wheels.is_some(), ending.acts_on_wheels()];
         let is_many = |given: &[bool]| given.iter().filter(|is_given| **is_given).count() > 1;
         for (is_many, what) in [(is_many(&steers), "steer"), (is_many(&wheels), "brake or drive")] {
             if is_many {
