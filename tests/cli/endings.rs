@@ -51,6 +51,46 @@ fn a_locked_wheel_and_a_scenario_that_brakes_change_the_path_and_coast_undoes_it
 }
 
 #[test]
+fn systems_and_drivers_are_said_by_options_or_by_the_scenario() {
+    let stop = |extra: &[&str]| {
+        answer(&[&STRAIGHT[..], &["--brake", "1.5", "--until-rest"], extra].concat())
+    };
+    let [locked, held, esc] = [stop(&[]), stop(&["--abs"]), stop(&["--esc"])];
+    let marked_m = |stop: &serde_json::Value| -> f64 {
+        let marks = stop["tyre_marks"].as_array().unwrap();
+        marks.iter().map(|mark| mark["length_m"].as_f64().unwrap()).sum()
+    };
+    // The wheels lock for the last decimetres alone.
+    assert!(marked_m(&locked) > 60.0 && marked_m(&held) < 2.0, "{locked} {held}");
+    assert_eq!(held["end"], esc["end"], "a stability control has an anti-lock system");
+    assert!(refusal(&[&STRAIGHT[..], &["--abs"]].concat()).contains("--brake"));
+    assert!(refusal(&[&STRAIGHT[..], &["--coast", "--esc"]].concat()).contains("--esc"));
+
+    let yaw = |extra: &[&str]| {
+        let spun = [&STRAIGHT[..], &["--yaw-rate", "40deg/s"], extra].concat();
+        answer(&spun)["end"]["yaw_rad"].as_f64().unwrap()
+    };
+    let [alone, steered] = [yaw(&[]), yaw(&["--countersteer", "0.3"])];
+    assert!((steered - alone).abs() > 0.01, "{steered} {alone}");
+    assert!((yaw(&["--countersteer"]) - yaw(&["--countersteer", "0.8s"])).abs() < 1e-12);
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("esc.toml");
+    let pit = fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap();
+    let with = |sections: &str| {
+        fs::write(&path, format!("{pit}\n{sections}")).unwrap();
+        answer(&["simulate", "--scenario", text(&path), "--duration", "6"])
+    };
+    let plain = with("");
+    let esc = with("[ending]\nesc = true\n");
+    assert_ne!(plain["end"], esc["end"]);
+    let pushing = with("[bullet_ending]\npit = \"brake\"\npit_longest_s = 1\n");
+    assert_eq!(plain["end"], pushing["end"], "the struck car is followed apart from the other one");
+    fs::write(&path, format!("{pit}\n[ending]\nesc_rise_s = 0.2\n")).unwrap();
+    assert!(refusal(&["simulate", "--scenario", text(&path)]).contains("esc is missing"));
+}
+
+#[test]
 fn a_locked_stop_tells_its_four_marks_and_a_rolling_car_none() {
     let stop = answer(&[&STRAIGHT[..], &["--brake", "1.5", "--until-rest"]].concat());
     let marks = stop["tyre_marks"].as_array().unwrap();

@@ -5,13 +5,15 @@ use strum::VariantArray;
 
 use crate::app::widgets::quantity_field;
 use impactlab_core::ranges::{
-    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, STEER_ANGLE,
-    STEERING_RATIO, STEERING_WHEEL_ANGLE,
+    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DEAD_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING,
+    ESC_THRESHOLD, LARGEST_STEERING_WHEEL_ANGLE, PIT_START, REACTION_TIME, SIDESLIP, STEER_ANGLE,
+    STEERING_RATIO, STEERING_WHEEL_ANGLE, STRUCK_TURN,
 };
 use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::{
-    Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
-    HeldSteer, USUAL_STEERING_RATIO, Wheel,
+    AntiLock, Braking, Countersteer, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving,
+    Ending, EngineBraking, HeldSteer, PitDriver, PitEnd, StabilityControl, USUAL_STEERING_RATIO,
+    Wheel,
 };
 
 /// Share of the friction with which a driver brakes hard.
@@ -24,6 +26,8 @@ const USUAL_DRAG: f64 = 0.5;
 const USUAL_ENGINE_BRAKING_M_S2: f64 = 0.5;
 /// Torque at the wheels of a car that accelerates briskly, N m: some 0.2 g at 1500 kg.
 const USUAL_DRIVE_TORQUE_N_M: f64 = 1000.0;
+/// Time for which a driver pushes another car, s.
+const USUAL_PUSHING_S: f64 = 1.5;
 /// A small steer angle, rad: 3°.
 const SMALL_STEER_RAD: f64 = 0.0524;
 
@@ -52,6 +56,9 @@ pub(super) fn ending_form(
                 wheel_fields(ui, wheel, &mut edited.damage, units);
             }
             steer_fields(ui, &mut edited.steer, steering_ratio, units);
+            esc_fields(ui, &mut edited.esc, units);
+            countersteer_fields(ui, &mut edited.countersteer, units);
+            pit_fields(ui, &mut edited.pit, units);
         });
         if ending.clone().unwrap_or_default() != edited {
             *ending = (!edited.is_coasting()).then_some(edited);
@@ -75,6 +82,61 @@ fn brake_fields(ui: &mut Ui, brake: &mut Option<Braking>, units: UnitSystem) {
     quantity_field(ui, "from", &mut brake.start_s, &CONTROL_TIME, units);
     quantity_field(ui, "share of friction", &mut brake.share_of_friction, &BRAKE_SHARE, units);
     quantity_field(ui, "rises over", &mut brake.rise_s, &BRAKE_RISE, units);
+    switch(ui, "with an anti-lock system", &mut brake.abs, AntiLock::default());
+}
+
+fn esc_fields(ui: &mut Ui, esc: &mut Option<StabilityControl>, units: UnitSystem) {
+    switch(ui, "Stability control (with anti-lock system)", esc, StabilityControl::default());
+    let Some(esc) = esc else { return };
+    quantity_field(ui, "on from an oversteer of", &mut esc.threshold_rad_s, &ESC_THRESHOLD, units);
+    quantity_field(ui, "dead time", &mut esc.dead_time_s, &DEAD_TIME, units);
+    let gives_up = &mut esc.gives_up_sideslip_rad;
+    quantity_field(ui, "gives up at a side slip of (90°: never)", gives_up, &SIDESLIP, units);
+}
+
+fn countersteer_fields(ui: &mut Ui, driver: &mut Option<Countersteer>, units: UnitSystem) {
+    switch(ui, "The driver countersteers", driver, Countersteer::default());
+    let Some(driver) = driver else { return };
+    quantity_field(ui, "reaction time", &mut driver.delay_s, &REACTION_TIME, units);
+    let largest_rad = &mut driver.largest_steering_wheel_rad;
+    let label = "angle of the steering wheel at most";
+    quantity_field(ui, label, largest_rad, &LARGEST_STEERING_WHEEL_ANGLE, units);
+}
+
+fn pit_fields(ui: &mut Ui, driver: &mut Option<PitDriver>, units: UnitSystem) {
+    switch(ui, "The driver turns into the other car (PIT)", driver, PitDriver::default());
+    let Some(driver) = driver else { return };
+    quantity_field(ui, "from (less than 0: before it)", &mut driver.start_s, &PIT_START, units);
+    let angle_rad = &mut driver.steering_wheel_rad;
+    quantity_field(ui, "steering wheel, to the left", angle_rad, &STEERING_WHEEL_ANGLE, units);
+    quantity_field(ui, "turned within", &mut driver.turn_s, &BRAKE_RISE, units);
+    let name = ui.label("in the end");
+    ComboBox::from_id_salt("in the end")
+        .selected_text(pit_end_label(driver.end))
+        .show_ui(ui, |ui| {
+            for &option in PitEnd::ALL {
+                ui.selectable_value(&mut driver.end, option, pit_end_label(option));
+            }
+        })
+        .response
+        .labelled_by(name.id);
+    ui.end_row();
+    if driver.end != PitEnd::KeepPushing {
+        let turn_rad = &mut driver.struck_turn_rad;
+        quantity_field(ui, "once the struck car has turned by", turn_rad, &STRUCK_TURN, units);
+        switch(ui, "or after a time", &mut driver.longest_s, USUAL_PUSHING_S);
+        if let Some(longest_s) = &mut driver.longest_s {
+            quantity_field(ui, "time", longest_s, &CONTROL_TIME, units);
+        }
+    }
+}
+
+fn pit_end_label(end: PitEnd) -> &'static str {
+    match end {
+        PitEnd::Straighten => "straightens and coasts",
+        PitEnd::Brake => "straightens and brakes",
+        PitEnd::KeepPushing => "keeps pushing",
+    }
 }
 
 fn engine_fields(ui: &mut Ui, engine: &mut Option<EngineBraking>, units: UnitSystem) {

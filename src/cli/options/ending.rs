@@ -8,11 +8,11 @@ use crate::cli::options::choices::{Words, one_of};
 use crate::cli::options::quantity::{QuantityError, number};
 use impactlab_core::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, OutOfRange,
-    STEER_ANGLE, STEERING_RATIO, STEERING_WHEEL_ANGLE,
+    REACTION_TIME, STEER_ANGLE, STEERING_RATIO, STEERING_WHEEL_ANGLE,
 };
 use impactlab_core::vehicle::{
-    Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
-    HeldSteer, Wheel,
+    AntiLock, Braking, Countersteer, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving,
+    Ending, EngineBraking, HeldSteer, StabilityControl, USUAL_STEERING_RATIO, Wheel,
 };
 
 /// What the driver does and what the damage does to the wheels.
@@ -23,10 +23,10 @@ use impactlab_core::vehicle::{
 pub(in crate::cli) struct EndingArgs {
     /// The vehicle coasts, also where the scenario says something else
     #[arg(long, conflicts_with_all = ["brake", "engine_braking", "drive_torque", "locked",
-        "dragged", "steer_angle", "steering_wheel"])]
+        "dragged", "steer_angle", "steering_wheel", "esc", "countersteer"])]
     coast: bool,
-    /// The driver brakes with this share of what the road can hold (without an anti-lock system:
-    /// more than 1 locks the wheels)
+    /// The driver brakes with this share of what the road can hold (more than 1 locks the wheels,
+    /// unless there is --abs or --esc)
     #[arg(long, value_name = "SHARE", value_parser = number(BRAKE_SHARE))]
     brake: Option<f64>,
     /// When the braking begins, s
@@ -37,6 +37,17 @@ pub(in crate::cli) struct EndingArgs {
     #[arg(long, value_name = "TIME", value_parser = number(BRAKE_RISE),
         default_value_t = DEFAULT_BRAKE_RISE_S, requires = "brake")]
     brake_rise: f64,
+    /// The brakes have an anti-lock system
+    #[arg(long, requires = "brake")]
+    abs: bool,
+    /// The vehicle has a stability control, and with it an anti-lock system; standard in cars from the
+    /// model year 2012 on in the United States, and from 2015 on in the European Union
+    #[arg(long)]
+    esc: bool,
+    /// The driver countersteers after this reaction time
+    #[arg(long, value_name = "TIME", value_parser = number(REACTION_TIME), num_args = 0..=1,
+        default_missing_value = "0.8")]
+    countersteer: Option<f64>,
     /// The engine brakes with this deceleration: 0.5, 0.05g
     #[arg(long, value_name = "DECELERATION", value_parser = number(ENGINE_BRAKING))]
     engine_braking: Option<f64>,
@@ -138,7 +149,11 @@ impl EndingArgs {
             |(wheel, share)| DamagedWheel { wheel, start_s: 0.0, drag_share_of_friction: share };
         let ending = Ending {
             brake: self.brake.map(|share_of_friction| {
-                Braking::new(self.brake_start, share_of_friction, self.brake_rise)
+                let abs = self.abs.then(AntiLock::default);
+                Braking {
+                    abs,
+                    ..Braking::new(self.brake_start, share_of_friction, self.brake_rise)
+                }
             }),
             engine: self
                 .engine_braking
@@ -155,7 +170,13 @@ impl EndingArgs {
                 rise_s: self.steer_rise,
                 road_wheel_rad,
             }),
-            ..Ending::default()
+            esc: self.esc.then(StabilityControl::default),
+            countersteer: self.countersteer.map(|delay_s| Countersteer {
+                delay_s,
+                steering_ratio: self.steering_ratio.unwrap_or(USUAL_STEERING_RATIO),
+                ..Countersteer::default()
+            }),
+            pit: None,
         };
         Ok((self.coast || !ending.is_coasting()).then_some(ending))
     }
