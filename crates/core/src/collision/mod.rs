@@ -83,3 +83,6 @@ pub use scenario::{
 };
 pub use scenario_preset::SCENARIO_PRESETS;
 pub use second_contact::SecondContact;
+
+#[cfg(test)]
+mod pit_tests;
