@@ -340,6 +340,7 @@ impl Columns {
                 time_s: time_s.to_vec(),
                 wheels: (0..n).map(wheels).collect(),
             }),
+            ..Controls::default()
         })
     }
 }
