@@ -11,6 +11,10 @@ use crate::vehicle::{
     VehicleInput, VehicleParameters, VehicleState, WheelEffort,
 };
 
+/// Largest turn of a vehicle over a step, rad: the momentum of a body that moves freely, whose velocity is
+/// in axes that turn with it, then changes by less than 1e-9 of itself.
+const LARGEST_TURN_RAD: f64 = 0.02;
+
 /// A motion under a collision force that is held over steps. It stands at an output instant; the states
 /// within an output interval belong to the caller.
 pub(crate) struct HeldForceRun<'a> {
@@ -75,7 +79,8 @@ impl<'a> HeldForceRun<'a> {
         let x = VehicleState::from_array(*state);
         let speed_m_s = x.vx_body_m_s.hypot(x.vy_body_m_s) + YAW_ARM_M * x.yaw_rate_rad_s.abs();
         let by_tires_s = self.step_per_speed_s2_m * (speed_m_s + SLIP_ANGLE_SPEED_M_S);
-        let longest_s = by_tires_s.min(self.roll_step_s).max(self.run.step_s);
+        let by_turn_s = LARGEST_TURN_RAD / x.yaw_rate_rad_s.abs().max(f64::MIN_POSITIVE);
+        let longest_s = by_tires_s.min(by_turn_s).min(self.roll_step_s).max(self.run.step_s);
         if self.run.has_zones() { longest_s.min(ZONE_STEP_S) } else { longest_s }
     }
 

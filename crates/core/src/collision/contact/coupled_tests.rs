@@ -330,7 +330,8 @@ fn vehicles_that_do_not_meet_move_as_by_themselves() {
                 [motion, &alone].map(|motion| motion.series.require(channel).unwrap());
             for (got, expected) in got.iter().zip(expected) {
                 let off = (got - expected).abs();
-                assert!(off <= 1e-9 * expected.abs().max(1.0), "{channel:?}: {got}, {expected}");
+                // The steps of a pair follow the speed.
+                assert!(off <= 1e-6 * expected.abs().max(1.0), "{channel:?}: {got}, {expected}");
             }
         }
     }

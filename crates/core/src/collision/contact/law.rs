@@ -32,9 +32,9 @@ pub const RECOVERY_END_M: f64 = 52.5 * 0.0254;
 /// [`EdsmacManual`](crate::bibliography::EdsmacManual).
 pub const CRUSHED_RECOVERY: f64 = 0.046_06;
 
-/// Share ρ that the elastic branch gives back, a coefficient of restitution √ρ of 0.2. Slow impacts of
+/// Share ρ that the elastic branch gives back, a coefficient of restitution √ρ of 0.22. Slow impacts of
 /// bumpers have 0.32 to 0.4; pushing pairs, whose faces slide along each other, come out nearer with less.
-pub const ELASTIC_RECOVERY: f64 = 0.04;
+pub const ELASTIC_RECOVERY: f64 = 0.05;
 
 /// Load below which there is none, N/m, so that no quotient has a divisor of zero.
 const NO_LOAD_N_PER_M: f64 = 1e-9;
