@@ -286,7 +286,7 @@ pub(super) const WORDS: Words = Words {
         20 davon wurden beim Einstellen des Verfahrens betrachtet \
         („Einstellung“). Kein realer Unfall wurde geprüft.",
     measured_on: "gemessen am",
-    table_reconstruction: "Anteil der wahren Werte in den Intervallen, % (Grenzen von 95 % Sicherheit), und Fehler; alles bekannt",
+    table_reconstruction: "Anteil der wahren Werte in den Intervallen, % (Grenzen von 95 % Sicherheit), und Fehler; alles bekannt. Andere Rechnungen: Fälle beider Hälften, deren Finite-Elemente-Rechnung nicht unter denen ist, an die die Annahme über Stoßzahl und Reibung angepasst ist",
     table_without_recorder: "Dasselbe ohne den Unfalldatenspeicher",
     table_rest_alone: "Dasselbe allein mit Endlagen, Schaden, Massen und Reibwert",
     validation_sheet: "Die Regeln tragen die Streuung der Fahrzeuge, aus denen sie stammen; sie steht bei jedem \

@@ -276,7 +276,7 @@ pub(super) const WORDS: Words = Words {
     validation_reconstruction: "40 simulated rear-quarter impacts on one multibody car of three masses; 20 of them were looked at while the method was set (“tuning”). No real \
         collision was tried.",
     measured_on: "measured on",
-    table_reconstruction: "Share of the true values inside the intervals, % (bounds of 95 % confidence), and errors; everything known",
+    table_reconstruction: "Share of the true values inside the intervals, % (bounds of 95 % confidence), and errors; everything known. Other runs: cases of both halves whose finite-element run is not among those that the prior of restitution and friction was fitted to",
     table_without_recorder: "The same without the event data recorder",
     table_rest_alone: "The same with the rest poses, damage, masses and friction alone",
     validation_sheet: "The rules carry the scatter of the vehicles that they were made from; it is told beside \
