@@ -101,7 +101,7 @@ fn what_cannot_be_is_refused_with_line_key_and_what_is_expected() {
     }
     let huge = format!("{SPIN}# {}", "x".repeat(HUGE_BYTES));
     check_refused(&folder, huge.as_bytes(), &["1048576"]);
-    check_refused(&folder, b"case = \"\xff\"", &["utf-8"]);
+    check_refused(&folder, b"case = \"\xff\"", &["not UTF-8 text"]);
     let off = changed("x_m = -1.7", "x_m = -8");
     check_refused(&folder, off.as_bytes(), &["the struck car", "off the outline"]);
     let missing = PathBuf::from("no-evidence.toml");
