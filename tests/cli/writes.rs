@@ -136,9 +136,13 @@ fn every_report_says_which_program_seed_and_models_gave_it() {
     assert_eq!(report["files"][0], own.to_str().unwrap(), "the files are named where they are");
     assert!(own.exists());
 
+    // The network that stands beside the momentum solution.
+    let report = json(&ok(program().args(["impact", SCENARIO, "--json"]).output().unwrap()));
+    assert_eq!(report["version"], impactlab::VERSION);
+    assert_eq!(report["model_digests"][0]["sha256"], of_file("force"));
+
     for args in [
-        &["impact", SCENARIO][..],
-        &["check", SCENARIO],
+        &["check", SCENARIO][..],
         &SIMULATE,
         &["simulate", "--dataset", TRAJECTORIES, "--case", "FE_c001"],
     ] {

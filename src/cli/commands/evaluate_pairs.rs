@@ -58,7 +58,7 @@ Examples:
 
 A forecast is given the initial states, the data sheets, the friction of the road and what the drivers
 did: steer angles, brake and drive torques. It is not given the contact, nor how stiff and how rough the
-cars are. Errors are over 4 s from the first contact, of the draw in the middle of the others; the turn is
+cars are. Errors are over 4 s from the first contact, of the motion with everything at its median; the turn is
 right where the likelier side was the recorded one.
 
 JSON: impactlab schema evaluate-pairs --answer says every key with its unit";

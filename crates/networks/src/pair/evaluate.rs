@@ -52,8 +52,8 @@ pub struct Compared {
 /// A vehicle of a forecast beside its record.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct VehicleScore {
-    /// Mean distance of the positions over 4 s from the first contact, m, of the draw in the middle of
-    /// the others.
+    /// Mean distance of the positions over 4 s from the first contact, m, of the motion with everything at
+    /// its median.
     pub average_error_m: f64,
     /// Distance of the positions at the end of the record, m, likewise.
     pub end_error_m: f64,
@@ -128,11 +128,11 @@ pub fn evaluate_pair(
     case: &PairCase,
     forecast: &PairForecast,
 ) -> Result<EvaluatedPair, SeriesError> {
-    let middle = forecast.middle().and_then(|idx| forecast.draws.get(idx));
+    let centre = PairDraw::from_motion(forecast.centre.clone());
     let first_s = case.contact.first_s.unwrap_or(0.0);
     let score = |vehicle: usize| -> Result<VehicleScore, SeriesError> {
         let record = Record::new(&case.motions[vehicle])?;
-        Ok(vehicle_score(&record, vehicle, first_s, (forecast, middle)))
+        Ok(vehicle_score(&record, vehicle, first_s, (forecast, &centre)))
     };
     let [fx, fy] = &case.contact.force_world_n;
     let has_force = !fx.is_empty() && fx.len() == fy.len();
@@ -204,7 +204,7 @@ fn vehicle_score(
     record: &Record<'_>,
     vehicle: usize,
     first_s: f64,
-    (forecast, middle): (&PairForecast, Option<&PairDraw>),
+    (forecast, centre): (&PairForecast, &PairDraw),
 ) -> VehicleScore {
     let end_s = record.end_s();
     let last_s = (first_s + COMPARED_S).min(end_s);
@@ -215,7 +215,7 @@ fn vehicle_score(
     };
     let off = |time_s: f64| {
         let [x, y, _] = record.at(time_s);
-        let state = middle.and_then(|draw| draw.state(vehicle, instant(time_s)));
+        let state = centre.state(vehicle, instant(time_s));
         state.map_or(f64::NAN, |state| (state.x_m - x).hypot(state.y_m - y))
     };
     let distances: Vec<f64> = times(OUTPUT_INTERVAL_S).map(off).collect();
@@ -230,7 +230,7 @@ fn vehicle_score(
         n as f64 / levels.len().max(1) as f64
     };
     let end_level = level(end_s);
-    let end = middle.and_then(|draw| draw.state(vehicle, instant(end_s)));
+    let end = centre.state(vehicle, instant(end_s));
     let turn_rad = record.largest_turn_rad();
     let turns = |limit: f64| forecast.share(|draw| draw.largest_turn_rad(vehicle) > limit);
     VehicleScore {

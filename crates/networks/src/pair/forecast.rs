@@ -217,7 +217,7 @@ fn missed(run: &PairRun<'_>, vehicle: usize, drawn: [f64; 3]) -> [f64; 3] {
 
 impl PairDraw {
     /// The draw from its motion.
-    fn from_motion(motion: PairMotion) -> Self {
+    pub(super) fn from_motion(motion: PairMotion) -> Self {
         let states = [0, 1].map(|i| states_of(&motion, i));
         let rest_s = [0, 1].map(|i| motion.motions[i].rest_s);
         Self { states, phases: motion.phases, rest_s }
@@ -318,8 +318,6 @@ mod tests {
         assert!(shares.iter().any(|share| *share > 0.9), "{shares:?}");
         let sum: f64 = drawn.courses().iter().map(|course| course.probability).sum();
         assert!((sum - 1.0).abs() < 1e-12);
-        // The middle is one of the draws, and nearer to the others than most of them.
-        assert!(drawn.middle().is_some_and(|idx| idx < 40));
     }
 
     #[test]

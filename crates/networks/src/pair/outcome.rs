@@ -111,28 +111,6 @@ impl PairForecast {
         PlanarMixture::from_poses(&self.poses(vehicle, instant))
     }
 
-    /// Number of the draw that lies in the middle of the others: the least sum of distances of both
-    /// vehicles over all instants to the medians of the positions. It stands for the forecast where one
-    /// motion is asked for, and is one that can happen.
-    pub fn middle(&self) -> Option<usize> {
-        let n_instants = self.n_instants();
-        let mut sums = vec![0.0; self.draws.len()];
-        for instant in (0..n_instants).step_by(MIDDLE_STRIDE) {
-            for vehicle in 0..2 {
-                let poses = self.poses(vehicle, instant);
-                let [x_m, y_m] = [0, 1].map(|axis| {
-                    let mut values: Vec<f64> = poses.iter().map(|pose| pose[axis]).collect();
-                    values.sort_by(f64::total_cmp);
-                    values.get(values.len() / 2).copied().unwrap_or(0.0)
-                });
-                for (sum, pose) in sums.iter_mut().zip(&poses) {
-                    *sum += (pose[0] - x_m).hypot(pose[1] - y_m);
-                }
-            }
-        }
-        (0..sums.len()).min_by(|&a, &b| sums[a].total_cmp(&sums[b]))
-    }
-
     /// Number of instants of the longest motion.
     pub fn n_instants(&self) -> usize {
         let lengths = self.draws.iter().flat_map(|draw| draw.states.iter().map(Vec::len));
@@ -145,6 +123,3 @@ impl PairForecast {
         (0..self.n_instants()).map(|i| self.share(|draw| draw.is_in_contact(at(i)))).collect()
     }
 }
-
-/// Instants of which every so many count for the middle: ten a second.
-const MIDDLE_STRIDE: usize = 10;
