@@ -20,12 +20,12 @@
 use crate::collision::contact::phases::PhaseWatch;
 use crate::collision::contact::{
     ContactBody, ContactConditions, ContactForce, ContactOutline, ContactPhase,
-    FULL_FRICTION_SPEED_M_S, FaceLaws, PairContact, PlanarMotion,
+    FULL_FRICTION_SPEED_M_S, FaceLaws, PairContact, PairError, PlanarMotion,
 };
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
     CollisionForce, ContactPoint, HeldForceRun, Manoeuvre, Motion, N_ACCELERATION, N_STATE,
-    OUTPUT_INTERVAL_S, SimulationError, VehicleInput, VehicleParameters, VehicleState,
+    OUTPUT_INTERVAL_S, VehicleInput, VehicleParameters, VehicleState,
 };
 
 /// Steps of the shortest kind in an output interval.
@@ -97,48 +97,6 @@ pub struct PairMotion {
     pub energy: ContactEnergy,
     /// Depth of the dents that stay, of the elements of each outline, m.
     pub dents_m: [Vec<f64>; 2],
-}
-
-/// Reason why two vehicles have no motion.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PairError {
-    /// One of the motions cannot be computed.
-    #[error("{role} vehicle")]
-    Vehicle {
-        /// `struck` or `striking`.
-        role: &'static str,
-        /// Why.
-        #[source]
-        source: SimulationError,
-    },
-    /// A manoeuvre has a collision force of its own.
-    #[error(
-        "the manoeuvre of the {role} vehicle has a collision force, which follows from the contact"
-    )]
-    CollisionForce {
-        /// `struck` or `striking`.
-        role: &'static str,
-    },
-    /// The manoeuvres do not last equally long.
-    #[error(
-        "the manoeuvres of both vehicles last {struck_s} s and {striking_s} s, expected one duration"
-    )]
-    Durations {
-        /// Of the struck vehicle, s.
-        struck_s: f64,
-        /// Of the striking vehicle, s.
-        striking_s: f64,
-    },
-    /// A number of the contact is out of range.
-    #[error("{name} is {value}, expected {expected}")]
-    Range {
-        /// Name of the number.
-        name: &'static str,
-        /// Its value, SI units.
-        value: f64,
-        /// The permitted range.
-        expected: &'static str,
-    },
 }
 
 const ROLES: [&str; 2] = ["struck", "striking"];

@@ -10,7 +10,9 @@ use crate::collision::contact::test_pairs::{
 };
 use crate::collision::contact::{FaceLaw, FaceParameters, Recovery};
 use crate::data::Channel;
-use crate::vehicle::{Braking, DrivenAxle, Driving, Ending, HeldSteer, Integrator, LibraryVehicle};
+use crate::vehicle::{
+    Braking, DrivenAxle, Driving, Ending, HeldSteer, Integrator, LibraryVehicle, SimulationError,
+};
 
 const UNDAMPED: ContactConditions =
     ContactConditions { friction: 0.4, damping_s_m: 0.0, height_m: 0.5 };

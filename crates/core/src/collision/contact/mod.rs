@@ -17,6 +17,7 @@ mod force;
 mod outline;
 
 mod coupled;
+mod error;
 mod phases;
 #[cfg(test)]
 mod test_pairs;
@@ -25,7 +26,8 @@ pub use bodies::{
     CONTACT_DAMPING_S_M, CONTACT_FRICTION, CONTACT_FRICTION_SIGMA, CONTACT_HEIGHT_M, ContactBody,
     ContactConditions, FULL_FRICTION_SPEED_M_S, PlanarMotion,
 };
-pub use coupled::{ContactEnergy, PairError, PairMotion, PairRun, PairVehicle, VehiclePair};
+pub use coupled::{ContactEnergy, PairMotion, PairRun, PairVehicle, VehiclePair};
+pub use error::PairError;
 pub use force::{ContactForce, PairContact};
 pub use law::{
     CRUSHED_RECOVERY, ELASTIC_RECOVERY, FaceLaw, FaceLawError, FaceParameters, PressedStrips,
