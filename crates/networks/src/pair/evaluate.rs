@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::pair::outcome::{HALF_TURN_RAD, QUARTER_TURN_RAD};
-use crate::pair::{PairDraw, PairForecast};
+use crate::pair::{CourseShare, PairDraw, PairForecast};
 use impactlab_core::compare::PairCase;
 use impactlab_core::data::{Channel, SeriesError, TimeSeries};
 use impactlab_core::numerics::{Summary, interpolate, wrap_angle_rad};
@@ -32,6 +32,8 @@ pub struct EvaluatedPair {
     pub struck: VehicleScore,
     /// The striking vehicle.
     pub striking: VehicleScore,
+    /// What becomes of the struck vehicle, the likeliest first.
+    pub courses: Vec<CourseShare>,
     /// Time for which the vehicles are in contact, s.
     pub contact_s: Compared,
     /// Impulse on the struck vehicle over all contacts, N s.
@@ -149,6 +151,7 @@ pub fn evaluate_pair(
         has_stability_control: case.attributes.has_stability_control,
         struck: score(0)?,
         striking: score(1)?,
+        courses: forecast.courses(),
         contact_s: Compared {
             forecast: median(&|draw| draw.contact_s(end_s)),
             recorded: has_force.then_some(in_contact as f64 * OUTPUT_INTERVAL_S),

@@ -313,9 +313,6 @@ mod tests {
         assert_eq!(drawn, forecast(&usual));
         assert_ne!(drawn.draws, forecast(&PairSettings { seed: 6, ..usual }).draws);
         assert_eq!(drawn.draws.len(), 40);
-        let shares = drawn.contact_shares();
-        assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)));
-        assert!(shares.iter().any(|share| *share > 0.9), "{shares:?}");
         let sum: f64 = drawn.courses().iter().map(|course| course.probability).sum();
         assert!((sum - 1.0).abs() < 1e-12);
     }

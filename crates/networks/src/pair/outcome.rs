@@ -1,11 +1,10 @@
 //! What the draws of two vehicles come to: courses of events, contacts, where the vehicles are.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::pair::{PairDraw, PairForecast};
 use impactlab_core::uncertainty::PlanarMixture;
-use impactlab_core::vehicle::OUTPUT_INTERVAL_S;
 
 /// Turn from which on a vehicle has spun, rad: a quarter.
 pub const QUARTER_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2;
@@ -14,7 +13,9 @@ pub const QUARTER_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2;
 pub const HALF_TURN_RAD: f64 = std::f64::consts::PI;
 
 /// What becomes of the struck vehicle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum Course {
     /// The vehicles do not touch each other.
@@ -28,7 +29,7 @@ pub enum Course {
 }
 
 /// A course of events and how likely it is.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CourseShare {
     /// The course.
     pub course: Course,
@@ -72,14 +73,6 @@ impl PairDraw {
             |axis: usize| self.phases.iter().map(|it| it.impulse_world_n_s[axis]).sum::<f64>();
         sum(0).hypot(sum(1))
     }
-
-    /// Whether the vehicles are in contact at a time.
-    pub fn is_in_contact(&self, time_s: f64) -> bool {
-        let is_at = |start_s: f64, end_s: Option<f64>| {
-            start_s <= time_s && end_s.is_none_or(|end_s| time_s <= end_s)
-        };
-        self.phases.iter().any(|phase| is_at(phase.start_s, phase.end_s))
-    }
 }
 
 impl PairForecast {
@@ -109,17 +102,5 @@ impl PairForecast {
     /// Distribution of the position of a vehicle at an instant.
     pub fn position(&self, vehicle: usize, instant: usize) -> PlanarMixture {
         PlanarMixture::from_poses(&self.poses(vehicle, instant))
-    }
-
-    /// Number of instants of the longest motion.
-    pub fn n_instants(&self) -> usize {
-        let lengths = self.draws.iter().flat_map(|draw| draw.states.iter().map(Vec::len));
-        lengths.max().unwrap_or(0)
-    }
-
-    /// Share of the draws in which the vehicles are in contact, at each of the instants.
-    pub fn contact_shares(&self) -> Vec<f64> {
-        let at = |instant: usize| instant as f64 * OUTPUT_INTERVAL_S;
-        (0..self.n_instants()).map(|i| self.share(|draw| draw.is_in_contact(at(i)))).collect()
     }
 }
