@@ -138,10 +138,16 @@ pub fn evaluate_pair(
     };
     let [fx, fy] = &case.contact.force_world_n;
     let has_force = !fx.is_empty() && fx.len() == fy.len();
-    let size = |(x, y): (&f64, &f64)| x.hypot(*y);
-    let in_contact = fx.iter().zip(fy).filter(|&pair| size(pair) > CONTACT_FORCE_N).count();
-    let impulse = |force: &[f64]| force.iter().sum::<f64>() * OUTPUT_INTERVAL_S;
-    let end_s = case.motions[0].time_s().last().copied().unwrap_or(0.0);
+    let time_s = case.motions[0].time_s();
+    let end_s = time_s.last().copied().unwrap_or(0.0);
+    // A force is the mean over the interval that follows its instant.
+    let intervals_s = || time_s.windows(2).map(|pair| pair[1] - pair[0]);
+    let sizes_n = fx.iter().zip(fy).map(|(x, y)| x.hypot(*y));
+    let in_contact = sizes_n.zip(intervals_s()).filter(|(size_n, _)| *size_n > CONTACT_FORCE_N);
+    let contact_s: f64 = in_contact.map(|(_, interval_s)| interval_s).sum();
+    let impulse = |force: &[f64]| -> f64 {
+        force.iter().zip(intervals_s()).map(|(force_n, interval_s)| force_n * interval_s).sum()
+    };
     let median = |value: &dyn Fn(&PairDraw) -> f64| {
         median(forecast.draws.iter().map(value).collect()).unwrap_or(0.0)
     };
@@ -154,7 +160,7 @@ pub fn evaluate_pair(
         courses: forecast.courses(),
         contact_s: Compared {
             forecast: median(&|draw| draw.contact_s(end_s)),
-            recorded: has_force.then_some(in_contact as f64 * OUTPUT_INTERVAL_S),
+            recorded: has_force.then_some(contact_s),
         },
         impulse_n_s: Compared {
             forecast: median(&|draw| draw.impulse_n_s()),

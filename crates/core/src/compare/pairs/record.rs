@@ -64,7 +64,8 @@ pub struct RecordedContact {
     pub first_s: Option<f64>,
     /// Start and end of each phase of contact, s; empty if they are not said.
     pub phases_s: Vec<[f64; 2]>,
-    /// Contact force on the struck car over time, world axes, N: means over the coming 10 ms.
+    /// Contact force on the struck car over time, world axes, N: means over the interval that
+    /// follows.
     pub force_world_n: [Vec<f64>; 2],
 }
 
@@ -150,7 +151,7 @@ impl PairRecords {
         let friction = row.require(&FRICTION, NO_PAIR)?;
         let path = self.root.join("cases").join(format!("{name}.csv"));
         let columns = Columns { table: Table::read(&path)? };
-        let [struck, striking] = [0, 1].map(|i| self.car(row, &attributes.cars[i]));
+        let [struck, striking] = [0, 1].map(|i| self.car(row, CARS[i], &attributes.cars[i]));
         let cars = [struck?, striking?];
         let in_file = |source| PairCaseError::Series { path: path.clone(), source };
         let [struck, striking] = CARS.map(|car| columns.motion(car));
@@ -188,10 +189,12 @@ impl PairRecords {
     }
 
     /// The data sheet of a car.
-    fn car(&self, row: &Attributes, name: &str) -> Result<PairCar, PairCaseError> {
+    ///
+    /// - `column`: in which its name stands.
+    fn car(&self, row: &Attributes, column: &str, name: &str) -> Result<PairCar, PairCaseError> {
         if !names_a_file(name) {
             let expected = "the name of a file of the folder vehicles, without .toml";
-            return Err(row.refused("target", format!("{name:?}"), expected.to_owned()).into());
+            return Err(row.refused(column, format!("{name:?}"), expected.to_owned()).into());
         }
         let path = self.root.join("vehicles").join(format!("{name}.toml"));
         let text = TomlFile::read(&path)?;
