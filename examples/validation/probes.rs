@@ -17,9 +17,9 @@ use impactlab_reconstruct::{
     Cars, Discrepancy, ForwardModel, Posterior, ReconstructedQuantity, ReconstructionTarget,
 };
 use impactlab_study::{
-    Event, ForceQuestion, ForceSource, ImpactRequest, Library, Measured, MotionSource,
-    PredictForceRequest, PredictMotionRequest, Question, ScenarioChoice, SimulateDatasetRequest,
-    VehicleChoice,
+    EvaluatePairsRequest, Event, ForceQuestion, ForceSource, ImpactRequest, Library, Measured,
+    MotionSource, PredictForceRequest, PredictMotionRequest, Question, ScenarioChoice,
+    SimulateDatasetRequest, VehicleChoice,
 };
 use serde_json::Value;
 
@@ -95,6 +95,19 @@ pub fn probe(root: &Path, subject: Measured) -> Result<Probe, Box<dyn Error>> {
                 ..PredictMotionRequest::new(source, ForceSource::Given)
             };
             let names = ["/outcome/x_m/median", "/outcome/y_m/median", "/outcome/region_90_m2"];
+            numbers(&question, &names)
+        }
+        Measured::Pairs => {
+            let question = EvaluatePairsRequest {
+                only: vec!["d064".to_owned()],
+                draws: 6,
+                ..EvaluatePairsRequest::new(data.join("pairs"))
+            };
+            let names = [
+                "/cases/0/struck/average_error_m",
+                "/cases/0/striking/average_error_m",
+                "/cases/0/impulse_n_s/forecast",
+            ];
             numbers(&question, &names)
         }
         Measured::ReconstructionOfEverything => reconstruction(&data, KnownEvidence::Everything),

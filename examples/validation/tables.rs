@@ -11,11 +11,12 @@ use impactlab_core::numerics::{Summary, quantile_of_sorted, wilson_interval};
 use impactlab_core::vehicle::Integrator;
 use impactlab_networks::force::{ContactLaw, ForceCase};
 use impactlab_networks::learning::{TEST_SHARE, split};
+use impactlab_networks::pair::{EvaluatedPair, VehicleScore};
 use impactlab_reconstruct::ReconstructedQuantity;
 use impactlab_reconstruct::evaluate::{KnownEvidence, StagedCollisions, StagedSplit};
 use impactlab_study::{
-    EvaluateForceRequest, Event, HeldIntervals, Library, Measured, ModelChoice, Question,
-    SimulateDatasetRequest, VehicleChoice,
+    EvaluateForceRequest, EvaluatePairsRequest, Event, HeldIntervals, Library, Measured,
+    ModelChoice, PairSplit, Question, SimulateDatasetRequest, VehicleChoice,
 };
 use serde::Deserialize;
 use serde_json::Value;
@@ -32,7 +33,12 @@ impl Row {
 
 /// What takes minutes: impulses, motions of the 4DOF model, and the force network.
 pub(crate) fn quick(datasets: &Path) -> Result<Vec<Found>, Box<dyn Error>> {
-    Ok(vec![impact(&datasets.join("fea"))?, four_dof(datasets)?, force(&datasets.join("fea"))?])
+    Ok(vec![
+        impact(&datasets.join("fea"))?,
+        four_dof(datasets)?,
+        force(&datasets.join("fea"))?,
+        pairs(&datasets.join("pairs"))?,
+    ])
 }
 
 fn answer<Q: Question>(question: &Q) -> Result<Q::Answer, Box<dyn Error>> {
@@ -102,6 +108,55 @@ fn four_dof(datasets: &Path) -> Result<Found, Box<dyn Error>> {
         rows.push(Row::new(&cells, 1));
     }
     Ok(Found { subject: Measured::FourDof, tables: vec![rows], held: Vec::new() })
+}
+
+/// Errors of both vehicles of recorded pairs, and how often their regions held, of the half that the
+/// contact law was fitted to and of the other one.
+fn pairs(path: &Path) -> Result<Found, Box<dyn Error>> {
+    let (mut rows, mut held) = (Vec::new(), Vec::new());
+    for (split, name) in [(PairSplit::Reported, "not fitted to"), (PairSplit::Fitted, "fitted to")]
+    {
+        let question = EvaluatePairsRequest { split, ..EvaluatePairsRequest::new(path) };
+        let report = answer(&question)?.report.report;
+        let of_car: [fn(&EvaluatedPair) -> &VehicleScore; 2] =
+            [|case| &case.struck, |case| &case.striking];
+        let summaries = [report.overall.as_ref(), report.striking.as_ref()];
+        for ((summary, car), score) in summaries.into_iter().zip(["struck", "striking"]).zip(of_car)
+        {
+            let summary = summary.ok_or("no cases")?;
+            let share = |share: f64| format!("{:.0} %", 100.0 * share);
+            let path_m = &summary.average_error_m;
+            rows.push(Row::new(
+                &[
+                    name.to_owned(),
+                    car.to_owned(),
+                    report.cases.len().to_string(),
+                    format!("{:.2}", path_m.mean),
+                    format!("{:.2}", path_m.median),
+                    format!("{:.1}", summary.end_error_m.median),
+                    share(summary.quarter_turn_right),
+                    share(summary.half_turn_right),
+                    share(summary.coverage.of_50),
+                    share(summary.coverage.of_90),
+                    share(summary.end_coverage.of_50),
+                    share(summary.end_coverage.of_90),
+                ],
+                2,
+            ));
+            if split == PairSplit::Reported {
+                let count = |holds: fn(&VehicleScore) -> bool| {
+                    report.cases.iter().filter(|case| holds(score(case))).count()
+                };
+                held.push(HeldIntervals {
+                    quantity: format!("place of the {car} vehicle at the end"),
+                    in_50: count(|score| score.end_50),
+                    in_90: count(|score| score.end_90),
+                    n: report.cases.len(),
+                });
+            }
+        }
+    }
+    Ok(Found { subject: Measured::Pairs, tables: vec![rows], held })
 }
 
 /// Errors of the shipped force network and of two of its baselines on the test cases, and how often its

@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use impactlab_core::collision::FilterError;
+use impactlab_core::collision::contact::FaceLawError;
 use impactlab_core::data::DataError;
 use impactlab_core::ranges::OutOfRange;
 use impactlab_core::site::SiteError;
@@ -46,6 +47,9 @@ pub enum CliError {
     /// The scenario is not said.
     #[error("nothing to predict: say which scenario with --scenario FILE")]
     NothingToPredict,
+    /// A test against a barrier that says nothing of a face.
+    #[error("no stiffness follows from this test")]
+    Stiffness(#[from] FaceLawError),
     /// A steering-wheel angle that the road wheels cannot follow.
     #[error("the steering-wheel angle over the steering ratio is no angle of a road wheel")]
     SteeringWheel(#[from] OutOfRange),

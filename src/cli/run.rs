@@ -10,7 +10,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use crate::cli::CliError;
 use crate::cli::commands::{
     app, ask, case, check, compare, condition, evaluate, export, fine_tune, impact, licences,
-    predict, ranges, reconstruct, render, report, schema, simulate, train, vehicles,
+    predict, ranges, reconstruct, render, report, schema, simulate, stiffness, train, vehicles,
 };
 use crate::cli::console::{Console, Escaped, Targets, Verdict, within_line};
 use impactlab_core::error_chain;
@@ -61,6 +61,7 @@ enum CliCommand {
     Export(export::ExportArgs),
     Report(report::ReportArgs),
     Vehicles(vehicles::VehiclesArgs),
+    Stiffness(stiffness::StiffnessArgs),
     #[command(alias = "licenses")]
     Licences(licences::LicencesArgs),
     Ranges(ranges::RangesArgs),
@@ -114,6 +115,7 @@ impl Cli {
                 | CliCommand::Render(_)
                 | CliCommand::Export(_)
                 | CliCommand::Vehicles(_)
+                | CliCommand::Stiffness(_)
                 | CliCommand::Licences(_)
                 | CliCommand::Ranges(_)
                 | CliCommand::Schema(_),
@@ -176,6 +178,7 @@ fn dispatch(command: Option<CliCommand>, console: &mut Console<'_>) -> Result<Ve
         Some(CliCommand::Export(args)) => export::run(&args, console),
         Some(CliCommand::Report(args)) => report::run(&args, console),
         Some(CliCommand::Vehicles(args)) => vehicles::run(&args, console),
+        Some(CliCommand::Stiffness(args)) => stiffness::run(&args, console),
         Some(CliCommand::Licences(_)) => licences::run(console),
         Some(CliCommand::Ranges(args)) => ranges::run(&args, console),
         Some(CliCommand::Schema(args)) => schema::run(&args, console),

@@ -182,10 +182,16 @@ fn a_vehicle_that_spins_into_the_impact_is_no_question_for_the_force_network() {
     let line = refusal(&["predict", "force", "--scenario", text(&spinning)]);
     assert!(line.contains("spinning.toml: the vehicles turn before the impact"), "{line}");
     let out = folder.path().join("out");
-    let predict = ["predict", "--scenario", text(&spinning), "--out", text(&out)];
-    assert!(refusal(&predict).contains("turn before the impact"));
-    // The momentum solution knows turning vehicles.
-    assert!(answer(&[&predict[..], &["--given-force"]].concat())["outcome"].is_object());
+    let predict = ["predict", "--scenario", text(&spinning), "--draws", "8", "--out", text(&out)];
+    assert!(
+        refusal(&[&predict[..], &["--one-contact"]].concat()).contains("turn before the impact")
+    );
+    // The momentum solution and the contact law know turning vehicles.
+    let by_law = answer(&predict);
+    assert!(by_law["badges"].to_string().contains("turn before the impact"), "{by_law}");
+    assert_eq!(by_law["contacts"]["n_known_forces"], 0);
+    let given = answer(&[&predict[..], &["--given-force", "--overwrite"]].concat());
+    assert!(given["outcome"].is_object() && given["contacts"]["n_known_forces"] == 8, "{given}");
 }
 
 #[test]

@@ -47,11 +47,15 @@ fn every_answer_with_numbers_has_badges() {
 fn a_second_contact_is_a_badge_of_the_answer() {
     let folder = TempDir::new().unwrap();
     let slow = scenario_with(&folder, "slow.toml", "speed_km_h = 54", "speed_km_h = 0");
-    let report = answer(&["simulate", "--scenario", text(&slow)]);
+    let report = answer(&["simulate", "--one-contact", "--scenario", text(&slow)]);
     let found = badges(&report, "second_contact");
     assert_eq!(found.len(), 1, "{report}");
     assert_eq!(found[0]["value"], report["flags"][0]["time_s"]);
-    let printed = ok(program().args(["simulate", "--scenario"]).arg(&slow).output().unwrap());
+    let printed = ok(program()
+        .args(["simulate", "--one-contact", "--scenario"])
+        .arg(&slow)
+        .output()
+        .unwrap());
     assert!(printed.contains("warning: second contact: the vehicles"), "{printed}");
 }
 

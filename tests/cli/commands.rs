@@ -76,6 +76,7 @@ fn every_help_shows_an_example() {
         &["render", "scene"],
         &["render", "impact"],
         &["vehicles"],
+        &["stiffness"],
         &["ranges"],
         &["schema"],
     ] {

@@ -105,16 +105,29 @@ fn a_central_impact_has_no_share_of_its_critical_ratio() {
 fn a_second_contact_is_flagged() {
     let folder = TempDir::new().unwrap();
     let slow = scenario_with(&folder, "slow.toml", "speed_km_h = 54", "speed_km_h = 0");
-    let report = answer(&["simulate", "--scenario", text(&slow)]);
+    let report = answer(&["simulate", "--one-contact", "--scenario", text(&slow)]);
     let flags = report["flags"].as_array().unwrap();
     let flag = flags.iter().find(|flag| flag["kind"] == "second_contact").unwrap();
     assert!(flag["time_s"].as_f64().unwrap() > 0.1, "{flag}");
     assert!(flag["closing_speed_m_s"].as_f64().unwrap() > 0.5, "{flag}");
     assert_eq!(flag["position_m"].as_array().unwrap().len(), 2);
-    let printed = ok(program().args(["simulate", "--scenario"]).arg(&slow).output().unwrap());
+    let printed = ok(program()
+        .args(["simulate", "--one-contact", "--scenario"])
+        .arg(&slow)
+        .output()
+        .unwrap());
     assert!(printed.contains("a second contact, which is not computed"), "{printed}");
     let out = folder.path().join("out");
-    let predict = ["predict", "--draws", "5", "--scenario", text(&slow), "--out", text(&out)];
+    let predict = [
+        "predict",
+        "--one-contact",
+        "--draws",
+        "5",
+        "--scenario",
+        text(&slow),
+        "--out",
+        text(&out),
+    ];
     let report = answer(&predict);
     let drawn = &report["flags"][0];
     assert_eq!(drawn["kind"], "second_contact", "{report}");
@@ -126,14 +139,19 @@ fn a_second_contact_is_flagged() {
     let rear = std::fs::read_to_string(SCENARIO).unwrap().replace("heading_deg = 18", "");
     let rear = rear.replace("side = \"right\"", "side = \"rear\"").replace("= -1.4", "= 0.2");
     let rear = write(&folder, "rear.toml", &rear);
-    let free = answer(&["simulate", "--scenario", text(&rear)]);
+    let free = answer(&["simulate", "--one-contact", "--scenario", text(&rear)]);
     assert_eq!(free["flags"].as_array().unwrap().len(), 0, "{free}");
     // The driver of the striking vehicle steers away: what follows is another motion of the
     // striking vehicle.
     let away = std::fs::read_to_string(SCENARIO).unwrap()
         + "\n[bullet_ending]\nsteer_deg = -8\nsteer_rise_s = 0.2\n";
-    let away = answer(&["simulate", "--scenario", text(&write(&folder, "away.toml", &away))]);
-    let plain = answer(&["simulate", "--scenario", SCENARIO]);
+    let away = answer(&[
+        "simulate",
+        "--one-contact",
+        "--scenario",
+        text(&write(&folder, "away.toml", &away)),
+    ]);
+    let plain = answer(&["simulate", "--one-contact", "--scenario", SCENARIO]);
     let closing = |report: &Value| report["flags"][0]["closing_speed_m_s"].as_f64().unwrap();
     assert!(closing(&away) < 0.8 * closing(&plain), "{away} {plain}");
     assert_eq!(away["end"], plain["end"], "the struck car's motion depends on the other's");

@@ -109,6 +109,8 @@ fn a_forecast_is_wider_where_the_vehicle_is_not_known() {
             "--given-force",
             "--vehicle",
             "generic-car",
+            "--draws",
+            "30",
             "--vehicle-draws",
             draws,
             "--duration",

@@ -4,6 +4,7 @@
 
 mod answers;
 mod badges;
+mod both_vehicles;
 mod budgets;
 mod closed_pipe;
 mod commands;

@@ -52,6 +52,7 @@ fn what_is_no_recorded_pair_is_refused_by_name() {
         (&["evaluate", "pairs", "datasets/fea"][..], "expected a folder with cases.csv, cases/"),
         (&["evaluate", "pairs", PAIRS, "--only", "d999"], "d999"),
         (&["evaluate", "pairs", PAIRS, "--draws", "0"], "draws"),
+        (&["simulate", "--dataset", PAIRS], "pairs: impactlab evaluate pairs DIR"),
     ] {
         let ran = impactlab(arguments);
         assert!(ran.code != 0 && ran.err.contains(words), "{arguments:?}: {}", ran.err);

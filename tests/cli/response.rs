@@ -144,7 +144,15 @@ fn a_prediction_writes_trajectory_density_and_outcome() {
     let place = workplace();
     let predict = |duration: &str, out: &Path| {
         let mut command = program();
-        command.args(["predict", "--scenario", SCENARIO, "--draws", "3", "--json"]);
+        command.args([
+            "predict",
+            "--one-contact",
+            "--scenario",
+            SCENARIO,
+            "--draws",
+            "3",
+            "--json",
+        ]);
         command.args(["--duration", duration]);
         command.arg("--response-model").arg(&place.tuned).arg("--out").arg(out);
         json(&ok(command.output().unwrap()))

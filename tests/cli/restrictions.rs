@@ -61,8 +61,7 @@ fn every_table_and_picture_of_a_prediction_says_what_restricts_it() {
             _ => {}
         }
     }
-    // The vehicles meet again, so that there is no density at the end.
-    assert_eq!(n_tables, 8, "trajectory, scene and six channels");
+    assert_eq!(n_tables, 9, "trajectory, density, scene and six channels");
 }
 
 #[test]

@@ -140,8 +140,8 @@ fn the_forecast_stands_in_the_scene_if_it_is_wanted() {
     save(&mut harness, "scene-forecast.png");
     assert!(harness.render().expect("a picture") != without);
     assert!(harness.query_by_label("draws of the forecast").is_some());
-    // The vehicles meet again before: no position at the end has a probability.
-    assert!(harness.query_by_label("90 % region").is_none());
+    assert!(harness.query_by_label("90 % region").is_some());
+    assert!(harness.query_by_label("draws of the striking vehicle").is_some());
     harness.get_by_label("Forecast").click();
     harness.run_steps(4);
     assert!(harness.query_by_label("draws of the forecast").is_none());

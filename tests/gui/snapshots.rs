@@ -38,6 +38,7 @@ fn settings() -> Settings {
         duration_s: 4.0,
         ending: impactlab_core::vehicle::Ending::default(),
         ends_at_rest: false,
+        one_contact: false,
         friction_zones: Vec::new(),
     }
 }
@@ -45,7 +46,9 @@ fn settings() -> Settings {
 /// A push on the rear quarter, after which the struck car is braked with locked wheels.
 pub fn braked_pit() -> Analysis {
     let brake = Some(Braking::new(0.7, 1.4, 0.3));
-    let settings = Settings { ending: Ending { brake, ..Ending::default() }, ..settings() };
+    let ending = Ending { brake, ..Ending::default() };
+    // Each car for itself, so that half of the overlap is shown as a dent of each.
+    let settings = Settings { ending, one_contact: true, ..settings() };
     let pulse = PulseSetup::default();
     analyse_scenario(&Scenario::example(), &pulse, &settings).expect("it runs")
 }

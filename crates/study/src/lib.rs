@@ -77,7 +77,7 @@ pub use questions::predict::implied_contact::{ImpliedContactReport, MomentumRepo
 pub use questions::predict::impulse_rival::ImpulseRival;
 pub use questions::predict::motion::{
     COARSE_DRAWS, DEFAULT_DRAWS, ForceSource, PredictMotionAnswer, PredictMotionReport,
-    PredictMotionRequest,
+    PredictMotionRequest, StrikingReport,
 };
 pub use questions::reconstruct::paths::{NamedPath, ReconstructedPaths};
 pub use questions::reconstruct::request::{

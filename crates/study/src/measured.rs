@@ -63,6 +63,8 @@ pub enum Measured {
     ForceNetwork,
     /// Motions of the shipped network, of cars that it has not seen.
     ResponseNetwork,
+    /// Motions of two vehicles through all contacts, of recorded pairs.
+    Pairs,
     /// Reconstructions from all of the evidence.
     ReconstructionOfEverything,
     /// Reconstructions without the event data recorder.
@@ -127,7 +129,7 @@ mod tests {
     #[test]
     fn the_file_is_read_and_every_subject_has_a_table() {
         let measurements = MEASUREMENTS.as_ref().unwrap();
-        assert_eq!(measurements.all.len(), 7);
+        assert_eq!(measurements.all.len(), 8);
         for measurement in &measurements.all {
             assert!(!measurement.tables.is_empty() && !measurement.probe.is_empty());
             for held in &measurement.held {

@@ -13,7 +13,7 @@ use crate::app::model::file_name;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
 use crate::app::panels::scene::clock_ui;
-use crate::app::panels::vehicle::until_rest_ui;
+use crate::app::panels::vehicle::{one_contact_ui, until_rest_ui};
 use crate::app::panes::PaneContext;
 use crate::app::playback::{Playback, PlaybackCommand};
 use crate::app::project::Project;
@@ -68,6 +68,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             ui.separator();
             force_ui(ui, project, session, commands);
             until_rest_ui(ui, project);
+            one_contact_ui(ui, project);
             ui.separator();
             shown_ui(ui, &mut view.response, session, commands);
             if let Some(shown) = shown_forecast(session) {
@@ -289,7 +290,7 @@ fn figures_ui(
         })
         .collect();
     let playback = Playback { time_s, ..session.playback };
-    clock_ui(ui, &playback, answer.end_s(), &mut view.playback_speed, commands);
+    clock_ui(ui, &playback, (answer.end_s(), &[]), &mut view.playback_speed, commands);
     let all = ui.available_height();
     let mut scene = forecast_scene_figure(&input);
     for (i, (name, other)) in others.iter().enumerate() {

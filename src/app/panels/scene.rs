@@ -22,13 +22,16 @@ use crate::app::playback::{Playback, PlaybackCommand};
 use crate::app::recording::overlaid;
 use crate::app::scene::{SceneSession, SceneSettings, SceneSource};
 use crate::app::state::{Session, State};
-use crate::app::variants::{are_others_awaited, other_simulations};
+use crate::app::variants::{AnsweredVariant, are_others_awaited, other_simulations};
 use crate::app::widgets::{OUTDATED, restrictions_ui};
+use impactlab_core::data::Severity;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_document::figure::{Figure, analysis_scene_figure, recording_path};
 use impactlab_document::scene::{FilmTiming, Scene};
 use impactlab_draw::scene::{Follow, ScenePicture, ViewKind, scene_view_ui};
+use impactlab_draw::theme;
 use impactlab_study::RestState;
+use impactlab_study::analysis::Analysis;
 
 /// Seconds of the motion that can be played in a second.
 const SPEEDS: [f64; 5] = [0.05, 0.1, 0.25, 0.5, 1.0];
@@ -54,7 +57,8 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         return;
     };
     let end_s = series.time_s().last().copied().unwrap_or(0.0);
-    clock_ui(ui, &session.playback, end_s, &mut view.playback_speed, commands);
+    let span = (end_s, &*contacts_s(analysis, end_s));
+    clock_ui(ui, &session.playback, span, &mut view.playback_speed, commands);
     restrictions_ui(ui, &report.caveats);
     rest_ui(ui, report.rest.as_ref(), view.units);
     let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
@@ -78,12 +82,8 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let scene = session.scene.scene(source, &session.sources);
     let time_s = session.playback.time_s;
     let numbers = || {
-        let mut figure = analysis_scene_figure(analysis, &caveats, time_s, view.units);
-        for (i, (name, other)) in other_simulations(variants).enumerate() {
-            let (analysis, caveats) = (&other.analysis, &other.report.caveats);
-            let other = analysis_scene_figure(analysis, caveats, time_s, view.units);
-            figure.overlay(name, i, &other);
-        }
+        let figure = analysis_scene_figure(analysis, &caveats, time_s, view.units);
+        let mut figure = with_others(figure, variants, time_s, view.units);
         if let Some((name, series, _)) =
             overlaid(project.beside.recording.as_ref(), &session.sources)
         {
@@ -242,12 +242,13 @@ fn export_menu_ui(
 
 /// Draws the button that plays or pauses the motion, and the slider of the time.
 ///
-/// - `end_s`: the end of the motion and of the slider, s; the slider starts at 0.
+/// - `end_s`: the end of the motion and of the slider, s; the slider starts at 0;
+/// - `contacts_s`: when the vehicles are in contact, marked below the slider.
 /// - `speed`: seconds of the motion that are played in a second, which the user can change.
 pub fn clock_ui(
     ui: &mut Ui,
     &Playback { time_s, is_playing }: &Playback,
-    end_s: f64,
+    (end_s, contacts_s): (f64, &[[f64; 2]]),
     speed: &mut f64,
     commands: &mut Vec<Command>,
 ) {
@@ -271,8 +272,59 @@ pub fn clock_ui(
         let mut time_s = time_s;
         ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(80.0);
         let slider = Slider::new(&mut time_s, 0.0..=end_s).suffix(" s").fixed_decimals(3);
-        if ui.add(slider).labelled_by(name.id).changed() {
+        let slider_width = ui.spacing().slider_width;
+        let shown = ui.add(slider).labelled_by(name.id);
+        mark_contacts(ui, &shown, slider_width, end_s, contacts_s);
+        if shown.changed() {
             commands.push(Command::Playback(PlaybackCommand::SetTime(time_s)));
         }
     });
+}
+
+/// A figure with the simulations of other variants over it.
+fn with_others(
+    mut figure: Figure,
+    variants: &[AnsweredVariant],
+    time_s: f64,
+    units: UnitSystem,
+) -> Figure {
+    for (i, (name, other)) in other_simulations(variants).enumerate() {
+        let (analysis, caveats) = (&other.analysis, &other.report.caveats);
+        let other = analysis_scene_figure(analysis, caveats, time_s, units);
+        figure.overlay(name, i, &other);
+    }
+    figure
+}
+
+/// When the vehicles of an analysis are in contact, s.
+fn contacts_s(analysis: &Analysis, end_s: f64) -> Vec<[f64; 2]> {
+    let phases = analysis.phases.iter();
+    phases.map(|phase| [phase.start_s, phase.end_s.unwrap_or(end_s)]).collect()
+}
+
+/// Marks below the rail of a slider when the vehicles are in contact.
+fn mark_contacts(
+    ui: &Ui,
+    slider: &egui::Response,
+    width: f32,
+    end_s: f64,
+    contacts_s: &[[f64; 2]],
+) {
+    if contacts_s.is_empty() || end_s <= 0.0 {
+        return;
+    }
+    // The handle keeps within the rail.
+    let inset = slider.rect.height() / 2.5;
+    let x = |time_s: f64| {
+        let share = (time_s / end_s).clamp(0.0, 1.0) as f32;
+        slider.rect.left() + inset + share * (width - 2.0 * inset).max(0.0)
+    };
+    let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+    let y = slider.rect.bottom() - 1.0;
+    for [from_s, to_s] in contacts_s {
+        let (from, to) = (x(*from_s), x(*to_s));
+        let ends = [egui::pos2(from, y), egui::pos2(to.max(from + 2.0), y)];
+        ui.painter().line_segment(ends, egui::Stroke::new(3.0, color));
+    }
+    slider.clone().on_hover_text("Marked: the vehicles are in contact");
 }

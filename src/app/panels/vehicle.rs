@@ -16,7 +16,9 @@ use impactlab_core::ranges::{REST_LIMIT, SIMULATED_DURATION};
 use impactlab_core::vehicle::{
     DataSheet, Equations, Integrator, LibraryVehicle, Preset, VehicleParameters, built_in_vehicle,
 };
-use impactlab_study::{DEFAULT_DURATION_S, DEFAULT_STRIKING, DEFAULT_VEHICLE, VehicleChoice};
+use impactlab_study::{
+    DEFAULT_DURATION_S, DEFAULT_STRIKING, DEFAULT_VEHICLE, MotionSource, VehicleChoice,
+};
 
 /// Largest width of the lists of vehicles, points.
 const LIST_WIDTH: f32 = 240.0;
@@ -54,6 +56,8 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 view.units,
             );
             until_rest_ui(ui, project);
+            ui.end_row();
+            one_contact_ui(ui, project);
             ui.end_row();
         });
         for (title, choice) in [
@@ -100,6 +104,15 @@ pub(super) fn until_rest_ui(ui: &mut Ui, project: &mut Project) {
     };
     if choice.changed() && project.simulate.duration_s == before {
         project.simulate.duration_s = after;
+    }
+}
+
+/// Draws, of a scenario, the choice whether the vehicles are followed through all contacts.
+pub(super) fn one_contact_ui(ui: &mut Ui, project: &mut Project) {
+    if matches!(project.simulate.source, MotionSource::Scenario { .. }) {
+        let hint = "After the first contact each vehicle moves as if it were alone; otherwise both are \
+                    followed through all contacts";
+        ui.checkbox(&mut project.simulate.one_contact, "One contact only").on_hover_text(hint);
     }
 }
 

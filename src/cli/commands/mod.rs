@@ -29,6 +29,7 @@ mod render_scene;
 pub(super) mod report;
 pub(super) mod schema;
 pub(super) mod simulate;
+pub(super) mod stiffness;
 pub(super) mod train;
 mod train_force;
 mod train_response;

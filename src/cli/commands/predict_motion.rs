@@ -81,6 +81,10 @@ pub(in crate::cli) struct PredictMotionArgs {
     /// Follow the vehicle until it has come to rest, for two minutes or the --duration at most
     #[arg(long)]
     until_rest: bool,
+    /// With --scenario: do not follow both vehicles through all contacts; after the first one each moves
+    /// as if it were alone
+    #[arg(long, requires = "scenario")]
+    one_contact: bool,
     /// Seed of the draws
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -147,6 +151,7 @@ pub(in crate::cli) fn run(
             friction: args.friction,
             duration_s: wanted_s,
             until_rest: args.until_rest,
+            one_contact: args.one_contact,
             ending,
             vehicle_draws: args.vehicle_draws,
             ..SimulateRequest::new(source(args)?)

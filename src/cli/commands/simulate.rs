@@ -73,6 +73,10 @@ pub(in crate::cli) struct SimulateArgs {
     /// Simulate until the vehicle has come to rest, for two minutes or the --duration at most
     #[arg(long, conflicts_with = "trajectory")]
     until_rest: bool,
+    /// With --scenario: do not follow both vehicles through all contacts; after the first one each moves
+    /// as if it were alone
+    #[arg(long, requires = "scenario")]
+    one_contact: bool,
     /// The ground: a site file, whose zones have their own friction
     #[arg(long, value_name = "SITE.toml")]
     site: Option<PathBuf>,
@@ -216,6 +220,7 @@ fn simulate_one(
         }),
         ending: args.ending.ending()?,
         until_rest: args.until_rest,
+        one_contact: args.one_contact,
         vehicle_draws: args.single.vehicle_draws,
         seed: args.single.seed,
         alone: false,

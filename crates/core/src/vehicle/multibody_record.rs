@@ -10,7 +10,7 @@ use crate::vehicle::parameters::{
     GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters,
 };
 use crate::vehicle::tire::{SAME_IN_ALL_DIRECTIONS, TireParameters};
-use crate::vehicle::{DrivenAxle, Equations};
+use crate::vehicle::{CrushParameters, DrivenAxle, Equations};
 
 /// Vertical load at which the record states the cornering stiffnesses of the tires, N.
 const TIRE_REFERENCE_LOAD_N: f64 = 4905.0;
@@ -155,6 +155,7 @@ impl MultibodyRecord {
                 cg_to_front_end_m: geometry.lf + body.front_overhang,
             },
             suspension: self.suspension_parameters(sprung_kg, roll_arm_m),
+            crush: CrushParameters::default(),
             tires: TireParameters {
                 cornering_coefficient_front_per_rad: tire.cornering_stiffness_front
                     / TIRE_REFERENCE_LOAD_N,

@@ -19,7 +19,9 @@ use crate::ranges::{
 };
 use crate::vehicle::sheet::SheetQuantity;
 use crate::vehicle::tire::{TireParameters, WHEEL_MASS_SHARE};
-use crate::vehicle::{DataSheet, Equations, MultibodyRecord, VehicleMismatch, Wheel};
+use crate::vehicle::{
+    CrushParameters, DataSheet, Equations, MultibodyRecord, VehicleMismatch, Wheel,
+};
 
 /// Parameters of one vehicle in SI units. [`VehicleParameters::load`] and
 /// [`VehicleParameters::parse`] check every value against its range.
@@ -42,6 +44,9 @@ pub struct VehicleParameters {
     pub suspension: SuspensionParameters,
     /// Parameters of tires and road.
     pub tires: TireParameters,
+    /// How stiff its faces are, as far as it is known; the rest follows by rule.
+    #[serde(default, skip_serializing_if = "CrushParameters::is_empty")]
+    pub crush: CrushParameters,
     /// Estimated values: for each key of the file, such as `tires.friction`, the rule by which its
     /// value was estimated.
     #[serde(default)]
@@ -242,7 +247,7 @@ impl VehicleParameters {
 
     /// Every value with its range, which other values of the vehicle may limit further.
     pub(in crate::vehicle) fn ranges(&self) -> Vec<(&'static str, f64, Range)> {
-        let Self { mass, geometry, suspension, tires, .. } = self;
+        let Self { mass, geometry, suspension, tires, crush, .. } = self;
         let coupling = (mass.yaw_inertia_kg_m2 * mass.roll_inertia_kg_m2).max(0.0).sqrt() * 0.95;
         let roll_yaw_product = ROLL_YAW_PRODUCT.within([-coupling, coupling]);
         let sprung_mass = SPRUNG_MASS.at_most(mass.mass_kg);
@@ -250,7 +255,7 @@ impl VehicleParameters {
         let [front, rear] =
             [tires.cornering_coefficient_front_per_rad, tires.cornering_coefficient_rear_per_rad];
         let roll_share = suspension.front_roll_stiffness_share;
-        vec![
+        let mut ranges = vec![
             ("mass.mass_kg", mass.mass_kg, VEHICLE_MASS),
             ("mass.sprung_mass_kg", mass.sprung_mass_kg, sprung_mass),
             ("mass.yaw_inertia_kg_m2", mass.yaw_inertia_kg_m2, VEHICLE_YAW_INERTIA),
@@ -294,7 +299,9 @@ impl VehicleParameters {
             ),
             ("tires.rolling_radius_m", tires.rolling_radius_m, ROLLING_RADIUS),
             ("tires.wheel_inertia_kg_m2", tires.wheel_inertia_kg_m2, WHEEL_INERTIA),
-        ]
+        ];
+        ranges.extend(crush.ranges());
+        ranges
     }
 }
 

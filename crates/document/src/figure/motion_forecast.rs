@@ -44,6 +44,8 @@ pub struct MotionForecastFigure<'a> {
     pub reference: Option<&'a TimeSeries>,
     /// Motion simulated with the 4DOF model, if there is one.
     pub simulation: Option<&'a TimeSeries>,
+    /// Central path and outline of the striking vehicle, where both are followed.
+    pub striking: Option<(&'a [VehicleState<f64>], Footprint)>,
     /// Outline of the vehicle.
     pub footprint: Footprint,
     /// Time at which outlines and readouts are given, s.
@@ -75,6 +77,7 @@ impl<'a> MotionForecastFigure<'a> {
             components: false,
             reference: None,
             simulation: None,
+            striking: striking(answer),
             footprint: analysis.footprint,
             time_s,
             until_s: answer.report.known_until_s(),
@@ -172,6 +175,15 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     for (name, role, style, series) in others {
         elements.extend(series.and_then(|series| line(name, role, style, series)));
     }
+    if let Some((central, footprint)) = input.striking {
+        let (role, name) = (Role::Striking, "striking vehicle");
+        elements.push(path(name, role, &central.iter().collect::<Vec<_>>()));
+        if let Some(state) = central.get(at) {
+            let pose = Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad };
+            let style = LineStyle::Solid;
+            elements.extend(vehicle_outline(name, role, style, &footprint, &pose, x.unit));
+        }
+    }
     let central: Vec<_> = input.central.iter().collect();
     elements.push(path("central path", Role::Target, &central));
     if let Some(state) = input.central.get(at) {
@@ -187,6 +199,12 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     }
     let title = format!("{}: position after {:.2} s", input.title, at as f64 * STEP_S);
     Figure::new(title, [x, y], elements).plan().with_caveats(input.caveats)
+}
+
+/// The striking vehicle of a forecast of both.
+fn striking(answer: &PredictMotionAnswer) -> Option<(&[VehicleState<f64>], Footprint)> {
+    let both = answer.forecast.both.as_deref()?;
+    Some((&both.striking_central, answer.analysis.striking.as_ref()?.footprint))
 }
 
 /// View around the vehicle at the time of the figure, which holds its outline and nearly all of the

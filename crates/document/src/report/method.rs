@@ -13,6 +13,8 @@ pub(super) enum Method {
     Impact,
     /// The 4DOF model of the struck vehicle.
     FourDof,
+    /// The contact law of two outlines.
+    ContactLaw,
     /// The force network.
     ForceNetwork,
     /// The response network.
@@ -30,6 +32,7 @@ impl Method {
         match self {
             Self::Impact => words.method_impact,
             Self::FourDof => words.method_four_dof,
+            Self::ContactLaw => words.method_contact,
             Self::ForceNetwork => words.method_force,
             Self::ResponseNetwork => words.method_response,
             Self::Reconstruction => words.method_reconstruction,
@@ -43,6 +46,7 @@ impl Method {
         match self {
             Self::Impact => words.method_impact_text,
             Self::FourDof => words.method_four_dof_text,
+            Self::ContactLaw => words.method_contact_text,
             Self::ForceNetwork => words.method_force_text,
             Self::ResponseNetwork => words.method_response_text,
             Self::Reconstruction => words.method_reconstruction_text,
@@ -56,6 +60,7 @@ impl Method {
         match self {
             Self::Impact => words.limits_impact,
             Self::FourDof => words.limits_four_dof,
+            Self::ContactLaw => words.limits_contact,
             Self::ForceNetwork => words.limits_force,
             Self::ResponseNetwork => words.limits_response,
             Self::Reconstruction => words.limits_reconstruction,
@@ -73,6 +78,7 @@ impl Method {
                 sources::CarpenterWelcher2019::TEXT,
             ],
             Self::FourDof => &[sources::PitPinnPaper::TEXT, sources::Gillespie1992::TEXT],
+            Self::ContactLaw => &[sources::EdsmacManual::TEXT, sources::Campbell1974::TEXT],
             Self::ForceNetwork => {
                 &[sources::PitPinnPaper::TEXT, sources::RasmussenWilliams2006::TEXT]
             }

@@ -14,6 +14,7 @@ pub(super) fn validation_blocks(method: Method, wording: &Wording) -> Vec<Block>
     let text = match method {
         Method::Impact => words.validation_impact,
         Method::FourDof => words.validation_four_dof,
+        Method::ContactLaw => words.validation_contact,
         Method::ForceNetwork => words.validation_force,
         Method::ResponseNetwork => words.validation_response,
         Method::Reconstruction => words.validation_reconstruction,
@@ -22,6 +23,7 @@ pub(super) fn validation_blocks(method: Method, wording: &Wording) -> Vec<Block>
     let captions: &[(Measured, &str)] = match method {
         Method::Impact => &[(Measured::Impact, words.table_impact)],
         Method::FourDof => &[(Measured::FourDof, words.table_four_dof)],
+        Method::ContactLaw => &[(Measured::Pairs, words.table_contact)],
         Method::ForceNetwork => &[
             (Measured::ForceNetwork, words.table_force),
             (Measured::ForceNetwork, words.table_force_coverage),

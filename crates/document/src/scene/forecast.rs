@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::scene::simulation::{add, struck_shape};
+use crate::scene::simulation::{add, striking_shape, struck_shape};
 use crate::scene::{
-    CarLook, CarMotion, Scene, SceneCar, SceneDensity, SceneLine, ScenePath, SceneRole,
+    CarLook, CarMotion, CarShape, Scene, SceneCar, SceneDensity, SceneLine, ScenePath, SceneRole,
 };
 use impactlab_core::collision::Pose;
+use impactlab_core::vehicle::VehicleState;
 use impactlab_networks::response::STEP_S;
 use impactlab_study::analysis::{Analysis, DensityMap, MotionForecast};
 
@@ -30,43 +31,81 @@ pub struct ForecastScene<'a> {
 /// Adds a forecast to the scene of its simulation.
 pub fn add_forecast(scene: &mut Scene, input: &ForecastScene<'_>) {
     let shape = struck_shape(input.analysis);
-    let drawn = input.forecast.distribution.draws(input.n_ghosts, input.seed);
+    let ghosts = match &input.forecast.both {
+        Some(both) => {
+            let chosen = |paths: &[Vec<Pose>]| evenly(paths, input.n_ghosts);
+            let struck = ghosts(scene, &chosen(&input.forecast.paths), &shape, STRUCK_GHOSTS);
+            let striking = input.analysis.striking.as_ref().map(striking_shape);
+            let paths = chosen(&both.striking_paths);
+            let striking = striking.map(|shape| ghosts(scene, &paths, &shape, STRIKING_GHOSTS));
+            striking.into_iter().flatten().chain(struck).collect()
+        }
+        None => {
+            let drawn = input.forecast.distribution.draws(input.n_ghosts, input.seed);
+            ghosts(scene, &drawn, &shape, STRUCK_GHOSTS)
+        }
+    };
+    // Behind the cars that are there already.
+    scene.cars.splice(0..0, ghosts);
+    if let Some(map) = input.density.filter(|map| map.window_s[1] <= input.until_s) {
+        add_density(scene, map);
+    }
+    if let (Some(both), Some(track)) = (&input.forecast.both, &input.analysis.striking) {
+        let shape = striking_shape(track);
+        let motion = CarMotion::from_poses(&poses(&both.striking_central), STEP_S, &shape.body);
+        let named = ["striking vehicle of the forecast", "forecast"];
+        add(scene, named, SceneRole::Striking, CarLook::Ghost, &shape, motion);
+    }
+    let motion = CarMotion::from_poses(&poses(&input.forecast.central), STEP_S, &shape.body);
+    let named = ["central path of the forecast", "forecast"];
+    add(scene, named, SceneRole::Forecast, CarLook::Ghost, &shape, motion);
+}
+
+/// Name and role of the draws of each vehicle.
+const STRUCK_GHOSTS: (&str, SceneRole) = ("draws of the forecast", SceneRole::Forecast);
+const STRIKING_GHOSTS: (&str, SceneRole) = ("draws of the striking vehicle", SceneRole::Striking);
+
+/// Some of many, spread evenly.
+fn evenly(all: &[Vec<Pose>], n: usize) -> Vec<Vec<Pose>> {
+    let n = n.min(all.len());
+    (0..n).filter_map(|i| all.get(i * all.len() / n.max(1)).cloned()).collect()
+}
+
+/// Adds the paths of draws, and gives their cars.
+fn ghosts(
+    scene: &mut Scene,
+    drawn: &[Vec<Pose>],
+    shape: &Arc<CarShape>,
+    (name, role): (&str, SceneRole),
+) -> Vec<SceneCar> {
     let mut ghosts = Vec::new();
-    for poses in &drawn {
+    for poses in drawn {
         let Some(motion) = CarMotion::from_poses(poses, STEP_S, &shape.body).map(Arc::new) else {
             continue;
         };
-        let name = "draws of the forecast".to_owned();
         scene.paths.push(ScenePath {
-            name: name.clone(),
+            name: name.to_owned(),
             role: SceneRole::Muted,
             is_dashed: false,
             has_ticks: false,
             motion: Arc::clone(&motion),
         });
         ghosts.push(SceneCar {
-            name,
+            name: name.to_owned(),
             tag: String::new(),
-            role: SceneRole::Forecast,
+            role,
             look: CarLook::Ghost,
-            shape: Arc::clone(&shape),
+            shape: Arc::clone(shape),
             motion,
         });
     }
-    // Behind the cars that are there already.
-    scene.cars.splice(0..0, ghosts);
-    if let Some(map) = input.density.filter(|map| map.window_s[1] <= input.until_s) {
-        add_density(scene, map);
-    }
-    let central: Vec<Pose> = input
-        .forecast
-        .central
-        .iter()
-        .map(|state| Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad })
-        .collect();
-    let motion = CarMotion::from_poses(&central, STEP_S, &shape.body);
-    let named = ["central path of the forecast", "forecast"];
-    add(scene, named, SceneRole::Forecast, CarLook::Ghost, &shape, motion);
+    ghosts
+}
+
+fn poses(states: &[VehicleState<f64>]) -> Vec<Pose> {
+    let pose =
+        |state: &VehicleState<f64>| Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad };
+    states.iter().map(pose).collect()
 }
 
 /// Adds a density and the edges of its regions.

@@ -22,7 +22,9 @@ mod load_ground;
 mod car_motion;
 mod parts;
 
+mod contact_force;
 mod crush_outline;
+mod dents;
 mod film;
 
 mod forecast;
@@ -42,7 +44,7 @@ pub use load_ground::LoadedGround;
 pub use mesh::{Mesh, MeshTriangle, Surface, triangle_normal};
 pub use parts::{
     CarLook, MeasureTextAt, Scene, SceneArrow, SceneCar, SceneCross, SceneCrush, SceneDensity,
-    SceneLine, SceneMark, SceneMeasure, ScenePath, ScenePoint, SceneRole,
+    SceneForce, SceneLine, SceneMark, SceneMeasure, ScenePath, ScenePoint, SceneRole,
 };
 pub use reconstruction::{ReconstructionParts, reconstruction_scene};
 pub use simulation::{OtherMotion, SimulationScene, simulation_scene};

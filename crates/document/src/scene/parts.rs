@@ -154,6 +154,19 @@ pub struct SceneArrow {
     pub ends_m: [[f64; 2]; 2],
 }
 
+/// A force that acts over time, as an arrow.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneForce {
+    /// Name in the legend, with the largest size.
+    pub name: String,
+    /// Meaning of its colour.
+    pub role: SceneRole,
+    /// Instants, s, ascending.
+    pub time_s: Vec<f64>,
+    /// From where to where it acts from each instant on, `[X, Y]`, m; `None` where it does not act.
+    pub arrows_m: Vec<Option<[[f64; 2]; 2]>>,
+}
+
 /// A cross where and from when something is not computed: a second contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneCross {
@@ -221,6 +234,8 @@ pub struct Scene {
     pub points: Vec<ScenePoint>,
     /// Arrows on the ground.
     pub arrows: Vec<SceneArrow>,
+    /// Forces over time.
+    pub forces: Vec<SceneForce>,
     /// Where cars meet again.
     pub crosses: Vec<SceneCross>,
     /// What was measured on the ground.
@@ -282,9 +297,10 @@ impl Scene {
         solid.clone().find(is_struck).or_else(|| self.cars.iter().find(is_struck))
     }
 
-    /// The striking car.
+    /// The striking car: a solid one, if there is one.
     pub fn striking(&self) -> Option<&SceneCar> {
-        self.cars.iter().find(|car| car.role == SceneRole::Striking)
+        let all = self.cars.iter().filter(|car| car.role == SceneRole::Striking);
+        all.clone().find(|car| car.look == CarLook::Solid).or_else(|| all.clone().next())
     }
 }
 

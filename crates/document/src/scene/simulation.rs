@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
+use crate::scene::contact_force::contact_force;
 use crate::scene::crush_outline::add_crush;
+use crate::scene::dents::add_dents;
 use crate::scene::{
     CarBody, CarLook, CarMotion, CarShape, Scene, SceneArrow, SceneCar, SceneCross, SceneLine,
     SceneMark, ScenePath, SceneRole,
@@ -13,7 +15,7 @@ use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_core::vehicle::frames::world_from_body;
 use impactlab_core::vehicle::{TireMark, tire_marks};
-use impactlab_study::analysis::{Analysis, StruckVehicle};
+use impactlab_study::analysis::{Analysis, StruckVehicle, VehicleTrack};
 
 /// Length of the arrow of an impulse that is as large as 4 m/s of a car's mass, m.
 const ARROW_PER_SPEED_S: f64 = 0.75;
@@ -75,8 +77,12 @@ pub fn simulation_scene(input: &SimulationScene<'_>) -> Scene {
         let named = ["4DOF simulation", "struck"];
         add(&mut scene, named, SceneRole::Simulated, CarLook::Solid, &shape, motion);
     }
-    add_crush(&mut scene, analysis);
     scene.end_s = scene.struck().map_or(0.0, |car| car.motion.end_s());
+    match analysis.pair {
+        Some(_) => add_dents(&mut scene, analysis),
+        None => add_crush(&mut scene, analysis),
+    }
+    scene.forces.extend(contact_force(analysis, units));
     scene.arrows.extend(impulse_arrow(analysis, units));
     scene.crosses.extend(analysis.second_contact.as_ref().map(|second| SceneCross {
         name: "second contact".to_owned(),
@@ -89,6 +95,11 @@ pub fn simulation_scene(input: &SimulationScene<'_>) -> Scene {
 /// The meshes of the struck car.
 pub(super) fn struck_shape(analysis: &Analysis) -> Arc<CarShape> {
     Arc::new(CarShape::new(CarBody::new(&analysis.vehicle, &analysis.footprint)))
+}
+
+/// The meshes of the striking car.
+pub(super) fn striking_shape(track: &VehicleTrack) -> Arc<CarShape> {
+    Arc::new(CarShape::new(CarBody::new(&track.start.vehicle, &track.footprint)))
 }
 
 /// Adds the striking vehicle, if it is known.
@@ -188,8 +199,10 @@ fn impulse_arrow(analysis: &Analysis, units: UnitSystem) -> Option<SceneArrow> {
     let tip = pose.world_from_body([contact.x_body_m, contact.y_body_m]);
     let back = length_m / size;
     let tail = [tip[0] - impulse[0] * back, tip[1] - impulse[1] * back];
+    let of_first = if analysis.pair.is_some() { " of the first contact" } else { "" };
+    let shown = Quantity::Impulse.shown(size, units);
     Some(SceneArrow {
-        name: format!("impulse on the struck vehicle, {}", Quantity::Impulse.shown(size, units)),
+        name: format!("impulse on the struck vehicle{of_first}, {shown}"),
         role: SceneRole::Evidence,
         ends_m: [tail, tip],
     })

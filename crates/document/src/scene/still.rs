@@ -56,9 +56,11 @@ impl SceneStill {
         let crushes = scene.crushes.iter().map(|crush| &crush.name);
         let points = scene.points.iter().map(|point| &point.name);
         let arrows = scene.arrows.iter().map(|arrow| &arrow.name);
+        let forces = scene.forces.iter().map(|force| &force.name);
         let crosses = scene.crosses.iter().map(|cross| &cross.name);
         let density = scene.density.iter().map(|density| &density.name);
         let moving = cars.chain(paths).chain(lines).chain(marks).chain(crushes);
-        moving.chain(points).chain(arrows).chain(crosses).chain(density).map(String::as_str)
+        let points = points.chain(arrows).chain(forces);
+        moving.chain(points).chain(crosses).chain(density).map(String::as_str)
     }
 }

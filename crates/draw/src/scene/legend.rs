@@ -95,6 +95,7 @@ fn entries(scene: &Scene, dark: bool) -> Vec<(&str, Color32, Entry)> {
         scene.crushes.iter().map(|crush| (crush.name.as_str(), SceneRole::Crush, Entry::Line));
     let points = scene.points.iter().map(|point| (point.name.as_str(), point.role, Entry::Point));
     let arrows = scene.arrows.iter().map(|arrow| ("impulse", arrow.role, Entry::Line));
+    let forces = scene.forces.iter().map(|force| (force.name.as_str(), force.role, Entry::Line));
     let crosses =
         scene.crosses.iter().map(|cross| (cross.name.as_str(), SceneRole::Evidence, Entry::Cross));
     let density = scene
@@ -108,6 +109,7 @@ fn entries(scene: &Scene, dark: bool) -> Vec<(&str, Color32, Entry)> {
         .chain(lines)
         .chain(points)
         .chain(arrows)
+        .chain(forces)
         .chain(crosses)
         .chain(density);
     let on_picture = scene.ground.as_ref().is_some_and(|site| site.has_picture());

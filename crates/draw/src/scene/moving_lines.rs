@@ -3,7 +3,7 @@
 use egui::Color32;
 
 use crate::scene::cars::{is_draw, steer_of};
-use crate::scene::ground::{Ground, Pen};
+use crate::scene::ground::{Ground, Pen, arrow_lines};
 use crate::scene::lines::Stroke;
 use crate::scene::shade::{LOCKED_COLOR, role_color};
 use impactlab_core::collision::Pose;
@@ -57,6 +57,14 @@ impl MovingLines {
             ground.line(&line.points_m, pen, &mut self.above);
         }
         self.crushes(ground, time_s);
+        for force in &ground.scene.forces {
+            let Some(ends_m) = force.at(time_s) else { continue };
+            let pen =
+                Pen { color: role_color(force.role, ground.dark), width: 3.2, is_dashed: false };
+            for line in arrow_lines(ends_m) {
+                ground.line(&line, pen, &mut self.above);
+            }
+        }
         for cross in &ground.scene.crosses {
             let color = role_color(SceneRole::Evidence, ground.dark);
             let is_met = cross.time_s <= time_s;

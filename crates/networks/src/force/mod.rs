@@ -37,7 +37,7 @@ pub use physics::{
     CentreCurve, CentreFit, CentreModel, MOMENTUM_DIRECTION_STD_RAD, MOMENTUM_IMPULSE_LOG_STD,
     MomentumModel, regression,
 };
-pub use predict::ForcePrediction;
+pub use predict::{ForcePrediction, SHARE_OF_NETWORK};
 pub use regression::ColumnSet;
 pub use train::{
     FORCE_CHECKPOINT, ForceEpoch, ForceModel, ForceRecord, ForceTrainSettings, ForceTraining,

@@ -12,6 +12,9 @@ use impactlab_core::uncertainty::{
 };
 use impactlab_core::units::percent;
 
+/// Name of the applicability of a force network in a caveat.
+pub const SHARE_OF_NETWORK: &str = "applicability of the force network";
+
 /// Largest and smallest number of pulses that stand for the physics alone, for each contact point.
 const N_BARE: [usize; 2] = [48, 8];
 
@@ -27,6 +30,8 @@ const N_BARE: [usize; 2] = [48, 8];
 pub struct ForcePrediction {
     /// Distribution of the force history and its duration.
     pub mixture: CurveMixture,
+    /// The part of it that the network has learned; `None` where it says nothing.
+    pub learned: Option<CurveMixture>,
     /// The distribution under the condition that the vehicles hook, or that they do not, whichever is
     /// more likely. Point estimates are taken from it, since a mean over both kinds of collision would
     /// be similar to neither.
@@ -87,16 +92,21 @@ impl ForceModel {
             variants.iter().map(|variant| variant.probability * variant.applicability).sum::<f64>();
         let is_inside = variants.iter().all(|variant| variant.applicability == 1.0);
         let applicability = if is_inside { 1.0 } else { applicability.clamp(0.0, 1.0) };
-        let (prediction, bare) = match (is_inside, applicability > 0.0) {
-            (true, _) => (self.predict_by_network(&canonical, &variants)?, None),
+        let (prediction, learned, bare) = match (is_inside, applicability > 0.0) {
+            (true, _) => {
+                let network = self.predict_by_network(&canonical, &variants)?;
+                let learned = Some(network.mixture.clone());
+                (network, learned, None)
+            }
             (false, true) => {
                 let network = self.predict_by_network(&canonical, &variants)?;
+                let learned = Some(network.mixture.clone());
                 let bare = self.predict_by_physics(&canonical, &variants)?;
-                (network.mixed(applicability, &bare.0)?, Some(bare.1))
+                (network.mixed(applicability, &bare.0)?, learned, Some(bare.1))
             }
             (false, false) => {
                 let (bare, is_approaching) = self.predict_by_physics(&canonical, &variants)?;
-                (bare, Some(is_approaching))
+                (bare, None, Some(is_approaching))
             }
         };
         let outside = self.domain.outside(&canonical);
@@ -105,6 +115,7 @@ impl ForceModel {
         let [px, py] = prediction.momentum_impulse_n_s;
         Ok(ForcePrediction {
             mixture: turned(prediction.mixture),
+            learned: learned.map(turned),
             likely: turned(prediction.likely),
             centre: if mirrored { prediction.centre.mirrored() } else { prediction.centre },
             momentum_impulse_n_s: [px, if mirrored { -py } else { py }],
@@ -275,7 +286,7 @@ fn caveats(applicability: f64, outside: &[OutsideTraining], bare: Option<bool>) 
                 .to_owned(),
         };
         let caveat = Caveat::new(CaveatKind::OutsideDomain, text)
-            .with_value("applicability of the force network", applicability)
+            .with_value(SHARE_OF_NETWORK, applicability)
             .with_range([1.0, 1.0]);
         caveats.push(caveat);
     }

@@ -130,7 +130,7 @@ pub fn evaluate_pair(
     case: &PairCase,
     forecast: &PairForecast,
 ) -> Result<EvaluatedPair, SeriesError> {
-    let centre = PairDraw::from_motion(forecast.centre.clone());
+    let centre = PairDraw::from_motion(0, forecast.centre.clone());
     let first_s = case.contact.first_s.unwrap_or(0.0);
     let score = |vehicle: usize| -> Result<VehicleScore, SeriesError> {
         let record = Record::new(&case.motions[vehicle])?;

@@ -5,12 +5,14 @@ use rayon::prelude::*;
 use crate::pair::scatter::{PairLatents, PairScatter};
 use crate::response::{CoupledDraw, N_RESIDUAL, Predictor};
 use impactlab_core::collision::contact::{
-    ContactBody, ContactConditions, ContactOutline, ContactPhase, FaceLaws, PairError, PairMotion,
-    PairRun, PairVehicle, VehiclePair,
+    ContactBody, ContactConditions, ContactOutline, ContactPhase, FaceLaws, HandOver, PairError,
+    PairMotion, PairRun, PairVehicle, VehiclePair,
 };
 use impactlab_core::data::{Channel, Outcome};
 use impactlab_core::jobs::{Progress, ProgressCallback};
-use impactlab_core::vehicle::{Manoeuvre, VehicleParameters, VehicleState};
+use impactlab_core::vehicle::{
+    ContactLoad, Manoeuvre, OUTPUT_INTERVAL_S, VehicleParameters, VehicleState,
+};
 
 /// Draws that are computed side by side between two reports of progress.
 const BLOCK_DRAWS: usize = 32;
@@ -29,7 +31,8 @@ const ROLES: [&str; 2] = ["struck", "striking"];
 pub struct PairQuestion<'a> {
     /// The vehicles at their medians.
     pub vehicles: [&'a VehicleParameters; 2],
-    /// Their initial states, controls, ground and end, without collision forces.
+    /// Their initial states, controls, ground and end. The collision force of the struck vehicle, if it
+    /// has one, is that of the first contact at its median; the striking one has none.
     pub manoeuvres: [&'a Manoeuvre; 2],
     /// Their outlines.
     pub outlines: [&'a ContactOutline; 2],
@@ -40,6 +43,21 @@ pub struct PairQuestion<'a> {
     /// The response network for each vehicle, which corrects its motion while the vehicles are apart after
     /// the first contact; `None` for the equations of motion alone.
     pub predictors: [Option<&'a Predictor>; 2],
+    /// What stands for the vehicles in the draws, in turn. Where it is empty, that is the vehicle at its
+    /// median with the scatter of the settings.
+    pub drawn: [&'a [DrawnVehicle]; 2],
+    /// The force of the first contact in the draws, in turn: the contact law from the start on where it is
+    /// `None`. Where it is empty, all draws have that of the medians.
+    pub first_forces: &'a [Option<ContactLoad>],
+}
+
+/// A vehicle that was drawn, with its response network.
+#[derive(Debug, Clone)]
+pub struct DrawnVehicle {
+    /// The vehicle.
+    pub vehicle: VehicleParameters,
+    /// Its network; `None` for the equations of motion alone.
+    pub predictor: Option<Predictor>,
 }
 
 /// How many draws, and of what.
@@ -62,12 +80,16 @@ impl Default for PairSettings {
 /// One draw of the motions of both vehicles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairDraw {
+    /// Number of the draw.
+    pub number: usize,
     /// States every 10 ms of the struck and of the striking vehicle.
     pub states: [Vec<VehicleState<f64>>; 2],
     /// Phases of contact.
     pub phases: Vec<ContactPhase>,
     /// Since when each vehicle is at rest, s; `None` if it still moves at the end.
     pub rest_s: [Option<f64>; 2],
+    /// How the contact law took over from a known force.
+    pub hand_over: Option<HandOver>,
 }
 
 /// The motions of two vehicles over draws.
@@ -91,7 +113,8 @@ pub fn forecast_pair(
     settings: &PairSettings,
     report: &mut ProgressCallback<'_>,
 ) -> Result<Outcome<PairForecast>, PairError> {
-    let corrections = [0, 1].map(|i| question.predictor(i).map(Predictor::coupled_median));
+    let corrections =
+        [0, 1].map(|i| correcting(question.predictors[i]).map(Predictor::coupled_median));
     let median = Drawn {
         vehicles: question.vehicles.map(VehicleParameters::clone),
         manoeuvres: question.manoeuvres.map(Manoeuvre::clone),
@@ -135,11 +158,17 @@ struct Drawn {
     missed: [[f64; 3]; 2],
 }
 
-impl<'a> PairQuestion<'a> {
-    fn predictor(&self, vehicle: usize) -> Option<&'a Predictor> {
-        self.predictors[vehicle].filter(|predictor| predictor.corrects_accelerations())
-    }
+/// The predictor, if its network corrects accelerations.
+fn correcting(predictor: Option<&Predictor>) -> Option<&Predictor> {
+    predictor.filter(|predictor| predictor.corrects_accelerations())
+}
 
+/// What takes its turn at a draw; `None` without any.
+fn in_turn<T>(all: &[T], draw: usize) -> Option<&T> {
+    all.get(draw % all.len().max(1))
+}
+
+impl PairQuestion<'_> {
     fn draw(
         &self,
         draw: usize,
@@ -147,16 +176,31 @@ impl<'a> PairQuestion<'a> {
         settings: &PairSettings,
     ) -> Result<PairDraw, PairError> {
         let scatter = &settings.scatter;
+        let own = [0, 1].map(|i| in_turn(self.drawn[i], draw));
+        let vehicle = |i: usize| match own[i] {
+            Some(drawn) => drawn.vehicle.clone(),
+            None => latents.vehicle(draw, i, self.vehicles[i], scatter),
+        };
+        let mut manoeuvres =
+            [0, 1].map(|i| latents.manoeuvre(draw, i, self.manoeuvres[i], scatter));
+        if let Some(load) = in_turn(self.first_forces, draw) {
+            manoeuvres[0].contact_load.clone_from(load);
+        }
         let drawn = Drawn {
-            vehicles: [0, 1].map(|i| latents.vehicle(draw, i, self.vehicles[i], scatter)),
-            manoeuvres: [0, 1].map(|i| latents.manoeuvre(draw, i, self.manoeuvres[i], scatter)),
-            faces: [0, 1].map(|i| latents.faces(draw, i, self.faces[i], scatter)),
+            vehicles: [0, 1].map(vehicle),
+            manoeuvres,
+            faces: [0, 1].map(|i| {
+                let said = &self.vehicles[i].crush;
+                latents.faces(draw, i, (self.faces[i], said), scatter)
+            }),
             missed: [0, 1].map(|i| latents.missed(draw, i, scatter)),
             conditions: latents.conditions(draw, self.conditions, scatter),
         };
-        let corrections =
-            [0, 1].map(|i| Some(self.predictor(i)?.coupled_draw(settings.seed, ROLES[i], draw)));
-        self.simulate(&drawn, corrections).map(PairDraw::from_motion)
+        let corrections = [0, 1].map(|i| {
+            let predictor = own[i].map_or(self.predictors[i], |drawn| drawn.predictor.as_ref());
+            Some(correcting(predictor)?.coupled_draw(settings.seed, ROLES[i], draw))
+        });
+        self.simulate(&drawn, corrections).map(|motion| PairDraw::from_motion(draw, motion))
     }
 
     fn simulate(
@@ -186,17 +230,19 @@ impl<'a> PairQuestion<'a> {
 }
 
 /// What the network adds to the acceleration of a vehicle over the coming interval: nothing before the
-/// first contact and while the vehicles push each other.
+/// first contact and while the vehicles push each other. Under a known force it has learned to.
 fn residual(
     run: &PairRun<'_>,
     vehicle: usize,
     correction: Option<&mut CoupledDraw<'_>>,
 ) -> [f64; N_RESIDUAL] {
-    let (Some(correction), Some(first_s)) = (correction, run.first_contact_s()) else {
+    let is_known = run.is_driven_by_known_force();
+    let first_s = run.first_contact_s().or(is_known.then(|| run.time_s()));
+    let (Some(correction), Some(first_s)) = (correction, first_s) else {
         return [0.0; N_RESIDUAL];
     };
     let input = run.input(vehicle);
-    if input.collision.is_some() {
+    if input.collision.is_some() && !is_known {
         return [0.0; N_RESIDUAL];
     }
     let time_s = (run.time_s() - first_s).max(0.0);
@@ -217,15 +263,22 @@ fn missed(run: &PairRun<'_>, vehicle: usize, drawn: [f64; 3]) -> [f64; 3] {
 
 impl PairDraw {
     /// The draw from its motion.
-    pub(super) fn from_motion(motion: PairMotion) -> Self {
+    ///
+    /// - `number`: of the draw.
+    pub fn from_motion(number: usize, motion: PairMotion) -> Self {
         let states = [0, 1].map(|i| states_of(&motion, i));
         let rest_s = [0, 1].map(|i| motion.motions[i].rest_s);
-        Self { states, phases: motion.phases, rest_s }
+        Self { number, states, phases: motion.phases, rest_s, hand_over: motion.hand_over }
     }
 
     /// When the vehicles first touch each other, s.
     pub fn first_contact_s(&self) -> Option<f64> {
         self.phases.first().map(|phase| phase.start_s)
+    }
+
+    /// When the motion ends, s.
+    pub fn end_s(&self) -> f64 {
+        self.states[0].len().saturating_sub(1) as f64 * OUTPUT_INTERVAL_S
     }
 
     /// State of a vehicle at an instant, the last one after the end of its motion.
@@ -290,6 +343,8 @@ mod tests {
             faces: [faces; 2],
             conditions: ContactConditions::default(),
             predictors: [None; 2],
+            drawn: [&[]; 2],
+            first_forces: &[],
         };
         let found = forecast_pair(&question, settings, &mut |_| ControlFlow::Continue(()));
         found.unwrap().complete().unwrap()
@@ -330,6 +385,8 @@ mod tests {
             faces: [faces; 2],
             conditions: ContactConditions::default(),
             predictors: [None; 2],
+            drawn: [&[]; 2],
+            first_forces: &[],
         };
         let settings = PairSettings { n_draws: 4, ..PairSettings::default() };
         let stopped = forecast_pair(&question, &settings, &mut |_| ControlFlow::Break(()));

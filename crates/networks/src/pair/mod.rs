@@ -18,6 +18,8 @@ mod scatter;
 pub use evaluate::{
     Compared, Coverage, EvaluatedPair, PairSummary, VehicleScore, VehicleSummary, evaluate_pair,
 };
-pub use forecast::{PairDraw, PairForecast, PairQuestion, PairSettings, forecast_pair};
+pub use forecast::{
+    DrawnVehicle, PairDraw, PairForecast, PairQuestion, PairSettings, forecast_pair,
+};
 pub use outcome::{Course, CourseShare, HALF_TURN_RAD, QUARTER_TURN_RAD};
 pub use scatter::PairScatter;

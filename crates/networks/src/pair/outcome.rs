@@ -1,9 +1,13 @@
 //! What the draws of two vehicles come to: courses of events, contacts, where the vehicles are.
 
+use std::f64::consts::FRAC_PI_4;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::pair::{PairDraw, PairForecast};
+use impactlab_core::collision::contact::ContactPhase;
+use impactlab_core::numerics::wrap_angle_rad;
 use impactlab_core::uncertainty::PlanarMixture;
 
 /// Turn from which on a vehicle has spun, rad: a quarter.
@@ -20,6 +24,10 @@ pub const HALF_TURN_RAD: f64 = std::f64::consts::PI;
 pub enum Course {
     /// The vehicles do not touch each other.
     Missed,
+    /// At the end it stands across the front of the striking vehicle, which still pushes it.
+    Across,
+    /// At the end it is in contact otherwise.
+    Hooked,
     /// It turns by less than a quarter.
     Recovers,
     /// It turns by a quarter to a half.
@@ -39,7 +47,8 @@ pub struct CourseShare {
 
 impl Course {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Missed, Self::Recovers, Self::Turns, Self::Spins];
+    pub const ALL: [Self; 6] =
+        [Self::Missed, Self::Across, Self::Hooked, Self::Recovers, Self::Turns, Self::Spins];
 }
 
 impl PairDraw {
@@ -50,10 +59,34 @@ impl PairDraw {
         states.iter().map(|state| (state.yaw_rad - first).abs()).fold(0.0, f64::max)
     }
 
+    /// Whether the vehicles still are in contact at the end.
+    fn is_in_contact_at_end(&self) -> bool {
+        self.phases.last().is_some_and(|phase| phase.end_s.is_none())
+    }
+
+    /// Whether the headings at the end are nearer to a right angle than to any other.
+    fn is_across_at_end(&self) -> bool {
+        let [struck, striking] = self.states.each_ref().map(|states| states.last());
+        let turn = struck.zip(striking).map(|(a, b)| wrap_angle_rad(a.yaw_rad - b.yaw_rad).abs());
+        turn.is_some_and(|turn| (FRAC_PI_4..=3.0 * FRAC_PI_4).contains(&turn))
+    }
+
+    /// Whether the vehicles are in contact at an instant, s.
+    pub fn is_in_contact(&self, time_s: f64) -> bool {
+        let holds = |phase: &ContactPhase| {
+            (phase.start_s..=phase.end_s.unwrap_or(f64::INFINITY)).contains(&time_s)
+        };
+        self.phases.iter().any(holds)
+    }
+
     /// What becomes of the struck vehicle.
     pub fn course(&self) -> Course {
         match self.largest_turn_rad(0) {
             _ if self.phases.is_empty() => Course::Missed,
+            _ if self.is_in_contact_at_end() => match self.is_across_at_end() {
+                true => Course::Across,
+                false => Course::Hooked,
+            },
             turn if turn > HALF_TURN_RAD => Course::Spins,
             turn if turn > QUARTER_TURN_RAD => Course::Turns,
             _ => Course::Recovers,

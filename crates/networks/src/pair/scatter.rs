@@ -3,11 +3,13 @@
 //! Every quantity follows from standard normal values of its own, which fill their space evenly over the
 //! draws (Latin hypercube). Factors are lognormal.
 
+use crate::response::{RESISTANCE_SCATTER, with_resistance};
 use impactlab_core::collision::contact::{
     ByFace, CONTACT_FRICTION_SIGMA, ContactConditions, ELASTIC_DEPTH_LOG_SIGMA, FaceLaws,
+    stiffness_log_sigma,
 };
 use impactlab_core::numerics::{latin_normals, random_stream};
-use impactlab_core::vehicle::{Manoeuvre, VehicleParameters};
+use impactlab_core::vehicle::{ClosedLoop, CrushParameters, Manoeuvre, VehicleParameters};
 
 /// Bounds of the coefficient of friction between vehicles.
 const CONTACT_FRICTION_RANGE: [f64; 2] = [0.1, 0.9];
@@ -35,6 +37,12 @@ pub struct PairScatter {
     pub steer_log: f64,
     /// Of the logarithm of a factor on the brake and drive torques of a vehicle.
     pub torque_log: f64,
+    /// Whether numbers of drivers and systems are drawn that nobody said.
+    pub drivers: bool,
+    /// Of the logarithm of the rolling resistance of a vehicle.
+    pub rolling_log: f64,
+    /// Of the logarithm of its air drag.
+    pub air_log: f64,
     /// Of what the equations of motion miss of the acceleration of a vehicle that turns or slides,
     /// along its body axes, m/s².
     pub missed_m_s2: f64,
@@ -53,6 +61,9 @@ impl Default for PairScatter {
             cornering_log: 0.12,
             steer_log: 0.05,
             torque_log: 0.08,
+            drivers: true,
+            rolling_log: RESISTANCE_SCATTER[0],
+            air_log: RESISTANCE_SCATTER[1],
             missed_m_s2: 0.25,
             missed_rad_s2: 0.1,
         }
@@ -70,6 +81,9 @@ impl PairScatter {
         cornering_log: 0.0,
         steer_log: 0.0,
         torque_log: 0.0,
+        drivers: false,
+        rolling_log: 0.0,
+        air_log: 0.0,
         missed_m_s2: 0.0,
         missed_rad_s2: 0.0,
     };
@@ -86,6 +100,9 @@ impl PairScatter {
             cornering_log: self.cornering_log * factor,
             steer_log: self.steer_log * factor,
             torque_log: self.torque_log * factor,
+            drivers: self.drivers,
+            rolling_log: self.rolling_log * factor,
+            air_log: self.air_log * factor,
             missed_m_s2: self.missed_m_s2 * factor,
             missed_rad_s2: self.missed_rad_s2 * factor,
         }
@@ -95,8 +112,15 @@ impl PairScatter {
 /// Standard normal values of a vehicle.
 const N_OF_VEHICLE: usize = 12;
 
-/// Standard normal values of a draw: friction and recovery of the contact, then both vehicles.
-const N_LATENTS: usize = 2 + 2 * N_OF_VEHICLE;
+/// Further values of a vehicle: rolling resistance and air drag.
+const N_OF_RESISTANCE: usize = 2;
+
+/// Standard normal values of a draw: friction and recovery of the contact, then both vehicles, then the
+/// resistance of both, then their drivers and systems.
+const N_LATENTS: usize = FIRST_OF_DRIVER + 2 * ClosedLoop::N_DRAWN;
+
+const FIRST_OF_RESISTANCE: usize = 2 + 2 * N_OF_VEHICLE;
+const FIRST_OF_DRIVER: usize = FIRST_OF_RESISTANCE + 2 * N_OF_RESISTANCE;
 
 /// Standard normal values of all draws.
 pub(super) struct PairLatents {
@@ -130,12 +154,13 @@ impl PairLatents {
 
     /// The faces of a vehicle of a draw.
     ///
-    /// - `vehicle`: 0 for the struck, 1 for the striking one.
+    /// - `vehicle`: 0 for the struck, 1 for the striking one;
+    /// - `said`: what is known of them.
     pub fn faces(
         &self,
         draw: usize,
         vehicle: usize,
-        median: FaceLaws,
+        (median, said): (FaceLaws, &CrushParameters),
         scatter: &PairScatter,
     ) -> FaceLaws {
         let z = |idx: usize| self.at(draw, 2 + vehicle * N_OF_VEHICLE + idx);
@@ -143,13 +168,15 @@ impl PairLatents {
         let depth = (scatter.elastic_depth_log * z(3)).exp();
         let recovery = scatter.elastic_recovery * self.at(draw, 1);
         let [low, high] = RECOVERY_RANGE;
-        median.drawn(latents.map(|z| scatter.faces * z)).map(|law| {
+        let sigma = stiffness_log_sigma(said);
+        median.drawn(latents.map(|z| scatter.faces * z), sigma).map(|law| {
             let share = (law.elastic_recovery() + recovery).clamp(low, high);
             law.with_elastic_depth(depth).with_elastic_recovery(share)
         })
     }
 
-    /// What a driver did, of a draw: the same with factors on steer angles and torques.
+    /// What a driver did, of a draw: the same with factors on steer angles and torques, and with numbers
+    /// of drivers and systems that nobody said.
     pub fn manoeuvre(
         &self,
         draw: usize,
@@ -161,6 +188,10 @@ impl PairLatents {
         let mut drawn = median.clone();
         let steer = (scatter.steer_log * z(0)).exp();
         let torque = (scatter.torque_log * z(1)).exp();
+        if let Some(closed_loop) = drawn.controls.closed_loop.as_mut().filter(|_| scatter.drivers) {
+            let first = FIRST_OF_DRIVER + vehicle * ClosedLoop::N_DRAWN;
+            *closed_loop = closed_loop.drawn(std::array::from_fn(|idx| self.at(draw, first + idx)));
+        }
         if let Some(history) = &mut drawn.controls.steer {
             history.steer_rad.iter_mut().for_each(|angle| *angle *= steer);
         }
@@ -179,7 +210,7 @@ impl PairLatents {
         [scatter.missed_m_s2 * z(0), scatter.missed_m_s2 * z(1), scatter.missed_rad_s2 * z(2)]
     }
 
-    /// A vehicle of a draw: its tires.
+    /// A vehicle of a draw: its tires and what resists its motion.
     pub fn vehicle(
         &self,
         draw: usize,
@@ -193,7 +224,11 @@ impl PairLatents {
         tires.friction *= (scatter.tire_friction_log * z(0)).exp();
         tires.cornering_coefficient_front_per_rad *= (scatter.cornering_log * z(1)).exp();
         tires.cornering_coefficient_rear_per_rad *= (scatter.cornering_log * z(2)).exp();
-        drawn
+        let of_resistance =
+            |idx: usize| self.at(draw, FIRST_OF_RESISTANCE + vehicle * N_OF_RESISTANCE + idx);
+        let rolling = (scatter.rolling_log * of_resistance(0)).exp();
+        let air = (scatter.air_log * of_resistance(1)).exp();
+        with_resistance(&drawn, [rolling, air])
     }
 }
 
@@ -211,7 +246,8 @@ mod tests {
         let none = PairScatter::NONE;
         assert_eq!(latents.conditions(7, conditions, &none), conditions);
         assert_eq!(latents.vehicle(7, 1, &vehicle, &none), vehicle);
-        let median = latents.faces(7, 0, faces, &none);
+        let unknown = CrushParameters::default();
+        let median = latents.faces(7, 0, (faces, &unknown), &none);
         assert!((median.side.onset_n_per_m() / faces.side.onset_n_per_m() - 1.0).abs() < 1e-12);
         let scatter = PairScatter::default();
         let std = |values: Vec<f64>| {
@@ -220,7 +256,7 @@ mod tests {
             (square / (values.len() as f64 - 1.0)).sqrt()
         };
         let sides = (0..400).map(|draw| {
-            let drawn = latents.faces(draw, 0, faces, &scatter).side.onset_n_per_m();
+            let drawn = latents.faces(draw, 0, (faces, &unknown), &scatter).side.onset_n_per_m();
             (drawn / faces.side.onset_n_per_m()).ln()
         });
         assert!((std(sides.collect()) - 0.4).abs() < 0.02);

@@ -32,10 +32,11 @@ pub use physics::{
 pub use population::{CarStrengths, KnownCar, StrengthPopulation};
 pub use population::{UnseenCar, is_same_car};
 pub use predict::weighted_mean;
+pub(crate) use predict::with_resistance;
 pub use predict::{
     Applicability, ComponentMotion, ComponentPath, CoupledDraw, LATENT_NAMES, LatentScales,
     MotionDistribution, MotionDomain, N_LATENTS, N_NAMED_LATENTS, OutsideDomain, Predictor,
-    ResponseModel, RestSearch, SettledMotion, StateDistribution, Widths,
+    RESISTANCE_SCATTER, ResponseModel, RestSearch, SettledMotion, StateDistribution, Widths,
 };
 pub use train::{
     ImpactRecord, RESPONSE_CHECKPOINT, ResponseCase, ResponseCaseError, ResponseEpoch,

@@ -4,6 +4,8 @@
 //! and the app show the same [`Analysis`].
 
 mod case;
+mod contact_pair;
+mod contacts;
 mod file;
 mod forecast;
 mod monte_carlo;
@@ -11,13 +13,17 @@ mod motion_bands;
 mod motion_density;
 mod motion_forecast;
 mod motion_to_rest;
+mod pair_forecast;
 mod rest_outcome;
 mod rival;
 mod scenario;
 mod second_contacts;
 mod striking;
 
-use impactlab_core::collision::{Footprint, PulseError, ScenarioError, SecondContact};
+use impactlab_core::collision::contact::{ContactPhase, FaceLawError, PairError};
+use impactlab_core::collision::{
+    Footprint, FootprintError, PulseError, ScenarioError, SecondContact,
+};
 use impactlab_core::compare::{MotionError, ReplayError};
 use impactlab_core::data::{ContactOutside, DataError, ForceHistory, SeriesError, TimeSeries};
 use impactlab_core::vehicle::{
@@ -26,16 +32,24 @@ use impactlab_core::vehicle::{
 };
 
 pub use case::analyse_case;
+pub use contact_pair::ContactPair;
+pub(crate) use contacts::told;
+pub use contacts::{
+    ContactPhaseReport, ContactsOutcome, InContact, PhaseForecast, PhaseOfVehicleForecast,
+    PhaseOfVehicleReport,
+};
 pub use file::{DriveSetup, analyse_drive, analyse_recording};
 pub(crate) use forecast::bands_of_draws;
 pub use forecast::{ForceForecast, ForecastSettings, Mode, pulse_curves};
 pub use monte_carlo::MonteCarloError;
 pub use motion_bands::{MOTION_BAND_LEVELS, MotionBand, MotionBands};
 pub use motion_density::{DensityMap, DensityTask, Region};
+pub(crate) use motion_forecast::in_world;
 pub use motion_forecast::{
     MotionForecast, MotionForecastError, MotionForecastSettings, MotionOutcome, StruckVehicle,
     forecast_collision, forecast_forces,
 };
+pub use pair_forecast::{BothVehicles, BothVehiclesQuestion, FirstForces, forecast_both};
 pub use rest_outcome::{MotionEnd, RestOutcome};
 pub use rival::{Rival, RivalForce};
 pub(crate) use scenario::scale_of_car;
@@ -64,6 +78,8 @@ pub struct Settings {
     /// Whether the simulation ends before its duration where the struck vehicle has come to rest.
     /// The striking vehicle is followed as long.
     pub ends_at_rest: bool,
+    /// Whether the vehicles of a scenario move after their first contact as if each were alone.
+    pub one_contact: bool,
     /// Parts of the ground with their own friction, in the axes in which the motions are simulated;
     /// elsewhere each vehicle has the friction of its tires. Both vehicles move over them.
     pub friction_zones: Vec<FrictionZone>,
@@ -105,7 +121,13 @@ pub struct Analysis {
     pub reference: Option<TimeSeries>,
     /// Outline and motion of the striking vehicle, if known.
     pub striking: Option<VehicleTrack>,
-    /// Where the two vehicles meet again after the contact, if they do: their motions do not know of
+    /// The vehicles as the contact law sees them, where both were followed through all contacts.
+    pub pair: Option<ContactPair>,
+    /// Phases of contact between them; empty where they were not.
+    pub phases: Vec<ContactPhase>,
+    /// Depth of the dents that stay, of the elements of each outline of the pair, m; likewise.
+    pub dents_m: [Vec<f64>; 2],
+    /// Where the two vehicles meet again after the contact, if they do and their motions do not know of
     /// it.
     pub second_contact: Option<SecondContact>,
     /// Errors of the simulated motion against the recorded one; `None` unless both exist.
@@ -149,4 +171,13 @@ pub enum AnalysisError {
     /// The shape or duration of the force pulse is invalid.
     #[error(transparent)]
     Pulse(#[from] PulseError),
+    /// The dimensions of a vehicle give no outline for the contact.
+    #[error(transparent)]
+    Outline(#[from] FootprintError),
+    /// A face of a vehicle has no law of its load.
+    #[error(transparent)]
+    Faces(#[from] FaceLawError),
+    /// The vehicles cannot be followed through their contacts.
+    #[error("the vehicles cannot be followed through their contacts")]
+    Pair(#[from] PairError),
 }

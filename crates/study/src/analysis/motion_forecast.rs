@@ -13,8 +13,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::analysis::motion_to_rest::{Settled, ToRest};
-use crate::analysis::{MonteCarloError, RestOutcome};
+use crate::analysis::{BothVehicles, MonteCarloError, RestOutcome};
 use impactlab_core::collision::Pose;
+use impactlab_core::collision::contact::PairError;
 use impactlab_core::data::{
     ContactOutside, ForceAxes, ForceHistory, check_contact_within, contact_interval,
 };
@@ -100,6 +101,8 @@ pub struct MotionForecast {
     pub n_vehicles: usize,
     /// Which estimates of the vehicle the end of the motion depends on; empty if none was drawn.
     pub sensitivity: Vec<Sensitivity>,
+    /// The striking vehicle and the contacts, where both vehicles are followed through all of them.
+    pub both: Option<Box<BothVehicles>>,
     /// How far the response network holds for the forecast: mean over forces and vehicles, with what
     /// lies outside for the median of them.
     pub applicability: Applicability,
@@ -154,6 +157,9 @@ pub enum MotionForecastError {
     /// The force acts outside the time of the forecast.
     #[error(transparent)]
     ContactOutside(#[from] ContactOutside),
+    /// No draw of both vehicles can be followed.
+    #[error("the vehicles cannot be followed through their contacts")]
+    Pair(#[from] PairError),
     /// The predicted motion is not finite.
     #[error("the predicted motion diverges")]
     Diverged,
@@ -288,6 +294,7 @@ pub fn forecast_forces(
         n_vehicles: draws.map_or(0, |draws| draws.len()),
         sensitivity,
         applicability: usual(applicabilities.iter().collect()),
+        both: None,
     })
 }
 
@@ -369,12 +376,12 @@ fn propagated(
     Some(ForecastMotion { distribution, paths, outcome, rest: None, applicabilities })
 }
 
-fn pose(state: &VehicleState<f64>) -> Pose {
+pub(super) fn pose(state: &VehicleState<f64>) -> Pose {
     Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad }
 }
 
 /// What lies outside for the median of several forces and vehicles, with the mean of their values.
-fn usual(mut all: Vec<&Applicability>) -> Applicability {
+pub(super) fn usual(mut all: Vec<&Applicability>) -> Applicability {
     all.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     let mean =
         all.iter().map(|applicability| applicability.value).sum::<f64>() / all.len().max(1) as f64;
@@ -393,7 +400,7 @@ struct Part {
 
 /// The draws of what the data sheet of the vehicle leaves open, at least one for each force; `None` if
 /// it leaves nothing open or no draws are asked for.
-fn drawn_vehicles(
+pub(super) fn drawn_vehicles(
     struck: &StruckVehicle,
     settings: &MotionForecastSettings,
     n_forces: usize,
@@ -419,7 +426,7 @@ fn predictors(
 }
 
 /// Rotates a curve from axes along the struck vehicle's initial heading into world axes.
-fn in_world(curve: &ForceCurve, heading_rad: f64) -> ForceHistory {
+pub(crate) fn in_world(curve: &ForceCurve, heading_rad: f64) -> ForceHistory {
     let mut history = curve.to_history();
     let (sin, cos) = heading_rad.sin_cos();
     for (fx, fy) in history.fx_n.iter_mut().zip(&mut history.fy_n) {

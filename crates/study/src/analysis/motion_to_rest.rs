@@ -16,15 +16,12 @@ use impactlab_core::uncertainty::pose_groups;
 use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::VehicleState;
 use impactlab_networks::response::{
-    Applicability, ComponentMotion, MotionDistribution, Predictor, RestSearch, STEP_S,
-    SettledMotion, StateDistribution, Widths, weighted_mean,
+    Applicability, ComponentMotion, MotionDistribution, Predictor, RESISTANCE_SCATTER, RestSearch,
+    STEP_S, SettledMotion, StateDistribution, Widths, weighted_mean,
 };
 
 /// Draws of the motion: the end of a 90 % interval is then uncertain by 1.4 % of probability.
 const N_DRAWS: usize = 240;
-/// Standard deviations of the logarithms of rolling resistance and air drag of a car on the road, of
-/// which nothing more is known: those of the rules for data sheets.
-const RESISTANCE_SCATTER: [f64; 2] = [0.15, 0.15];
 /// Share of the draws at rest with which the vehicle is said to be at rest.
 const SHARE_AT_REST: f64 = 0.95;
 
@@ -80,12 +77,9 @@ impl ToRest<'_> {
             let last = *path.last()?;
             path.resize(n_instants, last);
         }
-        let ends: Option<Vec<MotionEnd>> = draws.iter().map(end_of).collect();
-        let ends = ends?;
-        let distribution = distribution(&draws, &ends, n_instants);
-        let rest = RestOutcome::from_ends(&ends, self.limit_s)?;
         let start_rad = self.struck.initial.yaw_rad;
-        let outcome = outcome(&ends, &rest, n_instants, start_rad);
+        let SettledDraws { distribution, outcome, rest } =
+            SettledDraws::new(&draws, n_instants, self.limit_s, start_rad)?;
         Some(Settled { distribution, paths, outcome, rest, applicabilities })
     }
 
@@ -107,6 +101,33 @@ impl ToRest<'_> {
             draws: predictor.settled(initial, &inputs, &numbers, &search),
             applicability: predictor.applicability(&self.struck.initial, &inputs),
         })
+    }
+}
+
+/// What draws of a whole motion come to.
+pub(super) struct SettledDraws {
+    pub(super) distribution: MotionDistribution,
+    pub(super) outcome: MotionOutcome,
+    pub(super) rest: RestOutcome,
+}
+
+impl SettledDraws {
+    /// `None` without draws, or where a motion is not finite.
+    ///
+    /// - `n_instants`: of the distribution;
+    /// - `limit_s`: how long the motions were followed at the most;
+    /// - `start_rad`: heading at the start.
+    pub(super) fn new(
+        draws: &[SettledMotion],
+        n_instants: usize,
+        limit_s: f64,
+        start_rad: f64,
+    ) -> Option<Self> {
+        let ends: Option<Vec<MotionEnd>> = draws.iter().map(end_of).collect();
+        let ends = ends?;
+        let rest = RestOutcome::from_ends(&ends, limit_s)?;
+        let outcome = outcome(&ends, &rest, n_instants, start_rad);
+        Some(Self { distribution: distribution(draws, &ends, n_instants), outcome, rest })
     }
 }
 

@@ -4,9 +4,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, VehicleTrack};
+use crate::analysis::{
+    Analysis, AnalysisError, ContactPair, Settings, StruckVehicle, VehicleTrack,
+};
 use impactlab_core::collision::{
-    Pose, Pulse, PulseShape, Scenario, ScenarioVehicle, SecondContact,
+    Footprint, Pose, Pulse, PulseShape, Scenario, ScenarioVehicle, SecondContact,
 };
 use impactlab_core::data::{ForceHistory, check_contact_within};
 use impactlab_core::vehicle::frames::body_from_world;
@@ -99,41 +101,102 @@ pub fn analyse_scenario(
     };
     let mut struck = start(&scenario.struck, &settings.struck, &geometry.struck);
     struck.controls = settings.ending.controls(&struck.vehicle);
-    let motion = drive_on(&struck, force.clone(), settings)?;
     let mut striking = start(&scenario.striking, &settings.striking, &geometry.striking);
     let striking_ending = scenario.striking_ending.clone().unwrap_or_default();
     striking.controls = striking_ending.controls(&striking.vehicle);
+    let outlines = [scenario.struck.footprint(), scenario.striking.footprint()];
+    let name = scenario.name.clone();
+    let note = format!(
+        "force: {} of {:.0} ms that carries the impulse of the momentum solution",
+        pulse.shape.label(),
+        pulse.duration_s * 1e3
+    );
+    let starts = [struck, striking];
+    let mut analysis = match settings.one_contact {
+        true => apart(starts, outlines, (force, history([-px, -py])?), pulse, settings)?,
+        false => {
+            let normal_rad = geometry.normal_angle_world_rad;
+            through_all_contacts(starts, outlines, force, normal_rad, settings)?
+        }
+    };
+    analysis.name = name;
+    analysis.notes.push(note);
+    Ok(analysis)
+}
+
+/// Both vehicles through all contacts. The first one is the pulse; what comes after it follows from the
+/// contact law.
+fn through_all_contacts(
+    [struck, mut striking]: [StruckVehicle; 2],
+    outlines: [Footprint; 2],
+    force: ForceHistory,
+    normal_rad: f64,
+    settings: &Settings,
+) -> Result<Analysis, AnalysisError> {
+    let pair = ContactPair::new([&struck, &striking])?;
+    pair.close_gap(&struck, &mut striking, normal_rad);
+    let moved = pair.simulate([&struck, &striking], Some(&force), settings)?;
+    let [motion, striking_motion] = moved.motions;
+    Ok(Analysis {
+        phases: moved.phases,
+        dents_m: moved.dents_m,
+        pair: Some(pair),
+        ..analysis(struck, striking, outlines, force, motion, striking_motion)
+    })
+}
+
+/// Each vehicle for itself under the pulse.
+fn apart(
+    [struck, striking]: [StruckVehicle; 2],
+    outlines: [Footprint; 2],
+    (force, reaction): (ForceHistory, ForceHistory),
+    pulse: &PulseSetup,
+    settings: &Settings,
+) -> Result<Analysis, AnalysisError> {
+    let motion = drive_on(&struck, force.clone(), settings)?;
     let end_s = motion.series.time_s().last().copied().unwrap_or(settings.duration_s);
     let settings = &Settings { duration_s: end_s, ends_at_rest: false, ..settings.clone() };
-    let striking_motion = drive_on(&striking, history([-px, -py])?, settings)?;
+    let striking_motion = drive_on(&striking, reaction, settings)?;
     let second_contact = SecondContact::find(
-        (scenario.struck.footprint(), &motion.series),
-        (scenario.striking.footprint(), &striking_motion.series),
+        (outlines[0], &motion.series),
+        (outlines[1], &striking_motion.series),
         pulse.duration_s,
     );
-    Ok(Analysis {
-        name: scenario.name.clone(),
+    let analysis = analysis(struck, striking, outlines, force, motion, striking_motion);
+    Ok(Analysis { second_contact, ..analysis })
+}
+
+/// The analysis of two vehicles whose motions are known.
+fn analysis(
+    struck: StruckVehicle,
+    striking: StruckVehicle,
+    outlines: [Footprint; 2],
+    force: ForceHistory,
+    motion: Motion,
+    striking_motion: Motion,
+) -> Analysis {
+    Analysis {
+        name: String::new(),
         vehicle: struck.vehicle.clone(),
-        footprint: scenario.struck.footprint(),
+        footprint: outlines[0],
         force: Some(force),
         controls: motion.applied_controls.clone().unwrap_or_else(|| struck.controls.clone()),
-        friction_zones: settings.friction_zones.clone(),
+        friction_zones: struck.friction_zones.clone(),
         struck: Some(struck),
         simulation: Some(motion),
         reference: None,
         striking: Some(VehicleTrack {
-            footprint: scenario.striking.footprint(),
+            footprint: outlines[1],
             start: striking,
             motion: striking_motion.series,
         }),
-        second_contact,
+        pair: None,
+        phases: Vec::new(),
+        dents_m: Default::default(),
+        second_contact: None,
         error: None,
-        notes: vec![format!(
-            "force: {} of {:.0} ms that carries the impulse of the momentum solution",
-            pulse.shape.label(),
-            pulse.duration_s * 1e3
-        )],
-    })
+        notes: Vec::new(),
+    }
 }
 
 /// State of a vehicle of a scenario at first contact.
@@ -189,6 +252,7 @@ mod tests {
             integrator: Integrator::Rk4,
             duration_s: 0.5,
             ends_at_rest: false,
+            one_contact: false,
             friction_zones: Vec::new(),
         };
         let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
@@ -214,6 +278,7 @@ mod tests {
             integrator: Integrator::Rk4,
             duration_s: 3.0,
             ends_at_rest: false,
+            one_contact: false,
             friction_zones: Vec::new(),
         };
         let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
@@ -228,6 +293,47 @@ mod tests {
         assert!(analysis.struck.unwrap().contact.y_body_m < 0.0);
     }
 
+    /// Followed through all contacts, vehicles push each other and do not go through each other.
+    #[test]
+    fn vehicles_that_push_each_other_stay_apart() {
+        let scenario = Scenario::example();
+        let settings = Settings {
+            struck: Preset::Target.parameters(),
+            striking: Preset::Bullet2000.parameters(),
+            integrator: Integrator::Rk4,
+            ending: Ending::default(),
+            duration_s: 4.0,
+            ends_at_rest: false,
+            one_contact: false,
+            friction_zones: Vec::new(),
+        };
+        let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
+        assert_eq!(analysis.second_contact, None);
+        let phase = analysis.phases[0];
+        let [px, py] = phase.impulse_world_n_s;
+        let first = scenario.solve().unwrap().impulse_world_n_s;
+        assert!(phase.start_s == 0.0 && px.hypot(py) > first[0].hypot(first[1]), "{phase:?}");
+        let (struck, striking) =
+            (analysis.simulation.unwrap().series, analysis.striking.unwrap().motion);
+        let outline = |i: usize| scenario_outline(&scenario, i);
+        let at = |series: &TimeSeries, footprint, i: usize| {
+            let value = |channel| series.require(channel).unwrap()[i];
+            let (x_m, y_m) = (value(Channel::X), value(Channel::Y));
+            MovingFootprint::at_rest(footprint, Pose { x_m, y_m, yaw_rad: value(Channel::Yaw) })
+        };
+        let overlap = |i| overlap_m(&at(&struck, outline(0), i), &at(&striking, outline(1), i));
+        let deepest_m = (0..struck.n_samples()).map(overlap).fold(-1.0, f64::max);
+        // Rectangles; corners that are rounded by 0.65 m, and what they crush.
+        assert!((0.1..0.6).contains(&deepest_m), "{deepest_m} m");
+        let dents =
+            analysis.dents_m.each_ref().map(|dents| dents.iter().copied().fold(0.0, f64::max));
+        assert!(dents.iter().all(|dent| (0.005..0.5).contains(dent)), "{dents:?}");
+    }
+
+    fn scenario_outline(scenario: &Scenario, vehicle: usize) -> Footprint {
+        [&scenario.struck, &scenario.striking][vehicle].footprint()
+    }
+
     /// A striking vehicle that goes on pushing was drawn through the struck vehicle without a word.
     #[test]
     fn vehicles_that_meet_again_are_said_to() {
@@ -239,6 +345,7 @@ mod tests {
             ending: Ending::default(),
             duration_s: 4.0,
             ends_at_rest: false,
+            one_contact: true,
             friction_zones: Vec::new(),
         };
         let meets = |scenario: &Scenario| {

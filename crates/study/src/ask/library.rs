@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use crate::ask::provenance::{FORCE_NETWORK, RESPONSE_NETWORK};
 use crate::ask::question::progress_of;
 use crate::{ModelChoice, Observer, SeriesFile, StudyError};
+use impactlab_core::compare::PairRecords;
 use impactlab_core::data::write::ModelDigest;
 use impactlab_core::data::{Dataset, Loaded, Outcome, read_any_series};
 use impactlab_networks::force::ForceModel;
@@ -146,6 +147,13 @@ impl Library {
         let key = root.to_owned();
         if let Some(dataset) = self.datasets.get(&key) {
             return Ok(Outcome::Complete(dataset));
+        }
+        if PairRecords::is_at(root) {
+            return Err(StudyError::WrongKind {
+                path: root.to_owned(),
+                got: "a data set of recorded pairs".to_owned(),
+                expected: "one of forces or of trajectories; pairs: impactlab evaluate pairs DIR",
+            });
         }
         let loaded = Dataset::load(root, &mut progress_of(observer))?;
         Ok(loaded.map(|dataset| {

@@ -17,7 +17,7 @@ use impactlab_core::collision::{
 };
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::percent;
-use impactlab_core::vehicle::{Preset, VehicleParameters};
+use impactlab_core::vehicle::{ClosedLoop, Preset, VehicleParameters};
 
 /// Share of the approach of the contact points that may come from the turning of the vehicles.
 const MAX_TURNING_SHARE: f64 = 0.5;
@@ -46,6 +46,27 @@ pub(crate) fn drivers_by_network(struck: &StruckVehicle) -> Option<Caveat> {
              model under the same force; they do not react to what the network adds to it",
         )
     })
+}
+
+/// What is drawn of drivers and systems of which nothing else was said.
+///
+/// - `vehicles`: the struck and the striking one.
+pub(crate) fn drawn_drivers(vehicles: [&StruckVehicle; 2]) -> Vec<Caveat> {
+    let of_vehicle = |(vehicle, role): (&StruckVehicle, &str)| {
+        let drawn = vehicle.controls.closed_loop.iter().flat_map(ClosedLoop::distributions);
+        let note = |text: &str| {
+            Caveat::new(CaveatKind::Note, format!("drawn of the {role} vehicle, {text}"))
+        };
+        drawn.map(note).collect::<Vec<_>>()
+    };
+    vehicles.into_iter().zip(["struck", "striking"]).flat_map(of_vehicle).collect()
+}
+
+/// A single motion through all contacts: what it takes at its median.
+pub(crate) fn contact_at_medians() -> Caveat {
+    let text = "stiffness, friction and recovery of the contact are at their medians; predict draws them, \
+                and small causes decide whether a car that is pushed comes free or spins";
+    Caveat::new(CaveatKind::Note, text)
 }
 
 /// What a force network does not use of a scenario.

@@ -8,6 +8,7 @@
 mod table;
 mod term;
 
+mod both_vehicles;
 mod check;
 mod compare;
 mod contact;

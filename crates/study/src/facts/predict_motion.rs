@@ -3,22 +3,40 @@
 use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
 
-use crate::analysis::{MonteCarloError, MotionOutcome, RestOutcome, RivalForce};
+use crate::analysis::{ContactsOutcome, MonteCarloError, MotionOutcome, RestOutcome, RivalForce};
+use crate::facts::both_vehicles::course_table;
 use crate::facts::held::held_intervals;
 use crate::facts::simulate::sensitivity;
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::measured::Measured;
-use crate::{FlagReport, PredictMotionReport};
+use crate::{FlagReport, PredictMotionReport, StrikingReport};
 
 impl PredictMotionReport {
     /// What the answer says: how the motion ends, and what that depends on.
     pub fn facts(&self) -> Vec<FactTable> {
-        let held = held_intervals(Measured::ResponseNetwork, &self.response_model)
-            .filter(|_| self.is_end_known() && self.applicability >= 1.0);
-        let tables =
-            [Some(self.motion_table()), self.rival_table(), self.sensitivity_table(), held];
-        tables.into_iter().flatten().collect()
+        let held = match self.contacts {
+            Some(_) => held_intervals(Measured::Pairs, &self.response_model),
+            None => held_intervals(Measured::ResponseNetwork, &self.response_model)
+                .filter(|_| self.is_end_known() && self.applicability >= 1.0),
+        };
+        let first = [self.course_table(), Some(self.motion_table())];
+        let last = [self.rival_table(), self.sensitivity_table(), held];
+        let tables = first.into_iter().flatten().chain(self.both_vehicles_tables());
+        tables.chain(last.into_iter().flatten()).collect()
+    }
+
+    /// What becomes of the struck vehicle; none where it was followed by itself.
+    pub fn course_table(&self) -> Option<FactTable> {
+        let n_draws = self.contacts.as_ref().map_or(0, |contacts| contacts.n_draws);
+        course_table(&self.courses, n_draws)
+    }
+
+    /// How the motion of the striking vehicle ends, and how the vehicles are in contact; likewise.
+    pub fn both_vehicles_tables(&self) -> Vec<FactTable> {
+        let striking = self.striking.as_ref().map(StrikingReport::table);
+        let contacts = self.contacts.iter().flat_map(ContactsOutcome::tables);
+        striking.into_iter().chain(contacts).collect()
     }
 
     /// Until when positions have a probability, s: to the first second contact, which is not computed.

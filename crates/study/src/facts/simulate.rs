@@ -4,6 +4,7 @@ use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
 
 use crate::analysis::{MonteCarloError, RestOutcome, Sensitivity};
+use crate::facts::both_vehicles::phase_table;
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::questions::simulate::flag::is_no_rare_contact;
@@ -18,8 +19,13 @@ impl SimulateReport {
     pub fn facts(&self) -> Vec<FactTable> {
         let drawn = self.uncertainty.iter().flat_map(VehicleUncertainty::facts);
         let beside = self.rival.as_ref().map(ImpulseRival::table);
-        let tables = [Some(self.motion_table()), beside, self.mark_table()];
+        let tables = [Some(self.motion_table()), self.contact_table(), beside, self.mark_table()];
         tables.into_iter().flatten().chain(drawn).collect()
+    }
+
+    /// The phases of contact of both vehicles; none where one was followed by itself.
+    pub fn contact_table(&self) -> Option<FactTable> {
+        phase_table(&self.contacts)
     }
 
     /// How the motion goes, with every input at its median.

@@ -1,4 +1,4 @@
-//! What the facts of an answer are called, in each language.
+//! What the facts of an answer are called, in each language. One table, and as long as there are names.
 
 use serde::Serialize;
 
@@ -184,6 +184,54 @@ terms! {
     MonteCarloRegion: "chance in the area of 90 %", "Zufall in der Fläche von 90 %",
         "Standard error of the area by the number of draws";
     Region90: "area that holds the position with 90 %", "Fläche, in der die Lage mit 90 % liegt";
+    // Both vehicles through all contacts.
+    StruckCourses: "What becomes of the struck vehicle", "Was aus dem gestoßenen Fahrzeug wird";
+    Course: "course of events", "Verlauf";
+    CourseMissed: "the vehicles miss each other", "die Fahrzeuge verfehlen sich";
+    CourseAcross: "it ends across the front of the striking vehicle",
+        "es endet quer vor dem stoßenden Fahrzeug", "Still in contact at the end of the motion";
+    CourseHooked: "it ends in contact with the striking vehicle",
+        "es endet im Kontakt mit dem stoßenden Fahrzeug", "Still in contact at the end of the motion";
+    CourseRecovers: "it comes free and turns by less than 90°",
+        "es kommt frei und dreht sich um weniger als 90°";
+    CourseTurns: "it comes free and turns by 90° to 180°",
+        "es kommt frei und dreht sich um 90° bis 180°";
+    CourseSpins: "it comes free and turns by more than 180°",
+        "es kommt frei und dreht sich um mehr als 180°";
+    Contacts: "Contact of the vehicles, from the first touch to the end",
+        "Kontakt der Fahrzeuge, vom ersten Berühren bis zum Ende";
+    FirstByLaw: "draws whose first contact follows from the contact law",
+        "Ziehungen, deren erster Kontakt aus dem Kontaktgesetz folgt",
+        "In the others it is the force that the network predicts, or that was given";
+    LongContact: "probability of contact for more than 0.3 s",
+        "Wahrscheinlichkeit eines Kontakts von mehr als 0,3 s", "All phases of contact together";
+    MeetAgain: "probability that they part and meet again",
+        "Wahrscheinlichkeit, dass sie sich trennen und wieder treffen";
+    TimeInContact: "time in contact", "Zeit im Kontakt", "All phases of contact together";
+    TotalImpulse: "impulse of all contacts", "Impuls aller Kontakte";
+    LaterShare: "share of the impulse after the force of the first contact",
+        "Anteil des Impulses nach der Kraft des ersten Kontakts";
+    LawScale: "scale of the faces' stiffness", "Maßstab der Steifigkeit der Flächen",
+        "By which the contact law takes the work that the force of the first contact took";
+    PhasesAtMedian: "Phases of contact, medians over the draws in which they occur",
+        "Phasen des Kontakts, Mediane über die Ziehungen, in denen sie vorkommen";
+    Phases: "Phases of contact", "Phasen des Kontakts";
+    Phase: "phase", "Phase";
+    PhaseStart: "begins at", "beginnt bei";
+    PhaseDuration: "lasts", "dauert";
+    PhaseStruckDeltaV: "Δv, struck", "Δv, gestoßenes",
+        "By the contact force alone, as an event data recorder integrates it";
+    PhaseStruckPdof: "PDOF, struck", "PDOF, gestoßenes", "Clockwise from the heading";
+    PhaseStrikingDeltaV: "Δv, striking", "Δv, stoßendes",
+        "By the contact force alone, as an event data recorder integrates it";
+    PhaseStrikingPdof: "PDOF, striking", "PDOF, stoßendes", "Clockwise from the heading";
+    ToTheEnd: "to the end", "bis zum Ende";
+    NoImpulse: "–", "–";
+    Followed: "followed", "verfolgt";
+    UntilStruckRests: "until the struck vehicle is at rest",
+        "bis das gestoßene Fahrzeug zur Ruhe kommt";
+    StrikingForecast: "Predicted motion of the striking vehicle",
+        "Vorhergesagte Bewegung des stoßenden Fahrzeugs";
     SecondContact: "probability of a second contact", "Wahrscheinlichkeit eines zweiten Kontakts";
     Sensitivity: "Linear share of each estimate in the variance of the end; shares that may be chance \
         are left out",

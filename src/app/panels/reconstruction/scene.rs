@@ -51,7 +51,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         live_ui(ui, live, view.units);
     } else if let Some(answer) = answer {
         play_ui(ui, answer, of.mode, of.followed, commands);
-        clock_ui(ui, &session.playback, of.end_time_s(), &mut view.playback_speed, commands);
+        clock_ui(ui, &session.playback, (of.end_time_s(), &[]), &mut view.playback_speed, commands);
         restrictions_ui(ui, &answer.answer.report.caveats);
     } else if is_outdated {
         notice_ui(ui, Severity::Warning, OUTDATED);

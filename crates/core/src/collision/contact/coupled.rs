@@ -15,17 +15,20 @@
 //! The step is 0.5 ms in contact and 0.25 ms where ω h would exceed 0.2, with ω from the stiffness of
 //! the contact on unloading and the masses at the contact point; 1 ms while the outlines are near each
 //! other, and 10 ms while they cannot meet within that time.
-//! Contact may begin anew at any time.
+//! Contact may begin anew at any time. Where the force of the first contact is known, it drives both
+//! vehicles while it lasts (`first_force.rs`).
 
+use crate::collision::contact::first_force::FirstForce;
 use crate::collision::contact::phases::PhaseWatch;
+use crate::collision::contact::vehicle_pair::ROLES;
 use crate::collision::contact::{
-    ContactBody, ContactConditions, ContactForce, ContactOutline, ContactPhase,
-    FULL_FRICTION_SPEED_M_S, FaceLaws, PairContact, PairError, PlanarMotion,
+    ContactConditions, ContactEnergy, ContactForce, FULL_FRICTION_SPEED_M_S, HandOver, PairContact,
+    PairError, PairMotion, PairVehicle, PlanarMotion, VehiclePair,
 };
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
-    CollisionForce, ContactPoint, HeldForceRun, Manoeuvre, Motion, N_ACCELERATION, N_STATE,
-    OUTPUT_INTERVAL_S, VehicleInput, VehicleParameters, VehicleState,
+    CollisionForce, ContactPoint, HeldForceRun, N_ACCELERATION, N_STATE, OUTPUT_INTERVAL_S,
+    VehicleInput, VehicleState,
 };
 
 /// Steps of the shortest kind in an output interval.
@@ -37,73 +40,21 @@ const STEP_TICKS: [usize; 4] = [TICKS_PER_OUTPUT, 4, 2, 1];
 /// Largest ω h of a contact, and of the decay of velocities in it.
 const MAX_RATE_TIMES_STEP: f64 = 0.2;
 
+/// Distance of the outlines from which on a vehicle at rest is left behind by one that moves away, m.
+const LEFT_M: f64 = 1.0;
+
 /// Distance of the outlines below which steps are those of a contact, m.
 const NEAR_M: f64 = 0.05;
 
-/// One of two vehicles that may touch each other.
-#[derive(Debug, Clone, Copy)]
-pub struct PairVehicle<'a> {
-    /// The vehicle.
-    pub vehicle: &'a VehicleParameters,
-    /// Its initial state, controls, ground and end. It has no collision force of its own.
-    pub manoeuvre: &'a Manoeuvre,
-    /// Outline and face laws.
-    pub body: ContactBody<'a>,
-}
+/// States of both vehicles, in the order of `eq:state_vector`.
+type States = [[f64; N_STATE]; 2];
 
-/// Two vehicles that may touch each other.
-#[derive(Debug, Clone, Copy)]
-pub struct VehiclePair<'a> {
-    /// The struck and the striking vehicle.
-    pub vehicles: [PairVehicle<'a>; 2],
-    /// Friction, damping and height of their contact.
-    pub conditions: ContactConditions,
-    /// Into how many parts the steps are divided: 1, or more to see what they change.
-    pub step_divisor: usize,
-}
-
-/// Energy that the contact has taken from the vehicles, J.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct ContactEnergy {
-    /// Work of the planar motion of both vehicles against force and yaw moment,
-    /// `−Σ∫(F·dx + M dψ)`. It contains no roll.
-    pub absorbed_j: f64,
-    /// Heat of friction between the outlines, `∫|T v_t| dt`.
-    pub friction_heat_j: f64,
-    /// Heat of crush and unloading: the work against the normal loads, `∫N v_n dt`, less what is stored.
-    pub crush_heat_j: f64,
-    /// Elastic energy that the faces still hold.
-    pub stored_j: f64,
-    /// Work of the face laws, see [`PairContact::law_work_j`].
-    pub law_work_j: f64,
-}
-
-impl ContactEnergy {
-    /// Absorbed energy that appears neither as heat nor as stored energy, J: what velocities change
-    /// within the steps.
-    pub fn residual_j(&self) -> f64 {
-        self.absorbed_j - self.friction_heat_j - self.crush_heat_j - self.stored_j
-    }
-}
-
-/// The motions of two vehicles with all contacts between them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PairMotion {
-    /// Of the struck and of the striking vehicle, over the same time.
-    pub motions: [Motion; 2],
-    /// Phases of contact in the order of time.
-    pub phases: Vec<ContactPhase>,
-    /// Energy of all contacts together.
-    pub energy: ContactEnergy,
-    /// Depth of the dents that stay, of the elements of each outline, m.
-    pub dents_m: [Vec<f64>; 2],
-}
-
-const ROLES: [&str; 2] = ["struck", "striking"];
+/// Residual accelerations of vehicles that move by the equations of motion alone.
+const NO_RESIDUAL: [[f64; N_ACCELERATION]; 2] = [[0.0; N_ACCELERATION]; 2];
 
 impl VehiclePair<'_> {
-    /// Simulates both vehicles until both are at rest, if their manoeuvres end there, or for their
-    /// duration. The result is deterministic.
+    /// Simulates both vehicles for their duration or, if their manoeuvres end at rest, until the struck
+    /// one is at rest and the striking one is so, too, or moves away from it. The result is deterministic.
     ///
     /// # Errors
     /// [`PairError`] if a number is out of range, the manoeuvres do not go together, or a motion cannot
@@ -113,61 +64,16 @@ impl VehiclePair<'_> {
         while run.goes_on(&NO_RESIDUAL)? {}
         run.finish()
     }
-
-    fn check(&self) -> Result<(), PairError> {
-        let is_some = |value: f64| value.is_finite() && value >= 0.0;
-        for (name, value) in [
-            ("friction", self.conditions.friction),
-            ("damping_s_m", self.conditions.damping_s_m),
-            ("height_m", self.conditions.height_m),
-        ] {
-            if !is_some(value) {
-                return Err(PairError::Range { name, value, expected: "0 or more" });
-            }
-        }
-        if self.step_divisor == 0 {
-            let (name, expected) = ("step_divisor", "1 or more");
-            return Err(PairError::Range { name, value: 0.0, expected });
-        }
-        for (vehicle, role) in self.vehicles.iter().zip(ROLES) {
-            if vehicle.manoeuvre.contact_load.is_some() {
-                return Err(PairError::CollisionForce { role });
-            }
-        }
-        let [struck_s, striking_s] = self.vehicles.map(|it| it.manoeuvre.duration_s);
-        match struck_s == striking_s {
-            true => Ok(()),
-            false => Err(PairError::Durations { struck_s, striking_s }),
-        }
-    }
 }
-
-impl<'a> PairVehicle<'a> {
-    /// A vehicle with an outline and with the face laws of its class and mass.
-    ///
-    /// # Errors
-    /// [`FaceLawError`](crate::collision::contact::FaceLawError) if the mass is not more than 0.
-    pub fn by_class(
-        vehicle: &'a VehicleParameters,
-        manoeuvre: &'a Manoeuvre,
-        outline: &'a ContactOutline,
-    ) -> Result<Self, crate::collision::contact::FaceLawError> {
-        let faces = FaceLaws::by_class(vehicle)?;
-        Ok(Self { vehicle, manoeuvre, body: ContactBody { outline, faces } })
-    }
-}
-
-/// States of both vehicles, in the order of `eq:state_vector`.
-type States = [[f64; N_STATE]; 2];
-
-/// Residual accelerations of vehicles that move by the equations of motion alone.
-const NO_RESIDUAL: [[f64; N_ACCELERATION]; 2] = [[0.0; N_ACCELERATION]; 2];
 
 /// Two motions that are being simulated. They stand at an output instant.
 pub struct PairRun<'a> {
     pair: VehiclePair<'a>,
     runs: [HeldForceRun<'a>; 2],
     contact: PairContact<'a>,
+    /// A known force of the first contact, until the law has taken over.
+    first_force: Option<FirstForce>,
+    hand_over: Option<HandOver>,
     phases: PhaseWatch,
     /// Number of output instants before this one.
     output: usize,
@@ -177,8 +83,7 @@ pub struct PairRun<'a> {
     was_pushed: bool,
     /// Mean contact force on each vehicle over the interval before.
     last_mean: [Option<CollisionForce<f64>>; 2],
-    absorbed_j: f64,
-    friction_heat_j: f64,
+    energy: ContactEnergy,
     normal_work_j: f64,
     /// Heading of the struck vehicle at the first contact, rad; `None` before it.
     first_contact_yaw_rad: Option<f64>,
@@ -210,14 +115,15 @@ impl<'a> PairRun<'a> {
             pair: *pair,
             runs: [run(0)?, run(1)?],
             contact: PairContact::new(bodies, pair.conditions),
+            first_force: pair.vehicles[0].manoeuvre.contact_load.as_ref().and_then(FirstForce::new),
+            hand_over: None,
             phases: PhaseWatch::new(pair.vehicles.map(|it| it.vehicle.mass.mass_kg)),
             output: 0,
             tick_s: OUTPUT_INTERVAL_S / ticks,
             contact_rate_1_s: 0.0,
             was_pushed: false,
             last_mean: [None; 2],
-            absorbed_j: 0.0,
-            friction_heat_j: 0.0,
+            energy: ContactEnergy::default(),
             normal_work_j: 0.0,
             first_contact_yaw_rad: None,
         })
@@ -233,12 +139,29 @@ impl<'a> PairRun<'a> {
         [0, 1].map(|i| VehicleState::from_array(*self.runs[i].state()))
     }
 
-    /// Input of a vehicle over the coming output interval. Its contact force is the mean over the
-    /// interval before, since that of the coming one follows from the motion.
+    /// Input of a vehicle over the coming output interval. Its contact force is that of a known first
+    /// contact, or the mean over the interval before, since that of the coming one follows from the motion.
     ///
     /// - `vehicle`: 0 for the struck, 1 for the striking one.
     pub fn input(&self, vehicle: usize) -> VehicleInput<f64> {
-        VehicleInput { collision: self.last_mean[vehicle], ..self.runs[vehicle].coming() }
+        let known = self.known_force().map(|force| {
+            let motions = motions(&[0, 1].map(|i| *self.runs[i].state()));
+            let start_s = self.time_s();
+            let mean = force.over([start_s, start_s + OUTPUT_INTERVAL_S], &motions);
+            self.collision_force(vehicle, &mean, &motions[vehicle])
+        });
+        let collision = known.or(self.last_mean[vehicle]);
+        VehicleInput { collision, ..self.runs[vehicle].coming() }
+    }
+
+    /// The force of the first contact at this instant, while a known one lasts.
+    fn known_force(&self) -> Option<&FirstForce> {
+        self.first_force.as_ref().filter(|force| self.time_s() < force.end_s())
+    }
+
+    /// Whether a known force of the first contact drives the vehicles over the coming interval.
+    pub fn is_driven_by_known_force(&self) -> bool {
+        self.known_force().is_some()
     }
 
     /// When the vehicles first touched each other, s; `None` if they have not.
@@ -270,15 +193,15 @@ impl<'a> PairRun<'a> {
                 states = [0, 1].map(|i| self.runs[i].without_energy_gain(states[i]));
             }
         }
-        let mut goes_on = false;
+        let mut moves = [false; 2];
         for (i, role) in ROLES.into_iter().enumerate() {
             let mean = sums.is_pushed.then(|| self.mean_force(i, &sums));
             self.last_mean[i] = mean;
-            let moves = self.runs[i]
+            moves[i] = self.runs[i]
                 .record(mean, self.was_pushed || residuals[i] != NO_RESIDUAL[i])
                 .map_err(|source| PairError::Vehicle { role, source })?;
-            goes_on |= moves;
         }
+        let goes_on = moves[0] || moves[1] && !self.is_left_behind(&sums);
         if sums.is_pushed {
             let yaw_rad = VehicleState::from_array(*self.runs[0].state()).yaw_rad;
             self.first_contact_yaw_rad.get_or_insert(yaw_rad);
@@ -295,6 +218,16 @@ impl<'a> PairRun<'a> {
         Ok(goes_on)
     }
 
+    /// Whether the striking vehicle, as far as it still moves, moves away from the struck one.
+    fn is_left_behind(&self, sums: &IntervalSums) -> bool {
+        let motions = motions(&[0, 1].map(|i| *self.runs[i].state()));
+        let [struck, striking] = &motions;
+        let way = |axis: usize| {
+            (striking.position_m[axis] - struck.position_m[axis]) * striking.velocity_m_s[axis]
+        };
+        !sums.is_pushed && way(0) + way(1) > 0.0 && self.contact.is_apart(&motions, LEFT_M)
+    }
+
     /// Length of the next step in ticks. Steps begin at multiples of their length.
     fn step_ticks(&self, states: &States, left: usize) -> usize {
         let [far, apart, usual, stiff] = STEP_TICKS;
@@ -304,7 +237,9 @@ impl<'a> PairRun<'a> {
             let way_m = speed_m_s * self.tick_s * ticks as f64;
             self.contact.is_apart(&motions, NEAR_M + way_m)
         };
-        let wanted = if is_apart(far) {
+        let wanted = if self.first_force.is_some() {
+            usual
+        } else if is_apart(far) {
             far
         } else if is_apart(apart) {
             apart
@@ -330,9 +265,21 @@ impl<'a> PairRun<'a> {
         let start_s = start_tick as f64 * self.tick_s;
         let step_s = ticks as f64 * self.tick_s;
         let middle = motions(states).map(|motion| motion.after(step_s / 2.0));
-        let force = self.contact.advance(&middle);
+        let of_law = self.contact.advance(&middle);
+        let end_s = start_s + step_s;
+        self.first_force.take_if(|first| first.share_of_law(start_s) >= 1.0);
+        let first = self.first_force.as_ref();
+        let known = first.filter(|first| start_s < first.end_s());
+        let is_known = known.is_some();
+        let force = match known {
+            Some(first) => Some(first.over([start_s, end_s], &middle)),
+            None => {
+                let share = first.map_or(1.0, |first| first.share_of_law(start_s));
+                of_law.map(|law| law.scaled(share)).filter(|_| share > 0.0)
+            }
+        };
         self.contact_rate_1_s = force.as_ref().map_or(0.0, |it| self.rate_1_s(it, &middle));
-        self.phases.add([start_s, start_s + step_s], force.as_ref(), &middle);
+        self.phases.add([start_s, end_s], force.as_ref(), &middle);
         let mut next = *states;
         for i in 0..2 {
             let collision = force.map(|force| self.collision_force(i, &force, &middle[i]));
@@ -340,11 +287,32 @@ impl<'a> PairRun<'a> {
         }
         if let Some(force) = force {
             sums.add(&force, step_s);
-            self.friction_heat_j += force.friction_power_w * step_s;
+            self.energy.friction_heat_j += force.friction_power_w * step_s;
             self.normal_work_j += force.normal_power_w * step_s;
-            self.absorbed_j -= work_j(&force, states, &next);
+            let lost_j = -work_j(&force, states, &next);
+            self.energy.absorbed_j += lost_j;
+            if is_known {
+                self.energy.first_force_j += lost_j;
+                self.follow_known_force((&force, lost_j), of_law.as_ref(), [step_s, end_s]);
+            }
         }
         next
+    }
+
+    /// Takes note of a step under the known force, and scales the law at its end.
+    fn follow_known_force(
+        &mut self,
+        (known, lost_j): (&ContactForce, f64),
+        of_law: Option<&ContactForce>,
+        [step_s, end_s]: [f64; 2],
+    ) {
+        let Some(first) = &mut self.first_force else { return };
+        first.add(known, lost_j, of_law, step_s);
+        if end_s >= first.end_s() {
+            let hand_over = first.hand_over();
+            self.contact.scale_loads(hand_over.scale);
+            self.hand_over = Some(hand_over);
+        }
     }
 
     /// The contact force as the equations of motion take it.
@@ -409,16 +377,13 @@ impl<'a> PairRun<'a> {
             run.finish().map_err(|source| PairError::Vehicle { role: ROLES[i], source })
         };
         let stored_j = contact.stored_energy_j();
+        let crush_heat_j = self.normal_work_j - stored_j;
+        let law_work_j = contact.law_work_j();
         Ok(PairMotion {
             motions: [finish(struck, 0)?, finish(striking, 1)?],
             phases: phases.finish(output as f64 * OUTPUT_INTERVAL_S),
-            energy: ContactEnergy {
-                absorbed_j: self.absorbed_j,
-                friction_heat_j: self.friction_heat_j,
-                crush_heat_j: self.normal_work_j - stored_j,
-                stored_j,
-                law_work_j: contact.law_work_j(),
-            },
+            energy: ContactEnergy { crush_heat_j, stored_j, law_work_j, ..self.energy },
+            hand_over: self.hand_over,
             dents_m: contact.dents_m(),
         })
     }

@@ -8,10 +8,11 @@ use crate::collision::Footprint;
 use crate::collision::contact::test_pairs::{
     TestCar, alike, free_body, last_state, mirrored, on_level_tires, simulate, state_at,
 };
-use crate::collision::contact::{FaceLaw, FaceParameters, Recovery};
+use crate::collision::contact::{FaceLaw, FaceLaws, FaceParameters, Recovery};
 use crate::data::Channel;
 use crate::vehicle::{
-    Braking, DrivenAxle, Driving, Ending, HeldSteer, Integrator, LibraryVehicle, SimulationError,
+    Braking, DrivenAxle, Driving, Ending, HeldSteer, Integrator, LibraryVehicle, Manoeuvre,
+    SimulationError,
 };
 
 const UNDAMPED: ContactConditions =

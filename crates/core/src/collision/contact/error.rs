@@ -14,14 +14,11 @@ pub enum PairError {
         #[source]
         source: SimulationError,
     },
-    /// A manoeuvre has a collision force of its own.
+    /// The striking vehicle has a collision force of its own.
     #[error(
-        "the manoeuvre of the {role} vehicle has a collision force, which follows from the contact"
+        "the striking vehicle has a collision force of its own, which is that on the struck one"
     )]
-    CollisionForce {
-        /// `struck` or `striking`.
-        role: &'static str,
-    },
+    CollisionForce,
     /// The manoeuvres do not last equally long.
     #[error(
         "the manoeuvres of both vehicles last {struck_s} s and {striking_s} s, expected one duration"

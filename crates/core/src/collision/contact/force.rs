@@ -40,12 +40,10 @@
 
 use crate::collision::Side;
 use crate::collision::contact::bodies::Relative;
+use crate::collision::contact::half_pass::{PassSums, PressedElement, total};
 use crate::collision::contact::law::press_together;
 use crate::collision::contact::outline::Foot;
-use crate::collision::contact::{
-    ContactBody, ContactConditions, FULL_FRICTION_SPEED_M_S, PlanarMotion,
-};
-use crate::vehicle::frames::Heading;
+use crate::collision::contact::{ContactBody, ContactConditions, PlanarMotion};
 
 /// Deepest overlap of an element that counts, m; one that is deeper has passed to the other side.
 const LARGEST_OVERLAP_M: f64 = 1.5;
@@ -111,6 +109,21 @@ struct InsideElement {
     point_m: [f64; 2],
 }
 
+impl ContactForce {
+    /// The same with all loads multiplied by a factor.
+    pub(super) fn scaled(self, factor: f64) -> Self {
+        Self {
+            force_world_n: self.force_world_n.map(|force| factor * force),
+            yaw_moments_n_m: self.yaw_moments_n_m.map(|moment| factor * moment),
+            normal_load_n: factor * self.normal_load_n,
+            unloading_stiffness_n_per_m: factor * self.unloading_stiffness_n_per_m,
+            friction_power_w: factor * self.friction_power_w,
+            normal_power_w: factor * self.normal_power_w,
+            ..self
+        }
+    }
+}
+
 impl ElementMemory {
     fn deepest_m(&self) -> f64 {
         self.greatest_m[0].max(self.greatest_m[1])
@@ -125,28 +138,14 @@ pub struct PairContact<'a> {
     memory: [Vec<ElementMemory>; 2],
     /// The face of each outline that is entered; `None` while no element of the other one is inside.
     entered: [Option<Side>; 2],
+    /// Groups of elements of each vehicle that may carry a load.
+    is_near: [Vec<bool>; 2],
     /// Elements of each vehicle inside of the other outline.
     inside: [Vec<InsideElement>; 2],
     /// New greatest deflections of an evaluation.
     grown: Vec<Grown>,
     is_loaded: bool,
     law_work_j: f64,
-}
-
-/// The sums over the elements of a half pass, in body axes of the vehicle whose outline is entered.
-#[derive(Debug, Clone, Copy, Default)]
-struct PassSums {
-    /// On the vehicle whose elements they are.
-    force_n: [f64; 2],
-    /// About the CG of the vehicle that is entered, N m.
-    moment_n_m: f64,
-    size_n: f64,
-    size_times_place_n_m: [f64; 2],
-    normal_load_n: f64,
-    overlap_m: f64,
-    unloading_stiffness_n_per_m: f64,
-    friction_power_w: f64,
-    normal_power_w: f64,
 }
 
 impl<'a> PairContact<'a> {
@@ -158,6 +157,7 @@ impl<'a> PairContact<'a> {
             |body: &ContactBody<'_>| vec![ElementMemory::default(); body.outline.elements().len()];
         Self {
             memory: [fresh(&bodies[0]), fresh(&bodies[1])],
+            is_near: bodies.map(|body| vec![false; body.outline.groups().len()]),
             bodies,
             entered: [None; 2],
             inside: [Vec::new(), Vec::new()],
@@ -193,6 +193,20 @@ impl<'a> PairContact<'a> {
     /// resists a dent that is drawn along a face but friction.
     pub fn law_work_j(&self) -> f64 {
         self.law_work_j
+    }
+
+    /// Multiplies all loads of the face laws by a factor, those that the elements carry included.
+    ///
+    /// - `factor`: more than 0.
+    pub fn scale_loads(&mut self, factor: f64) {
+        for body in &mut self.bodies {
+            body.faces = body.faces.map(|face| face.scaled(factor));
+        }
+        for element in self.memory.iter_mut().flatten() {
+            element.load_n_per_m *= factor;
+            element.stored_j *= factor;
+        }
+        self.law_work_j *= factor;
     }
 
     /// Whether the outlines are so far apart that no element can touch within a distance.
@@ -245,17 +259,28 @@ impl<'a> PairContact<'a> {
         let mut sum_m = [0.0; 2];
         let mut inside = std::mem::take(&mut self.inside[own]);
         inside.clear();
-        for (idx, element) in self.bodies[own].outline.elements().iter().enumerate() {
-            let [x, y] = relative.entered_from_own(element.point_body_m);
-            let point_m = [x - middle_x_m, y];
-            if point_m[0].abs() >= half_length_m || point_m[1].abs() >= half_width_m {
-                self.release(own, idx);
+        let outline = self.bodies[own].outline;
+        for (number, group) in outline.groups().iter().enumerate() {
+            let [x, y] = relative.entered_from_own(group.middle_body_m);
+            let is_near = (x - middle_x_m).abs() < half_length_m + group.radius_m
+                && y.abs() < half_width_m + group.radius_m;
+            if !is_near && !self.is_near[own][number] {
                 continue;
             }
-            for (sum, normal) in sum_m.iter_mut().zip(element.normal_body) {
-                *sum += normal * element.width_m;
+            self.is_near[own][number] = is_near;
+            for idx in group.elements.clone() {
+                let element = outline.elements()[idx];
+                let [x, y] = relative.entered_from_own(element.point_body_m);
+                let point_m = [x - middle_x_m, y];
+                if point_m[0].abs() >= half_length_m || point_m[1].abs() >= half_width_m {
+                    self.release(own, idx);
+                    continue;
+                }
+                for (sum, normal) in sum_m.iter_mut().zip(element.normal_body) {
+                    *sum += normal * element.width_m;
+                }
+                inside.push(InsideElement { idx, point_m });
             }
-            inside.push(InsideElement { idx, point_m });
         }
         self.inside[own] = inside;
         sum_m
@@ -378,86 +403,5 @@ impl<'a> PairContact<'a> {
             unloading_stiffness_n_per_m: weight_m
                 / compliance_m2_per_n.max(LEAST_COMPLIANCE_M2_PER_N),
         }
-    }
-}
-
-/// An element that is pressed by its partner.
-#[derive(Debug, Clone, Copy, Default)]
-struct PressedElement {
-    /// Normal load without damping, N.
-    load_n: f64,
-    /// Largest load with damping, N; `None` where a face is pressed in further than before.
-    limit_n: Option<f64>,
-    /// Deflection of the element, m.
-    deflection_m: f64,
-    unloading_stiffness_n_per_m: f64,
-}
-
-impl PassSums {
-    /// Adds an element with its normal load and the friction that it causes.
-    fn add(
-        &mut self,
-        pressed: &PressedElement,
-        conditions: &ContactConditions,
-        place_m: [f64; 2],
-        [nx, ny]: [f64; 2],
-        relative: &Relative,
-    ) {
-        let [vx, vy] = relative.velocity_at_m_s(place_m);
-        let approach_m_s = -(vx * nx + vy * ny);
-        let damping = 1.0 + conditions.damping_s_m * approach_m_s.max(0.0);
-        let load_n = match pressed.limit_n {
-            Some(limit_n) => (pressed.load_n * damping).min(limit_n),
-            None => pressed.load_n,
-        };
-        let sliding_m_s = vy * nx - vx * ny;
-        let share = (sliding_m_s / FULL_FRICTION_SPEED_M_S).clamp(-1.0, 1.0);
-        let across_n = -conditions.friction * load_n * share;
-        let [fx, fy] = [load_n * nx - across_n * ny, load_n * ny + across_n * nx];
-        let size_n = fx.hypot(fy);
-        self.force_n = [self.force_n[0] + fx, self.force_n[1] + fy];
-        self.moment_n_m += place_m[0] * fy - place_m[1] * fx;
-        self.size_n += size_n;
-        for (sum, place) in self.size_times_place_n_m.iter_mut().zip(place_m) {
-            *sum += size_n * place;
-        }
-        self.normal_load_n += load_n;
-        self.friction_power_w -= across_n * sliding_m_s;
-        self.normal_power_w += load_n * approach_m_s;
-    }
-}
-
-/// The force on the struck vehicle from both half passes.
-fn total(sums: &[PassSums; 2], motions: &[PlanarMotion; 2]) -> ContactForce {
-    let positions_m = motions.map(|motion| motion.position_m);
-    let [dx, dy] = [0, 1].map(|axis| positions_m[1][axis] - positions_m[0][axis]);
-    let (mut force_n, mut moment_n_m) = ([0.0; 2], 0.0);
-    let (mut size_n, mut place_m) = (0.0, [0.0; 2]);
-    for (own, of_pass) in sums.iter().enumerate() {
-        let entered = 1 - own;
-        let heading = Heading::new(motions[entered].yaw_rad);
-        // On the struck vehicle.
-        let sign = if own == 0 { 1.0 } else { -1.0 };
-        let [fx, fy] = heading.world_from_body(of_pass.force_n).map(|force| sign * force);
-        force_n = [force_n[0] + fx, force_n[1] + fy];
-        let to_struck_n_m = if entered == 1 { dx * fy - dy * fx } else { 0.0 };
-        moment_n_m += sign * of_pass.moment_n_m + to_struck_n_m;
-        let [px, py] = heading.world_from_body(of_pass.size_times_place_n_m);
-        size_n += of_pass.size_n;
-        for (axis, moment) in [px, py].into_iter().enumerate() {
-            place_m[axis] += moment + of_pass.size_n * positions_m[entered][axis];
-        }
-    }
-    let [fx, fy] = force_n;
-    ContactForce {
-        force_world_n: force_n,
-        yaw_moments_n_m: [moment_n_m, dx * fy - dy * fx - moment_n_m],
-        point_world_m: place_m.map(|place| place / size_n),
-        normal_load_n: sums[0].normal_load_n + sums[1].normal_load_n,
-        overlap_m: sums[0].overlap_m.max(sums[1].overlap_m),
-        unloading_stiffness_n_per_m: sums[0].unloading_stiffness_n_per_m
-            + sums[1].unloading_stiffness_n_per_m,
-        friction_power_w: sums[0].friction_power_w + sums[1].friction_power_w,
-        normal_power_w: sums[0].normal_power_w + sums[1].normal_power_w,
     }
 }

@@ -2,9 +2,11 @@
 //!
 //! - `law`, `stiffness`: the load of a face over its deflection, and how stiff faces are;
 //! - `outline`: rounded outlines, cut into elements;
-//! - `bodies`, `force`: the force between two outlines, and the history of their elements;
+//! - `touch`: how far outlines are from touching;
+//! - `bodies`, `force`, `half_pass`: the force between two outlines, and the history of their elements;
+//! - `first_force`: a known force of the first contact, and how the law takes over from it;
 //! - `phases`: when they were in contact, with which impulse;
-//! - `coupled`: two 4DOF vehicles on their tires with this force between them.
+//! - `vehicle_pair`, `coupled`: two 4DOF vehicles on their tires with this force between them.
 //!
 //! It generalises [`crush`](crate::collision::crush), which is fitted to one nose against one side, to
 //! any face against any face.
@@ -14,20 +16,25 @@ mod stiffness;
 
 mod bodies;
 mod force;
+mod half_pass;
 mod outline;
 
 mod coupled;
 mod error;
+mod first_force;
 mod phases;
 #[cfg(test)]
 mod test_pairs;
+mod touch;
+mod vehicle_pair;
 
 pub use bodies::{
     CONTACT_DAMPING_S_M, CONTACT_FRICTION, CONTACT_FRICTION_SIGMA, CONTACT_HEIGHT_M, ContactBody,
     ContactConditions, FULL_FRICTION_SPEED_M_S, PlanarMotion,
 };
-pub use coupled::{ContactEnergy, PairMotion, PairRun, PairVehicle, VehiclePair};
+pub use coupled::PairRun;
 pub use error::PairError;
+pub use first_force::{HandOver, LAW_SCALE_RANGE};
 pub use force::{ContactForce, PairContact};
 pub use law::{
     CRUSHED_RECOVERY, ELASTIC_RECOVERY, FaceLaw, FaceLawError, FaceParameters, PressedStrips,
@@ -37,5 +44,8 @@ pub use outline::{ContactOutline, OutlineElement, USUAL_CORNER_SHARE, USUAL_ELEM
 pub use phases::{CONTACT_GAP_S, ContactPhase, PhaseOfVehicle};
 pub use stiffness::{
     BarrierTest, ByFace, ELASTIC_DEPTH_LOG_SIGMA, ELASTIC_DEPTH_M, FaceLaws, FaceStiffness,
-    PRINTED_FACTORS, SATURATION_DEPTH_M, STIFFNESS_LOG_SIGMA, class_stiffness,
+    PRINTED_FACTORS, SATURATION_DEPTH_M, STIFFNESS_LOG_SIGMA, TESTED_LOG_SIGMA, class_stiffness,
+    stiffness_log_sigma,
 };
+pub use touch::way_to_touch_m;
+pub use vehicle_pair::{ContactEnergy, PairMotion, PairVehicle, VehiclePair};

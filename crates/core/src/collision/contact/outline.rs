@@ -15,6 +15,7 @@
 //! Leaves out: the wheels, the taper of nose and tail, everything above and below the bumpers.
 
 use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
 
 use crate::collision::{Footprint, FootprintError, Side};
 use crate::vehicle::VehicleParameters;
@@ -51,6 +52,36 @@ pub struct ContactOutline {
     counts: [usize; 3],
     /// Sines of the angles that divide a corner, from the first to the last.
     corner_sines: Vec<f64>,
+    /// Circles about neighbouring elements, by which those are found that may touch.
+    groups: Vec<ElementGroup>,
+}
+
+/// Neighbouring elements with a circle about their reference points.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ElementGroup {
+    /// Their numbers.
+    pub elements: Range<usize>,
+    /// Middle of the circle in body axes, m.
+    pub middle_body_m: [f64; 2],
+    /// Its radius, m.
+    pub radius_m: f64,
+}
+
+/// Elements of a group.
+const GROUP: usize = 8;
+
+impl ElementGroup {
+    fn new(first: usize, elements: &[OutlineElement]) -> Self {
+        let n = elements.len().max(1) as f64;
+        let mean = |axis: usize| elements.iter().map(|it| it.point_body_m[axis]).sum::<f64>() / n;
+        let middle_body_m = [mean(0), mean(1)];
+        let off_m = |it: &OutlineElement| {
+            let [x, y] = it.point_body_m;
+            (x - middle_body_m[0]).hypot(y - middle_body_m[1])
+        };
+        let radius_m = elements.iter().map(off_m).fold(0.0, f64::max);
+        Self { elements: first..first + elements.len(), middle_body_m, radius_m }
+    }
 }
 
 /// Where a point inside of an outline came from.
@@ -106,14 +137,22 @@ impl ContactOutline {
         let n_corner = counts[2];
         let corner_sines =
             (1..n_corner).map(|i| (FRAC_PI_2 * i as f64 / n_corner as f64).sin_cos().0).collect();
-        let mut outline =
-            Self { footprint, corner_radius_m, elements: Vec::new(), counts, corner_sines };
+        let mut outline = Self {
+            footprint,
+            corner_radius_m,
+            elements: Vec::new(),
+            counts,
+            corner_sines,
+            groups: Vec::new(),
+        };
         for (face, quarter) in
             [(Side::Front, 0), (Side::Left, 1), (Side::Rear, 2), (Side::Right, 3)]
         {
             outline.add_face(face, quarter);
             outline.add_corner(quarter);
         }
+        let groups = outline.elements.chunks(GROUP).enumerate();
+        outline.groups = groups.map(|(i, group)| ElementGroup::new(i * GROUP, group)).collect();
         Ok(outline)
     }
 
@@ -130,6 +169,11 @@ impl ContactOutline {
     /// The elements, counter-clockwise from the right end of the front.
     pub fn elements(&self) -> &[OutlineElement] {
         &self.elements
+    }
+
+    /// All elements in groups of neighbours.
+    pub(super) fn groups(&self) -> &[ElementGroup] {
+        &self.groups
     }
 
     /// The rectangle.
@@ -209,6 +253,16 @@ impl ContactOutline {
             width_m,
             face,
         });
+    }
+
+    /// Whether a point lies inside.
+    ///
+    /// - `point`: in body axes, m.
+    pub(super) fn holds_body_point(&self, [x, y]: [f64; 2]) -> bool {
+        let [half_length_m, half_width_m] = self.half_m();
+        let off_m = [(x - self.middle_x_m()).abs() - half_length_m, y.abs() - half_width_m];
+        let [beyond_x, beyond_y] = off_m.map(|off_m| (off_m + self.corner_radius_m).max(0.0));
+        off_m.iter().all(|off_m| *off_m < 0.0) && beyond_x.hypot(beyond_y) <= self.corner_radius_m
     }
 
     /// Depth of a point below the flat part of each face, m, in the order of [`Side::ALL`].

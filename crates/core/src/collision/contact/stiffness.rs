@@ -12,7 +12,7 @@
 
 use crate::collision::Side;
 use crate::collision::contact::law::{FaceLaw, FaceLawError, FaceParameters, Recovery};
-use crate::vehicle::{VehicleClass, VehicleParameters};
+use crate::vehicle::{CrushParameters, CrushStiffness, VehicleClass, VehicleParameters};
 
 /// A and B of a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,6 +57,23 @@ pub type FaceLaws = ByFace<FaceLaw>;
 /// widely, even within a given class" (SAE 2020-01-0640, 49 tests); the numbers were chosen.
 pub const STIFFNESS_LOG_SIGMA: ByFace<f64> = ByFace { front: 0.25, side: 0.4, rear: 0.35 };
 
+/// The same of a car of which a test is known: what one test against a flat barrier leaves open of the
+/// corner that meets another car. Chosen.
+pub const TESTED_LOG_SIGMA: f64 = 0.15;
+
+/// Standard deviations of the logarithm of A and B of the faces of a vehicle.
+pub fn stiffness_log_sigma(said: &CrushParameters) -> ByFace<f64> {
+    let sigma = |said: Option<CrushStiffness>, by_rule| {
+        if said.is_some() { TESTED_LOG_SIGMA } else { by_rule }
+    };
+    let by_rule = STIFFNESS_LOG_SIGMA;
+    ByFace {
+        front: sigma(said.front, by_rule.front),
+        side: sigma(said.side, by_rule.side),
+        rear: sigma(said.rear, by_rule.rear),
+    }
+}
+
 /// Length δ_e of the elastic branch, m. Fitted with [`PRINTED_FACTORS`].
 pub const ELASTIC_DEPTH_M: ByFace<f64> = ByFace { front: 0.04, side: 0.035, rear: 0.04 };
 
@@ -99,6 +116,13 @@ const SMALL_SALOON: PrintedCar = printed(1150.0, [[432.1, 50.5], [175.1, 45.6], 
 const LARGE_SALOON: PrintedCar = printed(1922.0, [[505.6, 78.2], [239.9, 65.5], [512.1, 95.1]]);
 /// Chevrolet K-5 Blazer, an off-road vehicle.
 const OFF_ROADER: PrintedCar = printed(2207.0, [[516.6, 60.3], [136.6, 27.6], [509.0, 84.8]]);
+
+impl From<CrushStiffness> for FaceStiffness {
+    fn from(said: CrushStiffness) -> Self {
+        let CrushStiffness { onset_n_per_m, stiffness_n_per_m2 } = said;
+        Self { onset_n_per_m, stiffness_n_per_m2 }
+    }
+}
 
 impl FaceStiffness {
     /// Mean of the logarithms of A and of B.
@@ -184,14 +208,22 @@ impl ByFace<FaceStiffness> {
 }
 
 impl FaceLaws {
-    /// The laws of a vehicle by the rule for its class and mass, see [`class_stiffness`] and
-    /// [`PRINTED_FACTORS`].
+    /// The laws of a vehicle: A and B of its file, and by the rule for its class and mass where that says
+    /// nothing, see [`class_stiffness`] and [`PRINTED_FACTORS`].
     ///
     /// # Errors
     /// [`FaceLawError`] if the mass is not more than 0.
     pub fn by_class(vehicle: &VehicleParameters) -> Result<Self, FaceLawError> {
         let class = vehicle.sheet.as_ref().map_or(VehicleClass::Any, |sheet| sheet.class);
-        let printed = class_stiffness(class, vehicle.mass.mass_kg);
+        let by_rule = class_stiffness(class, vehicle.mass.mass_kg);
+        let said = vehicle.crush;
+        let face =
+            |said: Option<CrushStiffness>, by_rule| said.map_or(by_rule, FaceStiffness::from);
+        let printed = ByFace {
+            front: face(said.front, by_rule.front),
+            side: face(said.side, by_rule.side),
+            rear: face(said.rear, by_rule.rear),
+        };
         let factors = PRINTED_FACTORS;
         ByFace {
             front: printed.front.multiplied(factors.front),
@@ -201,12 +233,12 @@ impl FaceLaws {
         .laws()
     }
 
-    /// The laws at a number of standard deviations of their scatter, see [`STIFFNESS_LOG_SIGMA`].
+    /// The laws at a number of standard deviations of their scatter.
     ///
-    /// - `latents`: standard normal values.
+    /// - `latents`: standard normal values;
+    /// - `sigma`: of the logarithms, see [`stiffness_log_sigma`].
     #[must_use]
-    pub fn drawn(self, latents: ByFace<f64>) -> Self {
-        let sigma = STIFFNESS_LOG_SIGMA;
+    pub fn drawn(self, latents: ByFace<f64>, sigma: ByFace<f64>) -> Self {
         Self {
             front: self.front.scaled((sigma.front * latents.front).exp()),
             side: self.side.scaled((sigma.side * latents.side).exp()),
@@ -269,6 +301,7 @@ impl BarrierTest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vehicle::Preset;
 
     /// The 2018 Toyota Camry of NHTSA test v10146, 57.09 km/h, over the width of the car.
     const CAMRY: BarrierTest = BarrierTest {
@@ -323,9 +356,24 @@ mod tests {
     }
 
     #[test]
+    fn what_a_file_says_of_a_face_takes_the_place_of_the_rule() {
+        let mut vehicle = Preset::Reference.parameters();
+        let by_rule = FaceLaws::by_class(&vehicle).unwrap();
+        let FaceStiffness { onset_n_per_m, stiffness_n_per_m2 } = CAMRY.stiffness().unwrap();
+        vehicle.crush.front = Some(CrushStiffness { onset_n_per_m, stiffness_n_per_m2 });
+        let said = FaceLaws::by_class(&vehicle).unwrap();
+        let [factor, _] = PRINTED_FACTORS.front;
+        assert!((said.front.onset_n_per_m() / onset_n_per_m / factor - 1.0).abs() < 1e-12);
+        assert_eq!((said.side, said.rear), (by_rule.side, by_rule.rear));
+        let sigma = stiffness_log_sigma(&vehicle.crush);
+        assert_eq!([sigma.front, sigma.side], [TESTED_LOG_SIGMA, STIFFNESS_LOG_SIGMA.side]);
+    }
+
+    #[test]
     fn a_draw_scales_each_face_by_its_own_scatter() {
         let laws = class_stiffness(VehicleClass::Car, 1500.0).laws().unwrap();
-        let drawn = laws.drawn(ByFace { front: 1.0, side: -2.0, rear: 0.0 });
+        let latents = ByFace { front: 1.0, side: -2.0, rear: 0.0 };
+        let drawn = laws.drawn(latents, STIFFNESS_LOG_SIGMA);
         let ratio = |side| drawn.at(side).onset_n_per_m() / laws.at(side).onset_n_per_m();
         assert!((ratio(Side::Front) - 0.25_f64.exp()).abs() < 1e-12);
         assert!((ratio(Side::Right) - (-0.8_f64).exp()).abs() < 1e-12);

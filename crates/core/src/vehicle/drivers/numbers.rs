@@ -15,6 +15,22 @@ pub(super) fn named<const N: usize>(numbers: [Number<'_>; N]) -> Vec<(String, f6
     numbers.into_iter().map(named).collect()
 }
 
+/// Puts those numbers that stand at what nobody said in the place of those of a draw: what somebody said is
+/// known. Signs do not count.
+///
+/// - `known`: as they were said; `usual`: where nobody says them; `drawn`: gets those that were said.
+pub(super) fn keep_said<const N: usize>(
+    known: [Number<'_>; N],
+    usual: [Number<'_>; N],
+    drawn: [Number<'_>; N],
+) {
+    for (((_, known, _), (_, usual, _)), (_, drawn, _)) in known.into_iter().zip(usual).zip(drawn) {
+        if known.abs() != usual.abs() {
+            *drawn = *known;
+        }
+    }
+}
+
 /// A number that is uniform between two limits, from a standard normal variable.
 pub(super) fn uniform(z: f64, [low, high]: [f64; 2]) -> f64 {
     low + (high - low) * normal_cdf(z)

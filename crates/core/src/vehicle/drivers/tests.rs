@@ -309,6 +309,30 @@ fn draws_have_the_distributions_that_are_stated() {
 }
 
 #[test]
+fn what_was_said_of_a_driver_is_not_drawn() {
+    let esc = StabilityControl { threshold_rad_s: 0.2, ..StabilityControl::default() };
+    let usual = PitDriver::default();
+    let end = PitEnd::ALL.iter().copied().find(|end| *end != usual.end).unwrap();
+    let pit = PitDriver { steering_wheel_rad: -2.0, end, ..usual };
+    let said = ClosedLoop { esc: Some(esc), pit: Some(pit), ..ClosedLoop::default() };
+    let drawn = said.drawn([1.3; ClosedLoop::N_DRAWN]);
+    let (of_esc, of_pit) = (drawn.esc.unwrap(), drawn.pit.unwrap());
+    assert_eq!((of_esc.threshold_rad_s, of_pit.steering_wheel_rad), (0.2, -2.0));
+    assert_eq!(of_pit.end, end);
+    assert!(of_esc.dead_time_s != esc.dead_time_s && of_pit.turn_s != pit.turn_s);
+    assert!(drawn.countersteer.is_none() && drawn.abs.is_none());
+    // A driver of whom nothing but the side is said.
+    let right = PitDriver {
+        steering_wheel_rad: -PitDriver::default().steering_wheel_rad,
+        ..PitDriver::default()
+    };
+    let drawn = ClosedLoop { pit: Some(right), ..ClosedLoop::default() };
+    let drawn = drawn.drawn([1.3; ClosedLoop::N_DRAWN]).pit.unwrap();
+    assert!(drawn.steering_wheel_rad < right.steering_wheel_rad, "{drawn:?}");
+    assert_eq!(said.distributions().len(), 2);
+}
+
+#[test]
 fn stability_control_is_standard_from_the_year_of_the_law_on() {
     for (year, market, expected) in [
         (2011, Market::UnitedStates, false),

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::units::{self, Interval};
 use crate::vehicle::sheet::{Drive, Rule, SheetQuantity, VehicleClass};
-use crate::vehicle::{Equations, VehicleMismatch, VehicleParameters};
+use crate::vehicle::{CrushParameters, Equations, VehicleMismatch, VehicleParameters};
 
 /// Largest number of standard deviations that an estimate is drawn from its median.
 const MAX_LATENT: f64 = 2.6;
@@ -37,6 +37,8 @@ pub struct DataSheet {
     pub(super) roll_stiffness_n_m_rad: Option<f64>,
     /// Roll damping, N m s/rad, where it is known instead of the damping ratio.
     pub(super) roll_damping_n_m_s_rad: Option<f64>,
+    /// How stiff its faces are, as far as it is known.
+    pub(super) crush: CrushParameters,
     /// Standard deviations of each estimate from its median; 0 where none is given.
     pub(super) latents: BTreeMap<SheetQuantity, f64>,
 }

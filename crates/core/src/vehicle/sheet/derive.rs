@@ -67,6 +67,7 @@ impl DataSheet {
                 wheel_inertia_kg_m2: get(Q::WheelInertia),
                 longitudinal_friction_ratio: SAME_IN_ALL_DIRECTIONS,
             },
+            crush: self.crush,
             estimates: self.rules(),
             stated: BTreeMap::new(),
             sheet: None,

@@ -26,14 +26,15 @@
 //! `roll_damping_ratio` or `roll_damping_n_m_s_rad`, `front_roll_stiffness_share`,
 //! `cornering_coefficient_front_per_rad`, `cornering_coefficient_rear_per_rad`,
 //! `sliding_friction_ratio`, `rolling_resistance`, `drag_area_m2`.
+//! The section `[crush]` beside it says how stiff faces are (`vehicle/crush.rs`).
 //! A sheet has at least the class, or mass, length and width.
 
 use crate::data::{TomlError, TomlFile, TomlTable};
 use crate::ranges::{
     CG_TO_AXLE, ROLL_DAMPING, ROLL_STIFFNESS, STATIC_STABILITY_FACTOR, TRACK_WIDTH, VEHICLE_MASS,
 };
-use crate::vehicle::Equations;
 use crate::vehicle::sheet::{DataSheet, Drive, SheetQuantity as Q, VehicleClass};
+use crate::vehicle::{CrushParameters, Equations};
 
 const EQUATIONS: [&str; 2] = ["corrected", "paper"];
 
@@ -49,6 +50,7 @@ impl DataSheet {
         let name = top.string("name")?;
         let source = top.string("source")?;
         let equations = top.choice("equations", &EQUATIONS)?;
+        let crush = CrushParameters::read(top.optional_table("crush")?)?;
         let mut table = top.table("data_sheet")?;
         top.finish()?;
         let class = table.choice("class", &VehicleClass::WORDS)?;
@@ -59,6 +61,7 @@ impl DataSheet {
             equations: if equations == Some(1) { Equations::Paper } else { Equations::Corrected },
             class: class.map_or(VehicleClass::Any, |idx| VehicleClass::ALL[idx]),
             drive: drive.map(|idx| Drive::ALL[idx]),
+            crush,
             ..Self::default()
         };
         sheet.read_quantities(&mut table)?;

@@ -65,6 +65,9 @@ impl DataSheet {
             table.insert("equations".to_owned(), "paper".into());
         }
         table.insert("data_sheet".to_owned(), sheet.into());
+        if !self.crush.is_empty() {
+            table.insert("crush".to_owned(), self.crush.to_table().into());
+        }
         table
     }
 
@@ -93,6 +96,7 @@ impl DataSheet {
             class: VehicleClass::Car,
             roll_stiffness_n_m_rad: Some(suspension.roll_stiffness_n_m_rad),
             roll_damping_n_m_s_rad: Some(suspension.roll_damping_n_m_s_rad),
+            crush: vehicle.crush,
             ..Self::default()
         };
         for (quantity, value) in [

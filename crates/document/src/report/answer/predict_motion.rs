@@ -30,6 +30,7 @@ pub(super) fn part(
     let words = wording.words;
     let names = [("name", &*report.scenario), ("vehicle", &*report.vehicle)];
     let mut blocks = vec![Block::paragraph(fill(words.ask_motion, &names))];
+    blocks.extend(report.course_table().iter().map(|table| facts_table(table, context)));
     let is_one = report.n_forces <= 1 && report.n_vehicles == 0;
     let meaning = if is_one { words.meaning_motion_one } else { words.meaning_motion };
     match report.is_end_known() {
@@ -39,6 +40,7 @@ pub(super) fn part(
             blocks.push(Block::paragraph(words.after_second_contact));
         }
     }
+    blocks.extend(report.both_vehicles_tables().iter().map(|table| facts_table(table, context)));
     blocks.extend(report.rival_table().iter().map(|table| facts_table(table, context)));
     let shares = report.sensitivity_table();
     let draws = [
@@ -48,6 +50,7 @@ pub(super) fn part(
     let predicted = report.force_model.as_ref().map(|_| Method::ForceNetwork);
     let sheet = (report.n_vehicles > 0).then_some(Method::DataSheet);
     let methods = [Method::ResponseNetwork, Method::FourDof];
+    let contact = report.contacts.as_ref().map(|_| Method::ContactLaw);
     Part {
         kind: words.title_motion.to_owned(),
         title: format!("{}: {}", words.title_motion, report.scenario),
@@ -58,7 +61,7 @@ pub(super) fn part(
         domain: domain(report, wording),
         caveats: report.caveats.clone(),
         provenance: provenance_of(&report.provenance, &draws, wording),
-        methods: methods.into_iter().chain(predicted).chain(sheet).collect(),
+        methods: methods.into_iter().chain(contact).chain(predicted).chain(sheet).collect(),
         ..Part::default()
     }
 }

@@ -29,6 +29,7 @@ pub(super) fn part(
     blocks.extend(facts_with_meanings(&report.motion_table(), "", context));
     let beside = report.rival.as_ref();
     blocks.extend(beside.map(|rival| facts_table(&rival.table(), context)));
+    blocks.extend(report.contact_table().iter().map(|table| facts_table(table, context)));
     blocks.extend(computed_marks(report, context));
     let mut sensitivity = Vec::new();
     let mut draws = Vec::new();
@@ -42,6 +43,7 @@ pub(super) fn part(
     let noted = |note: &str| fill(words.noted, &[("note", &wording.quoted(note))]);
     blocks.extend(report.caveats.notes().map(|note| Block::paragraph(noted(note))));
     let scenario = report.momentum.as_ref().map(|_| Method::Impact);
+    let contact = (!report.contacts.is_empty()).then_some(Method::ContactLaw);
     let network = beside.map(|_| Method::ForceNetwork);
     let sheet = report.uncertainty.as_ref().map(|_| Method::DataSheet);
     Part {
@@ -60,6 +62,7 @@ pub(super) fn part(
         methods: [Method::FourDof]
             .into_iter()
             .chain(scenario)
+            .chain(contact)
             .chain(network)
             .chain(sheet)
             .collect(),

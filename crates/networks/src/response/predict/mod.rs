@@ -35,4 +35,5 @@ pub use model::ResponseModel;
 pub use predictor::weighted_mean;
 pub use predictor::{ComponentPath, MotionDistribution, Predictor};
 pub use propagate::{ComponentMotion, StateDistribution};
-pub use to_rest::{RestSearch, SettledMotion};
+pub(crate) use to_rest::with_resistance;
+pub use to_rest::{RESISTANCE_SCATTER, RestSearch, SettledMotion};

@@ -19,6 +19,10 @@ use crate::response::{N_LATENTS, Predictor, STEP_S};
 use impactlab_core::numerics::random_stream;
 use impactlab_core::vehicle::{RestWatch, VehicleInput, VehicleParameters, VehicleState};
 
+/// Standard deviations of the logarithms of rolling resistance and air drag of a car on the road, of
+/// which nothing more is known: those of the rules for data sheets.
+pub const RESISTANCE_SCATTER: [f64; 2] = [0.15, 0.15];
+
 /// A motion that was followed to rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SettledMotion {
@@ -49,6 +53,13 @@ impl Predictor {
     /// How long the motions were that the model has learned from, s.
     pub fn learned_s(&self) -> f64 {
         self.network.learned_s()
+    }
+
+    /// The predictor for motions that begin like this one: what was learned fades where they lie outside
+    /// of what was learned from.
+    #[must_use]
+    pub fn fitted(&self, initial: &VehicleState<f64>, inputs: &[VehicleInput<f64>]) -> Self {
+        self.fitted_to(initial, inputs).into_owned()
     }
 
     /// Coherent draws, each followed to rest.
@@ -103,7 +114,11 @@ impl Predictor {
     }
 }
 
-fn with_resistance(vehicle: &VehicleParameters, [rolling, air]: [f64; 2]) -> VehicleParameters {
+/// The vehicle with factors on rolling resistance and air drag.
+pub(crate) fn with_resistance(
+    vehicle: &VehicleParameters,
+    [rolling, air]: [f64; 2],
+) -> VehicleParameters {
     let mut resisted = vehicle.clone();
     let tires = &mut resisted.tires;
     tires.rolling_resistance *= rolling;

@@ -176,6 +176,8 @@ impl EvaluatePairsRequest {
             faces: [faces(0)?, faces(1)?],
             conditions: ContactConditions { height_m, ..usual },
             predictors: [predictors[0].as_ref(), predictors[1].as_ref()],
+            drawn: [&[]; 2],
+            first_forces: &[],
         };
         let settings =
             PairSettings { n_draws: self.draws, seed: self.seed, ..PairSettings::default() };

@@ -7,30 +7,30 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
-    Analysis, MotionForecast, MotionForecastSettings, MotionOutcome, RestOutcome, Rival,
-    RivalForce, SecondContacts, Sensitivity, StruckVehicle, forecast_collision, forecast_forces,
+    Analysis, ContactsOutcome, MotionForecast, MotionForecastSettings, MotionOutcome, RestOutcome,
+    Rival, RivalForce, SecondContacts, Sensitivity, StruckVehicle,
 };
 use crate::ask::checks::{check, check_count};
 use crate::caveats::assumed::contact_default;
 use crate::caveats::restrictions;
-use crate::caveats::unused::{
-    by_force_network, by_forecast, contact_by_force_network, drivers_by_network, zones_by_network,
-};
+use crate::caveats::unused::{by_forecast, contact_by_force_network};
+use crate::questions::predict::both_vehicles::{Both, with_contact_law};
 use crate::questions::simulate::dataset::take_case;
 use crate::{
     Answer, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, Library, ModelChoice,
-    MotionSource, Observer, Provenance, Question, SeriesFile, SimulateAnswer, SimulateRequest,
-    StudyError, VehicleChoice,
+    MotionSource, Observer, Provenance, Question, SimulateAnswer, SimulateRequest, StudyError,
+    VehicleChoice,
 };
-use impactlab_core::data::{ColumnMap, DatasetKind, ForceHistory, Outcome, check_contact_within};
+use impactlab_core::data::{ColumnMap, DatasetKind, Outcome};
 use impactlab_core::ranges::{DRAWS, FORECAST_DURATION, REST_LIMIT};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
 use impactlab_networks::force::{ForceModel, ForceScenario, OutsideTraining};
+use impactlab_networks::pair::CourseShare;
 use impactlab_networks::response::OutsideDomain;
 
 /// Force curves drawn from a predicted force where nobody says how many: so many that chance moves the
 /// ends of the 90 % intervals of the example by less than a tenth of their width.
-pub const DEFAULT_DRAWS: usize = 100;
+pub const DEFAULT_DRAWS: usize = 200;
 
 /// How many force curves and vehicles the coarse answer draws.
 pub const COARSE_DRAWS: usize = 5;
@@ -104,6 +104,12 @@ pub struct PredictMotionReport {
     /// Restitution and impulse ratio with which a momentum solution would give the predicted impulse,
     /// beside the one with the values of the scenario; none for another force.
     pub implied_contact: Option<ImpliedContactReport>,
+    /// The striking vehicle, where both vehicles were followed through all contacts.
+    pub striking: Option<StrikingReport>,
+    /// What becomes of the struck vehicle, the likeliest first; likewise.
+    pub courses: Vec<CourseShare>,
+    /// When and how the vehicles are in contact; likewise.
+    pub contacts: Option<ContactsOutcome>,
     /// Probability that the striking vehicle's corner stays caught, of a predicted force.
     pub hooking_probability: Option<f64>,
     /// A second contact of the vehicles in the 4DOF simulation of the same collision; the forecast
@@ -118,6 +124,26 @@ pub struct PredictMotionReport {
     pub applicability: f64,
     /// Where vehicle, road or impact lie outside what the response network has learned from.
     pub outside_domain: Vec<OutsideDomain>,
+}
+
+/// Where the striking vehicle goes, SI units.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct StrikingReport {
+    /// The vehicle.
+    pub vehicle: String,
+    /// How its motion ends.
+    pub outcome: MotionOutcome,
+    /// Where, when and after what distance it comes to rest; none unless the question asks for it.
+    pub rest: Option<RestOutcome>,
+}
+
+/// What is found out along the way and said with the answer.
+#[derive(Debug)]
+pub(super) struct Noted {
+    /// What of the question is not used, and what is drawn.
+    pub unused: Vec<Caveat>,
+    /// What is wrong with a given force.
+    pub of_force: Vec<Caveat>,
 }
 
 /// A predicted motion.
@@ -148,7 +174,7 @@ impl PredictMotionRequest {
     }
 
     /// The force network and the collision that it is asked about.
-    fn predicted(
+    pub(super) fn predicted(
         &self,
         model: &ModelChoice,
         library: &Library,
@@ -229,26 +255,10 @@ impl Question for PredictMotionRequest {
             return Ok(Outcome::Cancelled);
         };
         let SimulateAnswer { report: simulated, analysis } = simulated;
-        let mut unused = by_forecast(self);
-        if let (ForceSource::Predicted(_), MotionSource::Scenario { scenario, .. }) =
-            (&self.force, &self.motion.source)
-        {
-            unused.extend(by_force_network(scenario, &scenario.load()?)?);
-        }
-        let name = || self.motion.source.name();
-        let (Some(struck), Some(own_force)) = (&analysis.struck, &analysis.force) else {
-            return Err(StudyError::NoForce { name: name() });
+        let Some(struck) = analysis.struck.as_ref().filter(|_| analysis.force.is_some()) else {
+            return Err(StudyError::NoForce { name: self.motion.source.name() });
         };
-        unused.extend(zones_by_network(struck));
-        unused.extend(drivers_by_network(struck));
         let model = library.response_model(&self.response_model)?;
-        // A fleet has braked and dragged wheels, none that are steered or driven.
-        let controls = &struck.controls;
-        let is_like_fleet =
-            model.population().is_some() && !(controls.is_steered() || controls.is_driven());
-        if !controls.is_coasting() && !is_like_fleet {
-            return Err(StudyError::NotCoasting { name: name() });
-        }
         let settings = MotionForecastSettings {
             n_curves: self.draws,
             n_vehicles: self.motion.vehicle_draws,
@@ -259,75 +269,38 @@ impl Question for PredictMotionRequest {
             until_rest: self.motion.until_rest,
             seed: self.seed,
         };
-        let mut of_force = Vec::new();
-        let forecast = match &self.force {
-            ForceSource::Given => {
-                let own = Some(own_force).filter(|_| self.motion.source.is_recorded());
-                of_force.extend(own.and_then(restrictions::cut_record_caveat));
-                forecast_forces(std::slice::from_ref(own_force), &model, struck, &settings)
+        let mut noted = Noted { unused: by_forecast(self), of_force: Vec::new() };
+        let forecast = match Both::of_simulation(&analysis) {
+            Some(both) => {
+                self.of_both_vehicles(&both, &model, &settings, (library, observer), &mut noted)?
             }
-            ForceSource::File(path) => {
-                let file = SeriesFile { path: path.clone(), map: self.force_map.clone() };
-                let force =
-                    given_force(&file, struck, settings.duration_s, library, &mut of_force)?;
-                forecast_forces(&[force], &model, struck, &settings)
-            }
-            ForceSource::Predicted(choice) => {
-                let predicted = self.predicted(choice, library, observer)?;
-                let Outcome::Complete((force_model, collision)) = predicted else {
-                    return Ok(Outcome::Cancelled);
-                };
-                forecast_collision(&collision, &force_model, &model, struck, &settings)
+            None => {
+                self.of_one_vehicle(&analysis, &model, &settings, (library, observer), &mut noted)?
             }
         };
-        let forecast = forecast
-            .map_err(|source| StudyError::Forecast { name: name(), source: Box::new(source) })?;
+        let Outcome::Complete(forecast) = forecast else { return Ok(Outcome::Cancelled) };
         let holds_here = |caveat: &Caveat| self.rests_on(caveat);
         let mut caveats: Caveats = simulated.caveats.into_iter().filter(holds_here).collect();
-        caveats.extend(unused);
+        caveats.extend(noted.unused);
         let provenance = self.provenance(library)?;
         caveats.extend(self.contact_caveats(&forecast)?);
         let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.caveats);
+        let predicted = match &forecast.both {
+            Some(_) => with_contact_law(predicted),
+            None => predicted.to_vec(),
+        };
         let report = PredictMotionReport {
             implied_contact: self.implied_contact(&forecast)?,
             flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
             rival: Rival::from_simulation(&forecast, &analysis, self.rival_force()),
-            ..self.report(&analysis.name, struck, &forecast)
+            ..self.report(&analysis, struck, &forecast)
         };
-        caveats.extend(restrictions::predicted_motion_caveats(&report, predicted));
-        caveats.extend(of_force);
+        caveats.extend(restrictions::predicted_motion_caveats(&report, &predicted));
+        caveats.extend(noted.of_force);
         let report = report.without_probabilities_after_contact();
         let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
     }
-}
-
-/// The force of a file. Where it acts without a yaw moment of its own, the source of the motion says.
-///
-/// - `duration_s`: duration of the motion, s, within which the contact lies;
-/// - `caveats`: gets what is wrong with the file.
-fn given_force(
-    file: &SeriesFile,
-    struck: &StruckVehicle,
-    duration_s: f64,
-    library: &Library,
-    caveats: &mut Vec<Caveat>,
-) -> Result<ForceHistory, StudyError> {
-    let path = &file.path;
-    let loaded = library.series(file).map_err(|error| error.of_option("--force-map"))?;
-    let name = path.display().to_string();
-    caveats.extend(restrictions::doubtful_data_caveats(&name, &loaded));
-    let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling())
-        .map_err(|source| StudyError::Series { path: path.to_owned(), source })?;
-    // A recorded yaw moment acts about the CG: it does not say where another force acts.
-    let has_contact = [struck.contact.x_body_m, struck.contact.y_body_m] != [0.0; 2];
-    if force.mz_n_m.is_none() && !has_contact {
-        return Err(StudyError::NoYawMoment { path: path.to_owned() });
-    }
-    check_contact_within(&force, duration_s)
-        .map_err(|outside| StudyError::ContactOutside { name, outside })?;
-    caveats.extend(restrictions::cut_record_caveat(&force));
-    Ok(force)
 }
 
 impl PredictMotionRequest {
@@ -384,7 +357,7 @@ impl PredictMotionRequest {
     /// Whether the vehicles meet again, over the draws. The striking vehicle moves as in the
     /// simulation where the force is that of the simulation.
     fn second_contact(&self, forecast: &MotionForecast, analysis: &Analysis) -> Option<FlagReport> {
-        let striking = analysis.striking.as_ref()?;
+        let striking = analysis.striking.as_ref().filter(|_| forecast.both.is_none())?;
         let is_own = self.force == ForceSource::Given;
         let met = SecondContacts::find(forecast, analysis.footprint, striking, is_own)?;
         Some(FlagReport::from(&met))
@@ -419,13 +392,14 @@ impl PredictMotionRequest {
 
     fn report(
         &self,
-        name: &str,
+        analysis: &Analysis,
         struck: &StruckVehicle,
         forecast: &MotionForecast,
     ) -> PredictMotionReport {
         let predicted = forecast.force.as_ref();
+        let (both, striking) = (forecast.both.as_deref(), analysis.striking.as_ref());
         PredictMotionReport {
-            scenario: name.to_owned(),
+            scenario: analysis.name.clone(),
             vehicle: struck.vehicle.name.clone(),
             force: match &self.force {
                 ForceSource::File(path) => Some(path.clone()),
@@ -444,6 +418,14 @@ impl PredictMotionRequest {
             learned_duration_s: forecast.learned_s,
             sensitivity: forecast.sensitivity.clone(),
             hooking_probability: predicted.and_then(|force| force.hooking_probability),
+            striking: both.map(|both| StrikingReport {
+                vehicle: striking
+                    .map_or_else(String::new, |track| track.start.vehicle.name.clone()),
+                outcome: both.striking_outcome.clone(),
+                rest: both.striking_rest.clone(),
+            }),
+            courses: both.map_or_else(Vec::new, |both| both.courses.clone()),
+            contacts: both.map(|both| both.contacts.clone()),
             flags: Vec::new(),
             rival: None,
             implied_contact: None,

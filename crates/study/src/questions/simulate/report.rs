@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::analysis::{Analysis, MotionEnd};
+use crate::analysis::{Analysis, ContactPhaseReport, MotionEnd, told};
 use crate::{
     FlagReport, ImpulseRival, MomentumReport, SimulateRequest, TireMarkReport, VehicleUncertainty,
     word,
@@ -83,6 +83,9 @@ pub struct SimulateReport {
     pub error: Option<MotionError>,
     /// How the end varies with what the data sheet of the struck vehicle leaves open.
     pub uncertainty: Option<VehicleUncertainty>,
+    /// Phases of contact of the vehicles, where both were followed through all of them; without grazes, of
+    /// less than 1 % of the impulse of the largest.
+    pub contacts: Vec<ContactPhaseReport>,
     /// Wheel lift, roll beyond the limit, a second contact.
     pub flags: Vec<FlagReport>,
 }
@@ -188,6 +191,7 @@ impl SimulateReport {
             tire_marks: TireMarkReport::all(analysis),
             error: analysis.error.clone(),
             uncertainty: None,
+            contacts: told(&analysis.phases).into_iter().map(ContactPhaseReport::from).collect(),
             flags: motion
                 .iter()
                 .flat_map(|motion| motion.flags.iter().map(FlagReport::from))

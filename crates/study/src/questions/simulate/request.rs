@@ -11,7 +11,7 @@ use crate::analysis::{
 };
 use crate::ask::checks::{check, check_all, check_count, check_given};
 use crate::ask::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
-use crate::caveats::unused::by_simulation;
+use crate::caveats::unused::{by_simulation, contact_at_medians};
 use crate::caveats::{assumed, restrictions};
 use crate::questions::predict::impulse_rival::Beside;
 use crate::questions::simulate::dataset::take_case;
@@ -67,6 +67,10 @@ pub struct SimulateRequest {
     /// duration.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub until_rest: bool,
+    /// Whether the vehicles of a scenario move after their first contact as if each were alone. Otherwise
+    /// both are followed through all contacts.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub one_contact: bool,
     /// How many vehicles are drawn from what the data sheet of the struck vehicle leaves open.
     #[serde(default = "default_vehicle_draws")]
     pub vehicle_draws: usize,
@@ -118,6 +122,7 @@ impl SimulateRequest {
             alone: false,
             ending: None,
             until_rest: false,
+            one_contact: false,
         }
     }
 
@@ -152,6 +157,7 @@ impl SimulateRequest {
             integrator: self.integrator,
             duration_s: self.duration_s,
             ends_at_rest: self.until_rest,
+            one_contact: self.one_contact,
             friction_zones: self.friction_zones()?,
         })
     }
@@ -230,7 +236,9 @@ impl SimulateRequest {
         let recorded = analysis.force.as_ref().filter(|_| self.source.is_recorded());
         let cut = recorded.and_then(restrictions::cut_record_caveat);
         let simulated = restrictions::simulation_caveats(report, self.until_rest);
-        simulated.into_iter().chain(overlap).chain(cut)
+        let at_medians =
+            analysis.pair.as_ref().filter(|_| !self.alone).map(|_| contact_at_medians());
+        simulated.into_iter().chain(overlap).chain(cut).chain(at_medians)
     }
 }
 

@@ -105,7 +105,8 @@ pub(crate) fn vehicle_uncertainty(
         yaw_rad: spread(|end| end.yaw_rad),
         speed_m_s: spread(|end| end.speed_m_s),
         rest: settings.ends_at_rest.then(rest).flatten(),
-        second_contact_probability: central.striking.is_some().then_some(share_met),
+        second_contact_probability: (central.striking.is_some() && central.pair.is_none())
+            .then_some(share_met),
         sensitivity,
         monte_carlo: MonteCarloError::from_ends(&motion_ends, settings.duration_s),
     })
@@ -146,7 +147,7 @@ mod tests {
         let uncertainty = report.uncertainty.as_ref().unwrap();
         assert_eq!((uncertainty.n_draws, uncertainty.n_failed), (60, 0));
         let end = report.end.unwrap();
-        assert!(uncertainty.second_contact_probability.unwrap() > 0.9, "{uncertainty:?}");
+        assert_eq!(uncertainty.second_contact_probability, None, "every contact is followed");
         let [low, high] = uncertainty.x_m.ninety();
         assert!(high - low > 0.1, "{uncertainty:?}");
         assert!((low..=high).contains(&end.x_m), "{low} {high} {end:?}");

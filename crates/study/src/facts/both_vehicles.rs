@@ -1,0 +1,167 @@
+//! The facts of two vehicles that were followed through all contacts.
+
+use std::f64::consts::TAU;
+
+use impactlab_core::numerics::share_standard_error;
+use impactlab_core::units::{Estimate, Quantity};
+use impactlab_networks::pair::{Course, CourseShare};
+
+use crate::StrikingReport;
+use crate::analysis::{
+    ContactPhaseReport, ContactsOutcome, MonteCarloError, PhaseForecast, PhaseOfVehicleForecast,
+    PhaseOfVehicleReport,
+};
+use crate::facts::table::PREDICTED;
+use crate::facts::{Fact, FactTable, Term, Value};
+
+/// Columns of a table of phases of contact.
+const PHASE_COLUMNS: [Term; 7] = [
+    Term::PhaseStart,
+    Term::PhaseDuration,
+    Term::Impulse,
+    Term::PhaseStruckDeltaV,
+    Term::PhaseStruckPdof,
+    Term::PhaseStrikingDeltaV,
+    Term::PhaseStrikingPdof,
+];
+
+impl From<Course> for Term {
+    fn from(course: Course) -> Self {
+        match course {
+            Course::Missed => Self::CourseMissed,
+            Course::Across => Self::CourseAcross,
+            Course::Hooked => Self::CourseHooked,
+            Course::Recovers => Self::CourseRecovers,
+            Course::Turns => Self::CourseTurns,
+            Course::Spins => Self::CourseSpins,
+        }
+    }
+}
+
+/// What becomes of the struck vehicle; none where it was not asked.
+///
+/// - `n_draws`: of which these are shares.
+pub(super) fn course_table(courses: &[CourseShare], n_draws: usize) -> Option<FactTable> {
+    let row =
+        |share: &CourseShare| Fact::new(share.course.into(), chance(share.probability, n_draws));
+    FactTable::new(Term::StruckCourses, courses.iter().map(row).collect())
+        .with_rows(Term::Course)
+        .with_columns(&[Term::Probability])
+        .unless_empty()
+}
+
+fn chance(share: f64, n_draws: usize) -> Value {
+    Value::Chance(share, Some(share_standard_error(share, n_draws as f64)))
+}
+
+impl ContactsOutcome {
+    /// When and how the vehicles are in contact.
+    pub(super) fn tables(&self) -> Vec<FactTable> {
+        [Some(self.table()), self.phase_table()].into_iter().flatten().collect()
+    }
+
+    fn table(&self) -> FactTable {
+        let n_law = self.n_draws.saturating_sub(self.n_known_forces);
+        let mut facts = vec![
+            Fact::new(Term::FirstByLaw, Value::CountOf(n_law, self.n_draws)),
+            Fact::new(Term::LongContact, chance(self.long_contact_probability, self.n_draws)),
+            Fact::new(Term::MeetAgain, chance(self.meet_again_probability, self.n_draws)),
+            Fact::estimate(Term::TimeInContact, Quantity::Time, &self.duration_s),
+            Fact::estimate(Term::TotalImpulse, Quantity::Impulse, &self.impulse_n_s),
+        ];
+        let later = self.later_impulse_share.as_ref();
+        facts.extend(later.map(|share| Fact::estimate(Term::LaterShare, Quantity::Ratio, share)));
+        let scale = self.law_scale.as_ref();
+        facts.extend(scale.map(|scale| Fact::estimate(Term::LawScale, Quantity::Ratio, scale)));
+        if self.n_failed > 0 {
+            facts.push(Fact::new(Term::LeftOut, Value::Count(self.n_failed)));
+        }
+        FactTable::new(Term::Contacts, facts).with_levels(PREDICTED)
+    }
+
+    /// The phases of contact, at their medians; none without any.
+    fn phase_table(&self) -> Option<FactTable> {
+        let row = |(number, phase): (usize, &PhaseForecast)| {
+            let median = |quantity, it: &Estimate| Value::Number(quantity, it.median);
+            let of_vehicle = |it: &PhaseOfVehicleForecast| {
+                let pdof = it.pdof_rad.as_ref().map(|angle| angle.median);
+                [median(Quantity::Speed, &it.delta_v_m_s), pdof_value(pdof)]
+            };
+            let mut values = vec![
+                chance(phase.probability, self.n_draws),
+                median(Quantity::Time, &phase.start_s),
+                median(Quantity::Time, &phase.duration_s),
+                median(Quantity::Impulse, &phase.impulse_n_s),
+            ];
+            values.extend(of_vehicle(&phase.struck));
+            values.extend(of_vehicle(&phase.striking));
+            Fact::row(Value::Count(number + 1), values)
+        };
+        let rows = self.phases.iter().enumerate().map(row).collect();
+        let columns: Vec<Term> = [Term::Probability].into_iter().chain(PHASE_COLUMNS).collect();
+        let table = FactTable::new(Term::PhasesAtMedian, rows).with_rows(Term::Phase);
+        table.with_columns(&columns).unless_empty()
+    }
+}
+
+/// The phases of contact of a single motion; none without any.
+pub(super) fn phase_table(phases: &[ContactPhaseReport]) -> Option<FactTable> {
+    let row = |(number, phase): (usize, &ContactPhaseReport)| {
+        let duration = match phase.end_s {
+            Some(end_s) => Value::Number(Quantity::Time, end_s - phase.start_s),
+            None => Value::Term(Term::ToTheEnd),
+        };
+        let [x, y] = phase.impulse_n_s;
+        let of_vehicle = |it: &PhaseOfVehicleReport| {
+            [Value::Number(Quantity::Speed, it.delta_v_m_s), pdof_value(it.pdof_rad)]
+        };
+        let mut values = vec![
+            Value::Number(Quantity::Time, phase.start_s),
+            duration,
+            Value::Number(Quantity::Impulse, x.hypot(y)),
+        ];
+        values.extend(of_vehicle(&phase.struck));
+        values.extend(of_vehicle(&phase.striking));
+        Fact::row(Value::Count(number + 1), values)
+    };
+    let rows = phases.iter().enumerate().map(row).collect();
+    let table = FactTable::new(Term::Phases, rows).with_rows(Term::Phase);
+    table.with_columns(&PHASE_COLUMNS).unless_empty()
+}
+
+/// A principal direction of force, clockwise from the heading within one turn.
+fn pdof_value(angle_rad: Option<f64>) -> Value {
+    match angle_rad {
+        Some(angle_rad) => Value::Decimals(Quantity::Angle, angle_rad.rem_euclid(TAU), 0),
+        None => Value::Term(Term::NoImpulse),
+    }
+}
+
+impl StrikingReport {
+    /// How the motion of the striking vehicle ends.
+    pub(super) fn table(&self) -> FactTable {
+        let outcome = &self.outcome;
+        let mut facts = vec![Fact::new(Term::Vehicle, Value::Text(self.vehicle.clone()))];
+        match &self.rest {
+            Some(rest) => facts.extend([
+                Fact::new(Term::Followed, Value::Term(Term::UntilStruckRests)),
+                Fact::new(Term::ShareAtRest, Value::ShareOfDraws(rest.share_at_rest, rest.n_draws)),
+            ]),
+            None => {
+                let is_at_rest = outcome.is_at_rest;
+                let end = if is_at_rest { Term::AtRestAfter } else { Term::StillMovingAfter };
+                facts.push(Fact::number(end, Quantity::Time, outcome.time_s));
+            }
+        }
+        facts.extend([
+            Fact::estimate(Term::EndX, Quantity::Length, &outcome.x_m),
+            Fact::estimate(Term::EndY, Quantity::Length, &outcome.y_m),
+            Fact::estimate(Term::HeadingChange, Quantity::Angle, &outcome.heading_change_rad),
+            Fact::number(Term::SpeedAtEnd, Quantity::Speed, outcome.speed_m_s),
+        ]);
+        let region = outcome.region_90_m2.filter(|_| self.rest.is_none());
+        facts.extend(region.map(|area_m2| Fact::new(Term::Region90, Value::Area(area_m2))));
+        facts.extend(outcome.monte_carlo.iter().flat_map(MonteCarloError::facts));
+        FactTable::new(Term::StrikingForecast, facts).with_levels(PREDICTED)
+    }
+}

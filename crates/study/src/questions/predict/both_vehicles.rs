@@ -1,0 +1,229 @@
+//! A forecast of both vehicles of a scenario: where the force of the first contact comes from.
+
+use crate::analysis::{
+    Analysis, BothVehiclesQuestion, ContactPair, FirstForces, MotionForecast,
+    MotionForecastSettings, StruckVehicle, forecast_both, in_world,
+};
+use crate::caveats::unused::{by_force_network, drawn_drivers};
+use crate::questions::predict::motion::Noted;
+use crate::questions::predict::one_vehicle::given_force;
+use crate::{
+    Event, ForceSource, Library, MotionSource, Observer, PredictMotionRequest, SeriesFile,
+    StudyError,
+};
+use impactlab_core::data::{ForceHistory, Outcome};
+use impactlab_core::jobs::Progress;
+use impactlab_core::numerics::random_stream;
+use impactlab_core::uncertainty::{Caveat, CaveatKind, CurveMixture};
+use impactlab_core::units::percent;
+use impactlab_networks::force::{ForcePrediction, SHARE_OF_NETWORK};
+use impactlab_networks::response::ResponseModel;
+
+/// Share of the draws with a scale that is cut off from which on it is said.
+const MOST_CLAMPED: f64 = 0.1;
+
+/// Two vehicles that are followed through all contacts, as the simulation has placed them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Both<'a> {
+    pair: &'a ContactPair,
+    vehicles: [&'a StruckVehicle; 2],
+    /// The pulse of the momentum solution.
+    own_force: &'a ForceHistory,
+}
+
+impl<'a> Both<'a> {
+    /// `None` where the simulation has followed one vehicle by itself.
+    pub fn of_simulation(analysis: &'a Analysis) -> Option<Self> {
+        let striking = &analysis.striking.as_ref()?.start;
+        Some(Self {
+            pair: analysis.pair.as_ref()?,
+            vehicles: [analysis.struck.as_ref()?, striking],
+            own_force: analysis.force.as_ref()?,
+        })
+    }
+
+    /// The forecast.
+    fn forecast(
+        &self,
+        first_forces: &FirstForces,
+        response: &ResponseModel,
+        settings: &MotionForecastSettings,
+        (name, observer): (&str, &mut Observer<'_>),
+    ) -> Result<Outcome<MotionForecast>, StudyError> {
+        let question = BothVehiclesQuestion {
+            pair: self.pair,
+            vehicles: self.vehicles,
+            first_forces,
+            usual_force: first_forces.median.as_ref().unwrap_or(self.own_force),
+            response,
+            is_corrected: self.is_corrected(response),
+        };
+        let mut report = |progress: Progress| observer(Event::Progress(progress));
+        forecast_both(&question, settings, &mut report).map_err(|source| StudyError::Forecast {
+            name: name.to_owned(),
+            source: Box::new(source),
+        })
+    }
+
+    /// Whether the network has learned from vehicles like each of both: one that knows how cars differ has
+    /// seen braked ones, another one those that coast alone.
+    fn is_corrected(&self, response: &ResponseModel) -> [bool; 2] {
+        self.vehicles.map(|it| it.controls.is_coasting() || response.population().is_some())
+    }
+
+    /// What is not used of the network, what is drawn of drivers and systems, and how far the contact law
+    /// was scaled.
+    fn caveats(&self, forecast: &MotionForecast, response: &ResponseModel) -> Vec<Caveat> {
+        let uncorrected = self.is_corrected(response).into_iter().zip(["struck", "striking"]);
+        let uncorrected = uncorrected.filter(|(is_corrected, _)| !is_corrected).map(|(_, role)| {
+            Caveat::not_used(
+                format!("response network for the {role} vehicle"),
+                "it has learned from vehicles that coast; the equations of motion stand alone",
+            )
+        });
+        let contacts = forecast.both.as_ref().map(|both| &both.contacts);
+        let clamped = contacts.filter(|contacts| contacts.clamped_share > MOST_CLAMPED);
+        let clamped = clamped.map(|contacts| {
+            let text = format!(
+                "in {} of the draws the scale of the faces' stiffness was outside of 0.3 to 3 and is cut \
+                 off there: force and contact law do not go together",
+                percent(contacts.clamped_share)
+            );
+            Caveat::new(CaveatKind::Note, text)
+        });
+        uncorrected.chain(drawn_drivers(self.vehicles)).chain(clamped).collect()
+    }
+}
+
+impl PredictMotionRequest {
+    /// The forecast of both vehicles.
+    pub(super) fn of_both_vehicles(
+        &self,
+        both: &Both<'_>,
+        model: &ResponseModel,
+        settings: &MotionForecastSettings,
+        (library, observer): (&Library, &mut Observer<'_>),
+        noted: &mut Noted,
+    ) -> Result<Outcome<MotionForecast>, StudyError> {
+        let [struck, _] = both.vehicles;
+        let first = match &self.force {
+            ForceSource::Predicted(_) => {
+                self.first_forces(struck, library, observer, &mut noted.unused)?
+            }
+            ForceSource::Given => Outcome::Complete(FirstForces::given(both.own_force.clone())),
+            ForceSource::File(path) => {
+                let file = SeriesFile { path: path.clone(), map: self.force_map.clone() };
+                let duration_s = settings.duration_s;
+                let force = given_force(&file, struck, duration_s, library, &mut noted.of_force)?;
+                Outcome::Complete(FirstForces::given(force))
+            }
+        };
+        let Outcome::Complete(first) = first else { return Ok(Outcome::Cancelled) };
+        let name = self.motion.source.name();
+        let forecast = both.forecast(&first, model, settings, (&name, observer))?;
+        if let Outcome::Complete(forecast) = &forecast {
+            noted.unused.extend(both.caveats(forecast, model));
+        }
+        Ok(forecast)
+    }
+
+    /// The force of the first contact as the force network says it: in so many draws as it applies, and
+    /// the contact law in the others.
+    fn first_forces(
+        &self,
+        struck: &StruckVehicle,
+        library: &Library,
+        observer: &mut Observer<'_>,
+        caveats: &mut Vec<Caveat>,
+    ) -> Result<Outcome<FirstForces>, StudyError> {
+        let ForceSource::Predicted(choice) = &self.force else {
+            return Ok(Outcome::Complete(FirstForces::law()));
+        };
+        if let MotionSource::Scenario { scenario, .. } = &self.motion.source {
+            match by_force_network(scenario, &scenario.load()?) {
+                Ok(unused) => caveats.extend(unused),
+                Err(error @ StudyError::TurningVehicles { .. }) => {
+                    caveats.push(Caveat::new(
+                        CaveatKind::OutsideDomain,
+                        format!("{error}; the first contact follows from the contact law"),
+                    ));
+                    return Ok(Outcome::Complete(FirstForces::law()));
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        let predicted = self.predicted(choice, library, observer)?;
+        let Outcome::Complete((force_model, collision)) = predicted else {
+            return Ok(Outcome::Cancelled);
+        };
+        let prediction =
+            force_model.predict(&collision).map_err(|source| StudyError::Forecast {
+                name: self.motion.source.name(),
+                source: Box::new(source.into()),
+            })?;
+        let heading_rad = struck.initial.yaw_rad;
+        let forces = FirstForces::predicted(prediction, self.draws, heading_rad, self.seed);
+        Ok(Outcome::Complete(forces))
+    }
+}
+
+impl FirstForces {
+    /// The contact law from the start on.
+    fn law() -> Self {
+        Self { median: None, draws: Vec::new(), prediction: None }
+    }
+
+    /// One known history.
+    fn given(force: ForceHistory) -> Self {
+        Self { median: Some(force), draws: Vec::new(), prediction: None }
+    }
+
+    /// - `heading_rad`: of the struck vehicle, along which a predicted force has its axes.
+    fn predicted(prediction: ForcePrediction, n_draws: usize, heading_rad: f64, seed: u64) -> Self {
+        let share = prediction.applicability;
+        let curves = |learned: &CurveMixture| {
+            let mut rng = random_stream(seed, "force curves", 0);
+            learned.sample(n_draws, &mut rng)
+        };
+        let curves = prediction.learned.as_ref().map(curves).unwrap_or_default();
+        // Spread evenly over the draws.
+        let is_learned =
+            |draw: usize| (share * (draw + 1) as f64).floor() > (share * draw as f64).floor();
+        let mut curves = curves.iter();
+        let draws = (0..n_draws)
+            .map(|draw| {
+                let curve = if is_learned(draw) { curves.next() } else { None };
+                curve.map(|curve| in_world(curve, heading_rad))
+            })
+            .collect();
+        let likely = prediction.learned.as_ref().filter(|_| share >= 0.5);
+        let median = likely.map(|_| in_world(&prediction.likely.mean(), heading_rad));
+        Self { median, draws, prediction: Some(prediction) }
+    }
+}
+
+/// What restricts a predicted force where the contact law stands for what the network does not say.
+pub(super) fn with_contact_law(caveats: &[Caveat]) -> Vec<Caveat> {
+    let restated = |caveat: &Caveat| {
+        let is_share = caveat.quantity.as_deref() == Some(SHARE_OF_NETWORK);
+        match caveat.value.filter(|_| is_share) {
+            Some(share) => Caveat { text: law_text(share), ..caveat.clone() },
+            None => caveat.clone(),
+        }
+    };
+    let no_force = |caveat: &&Caveat| caveat.kind != CaveatKind::ImplausibleContact;
+    caveats.iter().filter(no_force).map(restated).collect()
+}
+
+fn law_text(share: f64) -> String {
+    match share > 0.0 {
+        true => format!(
+            "in {} of the draws the first contact follows from the contact law, since the force \
+             network has not learned from such collisions",
+            percent(1.0 - share)
+        ),
+        false => "the first contact follows from the contact law, since the force network has not \
+                  learned from such collisions"
+            .to_owned(),
+    }
+}

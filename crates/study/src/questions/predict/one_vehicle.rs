@@ -1,0 +1,97 @@
+//! A forecast of the struck vehicle by itself, and a force that is read from a file.
+
+use crate::analysis::{
+    Analysis, MotionForecast, MotionForecastSettings, StruckVehicle, forecast_collision,
+    forecast_forces,
+};
+use crate::caveats::restrictions;
+use crate::caveats::unused::{by_force_network, drivers_by_network, zones_by_network};
+use crate::questions::predict::motion::Noted;
+use crate::{
+    ForceSource, Library, MotionSource, Observer, PredictMotionRequest, SeriesFile, StudyError,
+};
+use impactlab_core::data::{ForceHistory, Outcome, check_contact_within};
+use impactlab_core::uncertainty::Caveat;
+use impactlab_networks::response::ResponseModel;
+
+impl PredictMotionRequest {
+    /// The forecast of the struck vehicle by itself.
+    pub(super) fn of_one_vehicle(
+        &self,
+        analysis: &Analysis,
+        model: &ResponseModel,
+        settings: &MotionForecastSettings,
+        (library, observer): (&Library, &mut Observer<'_>),
+        noted: &mut Noted,
+    ) -> Result<Outcome<MotionForecast>, StudyError> {
+        let name = || self.motion.source.name();
+        let (Some(struck), Some(own_force)) = (&analysis.struck, &analysis.force) else {
+            return Err(StudyError::NoForce { name: name() });
+        };
+        if let (ForceSource::Predicted(_), MotionSource::Scenario { scenario, .. }) =
+            (&self.force, &self.motion.source)
+        {
+            noted.unused.extend(by_force_network(scenario, &scenario.load()?)?);
+        }
+        noted.unused.extend(zones_by_network(struck));
+        noted.unused.extend(drivers_by_network(struck));
+        // A fleet has braked and dragged wheels, none that are steered or driven.
+        let controls = &struck.controls;
+        let is_like_fleet =
+            model.population().is_some() && !(controls.is_steered() || controls.is_driven());
+        if !controls.is_coasting() && !is_like_fleet {
+            return Err(StudyError::NotCoasting { name: name() });
+        }
+        let caveats = &mut noted.of_force;
+        let forecast = match &self.force {
+            ForceSource::Given => {
+                let own = Some(own_force).filter(|_| self.motion.source.is_recorded());
+                caveats.extend(own.and_then(restrictions::cut_record_caveat));
+                forecast_forces(std::slice::from_ref(own_force), model, struck, settings)
+            }
+            ForceSource::File(path) => {
+                let file = SeriesFile { path: path.clone(), map: self.force_map.clone() };
+                let force = given_force(&file, struck, settings.duration_s, library, caveats)?;
+                forecast_forces(&[force], model, struck, settings)
+            }
+            ForceSource::Predicted(choice) => {
+                let predicted = self.predicted(choice, library, observer)?;
+                let Outcome::Complete((force_model, collision)) = predicted else {
+                    return Ok(Outcome::Cancelled);
+                };
+                forecast_collision(&collision, &force_model, model, struck, settings)
+            }
+        };
+        let forecast = forecast
+            .map_err(|source| StudyError::Forecast { name: name(), source: Box::new(source) })?;
+        Ok(Outcome::Complete(forecast))
+    }
+}
+
+/// The force of a file. Where it acts without a yaw moment of its own, the source of the motion says.
+///
+/// - `duration_s`: duration of the motion, s, within which the contact lies;
+/// - `caveats`: gets what is wrong with the file.
+pub(super) fn given_force(
+    file: &SeriesFile,
+    struck: &StruckVehicle,
+    duration_s: f64,
+    library: &Library,
+    caveats: &mut Vec<Caveat>,
+) -> Result<ForceHistory, StudyError> {
+    let path = &file.path;
+    let loaded = library.series(file).map_err(|error| error.of_option("--force-map"))?;
+    let name = path.display().to_string();
+    caveats.extend(restrictions::doubtful_data_caveats(&name, &loaded));
+    let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling())
+        .map_err(|source| StudyError::Series { path: path.to_owned(), source })?;
+    // A recorded yaw moment acts about the CG: it does not say where another force acts.
+    let has_contact = [struck.contact.x_body_m, struck.contact.y_body_m] != [0.0; 2];
+    if force.mz_n_m.is_none() && !has_contact {
+        return Err(StudyError::NoYawMoment { path: path.to_owned() });
+    }
+    check_contact_within(&force, duration_s)
+        .map_err(|outside| StudyError::ContactOutside { name, outside })?;
+    caveats.extend(restrictions::cut_record_caveat(&force));
+    Ok(force)
+}
