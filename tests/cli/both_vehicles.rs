@@ -53,6 +53,11 @@ fn a_forecast_follows_both_vehicles_and_says_what_may_become_of_the_struck_one()
     assert!(single["contacts"].is_null() && single["striking"].is_null(), "{single}");
     assert_eq!(single["flags"][0]["kind"], "second_contact");
     assert_eq!(ask(&[])["courses"], both["courses"], "same seed");
+    // The striking vehicle counts where it is followed, and draws are made under a given force, too.
+    assert!(both["caveats"].to_string().contains("bullet-2000"), "{both}");
+    assert!(!single["caveats"].to_string().contains("bullet-2000"), "{single}");
+    let given = ask(&["--given-force"])["caveats"].to_string();
+    assert!(!given.contains("number of drawn forces"), "{given}");
 }
 
 #[test]
@@ -65,6 +70,9 @@ fn a_simulation_tells_every_phase_of_contact() {
     let single = answer(&["simulate", "--one-contact", "--scenario", SCENARIO]);
     assert_eq!(single["contacts"], Value::Array(Vec::new()));
     assert!(number(&single, "/end/x_m") != number(&both, "/end/x_m"));
+    let euler = answer(&["simulate", "--integrator", "euler", "--scenario", SCENARIO]);
+    assert_eq!(euler["end"], both["end"]);
+    assert!(euler["caveats"].to_string().contains("method of integration"), "{euler}");
 }
 
 /// What nobody said of a driver or a system is drawn, and the answer says so.

@@ -17,7 +17,7 @@ use impactlab_core::collision::{
 };
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::percent;
-use impactlab_core::vehicle::{ClosedLoop, Preset, VehicleParameters};
+use impactlab_core::vehicle::{ClosedLoop, Integrator, Preset, VehicleParameters};
 
 /// Share of the approach of the contact points that may come from the turning of the vehicles.
 const MAX_TURNING_SHARE: f64 = 0.5;
@@ -60,6 +60,17 @@ pub(crate) fn drawn_drivers(vehicles: [&StruckVehicle; 2]) -> Vec<Caveat> {
         drawn.map(note).collect::<Vec<_>>()
     };
     vehicles.into_iter().zip(["struck", "striking"]).flat_map(of_vehicle).collect()
+}
+
+/// A method of integration that was chosen, where both vehicles are followed through all contacts.
+pub(crate) fn integrator_of_pair(integrator: Integrator) -> Option<Caveat> {
+    (integrator != Integrator::default()).then(|| {
+        Caveat::not_used(
+            "method of integration",
+            "two vehicles in contact are integrated by the leapfrog method, and by Runge–Kutta while they \
+             are apart",
+        )
+    })
 }
 
 /// A single motion through all contacts: what it takes at its median.
@@ -223,7 +234,9 @@ pub(crate) fn by_simulation(request: &SimulateRequest, is_recorded: bool) -> Vec
 pub(crate) fn by_forecast(request: &PredictMotionRequest) -> Vec<Caveat> {
     let mut unused = Vec::new();
     let is_predicted = matches!(request.force, ForceSource::Predicted(_));
-    if !is_predicted && request.draws != DEFAULT_DRAWS {
+    let follows_both = matches!(request.motion.source, MotionSource::Scenario { .. })
+        && !request.motion.one_contact;
+    if !is_predicted && !follows_both && request.draws != DEFAULT_DRAWS {
         unused.push(Caveat::not_used(
             format!("number of drawn forces, {}", request.draws),
             "the force is given, so that none is drawn",

@@ -279,7 +279,8 @@ impl Question for PredictMotionRequest {
             }
         };
         let Outcome::Complete(forecast) = forecast else { return Ok(Outcome::Cancelled) };
-        let holds_here = |caveat: &Caveat| self.rests_on(caveat);
+        let follows_both = forecast.both.is_some();
+        let holds_here = |caveat: &Caveat| self.rests_on(caveat, follows_both);
         let mut caveats: Caveats = simulated.caveats.into_iter().filter(holds_here).collect();
         caveats.extend(noted.unused);
         let provenance = self.provenance(library)?;
@@ -363,14 +364,18 @@ impl PredictMotionRequest {
         Some(FlagReport::from(&met))
     }
 
-    /// Whether what holds for the simulation holds for the motion of the struck vehicle, too.
-    fn rests_on(&self, caveat: &Caveat) -> bool {
+    /// Whether what holds for the simulation holds for the forecast, too.
+    ///
+    /// - `follows_both`: whether that is of both vehicles.
+    fn rests_on(&self, caveat: &Caveat, follows_both: bool) -> bool {
         match (caveat.kind, caveat.subject) {
             (CaveatKind::Overlap | CaveatKind::Note | CaveatKind::NotUsed, _) => true,
             // That of a record, where it is a record that moves the vehicle.
             (CaveatKind::DoubtfulData, _) => self.force == ForceSource::Given,
             (CaveatKind::Assumed, Some(subject)) => match subject {
-                CaveatSubject::Striking | CaveatSubject::StrikingParameter => false,
+                CaveatSubject::Striking => follows_both,
+                // What its data sheet leaves open is drawn with the rest.
+                CaveatSubject::StrikingParameter => follows_both && self.motion.vehicle_draws == 0,
                 CaveatSubject::Pulse | CaveatSubject::Restitution => {
                     self.force == ForceSource::Given
                 }

@@ -11,7 +11,7 @@ use crate::analysis::{
 };
 use crate::ask::checks::{check, check_all, check_count, check_given};
 use crate::ask::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
-use crate::caveats::unused::{by_simulation, contact_at_medians};
+use crate::caveats::unused::{by_simulation, contact_at_medians, integrator_of_pair};
 use crate::caveats::{assumed, restrictions};
 use crate::questions::predict::impulse_rival::Beside;
 use crate::questions::simulate::dataset::take_case;
@@ -324,6 +324,8 @@ impl Question for SimulateRequest {
                 let scenario = scenario.load()?;
                 let settings = self.scenario_settings(&scenario, pulse, &mut caveats)?;
                 (momentum, overlap) = contact_of(&scenario, &mut caveats);
+                let of_pair = integrator_of_pair(self.integrator);
+                caveats.extend(of_pair.filter(|_| !self.one_contact));
                 (settings, Box::new(move |settings| analyse_scenario(&scenario, pulse, settings)))
             }
         };
