@@ -447,8 +447,8 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
     assert!(report.known_until_s() > report.outcome.time_s, "every contact is followed");
     let figure = chain[4].figure.clone().unwrap();
     let format = NumberFormat::english(UnitSystem::Si);
-    let x = format.value(Quantity::Length, report.outcome.x_m.median);
-    assert!(figure.starts_with(&format!("X {x}")), "{figure} {x}");
+    let x = format.estimate_in_words(Quantity::Length, &report.outcome.x_m);
+    assert!(figure.starts_with(&format!("X {x}, Y ")), "{figure} {x}");
     // Two figures of one quantity do not differ: that of the scenario panel is the chain's.
     let delta_v_m_s =
         state(&harness).session.impact.ok().unwrap().report.struck.delta_v_magnitude_m_s;

@@ -1,5 +1,6 @@
 //! From the quantities of a particle to the motion of the cars: the planar impact, its impulse as a
-//! pulse on the struck car, and the 4DOF vehicle to rest.
+//! pulse on the struck car, and the 4DOF vehicle to rest. Where later contacts are followed
+//! (`later_contact.rs`), both cars go on together if they meet again.
 //!
 //! World axes: origin at the CG of the struck car at first contact, X along its heading, Y to the left.
 //!
@@ -11,6 +12,7 @@
 use rayon::prelude::*;
 
 use crate::evidence::{After, Evidence, ends};
+use crate::later_contact::{LaterContacts, ParticleContact};
 use crate::{Cars, ImpactState, Latent, LatentValues, Prior};
 use impactlab_core::collision::{Pulse, PulseShape, Side};
 use impactlab_core::data::{ForceAxes, ForceHistory, Sampling};
@@ -24,7 +26,7 @@ use impactlab_core::vehicle::{
 };
 
 /// Height of the contact above the road, m: sills and bumpers of passenger cars.
-const CONTACT_HEIGHT_M: f64 = 0.55;
+pub(crate) const CONTACT_HEIGHT_M: f64 = 0.55;
 
 /// When a blocked wheel is caught, s after the first contact.
 const BLOCKED_FROM_S: f64 = 0.03;
@@ -54,8 +56,10 @@ pub struct CollisionMotion {
     pub manoeuvre: Manoeuvre,
     /// Path of the struck car.
     pub path: Path,
-    /// Path of the striking car, where its rest pose is evidence.
+    /// Path of the striking car, where its rest pose is evidence or later contacts are followed.
     pub striking_path: Option<Path>,
+    /// Whether the cars meet again after the impact; `None` where later contacts are not looked for.
+    pub meet_again: Option<bool>,
 }
 
 /// The forward model of a case.
@@ -68,6 +72,9 @@ pub struct ForwardModel {
     wheels: [HeldWheels; 2],
     pub(super) restitution: Option<[f64; 2]>,
     follows_striking: bool,
+    /// Whether the cars are followed together where they meet again.
+    follows_contacts: bool,
+    later: Option<LaterContacts>,
     zones: Vec<FrictionZone>,
     limit: PathLimit,
 }
@@ -119,6 +126,8 @@ impl ForwardModel {
             ],
             restitution: ends(evidence.prior.restitution),
             follows_striking: evidence.striking_rest.is_some(),
+            follows_contacts: false,
+            later: None,
             zones: Vec::new(),
             limit: PathLimit { distance_m },
             cars,
@@ -130,6 +139,34 @@ impl ForwardModel {
     pub fn on_zones(self, zones: Vec<FrictionZone>) -> Self {
         let prior = if zones.is_empty() { self.prior } else { self.prior.with_zones() };
         Self { prior, zones, ..self }
+    }
+
+    /// The same with both cars followed through later contacts.
+    #[must_use]
+    pub fn through_later_contacts(self, evidence: &Evidence) -> Self {
+        let watching = self.watching_contacts();
+        let prior = watching.prior.with_later_contacts(evidence);
+        Self { prior, follows_contacts: true, ..watching }
+    }
+
+    /// The same model, which also says of each motion whether the cars meet again, as far as their impact
+    /// alone moves them. Where the evidence says nothing of the striking car, it coasts.
+    #[must_use]
+    pub fn watching_contacts(self) -> Self {
+        let later = LaterContacts::new(&self.cars);
+        let prior = self.prior.with_coasting_striking_car();
+        Self { prior, follows_striking: true, later, ..self }
+    }
+
+    /// The same prior with motions by the impact alone.
+    #[cfg(test)]
+    pub(crate) fn with_contacts_left_out(self) -> Self {
+        Self { follows_contacts: false, ..self }
+    }
+
+    /// Whether the cars are followed together where they meet again.
+    pub fn follows_later_contacts(&self) -> bool {
+        self.follows_contacts
     }
 
     /// The prior of the case.
@@ -168,7 +205,7 @@ impl ForwardModel {
             .map(|(vehicle, manoeuvre)| SimulationRun { vehicle, manoeuvre })
             .collect();
         let striking_paths = simulate_paths(&striking_vehicles, self.limit, |_, path| path);
-        simulate_paths(&runs, self.limit, |idx, path| {
+        let told = |idx: usize, path, striking_path, meet_again| {
             let motion = &prepared[idx];
             evaluate(CollisionMotion {
                 values: motion.values,
@@ -176,9 +213,46 @@ impl ForwardModel {
                 vehicle: motion.vehicle.clone(),
                 manoeuvre: motion.manoeuvre.clone(),
                 path,
-                striking_path: striking_paths.get(idx).cloned(),
+                striking_path,
+                meet_again,
             })
-        })
+        };
+        let alone = simulate_paths(&runs, self.limit, |idx, path| {
+            let striking_path = striking_paths.get(idx);
+            let meet_again = self.meet_again(&prepared[idx], &path, striking_path);
+            match meet_again == Some(true) && self.follows_contacts {
+                true => None,
+                false => Some(told(idx, path, striking_path.cloned(), meet_again)),
+            }
+        });
+        let followed = |(idx, alone): (usize, Option<R>)| match alone {
+            Some(alone) => alone,
+            None => {
+                let paths = self.through_contacts(&prepared[idx], runs[idx]);
+                let [path, striking_path] =
+                    paths.unwrap_or_else(|| [Path::failed(), Path::failed()]);
+                told(idx, path, Some(striking_path), Some(true))
+            }
+        };
+        alone.into_par_iter().enumerate().map(followed).collect()
+    }
+
+    /// Whether the cars meet again; `None` where that is not looked for.
+    fn meet_again(&self, motion: &Prepared, path: &Path, striking: Option<&Path>) -> Option<bool> {
+        let from_s = motion.values.get(Latent::PulseDuration);
+        Some(self.later.as_ref()?.meet_again([path, striking?], from_s))
+    }
+
+    /// Paths of both cars through all contacts; `None` where they cannot be computed.
+    fn through_contacts(&self, motion: &Prepared, struck: SimulationRun<'_>) -> Option<[Path; 2]> {
+        let (vehicle, manoeuvre) = motion.striking.as_ref()?;
+        let contact = ParticleContact {
+            stiffness_factor: motion.values.get(Latent::ContactStiffnessFactor),
+            friction: motion.values.get(Latent::ContactFriction),
+            normal_rad: motion.impact.normal_rad,
+        };
+        let striking = SimulationRun { vehicle, manoeuvre };
+        self.later.as_ref()?.follow([struck, striking], &contact, self.limit)
     }
 
     /// Yaw rate of the struck car at the end of the contact, rad/s, of each point: that of the impulse less

@@ -33,6 +33,8 @@ pub struct ImpactState {
     pub striking_m: [f64; 2],
     /// Contact point from the CG of the struck car, m.
     pub contact_m: [f64; 2],
+    /// Direction of the contact normal, which points into the struck car, world axes, rad.
+    pub normal_rad: f64,
     /// Coefficient of restitution.
     pub restitution: f64,
     /// Impulse and velocities after it.
@@ -112,6 +114,7 @@ impl ForwardModel {
             striking_velocity_m_s,
             striking_m: [contact_m[0] - arm_m[0], contact_m[1] - arm_m[1]],
             contact_m,
+            normal_rad,
             restitution,
             solution: solved(&impact),
         }

@@ -138,6 +138,8 @@ latents! {
     /// How far it is blocked: drag over what the road can hold; more than 1 is locked.
     #[serde(rename = "bullet_blocked_drag")]
     StrikingBlockedDrag: "bullet_blocked_drag", "", "drag of the blocked wheel of the striking car";
+    /// Loads that crush both cars over those of their classes, where later contacts are followed.
+    ContactStiffnessFactor: "contact_stiffness_factor", "", "stiffness of both cars over the usual";
     /// Friction of the zones of the ground over that which the site says, in all of them alike.
     ZoneFrictionFactor: "zone_friction_factor", "", "friction of the zones over that of the site";
 }

@@ -9,7 +9,7 @@
 //! - [`domain`]: vehicles, roads and damage that a reconstruction is not made for;
 //! - `latent`: the quantities that the motion depends on;
 //! - `prior`: every quantity that the motion depends on, as a transformation of one component of z;
-//! - `forward`: from z to the motion of both cars;
+//! - `forward`: from z to the motion of both cars; `later_contact`: where they meet again;
 //! - `likelihood`: how well a motion goes with the evidence;
 //! - [`sampler`]: draws from the posterior;
 //! - `hand`: what one computes by hand, as a baseline; `hand_checks`: the same as independent checks;
@@ -32,6 +32,7 @@ mod hand_checks;
 mod hinges;
 mod impact_state;
 mod latent;
+mod later_contact;
 mod likelihood;
 mod modes;
 mod posterior;

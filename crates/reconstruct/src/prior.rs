@@ -31,6 +31,7 @@
 //! | each front wheel of the striking car blocked | 1 of 5, if nobody looked | assumed: its front is bent |
 //! | mass of a car of which no mass is known | log-normal, by its length and width where they are known, else 1790 kg, factor 1.19 | vehicles of the library |
 //! | one scale that weighed both cars, over what it shows | log-normal, 1, as said | [`Weighing`](crate::evidence::Weighing) |
+//! | loads that crush both cars over those of their classes, where later contacts are followed | log-normal, 1, factor 1.49 | [`STIFFNESS_LOG_SIGMA`](impactlab_core::collision::contact::STIFFNESS_LOG_SIGMA) of a side |
 //! | friction of the zones of a site over that which the site says, in all zones alike | log-normal, 1, factor 1.16 | assumed: grass, gravel and wet patches are known less well than the road |
 //! | yaw inertia, tire curves, sliding friction, rolling resistance | the rules of the data sheet with their scatter | [`DataSheet`](impactlab_core::vehicle::DataSheet) |
 
@@ -98,6 +99,9 @@ const LONGITUDINAL_FRICTION_SCATTER: f64 = 0.07;
 /// Scatter of the friction of a zone about that which a site says.
 const ZONE_FRICTION_SCATTER: f64 = 0.15;
 
+/// Scatter of the loads that crush both cars about those of their classes: that of a side.
+const CONTACT_STIFFNESS_SCATTER: f64 = 0.4;
+
 /// Least scatter of sliding over peak friction, for the same reason.
 const SLIDING_SCATTER: f64 = 0.08;
 
@@ -123,6 +127,32 @@ impl Prior {
         let reach = (3.0 * ZONE_FRICTION_SCATTER).exp();
         let factor = log_normal(1.0, ZONE_FRICTION_SCATTER, 1.0 / reach, reach);
         self.assume(Latent::ZoneFrictionFactor, factor);
+        self
+    }
+
+    /// The same with a striking car that coasts where nothing is said of it, so that it can be followed.
+    #[must_use]
+    pub fn with_coasting_striking_car(mut self) -> Self {
+        for (latent, value) in [
+            (Latent::StrikingTireFrictionFactor, TIRE_FRICTION_FACTOR),
+            (Latent::StrikingBrakeDecision, 1.0),
+        ] {
+            if self.fixed.get(latent).is_nan() {
+                self.fixed.set(latent, value);
+            }
+        }
+        self
+    }
+
+    /// The same for cars whose later contacts are followed: how hard they are, and what driver and damage do
+    /// to the striking one.
+    #[must_use]
+    pub fn with_later_contacts(mut self, evidence: &Evidence) -> Self {
+        let stiffness = log_normal(1.0, CONTACT_STIFFNESS_SCATTER, 0.3, 3.0);
+        self.assume(Latent::ContactStiffnessFactor, stiffness);
+        if evidence.striking_rest.is_none() {
+            self.add_striking_ending(evidence);
+        }
         self
     }
 

@@ -22,6 +22,9 @@ pub(in crate::cli) struct EvidenceArgs {
     /// The ground in the axes of the evidence: a site file, in whose friction zones the wheels stand
     #[arg(long, value_name = "SITE.toml")]
     pub(in crate::cli) site: Option<PathBuf>,
+    /// Follow the cars through the first contact alone, although they meet again
+    #[arg(long)]
+    one_contact: bool,
     /// Number of particles
     #[arg(long, value_name = "N", default_value_t = ReconstructRequest::DEFAULT_PARTICLES)]
     particles: usize,
@@ -37,6 +40,7 @@ impl EvidenceArgs {
             vehicle: VehicleArg::choice(&self.vehicle),
             striking: VehicleArg::choice(&self.striking),
             site: self.site.clone(),
+            one_contact: self.one_contact,
             particles: self.particles,
             seed: self.seed,
             ..ReconstructRequest::new(EvidenceChoice::File(self.evidence.clone()))

@@ -27,9 +27,14 @@ fn pit(endings: [&Ending; 2], distance_m: f64) -> PairMotion {
     let of_pair =
         |i: usize| PairVehicle::by_class(&vehicles[i], &manoeuvres[i], &outlines[i]).unwrap();
     let conditions = ContactConditions::default();
-    VehiclePair { vehicles: [of_pair(0), of_pair(1)], conditions, step_divisor: 1 }
-        .simulate()
-        .unwrap()
+    VehiclePair {
+        vehicles: [of_pair(0), of_pair(1)],
+        conditions,
+        step_divisor: 1,
+        until_both_rest: false,
+    }
+    .simulate()
+    .unwrap()
 }
 
 fn column(motion: &PairMotion, vehicle: usize, channel: Channel) -> &[f64] {

@@ -92,6 +92,13 @@ pub struct Path {
     pub end: PathEnd,
 }
 
+impl Path {
+    /// That of a motion that cannot be computed.
+    pub fn failed() -> Self {
+        Self { points: Vec::new(), end: PathEnd::Failed }
+    }
+}
+
 /// How far the vehicles are followed, beside the durations of their manoeuvres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathLimit {

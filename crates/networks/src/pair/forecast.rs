@@ -214,7 +214,12 @@ impl PairQuestion<'_> {
             body: ContactBody { outline: self.outlines[i], faces: drawn.faces[i] },
         };
         let vehicles = [vehicle(0), vehicle(1)];
-        let pair = VehiclePair { vehicles, conditions: drawn.conditions, step_divisor: 1 };
+        let pair = VehiclePair {
+            vehicles,
+            conditions: drawn.conditions,
+            step_divisor: 1,
+            until_both_rest: false,
+        };
         let mut run = PairRun::new(&pair)?;
         loop {
             let residuals = [0, 1].map(|i| {

@@ -85,7 +85,13 @@ impl ContactPair {
             body: ContactBody { outline: &self.outlines[i], faces: self.faces[i] },
         };
         let vehicles = [vehicle(0), vehicle(1)];
-        VehiclePair { vehicles, conditions: self.conditions, step_divisor: 1 }.simulate()
+        VehiclePair {
+            vehicles,
+            conditions: self.conditions,
+            step_divisor: 1,
+            until_both_rest: false,
+        }
+        .simulate()
     }
 }
 

@@ -12,9 +12,11 @@
 //! it. While the vehicles are apart, both take steps of the classical Runge–Kutta method that follow their
 //! speed (`vehicle/held_force.rs`). Force and moments are equal and opposite, so that momentum and angular momentum
 //! of both vehicles together change by the tires alone.
-//! The step is 0.5 ms in contact and 0.25 ms where ω h would exceed 0.2, with ω from the stiffness of
-//! the contact on unloading and the masses at the contact point; 1 ms while the outlines are near each
-//! other, and 10 ms while they cannot meet within that time.
+//! In contact the step is 2 ms, or half of it and so on down to 0.25 ms, so that ω h stays below 0.2, with
+//! ω from the stiffness of the contact on unloading and the masses at the contact point or from friction
+//! and damping, and so that the outlines slide along each other by less than a quarter of an element. It
+//! is 0.5 ms before the first force of a contact and under a known force, 1 ms while the outlines are near
+//! each other, and 10 ms while they cannot meet within that time.
 //! Contact may begin anew at any time. Where the force of the first contact is known, it drives both
 //! vehicles while it lasts (`first_force.rs`).
 
@@ -23,7 +25,7 @@ use crate::collision::contact::phases::PhaseWatch;
 use crate::collision::contact::vehicle_pair::ROLES;
 use crate::collision::contact::{
     ContactConditions, ContactEnergy, ContactForce, FULL_FRICTION_SPEED_M_S, HandOver, PairContact,
-    PairError, PairMotion, PairVehicle, PlanarMotion, VehiclePair,
+    PairError, PairMotion, PairVehicle, PlanarMotion, USUAL_ELEMENT_M, VehiclePair,
 };
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
@@ -34,11 +36,25 @@ use crate::vehicle::{
 /// Steps of the shortest kind in an output interval.
 const TICKS_PER_OUTPUT: usize = 40;
 
-/// Ticks of a step while the outlines are far from each other, near, in contact, and in stiff contact.
-const STEP_TICKS: [usize; 4] = [TICKS_PER_OUTPUT, 4, 2, 1];
+/// Ticks of the steps there are, from the longest on.
+const STEP_TICKS: [usize; 5] =
+    [TICKS_PER_OUTPUT, LONGEST_CONTACT_TICKS, NEAR_TICKS, USUAL_TICKS, 1];
+
+/// Ticks of the longest step in contact.
+const LONGEST_CONTACT_TICKS: usize = 8;
+
+/// Ticks of a step while the outlines are near each other.
+const NEAR_TICKS: usize = 4;
+
+/// Ticks of a step as a contact begins and under a known force.
+const USUAL_TICKS: usize = 2;
 
 /// Largest ω h of a contact, and of the decay of velocities in it.
 const MAX_RATE_TIMES_STEP: f64 = 0.2;
+
+/// Longest way that the outlines may slide along each other over a step of a contact, m: a quarter of an
+/// element.
+const LONGEST_SLIDE_M: f64 = USUAL_ELEMENT_M / 4.0;
 
 /// Distance of the outlines from which on a vehicle at rest is left behind by one that moves away, m.
 const LEFT_M: f64 = 1.0;
@@ -54,7 +70,8 @@ const NO_RESIDUAL: [[f64; N_ACCELERATION]; 2] = [[0.0; N_ACCELERATION]; 2];
 
 impl VehiclePair<'_> {
     /// Simulates both vehicles for their duration or, if their manoeuvres end at rest, until the struck
-    /// one is at rest and the striking one is so, too, or moves away from it. The result is deterministic.
+    /// one is at rest and the striking one is so, too, or moves away from it (see `until_both_rest`). The
+    /// result is deterministic.
     ///
     /// # Errors
     /// [`PairError`] if a number is out of range, the manoeuvres do not go together, or a motion cannot
@@ -201,7 +218,8 @@ impl<'a> PairRun<'a> {
                 .record(mean, self.was_pushed || residuals[i] != NO_RESIDUAL[i])
                 .map_err(|source| PairError::Vehicle { role, source })?;
         }
-        let goes_on = moves[0] || moves[1] && !self.is_left_behind(&sums);
+        let is_left_behind = !self.pair.until_both_rest && self.is_left_behind(&sums);
+        let goes_on = moves[0] || moves[1] && !is_left_behind;
         if sums.is_pushed {
             let yaw_rad = VehicleState::from_array(*self.runs[0].state()).yaw_rad;
             self.first_contact_yaw_rad.get_or_insert(yaw_rad);
@@ -230,28 +248,28 @@ impl<'a> PairRun<'a> {
 
     /// Length of the next step in ticks. Steps begin at multiples of their length.
     fn step_ticks(&self, states: &States, left: usize) -> usize {
-        let [far, apart, usual, stiff] = STEP_TICKS;
         let motions = motions(states);
         let speed_m_s = relative_speed_m_s(&motions);
         let is_apart = |ticks: usize| {
             let way_m = speed_m_s * self.tick_s * ticks as f64;
             self.contact.is_apart(&motions, NEAR_M + way_m)
         };
-        let wanted = if self.first_force.is_some() {
-            usual
-        } else if is_apart(far) {
-            far
-        } else if is_apart(apart) {
-            apart
-        } else if self.contact_rate_1_s * self.tick_s * usual as f64 > MAX_RATE_TIMES_STEP {
-            stiff
+        let longest = if self.first_force.is_some() {
+            USUAL_TICKS
+        } else if self.contact_rate_1_s > 0.0 {
+            let by_rate_s = MAX_RATE_TIMES_STEP / self.contact_rate_1_s;
+            let by_slide_s = LONGEST_SLIDE_M / speed_m_s;
+            let ticks = (by_rate_s.min(by_slide_s) / self.tick_s) as usize;
+            ticks.clamp(1, LONGEST_CONTACT_TICKS)
+        } else if is_apart(TICKS_PER_OUTPUT) {
+            TICKS_PER_OUTPUT
+        } else if is_apart(NEAR_TICKS) {
+            NEAR_TICKS
         } else {
-            usual
+            USUAL_TICKS
         };
-        STEP_TICKS
-            .into_iter()
-            .find(|ticks| *ticks <= wanted && left.is_multiple_of(*ticks))
-            .unwrap_or(stiff)
+        let fits = |ticks: &usize| *ticks <= longest && left.is_multiple_of(*ticks);
+        STEP_TICKS.into_iter().find(fits).unwrap_or(1)
     }
 
     /// Takes one step of both vehicles under the contact force in its middle.

@@ -349,7 +349,9 @@ fn a_blow_above_the_roll_axes_rolls_the_cars_away_from_each_other() {
     let roll_at = |height_m: f64| {
         let vehicles = cars.each_ref().map(TestCar::in_pair);
         let conditions = ContactConditions { height_m, ..ContactConditions::default() };
-        let motion = VehiclePair { vehicles, conditions, step_divisor: 1 }.simulate().unwrap();
+        let motion = VehiclePair { vehicles, conditions, step_divisor: 1, until_both_rest: false }
+            .simulate()
+            .unwrap();
         motion.motions.each_ref().map(|motion| last_state(motion).roll_rad)
     };
     let (low, high) = (roll_at(0.2), roll_at(0.9));
@@ -361,7 +363,12 @@ fn a_blow_above_the_roll_axes_rolls_the_cars_away_from_each_other() {
 fn what_does_not_go_together_is_refused() {
     let cars = pit_manoeuvre(0.08);
     let vehicles = cars.each_ref().map(TestCar::in_pair);
-    let good = VehiclePair { vehicles, conditions: ContactConditions::default(), step_divisor: 1 };
+    let good = VehiclePair {
+        vehicles,
+        conditions: ContactConditions::default(),
+        step_divisor: 1,
+        until_both_rest: false,
+    };
     let slippery = ContactConditions { friction: f64::NAN, ..good.conditions };
     let name = |pair: VehiclePair<'_>| match pair.simulate() {
         Err(PairError::Range { name, .. }) => name,

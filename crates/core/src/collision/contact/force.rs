@@ -41,9 +41,11 @@
 use crate::collision::Side;
 use crate::collision::contact::bodies::Relative;
 use crate::collision::contact::half_pass::{PassSums, PressedElement, total};
-use crate::collision::contact::law::press_together;
 use crate::collision::contact::outline::Foot;
-use crate::collision::contact::{ContactBody, ContactConditions, PlanarMotion};
+use crate::collision::contact::press::{Pressing, press_side_by_side};
+use crate::collision::contact::{
+    ContactBody, ContactConditions, FaceLaw, PlanarMotion, PressedStrips, Strip,
+};
 
 /// Deepest overlap of an element that counts, m; one that is deeper has passed to the other side.
 const LARGEST_OVERLAP_M: f64 = 1.5;
@@ -80,10 +82,10 @@ pub struct ContactForce {
 }
 
 /// What an element remembers.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 struct ElementMemory {
-    /// h in the half pass of its own vehicle, and as a partner in the other one, m.
-    greatest_m: [f64; 2],
+    /// Its strip in the half pass of its own vehicle, and as a partner in the other one.
+    strips: [Strip<f64>; 2],
     /// Overlap D and load p at the last evaluation, m and N/m.
     overlap_m: f64,
     load_n_per_m: f64,
@@ -91,14 +93,14 @@ struct ElementMemory {
     stored_j: f64,
 }
 
-/// A greatest deflection that has grown.
+/// A strip that was pressed in further than ever before.
 #[derive(Debug, Clone, Copy)]
 struct Grown {
     vehicle: usize,
     element: usize,
     /// 0 for the half pass of the vehicle, 1 for the other one.
     role: usize,
-    greatest_m: f64,
+    strip: Strip<f64>,
 }
 
 /// An element inside of the other outline.
@@ -107,6 +109,19 @@ struct InsideElement {
     idx: usize,
     /// Its reference point from the middle of the other outline, in body axes of the other vehicle, m.
     point_m: [f64; 2],
+}
+
+/// An element that presses on the one at its foot.
+#[derive(Debug, Clone, Copy)]
+struct TouchingElement {
+    /// Its vehicle.
+    own: usize,
+    idx: usize,
+    /// As of [`InsideElement`].
+    point_m: [f64; 2],
+    foot: Foot,
+    /// Width on which the load acts, m.
+    weight_m: f64,
 }
 
 impl ContactForce {
@@ -125,8 +140,14 @@ impl ContactForce {
 }
 
 impl ElementMemory {
+    /// An element that nothing has pressed yet.
+    fn new(face: &FaceLaw) -> Self {
+        let strips = [face.after(0.0); 2];
+        Self { strips, overlap_m: 0.0, load_n_per_m: 0.0, stored_j: 0.0 }
+    }
+
     fn deepest_m(&self) -> f64 {
-        self.greatest_m[0].max(self.greatest_m[1])
+        self.strips[0].greatest_m.max(self.strips[1].greatest_m)
     }
 }
 
@@ -142,7 +163,11 @@ pub struct PairContact<'a> {
     is_near: [Vec<bool>; 2],
     /// Elements of each vehicle inside of the other outline.
     inside: [Vec<InsideElement>; 2],
-    /// New greatest deflections of an evaluation.
+    /// Elements of both half passes that press, with their strips and what these do to each other.
+    touching: Vec<TouchingElement>,
+    pressings: Vec<Pressing>,
+    pressed: Vec<PressedStrips<f64>>,
+    /// Strips that an evaluation has pressed in further.
     grown: Vec<Grown>,
     is_loaded: bool,
     law_work_j: f64,
@@ -153,8 +178,10 @@ impl<'a> PairContact<'a> {
     ///
     /// - `bodies`: the struck and the striking vehicle.
     pub fn new(bodies: [ContactBody<'a>; 2], conditions: ContactConditions) -> Self {
-        let fresh =
-            |body: &ContactBody<'_>| vec![ElementMemory::default(); body.outline.elements().len()];
+        let fresh = |body: &ContactBody<'_>| -> Vec<ElementMemory> {
+            let elements = body.outline.elements().iter();
+            elements.map(|element| ElementMemory::new(body.faces.at(element.face))).collect()
+        };
         Self {
             memory: [fresh(&bodies[0]), fresh(&bodies[1])],
             is_near: bodies.map(|body| vec![false; body.outline.groups().len()]),
@@ -162,6 +189,9 @@ impl<'a> PairContact<'a> {
             entered: [None; 2],
             inside: [Vec::new(), Vec::new()],
             conditions,
+            touching: Vec::new(),
+            pressings: Vec::new(),
+            pressed: Vec::new(),
             grown: Vec::new(),
             is_loaded: false,
             law_work_j: 0.0,
@@ -199,12 +229,14 @@ impl<'a> PairContact<'a> {
     ///
     /// - `factor`: more than 0.
     pub fn scale_loads(&mut self, factor: f64) {
-        for body in &mut self.bodies {
+        for (body, memory) in self.bodies.iter_mut().zip(&mut self.memory) {
             body.faces = body.faces.map(|face| face.scaled(factor));
-        }
-        for element in self.memory.iter_mut().flatten() {
-            element.load_n_per_m *= factor;
-            element.stored_j *= factor;
+            for (memory, element) in memory.iter_mut().zip(body.outline.elements()) {
+                let face = body.faces.at(element.face);
+                memory.strips = memory.strips.map(|strip| face.after(strip.greatest_m));
+                memory.load_n_per_m *= factor;
+                memory.stored_j *= factor;
+            }
         }
         self.law_work_j *= factor;
     }
@@ -241,10 +273,15 @@ impl<'a> PairContact<'a> {
             let ([x, y], [dx, dy]) = (relatives[own].turned(sums_m[own]), sums_m[1 - own]);
             self.enter(1 - own, [x - dx, y - dy]);
         }
-        let sums = [0, 1].map(|own| self.pass(own, &relatives[own]));
-        for Grown { vehicle, element, role, greatest_m } in self.grown.drain(..) {
-            let known_m = &mut self.memory[vehicle][element].greatest_m[role];
-            *known_m = known_m.max(greatest_m);
+        self.pressings.clear();
+        self.touching.clear();
+        (0..2).for_each(|own| self.find_touching(own, &relatives[own]));
+        let sums = self.press_all(&relatives);
+        for Grown { vehicle, element, role, strip } in self.grown.drain(..) {
+            let known = &mut self.memory[vehicle][element].strips[role];
+            if strip.greatest_m > known.greatest_m {
+                *known = strip;
+            }
         }
         self.is_loaded = sums.iter().any(|sums| sums.size_n > 0.0);
         self.is_loaded.then(|| total(&sums, motions))
@@ -314,10 +351,9 @@ impl<'a> PairContact<'a> {
         self.entered[entered] = best.1;
     }
 
-    /// The elements of one vehicle in the outline of the other one.
-    fn pass(&mut self, own: usize, relative: &Relative) -> PassSums {
-        let mut sums = PassSums::default();
-        let Some(face) = self.entered[1 - own] else { return sums };
+    /// Finds the elements of one vehicle that press on the face of the other one.
+    fn find_touching(&mut self, own: usize, relative: &Relative) {
+        let Some(face) = self.entered[1 - own] else { return };
         let entered = self.bodies[1 - own].outline;
         let inside = std::mem::take(&mut self.inside[own]);
         for &InsideElement { idx, point_m } in &inside {
@@ -331,17 +367,32 @@ impl<'a> PairContact<'a> {
                 continue;
             };
             let weight_m = 0.5 * element.width_m * against(&foot);
-            let pressed = self.press(own, idx, foot, weight_m);
-            if pressed.load_n > 0.0 {
-                let [nx, ny] = foot.normal_body;
-                let [x, y] = [point_m[0] + entered.middle_x_m(), point_m[1]];
-                let place_m = [x + pressed.deflection_m * nx, y + pressed.deflection_m * ny];
-                sums.overlap_m = sums.overlap_m.max(foot.depth_m);
-                sums.unloading_stiffness_n_per_m += pressed.unloading_stiffness_n_per_m;
-                sums.add(&pressed, &self.conditions, place_m, foot.normal_body, relative);
-            }
+            let strips =
+                [self.memory[own][idx].strips[0], self.memory[1 - own][foot.element].strips[1]];
+            self.pressings.push(Pressing { strips, overlap_m: foot.depth_m });
+            self.touching.push(TouchingElement { own, idx, point_m, foot, weight_m });
         }
         self.inside[own] = inside;
+    }
+
+    /// Presses all elements that touch, and sums up each half pass.
+    fn press_all(&mut self, relatives: &[Relative; 2]) -> [PassSums; 2] {
+        let mut sums = [PassSums::default(); 2];
+        press_side_by_side(&self.pressings, &mut self.pressed);
+        for number in 0..self.touching.len() {
+            let (touching, strips) = (self.touching[number], self.pressings[number].strips);
+            let TouchingElement { own, point_m, foot, .. } = touching;
+            let pressed = self.press(&touching, &strips, self.pressed[number]);
+            if pressed.load_n > 0.0 {
+                let [nx, ny] = foot.normal_body;
+                let [x, y] = [point_m[0] + self.bodies[1 - own].outline.middle_x_m(), point_m[1]];
+                let place_m = [x + pressed.deflection_m * nx, y + pressed.deflection_m * ny];
+                let sums = &mut sums[own];
+                sums.overlap_m = sums.overlap_m.max(foot.depth_m);
+                sums.unloading_stiffness_n_per_m += pressed.unloading_stiffness_n_per_m;
+                sums.add(&pressed, &self.conditions, place_m, foot.normal_body, &relatives[own]);
+            }
+        }
         sums
     }
 
@@ -352,22 +403,17 @@ impl<'a> PairContact<'a> {
         (memory.load_n_per_m, memory.stored_j) = (0.0, 0.0);
     }
 
-    /// Presses an element and the one at its foot together.
+    /// Takes note of what an element and the one at its foot do to each other.
     ///
-    /// - `weight_m`: width on which the load acts.
-    fn press(&mut self, own: usize, idx: usize, foot: Foot, weight_m: f64) -> PressedElement {
+    /// - `strips`: their strips before this evaluation.
+    fn press(
+        &mut self,
+        touching: &TouchingElement,
+        strips: &[Strip<f64>; 2],
+        pressed: PressedStrips<f64>,
+    ) -> PressedElement {
+        let TouchingElement { own, idx, foot, weight_m, .. } = *touching;
         let sides = [(own, idx), (1 - own, foot.element)];
-        let face = |(vehicle, element): (usize, usize)| {
-            let body: &ContactBody<'_> = &self.bodies[vehicle];
-            *body.faces.at(body.outline.elements()[element].face)
-        };
-        let laws = sides.map(face);
-        let greatest_m: [f64; 2] = std::array::from_fn(|role| {
-            let (vehicle, element) = sides[role];
-            self.memory[vehicle][element].greatest_m[role]
-        });
-        let strips = [0, 1].map(|i| laws[i].after(greatest_m[i]));
-        let pressed = press_together([&strips[0], &strips[1]], foot.depth_m);
         let load_n_per_m = pressed.load_n_per_m;
         if load_n_per_m <= 0.0 {
             self.release(own, idx);
@@ -375,15 +421,16 @@ impl<'a> PairContact<'a> {
         }
         let mut compliance_m2_per_n = 0.0;
         let limit_n_per_m = strips[0].load_there_n_per_m.min(strips[1].load_there_n_per_m);
-        let is_below = (0..2).all(|i| pressed.deflections_m[i] <= greatest_m[i]);
+        let is_below = (0..2).all(|i| pressed.deflections_m[i] <= strips[i].greatest_m);
         for i in 0..2 {
             let (vehicle, element) = sides[i];
             let deflection_m = pressed.deflections_m[i];
-            let has_grown = deflection_m > greatest_m[i];
-            if has_grown {
-                self.grown.push(Grown { vehicle, element, role: i, greatest_m: deflection_m });
+            let mut strip = strips[i];
+            if deflection_m > strip.greatest_m {
+                let body = &self.bodies[vehicle];
+                strip = body.faces.at(body.outline.elements()[element].face).after(deflection_m);
+                self.grown.push(Grown { vehicle, element, role: i, strip });
             }
-            let strip = if has_grown { laws[i].after(deflection_m) } else { strips[i] };
             compliance_m2_per_n += strip.unloading_compliance_m2_per_n();
         }
         let memory = &mut self.memory[own][idx];

@@ -308,6 +308,54 @@ pub struct Strip<T> {
     saturation_n_per_m: T,
 }
 
+impl<T> Strip<T> {
+    /// Its numbers in the order of its fields.
+    #[inline(always)]
+    pub(super) fn to_array(self) -> [T; 7] {
+        let Self {
+            greatest_m,
+            dent_m,
+            load_there_n_per_m,
+            onset_n_per_m,
+            elastic_depth_m,
+            per_stiffness_m2_per_n,
+            saturation_n_per_m,
+        } = self;
+        [
+            greatest_m,
+            dent_m,
+            load_there_n_per_m,
+            onset_n_per_m,
+            elastic_depth_m,
+            per_stiffness_m2_per_n,
+            saturation_n_per_m,
+        ]
+    }
+
+    /// The strip with these numbers.
+    #[inline(always)]
+    pub(super) fn from_array(numbers: [T; 7]) -> Self {
+        let [
+            greatest_m,
+            dent_m,
+            load_there_n_per_m,
+            onset_n_per_m,
+            elastic_depth_m,
+            per_stiffness_m2_per_n,
+            saturation_n_per_m,
+        ] = numbers;
+        Self {
+            greatest_m,
+            dent_m,
+            load_there_n_per_m,
+            onset_n_per_m,
+            elastic_depth_m,
+            per_stiffness_m2_per_n,
+            saturation_n_per_m,
+        }
+    }
+}
+
 impl<T: Lanes> Strip<T> {
     /// Load at a deflection, N/m: on the straight line of unloading below the greatest deflection, on
     /// the virgin curve beyond it.

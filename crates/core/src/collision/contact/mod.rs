@@ -3,7 +3,8 @@
 //! - `law`, `stiffness`: the load of a face over its deflection, and how stiff faces are;
 //! - `outline`: rounded outlines, cut into elements;
 //! - `touch`: how far outlines are from touching;
-//! - `bodies`, `force`, `half_pass`: the force between two outlines, and the history of their elements;
+//! - `bodies`, `force`, `half_pass`, `press`: the force between two outlines, and the history of their
+//!   elements, which are pressed together side by side;
 //! - `first_force`: a known force of the first contact, and how the law takes over from it;
 //! - `phases`: when they were in contact, with which impulse;
 //! - `vehicle_pair`, `coupled`: two 4DOF vehicles on their tires with this force between them.
@@ -18,6 +19,7 @@ mod bodies;
 mod force;
 mod half_pass;
 mod outline;
+mod press;
 
 mod coupled;
 mod error;

@@ -265,6 +265,19 @@ impl ContactOutline {
         off_m.iter().all(|off_m| *off_m < 0.0) && beyond_x.hypot(beyond_y) <= self.corner_radius_m
     }
 
+    /// Depth of a point below the nearest place of the outline, m: the distance from it, less than 0 outside.
+    ///
+    /// - `point`: in body axes, m.
+    pub fn depth_of_body_point_m(&self, [x, y]: [f64; 2]) -> f64 {
+        let [half_length_m, half_width_m] = self.half_m();
+        let [off_x, off_y] = [
+            (x - self.middle_x_m()).abs() - half_length_m + self.corner_radius_m,
+            y.abs() - half_width_m + self.corner_radius_m,
+        ];
+        let outside_m = off_x.max(0.0).hypot(off_y.max(0.0));
+        self.corner_radius_m - outside_m - off_x.max(off_y).min(0.0)
+    }
+
     /// Depth of a point below the flat part of each face, m, in the order of [`Side::ALL`].
     ///
     /// - `point`: from the middle of the outline in body axes, m.

@@ -109,7 +109,7 @@ pub fn simulate(
     let vehicles = cars.map(TestCar::in_pair);
     let height_m = cars[0].vehicle.suspension.roll_axis_height_m;
     let conditions = ContactConditions { height_m, ..conditions };
-    VehiclePair { vehicles, conditions, step_divisor }.simulate()
+    VehiclePair { vehicles, conditions, step_divisor, until_both_rest: false }.simulate()
 }
 
 /// State at a sample of a motion.

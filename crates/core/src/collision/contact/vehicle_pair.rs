@@ -27,6 +27,9 @@ pub struct VehiclePair<'a> {
     pub conditions: ContactConditions,
     /// Into how many parts the steps are divided: 1, or more to see what they change.
     pub step_divisor: usize,
+    /// Whether a motion that ends at rest goes on until both are at rest, although the striking vehicle
+    /// moves away from the struck one.
+    pub until_both_rest: bool,
 }
 
 /// Energy that the contact has taken from the vehicles, J.

@@ -53,6 +53,11 @@ const GROUPS: &[Group] = &[
         reason: "finite-element runs",
     },
     Group {
+        subject: CaveatSubject::StrikingParameter,
+        latents: &[Latent::ContactStiffnessFactor],
+        reason: "barrier tests of other cars; their scatter for a side",
+    },
+    Group {
         subject: CaveatSubject::RoadFriction,
         latents: &[Latent::RoadFriction],
         reason: "dry and wet asphalt together; otherwise: [road] friction or drag_factor",
@@ -143,11 +148,13 @@ pub(super) fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Cave
 }
 
 /// What the evidence says and the answer does not depend on.
-pub(super) fn unused(evidence: &Evidence) -> Vec<Caveat> {
+///
+/// - `are_followed`: whether both cars are followed through later contacts.
+pub(super) fn unused(evidence: &Evidence, are_followed: bool) -> Vec<Caveat> {
     let Evidence { after, striking_after, striking_rest, prior, .. } = evidence;
     let striking_brakes = prior.striking_brake_start_s.or(prior.striking_brake_share);
     let is_striking_stated = *striking_after != After::default() || striking_brakes.is_some();
-    if striking_rest.is_none() && is_striking_stated {
+    if striking_rest.is_none() && is_striking_stated && !are_followed {
         return vec![Caveat::not_used(
             "wheels and driver of the striking car after the impact",
             "its place of rest is not among the evidence ([striking_rest]), so that its way is not \
@@ -256,16 +263,16 @@ mod tests {
     #[test]
     fn what_is_said_and_not_used_is_listed() {
         let mut evidence = spin();
-        assert_eq!(unused(&evidence), []);
+        assert_eq!(unused(&evidence, false), []);
         evidence.striking_after.driver_braked = DriverBraked::Yes;
-        let texts = unused(&evidence).iter().map(Caveat::to_string).collect::<Vec<_>>();
+        let texts = unused(&evidence, false).iter().map(Caveat::to_string).collect::<Vec<_>>();
         assert!(matches!(&texts[..], [text] if text.contains("[striking_rest]")), "{texts:?}");
         evidence.striking_rest =
             Some(RestPose { x_m: Some(20.0), y_m: Some(3.0), ..RestPose::default() });
-        assert_eq!(unused(&evidence), []);
+        assert_eq!(unused(&evidence, false), []);
         evidence.striking_after.driver_braked = DriverBraked::No;
         evidence.prior.striking_brake_share = Some([Some(1.0), Some(1.2)]);
-        let texts = unused(&evidence).iter().map(Caveat::to_string).collect::<Vec<_>>();
+        let texts = unused(&evidence, false).iter().map(Caveat::to_string).collect::<Vec<_>>();
         assert!(matches!(&texts[..], [text] if text.contains("striking car")), "{texts:?}");
     }
 

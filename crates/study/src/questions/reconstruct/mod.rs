@@ -1,5 +1,6 @@
 //! From the evidence to the speeds before the collision.
 
 mod assumed;
+pub(crate) mod later_contacts;
 pub(crate) mod paths;
 pub(crate) mod request;

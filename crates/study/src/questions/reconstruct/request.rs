@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
 use crate::questions::reconstruct::assumed::{assumptions, unused};
+use crate::questions::reconstruct::later_contacts::LaterContactsReport;
 use crate::{
     Answer, Event, FrictionZoneReport, InputKind, Library, Observer, Provenance, Question,
     Sampling, StudyError, VehicleChoice,
@@ -35,6 +36,9 @@ use impactlab_reconstruct::{
 /// Effective sample size below which intervals may be too narrow.
 const LEAST_ESS: f64 = 400.0;
 
+/// What the name of the file of a run through all contacts has behind that of the first run.
+const LATER_SUFFIX: &str = ".later";
+
 /// Evaluations of the forward model that each particle is worth at the most.
 const EVALUATIONS_PER_PARTICLE: usize = 150;
 
@@ -52,6 +56,9 @@ pub struct ReconstructRequest {
     /// Site file whose friction zones the wheels stand on, in the axes of the evidence.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub site: Option<PathBuf>,
+    /// Whether the cars are followed through the first contact alone, although they meet again.
+    #[serde(default)]
+    pub one_contact: bool,
     /// Number of particles.
     #[serde(default = "default_particles")]
     pub particles: usize,
@@ -116,6 +123,8 @@ pub struct ReconstructReport {
     pub friction_zones: Vec<FrictionZoneReport>,
     /// What the evidence is alike among the staged collisions that reconstructions were measured on.
     pub known: KnownEvidence,
+    /// Whether the cars meet again, and what was made of it.
+    pub later_contacts: LaterContactsReport,
     /// What was taken to be likely before.
     pub priors: Vec<PriorComponent>,
 }
@@ -151,6 +160,7 @@ impl ReconstructRequest {
             vehicle: VehicleChoice::Automatic,
             striking: VehicleChoice::Automatic,
             site: None,
+            one_contact: false,
             particles: Self::DEFAULT_PARTICLES,
             seed: 0,
             checkpoint: None,
@@ -164,10 +174,17 @@ impl ReconstructRequest {
         evidence: &Evidence,
         model: &ForwardModel,
     ) -> Result<Option<SamplerCheckpoint>, StudyError> {
-        let Some(path) = self.checkpoint.clone() else { return Ok(None) };
-        if path.exists() && !self.resume {
-            return Err(StudyError::ReconstructionExists { path });
+        let Some(first) = self.checkpoint.clone() else { return Ok(None) };
+        // The run through all contacts, which follows, has a file of its own.
+        let mut later = first.clone().into_os_string();
+        later.push(LATER_SUFFIX);
+        let later = PathBuf::from(later);
+        let follows = model.follows_later_contacts();
+        let unwanted = [&first, &later].into_iter().find(|path| path.exists() && !self.resume);
+        if let Some(path) = unwanted.filter(|_| !follows) {
+            return Err(StudyError::ReconstructionExists { path: path.clone() });
         }
+        let path = if follows { later } else { first };
         let digest = sha256_hex([likelihood_of(evidence, model).as_bytes()]);
         Ok(Some(SamplerCheckpoint { path, digest, resume: self.resume }))
     }
@@ -195,8 +212,33 @@ impl ReconstructRequest {
     pub fn run_digest(&self) -> Result<String, StudyError> {
         let evidence = self.evidence.load()?;
         let likelihood = likelihood_of(&evidence, &self.model(&evidence)?);
-        let settings = format!("{:?}", self.settings());
+        let settings = format!("{:?} {}", self.settings(), self.one_contact);
         Ok(sha256_hex([program::version(), &likelihood, &settings].map(str::as_bytes)))
+    }
+
+    /// Samples the posterior of a forward model.
+    fn sampled(
+        &self,
+        evidence: &Evidence,
+        model: ForwardModel,
+        observer: &mut Observer<'_>,
+    ) -> Result<(ReconstructionTarget, Particles), StudyError> {
+        let checkpoint = self.checkpoint(evidence, &model)?;
+        let target = ReconstructionTarget::new(evidence.clone(), model, Discrepancy::default());
+        let settings = self.settings();
+        let mut before = None;
+        let mut watch = |report: SamplerReport<'_>| {
+            let (temperature, z) = (report.temperature, report.z);
+            observer(Event::Sampling(Sampling { target: &target, temperature, z }))?;
+            let progress = progress(&report, &settings);
+            let done_before = *before.get_or_insert(progress.done);
+            observer(Event::Progress(progress.going_on_from(done_before)))
+        };
+        let particles =
+            sample(&target, &settings, checkpoint.as_ref(), &mut watch).map_err(|source| {
+                StudyError::Reconstruction { name: self.evidence.name(), source: Box::new(source) }
+            })?;
+        Ok((target, particles))
     }
 
     fn settings(&self) -> SamplerSettings {
@@ -212,7 +254,8 @@ impl ReconstructRequest {
 /// All that the likelihood of a case is made from.
 fn likelihood_of(evidence: &Evidence, model: &ForwardModel) -> String {
     let (cars, zones) = (model.cars(), model.zones());
-    format!("{evidence:?} {cars:?} {zones:?} {:?}", Discrepancy::default())
+    let contacts = if model.follows_later_contacts() { " all contacts" } else { "" };
+    format!("{evidence:?} {cars:?} {zones:?} {:?}{contacts}", Discrepancy::default())
 }
 
 impl EvidenceChoice {
@@ -268,30 +311,23 @@ impl Question for ReconstructRequest {
         let evidence = self.evidence.load()?;
         let model = self.model(&evidence)?;
         let cars = model.cars();
-        let mut assumptions = assumptions(&evidence, &model);
-        assumptions.extend(unused(&evidence));
         check_damage(&evidence.damage, cars).map_err(|source| StudyError::ContactOffVehicle {
             name: self.evidence.name(),
             vehicle: "the struck car".to_owned(),
             source,
         })?;
         let outside = outside_domain(&evidence, cars, model.zones());
-        let checkpoint = self.checkpoint(&evidence, &model)?;
         let friction_zones = model.zones().iter().map(FrictionZoneReport::from_zone).collect();
-        let target = ReconstructionTarget::new(evidence, model, Discrepancy::default());
-        let settings = self.settings();
-        let mut before = None;
-        let mut watch = |report: SamplerReport<'_>| {
-            let (temperature, z) = (report.temperature, report.z);
-            observer(Event::Sampling(Sampling { target: &target, temperature, z }))?;
-            let progress = progress(&report, &settings);
-            let done_before = *before.get_or_insert(progress.done);
-            observer(Event::Progress(progress.going_on_from(done_before)))
-        };
-        let particles =
-            sample(&target, &settings, checkpoint.as_ref(), &mut watch).map_err(|source| {
-                StudyError::Reconstruction { name: self.evidence.name(), source: Box::new(source) }
-            })?;
+        let (mut target, mut particles) = self.sampled(&evidence, model, observer)?;
+        let share = target.meet_again_share(&particles);
+        let later_contacts =
+            LaterContactsReport::new(share, self.one_contact || !particles.is_posterior());
+        if later_contacts.are_followed {
+            let model = target.model().clone().through_later_contacts(&evidence);
+            (target, particles) = self.sampled(&evidence, model, observer)?;
+        }
+        let mut assumptions = assumptions(&evidence, target.model());
+        assumptions.extend(unused(&evidence, later_contacts.are_followed));
         let posterior = Posterior::new(&target, &particles);
         let (fit, turned_rad) = target.fit(&particles);
         let ground = target.model().zones();
@@ -299,6 +335,7 @@ impl Question for ReconstructRequest {
         let before = by_hand.iter().find(|check| check.speed == HandSpeed::Struck);
         let by_hand_m_s = before.map(|check| [check.value_m_s, check.sigma_m_s]);
         let mut caveats = Caveats::from(of_particles(&particles));
+        caveats.extend(later_contacts.caveat().filter(|_| particles.is_posterior()));
         let modes = posterior.modes(&particles, &turned_rad);
         caveats.extend(several_courses(&modes));
         caveats.extend(outside);
@@ -322,6 +359,7 @@ impl Question for ReconstructRequest {
             by_hand,
             by_hand_m_s,
             friction_zones,
+            later_contacts,
             priors: target.model().prior().components().to_vec(),
         };
         let report = Answer { report, caveats, provenance: Provenance::from_seed(self.seed) };
