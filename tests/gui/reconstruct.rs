@@ -240,7 +240,7 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
     assert!(harness.query_by_label_contains("needs at least two points").is_some());
     harness.get_by_label("Add points").click();
     harness.run_steps(4);
-    assert_eq!(state(&harness).session.reconstruction.adds_to, Some(0));
+    assert_eq!(state(&harness).session.reconstruction.adds_to.map(|mark| mark.idx), Some(0));
     // A click beside the title of the pane lies in the scene.
     let title = harness.get_by_label("Reconstructed scene").rect();
     for right in [60.0, 120.0] {
@@ -281,6 +281,32 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
     assert_eq!(state(&harness).view.workspaces.shown, Workspace::Reconstruct);
     let text = std::fs::read_to_string(case).expect("the case file");
     assert!(text.contains(r#""question": "reconstruct""#));
+}
+
+#[test]
+fn marks_and_recorder_of_the_striking_car_have_cards_of_their_own() {
+    let mut harness = open_at(([1280.0, 1200.0], 1.0), &["no/such/folder"], None);
+    harness.run_steps(4);
+    apply(&mut harness, Command::ShowWorkspace(Workspace::Reconstruct));
+    harness.run_steps(2);
+    harness.get_by_label("New evidence").click();
+    harness.run_steps(4);
+    for item in ["Tire mark of the striking car", "Event data recorder of the striking car"] {
+        harness.get_by_label("Add evidence").click();
+        harness.run_steps(4);
+        harness.get_by_label(item).click();
+        harness.run_steps(4);
+    }
+    let found = evidence(&harness);
+    assert_eq!((found.striking_marks.len(), found.striking_edr), (1, Some(Edr::default())));
+    assert!(found.marks.is_empty() && found.edr.is_none());
+    assert!(harness.query_by_label("Tire mark of the striking car 1").is_some());
+    assert!(harness.query_by_label("Event data recorder of the striking car").is_some());
+    harness.get_by_label("Add points").click();
+    harness.run_steps(4);
+    let adds_to = state(&harness).session.reconstruction.adds_to;
+    let section = adds_to.map(|mark| (mark.section, mark.idx));
+    assert_eq!(section, Some(("striking_mark", 0)));
 }
 
 /// A speed of 15 m/s, 54 km/h, is one like any other, from a file and typed.

@@ -6,9 +6,11 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::CollisionMotion;
-use crate::evidence::Mark;
-use impactlab_core::vehicle::{ControlledVehicle, Integrator, TireMark, Wheel, tire_marks};
+use crate::evidence::{Evidence, Mark};
+use crate::{CollisionMotion, StrikingMotion};
+use impactlab_core::vehicle::{
+    ControlledVehicle, Integrator, Manoeuvre, TireMark, VehicleParameters, Wheel, tire_marks,
+};
 
 /// Distance of the places along a found mark that are compared, m.
 const STEP_M: f64 = 0.1;
@@ -16,6 +18,8 @@ const STEP_M: f64 = 0.1;
 /// A mark that was found, beside the computed one of its wheel that lies nearest.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MarkComparison {
+    /// Whether it is a mark of the striking car; of the struck car otherwise.
+    pub is_of_striking_car: bool,
     /// The wheel.
     pub wheel: Wheel,
     /// Length of the mark that was found, m.
@@ -32,21 +36,37 @@ impl CollisionMotion {
     /// The marks that the struck car leaves. It is simulated with the loads of its wheels, in steps of
     /// 1 ms; no marks if that is not possible.
     pub fn tire_marks(&self) -> Vec<TireMark> {
-        let Ok(motion) = self.vehicle.simulate(&self.manoeuvre, Integrator::Rk4) else {
-            return Vec::new();
-        };
-        let vehicle = ControlledVehicle {
-            vehicle: &self.vehicle,
-            controls: &self.manoeuvre.controls,
-            friction_zones: &self.manoeuvre.friction_zones,
-        };
-        tire_marks(&motion.series, vehicle)
+        marks_left(&self.vehicle, &self.manoeuvre)
     }
 }
 
+impl StrikingMotion {
+    /// The marks that the striking car leaves, computed as those of the struck car.
+    pub fn tire_marks(&self) -> Vec<TireMark> {
+        marks_left(&self.vehicle, &self.manoeuvre)
+    }
+}
+
+fn marks_left(vehicle: &VehicleParameters, manoeuvre: &Manoeuvre) -> Vec<TireMark> {
+    let Ok(motion) = vehicle.simulate(manoeuvre, Integrator::Rk4) else { return Vec::new() };
+    let Manoeuvre { controls, friction_zones, .. } = manoeuvre;
+    tire_marks(&motion.series, ControlledVehicle { vehicle, controls, friction_zones })
+}
+
 impl MarkComparison {
-    /// Each mark that was found beside the computed marks, in the order of the found ones.
-    pub fn all(found: &[Mark], computed: &[TireMark]) -> Vec<Self> {
+    /// Each mark that was found of the struck car beside the computed ones, in the order of the found
+    /// ones, and then those of the striking car.
+    pub fn of_both_cars(evidence: &Evidence, motion: &CollisionMotion) -> Vec<Self> {
+        let mut all = Self::all(&evidence.marks, &motion.tire_marks());
+        if let Some(striking) = &motion.striking {
+            let of_striking = Self::all(&evidence.striking_marks, &striking.tire_marks());
+            all.extend(of_striking.into_iter().map(|it| Self { is_of_striking_car: true, ..it }));
+        }
+        all
+    }
+
+    /// Each mark that was found of a car beside those that it leaves, in the order of the found ones.
+    pub(crate) fn all(found: &[Mark], computed: &[TireMark]) -> Vec<Self> {
         found.iter().map(|mark| Self::new(mark, computed)).collect()
     }
 
@@ -62,6 +82,7 @@ impl MarkComparison {
         });
         let nearest = compared.min_by(|a, b| a.1.total_cmp(&b.1));
         Self {
+            is_of_striking_car: false,
             wheel: found.wheel,
             found_length_m: length_m(&found.points_m),
             computed_length_m: nearest.map_or(0.0, |(length_m, ..)| length_m),

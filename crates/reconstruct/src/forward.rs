@@ -12,7 +12,7 @@
 use rayon::prelude::*;
 
 use crate::evidence::{After, Evidence, ends};
-use crate::later_contact::{LaterContacts, ParticleContact};
+use crate::later_contact::{FollowedCar, LaterContacts, ParticleContact};
 use crate::{Cars, ImpactState, Latent, LatentValues, Prior};
 use impactlab_core::collision::{Pulse, PulseShape, Side};
 use impactlab_core::data::{ForceAxes, ForceHistory, Sampling};
@@ -56,10 +56,21 @@ pub struct CollisionMotion {
     pub manoeuvre: Manoeuvre,
     /// Path of the struck car.
     pub path: Path,
-    /// Path of the striking car, where its rest pose is evidence or later contacts are followed.
-    pub striking_path: Option<Path>,
+    /// The striking car, where anything of it is evidence or later contacts are followed.
+    pub striking: Option<StrikingMotion>,
     /// Whether the cars meet again after the impact; `None` where later contacts are not looked for.
     pub meet_again: Option<bool>,
+}
+
+/// The striking car as it was followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StrikingMotion {
+    /// The car as it was simulated.
+    pub vehicle: VehicleParameters,
+    /// What was done to it.
+    pub manoeuvre: Manoeuvre,
+    /// Its path.
+    pub path: Path,
 }
 
 /// The forward model of a case.
@@ -125,7 +136,7 @@ impl ForwardModel {
                 },
             ],
             restitution: ends(evidence.prior.restitution),
-            follows_striking: evidence.striking_rest.is_some(),
+            follows_striking: evidence.follows_striking_car(),
             follows_contacts: false,
             later: None,
             zones: Vec::new(),
@@ -205,33 +216,40 @@ impl ForwardModel {
             .map(|(vehicle, manoeuvre)| SimulationRun { vehicle, manoeuvre })
             .collect();
         let striking_paths = simulate_paths(&striking_vehicles, self.limit, |_, path| path);
-        let told = |idx: usize, path, striking_path, meet_again| {
-            let motion = &prepared[idx];
+        let told = |idx: usize, struck: FollowedCar, striking: Option<FollowedCar>, meet_again| {
+            let Prepared { values, impact, vehicle, striking: of_striking, .. } = &prepared[idx];
+            let striking = of_striking.as_ref().zip(striking);
             evaluate(CollisionMotion {
-                values: motion.values,
-                impact: motion.impact,
-                vehicle: motion.vehicle.clone(),
-                manoeuvre: motion.manoeuvre.clone(),
-                path,
-                striking_path,
+                values: *values,
+                impact: *impact,
+                vehicle: vehicle.clone(),
+                manoeuvre: struck.manoeuvre,
+                path: struck.path,
+                striking: striking.map(|((vehicle, _), car)| StrikingMotion {
+                    vehicle: vehicle.clone(),
+                    manoeuvre: car.manoeuvre,
+                    path: car.path,
+                }),
                 meet_again,
             })
         };
         let alone = simulate_paths(&runs, self.limit, |idx, path| {
-            let striking_path = striking_paths.get(idx);
-            let meet_again = self.meet_again(&prepared[idx], &path, striking_path);
-            match meet_again == Some(true) && self.follows_contacts {
-                true => None,
-                false => Some(told(idx, path, striking_path.cloned(), meet_again)),
+            let (motion, striking_path) = (&prepared[idx], striking_paths.get(idx));
+            let meet_again = self.meet_again(motion, &path, striking_path);
+            if meet_again == Some(true) && self.follows_contacts {
+                return None;
             }
+            let striking = motion.striking.as_ref().zip(striking_path);
+            let striking = striking
+                .map(|((_, manoeuvre), path)| FollowedCar::new(manoeuvre.clone(), path.clone()));
+            let struck = FollowedCar::new(motion.manoeuvre.clone(), path);
+            Some(told(idx, struck, striking, meet_again))
         });
         let followed = |(idx, alone): (usize, Option<R>)| match alone {
             Some(alone) => alone,
             None => {
-                let paths = self.through_contacts(&prepared[idx], runs[idx]);
-                let [path, striking_path] =
-                    paths.unwrap_or_else(|| [Path::failed(), Path::failed()]);
-                told(idx, path, Some(striking_path), Some(true))
+                let [struck, striking] = self.through_contacts(&prepared[idx], runs[idx]);
+                told(idx, struck, Some(striking), Some(true))
             }
         };
         alone.into_par_iter().enumerate().map(followed).collect()
@@ -243,16 +261,22 @@ impl ForwardModel {
         Some(self.later.as_ref()?.meet_again([path, striking?], from_s))
     }
 
-    /// Paths of both cars through all contacts; `None` where they cannot be computed.
-    fn through_contacts(&self, motion: &Prepared, struck: SimulationRun<'_>) -> Option<[Path; 2]> {
-        let (vehicle, manoeuvre) = motion.striking.as_ref()?;
+    /// Both cars through all contacts, with failed paths where they cannot be computed.
+    fn through_contacts(&self, motion: &Prepared, struck: SimulationRun<'_>) -> [FollowedCar; 2] {
         let contact = ParticleContact {
             stiffness_factor: motion.values.get(Latent::ContactStiffnessFactor),
             friction: motion.values.get(Latent::ContactFriction),
             normal_rad: motion.impact.normal_rad,
         };
-        let striking = SimulationRun { vehicle, manoeuvre };
-        self.later.as_ref()?.follow([struck, striking], &contact, self.limit)
+        let striking = motion.striking.as_ref();
+        let striking = striking.map(|(vehicle, manoeuvre)| SimulationRun { vehicle, manoeuvre });
+        let cars = self.later.as_ref().zip(striking);
+        let followed = cars
+            .and_then(|(later, striking)| later.follow([struck, striking], &contact, self.limit));
+        followed.unwrap_or_else(|| {
+            let failed = |of: &Manoeuvre| FollowedCar::new(of.clone(), Path::failed());
+            [failed(struck.manoeuvre), failed(striking.map_or(struck.manoeuvre, |it| it.manoeuvre))]
+        })
     }
 
     /// Yaw rate of the struck car at the end of the contact, rad/s, of each point: that of the impulse less

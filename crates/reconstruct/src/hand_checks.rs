@@ -171,20 +171,21 @@ fn drag(
     let friction = evidence.road_friction();
     let locked = evidence.drag_factor().or(friction
         .map(|road| Measured { sigma: road.sigma.hypot(DRAG_BY_FRICTION * road.value), ..road }));
-    let (after, ranges) = match which {
+    let ranges = &evidence.prior;
+    let (after, marks, ranges) = match which {
         Which::Struck => {
-            (&evidence.after, [evidence.prior.brake_start_s, evidence.prior.brake_share])
+            (&evidence.after, &evidence.marks, [ranges.brake_start_s, ranges.brake_share])
         }
         Which::Striking => {
-            let ranges = &evidence.prior;
-            (&evidence.striking_after, [ranges.striking_brake_start_s, ranges.striking_brake_share])
+            let ranges = [ranges.striking_brake_start_s, ranges.striking_brake_share];
+            (&evidence.striking_after, &evidence.striking_marks, ranges)
         }
     };
     let [start_s, share] = ranges.map(ends);
     let is_braked_hard = after.driver_braked == DriverBraked::Yes
         && start_s.is_some_and(|[_, last]| last <= AT_ONCE_S)
         && share.is_some_and(|[least, _]| least > 1.0);
-    if after.is_all_locked() || (which == Which::Struck && has_four_locked_marks(evidence, way_m)) {
+    if after.is_all_locked() || has_four_locked_marks(marks, way_m) {
         return locked.map(|drag| (drag, "way to rest; all wheels were locked from the impact on"));
     }
     if is_braked_hard {
@@ -208,13 +209,12 @@ fn is_free(after: &After) -> bool {
 }
 
 /// Whether each wheel has left marks as a locked wheel does over nearly the whole way.
-fn has_four_locked_marks(evidence: &Evidence, way_m: f64) -> bool {
+fn has_four_locked_marks(marks: &[Mark], way_m: f64) -> bool {
     let length_m = |mark: &Mark| -> f64 {
         mark.points_m.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).sum()
     };
     let is_locked = |wheel: &Wheel| {
-        let marks = evidence.marks.iter();
-        let locked = marks.filter(|m| m.wheel == *wheel && m.kind == Some(MarkKind::Locked));
+        let locked = marks.iter().filter(|m| m.wheel == *wheel && m.kind == Some(MarkKind::Locked));
         locked.map(length_m).sum::<f64>() > MARKED_SHARE * way_m
     };
     Wheel::ALL.iter().all(is_locked)

@@ -17,9 +17,10 @@ use impactlab_core::collision::contact::{
     ContactBody, ContactConditions, ContactOutline, FaceLaws, PairMotion, PairRun, PairVehicle,
     VehiclePair, way_to_touch_m,
 };
-use impactlab_core::data::Channel;
+use impactlab_core::data::{Channel, ForceHistory, Sampling};
 use impactlab_core::vehicle::{
-    Manoeuvre, Motion, Path, PathEnd, PathLimit, PathPoint, SimulationRun,
+    ContactLoad, ContactPoint, Manoeuvre, Motion, Path, PathEnd, PathLimit, PathPoint,
+    SimulationRun,
 };
 
 use crate::Cars;
@@ -54,6 +55,31 @@ pub(crate) struct ParticleContact {
     pub friction: f64,
     /// Direction of the contact normal, which points into the struck car, world axes, rad.
     pub normal_rad: f64,
+}
+
+/// A car on its way.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct FollowedCar {
+    /// What was done to it, with the forces of all contacts that are followed.
+    pub manoeuvre: Manoeuvre,
+    /// Its path.
+    pub path: Path,
+}
+
+impl FollowedCar {
+    pub fn new(manoeuvre: Manoeuvre, path: Path) -> Self {
+        Self { manoeuvre, path }
+    }
+
+    /// A car with the force of all contacts along its recorded motion.
+    fn from_motion(manoeuvre: &Manoeuvre, motion: &Motion, is_far: bool) -> Option<Self> {
+        let force = ForceHistory::from_series(&motion.series, Sampling::ComingMean).ok()?;
+        // Its yaw moment is recorded, so that its place in the plane does not count.
+        let contact = ContactPoint { x_body_m: 0.0, y_body_m: 0.0, height_m: CONTACT_HEIGHT_M };
+        let contact_load = Some(ContactLoad { force, contact, recorded_moment: true });
+        let manoeuvre = Manoeuvre { contact_load, ..manoeuvre.clone() };
+        Some(Self::new(manoeuvre, path(motion, is_far)))
+    }
 }
 
 impl LaterContacts {
@@ -109,7 +135,7 @@ impl LaterContacts {
         depths.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Paths of both cars through all contacts, to rest; `None` where they cannot be computed.
+    /// Both cars through all contacts, to rest; `None` where they cannot be computed.
     ///
     /// - `cars`: the struck one with the pulse of the first contact; that of the striking one is the
     ///   opposite one and is not used.
@@ -118,7 +144,7 @@ impl LaterContacts {
         [struck, striking]: [SimulationRun<'_>; 2],
         contact: &ParticleContact,
         limit: PathLimit,
-    ) -> Option<[Path; 2]> {
+    ) -> Option<[FollowedCar; 2]> {
         let mut initial = striking.manoeuvre.initial;
         let pose = |manoeuvre: &Manoeuvre| {
             let state = &manoeuvre.initial;
@@ -167,7 +193,10 @@ impl LaterContacts {
             }
         }
         let PairMotion { motions: [of_struck, of_striking], .. } = run.finish().ok()?;
-        Some([path(&of_struck, is_far), path(&of_striking, is_far)])
+        Some([
+            FollowedCar::from_motion(struck.manoeuvre, &of_struck, is_far)?,
+            FollowedCar::from_motion(&striking_manoeuvre, &of_striking, is_far)?,
+        ])
     }
 }
 
@@ -239,7 +268,7 @@ mod tests {
     }
 
     fn deepest_m(later: &LaterContacts, motion: &CollisionMotion) -> f64 {
-        let paths = [&motion.path, motion.striking_path.as_ref().unwrap()];
+        let paths = [&motion.path, &motion.striking.as_ref().unwrap().path];
         let mut cursors = paths.map(|path| PathCursor { points: &path.points, next: 0 });
         let depth_m = |i: usize| {
             let time_s = 0.3 + 0.01 * i as f64;
@@ -269,7 +298,7 @@ mod tests {
             assert_ne!(through.path, alone.path);
             let [kept_m, driven_through_m] = [through, alone].map(|it| deepest_m(&later, it));
             assert!(kept_m < 0.7 && driven_through_m > kept_m, "{kept_m} {driven_through_m}");
-            for path in [&through.path, through.striking_path.as_ref().unwrap()] {
+            for path in [&through.path, &through.striking.as_ref().unwrap().path] {
                 assert_eq!(path.end, PathEnd::Rest);
             }
         }

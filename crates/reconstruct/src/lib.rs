@@ -44,7 +44,7 @@ pub use calibration::{RankedQuantity, Ranks, ranks_of_cases};
 pub use cars::{Car, Cars};
 pub use computed_marks::MarkComparison;
 pub use distribution::Distribution;
-pub use forward::{CollisionMotion, ForwardModel};
+pub use forward::{CollisionMotion, ForwardModel, StrikingMotion};
 pub use hand::HandCalculation;
 pub use hand_checks::{HandCheck, HandSpeed};
 pub use hinges::{SpeedChange, SpeedHinge};

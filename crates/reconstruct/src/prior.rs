@@ -351,7 +351,7 @@ impl Prior {
         self.assume(Latent::SteerAngle, normal(0.0, 0.015, -0.2, 0.2));
         let of_struck = [Latent::BlockedWheel, Latent::BlockedDrag];
         self.add_held_wheels(&evidence.after, of_struck);
-        if evidence.striking_rest.is_some() {
+        if evidence.follows_striking_car() {
             self.add_striking_ending(evidence);
         }
     }

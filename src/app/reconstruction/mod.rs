@@ -49,8 +49,17 @@ pub enum ReconstructionCommand {
     ShowMode(Option<usize>),
     /// Follow a particle from the impact on.
     Play(FollowedParticle),
-    /// Let clicks in the scene add points to the mark of this number.
-    AddPoints(Option<usize>),
+    /// Let clicks in the scene add points to a mark.
+    AddPoints(Option<MarkKey>),
+}
+
+/// Tells a mark apart from others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MarkKey {
+    /// The key of its section, which is that of its car.
+    pub section: &'static str,
+    /// Its number among those of the car.
+    pub idx: usize,
 }
 
 /// An evidence file that was read.
@@ -84,7 +93,7 @@ pub struct ReconstructionSession {
     /// The particle that is followed.
     pub followed: FollowedParticle,
     /// The mark to which clicks in the scene add points.
-    pub adds_to: Option<usize>,
+    pub adds_to: Option<MarkKey>,
 }
 
 impl ReconstructionSession {

@@ -17,7 +17,7 @@ use crate::app::reconstruction::{
 use crate::app::state::State;
 use impactlab_core::data::{Severity, TomlFile};
 use impactlab_core::error_chain;
-use impactlab_reconstruct::evidence::Evidence;
+use impactlab_reconstruct::evidence::{Evidence, FoundPlace};
 use impactlab_study::{EvidenceChoice, ReconstructRequest};
 
 /// The evidence of the shipped example.
@@ -72,10 +72,14 @@ impl State {
         if !is_known {
             let preview =
                 evidence.map(|(request, evidence)| EvidencePreview::new(evidence, request));
-            let n_marks = preview.as_ref().map_or(0, |of| of.evidence.marks.len());
+            let places = preview.as_ref().map_or_else(Vec::new, |of| of.evidence.places());
+            let n_marks = |section| {
+                let is_mark = |place: &&FoundPlace| place.is_line && place.section.key == section;
+                places.iter().filter(is_mark).count()
+            };
             let session = &mut self.session.reconstruction;
             session.preview = preview;
-            session.adds_to = session.adds_to.filter(|idx| *idx < n_marks);
+            session.adds_to = session.adds_to.filter(|mark| mark.idx < n_marks(mark.section));
             let is_first = !session.run.is_running() && session.run.latest.is_none();
             let request = self.project.reconstruct.as_ref();
             let runs = session.stored_runs.as_ref().filter(|_| is_first);

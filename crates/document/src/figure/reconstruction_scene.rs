@@ -160,7 +160,11 @@ fn evidence_elements(
     let mut elements = Vec::new();
     for place in evidence.places().into_iter().filter(|place| !place.is_rest()) {
         let points: Vec<[f64; 2]> = place.points_m.iter().map(|at| shown(*at)).collect();
-        let role = if place.is_line { Role::Striking } else { Role::Pulse };
+        let role = match (place.is_line, place.is_of_striking_car()) {
+            (true, true) => Role::Validation,
+            (true, false) => Role::Striking,
+            (false, _) => Role::Pulse,
+        };
         if place.is_line {
             elements.push(FigureElement::dashed(&place.name, role, points.clone()));
         }

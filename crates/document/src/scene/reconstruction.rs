@@ -137,8 +137,11 @@ fn motion_of(path: &Path, body: &CarBody) -> Option<CarMotion> {
 
 /// What was found, but for the cars at rest.
 fn add_found(scene: &mut Scene, evidence: &Evidence) {
-    let role = SceneRole::Evidence;
     for place in evidence.places().into_iter().filter(|place| !place.is_rest()) {
+        let role = match place.is_of_striking_car() {
+            true => SceneRole::Striking,
+            false => SceneRole::Evidence,
+        };
         let (name, points_m) = (place.name, place.points_m);
         if place.is_line {
             let (is_dashed, is_above_cars) = (true, false);
@@ -175,7 +178,26 @@ fn add_rest(scene: &mut Scene, rest: &RestPose, shape: &Arc<CarShape>, [name, ta
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impactlab_core::data::TomlFile;
     use impactlab_core::vehicle::{PathEnd, PathPoint, Preset};
+
+    #[test]
+    fn the_marks_of_each_car_have_the_colour_of_the_car() {
+        let text = r#"
+            case = "marks"
+            struck_car = { mass_kg = 1500 }
+            striking_car = { mass_kg = 1500 }
+            damage = { side = "right", x_m = -1.7 }
+            mark = [{ wheel = "FL", points_m = [[1, 2], [3, 4]] }]
+            striking_mark = [{ wheel = "FL", points_m = [[1, 5], [3, 6]] }]
+        "#;
+        let file = TomlFile { path: std::path::Path::new("case.toml"), text };
+        let mut scene = Scene::default();
+        add_found(&mut scene, &Evidence::from_toml(file).unwrap());
+        let drawn: Vec<_> = scene.lines.iter().map(|it| (it.role, it.points_m[0])).collect();
+        let expected = [(SceneRole::Evidence, [1.0, 2.0]), (SceneRole::Striking, [1.0, 5.0])];
+        assert_eq!(drawn, expected);
+    }
 
     #[test]
     fn a_motion_begins_and_ends_with_its_path() {

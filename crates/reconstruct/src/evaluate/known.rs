@@ -11,7 +11,7 @@ use crate::evidence::Evidence;
 pub enum KnownEvidence {
     /// All of it.
     Everything,
-    /// All but the record of the event data recorder.
+    /// All but the records of the event data recorders.
     WithoutEdr,
     /// The rest poses with damage, masses and friction: no marks, no record, no positions, and
     /// nothing of what driver and wheels did after the impact.
@@ -33,10 +33,12 @@ impl KnownEvidence {
 
     /// What such evidence is alike among the staged collisions that reconstructions were measured on.
     pub fn like(evidence: &Evidence) -> Self {
-        match (&evidence.edr, evidence.marks.is_empty()) {
-            (Some(_), _) => Self::Everything,
-            (None, false) => Self::WithoutEdr,
-            (None, true) => Self::RestOnly,
+        let has_record = evidence.edr.or(evidence.striking_edr).is_some();
+        let has_marks = !evidence.marks.is_empty() || !evidence.striking_marks.is_empty();
+        match (has_record, has_marks) {
+            (true, _) => Self::Everything,
+            (false, true) => Self::WithoutEdr,
+            (false, false) => Self::RestOnly,
         }
     }
 

@@ -133,6 +133,12 @@ mod tests {
             missing(|evidence| evidence.marks[0].points_m = vec![[1.0, 0.0], [9.0, 1.0]]),
             ""
         );
+        let text = missing(|evidence| evidence.striking_marks.push(Mark::default()));
+        assert!(text.contains("tire mark of the striking car 1 needs at least two"), "{text}");
+        assert_eq!(missing(|evidence| evidence.striking_marks.clear()), "");
+        let text = missing(|evidence| evidence.striking_edr = Some(Edr::default()));
+        assert!(text.contains("event data recorder of the striking car: nothing"), "{text}");
+        assert_eq!(missing(|evidence| evidence.striking_edr = None), "");
         assert!(
             missing(|evidence| evidence.edr = Some(Edr::default())).contains("event data recorder")
         );

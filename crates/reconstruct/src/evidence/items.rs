@@ -6,13 +6,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::CollisionMotion;
 use crate::evidence::{
     After, CarEvidence, Damage, Edr, Item, Items, Mark, Measured, PriorRanges, RestPose, Road,
     VideoPosition, Weighing, after, car, damage, mark, position, prior_ranges, recorder, rest,
     road, weighing,
 };
-use crate::likelihood::{Comparison, Discrepancy, EvidenceTerm, PathResidual, Track};
+use crate::likelihood::{ComparedCar, Comparison, Discrepancy, EvidenceTerm, PathResidual, Track};
+use crate::{CollisionMotion, StrikingMotion};
 
 /// Everything that is found. Each item is shown to what reads, writes, draws and tells the evidence by
 /// [`Evidence::items`], and is compared with a motion by `Evidence::compared`.
@@ -43,9 +43,15 @@ pub struct Evidence {
     pub striking_after: After,
     /// Tire marks of the struck car.
     pub marks: Vec<Mark>,
+    /// Tire marks of the striking car.
+    #[serde(default)]
+    pub striking_marks: Vec<Mark>,
     /// Event data recorder of the struck car.
     #[serde(deserialize_with = "with_record")]
     pub edr: Option<Edr>,
+    /// Event data recorder of the striking car.
+    #[serde(default, deserialize_with = "with_record")]
+    pub striking_edr: Option<Edr>,
     /// Positions of the struck car from a video.
     pub positions: Vec<VideoPosition>,
     /// Ranges that the user gives to what is asked for.
@@ -73,7 +79,9 @@ impl Evidence {
             after,
             striking_after,
             marks,
+            striking_marks,
             edr,
+            striking_edr,
             positions,
             prior,
         } = self;
@@ -83,9 +91,11 @@ impl Evidence {
         visitor.optional(&weighing::SECTION, weighing);
         visitor.optional(&rest::STRUCK, rest);
         visitor.optional(&rest::STRIKING, striking_rest);
-        visitor.many(&mark::SECTION, marks);
+        visitor.many(&mark::STRUCK, marks);
+        visitor.many(&mark::STRIKING, striking_marks);
         visitor.item(&damage::SECTION, None, damage);
-        visitor.optional(&recorder::SECTION, edr);
+        visitor.optional(&recorder::STRUCK, edr);
+        visitor.optional(&recorder::STRIKING, striking_edr);
         visitor.many(&position::SECTION, positions);
         visitor.item(&after::STRUCK, None, after);
         visitor.item(&after::STRIKING, None, striking_after);
@@ -115,20 +125,36 @@ impl Evidence {
             after: _,
             striking_after: _,
             marks,
+            striking_marks,
             edr,
+            striking_edr,
             positions,
             prior: _,
         } = self;
-        let Some(track) = Track::from_path(&motion.path) else {
-            return (f64::NEG_INFINITY, Vec::new());
-        };
-        let mut comparison = Comparison::new(discrepancy, motion, &track, wants_terms);
+        let impossible = || (f64::NEG_INFINITY, Vec::new());
+        let Some(track) = Track::from_path(&motion.path) else { return impossible() };
+        let car = struck_car_of(motion, &track);
+        let mut comparison = Comparison::new(discrepancy, motion, car, wants_terms);
         rest.iter().for_each(|rest| rest.compare(&mut comparison));
         positions.iter().for_each(|position| position.compare(&mut comparison));
         marks.iter().for_each(|mark| mark.compare(marks.len(), &mut comparison));
         edr.iter().for_each(|edr| edr.compare(&mut comparison));
         comparison.add_path();
-        striking_rest.iter().for_each(|rest| rest.compare_striking(&mut comparison));
+        if self.follows_striking_car() {
+            let striking = motion.striking.as_ref();
+            let track = striking.and_then(|striking| Track::from_path(&striking.path));
+            let Some((striking, track)) = striking.zip(track.as_ref()) else {
+                return impossible();
+            };
+            let car = striking_car_of(motion, striking, track);
+            let mut own = Comparison::new(discrepancy, motion, car, wants_terms);
+            striking_rest.iter().for_each(|rest| rest.compare(&mut own));
+            striking_marks.iter().for_each(|mark| mark.compare(striking_marks.len(), &mut own));
+            striking_edr.iter().for_each(|edr| edr.compare(&mut own));
+            // What the model errs by is alike along the path of one car, and not for both.
+            own.add_path();
+            comparison.add(own);
+        }
         friction.iter().for_each(|road| road.compare_drag(&mut comparison));
         if wants_terms {
             friction.iter().for_each(|road| road.compare(&mut comparison));
@@ -146,7 +172,8 @@ impl Evidence {
         motion: &CollisionMotion,
     ) -> Option<(Vec<PathResidual>, f64)> {
         let track = Track::from_path(&motion.path)?;
-        let mut comparison = Comparison::new(discrepancy, motion, &track, false);
+        let car = struck_car_of(motion, &track);
+        let mut comparison = Comparison::new(discrepancy, motion, car, false);
         self.rest.iter().for_each(|rest| rest.compare(&mut comparison));
         self.positions.iter().for_each(|position| position.compare(&mut comparison));
         Some((comparison.path, track.whole_m()))
@@ -176,16 +203,45 @@ impl Evidence {
         self.edr.unwrap_or_default()
     }
 
-    /// The same without the record of the event data recorder.
+    /// Whether anything of the striking car is evidence of how it moved, so that it is followed.
+    pub fn follows_striking_car(&self) -> bool {
+        self.striking_rest.is_some()
+            || !self.striking_marks.is_empty()
+            || self.striking_edr.is_some()
+    }
+
+    /// The same without the records of the event data recorders.
     pub fn without_edr(&self) -> Self {
-        Self { edr: None, ..self.clone() }
+        Self { edr: None, striking_edr: None, ..self.clone() }
     }
 
     /// The same with nothing of the motion but the rest poses, and nothing of what driver and wheels
     /// did.
     pub fn rest_only(&self) -> Self {
         let [after, striking_after] = [After::default(), After::default()];
-        let (marks, positions) = (Vec::new(), Vec::new());
-        Self { marks, positions, after, striking_after, ..self.without_edr() }
+        let [marks, striking_marks] = [Vec::new(), Vec::new()];
+        let positions = Vec::new();
+        Self { marks, striking_marks, positions, after, striking_after, ..self.without_edr() }
     }
 }
+
+/// The struck car of a motion.
+fn struck_car_of<'a>(motion: &'a CollisionMotion, track: &'a Track) -> ComparedCar<'a> {
+    let CollisionMotion { vehicle, manoeuvre, impact, .. } = motion;
+    let speed_before_m_s = impact.struck_speed_m_s;
+    ComparedCar { vehicle, manoeuvre, track, speed_before_m_s, prefix: "" }
+}
+
+/// The striking car of a motion.
+fn striking_car_of<'a>(
+    motion: &CollisionMotion,
+    StrikingMotion { vehicle, manoeuvre, path: _ }: &'a StrikingMotion,
+    track: &'a Track,
+) -> ComparedCar<'a> {
+    let speed_before_m_s = motion.impact.striking_speed_m_s;
+    ComparedCar { vehicle, manoeuvre, track, speed_before_m_s, prefix: "striking car " }
+}
+
+#[cfg(test)]
+#[path = "both_cars_tests.rs"]
+mod tests;

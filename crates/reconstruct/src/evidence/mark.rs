@@ -1,4 +1,5 @@
-//! A tire mark: where the path of a wheel was, where the wheel slid, and whether it was locked.
+//! A tire mark of either car: where the path of a wheel was, where the wheel slid, and whether it was
+//! locked.
 
 use impactlab_core::ranges::{EVIDENCE_POSITION, POSITION_SIGMA};
 use impactlab_core::vehicle::Wheel;
@@ -23,14 +24,17 @@ const KIND_SCATTER: f64 = 0.12;
 /// Stands for the distance to where a wheel slides that never does, m.
 const NEVER_M: f64 = 30.0;
 
-/// A mark in a file, a form and a report.
-pub const SECTION: Section = Section {
+/// A mark of the struck car in a file, a form and a report.
+pub const STRUCK: Section = Section {
     key: "mark",
     title: "tire mark",
     group: Group::Scene,
     is_required: false,
     missing: "needs at least two points: Add points, then click along it in the scene",
 };
+/// A mark of the striking car, likewise.
+pub const STRIKING: Section =
+    Section { key: "striking_mark", title: "tire mark of the striking car", ..STRUCK };
 
 const WHEEL: Choice = Choice { key: "wheel", label: "wheel", is_required: true, none: "" };
 const KIND: Choice =
@@ -107,13 +111,13 @@ impl Mark {
         self.sigma_m.unwrap_or(SIGMA.default_at(0.0))
     }
 
-    /// - `n_marks`: number of marks of the case, whose ends are in part one witness.
+    /// - `n_marks`: number of marks of the car, whose ends are in part one witness.
     pub(super) fn compare(&self, n_marks: usize, comparison: &mut Comparison<'_>) {
-        let (motion, track) = (comparison.motion, comparison.track);
-        let place_m = motion.vehicle.geometry.wheel_place_m(self.wheel);
-        let wheel = track.wheel(place_m);
+        let car = comparison.car;
+        let place_m = car.vehicle.geometry.wheel_place_m(self.wheel);
+        let wheel = car.track.wheel(place_m);
         let nearest = wheel.nearest(&self.points_m);
-        let onset = Onset::new(motion, track, self.wheel, &wheel);
+        let onset = Onset::new(car, self.wheel, &wheel);
         let name = format!("mark {}", self.wheel.word());
         let (mut squares, mut distance) = (0.0, 0.0);
         for at in &nearest {
@@ -159,7 +163,7 @@ impl Mark {
         place_m: [f64; 2],
         comparison: &Comparison<'_>,
     ) -> PathResidual {
-        let track = comparison.track;
+        let track = comparison.car.track;
         let [tx, ty] = at.tangent;
         let normal = [-ty, tx];
         let arm_m = track.arm_m(at.idx, place_m);

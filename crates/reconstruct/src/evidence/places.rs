@@ -3,7 +3,7 @@
 
 use crate::evidence::{
     Bounds, Choice, Evidence, Field, Fields, Group, Item, Items, PlaceMut, PointsMut, Section,
-    Sigma, Word, rest,
+    Sigma, Word, mark, rest,
 };
 
 /// A point or a line of the evidence.
@@ -23,6 +23,11 @@ impl FoundPlace {
     /// Whether it is the place of a car at rest, which is drawn as a car.
     pub fn is_rest(&self) -> bool {
         [rest::STRUCK.key, rest::STRIKING.key].contains(&self.section.key)
+    }
+
+    /// Whether the striking car was there; the struck car otherwise.
+    pub fn is_of_striking_car(&self) -> bool {
+        [rest::STRIKING.key, mark::STRIKING.key].contains(&self.section.key)
     }
 }
 

@@ -48,7 +48,7 @@ impl VideoPosition {
         let (Some(time_s), Some(x_m), Some(y_m)) = (self.time_s, self.x_m, self.y_m) else {
             return;
         };
-        let track = comparison.track;
+        let track = comparison.car.track;
         let Some((idx, at)) = track.at_time(time_s) else { return };
         let along = PathResidual {
             travelled_m: track.travelled_m[idx],

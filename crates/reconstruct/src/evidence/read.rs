@@ -42,14 +42,14 @@
 //! dragging_wheels = ["RL"]          # turn, but are held back by the damage
 //! driver_braked = "unknown"         # yes, no: the car coasts
 //!
-//! [[mark]]
+//! [[mark]]                          # and [[striking_mark]]
 //! wheel = "RR"
 //! kind = "locked"                   # side-slip
 //! points_m = [[1.0, -0.7], [6.0, -0.8], [11.0, -1.6]]   # from start to end
 //! sigma_m = 0.1
 //!
-//! [edr]
-//! delta_v_y_min_m_s = 1.0           # and delta_v_x_…, heading axes of the struck car
+//! [edr]                             # and [striking_edr]
+//! delta_v_y_min_m_s = 1.0           # and delta_v_x_…, heading axes of the car
 //! delta_v_y_max_m_s = 1.3
 //! speed_before_m_s = 21.4
 //! speed_before_sigma_m_s = 0.9

@@ -52,6 +52,15 @@ y_m = -2.0
 
 [prior]
 target_speed_km_h = [18, 180]
+
+[[striking_mark]]
+wheel = "FL"
+points_m = [[10, 0], [20, 0]]
+
+[striking_edr]
+speed_before_km_h = 90
+delta_v_y_min_m_s = -1.3
+delta_v_y_max_m_s = -1.0
 "#;
 
 fn read(text: &str) -> Result<Evidence, String> {
@@ -77,6 +86,11 @@ fn a_file_is_read_with_units_and_defaults() {
     assert!((speed.value - 20.0).abs() < 1e-9 && speed.sigma == 0.04 * speed.value);
     assert_eq!(edr.sensor_m, [Some(0.2), None]);
     assert_eq!(evidence.positions[0].sigma_m, None);
+    let [mark] = &evidence.striking_marks[..] else { panic!("one mark") };
+    assert!(mark.points_m == [[10.0, 0.0], [20.0, 0.0]] && mark.wheel == Wheel::FrontLeft);
+    let edr = evidence.striking_edr.unwrap();
+    assert!((edr.speed_before().unwrap().value - 25.0).abs() < 1e-9);
+    assert_eq!(edr.delta_v_y(), Some([-1.3, -1.0]));
     let [low, high] = ends(evidence.prior.struck_speed_m_s).unwrap();
     assert!((low - 5.0).abs() < 1e-9 && (high - 50.0).abs() < 1e-9);
     assert_eq!(evidence.mirrored().mirrored(), evidence);
@@ -117,6 +131,19 @@ fn an_error_names_file_line_key_and_what_is_expected() {
         ("[18, 180]", "[18, 1800]", "49: prior.target_speed_km_h is 1800, expected 0 to 540"),
         ("[18, 180]", "18", "49: prior.target_speed_km_h is 18, expected the lower and"),
         ("[[mark]]", "[mark]", "30: mark is "),
+        ("wheel = \"FL\"", "wheel = 1", "52: striking_mark[0].wheel is 1, expected \"FL\""),
+        (", [20, 0]]", "]", "53: striking_mark[0].points_m is [[10, 0]], expected at least two"),
+        (
+            "speed_before_km_h = 90",
+            "speed_before_km_h = -1",
+            "56: striking_edr.speed_before_km_h is -1",
+        ),
+        ("delta_v_y_max_m_s = -1.0", "", "55: striking_edr.delta_v_y_max_m_s is missing"),
+        (
+            "[striking_edr]",
+            "[striking_edr]\nspeed_km_h = 3",
+            "56: striking_edr.speed_km_h is not known",
+        ),
         ("[striking_car]", "[struck]", "1: [striking_car] is missing"),
     ] {
         assert!(CASE.contains(good), "{good}");
@@ -160,6 +187,10 @@ fn evidence_in_json_of_an_earlier_version_is_read() {
         "sensor_m": [0.0, 0.0],
         "ends_s": null,
     });
+    let [marks, edr] = ["striking_marks", "striking_edr"];
+    let fields = json.as_object_mut().unwrap();
+    assert!(fields.remove(marks).is_some() && fields.remove(edr).is_some());
     let found: Evidence = serde_json::from_value(json).unwrap();
     assert_eq!(found.edr, None);
+    assert_eq!((found.striking_marks, found.striking_edr), (Vec::new(), None));
 }

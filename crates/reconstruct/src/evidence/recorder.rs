@@ -1,4 +1,4 @@
-//! Record of an event data recorder in the struck car.
+//! Record of an event data recorder in one of the cars.
 
 use impactlab_core::ranges::{CONTACT_X, CONTACT_Y, EVIDENCE_SPEED, PULSE_END, SPEED, SPEED_SIGMA};
 use schemars::JsonSchema;
@@ -11,14 +11,17 @@ use crate::likelihood::{Comparison, SINGLE_DEGREES_OF_FREEDOM, student};
 /// Standard deviation of a change of velocity that is small, m/s: the rounding of the record.
 const LEAST_DELTA_V_SIGMA_M_S: f64 = 0.03;
 
-/// The recorder in a file, a form and a report.
-pub const SECTION: Section = Section {
+/// The recorder of the struck car in a file, a form and a report.
+pub const STRUCK: Section = Section {
     key: "edr",
     title: "event data recorder",
     group: Group::Scene,
     is_required: false,
     missing: "",
 };
+/// That of the striking car, likewise.
+pub const STRIKING: Section =
+    Section { key: "striking_edr", title: "event data recorder of the striking car", ..STRUCK };
 
 const SPEED_BEFORE: Field = Field::new("speed_before", "speed before the impact", EVIDENCE_SPEED);
 const SPEED_BEFORE_SIGMA: Sigma = Sigma::share(
@@ -38,7 +41,7 @@ const SENSOR_Y: Field = Field::new("sensor_y", "sensor to the left of the CG", C
 const ENDS: Field =
     Field::new("ends", "end of the record", PULSE_END).with_default("end of contact");
 
-/// Record of an event data recorder in the struck car.
+/// Record of an event data recorder in one of the cars.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Edr {
@@ -93,7 +96,7 @@ impl Edr {
 
     pub(super) fn compare(&self, comparison: &mut Comparison<'_>) {
         if let Some(Measured { value, sigma }) = self.speed_before() {
-            let expected = comparison.motion.impact.struck_speed_m_s;
+            let expected = comparison.car.speed_before_m_s;
             let distance = ((value - expected) / sigma).powi(2);
             comparison.log_likelihood -= distance / 2.0;
             comparison.tell("EDR speed before the impact", "m/s", [expected, value], distance);
@@ -103,7 +106,7 @@ impl Edr {
         }
         let end_s = self.ends_s.unwrap_or(comparison.value(Latent::PulseDuration));
         let sensor_m = self.sensor_m.map(Option::unwrap_or_default);
-        let Some(recorded) = comparison.track.recorded_delta_v_m_s(sensor_m, end_s) else {
+        let Some(recorded) = comparison.car.track.recorded_delta_v_m_s(sensor_m, end_s) else {
             return;
         };
         let size = recorded[0].hypot(recorded[1]);

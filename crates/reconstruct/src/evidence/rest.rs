@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::evidence::{Field, Fields, Group, Item, Measured, PlaceMut, Section, Sigma, Stated};
-use crate::likelihood::{Comparison, PathResidual, Track};
+use crate::likelihood::{Comparison, PathResidual};
 
 /// Points of an ellipse.
 const N_ELLIPSE: usize = 48;
@@ -103,31 +103,9 @@ impl RestPose {
         (0..=N_ELLIPSE).map(point).collect()
     }
 
-    /// The struck car.
     pub(super) fn compare(&self, comparison: &mut Comparison<'_>) {
-        self.compare_with(["rest x", "rest y", "rest heading"], comparison);
-    }
-
-    /// The striking car, whose path is another one.
-    pub(super) fn compare_striking(&self, comparison: &mut Comparison<'_>) {
-        let motion = comparison.motion;
-        let track = motion.striking_path.as_ref().and_then(Track::from_path);
-        let Some(track) = track else {
-            comparison.log_likelihood = f64::NEG_INFINITY;
-            return;
-        };
-        let mut own = comparison.along(&track);
-        let names = ["striking car rest x", "striking car rest y", "striking car rest heading"];
-        self.compare_with(names, &mut own);
-        own.add_path();
-        let (log_likelihood, terms) = own.into_terms();
-        comparison.log_likelihood += log_likelihood;
-        comparison.terms.extend(terms);
-    }
-
-    fn compare_with(&self, names: [&str; 3], comparison: &mut Comparison<'_>) {
         let Some([found_x_m, found_y_m]) = self.place_m() else { return };
-        let track = comparison.track;
+        let track = comparison.car.track;
         let [x_m, y_m, yaw_rad] = track.rest();
         let at = PathResidual {
             travelled_m: track.whole_m(),
@@ -137,13 +115,13 @@ impl RestPose {
             residual: found_x_m - x_m,
             sigma: self.position_sigma_m(),
         };
-        comparison.add_residual(names[0], at, [x_m, found_x_m]);
+        comparison.add_residual("rest x", at, [x_m, found_x_m]);
         let across = PathResidual { direction: [0.0, 1.0], residual: found_y_m - y_m, ..at };
-        comparison.add_residual(names[1], across, [y_m, found_y_m]);
+        comparison.add_residual("rest y", across, [y_m, found_y_m]);
         if let Some(Measured { value, sigma }) = self.heading() {
             let residual = wrap_angle_rad(value - yaw_rad);
             let turned = PathResidual { direction: [0.0; 2], lever: 1.0, residual, sigma, ..at };
-            comparison.add_residual(names[2], turned, [value - residual, value]);
+            comparison.add_residual("rest heading", turned, [value - residual, value]);
         }
     }
 }

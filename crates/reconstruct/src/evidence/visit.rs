@@ -20,7 +20,7 @@ pub trait Item: Clone + Default + PartialEq {
 /// What the card of an item is put beside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Group {
-    /// What was found at the scene and on the struck car.
+    /// What was found at the scene, on the struck car and in recorders.
     Scene,
     /// What is known of the cars.
     Cars,

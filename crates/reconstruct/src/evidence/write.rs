@@ -89,6 +89,7 @@ mod tests {
 
     use super::*;
     use crate::evidence::examples::read;
+    use impactlab_core::vehicle::Wheel;
 
     fn shipped() -> Vec<PathBuf> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -148,6 +149,15 @@ mod tests {
             [[mark]]
             wheel = "FL"
             points_m = [[1, 2], [3, 4]]
+            [[striking_mark]]
+            wheel = "FL"
+            kind = "side-slip"
+            points_m = [[1, 3], [3, 5]]
+            sigma_m = 0.2
+            [striking_edr]
+            speed_before_m_s = 21
+            delta_v_y_min_m_s = -2
+            delta_v_y_max_m_s = -1
             [[position]]
             time_s = 1.1
             x_m = 20
@@ -166,5 +176,14 @@ mod tests {
         "#;
         let evidence = read(all);
         assert_eq!(read(&evidence.to_toml()), evidence, "{}", evidence.to_toml());
+        let json = serde_json::to_string(&evidence).unwrap();
+        assert_eq!(serde_json::from_str::<Evidence>(&json).unwrap(), evidence, "{json}");
+        let mirror = evidence.mirrored();
+        let [mark] = &mirror.striking_marks[..] else { panic!("one mark: {mirror:?}") };
+        assert_eq!((mark.wheel, &mark.points_m[1]), (Wheel::FrontRight, &[3.0, -5.0]));
+        let edr = mirror.striking_edr.unwrap();
+        assert_eq!(edr.delta_v_y(), Some([1.0, 2.0]));
+        assert_eq!(edr.speed_before().unwrap().value, 21.0);
+        assert_eq!(mirror.mirrored(), evidence);
     }
 }

@@ -5,6 +5,7 @@ use crate::evidence::Measured;
 use crate::likelihood::discrepancy::{Discrepancy, PathResidual, student};
 use crate::likelihood::track::Track;
 use crate::{CollisionMotion, Latent};
+use impactlab_core::vehicle::{Manoeuvre, VehicleParameters};
 
 /// Degrees of freedom of the Student distributions of single numbers.
 pub(crate) const SINGLE_DEGREES_OF_FREEDOM: f64 = 4.0;
@@ -24,14 +25,29 @@ pub struct EvidenceTerm {
     pub distance: f64,
 }
 
-/// What a motion says of the evidence so far.
+/// One of the cars of a motion, with its path.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ComparedCar<'a> {
+    /// The car as it was simulated.
+    pub vehicle: &'a VehicleParameters,
+    /// What was done to it.
+    pub manoeuvre: &'a Manoeuvre,
+    /// Its path.
+    pub track: &'a Track,
+    /// Its speed before the impact, m/s.
+    pub speed_before_m_s: f64,
+    /// What stands before the names of its terms.
+    pub prefix: &'static str,
+}
+
+/// What a motion says of the evidence of one car so far.
 pub(crate) struct Comparison<'a> {
     /// What the forward model errs by.
     pub discrepancy: &'a Discrepancy,
     /// The motion.
     pub motion: &'a CollisionMotion,
-    /// The path of the car that the evidence is about.
-    pub track: &'a Track,
+    /// The car that the evidence is about.
+    pub car: ComparedCar<'a>,
     /// Logarithm of the likelihood, without that of the residuals of the path.
     pub log_likelihood: f64,
     /// Residuals of the path, whose errors go together.
@@ -46,19 +62,18 @@ impl<'a> Comparison<'a> {
     pub fn new(
         discrepancy: &'a Discrepancy,
         motion: &'a CollisionMotion,
-        track: &'a Track,
+        car: ComparedCar<'a>,
         wants_terms: bool,
     ) -> Self {
         let (path, terms) = (Vec::new(), Vec::new());
-        Self { discrepancy, motion, track, log_likelihood: 0.0, path, terms, wants_terms }
+        Self { discrepancy, motion, car, log_likelihood: 0.0, path, terms, wants_terms }
     }
 
-    /// The same motion with the path of the other car.
-    pub fn along<'b>(&self, track: &'b Track) -> Comparison<'b>
-    where
-        'a: 'b,
-    {
-        Comparison::new(self.discrepancy, self.motion, track, self.wants_terms)
+    /// Adds what the same motion says of the evidence of the other car.
+    pub fn add(&mut self, other: Comparison<'_>) {
+        let (log_likelihood, terms) = other.into_terms();
+        self.log_likelihood += log_likelihood;
+        self.terms.extend(terms);
     }
 
     /// Logarithm of the likelihood, and the terms.
@@ -73,7 +88,7 @@ impl<'a> Comparison<'a> {
 
     /// Standard deviation of the place where a wheel begins or ceases to slide, at a point of the path, m.
     pub fn onset_sigma_m(&self, idx: usize) -> f64 {
-        self.discrepancy.onset_sigma_m(self.track.travelled_m[idx])
+        self.discrepancy.onset_sigma_m(self.car.track.travelled_m[idx])
     }
 
     /// Adds a term that is told.
@@ -87,7 +102,8 @@ impl<'a> Comparison<'a> {
         distance: f64,
     ) {
         if self.wants_terms {
-            self.terms.push(EvidenceTerm { name: name.into(), unit, expected, found, distance });
+            let name = format!("{}{name}", self.car.prefix);
+            self.terms.push(EvidenceTerm { name, unit, expected, found, distance });
         }
     }
 
@@ -113,7 +129,7 @@ impl<'a> Comparison<'a> {
 
     /// Adds the likelihood of that block.
     pub fn add_path(&mut self) {
-        self.log_likelihood += self.discrepancy.log_density(&self.path, self.track.whole_m());
+        self.log_likelihood += self.discrepancy.log_density(&self.path, self.car.track.whole_m());
     }
 
     /// A number by itself.

@@ -9,7 +9,7 @@ use crate::likelihood::ReconstructionTarget;
 
 impl ReconstructionTarget {
     /// Evidence of the kind and the accuracy of that of this case, of another motion: rest pose and
-    /// positions with an error of the path that they share, and the recorded speed.
+    /// positions with an error of the path that they share, and the recorded speeds.
     ///
     /// Marks, a recorded change of velocity and the rest pose of the striking car stay as they are: the
     /// likelihood of a mark depends on which place of the path is nearest to it, and bounds may be
@@ -22,6 +22,7 @@ impl ReconstructionTarget {
         }
         let mut evidence = self.evidence().clone();
         evidence.marks.clear();
+        evidence.striking_marks.clear();
         let discrepancy = self.discrepancy();
         let (residuals, whole_m) = evidence.path_residuals(discrepancy, motion)?;
         let noise: Vec<f64> = residuals.iter().map(|_| StandardNormal.sample(rng)).collect();
@@ -37,12 +38,17 @@ impl ReconstructionTarget {
         for found in &mut evidence.positions {
             found.x_m.iter_mut().chain(&mut found.y_m).for_each(&mut add);
         }
-        if let Some(edr) = &mut evidence.edr
-            && let Some(Measured { sigma, .. }) = edr.speed_before()
-        {
-            let error: f64 = StandardNormal.sample(rng);
-            let value = motion.impact.struck_speed_m_s + sigma * error;
-            edr.speed_before_m_s = Some(Measured { value, sigma }.into());
+        for (edr, speed_m_s) in [
+            (&mut evidence.edr, motion.impact.struck_speed_m_s),
+            (&mut evidence.striking_edr, motion.impact.striking_speed_m_s),
+        ] {
+            if let Some(edr) = edr
+                && let Some(Measured { sigma, .. }) = edr.speed_before()
+            {
+                let error: f64 = StandardNormal.sample(rng);
+                let value = speed_m_s + sigma * error;
+                edr.speed_before_m_s = Some(Measured { value, sigma }.into());
+            }
         }
         Some(evidence)
     }

@@ -14,7 +14,7 @@ pub use discrepancy::Discrepancy;
 pub use fit::EvidenceFit;
 pub use target::ReconstructionTarget;
 
-pub(crate) use comparison::{Comparison, SINGLE_DEGREES_OF_FREEDOM};
+pub(crate) use comparison::{ComparedCar, Comparison, SINGLE_DEGREES_OF_FREEDOM};
 pub(crate) use discrepancy::{PathResidual, student};
 pub(crate) use onset::Onset;
 pub(crate) use track::{Nearest, Track};

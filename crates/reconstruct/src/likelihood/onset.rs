@@ -1,8 +1,8 @@
 //! Where a wheel leaves a mark: where it slides by more than 8° or is locked, above 1 m/s, as in
 //! [`tire_marks`](impactlab_core::vehicle::tire_marks).
 
-use crate::CollisionMotion;
-use crate::likelihood::track::{Track, WheelTrack};
+use crate::likelihood::comparison::ComparedCar;
+use crate::likelihood::track::WheelTrack;
 use impactlab_core::units::STANDARD_GRAVITY_M_S2;
 use impactlab_core::vehicle::{
     LARGEST_MARK_GAP_M, VehicleParameters, Wheel, WheelEffort, friction_at, leaves_mark,
@@ -19,18 +19,18 @@ pub(crate) struct Onset {
 }
 
 impl Onset {
-    pub fn new(motion: &CollisionMotion, track: &Track, wheel: Wheel, path: &WheelTrack) -> Self {
-        let held = motion.manoeuvre.controls.wheels.as_ref();
-        let zones = &motion.manoeuvre.friction_zones;
-        let states = track.points.iter().zip(&path.velocity_m_s).zip(&path.at_m);
+    pub fn new(car: ComparedCar<'_>, wheel: Wheel, path: &WheelTrack) -> Self {
+        let held = car.manoeuvre.controls.wheels.as_ref();
+        let zones = &car.manoeuvre.friction_zones;
+        let states = car.track.points.iter().zip(&path.velocity_m_s).zip(&path.at_m);
         let (is_marking, is_locked) = states
             .map(|((at, &[u, w]), &place_m)| {
-                let friction = friction_at(zones, place_m, motion.vehicle.tires.friction);
+                let friction = friction_at(zones, place_m, car.vehicle.tires.friction);
                 let efforts = held.and_then(|held| held.at(at.time_s));
                 let efforts = efforts.unwrap_or([WheelEffort::FREE; 4]);
                 let speed = u.hypot(w);
                 let along = u.abs() / (speed + 1e-6);
-                let is_locked = locks(&motion.vehicle, friction, wheel, &efforts, along);
+                let is_locked = locks(car.vehicle, friction, wheel, &efforts, along);
                 (leaves_mark([u, w], is_locked), is_locked)
             })
             .unzip();

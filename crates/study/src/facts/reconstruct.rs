@@ -124,7 +124,12 @@ impl ReconstructReport {
                 known(mark.mean_distance_m),
                 known(mark.largest_distance_m),
             ];
-            Fact::row(Value::Phrase(mark.wheel.label().to_owned()), values)
+            let wheel = Value::Phrase(mark.wheel.label().to_owned());
+            let name = match mark.is_of_striking_car {
+                true => Value::Joined(vec![Value::Term(Term::StrikingCar), wheel], ", "),
+                false => wheel,
+            };
+            Fact::row(name, values)
         };
         let columns =
             [Term::FoundLength, Term::ComputedLength, Term::MeanDistance, Term::LargestDistance];

@@ -7,7 +7,7 @@ use crate::app::panels::reconstruction::fields::{
     FieldRows, ShownFields, is_narrow, sentence_case,
 };
 use crate::app::panels::vehicle::{chosen_label, evidence_vehicle_ui};
-use crate::app::reconstruction::ReconstructionCommand;
+use crate::app::reconstruction::{MarkKey, ReconstructionCommand};
 use impactlab_core::units::UnitSystem;
 use impactlab_reconstruct::evidence::{
     Damage, Evidence, Group, Item, Items, STRIKING_CAR, STRUCK_CAR, Section,
@@ -30,7 +30,7 @@ pub fn cards_ui(
     ui: &mut Ui,
     evidence: &mut Evidence,
     sheets: SheetChoices<'_>,
-    adds_to: Option<usize>,
+    adds_to: Option<MarkKey>,
     units: UnitSystem,
 ) -> Option<ReconstructionCommand> {
     ui.menu_button((looks::icon(Icon::Plus), "Add evidence"), |ui| {
@@ -53,9 +53,9 @@ pub fn cards_ui(
 fn icon(section: &Section) -> Icon {
     match section.key {
         "rest" | "striking_rest" => Icon::Flag,
-        "mark" => Icon::Route,
+        "mark" | "striking_mark" => Icon::Route,
         "damage" => Icon::Hammer,
-        "edr" => Icon::Cpu,
+        "edr" | "striking_edr" => Icon::Cpu,
         "position" => Icon::Video,
         "struck_car" | "striking_car" => Icon::Car,
         "after" => Icon::CarFront,
@@ -68,7 +68,7 @@ struct Cards<'u, 's> {
     ui: &'u mut Ui,
     units: UnitSystem,
     sheets: SheetChoices<'s>,
-    adds_to: Option<usize>,
+    adds_to: Option<MarkKey>,
     group: Group,
     command: Option<ReconstructionCommand>,
 }

@@ -3,7 +3,7 @@
 
 use egui::{ComboBox, Response, Ui};
 
-use crate::app::reconstruction::ReconstructionCommand;
+use crate::app::reconstruction::{MarkKey, ReconstructionCommand};
 use crate::app::widgets::{EmptyField, optional_quantity};
 use impactlab_core::ranges::Range;
 use impactlab_core::units::{UnitSystem, percent};
@@ -41,8 +41,8 @@ pub struct FieldRows<'u> {
     pub shown: ShownFields,
     /// Whether the second number of a row stands below the first.
     pub is_narrow: bool,
-    /// The item to which clicks in the scene add points.
-    pub adds_to: Option<usize>,
+    /// The mark to which clicks in the scene add points.
+    pub adds_to: Option<MarkKey>,
     /// What the user asks for beside the edits.
     pub command: Option<ReconstructionCommand>,
 }
@@ -146,9 +146,10 @@ impl Fields for FieldRows<'_> {
         let name = self.ui.label(sigma.field.label);
         self.sigma(sigma, None, sigma_m).labelled_by(name.id);
         self.ui.end_row();
-        let (_, idx) = self.item;
+        let (section, idx) = self.item;
+        let mark = idx.map(|idx| MarkKey { section, idx });
         self.ui.label(format!("{} points", points_m.len()));
-        let is_adding = idx.is_some() && self.adds_to == idx;
+        let is_adding = mark.is_some() && self.adds_to == mark;
         let hint = "Then click along the mark in the scene, from where it starts";
         let adds = self.ui.selectable_label(is_adding, "Add points").on_hover_text(hint);
         self.second_half();
@@ -159,7 +160,7 @@ impl Fields for FieldRows<'_> {
         }
         self.ui.end_row();
         if adds.clicked() {
-            self.command = Some(ReconstructionCommand::AddPoints(idx.filter(|_| !is_adding)));
+            self.command = Some(ReconstructionCommand::AddPoints(mark.filter(|_| !is_adding)));
         }
     }
 

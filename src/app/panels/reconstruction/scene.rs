@@ -13,7 +13,7 @@ use crate::app::panels::reconstruction::{OUTDATED, notice_ui};
 use crate::app::panels::scene::{clock_ui, scene_heading_ui};
 use crate::app::panes::PaneContext;
 use crate::app::reconstruction::{
-    CarsSource, EvidencePreview, FollowedParticle, LiveParticles, PreparedReconstruction,
+    CarsSource, EvidencePreview, FollowedParticle, LiveParticles, MarkKey, PreparedReconstruction,
     ReconstructedCars, ReconstructionCommand, ShownPaths,
 };
 use crate::app::scene::SceneSettings;
@@ -132,7 +132,7 @@ fn kind_ui(ui: &mut Ui, shows_cars: &mut bool) {
 fn plan_ui(
     ui: &mut Ui,
     preview: &EvidencePreview,
-    adds_to: Option<usize>,
+    adds_to: Option<MarkKey>,
     resets: bool,
     mut figure: Figure,
     commands: &mut Vec<Command>,

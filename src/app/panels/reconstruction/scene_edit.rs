@@ -2,13 +2,16 @@
 
 use egui::{Id, TextStyle, Ui};
 
+use crate::app::reconstruction::MarkKey;
 use impactlab_core::collision::Footprint;
 use impactlab_core::ranges::{EVIDENCE_HEADING, EVIDENCE_POSITION};
 use impactlab_core::units::Unit;
 use impactlab_document::figure::{FigureElement, Role, STRIKING_AT_REST, STRUCK_AT_REST};
 use impactlab_draw::FigureResponse;
 use impactlab_reconstruct::Cars;
-use impactlab_reconstruct::evidence::{Evidence, RestPose};
+use impactlab_reconstruct::evidence::{
+    Bounds, Choice, Evidence, Field, Fields, Item, Items, PointsMut, RestPose, Section, Sigma, Word,
+};
 
 /// Distance from the pointer at which a handle is taken, points.
 const REACH: f64 = 14.0;
@@ -43,7 +46,7 @@ pub struct SceneEdit {
     id: Id,
     /// Lengths from the CG to the front ends, struck car first, m.
     front_m: [f64; 2],
-    adds_to: Option<usize>,
+    adds_to: Option<MarkKey>,
     drag: Option<Drag>,
     /// Whether the pointer was over a handle in the frame before.
     is_near: bool,
@@ -53,7 +56,7 @@ impl SceneEdit {
     /// What is being edited in this frame.
     ///
     /// - `adds_to`: the mark to which clicks add points.
-    pub fn begin(ui: &Ui, cars: &Cars, adds_to: Option<usize>) -> Self {
+    pub fn begin(ui: &Ui, cars: &Cars, adds_to: Option<MarkKey>) -> Self {
         let id = Id::unique("edit of the reconstructed scene");
         let front = |car: &impactlab_reconstruct::Car| {
             Footprint::from(&car.parameters.geometry).cg_from_front_m
@@ -107,7 +110,7 @@ impl SceneEdit {
         let near = shown.pointer.and_then(|at| self.nearest(evidence, si(at), reach_m));
         ui.data_mut(|data| data.insert_temp(self.id, near.is_some()));
         if let (Some(mark), Some(at)) = (self.adds_to, shown.clicked) {
-            add_point(evidence, mark, si(at));
+            AddPoint { mark, at_m: si(at) }.add_to(evidence);
         }
         let Some([from, to]) = shown.drag.map(|ends| ends.map(si)) else {
             ui.data_mut(|data| data.remove::<Drag>(self.id));
@@ -192,12 +195,41 @@ fn place_of(rest: &RestPose, is_struck: bool) -> [f64; 2] {
 }
 
 /// Adds a point at the end of a mark.
-fn add_point(evidence: &mut Evidence, mark: usize, at: [f64; 2]) {
-    if let Some(mark) = evidence.marks.get_mut(mark)
-        && at.iter().all(|value| EVIDENCE_POSITION.contains(*value))
-    {
-        mark.points_m.push(at.map(|value| rounded(value, 0.01)));
+struct AddPoint {
+    mark: MarkKey,
+    at_m: [f64; 2],
+}
+
+impl AddPoint {
+    fn add_to(mut self, evidence: &mut Evidence) {
+        if self.at_m.iter().all(|value| EVIDENCE_POSITION.contains(*value)) {
+            evidence.items(&mut self);
+        }
     }
+}
+
+impl Items for AddPoint {
+    fn item(&mut self, section: &'static Section, idx: Option<usize>, item: &mut impl Item) {
+        if section.key == self.mark.section && idx == Some(self.mark.idx) {
+            item.fields(self);
+        }
+    }
+}
+
+impl Fields for AddPoint {
+    fn points(&mut self, _: &Field, _: &Sigma, points: PointsMut<'_>) {
+        points.points_m.push(self.at_m.map(|value| rounded(value, 0.01)));
+    }
+
+    fn number(&mut self, _: &Field, _: &mut Option<f64>) {}
+
+    fn bounds(&mut self, _: &Field, _: &mut Option<Bounds>) {}
+
+    fn choice<W: Word>(&mut self, _: &Choice, _: &mut W) {}
+
+    fn optional_choice<W: Word>(&mut self, _: &Choice, _: &mut Option<W>) {}
+
+    fn choices<W: Word>(&mut self, _: &Choice, _: &mut Option<Vec<W>>) {}
 }
 
 /// The nearest multiple of a step, so that a dragged number is one that a person would write.
@@ -231,6 +263,9 @@ mod tests {
         [[mark]]
         wheel = "RR"
         points_m = [[1, 0], [9, 1]]
+        [[striking_mark]]
+        wheel = "RL"
+        points_m = [[2, 3], [8, 3]]
     "#;
 
     fn evidence() -> Evidence {
@@ -239,13 +274,13 @@ mod tests {
     }
 
     /// The evidence after frames in each of which the figure said something, in the unit of its axes.
-    fn edited(adds_to: Option<usize>, frames: &[FigureResponse]) -> Evidence {
+    fn edited(adds_to: Option<MarkKey>, frames: &[FigureResponse]) -> Evidence {
         edited_from(evidence(), adds_to, frames)
     }
 
     fn edited_from(
         mut evidence: Evidence,
-        adds_to: Option<usize>,
+        adds_to: Option<MarkKey>,
         frames: &[FigureResponse],
     ) -> Evidence {
         let context = Context::default();
@@ -299,8 +334,13 @@ mod tests {
         let unit = Quantity::Length.display_unit(UnitSystem::Us);
         let clicked = Some([unit.from_si(15.0), unit.from_si(2.5)]);
         let click = FigureResponse { clicked, ..FigureResponse::default() };
-        assert_eq!(edited(None, &[click]), evidence());
-        let marked = edited(Some(0), &[click]);
+        assert_eq!(edited(None, std::slice::from_ref(&click)), evidence());
+        let mark = |section| Some(MarkKey { section, idx: 0 });
+        let marked = edited(mark("mark"), std::slice::from_ref(&click));
         assert_eq!(marked.marks[0].points_m[2], [15.0, 2.5]);
+        assert_eq!(marked.striking_marks, evidence().striking_marks);
+        let marked = edited(mark("striking_mark"), &[click]);
+        assert_eq!(marked.striking_marks[0].points_m[2], [15.0, 2.5]);
+        assert_eq!(marked.marks, evidence().marks);
     }
 }

@@ -262,6 +262,11 @@ mod tests {
         y_m = 0
         [prior]
         restitution = [0.11, 0.29]
+        [[striking_mark]]
+        wheel = "FL"
+        points_m = [[1, 5], [3, 6]]
+        [striking_edr]
+        speed_before_m_s = 20
     "#;
 
     fn rows(language: Language) -> Vec<InputRow> {
@@ -295,6 +300,8 @@ mod tests {
         for (group, label) in [
             ("striking car", "mass"),
             ("striking car at rest", "X of the CG"),
+            ("tire mark of the striking car", "1: points"),
+            ("event data recorder of the striking car", "speed before the impact"),
             ("damage of the struck car", "angle of the cars"),
             ("position in a video", "1: Y of the CG"),
         ] {

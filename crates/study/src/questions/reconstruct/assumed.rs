@@ -151,14 +151,14 @@ pub(super) fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Cave
 ///
 /// - `are_followed`: whether both cars are followed through later contacts.
 pub(super) fn unused(evidence: &Evidence, are_followed: bool) -> Vec<Caveat> {
-    let Evidence { after, striking_after, striking_rest, prior, .. } = evidence;
+    let Evidence { after, striking_after, prior, .. } = evidence;
     let striking_brakes = prior.striking_brake_start_s.or(prior.striking_brake_share);
     let is_striking_stated = *striking_after != After::default() || striking_brakes.is_some();
-    if striking_rest.is_none() && is_striking_stated && !are_followed {
+    if !evidence.follows_striking_car() && is_striking_stated && !are_followed {
         return vec![Caveat::not_used(
             "wheels and driver of the striking car after the impact",
-            "its place of rest is not among the evidence ([striking_rest]), so that its way is not \
-             followed",
+            "nothing of its way is among the evidence ([striking_rest], [[striking_mark]], \
+             [striking_edr]), so that it is not followed",
         )];
     }
     let both = [

@@ -3,7 +3,7 @@
 use crate::ReconstructAnswer;
 use impactlab_core::units::NumberFormat;
 use impactlab_core::vehicle::{Path, TireMark};
-use impactlab_reconstruct::{Mode, QuantityEstimate, ReconstructionTarget};
+use impactlab_reconstruct::{Mode, QuantityEstimate, ReconstructionTarget, StrikingMotion};
 
 /// Paths that are drawn.
 const N_PATHS: usize = 40;
@@ -18,7 +18,8 @@ pub struct ReconstructedPaths {
     pub median: Option<NamedPath>,
     /// The same of each other course of events.
     pub others: Vec<NamedPath>,
-    /// The marks that the tires of the struck car leave in the motion of `median`.
+    /// The marks that the tires leave in the motion of `median`: those of the struck car, and those of the
+    /// striking car where it is followed.
     pub marks: Vec<TireMark>,
 }
 
@@ -95,7 +96,11 @@ fn followed(
     let nearest = answer.posterior.nearest_to_median(members, quantities)?;
     let z = std::slice::from_ref(answer.particles.z.get(nearest)?);
     let model = answer.target.model();
-    let mut motions = model.motions(z, |motion| (motion.tire_marks(), motion.path));
+    let mut motions = model.motions(z, |motion| {
+        let mut marks = motion.tire_marks();
+        marks.extend(motion.striking.iter().flat_map(StrikingMotion::tire_marks));
+        (marks, motion.path)
+    });
     let (marks, path) = motions.pop()?;
     Some((NamedPath { name: name.into(), path }, marks))
 }

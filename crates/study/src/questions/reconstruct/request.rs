@@ -397,17 +397,18 @@ fn compared_marks(
     quantities: &[QuantityEstimate],
     modes: &[Mode],
 ) -> Vec<MarkComparison> {
-    let found = &target.evidence().marks;
+    let evidence = target.evidence();
+    if evidence.marks.is_empty() && evidence.striking_marks.is_empty() {
+        return Vec::new();
+    }
     let all: Vec<usize> = (0..particles.z.len()).collect();
     let median = match modes.first() {
         Some(course) => posterior.nearest_to_median(&course.members, &course.quantities),
         None => posterior.nearest_to_median(&all, quantities),
     };
-    let Some(z) = median.and_then(|idx| particles.z.get(idx)).filter(|_| !found.is_empty()) else {
-        return Vec::new();
-    };
-    let computed = target.model().motions(std::slice::from_ref(z), |motion| motion.tire_marks());
-    MarkComparison::all(found, &computed.concat())
+    let Some(z) = median.and_then(|idx| particles.z.get(idx)) else { return Vec::new() };
+    let compared = |motion| MarkComparison::of_both_cars(evidence, &motion);
+    target.model().motions(std::slice::from_ref(z), compared).concat()
 }
 
 /// How far the sampling is: half of it is reaching the posterior.
