@@ -3,6 +3,8 @@
 
 mod estimates;
 mod known;
+mod pair_evidence;
+mod recorded_car;
 mod scores;
 mod staged;
 mod summary;
@@ -11,6 +13,7 @@ pub use estimates::{
     EstimatedQuantity, MethodEstimates, QuantityDistribution, ReconstructionMethod, SCORED,
 };
 pub use known::KnownEvidence;
+pub use pair_evidence::{PairEvidence, PairEvidenceError};
 pub use scores::{CaseScore, ScoredQuantity};
 pub use staged::{StagedCollisions, StagedSplit, TrueQuantities};
 pub use summary::{MethodSummary, QuantitySummary, SUFFICIENT_ESS};

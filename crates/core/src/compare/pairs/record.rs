@@ -16,7 +16,7 @@ use crate::data::{
     AttributeColumn, Attributes, CASES_FILE, Channel, DataError, SeriesError, Table, TimeSeries,
     TomlError, TomlFile, named_cases, names_a_file,
 };
-use crate::ranges::{CONTACT_HEIGHT, CONTROL_TIME, ROAD_FRICTION};
+use crate::ranges::{CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, CONTROL_TIME, ROAD_FRICTION};
 use crate::vehicle::{
     Controls, DrivenAxle, Manoeuvre, MultibodyRecord, OUTPUT_INTERVAL_S, SteerHistory,
     VehicleParameters, WheelEffort, WheelHistory,
@@ -29,6 +29,10 @@ const HEIGHT: AttributeColumn =
     AttributeColumn { name: "contact_height_m", range: CONTACT_HEIGHT, is_needed: false };
 const FIRST_CONTACT: AttributeColumn =
     AttributeColumn { name: "first_contact_s", range: CONTROL_TIME, is_needed: false };
+const PLACE_X: AttributeColumn =
+    AttributeColumn { name: "contact_x_m", range: CONTACT_X, is_needed: false };
+const PLACE_Y: AttributeColumn =
+    AttributeColumn { name: "contact_y_m", range: CONTACT_Y, is_needed: false };
 
 /// Share of the front axle in the brake torque of a car of which only the sum is recorded: a usual
 /// layout of the brakes of a car.
@@ -62,6 +66,8 @@ pub struct PairAttributes {
 pub struct RecordedContact {
     /// When it begins, s; `None` if it is not said.
     pub first_s: Option<f64>,
+    /// Where the struck car is touched first, body axes from its CG, m; `None` if it is not said.
+    pub place_m: Option<[f64; 2]>,
     /// Start and end of each phase of contact, s; empty if they are not said.
     pub phases_s: Vec<[f64; 2]>,
     /// Contact force on the struck car over time, world axes, N: means over the interval that
@@ -171,6 +177,7 @@ impl PairRecords {
         };
         let contact = RecordedContact {
             first_s: row.optional(&FIRST_CONTACT)?,
+            place_m: row.optional(&PLACE_X)?.zip(row.optional(&PLACE_Y)?).map(<[f64; 2]>::from),
             phases_s: phases_s(row),
             force_world_n: [
                 columns.numbers("contact_fx_n")?.unwrap_or_default(),
