@@ -150,7 +150,7 @@ impl Prior {
     pub fn with_later_contacts(mut self, evidence: &Evidence) -> Self {
         let stiffness = log_normal(1.0, CONTACT_STIFFNESS_SCATTER, 0.3, 3.0);
         self.assume(Latent::ContactStiffnessFactor, stiffness);
-        if evidence.striking_rest.is_none() {
+        if !evidence.follows_striking_car() {
             self.add_striking_ending(evidence);
         }
         self

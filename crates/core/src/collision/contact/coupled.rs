@@ -12,11 +12,10 @@
 //! it. While the vehicles are apart, both take steps of the classical Runge–Kutta method that follow their
 //! speed (`vehicle/held_force.rs`). Force and moments are equal and opposite, so that momentum and angular momentum
 //! of both vehicles together change by the tires alone.
-//! In contact the step is 2 ms, or half of it and so on down to 0.25 ms, so that ω h stays below 0.2, with
-//! ω from the stiffness of the contact on unloading and the masses at the contact point or from friction
-//! and damping, and so that the outlines slide along each other by less than a quarter of an element. It
-//! is 0.5 ms before the first force of a contact and under a known force, 1 ms while the outlines are near
-//! each other, and 10 ms while they cannot meet within that time.
+//! The step is 0.5 ms in contact, 0.25 ms where ω h would exceed 0.2, with ω from the stiffness of the
+//! contact on unloading and the masses at the contact point or from friction and damping, and 1 or 2 ms
+//! where ω h stays below 0.1 and the outlines slide along each other by less than a quarter of an element.
+//! It is 1 ms while the outlines are near each other, and 10 ms while they cannot meet within that time.
 //! Contact may begin anew at any time. Where the force of the first contact is known, it drives both
 //! vehicles while it lasts (`first_force.rs`).
 
@@ -51,6 +50,9 @@ const USUAL_TICKS: usize = 2;
 
 /// Largest ω h of a contact, and of the decay of velocities in it.
 const MAX_RATE_TIMES_STEP: f64 = 0.2;
+
+/// The same of steps that are longer than usual.
+const LONG_RATE_TIMES_STEP: f64 = 0.1;
 
 /// Longest way that the outlines may slide along each other over a step of a contact, m: a quarter of an
 /// element.
@@ -257,10 +259,12 @@ impl<'a> PairRun<'a> {
         let longest = if self.first_force.is_some() {
             USUAL_TICKS
         } else if self.contact_rate_1_s > 0.0 {
-            let by_rate_s = MAX_RATE_TIMES_STEP / self.contact_rate_1_s;
+            let usual_s = self.tick_s * USUAL_TICKS as f64;
+            let is_stiff = self.contact_rate_1_s * usual_s > MAX_RATE_TIMES_STEP;
+            let by_rate_s = LONG_RATE_TIMES_STEP / self.contact_rate_1_s;
             let by_slide_s = LONGEST_SLIDE_M / speed_m_s;
             let ticks = (by_rate_s.min(by_slide_s) / self.tick_s) as usize;
-            ticks.clamp(1, LONGEST_CONTACT_TICKS)
+            ticks.clamp(if is_stiff { 1 } else { USUAL_TICKS }, LONGEST_CONTACT_TICKS)
         } else if is_apart(TICKS_PER_OUTPUT) {
             TICKS_PER_OUTPUT
         } else if is_apart(NEAR_TICKS) {
