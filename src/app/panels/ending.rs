@@ -3,17 +3,17 @@
 use egui::{CollapsingHeader, ComboBox, Grid, Ui};
 use strum::VariantArray;
 
-use crate::app::widgets::quantity_field;
+use crate::app::widgets::{EmptyField, optional_quantity, quantity_field};
 use impactlab_core::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DEAD_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING,
-    ESC_THRESHOLD, LARGEST_STEERING_WHEEL_ANGLE, PIT_START, REACTION_TIME, SIDESLIP, STEER_ANGLE,
-    STEERING_RATIO, STEERING_WHEEL_ANGLE, STRUCK_TURN,
+    ESC_THRESHOLD, LARGEST_STEERING_WHEEL_ANGLE, PIT_START, REACTION_TIME, Range, SIDESLIP,
+    STEER_ANGLE, STEERING_RATIO, STEERING_WHEEL_ANGLE, STRUCK_TURN,
 };
 use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::{
     AntiLock, Braking, Countersteer, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving,
-    Ending, EngineBraking, HeldSteer, PitDriver, PitEnd, StabilityControl, USUAL_STEERING_RATIO,
-    Wheel,
+    Ending, EngineBraking, HeldSteer, PitDriver, PitEnd, StabilityControl, TurnSide,
+    USUAL_STEERING_RATIO, Wheel,
 };
 
 /// Share of the friction with which a driver brakes hard.
@@ -88,42 +88,50 @@ fn brake_fields(ui: &mut Ui, brake: &mut Option<Braking>, units: UnitSystem) {
 fn esc_fields(ui: &mut Ui, esc: &mut Option<StabilityControl>, units: UnitSystem) {
     switch(ui, "Stability control (with anti-lock system)", esc, StabilityControl::default());
     let Some(esc) = esc else { return };
-    quantity_field(ui, "on from an oversteer of", &mut esc.threshold_rad_s, &ESC_THRESHOLD, units);
-    quantity_field(ui, "dead time", &mut esc.dead_time_s, &DEAD_TIME, units);
+    let usual = StabilityControl::default().acting();
+    let mut field =
+        |label, value, usual, range| optional_field(ui, label, value, usual, range, units);
+    let threshold = &mut esc.threshold_rad_s;
+    field("on from an oversteer of", threshold, usual.threshold_rad_s, &ESC_THRESHOLD);
+    field("dead time", &mut esc.dead_time_s, usual.dead_time_s, &DEAD_TIME);
     let gives_up = &mut esc.gives_up_sideslip_rad;
-    quantity_field(ui, "gives up at a side slip of (90°: never)", gives_up, &SIDESLIP, units);
+    let label = "gives up at a side slip of (90°: never)";
+    field(label, gives_up, usual.gives_up_sideslip_rad, &SIDESLIP);
 }
 
 fn countersteer_fields(ui: &mut Ui, driver: &mut Option<Countersteer>, units: UnitSystem) {
     switch(ui, "The driver countersteers", driver, Countersteer::default());
     let Some(driver) = driver else { return };
-    quantity_field(ui, "reaction time", &mut driver.delay_s, &REACTION_TIME, units);
-    let largest_rad = &mut driver.largest_steering_wheel_rad;
+    let usual = Countersteer::default().acting();
+    let mut field =
+        |label, value, usual, range| optional_field(ui, label, value, usual, range, units);
+    field("reaction time", &mut driver.delay_s, usual.delay_s, &REACTION_TIME);
+    let (largest_rad, usual_rad) =
+        (&mut driver.largest_steering_wheel_rad, usual.largest_steering_wheel_rad);
     let label = "angle of the steering wheel at most";
-    quantity_field(ui, label, largest_rad, &LARGEST_STEERING_WHEEL_ANGLE, units);
+    field(label, largest_rad, usual_rad, &LARGEST_STEERING_WHEEL_ANGLE);
 }
 
 fn pit_fields(ui: &mut Ui, driver: &mut Option<PitDriver>, units: UnitSystem) {
     switch(ui, "The driver turns into the other car (PIT)", driver, PitDriver::default());
     let Some(driver) = driver else { return };
-    quantity_field(ui, "from (less than 0: before it)", &mut driver.start_s, &PIT_START, units);
+    let usual = driver.acting();
+    let mut field =
+        |label, value, usual, range| optional_field(ui, label, value, usual, range, units);
+    field("from (less than 0: before it)", &mut driver.start_s, usual.start_s, &PIT_START);
     let angle_rad = &mut driver.steering_wheel_rad;
-    quantity_field(ui, "steering wheel, to the left", angle_rad, &STEERING_WHEEL_ANGLE, units);
-    quantity_field(ui, "turned within", &mut driver.turn_s, &BRAKE_RISE, units);
-    let name = ui.label("in the end");
-    ComboBox::from_id_salt("in the end")
-        .selected_text(pit_end_label(driver.end))
-        .show_ui(ui, |ui| {
-            for &option in PitEnd::ALL {
-                ui.selectable_value(&mut driver.end, option, pit_end_label(option));
-            }
-        })
-        .response
-        .labelled_by(name.id);
-    ui.end_row();
-    if driver.end != PitEnd::KeepPushing {
-        let turn_rad = &mut driver.struck_turn_rad;
-        quantity_field(ui, "once the struck car has turned by", turn_rad, &STRUCK_TURN, units);
+    let usual_rad = usual.steering_wheel_rad;
+    field("steering wheel, to the left", angle_rad, usual_rad, &STEERING_WHEEL_ANGLE);
+    if driver.steering_wheel_rad.is_none() {
+        choice_field(ui, "to the side", &mut driver.side, TurnSide::ALL, TurnSide::word);
+    }
+    let turn_s = &mut driver.turn_s;
+    optional_field(ui, "turned within", turn_s, usual.turn_s, &BRAKE_RISE, units);
+    let ends: Vec<_> = [None].into_iter().chain(PitEnd::ALL.iter().copied().map(Some)).collect();
+    choice_field(ui, "in the end", &mut driver.end, &ends, pit_end_label);
+    if driver.end != Some(PitEnd::KeepPushing) {
+        let (label, turn_rad) = ("once the struck car has turned by", &mut driver.struck_turn_rad);
+        optional_field(ui, label, turn_rad, usual.struck_turn_rad, &STRUCK_TURN, units);
         switch(ui, "or after a time", &mut driver.longest_s, USUAL_PUSHING_S);
         if let Some(longest_s) = &mut driver.longest_s {
             quantity_field(ui, "time", longest_s, &CONTROL_TIME, units);
@@ -131,12 +139,51 @@ fn pit_fields(ui: &mut Ui, driver: &mut Option<PitDriver>, units: UnitSystem) {
     }
 }
 
-fn pit_end_label(end: PitEnd) -> &'static str {
+fn pit_end_label(end: Option<PitEnd>) -> &'static str {
     match end {
-        PitEnd::Straighten => "straightens and coasts",
-        PitEnd::Brake => "straightens and brakes",
-        PitEnd::KeepPushing => "keeps pushing",
+        None => "not known",
+        Some(PitEnd::Straighten) => "straightens and coasts",
+        Some(PitEnd::Brake) => "straightens and brakes",
+        Some(PitEnd::KeepPushing) => "keeps pushing",
     }
+}
+
+/// Draws a row for a number of a driver or system, which has its usual value where it is empty, and is drawn in a
+/// forecast of both vehicles.
+fn optional_field(
+    ui: &mut Ui,
+    label: &str,
+    value: &mut Option<f64>,
+    usual_si: f64,
+    range: &Range,
+    units: UnitSystem,
+) {
+    let name = ui.label(label);
+    let text = format!("({})", range.quantity.shown(usual_si, units));
+    let empty = EmptyField { text: &text, start_si: usual_si };
+    optional_quantity(ui, value, empty, range, units).labelled_by(name.id);
+    ui.end_row();
+}
+
+/// Draws a row for a choice.
+fn choice_field<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    label: &str,
+    value: &mut T,
+    options: &[T],
+    word: impl Fn(T) -> &'static str,
+) {
+    let name = ui.label(label);
+    ComboBox::from_id_salt(label)
+        .selected_text(word(*value))
+        .show_ui(ui, |ui| {
+            for &option in options {
+                ui.selectable_value(value, option, word(option));
+            }
+        })
+        .response
+        .labelled_by(name.id);
+    ui.end_row();
 }
 
 fn engine_fields(ui: &mut Ui, engine: &mut Option<EngineBraking>, units: UnitSystem) {
@@ -164,17 +211,7 @@ fn drive_fields(ui: &mut Ui, drive: &mut Option<Driving>, units: UnitSystem) {
 }
 
 fn axle_field(ui: &mut Ui, label: &str, axle: &mut DrivenAxle) {
-    let name = ui.label(label);
-    ComboBox::from_id_salt(label)
-        .selected_text(axle.word())
-        .show_ui(ui, |ui| {
-            for &option in DrivenAxle::ALL {
-                ui.selectable_value(axle, option, option.word());
-            }
-        })
-        .response
-        .labelled_by(name.id);
-    ui.end_row();
+    choice_field(ui, label, axle, DrivenAxle::ALL, DrivenAxle::word);
 }
 
 /// How a wheel is after the impact.

@@ -12,7 +12,7 @@ use impactlab_core::ranges::{
 };
 use impactlab_core::vehicle::{
     AntiLock, Braking, Countersteer, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving,
-    Ending, EngineBraking, HeldSteer, StabilityControl, USUAL_STEERING_RATIO, Wheel,
+    Ending, EngineBraking, HeldSteer, StabilityControl, Wheel,
 };
 
 /// What the driver does and what the damage does to the wheels.
@@ -44,10 +44,9 @@ pub(in crate::cli) struct EndingArgs {
     /// model year 2012 on in the United States, and from 2015 on in the European Union
     #[arg(long)]
     esc: bool,
-    /// The driver countersteers after this reaction time
-    #[arg(long, value_name = "TIME", value_parser = number(REACTION_TIME), num_args = 0..=1,
-        default_missing_value = "0.8")]
-    countersteer: Option<f64>,
+    /// The driver countersteers, after this reaction time if it is known
+    #[arg(long, value_name = "TIME", value_parser = number(REACTION_TIME), num_args = 0..=1)]
+    countersteer: Option<Option<f64>>,
     /// The engine brakes with this deceleration: 0.5, 0.05g
     #[arg(long, value_name = "DECELERATION", value_parser = number(ENGINE_BRAKING))]
     engine_braking: Option<f64>,
@@ -173,7 +172,7 @@ impl EndingArgs {
             esc: self.esc.then(StabilityControl::default),
             countersteer: self.countersteer.map(|delay_s| Countersteer {
                 delay_s,
-                steering_ratio: self.steering_ratio.unwrap_or(USUAL_STEERING_RATIO),
+                steering_ratio: self.steering_ratio,
                 ..Countersteer::default()
             }),
             pit: None,

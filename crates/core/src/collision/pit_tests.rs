@@ -44,9 +44,9 @@ fn column(motion: &PairMotion, vehicle: usize, channel: Channel) -> &[f64] {
 fn striking(end: PitEnd) -> Ending {
     // The striking car is to the left of the struck one and turns to the right.
     let driver = PitDriver {
-        steering_wheel_rad: -1.8,
-        struck_turn_rad: 30_f64.to_radians(),
-        end,
+        steering_wheel_rad: Some(-1.8),
+        struck_turn_rad: Some(30_f64.to_radians()),
+        end: Some(end),
         ..PitDriver::default()
     };
     Ending { pit: Some(driver), ..Ending::default() }

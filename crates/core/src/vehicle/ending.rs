@@ -185,7 +185,7 @@ impl Ending {
         *self == Self::default()
     }
 
-    /// Every number with its name and its range.
+    /// Every stated number with its name and its range.
     pub fn ranges(&self) -> Vec<(String, f64, Range)> {
         let mut numbers = Vec::new();
         let mut add = |name: &str, value, range| numbers.push((name.to_owned(), value, range));

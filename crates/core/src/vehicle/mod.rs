@@ -49,7 +49,7 @@ pub use controls::{Controls, SteerHistory, WheelHistory};
 pub use crush::{CrushParameters, CrushStiffness};
 pub use draws::{Sensitivity, VehicleDraws};
 pub use drivers::{
-    AntiLock, ClosedLoop, Countersteer, Market, PitDriver, PitEnd, StabilityControl,
+    AntiLock, ClosedLoop, Countersteer, Market, PitDriver, PitEnd, StabilityControl, TurnSide,
     esc_is_standard,
 };
 pub use ending::{

@@ -45,7 +45,7 @@ fn systems_of_unknown_cars_pass_the_standard() {
     let vehicle = oversteering();
     let amplitude = *series(&vehicle).1.last().unwrap();
     for z in [-1.5, -0.7, 0.7, 1.5] {
-        let esc = StabilityControl::drawn([z; StabilityControl::N_DRAWN]);
+        let esc = StabilityControl::default().drawn([z; StabilityControl::N_DRAWN]);
         let outcome = sine_with_dwell_outcome(&vehicle, amplitude, Some(esc)).unwrap();
         assert!(outcome.is_stable() && outcome.is_responsive(), "{z}: {outcome:?}");
     }

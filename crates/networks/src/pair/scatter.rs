@@ -37,7 +37,7 @@ pub struct PairScatter {
     pub steer_log: f64,
     /// Of the logarithm of a factor on the brake and drive torques of a vehicle.
     pub torque_log: f64,
-    /// Whether numbers of drivers and systems are drawn that nobody said.
+    /// Whether numbers of drivers and systems are drawn that are not stated.
     pub drivers: bool,
     /// Of the logarithm of the rolling resistance of a vehicle.
     pub rolling_log: f64,
@@ -176,7 +176,7 @@ impl PairLatents {
     }
 
     /// What a driver did, of a draw: the same with factors on steer angles and torques, and with numbers
-    /// of drivers and systems that nobody said.
+    /// of drivers and systems that are not stated.
     pub fn manoeuvre(
         &self,
         draw: usize,

@@ -48,13 +48,13 @@ pub(crate) fn drivers_by_network(struck: &StruckVehicle) -> Option<Caveat> {
     })
 }
 
-/// What is drawn of drivers and systems of which nothing else was said.
+/// What is drawn of drivers and systems, since nobody states it.
 ///
 /// - `vehicles`: the struck and the striking one.
 pub(crate) fn drawn_drivers(vehicles: [&StruckVehicle; 2]) -> Vec<Caveat> {
     let of_vehicle = |(vehicle, role): (&StruckVehicle, &str)| {
         let drawn = vehicle.controls.closed_loop.iter().flat_map(ClosedLoop::distributions);
-        let note = |text: &str| {
+        let note = |text: String| {
             Caveat::new(CaveatKind::Note, format!("drawn of the {role} vehicle, {text}"))
         };
         drawn.map(note).collect::<Vec<_>>()

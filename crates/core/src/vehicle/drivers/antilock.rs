@@ -14,31 +14,49 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ranges::{ESC_SPEED, PEAK_SHARE, Range};
-use crate::vehicle::drivers::numbers::{Number, named, uniform};
+use crate::vehicle::drivers::numbers::{Number, drawn_words, named, uniform};
 
-/// An anti-lock system.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// An anti-lock system: what is stated of it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct AntiLock {
-    /// Largest braking force that it allows over the largest that the road holds, 0.1 to 1.
-    pub share_of_peak: f64,
-    /// Speed below which it lets the wheels lock, m/s, so that the vehicle stops: 2 m/s.
-    pub least_speed_m_s: f64,
+    /// Largest braking force that it allows over the largest that the road holds, 0.1 to 1; 0.95 if not
+    /// given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub share_of_peak: Option<f64>,
+    /// Speed below which it lets the wheels lock, m/s, so that the vehicle stops; 2 m/s if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub least_speed_m_s: Option<f64>,
 }
 
-impl Default for AntiLock {
-    fn default() -> Self {
-        Self { share_of_peak: 0.95, least_speed_m_s: 2.0 }
-    }
+/// An anti-lock system as it acts; see [`AntiLock`] for the fields.
+#[derive(Debug, Clone, Copy)]
+pub struct ActingAntiLock {
+    pub share_of_peak: f64,
+    pub least_speed_m_s: f64,
 }
 
 impl AntiLock {
     /// Number of standard normal variables that [`AntiLock::drawn`] takes.
     pub const N_DRAWN: usize = 1;
 
-    /// A system of an unknown car: its share of the peak is uniform from 0.9 to 0.98.
-    pub fn drawn([share]: [f64; Self::N_DRAWN]) -> Self {
-        Self { share_of_peak: uniform(share, [0.9, 0.98]), ..Self::default() }
+    /// The same with what is not stated drawn: the share of the peak is uniform from 0.9 to 0.98.
+    pub fn drawn(&self, [share]: [f64; Self::N_DRAWN]) -> Self {
+        let share_of_peak = self.share_of_peak.or(Some(uniform(share, [0.9, 0.98])));
+        Self { share_of_peak, ..*self }
+    }
+
+    /// What [`AntiLock::drawn`] draws, in words.
+    pub(super) fn distributions(&self) -> Vec<&'static str> {
+        drawn_words([(self.share_of_peak.is_some(), "0.9 to 0.98 of the peak friction")])
+    }
+
+    /// The system with usual values where nothing is stated.
+    pub fn acting(&self) -> ActingAntiLock {
+        ActingAntiLock {
+            share_of_peak: self.share_of_peak.unwrap_or(0.95),
+            least_speed_m_s: self.least_speed_m_s.unwrap_or(2.0),
+        }
     }
 
     /// Every number with its name without the unit, and its range.
@@ -49,12 +67,14 @@ impl AntiLock {
         ]
     }
 
-    /// Every number with its name and its range.
+    /// Every stated number with its name and its range.
     pub fn ranges(&self) -> Vec<(String, f64, Range)> {
         let mut copy = *self;
         named(copy.numbers())
     }
+}
 
+impl ActingAntiLock {
     /// Braking force that is left of what the pedal asks for, N.
     ///
     /// - `pedal_n`: force that the pedal asks for;

@@ -2,7 +2,6 @@
 //!
 //! [`Controls`]: crate::vehicle::Controls
 
-use crate::vehicle::drivers::numbers::keep_said;
 use crate::vehicle::drivers::{AntiLock, Countersteer, PitDriver, StabilityControl};
 use crate::vehicle::{Braking, Ending};
 
@@ -57,8 +56,7 @@ impl ClosedLoop {
     pub const N_DRAWN: usize =
         StabilityControl::N_DRAWN + AntiLock::N_DRAWN + Countersteer::N_DRAWN + PitDriver::N_DRAWN;
 
-    /// The same with every number drawn that nobody said, see `drawn` of each driver and system. A number
-    /// that differs from the usual one was said.
+    /// The same with every number drawn that is not stated, see `drawn` of each driver and system.
     ///
     /// - `z`: standard normal variables, in their order.
     #[must_use]
@@ -68,63 +66,33 @@ impl ClosedLoop {
         let abs_z = take(&mut normals);
         let countersteer_z = take(&mut normals);
         let pit_z = take(&mut normals);
-        let esc = self.esc.map(|mut known| {
-            let mut drawn = StabilityControl::drawn(esc_z);
-            let mut usual = StabilityControl::default();
-            keep_said(known.numbers(), usual.numbers(), drawn.numbers());
-            drawn
-        });
-        let abs = self.abs.map(|mut known| {
-            let mut drawn = AntiLock::drawn(abs_z);
-            keep_said(known.numbers(), AntiLock::default().numbers(), drawn.numbers());
-            drawn
-        });
-        let countersteer = self.countersteer.map(|mut known| {
-            let mut drawn = Countersteer::drawn(countersteer_z);
-            keep_said(known.numbers(), Countersteer::default().numbers(), drawn.numbers());
-            drawn
-        });
-        let pit = self.pit.map(|mut known| {
-            let (mut drawn, mut usual) = (known.drawn(pit_z), PitDriver::default());
-            if known.end != usual.end {
-                drawn.end = known.end;
-            }
-            keep_said(known.numbers(), usual.numbers(), drawn.numbers());
-            drawn
-        });
-        Self { esc, abs, countersteer, pit, ..self.clone() }
+        Self {
+            esc: self.esc.map(|esc| esc.drawn(esc_z)),
+            abs: self.abs.map(|abs| abs.drawn(abs_z)),
+            brake: self.brake,
+            countersteer: self.countersteer.map(|driver| driver.drawn(countersteer_z)),
+            pit: self.pit.map(|driver| driver.drawn(pit_z)),
+        }
     }
 
-    /// What [`ClosedLoop::drawn`] draws, for a person; empty where nothing acts.
-    pub fn distributions(&self) -> Vec<&'static str> {
+    /// What [`ClosedLoop::drawn`] draws, for a person; empty where nothing acts or everything is stated.
+    pub fn distributions(&self) -> Vec<String> {
         let all = [
-            (
-                self.esc.is_some(),
-                "stability control: threshold 4 to 8 deg/s, full braking from 0.15 to \
-             0.35 rad/s of error, slip 0.1 to 0.15, rear share 0.25 to 0.75, dead time 0.1 to 0.2 s, \
-             rise 0.15 to 0.25 s, gives up at 30° to 60° of side slip or, in a third, never",
-            ),
-            (self.abs.is_some(), "anti-lock system: 0.9 to 0.98 of the peak friction"),
-            (
-                self.countersteer.is_some(),
-                "countersteering: after 0.4 to 1.8 s (90 %, median 0.8), at up \
-             to 180° to 540° and 300 to 500 deg/s of the steering wheel, gains on side slip 0.6 to 1.4 \
-             and on the yaw rate 0 to 0.3 s",
-            ),
-            (
-                self.pit.is_some(),
-                "driver of the PIT: 90° to 180° of the steering wheel within 0.2 to \
-             0.5 s, up to 2 to 4 m/s², until the struck car has turned by 30° to 90°, each end equally \
-             likely",
-            ),
+            ("stability control", self.esc.as_ref().map(StabilityControl::distributions)),
+            ("anti-lock system", self.abs.as_ref().map(AntiLock::distributions)),
+            ("countersteering", self.countersteer.as_ref().map(Countersteer::distributions)),
+            ("driver of the PIT", self.pit.as_ref().map(PitDriver::distributions)),
         ];
-        all.into_iter().filter(|(acts, _)| *acts).map(|(_, text)| text).collect()
+        all.into_iter()
+            .filter_map(|(name, drawn)| Some((name, drawn.filter(|drawn| !drawn.is_empty())?)))
+            .map(|(name, drawn)| format!("{name}: {}", drawn.join(", ")))
+            .collect()
     }
 
     /// The last instant at which something begins or changes by the clock alone, s.
     pub(in crate::vehicle) fn last_change_s(&self) -> f64 {
         let brake = self.brake.map(|brake| brake.start_s + brake.rise_s);
-        let reaction = self.countersteer.map(|driver| driver.delay_s);
+        let reaction = self.countersteer.map(|driver| driver.acting().delay_s);
         let pit = self.pit.and_then(|driver| driver.longest_s);
         [brake, reaction, pit].into_iter().flatten().fold(0.0, f64::max)
     }

@@ -1,8 +1,10 @@
 //! Drivers and systems along a motion.
 
-use crate::vehicle::drivers::stability_control::StabilityState;
-use crate::vehicle::drivers::striking_driver::PitState;
-use crate::vehicle::drivers::{AntiLock, ClosedLoop, StabilityControl};
+use crate::vehicle::drivers::antilock::ActingAntiLock;
+use crate::vehicle::drivers::stability_control::{ActingStabilityControl, StabilityState};
+use crate::vehicle::drivers::striking_driver::{ActingPitDriver, PitState};
+use crate::vehicle::drivers::struck_driver::ActingCountersteer;
+use crate::vehicle::drivers::{AntiLock, ClosedLoop, Countersteer, PitDriver, StabilityControl};
 use crate::vehicle::tire::{WheelEffort, WheelHold};
 use crate::vehicle::{
     Braking, VehicleConstants, VehicleInput, VehicleParameters, VehicleState, Wheel,
@@ -13,8 +15,10 @@ use crate::vehicle::{
 pub(in crate::vehicle) struct ClosedLoopRun<'a> {
     closed_loop: &'a ClosedLoop,
     vehicle: &'a VehicleParameters,
-    esc: StabilityState,
-    pit: PitState,
+    esc: Option<(ActingStabilityControl, StabilityState)>,
+    abs: Option<ActingAntiLock>,
+    countersteer: Option<ActingCountersteer>,
+    pit: Option<(ActingPitDriver, PitState)>,
     /// How far a car that was struck by this one has turned since the first contact, rad.
     pub struck_turn_rad: Option<f64>,
     steer_rad: Option<f64>,
@@ -24,11 +28,15 @@ pub(in crate::vehicle) struct ClosedLoopRun<'a> {
 
 impl<'a> ClosedLoopRun<'a> {
     pub fn new(closed_loop: &'a ClosedLoop, vehicle: &'a VehicleParameters) -> Self {
+        let esc = closed_loop.esc.as_ref().map(StabilityControl::acting);
+        let pit = closed_loop.pit.as_ref().map(PitDriver::acting);
         Self {
             closed_loop,
             vehicle,
-            esc: StabilityState::default(),
-            pit: PitState::default(),
+            esc: esc.map(|esc| (esc, StabilityState::default())),
+            abs: closed_loop.abs.as_ref().map(AntiLock::acting),
+            countersteer: closed_loop.countersteer.as_ref().map(Countersteer::acting),
+            pit: pit.map(|driver| (driver, PitState::default())),
             struck_turn_rad: None,
             steer_rad: None,
             braking_n: [0.0; 4],
@@ -66,17 +74,16 @@ impl<'a> ClosedLoopRun<'a> {
         histories: &VehicleInput<f64>,
         constants: &VehicleConstants<f64>,
     ) {
-        let ClosedLoop { esc, abs, brake, countersteer, pit } = self.closed_loop;
         let before = self.applied_to(*histories);
-        let mut pedals: [Option<Braking>; 2] = [*brake, None];
+        let mut pedals: [Option<Braking>; 2] = [self.closed_loop.brake, None];
         self.steer_rad = None;
-        if let Some(driver) = pit {
+        if let Some((driver, pit)) = &mut self.pit {
             let (vehicle, turn_rad) = (self.vehicle, self.struck_turn_rad);
-            let demand = self.pit.sample(driver, vehicle, time_s, x, before.steer_rad, turn_rad);
+            let demand = pit.sample(driver, vehicle, time_s, x, before.steer_rad, turn_rad);
             (self.steer_rad, self.drive_n, pedals[1]) =
                 (demand.steer_rad, demand.drive_n, demand.brake);
         }
-        if let Some(driver) = countersteer {
+        if let Some(driver) = &self.countersteer {
             let steer_rad = || driver.steer_rad(time_s, x, before.steer_rad);
             self.steer_rad = self.steer_rad.or_else(steer_rad);
         }
@@ -86,18 +93,20 @@ impl<'a> ClosedLoopRun<'a> {
         let steer_rad = self.steer_rad.unwrap_or(histories.steer_rad);
         let holds = constants.wheel_holds(x, &VehicleInput { steer_rad, ..before });
         let speed_m_s = x.vx_body_m_s.hypot(x.vy_body_m_s);
-        let by_esc = esc.as_ref().map(|esc| {
-            let asked_n = self.esc.sample(esc, self.vehicle, time_s, x, steer_rad);
-            self.held_at_slip_n(esc, &asked_n, &holds)
-        });
+        let asked_n = self
+            .esc
+            .as_mut()
+            .map(|(esc, state)| (*esc, state.sample(esc, self.vehicle, time_s, x, steer_rad)));
+        let by_esc = asked_n.map(|(esc, asked_n)| self.held_at_slip_n(&esc, &asked_n, &holds));
         let efforts = histories.wheels.unwrap_or([WheelEffort::FREE; 4]);
         for wheel in Wheel::ALL {
             let idx = wheel.index();
             let of_pedal = |pedal: &Braking| pedal.force_n(self.vehicle, wheel, time_s);
             let pedal_n: f64 = pedals.iter().flatten().map(of_pedal).fold(0.0, f64::max);
             let (other_n, largest_n) = (efforts[idx].braking_n, holds[idx].largest_braking_n);
-            let allowed_n = |abs: &AntiLock| abs.allowed_n(pedal_n, other_n, largest_n, speed_m_s);
-            let by_pedal_n = abs.as_ref().map_or(pedal_n, allowed_n);
+            let allowed_n =
+                |abs: ActingAntiLock| abs.allowed_n(pedal_n, other_n, largest_n, speed_m_s);
+            let by_pedal_n = self.abs.map_or(pedal_n, allowed_n);
             self.braking_n[idx] = by_esc.map_or(by_pedal_n, |by_esc| by_pedal_n.max(by_esc[idx]));
         }
     }
@@ -105,12 +114,12 @@ impl<'a> ClosedLoopRun<'a> {
     /// The forces that a stability control asks for, limited by the slip at which it holds the wheels, N.
     fn held_at_slip_n(
         &self,
-        esc: &StabilityControl,
+        esc: &ActingStabilityControl,
         asked_n: &[f64; 4],
         holds: &[WheelHold; 4],
     ) -> [f64; 4] {
         let tires = &self.vehicle.tires;
-        let abs = self.closed_loop.abs.unwrap_or_default();
+        let abs = self.abs.unwrap_or_else(|| AntiLock::default().acting());
         Wheel::ALL.map(|wheel| {
             let WheelHold { friction_n, largest_braking_n, slip_angle_rad } = holds[wheel.index()];
             let coefficient = match wheel.is_front() {

@@ -7,8 +7,10 @@
 //! countersteer = true             # the driver countersteers; numbers of Countersteer: countersteer_…
 //! countersteer_delay_s = 0.8      # optional
 //! pit = "brake"                   # the driver turns into another car; in the end "brake",
-//!                                 # "straighten" or "keep_pushing"; numbers of PitDriver: pit_…
+//!                                 # "straighten" or "keep_pushing", or it is "unknown"; numbers of
+//!                                 # PitDriver: pit_…
 //! pit_steering_wheel_deg = 135    # optional, positive to the left
+//! pit_side = "right"              # optional, without the angle; "left"
 //! pit_axle = "rear"               # optional; "front", "all"
 //! pit_longest_s = 1.5             # optional
 //! ```
@@ -19,11 +21,14 @@ use crate::data::{TomlError, TomlTable};
 use crate::ranges::CONTROL_TIME;
 use crate::vehicle::drivers::numbers::Number;
 use crate::vehicle::{
-    AntiLock, Countersteer, DrivenAxle, Ending, PitDriver, PitEnd, StabilityControl,
+    AntiLock, Countersteer, DrivenAxle, Ending, PitDriver, PitEnd, StabilityControl, TurnSide,
 };
 
 /// Keys with their values.
 type Entries = Vec<(String, toml::Value)>;
+
+/// Word for the end of a pushing of which nobody says how it ends.
+const UNKNOWN_END: &str = "unknown";
 
 /// Reads the numbers whose keys begin with the name of a part.
 ///
@@ -35,8 +40,8 @@ fn read_numbers<const N: usize>(
 ) -> Result<Option<String>, TomlError> {
     let mut given = None;
     for (base, place, range) in numbers {
-        if let Some(value) = section.number(&format!("{part}_{base}"), &range)? {
-            *place = value;
+        *place = section.number(&format!("{part}_{base}"), &range)?;
+        if place.is_some() {
             given = Some(section.last_key());
         }
     }
@@ -85,9 +90,17 @@ pub(in crate::vehicle) fn read_countersteer(
 pub(in crate::vehicle) fn read_pit(
     section: &mut TomlTable<'_>,
 ) -> Result<Option<PitDriver>, TomlError> {
-    let end = section.choice("pit", PitEnd::VARIANTS)?;
+    let ends = [PitEnd::VARIANTS, &[UNKNOWN_END]].concat();
+    let end = section.choice("pit", &ends)?;
     let mut driver = PitDriver::default();
     let mut given = read_numbers(section, "pit", driver.numbers())?;
+    if let Some(idx) = section.choice("pit_side", TurnSide::VARIANTS)? {
+        driver.side = TurnSide::ALL.get(idx).copied().unwrap_or_default();
+        given = Some(section.last_key());
+        if driver.steering_wheel_rad.is_some() {
+            return Err(section.conflict("pit_steering_wheel"));
+        }
+    }
     if let Some(idx) = section.choice("pit_axle", DrivenAxle::VARIANTS)? {
         driver.axle = DrivenAxle::ALL.get(idx).copied().unwrap_or_default();
         given = Some(section.last_key());
@@ -96,8 +109,8 @@ pub(in crate::vehicle) fn read_pit(
     if driver.longest_s.is_some() {
         given = Some(section.last_key());
     }
-    match end.and_then(|idx| PitEnd::ALL.get(idx)) {
-        Some(&end) => Ok(Some(PitDriver { end, ..driver })),
+    match end {
+        Some(idx) => Ok(Some(PitDriver { end: PitEnd::ALL.get(idx).copied(), ..driver })),
         None if given.is_some() => Err(section.missing("pit")),
         None => Ok(None),
     }
@@ -124,7 +137,11 @@ pub(in crate::vehicle) fn entries(ending: &Ending) -> Entries {
         add("countersteer", true.into(), values(driver.ranges()));
     }
     if let Some(driver) = &ending.pit {
-        add("pit", driver.end.word().into(), values(driver.ranges()));
+        let end = driver.end.map_or(UNKNOWN_END, PitEnd::word);
+        add("pit", end.into(), values(driver.ranges()));
+        if driver.steering_wheel_rad.is_none() {
+            entries.push(("pit_side".to_owned(), driver.side.word().into()));
+        }
         entries.push(("pit_axle".to_owned(), driver.axle.word().into()));
     }
     entries
@@ -153,18 +170,43 @@ mod tests {
                     brake_abs_share_of_peak = 0.9";
         let ending = read(text).unwrap();
         let esc = ending.esc.unwrap();
-        assert!((esc.threshold_rad_s - 5_f64.to_radians()).abs() < 1e-12);
-        assert_eq!(esc.rise_s, StabilityControl::default().rise_s);
-        assert_eq!(ending.countersteer.unwrap().delay_s, 0.6);
+        assert!((esc.threshold_rad_s.unwrap() - 5_f64.to_radians()).abs() < 1e-12);
+        assert_eq!(esc.rise_s, None, "nobody states it");
+        assert_eq!(ending.countersteer.unwrap().delay_s, Some(0.6));
         let pit = ending.pit.unwrap();
-        assert!((pit.steering_wheel_rad + 120_f64.to_radians()).abs() < 1e-12);
-        assert_eq!((pit.end, pit.axle), (PitEnd::KeepPushing, DrivenAxle::Rear));
+        assert!((pit.steering_wheel_rad.unwrap() + 120_f64.to_radians()).abs() < 1e-12);
+        assert_eq!((pit.end, pit.axle), (Some(PitEnd::KeepPushing), DrivenAxle::Rear));
         assert_eq!(pit.longest_s, Some(2.0));
-        assert_eq!(ending.anti_lock().unwrap().share_of_peak, 0.9);
+        assert_eq!(ending.anti_lock().unwrap().share_of_peak, Some(0.9));
         let written: String =
             ending.entries().iter().map(|(key, value)| format!("{key} = {value}\n")).collect();
         assert_eq!(read(&written).unwrap(), ending, "{written}");
         assert!(read("esc = false\ncountersteer = false").unwrap().is_coasting());
+    }
+
+    /// A usual value that somebody states is another thing than one that nobody states, and stays so.
+    #[test]
+    fn what_is_stated_and_what_is_not_are_written_back() {
+        let written = |ending: &Ending| -> String {
+            ending.entries().iter().map(|(key, value)| format!("{key} = {value}\n")).collect()
+        };
+        let nothing = read("esc = true\ncountersteer = true\npit = \"unknown\"").unwrap();
+        assert_eq!(nothing.esc, Some(StabilityControl::default()));
+        assert_eq!(nothing.countersteer, Some(Countersteer::default()));
+        assert_eq!(nothing.pit, Some(PitDriver::default()));
+        let text = "esc = true\nesc_rise_s = 0.2\ncountersteer = true\ncountersteer_delay_s = 0.8\n\
+                    pit = \"brake\"\npit_side = \"right\"";
+        let usual = read(text).unwrap();
+        assert_eq!(usual.esc.unwrap().rise_s, Some(0.2));
+        let pit = usual.pit.unwrap();
+        assert_eq!((pit.end, pit.side), (Some(PitEnd::Brake), TurnSide::Right));
+        for ending in [&nothing, &usual] {
+            assert_eq!(&read(&written(ending)).unwrap(), ending, "{}", written(ending));
+            let json = serde_json::to_string(ending).unwrap();
+            assert_eq!(&serde_json::from_str::<Ending>(&json).unwrap(), ending, "{json}");
+        }
+        assert_ne!(nothing, usual);
+        assert!(!written(&nothing).contains("rise"), "{}", written(&nothing));
     }
 
     #[test]
@@ -179,7 +221,9 @@ mod tests {
             ("countersteer = true\ncountersteer_steering_ratio = 0", "expected 1 to 40"),
             ("pit_turn_s = 0.3", "pit is missing"),
             ("pit_axle = \"rear\"", "pit is missing"),
-            ("pit = \"stop\"", "\"straighten\" or \"brake\" or \"keep_pushing\""),
+            ("pit = \"stop\"", "\"brake\" or \"keep_pushing\" or \"unknown\""),
+            ("pit_side = \"left\"", "pit is missing"),
+            ("pit = \"brake\"\npit_side = \"left\"\npit_steering_wheel_deg = 90", "say the same"),
             ("pit = \"brake\"\nsteer_deg = 3", "say the same thing"),
         ] {
             let error = read(text).unwrap_err().to_string();

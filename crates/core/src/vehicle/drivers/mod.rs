@@ -15,7 +15,7 @@ pub use closed_loop::ClosedLoop;
 pub(super) use closed_loop_run::ClosedLoopRun;
 pub(super) use file::{entries, read_abs, read_countersteer, read_esc, read_pit};
 pub use stability_control::{Market, StabilityControl, esc_is_standard};
-pub use striking_driver::{PitDriver, PitEnd};
+pub use striking_driver::{PitDriver, PitEnd, TurnSide};
 pub use struck_driver::Countersteer;
 
 #[cfg(test)]

@@ -4,31 +4,23 @@ use crate::data::key_with_unit;
 use crate::numerics::normal_cdf;
 use crate::ranges::Range;
 
-/// A number: its name without the unit, its place and its range.
-pub(in crate::vehicle) type Number<'a> = (&'static str, &'a mut f64, Range);
+/// A number: its name without the unit, its place, `None` where nobody states it, and its range.
+pub(in crate::vehicle) type Number<'a> = (&'static str, &'a mut Option<f64>, Range);
 
-/// Numbers with their whole names, such as `rise_s`, and their ranges.
+/// Those numbers that are stated, with their whole names, such as `rise_s`, and their ranges.
 pub(super) fn named<const N: usize>(numbers: [Number<'_>; N]) -> Vec<(String, f64, Range)> {
     let named = |(base, value, range): Number<'_>| {
-        (key_with_unit(base, &range.quantity.si_unit()), *value, range)
+        let name = key_with_unit(base, &range.quantity.si_unit());
+        value.map(|value| (name, value, range))
     };
-    numbers.into_iter().map(named).collect()
+    numbers.into_iter().filter_map(named).collect()
 }
 
-/// Puts those numbers that stand at what nobody said in the place of those of a draw: what somebody said is
-/// known. Signs do not count.
+/// The distributions in words of those numbers that are not stated.
 ///
-/// - `known`: as they were said; `usual`: where nobody says them; `drawn`: gets those that were said.
-pub(super) fn keep_said<const N: usize>(
-    known: [Number<'_>; N],
-    usual: [Number<'_>; N],
-    drawn: [Number<'_>; N],
-) {
-    for (((_, known, _), (_, usual, _)), (_, drawn, _)) in known.into_iter().zip(usual).zip(drawn) {
-        if known.abs() != usual.abs() {
-            *drawn = *known;
-        }
-    }
+/// - `numbers`: whether each is stated, and how it is drawn if not.
+pub(super) fn drawn_words<const N: usize>(numbers: [(bool, &'static str); N]) -> Vec<&'static str> {
+    numbers.into_iter().filter(|(is_stated, _)| !is_stated).map(|(_, words)| words).collect()
 }
 
 /// A number that is uniform between two limits, from a standard normal variable.

@@ -28,37 +28,67 @@ use crate::ranges::{
     ESC_SPEED, ESC_THRESHOLD, REAR_BRAKE_SHARE, Range, SIDESLIP, SLIP_RATIO,
 };
 use crate::units::{KILOMETRE_PER_HOUR_M_S, STANDARD_GRAVITY_M_S2};
-use crate::vehicle::drivers::numbers::{Number, named, uniform};
+use crate::vehicle::drivers::numbers::{Number, drawn_words, named, uniform};
 use crate::vehicle::{OUTPUT_INTERVAL_S, VehicleParameters, VehicleState, Wheel};
 
-/// An electronic stability control.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// An electronic stability control: what is stated of it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct StabilityControl {
-    /// Time constant by which the error of the yaw rate is smoothed, s.
+    /// Time constant by which the error of the yaw rate is smoothed, s; 0.05 s if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub filter_s: Option<f64>,
+    /// Oversteer beyond which it comes on, rad/s; 4 to 8 deg/s in cars, 6 deg/s if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub threshold_rad_s: Option<f64>,
+    /// Share of the threshold below which it goes off, 0 to 1; a third if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub off_share: Option<f64>,
+    /// Speed below which it does nothing, m/s; 20 km/h if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub least_speed_m_s: Option<f64>,
+    /// Lateral acceleration of the largest reference yaw rate over μ g; 0.85 if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub acceleration_share: Option<f64>,
+    /// Oversteer at which it asks for the full braking force of a wheel, rad/s; 0.25 rad/s if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub full_error_rad_s: Option<f64>,
+    /// Slip ratio at which the wheels are held; 0.1 to 0.15 in cars, 0.125 if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slip_ratio: Option<f64>,
+    /// Side slip of the vehicle beyond which it brakes the outer rear wheel as well, rad; 10° if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rear_sideslip_rad: Option<f64>,
+    /// Braking force of the outer rear wheel over that of the outer front wheel, 0 to 1; 0.5 if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rear_share: Option<f64>,
+    /// Time from coming on to the first force of the brakes, s; 0.1 to 0.2 s in cars, 0.15 s if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dead_time_s: Option<f64>,
+    /// Time in which the force of a brake rises from nothing to its full value, or falls, s; 0.2 s if not
+    /// given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rise_s: Option<f64>,
+    /// Side slip beyond which it gives up, rad: 30° to 60°, 45° if not given. A system with 90° never does,
+    /// as it does not act on a vehicle that rolls backwards.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gives_up_sideslip_rad: Option<f64>,
+}
+
+/// A stability control as it acts; see [`StabilityControl`] for the fields.
+#[derive(Debug, Clone, Copy)]
+pub struct ActingStabilityControl {
     pub filter_s: f64,
-    /// Oversteer beyond which it comes on, rad/s; 4 to 8 deg/s in cars.
     pub threshold_rad_s: f64,
-    /// Share of the threshold below which it goes off, 0 to 1.
     pub off_share: f64,
-    /// Speed below which it does nothing, m/s.
     pub least_speed_m_s: f64,
-    /// Lateral acceleration of the largest reference yaw rate over μ g.
     pub acceleration_share: f64,
-    /// Oversteer at which it asks for the full braking force of a wheel, rad/s.
     pub full_error_rad_s: f64,
-    /// Slip ratio at which the wheels are held; 0.1 to 0.15 in cars.
     pub slip_ratio: f64,
-    /// Side slip of the vehicle beyond which it brakes the outer rear wheel as well, rad.
     pub rear_sideslip_rad: f64,
-    /// Braking force of the outer rear wheel over that of the outer front wheel, 0 to 1.
     pub rear_share: f64,
-    /// Time from coming on to the first force of the brakes, s; 0.1 to 0.2 s in cars.
     pub dead_time_s: f64,
-    /// Time in which the force of a brake rises from nothing to its full value, or falls, s.
     pub rise_s: f64,
-    /// Side slip beyond which it gives up, rad: 30° to 60°. A system with 90° never does, as it does
-    /// not act on a vehicle that rolls backwards.
     pub gives_up_sideslip_rad: f64,
 }
 
@@ -67,46 +97,63 @@ const NEVER_SHARE: f64 = 1.0 / 3.0;
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-impl Default for StabilityControl {
-    fn default() -> Self {
-        Self {
-            filter_s: 0.05,
-            threshold_rad_s: 6.0 * DEGREE,
-            off_share: 1.0 / 3.0,
-            least_speed_m_s: 20.0 * KILOMETRE_PER_HOUR_M_S,
-            acceleration_share: 0.85,
-            full_error_rad_s: 0.25,
-            slip_ratio: 0.125,
-            rear_sideslip_rad: 10.0 * DEGREE,
-            rear_share: 0.5,
-            dead_time_s: 0.15,
-            rise_s: 0.2,
-            gives_up_sideslip_rad: 45.0 * DEGREE,
-        }
-    }
-}
-
 impl StabilityControl {
     /// Number of standard normal variables that [`StabilityControl::drawn`] takes.
     pub const N_DRAWN: usize = 7;
 
-    /// A system of an unknown car. Uniform are the threshold (4 to 8 deg/s), the error of full braking
-    /// (0.15 to 0.35 rad/s), the slip (0.1 to 0.15), the rear share (0.25 to 0.75), the dead time (0.1 to
-    /// 0.2 s), the rise (0.15 to 0.25 s) and the side slip at which it gives up (30° to 60°; a third of
-    /// the systems never do).
-    pub fn drawn(z: [f64; Self::N_DRAWN]) -> Self {
+    /// The same with what is not stated drawn. Uniform are the threshold (4 to 8 deg/s), the error of full
+    /// braking (0.15 to 0.35 rad/s), the slip (0.1 to 0.15), the rear share (0.25 to 0.75), the dead time
+    /// (0.1 to 0.2 s), the rise (0.15 to 0.25 s) and the side slip at which it gives up (30° to 60°; a
+    /// third of the systems never do).
+    pub fn drawn(&self, z: [f64; Self::N_DRAWN]) -> Self {
         let [threshold, full_error, slip, rear, dead_time, rise, gives_up] = z;
         // The upper third of the last variable is that of systems which never give up.
         let gives_up_deg = uniform(gives_up, [30.0, 30.0 + 30.0 / (1.0 - NEVER_SHARE)]);
+        let gives_up_rad = if gives_up_deg > 60.0 { 90.0 } else { gives_up_deg } * DEGREE;
+        let threshold_rad_s = uniform(threshold, [4.0, 8.0]) * DEGREE;
         Self {
-            threshold_rad_s: uniform(threshold, [4.0, 8.0]) * DEGREE,
-            full_error_rad_s: uniform(full_error, [0.15, 0.35]),
-            slip_ratio: uniform(slip, [0.1, 0.15]),
-            rear_share: uniform(rear, [0.25, 0.75]),
-            dead_time_s: uniform(dead_time, [0.1, 0.2]),
-            rise_s: uniform(rise, [0.15, 0.25]),
-            gives_up_sideslip_rad: if gives_up_deg > 60.0 { 90.0 } else { gives_up_deg } * DEGREE,
-            ..Self::default()
+            threshold_rad_s: self.threshold_rad_s.or(Some(threshold_rad_s)),
+            full_error_rad_s: self.full_error_rad_s.or(Some(uniform(full_error, [0.15, 0.35]))),
+            slip_ratio: self.slip_ratio.or(Some(uniform(slip, [0.1, 0.15]))),
+            rear_share: self.rear_share.or(Some(uniform(rear, [0.25, 0.75]))),
+            dead_time_s: self.dead_time_s.or(Some(uniform(dead_time, [0.1, 0.2]))),
+            rise_s: self.rise_s.or(Some(uniform(rise, [0.15, 0.25]))),
+            gives_up_sideslip_rad: self.gives_up_sideslip_rad.or(Some(gives_up_rad)),
+            ..*self
+        }
+    }
+
+    /// What [`StabilityControl::drawn`] draws, in words.
+    pub(super) fn distributions(&self) -> Vec<&'static str> {
+        drawn_words([
+            (self.threshold_rad_s.is_some(), "threshold 4 to 8 deg/s"),
+            (self.full_error_rad_s.is_some(), "full braking from 0.15 to 0.35 rad/s of error"),
+            (self.slip_ratio.is_some(), "slip 0.1 to 0.15"),
+            (self.rear_share.is_some(), "rear share 0.25 to 0.75"),
+            (self.dead_time_s.is_some(), "dead time 0.1 to 0.2 s"),
+            (self.rise_s.is_some(), "rise 0.15 to 0.25 s"),
+            (
+                self.gives_up_sideslip_rad.is_some(),
+                "gives up at 30° to 60° of side slip or, in a third, never",
+            ),
+        ])
+    }
+
+    /// The system with usual values where nothing is stated.
+    pub fn acting(&self) -> ActingStabilityControl {
+        ActingStabilityControl {
+            filter_s: self.filter_s.unwrap_or(0.05),
+            threshold_rad_s: self.threshold_rad_s.unwrap_or(6.0 * DEGREE),
+            off_share: self.off_share.unwrap_or(1.0 / 3.0),
+            least_speed_m_s: self.least_speed_m_s.unwrap_or(20.0 * KILOMETRE_PER_HOUR_M_S),
+            acceleration_share: self.acceleration_share.unwrap_or(0.85),
+            full_error_rad_s: self.full_error_rad_s.unwrap_or(0.25),
+            slip_ratio: self.slip_ratio.unwrap_or(0.125),
+            rear_sideslip_rad: self.rear_sideslip_rad.unwrap_or(10.0 * DEGREE),
+            rear_share: self.rear_share.unwrap_or(0.5),
+            dead_time_s: self.dead_time_s.unwrap_or(0.15),
+            rise_s: self.rise_s.unwrap_or(0.2),
+            gives_up_sideslip_rad: self.gives_up_sideslip_rad.unwrap_or(45.0 * DEGREE),
         }
     }
 
@@ -128,12 +175,14 @@ impl StabilityControl {
         ]
     }
 
-    /// Every number with its name and its range.
+    /// Every stated number with its name and its range.
     pub fn ranges(&self) -> Vec<(String, f64, Range)> {
         let mut copy = *self;
         named(copy.numbers())
     }
+}
 
+impl ActingStabilityControl {
     /// Yaw rate that the driver asks for, rad/s.
     ///
     /// - `speed_m_s`: U, more than 0; `steer_rad`: δ.
@@ -187,7 +236,7 @@ impl StabilityState {
     /// - `steer_rad`: steer angle of the road wheels.
     pub fn sample(
         &mut self,
-        control: &StabilityControl,
+        control: &ActingStabilityControl,
         vehicle: &VehicleParameters,
         time_s: f64,
         x: &VehicleState<f64>,

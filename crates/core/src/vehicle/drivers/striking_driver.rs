@@ -20,7 +20,7 @@ use crate::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, PIT_START, Range, STEER_ANGLE, STEERING_RATIO,
     STEERING_WHEEL_ANGLE, STRUCK_TURN, THROTTLE_LIMIT,
 };
-use crate::vehicle::drivers::numbers::{Number, named, uniform};
+use crate::vehicle::drivers::numbers::{Number, drawn_words, named, uniform};
 use crate::vehicle::drivers::struck_driver::turned_towards;
 use crate::vehicle::{
     Braking, DEFAULT_BRAKE_RISE_S, DrivenAxle, USUAL_STEERING_RATIO, VehicleParameters,
@@ -69,70 +69,161 @@ impl PitEnd {
     }
 }
 
-/// The driver of the striking car in a PIT.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// The side to which a driver turns.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    Default,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+    strum::VariantNames,
+    JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum TurnSide {
+    /// To the left.
+    #[default]
+    Left,
+    /// To the right.
+    Right,
+}
+
+impl TurnSide {
+    /// Both of them.
+    pub const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
+
+    /// Its word in a file and in a list.
+    pub fn word(self) -> &'static str {
+        self.into()
+    }
+
+    /// 1 to the left, −1 to the right.
+    fn sign(self) -> f64 {
+        match self {
+            Self::Left => 1.0,
+            Self::Right => -1.0,
+        }
+    }
+
+    fn is_left(&self) -> bool {
+        *self == Self::Left
+    }
+}
+
+/// The driver of the striking car in a PIT: what is stated of him.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct PitDriver {
-    /// When the steering wheel begins to turn, s after the first contact; less than 0 before it.
-    pub start_s: f64,
-    /// Angle of the steering wheel, rad, positive to the left: 90° to 180° to either side.
-    pub steering_wheel_rad: f64,
-    /// Time in which it turns, s: 0.2 to 0.5 s.
-    pub turn_s: f64,
-    /// Angle of the steering wheel over that of the road wheels. Road wheels turn by at most 0.9 rad.
-    pub steering_ratio: f64,
+    /// When the steering wheel begins to turn, s after the first contact; less than 0 before it, 0 if not
+    /// given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start_s: Option<f64>,
+    /// The side to which the driver turns, where the angle of the steering wheel does not say it.
+    #[serde(skip_serializing_if = "TurnSide::is_left")]
+    pub side: TurnSide,
+    /// Angle of the steering wheel, rad, positive to the left: 90° to 180° to either side, 135° to `side`
+    /// if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steering_wheel_rad: Option<f64>,
+    /// Time in which it turns, s: 0.2 to 0.5 s, 0.35 s if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turn_s: Option<f64>,
+    /// Angle of the steering wheel over that of the road wheels; 16 if not given. Road wheels turn by at
+    /// most 0.9 rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steering_ratio: Option<f64>,
     /// The axle that is driven.
     pub axle: DrivenAxle,
-    /// Largest acceleration of the car alone by its engine, m/s².
-    pub largest_acceleration_m_s2: f64,
-    /// What the driver does in the end.
-    pub end: PitEnd,
+    /// Largest acceleration of the car alone by its engine, m/s²; 3 m/s² if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_acceleration_m_s2: Option<f64>,
+    /// What the driver does in the end; he brakes if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub end: Option<PitEnd>,
     /// Turn of the struck car since the first contact at which the driver ends the pushing, rad, to
-    /// either side. It counts only where both cars are followed together.
-    pub struck_turn_rad: f64,
+    /// either side; 45° if not given. It counts only where both cars are followed together.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub struck_turn_rad: Option<f64>,
     /// Time after the first contact at which the driver ends the pushing in any case, s; none if `None`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub longest_s: Option<f64>,
-    /// Braking force over the largest that the road can hold, of a driver who brakes in the end.
-    pub brake_share: f64,
+    /// Braking force over the largest that the road can hold, of a driver who brakes in the end; 0.8 if not
+    /// given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub brake_share: Option<f64>,
 }
 
-impl Default for PitDriver {
-    fn default() -> Self {
-        Self {
-            start_s: 0.0,
-            steering_wheel_rad: 135.0 * DEGREE,
-            turn_s: 0.35,
-            steering_ratio: USUAL_STEERING_RATIO,
-            axle: DrivenAxle::default(),
-            largest_acceleration_m_s2: 3.0,
-            end: PitEnd::default(),
-            struck_turn_rad: 45.0 * DEGREE,
-            longest_s: None,
-            brake_share: 0.8,
-        }
-    }
+/// The driver of a PIT as he acts; see [`PitDriver`] for the fields.
+#[derive(Debug, Clone, Copy)]
+pub struct ActingPitDriver {
+    pub start_s: f64,
+    pub steering_wheel_rad: f64,
+    pub turn_s: f64,
+    pub steering_ratio: f64,
+    pub axle: DrivenAxle,
+    pub largest_acceleration_m_s2: f64,
+    pub end: PitEnd,
+    pub struck_turn_rad: f64,
+    pub longest_s: Option<f64>,
+    pub brake_share: f64,
 }
 
 impl PitDriver {
     /// Number of standard normal variables that [`PitDriver::drawn`] takes.
     pub const N_DRAWN: usize = 5;
 
-    /// An unknown driver, who steers to the side and from the moment that are known. Uniform are the angle
-    /// of the steering wheel (90° to 180°), the time of the turn (0.2 to 0.5 s), the largest acceleration
-    /// (2 to 4 m/s²) and the turn of the struck car (30° to 90°); each end has the same probability.
+    /// The same with what is not stated drawn, but for the moment from which he steers. Uniform are the
+    /// angle of the steering wheel (90° to 180°), the time of the turn (0.2 to 0.5 s), the largest
+    /// acceleration (2 to 4 m/s²) and the turn of the struck car (30° to 90°); each end has the same
+    /// probability.
     pub fn drawn(&self, z: [f64; Self::N_DRAWN]) -> Self {
         let [angle, turn, acceleration, struck_turn, end] = z;
-        let angle_rad = uniform(angle, [90.0, 180.0]) * DEGREE;
+        let angle_rad = self.side.sign() * uniform(angle, [90.0, 180.0]) * DEGREE;
+        let acceleration_m_s2 = uniform(acceleration, [2.0, 4.0]);
+        let struck_turn_rad = uniform(struck_turn, [30.0, 90.0]) * DEGREE;
         let n_ends = PitEnd::ALL.len();
         let end_idx = uniform(end, [0.0, n_ends as f64]) as usize;
         Self {
-            steering_wheel_rad: angle_rad.copysign(self.steering_wheel_rad),
-            turn_s: uniform(turn, [0.2, 0.5]),
-            largest_acceleration_m_s2: uniform(acceleration, [2.0, 4.0]),
-            struck_turn_rad: uniform(struck_turn, [30.0, 90.0]) * DEGREE,
-            end: PitEnd::ALL[end_idx.min(n_ends - 1)],
+            steering_wheel_rad: self.steering_wheel_rad.or(Some(angle_rad)),
+            turn_s: self.turn_s.or(Some(uniform(turn, [0.2, 0.5]))),
+            largest_acceleration_m_s2: self.largest_acceleration_m_s2.or(Some(acceleration_m_s2)),
+            struck_turn_rad: self.struck_turn_rad.or(Some(struck_turn_rad)),
+            end: self.end.or(Some(PitEnd::ALL[end_idx.min(n_ends - 1)])),
             ..*self
+        }
+    }
+
+    /// What [`PitDriver::drawn`] draws, in words.
+    pub(super) fn distributions(&self) -> Vec<&'static str> {
+        drawn_words([
+            (self.steering_wheel_rad.is_some(), "90° to 180° of the steering wheel"),
+            (self.turn_s.is_some(), "turned within 0.2 to 0.5 s"),
+            (self.largest_acceleration_m_s2.is_some(), "up to 2 to 4 m/s²"),
+            (self.struck_turn_rad.is_some(), "until the struck car has turned by 30° to 90°"),
+            (self.end.is_some(), "each end equally likely"),
+        ])
+    }
+
+    /// The driver with usual values where nothing is stated.
+    pub fn acting(&self) -> ActingPitDriver {
+        let usual_rad = self.side.sign() * 135.0 * DEGREE;
+        ActingPitDriver {
+            start_s: self.start_s.unwrap_or(0.0),
+            steering_wheel_rad: self.steering_wheel_rad.unwrap_or(usual_rad),
+            turn_s: self.turn_s.unwrap_or(0.35),
+            steering_ratio: self.steering_ratio.unwrap_or(USUAL_STEERING_RATIO),
+            axle: self.axle,
+            largest_acceleration_m_s2: self.largest_acceleration_m_s2.unwrap_or(3.0),
+            end: self.end.unwrap_or_default(),
+            struck_turn_rad: self.struck_turn_rad.unwrap_or(45.0 * DEGREE),
+            longest_s: self.longest_s,
+            brake_share: self.brake_share.unwrap_or(0.8),
         }
     }
 
@@ -149,13 +240,15 @@ impl PitDriver {
         ]
     }
 
-    /// Every number with its name and its range.
+    /// Every stated number with its name and its range.
     pub fn ranges(&self) -> Vec<(String, f64, Range)> {
         let mut copy = *self;
         let longest = self.longest_s.map(|it| ("longest_s".to_owned(), it, CONTROL_TIME));
         named(copy.numbers()).into_iter().chain(longest).collect()
     }
+}
 
+impl ActingPitDriver {
     /// Full steer angle of the road wheels, rad.
     pub fn road_wheel_rad(&self) -> f64 {
         (self.steering_wheel_rad / self.steering_ratio).clamp(STEER_ANGLE.low, STEER_ANGLE.high)
@@ -192,7 +285,7 @@ impl PitState {
     ///   not followed, or not touched yet.
     pub fn sample(
         &mut self,
-        driver: &PitDriver,
+        driver: &ActingPitDriver,
         vehicle: &VehicleParameters,
         time_s: f64,
         x: &VehicleState<f64>,

@@ -19,7 +19,7 @@ use crate::ranges::{
     LARGEST_STEERING_WHEEL_ANGLE, REACTION_TIME, Range, SIDESLIP_GAIN, STEER_ANGLE, STEERING_RATIO,
     STEERING_WHEEL_RATE, YAW_RATE_GAIN,
 };
-use crate::vehicle::drivers::numbers::{Number, lognormal, named, uniform};
+use crate::vehicle::drivers::numbers::{Number, drawn_words, lognormal, named, uniform};
 use crate::vehicle::{OUTPUT_INTERVAL_S, USUAL_STEERING_RATIO, VehicleState};
 
 /// Median of the reaction time, s.
@@ -31,53 +31,88 @@ const LEAST_SPEED_M_S: f64 = 1.0;
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// A driver who countersteers.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// A driver who countersteers: what is stated of him.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Countersteer {
-    /// Time from the first contact to the first turn of the steering wheel, s.
-    pub delay_s: f64,
-    /// k_β: steer angle of the road wheels over the side slip.
-    pub sideslip_gain: f64,
-    /// k_r: steer angle of the road wheels over the yaw rate, s.
-    pub yaw_rate_gain_s: f64,
-    /// Largest angle of the steering wheel to either side, rad.
-    pub largest_steering_wheel_rad: f64,
-    /// Largest angular velocity of the steering wheel, rad/s.
-    pub steering_wheel_rate_rad_s: f64,
-    /// Angle of the steering wheel over that of the road wheels.
-    pub steering_ratio: f64,
+    /// Time from the first contact to the first turn of the steering wheel, s; 0.8 s if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub delay_s: Option<f64>,
+    /// k_β: steer angle of the road wheels over the side slip; 1 if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sideslip_gain: Option<f64>,
+    /// k_r: steer angle of the road wheels over the yaw rate, s; 0.15 s if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub yaw_rate_gain_s: Option<f64>,
+    /// Largest angle of the steering wheel to either side, rad; 360° if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_steering_wheel_rad: Option<f64>,
+    /// Largest angular velocity of the steering wheel, rad/s; 500 deg/s if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steering_wheel_rate_rad_s: Option<f64>,
+    /// Angle of the steering wheel over that of the road wheels; 16 if not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steering_ratio: Option<f64>,
 }
 
-impl Default for Countersteer {
-    fn default() -> Self {
-        Self {
-            delay_s: REACTION_MEDIAN_S,
-            sideslip_gain: 1.0,
-            yaw_rate_gain_s: 0.15,
-            largest_steering_wheel_rad: 360.0 * DEGREE,
-            steering_wheel_rate_rad_s: 500.0 * DEGREE,
-            steering_ratio: USUAL_STEERING_RATIO,
-        }
-    }
+/// A driver who countersteers as he acts; see [`Countersteer`] for the fields.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActingCountersteer {
+    pub delay_s: f64,
+    pub sideslip_gain: f64,
+    pub yaw_rate_gain_s: f64,
+    pub largest_steering_wheel_rad: f64,
+    pub steering_wheel_rate_rad_s: f64,
+    pub steering_ratio: f64,
 }
 
 impl Countersteer {
     /// Number of standard normal variables that [`Countersteer::drawn`] takes.
     pub const N_DRAWN: usize = 5;
 
-    /// An unknown driver: a lognormal reaction time, k_β uniform from 0.6 to 1.4, k_r from 0 to 0.3 s,
-    /// the largest steering-wheel angle from 180° to 540° and its rate from 300 to 500 deg/s.
-    pub fn drawn(z: [f64; Self::N_DRAWN]) -> Self {
+    /// The same with what is not stated drawn: a lognormal reaction time, k_β uniform from 0.6 to 1.4, k_r
+    /// from 0 to 0.3 s, the largest steering-wheel angle from 180° to 540° and its rate from 300 to
+    /// 500 deg/s.
+    pub fn drawn(&self, z: [f64; Self::N_DRAWN]) -> Self {
         let [delay, sideslip, yaw_rate, largest, rate] = z;
-        let delay_s = lognormal(delay, REACTION_MEDIAN_S, REACTION_SIGMA);
+        let delay_s = lognormal(delay, REACTION_MEDIAN_S, REACTION_SIGMA).min(REACTION_TIME.high);
+        let largest_rad = uniform(largest, [180.0, 540.0]) * DEGREE;
+        let rate_rad_s = uniform(rate, [300.0, 500.0]) * DEGREE;
         Self {
-            delay_s: delay_s.min(REACTION_TIME.high),
-            sideslip_gain: uniform(sideslip, [0.6, 1.4]),
-            yaw_rate_gain_s: uniform(yaw_rate, [0.0, 0.3]),
-            largest_steering_wheel_rad: uniform(largest, [180.0, 540.0]) * DEGREE,
-            steering_wheel_rate_rad_s: uniform(rate, [300.0, 500.0]) * DEGREE,
-            ..Self::default()
+            delay_s: self.delay_s.or(Some(delay_s)),
+            sideslip_gain: self.sideslip_gain.or(Some(uniform(sideslip, [0.6, 1.4]))),
+            yaw_rate_gain_s: self.yaw_rate_gain_s.or(Some(uniform(yaw_rate, [0.0, 0.3]))),
+            largest_steering_wheel_rad: self.largest_steering_wheel_rad.or(Some(largest_rad)),
+            steering_wheel_rate_rad_s: self.steering_wheel_rate_rad_s.or(Some(rate_rad_s)),
+            ..*self
+        }
+    }
+
+    /// What [`Countersteer::drawn`] draws, in words.
+    pub(super) fn distributions(&self) -> Vec<&'static str> {
+        drawn_words([
+            (self.delay_s.is_some(), "after 0.4 to 1.8 s (90 %, median 0.8)"),
+            (
+                self.largest_steering_wheel_rad.is_some(),
+                "at most 180° to 540° of the steering wheel",
+            ),
+            (self.steering_wheel_rate_rad_s.is_some(), "at 300 to 500 deg/s of it"),
+            (self.sideslip_gain.is_some(), "gain on side slip 0.6 to 1.4"),
+            (self.yaw_rate_gain_s.is_some(), "gain on the yaw rate 0 to 0.3 s"),
+        ])
+    }
+
+    /// The driver with usual values where nothing is stated.
+    pub fn acting(&self) -> ActingCountersteer {
+        let largest_rad = self.largest_steering_wheel_rad.unwrap_or(360.0 * DEGREE);
+        let rate_rad_s = self.steering_wheel_rate_rad_s.unwrap_or(500.0 * DEGREE);
+        ActingCountersteer {
+            delay_s: self.delay_s.unwrap_or(REACTION_MEDIAN_S),
+            sideslip_gain: self.sideslip_gain.unwrap_or(1.0),
+            yaw_rate_gain_s: self.yaw_rate_gain_s.unwrap_or(0.15),
+            largest_steering_wheel_rad: largest_rad,
+            steering_wheel_rate_rad_s: rate_rad_s,
+            steering_ratio: self.steering_ratio.unwrap_or(USUAL_STEERING_RATIO),
         }
     }
 
@@ -97,12 +132,14 @@ impl Countersteer {
         ]
     }
 
-    /// Every number with its name and its range.
+    /// Every stated number with its name and its range.
     pub fn ranges(&self) -> Vec<(String, f64, Range)> {
         let mut copy = *self;
         named(copy.numbers())
     }
+}
 
+impl ActingCountersteer {
     /// Steer angle of the road wheels at a sample, rad; `None` before the driver reacts.
     ///
     /// - `steer_rad`: steer angle until now.

@@ -96,8 +96,8 @@ fn stability_control_saves_a_car_that_spins_without_it() {
     assert!(saved < 1.0, "{saved} rad after {push} rad/s");
     // A system that gives up at once, and one for higher speeds, are none.
     let usual = StabilityControl::default();
-    let weak = StabilityControl { gives_up_sideslip_rad: 0.0, ..usual };
-    let fast = StabilityControl { least_speed_m_s: 39.0, ..usual };
+    let weak = StabilityControl { gives_up_sideslip_rad: Some(0.0), ..usual };
+    let fast = StabilityControl { least_speed_m_s: Some(39.0), ..usual };
     for none in [weak, fast] {
         let turned = turned(&Ending { esc: Some(none), ..Ending::default() }, push);
         assert!(turned > 1.5, "{turned} rad with {none:?}");
@@ -109,7 +109,7 @@ fn a_driver_countersteers_after_the_reaction_and_within_limits() {
     let vehicle = Preset::Reference.parameters();
     let mut turned = Vec::new();
     for delay_s in [0.3, 0.8, 1.5] {
-        let driver = Countersteer { delay_s, ..Countersteer::default() };
+        let driver = Countersteer { delay_s: Some(delay_s), ..Countersteer::default() };
         let ending = Ending { countersteer: Some(driver), ..Ending::default() };
         let motion = motion(&vehicle, &ending, pushed(0.7));
         let steer = column(&motion, Channel::SteerFl);
@@ -145,7 +145,7 @@ fn an_anti_lock_system_stops_shorter_than_locked_wheels_and_lets_the_car_be_stee
     let least_m = 25.0 * 25.0 / (2.0 * 0.95 * vehicle.tires.friction * 9.806_65);
     assert!((least_m * 0.98..least_m * 1.15).contains(&way(&held)), "{} {least_m}", way(&held));
     // An engine brakes on, which the system cannot release.
-    let abs = AntiLock::default();
+    let abs = AntiLock::default().acting();
     assert_eq!(abs.allowed_n(5000.0, 800.0, 4000.0, 20.0), 3000.0);
     assert_eq!(abs.allowed_n(5000.0, 4800.0, 4000.0, 20.0), 0.0);
     assert_eq!(abs.allowed_n(5000.0, 0.0, 4000.0, 1.0), 5000.0);
@@ -155,14 +155,15 @@ fn an_anti_lock_system_stops_shorter_than_locked_wheels_and_lets_the_car_be_stee
 fn the_driver_of_a_pit_steers_a_pulse_and_keeps_the_speed() {
     let vehicle = Preset::Reference.parameters();
     let driver = PitDriver {
-        start_s: -0.1,
-        steering_wheel_rad: -2.0,
-        turn_s: 0.4,
+        start_s: Some(-0.1),
+        steering_wheel_rad: Some(-2.0),
+        turn_s: Some(0.4),
         longest_s: Some(1.0),
         ..PitDriver::default()
     };
     let run = |end| {
-        let ending = Ending { pit: Some(PitDriver { end, ..driver }), ..Ending::default() };
+        let ending =
+            Ending { pit: Some(PitDriver { end: Some(end), ..driver }), ..Ending::default() };
         motion(&vehicle, &ending, VehicleState::driving_straight(20.0))
     };
     for &end in PitEnd::ALL {
@@ -193,8 +194,9 @@ fn the_driver_of_a_pit_ends_when_the_struck_car_has_turned() {
         (Some(0.8), PitEnd::Straighten, true),
         (Some(2.0), PitEnd::KeepPushing, false),
     ] {
-        let (driver, mut state) = (PitDriver { end, ..PitDriver::default() }, PitState::default());
-        let demand = state.sample(&driver, &vehicle, 1.0, &x, 0.1, turn_rad);
+        let driver = PitDriver { end: Some(end), ..PitDriver::default() };
+        let mut state = PitState::default();
+        let demand = state.sample(&driver.acting(), &vehicle, 1.0, &x, 0.1, turn_rad);
         assert_eq!(demand.steer_rad.unwrap() < 0.1, ends, "{turn_rad:?} {end:?}");
         assert_eq!(demand.brake.is_some(), ends && end == PitEnd::Brake, "{turn_rad:?} {end:?}");
     }
@@ -261,12 +263,15 @@ fn numbers_have_the_names_of_the_fields_and_draws_lie_in_their_ranges() {
     for value in [-4.0, -1.0, 0.0, 1.0, 4.0] {
         let [a, b, c, d, e, f, g, ..] = array(value);
         let ending = Ending {
-            esc: Some(StabilityControl::drawn([a, b, c, d, e, f, g])),
-            countersteer: Some(Countersteer::drawn([a, b, c, d, e])),
+            esc: Some(StabilityControl::default().drawn([a, b, c, d, e, f, g])),
+            countersteer: Some(Countersteer::default().drawn([a, b, c, d, e])),
             pit: Some(
                 PitDriver { longest_s: Some(2.0), ..PitDriver::default() }.drawn([a, b, c, d, e]),
             ),
-            brake: Some(Braking { abs: Some(AntiLock::drawn([a])), ..Braking::new(0.0, 1.0, 0.3) }),
+            brake: Some(Braking {
+                abs: Some(AntiLock::default().drawn([a])),
+                ..Braking::new(0.0, 1.0, 0.3)
+            }),
             ..Ending::default()
         };
         let json = serde_json::to_value(&ending).unwrap();
@@ -295,41 +300,83 @@ fn draws_have_the_distributions_that_are_stated() {
     let share = |is_it: &dyn Fn(f64) -> bool| {
         (0..n).filter(|i| is_it(quantile(*i))).count() as f64 / n as f64
     };
-    let delay = |z: f64| Countersteer::drawn([z, 0.0, 0.0, 0.0, 0.0]).delay_s;
+    let delay = |z: f64| Countersteer::default().drawn([z, 0.0, 0.0, 0.0, 0.0]).delay_s.unwrap();
     assert!((delay(0.0) - 0.8).abs() < 1e-12);
     let within = share(&|z| (0.4..=1.8).contains(&delay(z)));
     assert!((within - 0.9).abs() < 2e-3, "{within}");
     let gives_up = |z: f64| {
-        StabilityControl::drawn([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, z])
-            .gives_up_sideslip_rad
-            .to_degrees()
+        let drawn = StabilityControl::default().drawn([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, z]);
+        drawn.gives_up_sideslip_rad.unwrap().to_degrees()
     };
     assert!((share(&|z| gives_up(z) > 89.0) - 1.0 / 3.0).abs() < 2e-3);
     assert!((share(&|z| (30.0..=60.01).contains(&gives_up(z))) - 2.0 / 3.0).abs() < 2e-3);
 }
 
+/// Also where it is the usual value.
 #[test]
-fn what_was_said_of_a_driver_is_not_drawn() {
-    let esc = StabilityControl { threshold_rad_s: 0.2, ..StabilityControl::default() };
-    let usual = PitDriver::default();
-    let end = PitEnd::ALL.iter().copied().find(|end| *end != usual.end).unwrap();
-    let pit = PitDriver { steering_wheel_rad: -2.0, end, ..usual };
-    let said = ClosedLoop { esc: Some(esc), pit: Some(pit), ..ClosedLoop::default() };
-    let drawn = said.drawn([1.3; ClosedLoop::N_DRAWN]);
-    let (of_esc, of_pit) = (drawn.esc.unwrap(), drawn.pit.unwrap());
-    assert_eq!((of_esc.threshold_rad_s, of_pit.steering_wheel_rad), (0.2, -2.0));
-    assert_eq!(of_pit.end, end);
-    assert!(of_esc.dead_time_s != esc.dead_time_s && of_pit.turn_s != pit.turn_s);
-    assert!(drawn.countersteer.is_none() && drawn.abs.is_none());
-    // A driver of whom nothing but the side is said.
-    let right = PitDriver {
-        steering_wheel_rad: -PitDriver::default().steering_wheel_rad,
+fn what_is_stated_of_a_driver_is_not_drawn() {
+    let z = [1.3; ClosedLoop::N_DRAWN];
+    let usual_rad_s = StabilityControl::default().acting().threshold_rad_s;
+    let esc = StabilityControl { threshold_rad_s: Some(usual_rad_s), ..Default::default() };
+    let usual = PitDriver::default().acting();
+    let pit = PitDriver {
+        steering_wheel_rad: Some(usual.steering_wheel_rad),
+        end: Some(usual.end),
         ..PitDriver::default()
     };
-    let drawn = ClosedLoop { pit: Some(right), ..ClosedLoop::default() };
-    let drawn = drawn.drawn([1.3; ClosedLoop::N_DRAWN]).pit.unwrap();
-    assert!(drawn.steering_wheel_rad < right.steering_wheel_rad, "{drawn:?}");
-    assert_eq!(said.distributions().len(), 2);
+    let countersteer = Countersteer { delay_s: Some(0.8), ..Countersteer::default() };
+    let abs = AntiLock { share_of_peak: Some(0.95), ..AntiLock::default() };
+    let stated = ClosedLoop {
+        esc: Some(esc),
+        pit: Some(pit),
+        countersteer: Some(countersteer),
+        abs: Some(abs),
+        brake: None,
+    };
+    let drawn = stated.drawn(z);
+    let (of_esc, of_pit) = (drawn.esc.unwrap(), drawn.pit.unwrap());
+    assert_eq!(of_esc.threshold_rad_s, esc.threshold_rad_s);
+    assert_eq!((of_pit.steering_wheel_rad, of_pit.end), (pit.steering_wheel_rad, pit.end));
+    assert_eq!(drawn.countersteer.unwrap().delay_s, Some(0.8));
+    assert_eq!(drawn.abs, Some(abs));
+    // Nothing of it is stated, and the draw is another value than the usual one.
+    let acting = (of_esc.acting(), StabilityControl::default().acting());
+    assert!(acting.0.dead_time_s != acting.1.dead_time_s, "{of_esc:?}");
+    assert!(of_pit.turn_s.is_some_and(|turn_s| turn_s != usual.turn_s), "{of_pit:?}");
+    let words = stated.distributions().join("; ");
+    for (of_what, is_drawn) in [
+        ("threshold", false),
+        ("dead time 0.1 to 0.2 s", true),
+        ("anti-lock", false),
+        ("after 0.4", false),
+        ("gain on side slip", true),
+        ("90° to 180° of the steering wheel", false),
+        ("turned within 0.2 to 0.5 s", true),
+        ("equally likely", false),
+    ] {
+        assert_eq!(words.contains(of_what), is_drawn, "{of_what}: {words}");
+    }
+    let nothing = ClosedLoop {
+        esc: Some(StabilityControl::default()),
+        countersteer: Some(Countersteer::default()),
+        ..ClosedLoop::default()
+    };
+    let drawn = nothing.drawn(z);
+    assert!(drawn.esc.unwrap().threshold_rad_s.is_some_and(|value| value != usual_rad_s));
+    assert!(drawn.countersteer.unwrap().delay_s.is_some_and(|value| value != 0.8));
+    assert!(drawn.pit.is_none() && drawn.abs.is_none());
+    assert_eq!(drawn.drawn([-0.4; ClosedLoop::N_DRAWN]), drawn, "a draw is not drawn again");
+}
+
+/// A driver of whom nothing but the side is stated.
+#[test]
+fn a_driver_who_is_drawn_turns_to_the_side_that_is_stated() {
+    for (side, sign) in [(TurnSide::Left, 1.0), (TurnSide::Right, -1.0)] {
+        let driver = PitDriver { side, ..PitDriver::default() };
+        let usual_rad = driver.acting().steering_wheel_rad;
+        let drawn_rad = driver.drawn([1.3; PitDriver::N_DRAWN]).acting().steering_wheel_rad;
+        assert!(usual_rad * sign > 0.0 && drawn_rad * sign > usual_rad * sign, "{side:?}");
+    }
 }
 
 #[test]
@@ -347,7 +394,7 @@ fn stability_control_is_standard_from_the_year_of_the_law_on() {
 #[test]
 fn the_reference_yaw_rate_is_that_of_a_car_that_does_not_oversteer() {
     let mut vehicle = Preset::Reference.parameters();
-    let esc = StabilityControl::default();
+    let esc = StabilityControl::default().acting();
     let wheelbase_m = vehicle.geometry.wheelbase_m();
     let slow = esc.reference_yaw_rate_rad_s(&vehicle, 1.0, 0.01);
     assert!((slow * wheelbase_m / 0.01 - 1.0).abs() < 0.01, "{slow}");
