@@ -120,7 +120,8 @@ fn pairs(path: &Path) -> Result<Found, Box<dyn Error>> {
         let report = answer(&question)?.report.report;
         let of_car: [fn(&EvaluatedPair) -> &VehicleScore; 2] =
             [|case| &case.struck, |case| &case.striking];
-        let summaries = [report.overall.as_ref(), report.striking.as_ref()];
+        let struck = report.overall.as_ref().map(|overall| &overall.vehicle);
+        let summaries = [struck, report.striking.as_ref()];
         for ((summary, car), score) in summaries.into_iter().zip(["struck", "striking"]).zip(of_car)
         {
             let summary = summary.ok_or("no cases")?;

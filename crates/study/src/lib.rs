@@ -64,6 +64,7 @@ pub use questions::evaluate::force::{
 };
 pub use questions::evaluate::pairs::{
     EvaluatePairsAnswer, EvaluatePairsReport, EvaluatePairsRequest, PairGroup, PairSplit,
+    StruckSummary,
 };
 pub use questions::evaluate::reconstruction::{
     EvaluateReconstructionAnswer, EvaluateReconstructionReport, EvaluateReconstructionRequest,

@@ -16,9 +16,6 @@ const COMPARED_S: f64 = 4.0;
 /// Interval at which it is asked whether a region holds the recorded position, s.
 const COVERAGE_INTERVAL_S: f64 = 0.1;
 
-/// Force from which on the recorded vehicles are in contact, N.
-const CONTACT_FORCE_N: f64 = 100.0;
-
 /// The forecast of a recorded pair beside the record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EvaluatedPair {
@@ -45,7 +42,7 @@ pub struct EvaluatedPair {
 /// A number of the forecast and of the record.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Compared {
-    /// Median over the draws.
+    /// Median over the draws, or of the motion with everything at its median.
     pub forecast: f64,
     /// Recorded; `null` if the data do not have it.
     pub recorded: Option<f64>,
@@ -136,18 +133,7 @@ pub fn evaluate_pair(
         let record = Record::new(&case.motions[vehicle])?;
         Ok(vehicle_score(&record, vehicle, first_s, (forecast, &centre)))
     };
-    let [fx, fy] = &case.contact.force_world_n;
-    let has_force = !fx.is_empty() && fx.len() == fy.len();
-    let time_s = case.motions[0].time_s();
-    let end_s = time_s.last().copied().unwrap_or(0.0);
-    // A force is the mean over the interval that follows its instant.
-    let intervals_s = || time_s.windows(2).map(|pair| pair[1] - pair[0]);
-    let sizes_n = fx.iter().zip(fy).map(|(x, y)| x.hypot(*y));
-    let in_contact = sizes_n.zip(intervals_s()).filter(|(size_n, _)| *size_n > CONTACT_FORCE_N);
-    let contact_s: f64 = in_contact.map(|(_, interval_s)| interval_s).sum();
-    let impulse = |force: &[f64]| -> f64 {
-        force.iter().zip(intervals_s()).map(|(force_n, interval_s)| force_n * interval_s).sum()
-    };
+    let end_s = case.motions[0].time_s().last().copied().unwrap_or(0.0);
     let median = |value: &dyn Fn(&PairDraw) -> f64| {
         median(forecast.draws.iter().map(value).collect()).unwrap_or(0.0)
     };
@@ -160,17 +146,18 @@ pub fn evaluate_pair(
         courses: forecast.courses(),
         contact_s: Compared {
             forecast: median(&|draw| draw.contact_s(end_s)),
-            recorded: has_force.then_some(contact_s),
+            recorded: case.contact_s(),
         },
         impulse_n_s: Compared {
             forecast: median(&|draw| draw.impulse_n_s()),
-            recorded: has_force.then(|| impulse(fx).hypot(impulse(fy))),
+            recorded: case.impulse_n_s(),
         },
         n_draws: forecast.draws.len(),
     })
 }
 
-fn median(mut values: Vec<f64>) -> Option<f64> {
+/// The middle one; the upper of two. `None` without any.
+pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
 }
@@ -258,6 +245,26 @@ fn vehicle_score(
     }
 }
 
+impl Compared {
+    /// Median over several of the forecast over the recorded number; `None` without a recorded one.
+    pub fn median_ratio(all: impl IntoIterator<Item = Self>) -> Option<f64> {
+        median(all.into_iter().filter_map(Self::ratio).collect())
+    }
+
+    /// Median over several of the size of the relative error of the forecast; `None` without a recorded
+    /// number.
+    pub fn median_error(all: impl IntoIterator<Item = Self>) -> Option<f64> {
+        let errors = all.into_iter().filter_map(Self::ratio).map(|ratio| (ratio - 1.0).abs());
+        median(errors.collect())
+    }
+
+    /// The forecast over the recorded number.
+    fn ratio(self) -> Option<f64> {
+        let recorded = self.recorded.filter(|recorded| *recorded > 0.0);
+        recorded.map(|recorded| self.forecast / recorded)
+    }
+}
+
 impl VehicleScore {
     /// Whether the likelier side of 90° was the recorded one.
     pub fn quarter_turn_right(&self) -> bool {
@@ -302,11 +309,7 @@ impl PairSummary {
             cases.iter().map(|case| score(case)).collect()
         };
         let ratio = |compared: fn(&EvaluatedPair) -> Compared| {
-            let ratios = cases.iter().filter_map(|case| {
-                let Compared { forecast, recorded } = compared(case);
-                recorded.filter(|recorded| *recorded > 0.0).map(|recorded| forecast / recorded)
-            });
-            median(ratios.collect())
+            Compared::median_ratio(cases.iter().map(|case| compared(case)))
         };
         Some(Self {
             n: cases.len(),

@@ -113,16 +113,7 @@ pub fn forecast_pair(
     settings: &PairSettings,
     report: &mut ProgressCallback<'_>,
 ) -> Result<Outcome<PairForecast>, PairError> {
-    let corrections =
-        [0, 1].map(|i| correcting(question.predictors[i]).map(Predictor::coupled_median));
-    let median = Drawn {
-        vehicles: question.vehicles.map(VehicleParameters::clone),
-        manoeuvres: question.manoeuvres.map(Manoeuvre::clone),
-        faces: question.faces,
-        conditions: question.conditions,
-        missed: [[0.0; 3]; 2],
-    };
-    let centre = question.simulate(&median, corrections)?;
+    let centre = question.median_motion()?;
     let latents = PairLatents::new(settings.n_draws, settings.seed);
     let mut draws = Vec::with_capacity(settings.n_draws);
     let mut failed: Option<(usize, PairError)> = None;
@@ -169,6 +160,23 @@ fn in_turn<T>(all: &[T], draw: usize) -> Option<&T> {
 }
 
 impl PairQuestion<'_> {
+    /// The motion with everything at its median.
+    ///
+    /// # Errors
+    /// [`PairError`] if it cannot be computed.
+    pub fn median_motion(&self) -> Result<PairMotion, PairError> {
+        let corrections =
+            [0, 1].map(|i| correcting(self.predictors[i]).map(Predictor::coupled_median));
+        let median = Drawn {
+            vehicles: self.vehicles.map(VehicleParameters::clone),
+            manoeuvres: self.manoeuvres.map(Manoeuvre::clone),
+            faces: self.faces,
+            conditions: self.conditions,
+            missed: [[0.0; 3]; 2],
+        };
+        self.simulate(&median, corrections)
+    }
+
     fn draw(
         &self,
         draw: usize,

@@ -8,12 +8,14 @@
 //! - `scatter`: what is not known of two vehicles, and its draws;
 //! - `forecast`: the motions of all draws;
 //! - `outcome`: courses of events, contacts, regions;
-//! - `evaluate`: how far a forecast lies from a recorded pair.
+//! - `evaluate`: how far a forecast lies from a recorded pair;
+//! - `twins`: what stability control changes, forecast and recorded.
 
 mod evaluate;
 mod forecast;
 mod outcome;
 mod scatter;
+mod twins;
 
 pub use evaluate::{
     Compared, Coverage, EvaluatedPair, PairSummary, VehicleScore, VehicleSummary, evaluate_pair,
@@ -23,3 +25,6 @@ pub use forecast::{
 };
 pub use outcome::{Course, CourseShare, HALF_TURN_RAD, QUARTER_TURN_RAD};
 pub use scatter::PairScatter;
+pub use twins::{
+    ByControl, EvaluatedTwins, RecordedAndForecast, SavedCounts, TwinOutcome, TwinSummary,
+};

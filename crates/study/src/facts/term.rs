@@ -379,6 +379,24 @@ terms! {
     EndError: "final error", "Fehler am Ende", "Distance from the recorded end";
     EndHeadingError: "final heading error", "Gierwinkelfehler am Ende";
     Flags: "flags", "Auffälligkeiten";
+    OfEachCase: "those of each case", "die der einzelnen Fälle";
+    StruckPathError: "struck: average error", "gestoßen: mittlerer Fehler",
+        "Mean distance from the recorded path";
+    StruckEndError: "struck: final error", "gestoßen: Fehler am Ende";
+    StruckHeadingError: "struck: final heading error", "gestoßen: Gierwinkelfehler am Ende";
+    StrikingPathError: "striking: average error", "stoßend: mittlerer Fehler";
+    StrikingEndError: "striking: final error", "stoßend: Fehler am Ende";
+    StrikingHeadingError: "striking: final heading error", "stoßend: Gierwinkelfehler am Ende";
+    ContactTime: "in contact", "in Kontakt";
+    ContactTimeRecorded: "in contact, recorded", "in Kontakt, aufgezeichnet";
+    ContactImpulse: "impulse of the contacts", "Impuls der Kontakte";
+    ContactImpulseRecorded: "impulse, recorded", "Impuls, aufgezeichnet";
+    ContactOfPairs: "Contact of the pairs: medians over the cases",
+        "Kontakt der Paare: Mediane über die Fälle";
+    ContactTimeRatio: "duration, simulated over recorded", "Dauer, simuliert zu aufgezeichnet";
+    ContactTimeError: "error of the duration", "Fehler der Dauer";
+    ContactImpulseRatio: "impulse, simulated over recorded", "Impuls, simuliert zu aufgezeichnet";
+    ContactImpulseError: "error of the impulse", "Fehler des Impulses";
     AllCases: "all", "alle";
     Spinning: "spinning", "mit Schleudern";
     NotSpinning: "not spinning", "ohne Schleudern";
@@ -416,6 +434,31 @@ terms! {
     EndIn50: "end in 50 %", "Ende in 50 %",
         "Share of the cases in which the region of 50 % held the position at the end of the record";
     EndIn90: "end in 90 %", "Ende in 90 %", "The same of the region of 90 %";
+    StabilityTwins: "Stability control: the same collisions with and without it",
+        "Fahrdynamikregelung: dieselben Kollisionen mit und ohne sie";
+    RecordedTurnWithout: "turn without, recorded", "Drehung ohne, aufgezeichnet",
+        "Largest turn of the struck vehicle without stability control";
+    ForecastTurnWithout: "turn without, median", "Drehung ohne, Median";
+    QuarterTurnChanceWithout: "over 90° without", "über 90° ohne", "Probability";
+    RecordedTurnWith: "turn with, recorded", "Drehung mit, aufgezeichnet",
+        "Largest turn of the struck vehicle with stability control";
+    ForecastTurnWith: "turn with, median", "Drehung mit, Median";
+    QuarterTurnChanceWith: "over 90° with", "über 90° mit", "Probability";
+    SavedRecorded: "effect, recorded", "Wirkung, aufgezeichnet",
+        "Saved: the vehicle turns by more than 90° without stability control alone";
+    SavedForecast: "effect, forecast", "Wirkung, vorhergesagt";
+    Saved: "saved", "gerettet";
+    NotSaved: "not saved", "nicht gerettet";
+    EffectOfStabilityControl: "Effect of stability control", "Wirkung der Fahrdynamikregelung";
+    EffectRight: "effect forecast as recorded", "Wirkung wie aufgezeichnet vorhergesagt";
+    SavedAndForecast: "saved, and forecast to be", "gerettet und so vorhergesagt";
+    SavedNotForecast: "saved, but not forecast to be", "gerettet, aber nicht so vorhergesagt";
+    ForecastNotSaved: "forecast to be saved, but not", "als gerettet vorhergesagt, aber nicht";
+    NeitherSavedNorForecast: "neither saved nor forecast to be", "weder gerettet noch so vorhergesagt";
+    TurnsWithoutRecorded: "over 90° without it, recorded", "ohne sie über 90°, aufgezeichnet";
+    TurnsWithoutForecast: "over 90° without it, forecast", "ohne sie über 90°, vorhergesagt";
+    TurnsWithRecorded: "over 90° with it, recorded", "mit ihr über 90°, aufgezeichnet";
+    TurnsWithForecast: "over 90° with it, forecast", "mit ihr über 90°, vorhergesagt";
     CaseTimes: "Time of a case", "Rechenzeit eines Falls";
     KnownEvidence: "known", "bekannt", "How much of the evidence was used";
     Method: "method", "Verfahren";

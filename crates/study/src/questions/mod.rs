@@ -5,5 +5,6 @@ pub(crate) mod evaluate;
 pub(crate) mod impact;
 pub(crate) mod predict;
 pub(crate) mod reconstruct;
+pub(crate) mod recorded_pair;
 pub(crate) mod simulate;
 pub(crate) mod train;

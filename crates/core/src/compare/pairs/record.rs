@@ -16,10 +16,13 @@ use crate::data::{
     AttributeColumn, Attributes, CASES_FILE, Channel, DataError, SeriesError, Table, TimeSeries,
     TomlError, TomlFile, named_cases, names_a_file,
 };
-use crate::ranges::{CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, CONTROL_TIME, ROAD_FRICTION};
+use crate::ranges::{
+    BRAKE_SHARE, CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, CONTROL_TIME, ROAD_FRICTION,
+};
 use crate::vehicle::{
-    Controls, DrivenAxle, Manoeuvre, MultibodyRecord, OUTPUT_INTERVAL_S, SteerHistory,
-    VehicleParameters, WheelEffort, WheelHistory,
+    AntiLock, Braking, ClosedLoop, Controls, DEFAULT_BRAKE_RISE_S, DrivenAxle, Manoeuvre,
+    MultibodyRecord, OUTPUT_INTERVAL_S, StabilityControl, SteerHistory, VehicleParameters,
+    WheelEffort, WheelHistory,
 };
 
 const NO_PAIR: &str = "the pair cannot be simulated";
@@ -33,6 +36,13 @@ const PLACE_X: AttributeColumn =
     AttributeColumn { name: "contact_x_m", range: CONTACT_X, is_needed: false };
 const PLACE_Y: AttributeColumn =
     AttributeColumn { name: "contact_y_m", range: CONTACT_Y, is_needed: false };
+const BRAKE_REACTION: AttributeColumn =
+    AttributeColumn { name: "target_reaction_s", range: CONTROL_TIME, is_needed: false };
+const BRAKE_DECELERATION: AttributeColumn =
+    AttributeColumn { name: "target_brake_g", range: BRAKE_SHARE, is_needed: false };
+
+/// Force from which on the recorded vehicles are in contact, N.
+const CONTACT_FORCE_N: f64 = 100.0;
 
 /// Share of the front axle in the brake torque of a car of which only the sum is recorded: a usual
 /// layout of the brakes of a car.
@@ -90,6 +100,9 @@ pub struct PairCase {
     pub contact_height_m: Option<f64>,
     /// The motions that were recorded: pose, velocities in body axes, yaw rate.
     pub motions: [TimeSeries; 2],
+    /// How the driver of the struck car presses the brake pedal, over the time of the record; `None` if he
+    /// does not, or nothing says so. The recorded brake torques are what systems of the car left of it.
+    pub brake_pedal: Option<Braking>,
     /// Their contact.
     pub contact: RecordedContact,
 }
@@ -175,8 +188,9 @@ impl PairRecords {
             [Some(struck), Some(striking)] => Some((struck + striking) / 2.0),
             _ => row.optional(&HEIGHT)?,
         };
+        let first_s = row.optional(&FIRST_CONTACT)?;
         let contact = RecordedContact {
-            first_s: row.optional(&FIRST_CONTACT)?,
+            first_s,
             place_m: row.optional(&PLACE_X)?.zip(row.optional(&PLACE_Y)?).map(<[f64; 2]>::from),
             phases_s: phases_s(row),
             force_world_n: [
@@ -191,6 +205,7 @@ impl PairRecords {
             manoeuvres,
             contact_height_m,
             motions,
+            brake_pedal: brake_pedal(row, first_s, friction)?,
             contact,
         })
     }
@@ -215,6 +230,56 @@ impl PairRecords {
     }
 }
 
+impl PairCase {
+    /// Time for which the recorded vehicles are in contact, s; `None` without a recorded force.
+    pub fn contact_s(&self) -> Option<f64> {
+        let [fx, fy] = self.recorded_force()?;
+        let sizes_n = fx.iter().zip(fy).map(|(x, y)| x.hypot(*y));
+        let in_contact =
+            sizes_n.zip(self.intervals_s()).filter(|(size_n, _)| *size_n > CONTACT_FORCE_N);
+        Some(in_contact.map(|(_, interval_s)| interval_s).sum())
+    }
+
+    /// Size of the recorded impulse on the struck vehicle over all contacts, N s; `None` without a recorded
+    /// force.
+    pub fn impulse_n_s(&self) -> Option<f64> {
+        let impulse = |force: &[f64]| -> f64 {
+            let steps = force.iter().zip(self.intervals_s());
+            steps.map(|(force_n, interval_s)| force_n * interval_s).sum()
+        };
+        let [fx, fy] = self.recorded_force()?;
+        Some(impulse(fx).hypot(impulse(fy)))
+    }
+
+    fn recorded_force(&self) -> Option<[&[f64]; 2]> {
+        let [fx, fy] = &self.contact.force_world_n;
+        (!fx.is_empty() && fx.len() == fy.len()).then_some([fx, fy])
+    }
+
+    /// A force is the mean over the interval that follows its instant.
+    fn intervals_s(&self) -> impl Iterator<Item = f64> {
+        self.motions[0].time_s().windows(2).map(|pair| pair[1] - pair[0])
+    }
+
+    /// The initial state of the struck car, steer angle and drive torques as recorded, and our systems in the
+    /// place of the recorded brake torques: the pedal acts through an anti-lock system where the car has
+    /// one.
+    ///
+    /// - `has_stability_control`: whether the car has one, of which nothing else is stated.
+    pub fn struck_with_own_systems(&self, has_stability_control: bool) -> Manoeuvre {
+        let mut manoeuvre = self.manoeuvres[0].clone();
+        let esc = has_stability_control.then(StabilityControl::default);
+        let own = self.brake_pedal.and_then(|brake| brake.abs);
+        let abs = own.or_else(|| esc.map(|_| AntiLock::default()));
+        let closed_loop = ClosedLoop { esc, abs, brake: self.brake_pedal, ..ClosedLoop::default() };
+        manoeuvre.controls.closed_loop = closed_loop.acts_on_wheels().then_some(closed_loop);
+        if let Some(history) = &mut manoeuvre.controls.wheels {
+            history.wheels.iter_mut().flatten().for_each(|wheel| wheel.braking_n = 0.0);
+        }
+        manoeuvre
+    }
+}
+
 /// A car of a pair.
 struct PairCar {
     vehicle: VehicleParameters,
@@ -233,6 +298,28 @@ impl PairAttributes {
                 .filter(|name| !name.is_empty()),
         }
     }
+}
+
+/// The brake pedal of a driver of whom the table says that he brakes.
+///
+/// - `first_s`: first contact, from which his reaction counts; `friction`: of the road.
+fn brake_pedal(
+    row: &Attributes,
+    first_s: Option<f64>,
+    friction: f64,
+) -> Result<Option<Braking>, DataError> {
+    if row.text("target_driver").map(str::trim) != Some("brake") {
+        return Ok(None);
+    }
+    let (Some(first_s), Some(reaction_s), Some(deceleration_g)) =
+        (first_s, row.optional(&BRAKE_REACTION)?, row.optional(&BRAKE_DECELERATION)?)
+    else {
+        return Ok(None);
+    };
+    let abs = row.flag("target_abs").unwrap_or(false).then(AntiLock::default);
+    let share = deceleration_g / friction;
+    let braking = Braking::new(first_s + reaction_s, share, DEFAULT_BRAKE_RISE_S);
+    Ok(Some(Braking { front_share: Some(FRONT_BRAKE_SHARE), abs, ..braking }))
 }
 
 /// Start and end of each phase of contact: numbers with `;` between them. What does not go together is
@@ -352,5 +439,50 @@ impl Columns {
             }),
             ..Controls::default()
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is recorded of the brakes of the struck car gives way to our systems.
+    #[test]
+    fn own_systems_stand_in_the_place_of_recorded_brake_torques() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../datasets/pairs");
+        let records = PairRecords::open(&root).unwrap();
+        let case = |name: &str| records.load(name).unwrap().unwrap();
+        let brakes = |manoeuvre: &Manoeuvre| {
+            let wheels = &manoeuvre.controls.wheels.as_ref().unwrap().wheels;
+            wheels.iter().flatten().map(|wheel| wheel.braking_n).fold(0.0, f64::max)
+        };
+        // A driver who brakes.
+        let braked = case("d009e");
+        let pedal = braked.brake_pedal.unwrap();
+        assert!((pedal.start_s - (0.457 + 1.408)).abs() < 1e-9, "{pedal:?}");
+        assert!((pedal.share_of_friction - 0.984 / 0.822).abs() < 1e-9, "{pedal:?}");
+        assert!(brakes(&braked.manoeuvres[0]) > 1000.0);
+        for has_stability_control in [false, true] {
+            let own = braked.struck_with_own_systems(has_stability_control);
+            assert_eq!(brakes(&own), 0.0);
+            let closed_loop = own.controls.closed_loop.as_ref().unwrap();
+            assert_eq!(closed_loop.esc.is_some(), has_stability_control);
+            assert!(closed_loop.abs.is_some() && closed_loop.brake == Some(pedal));
+            assert_eq!(own.controls.steer, braked.manoeuvres[0].controls.steer);
+            assert_eq!(own.initial, braked.manoeuvres[0].initial);
+        }
+        // A driver who does not: without stability control nothing brakes the car.
+        let steered = case("d006e");
+        assert_eq!(steered.brake_pedal, None);
+        assert!(steered.struck_with_own_systems(false).controls.closed_loop.is_none());
+        let own = steered.struck_with_own_systems(true).controls.closed_loop.unwrap();
+        assert!(own.esc.is_some() && own.abs.is_some() && own.brake.is_none());
+        // The table has the same contact.
+        let [contact_s, impulse_n_s] = [braked.contact_s().unwrap(), braked.impulse_n_s().unwrap()];
+        let row = records.row("d009e").unwrap();
+        let [x, y] = ["impulse_x_n_s", "impulse_y_n_s"].map(|name| row.number(name).unwrap());
+        assert!((impulse_n_s / x.hypot(y) - 1.0).abs() < 0.01, "{impulse_n_s}");
+        let table_s = row.number("contact_total_s").unwrap();
+        assert!((contact_s - table_s).abs() < 0.1, "{contact_s} {table_s}");
     }
 }

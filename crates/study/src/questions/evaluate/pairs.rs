@@ -1,24 +1,25 @@
 //! How well forecasts of two vehicles to the end do on recorded pairs: `evaluate pairs`.
 
-use std::ops::ControlFlow;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
+use crate::questions::recorded_pair::{ReadyPair, of_case};
 use crate::{Answer, Event, Library, ModelChoice, Observer, Provenance, Question, StudyError};
-use impactlab_core::collision::contact::{ContactConditions, ContactOutline, FaceLaws};
 use impactlab_core::compare::{PairCase, PairRecords};
 use impactlab_core::data::Outcome;
 use impactlab_core::error_chain;
-use impactlab_core::jobs::Progress;
+use impactlab_core::jobs::{Progress, ProgressCallback};
 use impactlab_core::numerics::sha256_hex;
 use impactlab_core::ranges::DRAWS;
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
+use impactlab_core::vehicle::Manoeuvre;
 use impactlab_networks::pair::{
-    EvaluatedPair, PairQuestion, PairSettings, PairSummary, VehicleSummary, evaluate_pair,
-    forecast_pair,
+    ByControl, EvaluatedPair, EvaluatedTwins, PairForecast, PairSettings, PairSummary, TwinOutcome,
+    TwinSummary, VehicleSummary, evaluate_pair,
 };
 use impactlab_networks::response::ResponseModel;
 
@@ -82,15 +83,29 @@ pub struct EvaluatePairsReport {
     /// Whether the evaluation was stopped before all cases were done.
     pub stopped: bool,
     /// The struck vehicle over all cases; none without a case.
-    pub overall: Option<VehicleSummary>,
+    pub overall: Option<StruckSummary>,
     /// The striking vehicle over all cases.
     pub striking: Option<VehicleSummary>,
     /// Over all cases, and over those of which something is said.
     pub groups: Vec<PairGroup>,
-    /// Each case.
+    /// Each case, with the brake torques of the struck vehicle as recorded, those of its stability control
+    /// among them.
     pub cases: Vec<EvaluatedPair>,
+    /// Each case with stability control whose twin without it is recorded as well: forecasts of both with
+    /// our systems in the place of the recorded brake torques of the struck vehicle.
+    pub twins: Vec<EvaluatedTwins>,
     /// Cases that have no forecast, and why.
     pub left_out: Vec<String>,
+}
+
+/// The struck vehicle over all cases.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct StruckSummary {
+    /// Its forecasts beside its records.
+    #[serde(flatten)]
+    pub vehicle: VehicleSummary,
+    /// What its stability control changes; none without twins.
+    pub twins: Option<TwinSummary>,
 }
 
 /// Cases of one kind.
@@ -147,51 +162,86 @@ impl EvaluatePairsRequest {
         Ok(all.into_iter().filter(|name| is_chosen(name) && is_named(name)).collect())
     }
 
-    fn evaluated(
+    /// Follows a pair over draws.
+    fn forecast(
         &self,
         case: &PairCase,
+        struck: &Manoeuvre,
         model: Option<&ResponseModel>,
-        observer: &mut Observer<'_>,
-        [done, total]: [usize; 2],
-    ) -> Result<Outcome<EvaluatedPair>, String> {
-        let message =
-            |error: &dyn std::error::Error| format!("{}: {}", case.name, error_chain(error));
-        let outline = |i: usize| {
-            ContactOutline::from_vehicle(&case.vehicles[i]).map_err(|error| message(&error))
-        };
-        let faces =
-            |i: usize| FaceLaws::by_class(&case.vehicles[i]).map_err(|error| message(&error));
-        let predictor = |i: usize| {
-            let predictor = model.map(|model| model.predictor(&case.vehicles[i]));
-            predictor.transpose().map_err(|error| message(&error))
-        };
-        let outlines = [outline(0)?, outline(1)?];
-        let predictors = [predictor(0)?, predictor(1)?];
-        let usual = ContactConditions::default();
-        let height_m = case.contact_height_m.unwrap_or(usual.height_m);
-        let question = PairQuestion {
-            vehicles: [&case.vehicles[0], &case.vehicles[1]],
-            manoeuvres: [&case.manoeuvres[0], &case.manoeuvres[1]],
-            outlines: [&outlines[0], &outlines[1]],
-            faces: [faces(0)?, faces(1)?],
-            conditions: ContactConditions { height_m, ..usual },
-            predictors: [predictors[0].as_ref(), predictors[1].as_ref()],
-            drawn: [&[]; 2],
-            first_forces: &[],
-        };
+        report: &mut ProgressCallback<'_>,
+    ) -> Result<Outcome<PairForecast>, String> {
         let settings =
             PairSettings { n_draws: self.draws, seed: self.seed, ..PairSettings::default() };
-        let mut report = |progress: Progress| {
-            let share = progress.fraction().map_or(0.0, f64::from);
-            let position = 1000.0 * (done as f64 + share);
-            let what = format!("{}: {}", case.name, progress.message);
-            observer(Event::Progress(Progress::new(position as u64, 1000 * total as u64, what)))
-        };
-        let forecast =
-            forecast_pair(&question, &settings, &mut report).map_err(|error| message(&error))?;
-        let Outcome::Complete(forecast) = forecast else { return Ok(Outcome::Cancelled) };
-        let evaluated = evaluate_pair(case, &forecast).map_err(|error| message(&error))?;
-        Ok(Outcome::Complete(evaluated))
+        ReadyPair::new(case, model)?.forecast(struck, &settings, report)
+    }
+}
+
+/// The cases of `names` with stability control whose twins without it are recorded as well.
+fn twins_of(records: &PairRecords, names: &[String]) -> Vec<ByControl<String>> {
+    let twins = names.iter().filter_map(|name| {
+        let without = records.attributes(name)?.twin_without_stability_control?;
+        records.attributes(&without)?;
+        Some(ByControl { without, with: name.clone() })
+    });
+    twins.collect()
+}
+
+/// Twins of which both outcomes are known.
+fn evaluated_twins(
+    twins: Vec<ByControl<String>>,
+    outcomes: &BTreeMap<String, TwinOutcome>,
+) -> Vec<EvaluatedTwins> {
+    let evaluated = twins.into_iter().filter_map(|cases| {
+        let [without, with] = [&cases.without, &cases.with].map(|name| outcomes.get(name).copied());
+        let outcomes = ByControl { without: without?, with: with? };
+        Some(EvaluatedTwins::new(cases, outcomes))
+    });
+    evaluated.collect()
+}
+
+/// Goes through cases until all of them are done or the observer ends it.
+struct CaseByCase<'a, 'o> {
+    records: &'a PairRecords,
+    observer: &'a mut Observer<'o>,
+    n_done: usize,
+    n_total: usize,
+    left_out: Vec<String>,
+    stopped: bool,
+}
+
+impl CaseByCase<'_, '_> {
+    /// What comes of each case.
+    fn each<T>(
+        &mut self,
+        names: &[&String],
+        mut answer: impl FnMut(&PairCase, &mut ProgressCallback<'_>) -> Result<Outcome<T>, String>,
+    ) -> Vec<T> {
+        let mut found = Vec::with_capacity(names.len());
+        for name in names {
+            let (observer, [n_done, n_total]) = (&mut *self.observer, [self.n_done, self.n_total]);
+            let mut report = |progress: Progress| {
+                let share = progress.fraction().map_or(0.0, f64::from);
+                let position = 1000.0 * (n_done as f64 + share);
+                let what = format!("{name}: {}", progress.message);
+                let total = 1000 * n_total as u64;
+                observer(Event::Progress(Progress::new(position as u64, total, what)))
+            };
+            self.stopped = self.stopped || report(Progress::new(0, 1, "reading")).is_break();
+            if self.stopped {
+                break;
+            }
+            let Some(loaded) = self.records.load(name) else { continue };
+            let loaded = loaded.map_err(|error| format!("{name}: {}", error_chain(&error)));
+            match loaded.and_then(|case| answer(&case, &mut report)) {
+                Ok(Outcome::Complete(it)) => found.push(it),
+                Ok(Outcome::Cancelled) => self.stopped = true,
+                // A case and its twin may have the same fault.
+                Err(problem) if self.left_out.contains(&problem) => {}
+                Err(problem) => self.left_out.push(problem),
+            }
+            self.n_done += 1;
+        }
+        found
     }
 }
 
@@ -226,37 +276,39 @@ impl Question for EvaluatePairsRequest {
             true => None,
             false => Some(library.response_model(&self.model)?),
         };
-        let (mut cases, mut left_out, mut stopped) = (Vec::new(), Vec::new(), false);
-        for (done, name) in names.iter().enumerate() {
-            if observer(Event::Progress(Progress::new(
-                1000 * done as u64,
-                1000 * names.len() as u64,
-                name.as_str(),
-            ))) == ControlFlow::Break(())
-            {
-                stopped = true;
-                break;
-            }
-            let loaded = match records.load(name) {
-                Some(Ok(case)) => case,
-                Some(Err(error)) => {
-                    left_out.push(format!("{name}: {}", error_chain(&error)));
-                    continue;
-                }
-                None => continue,
-            };
-            match self.evaluated(&loaded, model.as_deref(), observer, [done, names.len()]) {
-                Ok(Outcome::Complete(evaluated)) => cases.push(evaluated),
-                Ok(Outcome::Cancelled) => {
-                    stopped = true;
-                    break;
-                }
-                Err(problem) => left_out.push(problem),
-            }
-        }
+        let model = model.as_deref();
+        let twins = twins_of(&records, &names);
+        let mut work = CaseByCase {
+            records: &records,
+            observer,
+            n_done: 0,
+            n_total: names.len() + 2 * twins.len(),
+            left_out: Vec::new(),
+            stopped: false,
+        };
+        let all: Vec<&String> = names.iter().collect();
+        let cases = work.each(&all, |case, report| {
+            let forecast = self.forecast(case, &case.manoeuvres[0], model, report)?;
+            let Outcome::Complete(forecast) = forecast else { return Ok(Outcome::Cancelled) };
+            let evaluated =
+                evaluate_pair(case, &forecast).map_err(|error| of_case(case, &error))?;
+            Ok(Outcome::Complete(evaluated))
+        });
+        let both: Vec<&String> =
+            twins.iter().flat_map(|cases| [&cases.without, &cases.with]).collect();
+        let outcomes = work.each(&both, |case, report| {
+            let struck = case.struck_with_own_systems(case.attributes.has_stability_control);
+            let forecast = self.forecast(case, &struck, model, report)?;
+            let Outcome::Complete(forecast) = forecast else { return Ok(Outcome::Cancelled) };
+            let outcome =
+                TwinOutcome::new(case, &forecast).map_err(|error| of_case(case, &error))?;
+            Ok(Outcome::Complete((case.name.clone(), outcome)))
+        });
+        let CaseByCase { left_out, stopped, .. } = work;
         if stopped && cases.is_empty() {
             return Ok(Outcome::Cancelled);
         }
+        let twins = evaluated_twins(twins, &outcomes.into_iter().collect());
         let groups = groups(&cases);
         let all = groups.first().map(|group| group.summary.clone());
         let digest = match self.physics_only {
@@ -271,10 +323,14 @@ impl Question for EvaluatePairsRequest {
             n_cases: names.len(),
             n_draws: self.draws,
             stopped,
-            overall: all.as_ref().map(|all| all.struck.clone()),
+            overall: all.as_ref().map(|all| StruckSummary {
+                vehicle: all.struck.clone(),
+                twins: TwinSummary::from_twins(&twins),
+            }),
             striking: all.map(|all| all.striking),
             groups,
             cases,
+            twins,
             left_out,
         };
         let report = Answer { report, caveats: missing.into_iter().collect(), provenance };
