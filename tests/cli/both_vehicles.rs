@@ -91,6 +91,10 @@ fn drivers_and_systems_act_in_a_forecast_and_are_drawn() {
     for words in ["stability control: threshold 4 to 8", "countersteering: after 0.4 to 1.8 s"] {
         assert!(controlled.contains(words), "{words}: {controlled}");
     }
+    // The usual reaction time is stated, and therefore not drawn.
+    let stated = notes(&["--countersteer", "0.8"]);
+    assert!(stated.contains("countersteering: at most 180° to 540°"), "{stated}");
+    assert!(!stated.contains("after 0.4 to 1.8 s"), "{stated}");
 }
 
 #[test]

@@ -307,3 +307,46 @@ fn steering_wheel_fields(
         *road_wheel_rad = (angle_rad / *ratio).clamp(STEER_ANGLE.low, STEER_ANGLE.high);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use egui::accesskit::Role;
+    use egui::{Event, Key};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    use super::*;
+
+    /// A number of a driver or system that nobody states shows its usual value and stays unstated until one
+    /// is typed, be it the usual one; who empties the field takes it back.
+    #[test]
+    fn a_usual_value_is_stated_where_somebody_types_it() {
+        let asked = Ending {
+            esc: Some(StabilityControl::default()),
+            countersteer: Some(Countersteer::default()),
+            pit: Some(PitDriver::default()),
+            ..Ending::default()
+        };
+        let mut harness = Harness::builder().with_size([600.0, 900.0]).build_ui_state(
+            |ui, ending: &mut Option<Ending>| {
+                ending_form(ui, "struck vehicle", ending, &mut None, UnitSystem::Si);
+            },
+            Some(asked.clone()),
+        );
+        harness.get_by_label("After the impact: the struck vehicle").click();
+        harness.run();
+        assert_eq!(harness.state(), &Some(asked.clone()), "what is drawn is not stated");
+        for (typed, stated) in [("0.15", Some(0.15)), (" ", None)] {
+            harness.get_by_role_and_label(Role::SpinButton, "dead time").focus();
+            harness.run();
+            harness.event(Event::Text(typed.to_owned()));
+            harness.run();
+            harness.key_press(Key::Enter);
+            harness.run();
+            let esc = StabilityControl { dead_time_s: stated, ..StabilityControl::default() };
+            let expected = Ending { esc: Some(esc), ..asked.clone() };
+            assert_eq!(harness.state(), &Some(expected), "{typed:?}");
+        }
+        harness.get_by_role_and_label(Role::ComboBox, "to the side");
+    }
+}
