@@ -100,7 +100,7 @@ fn four_dof(datasets: &Path) -> Result<Found, Box<dyn Error>> {
         let path = Summary::from_values(path).ok_or("no cases")?;
         let ends = cases.iter().map(|case| case.error.final_error_m);
         let ends = Summary::from_values(ends).ok_or("no cases")?;
-        let violations: usize = cases.iter().map(|case| case.violations).sum();
+        let violations: usize = cases.iter().filter_map(|case| case.violations).sum();
         let numbers = [path.mean, path.std, path.median].map(|error| format!("{error:.3}"));
         let mut cells = vec![format!("{set}, all"), path.n.to_string()];
         cells.extend(numbers);

@@ -46,13 +46,99 @@ fn both_cars_of_a_recorded_pair_are_forecast_beside_their_records() {
     assert_ne!(other["cases"][0]["struck"], of_seed_0["struck"], "the seed decides");
 }
 
+/// Twins with and without stability control are forecast with our systems, not with the recorded brakes.
+#[test]
+fn twins_with_and_without_stability_control_stand_beside_each_other() {
+    // One that is saved and one that does not turn anyway; the twins without need not be asked for.
+    let asked = ["--only", "d009e", "d064e", "d064"];
+    let found = evaluated(&asked);
+    assert_eq!(found["cases"].as_array().unwrap().len(), 3);
+    let twins = found["twins"].as_array().unwrap();
+    let names: Vec<&Value> = twins.iter().map(|twins| &twins["cases"]["with"]).collect();
+    assert_eq!(names, ["d009e", "d064e"]);
+    let outcome = |twins: &Value, which: &str, key: &str| {
+        twins["outcomes"][which][key].as_f64().unwrap_or_else(|| panic!("{which} {key}: {twins}"))
+    };
+    let saved = &twins[0];
+    assert_eq!(saved["cases"]["without"], "d009");
+    assert!((outcome(saved, "without", "recorded_turn_rad").to_degrees() - 179.15).abs() < 0.1);
+    assert!((outcome(saved, "with", "recorded_turn_rad").to_degrees() - 6.18).abs() < 0.1);
+    assert_eq!(saved["saved_recorded"], true);
+    assert_eq!(twins[1]["saved_recorded"], false);
+    for twins in twins {
+        let turns = ["without", "with"].map(|which| outcome(twins, which, "forecast_turn_rad"));
+        assert!(turns[1] < turns[0] + 0.05, "{twins}");
+        let [without, with] =
+            ["without", "with"].map(|which| outcome(twins, which, "quarter_turn_probability"));
+        let is_saved = without > 0.5 && with <= 0.5;
+        assert_eq!(twins["saved_forecast"], is_saved, "{twins}");
+    }
+    let summary = &found["overall"]["twins"];
+    let saved = &summary["saved"];
+    let counts = ["both", "recorded_alone", "forecast_alone", "neither"];
+    let counts = counts.map(|key| saved[key].as_u64().unwrap());
+    assert_eq!((summary["n"].as_u64(), counts.iter().sum::<u64>()), (Some(2), 2), "{summary}");
+    assert_eq!(summary["n_right"].as_u64().unwrap(), counts[0] + counts[3], "{summary}");
+    assert_eq!(summary["quarter_turns"]["without"]["recorded"], 1);
+    assert_eq!(evaluated(&["--only", "d009e"])["twins"][0], twins[0], "same seed");
+    let alone = evaluated(&["--only", "d064"]);
+    assert!(alone["twins"].as_array().unwrap().is_empty() && alone["overall"]["twins"].is_null());
+    let printed = impactlab(&["evaluate", "pairs", PAIRS, "--draws", "6", "--only", "d064e"]).out;
+    for words in ["the same collisions with and without it", "d064e", "effect forecast as recorded"]
+    {
+        assert!(printed.contains(words), "{words}: {printed}");
+    }
+}
+
+/// A simulation of a recorded pair is the motion at the medians that a forecast without network has.
+#[test]
+fn recorded_pairs_are_simulated_like_other_data_sets() {
+    let all = answer(&["simulate", "--dataset", PAIRS]);
+    let (cases, pairs) = (all["cases"].as_array().unwrap(), &all["pairs"]);
+    assert_eq!((cases.len(), all["failures"].as_array().unwrap().len()), (95, 0));
+    let median = |of: &Value| of["average_error_m"]["median"].as_f64().unwrap();
+    assert!(median(&all["overall"]) < 3.0 && median(&pairs["striking"]) < 3.0, "{pairs}");
+    for key in ["contact_ratio", "impulse_ratio"] {
+        assert!((0.7..1.4).contains(&pairs[key].as_f64().unwrap()), "{key}: {pairs}");
+    }
+    let forecast = evaluated(&["--only", "d064", "--physics-only"]);
+    let simulated = cases.iter().find(|case| case["case"] == "d064").unwrap();
+    let forecast = &forecast["cases"][0];
+    for (of_forecast, of_simulation) in [
+        ("/struck/end_error_m", "/final_error_m"),
+        ("/struck/end_heading_error_rad", "/final_heading_error_rad"),
+        ("/striking/end_error_m", "/pair/striking/final_error_m"),
+        ("/contact_s/recorded", "/pair/contact_s/recorded"),
+        ("/impulse_n_s/recorded", "/pair/impulse_n_s/recorded"),
+    ] {
+        let [a, b] = [(forecast, of_forecast), (simulated, of_simulation)]
+            .map(|(of, key)| of.pointer(key).and_then(Value::as_f64).unwrap());
+        assert!((a - b).abs() < 1e-6 * a.abs().max(1.0), "{of_simulation}: {a} {b}");
+    }
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let one = ["simulate", "--dataset", PAIRS, "--case", "d064", "--vehicle", "reference-2000"];
+    let ran = impactlab(&[&one[..], &["--out", text(&out)]].concat());
+    assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
+    for words in ["d064", "striking: final error", "impulse, recorded", "struck vehicle"] {
+        assert!(ran.out.contains(words), "{words}: {}", ran.out);
+    }
+    let [struck, striking] =
+        ["d064.csv", "d064_striking.csv"].map(|file| fs::read_to_string(out.join(file)).unwrap());
+    assert!(struck != striking && struck.lines().count() == striking.lines().count());
+}
+
 #[test]
 fn what_is_no_recorded_pair_is_refused_by_name() {
     for (arguments, words) in [
         (&["evaluate", "pairs", "datasets/fea"][..], "expected a folder with cases.csv, cases/"),
         (&["evaluate", "pairs", PAIRS, "--only", "d999"], "d999"),
         (&["evaluate", "pairs", PAIRS, "--draws", "0"], "draws"),
-        (&["simulate", "--dataset", PAIRS], "pairs: impactlab evaluate pairs DIR"),
+        (&["simulate", "--dataset", PAIRS, "--case", "d999"], "d999"),
+        (
+            &["evaluate", "response", "--model", "shipped", "--data", PAIRS],
+            "pairs: impactlab evaluate pairs DIR",
+        ),
     ] {
         let ran = impactlab(arguments);
         assert!(ran.code != 0 && ran.err.contains(words), "{arguments:?}: {}", ran.err);

@@ -91,6 +91,7 @@ pub use questions::simulate::dataset::{
 pub use questions::simulate::drive::{ASSUMED_SPEED_M_S, Drive};
 pub use questions::simulate::flag::{FlagReport, FlaggedContact};
 pub use questions::simulate::motion_source::{ASSUMED_CONTACT, MotionSource};
+pub use questions::simulate::pairs::{PairReplay, SimulatedPair, SimulatedPairs};
 pub use questions::simulate::recorded_force::{RecordedForceAnswer, RecordedForceRequest};
 pub use questions::simulate::report::{
     EndState, ForceReport, FrictionZoneReport, RestState, SimulateReport,

@@ -109,7 +109,7 @@ fn dataset_ui(
     units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
-    let violations: usize = report.cases.iter().map(|case| case.violations).sum();
+    let violations: usize = report.cases.iter().filter_map(|case| case.violations).sum();
     ui.strong(format!("All {} cases, average position error", report.cases.len()));
     caveats_ui(ui, &report.caveats, commands);
     let unit = Quantity::Length.display_unit(units);

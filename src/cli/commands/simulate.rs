@@ -37,7 +37,8 @@ use impactlab_study::{
     .args(["steer", "fishhook", "steer_angle", "steering_wheel"])))]
 pub(in crate::cli) struct SimulateArgs {
     /// Simulate every case of this trajectory data set from its recorded start and force, and
-    /// compare; of a force data set the one of --case
+    /// compare; of recorded pairs both vehicles from their recorded starts, through all contacts; of a force
+    /// data set the one of --case
     #[arg(long, value_name = "DIR", conflicts_with_all = SINGLE_ONLY)]
     dataset: Option<PathBuf>,
     /// With --dataset: only this case
@@ -104,6 +105,7 @@ Examples:
   impactlab simulate --vehicle ford-explorer-2004 --fishhook --speed 45mph --duration 7
   impactlab simulate --scenario pit-right-rear --brake 0.8 --brake-start 0.7s --until-rest
   impactlab simulate --dataset datasets/trajectories-fea --json
+  impactlab simulate --dataset datasets/pairs --case d001
 
 A force sample stands for: the mean around its instant in finite-element files (with target_vx
 columns, as in forces/ of the data sets); the mean over the coming interval in trajectories (with
@@ -255,13 +257,13 @@ fn simulate_dataset(
     let out = args.out.as_deref();
     let into = out.map(|folder| (folder, args.overwrite.into(), &[][..]));
     let answer = console.ask_into(&request, into, |output, answer| {
-        for case in &answer.replay.cases {
-            let path = output.staging().join(format!("{}.csv", case.case));
-            let restrictions = answer.report.caveats_of(&case.case).text();
+        for (case, file, motion) in answer.motions() {
+            let path = output.staging().join(format!("{file}.csv"));
+            let restrictions = answer.report.caveats_of(case).text();
             write_restricted_series_csv(
                 &path,
                 Existing::Refuse,
-                &case.motion.series,
+                &motion.series,
                 restrictions.as_deref(),
             )?;
         }

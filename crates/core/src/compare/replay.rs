@@ -107,8 +107,9 @@ pub struct ErrorSummary {
     pub rmse_vy_body_m_s: Option<Summary>,
     /// Root mean square error of the yaw rate, rad/s, over the cases that have it.
     pub rmse_yaw_rate_rad_s: Option<Summary>,
-    /// Total number of physical violations in all cases.
-    pub violations: usize,
+    /// Total number of physical violations in all cases; `None` where they are not counted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub violations: Option<usize>,
 }
 
 /// The recorded initial state and contact force of a case as a manoeuvre of the recorded duration.
@@ -274,7 +275,15 @@ impl ErrorSummary {
         choose: impl Fn(&Replay) -> bool,
     ) -> Option<Self> {
         let replays: Vec<&Replay> = replays.into_iter().filter(|replay| choose(replay)).collect();
-        let errors = || replays.iter().map(|replay| &replay.error);
+        let violations = replays.iter().map(|replay| replay.violations).sum();
+        let summary = Self::from_errors(replays.iter().map(|replay| &replay.error))?;
+        Some(Self { violations: Some(violations), ..summary })
+    }
+
+    /// Summarises errors; `None` if there are none.
+    pub fn from_errors<'a>(errors: impl IntoIterator<Item = &'a MotionError>) -> Option<Self> {
+        let all: Vec<&MotionError> = errors.into_iter().collect();
+        let errors = || all.iter().copied();
         let summary =
             |figure: &dyn Fn(&MotionError) -> f64| Summary::from_values(errors().map(figure));
         let known = |figure: fn(&MotionError) -> Option<f64>| {
@@ -296,7 +305,7 @@ impl ErrorSummary {
             rmse_vx_body_m_s: known(|error| error.rmse_vx_body_m_s),
             rmse_vy_body_m_s: known(|error| error.rmse_vy_body_m_s),
             rmse_yaw_rate_rad_s: known(|error| error.rmse_yaw_rate_rad_s),
-            violations: replays.iter().map(|replay| replay.violations).sum(),
+            violations: None,
         })
     }
 }

@@ -1,24 +1,34 @@
 //! The facts of the simulation of a data set.
 
-use impactlab_core::compare::ErrorSummary;
+use impactlab_core::compare::{ErrorSummary, MotionError};
 use impactlab_core::numerics::Summary;
 use impactlab_core::units::Quantity;
+use impactlab_networks::pair::Compared;
 
 use crate::facts::training::left_out;
 use crate::facts::{Fact, FactTable, Term, Value};
-use crate::{ReplayedCaseReport, SimulateDatasetReport};
+use crate::{ReplayedCaseReport, SimulateDatasetReport, SimulatedPair, SimulatedPairs};
 
 impl SimulateDatasetReport {
     /// What the answer says: how far simulation and record lie apart, over all cases and in each, and
     /// which cases are left out.
     pub fn facts(&self) -> Vec<FactTable> {
+        let own = || Value::Term(Term::OfEachCase);
+        let vehicle = self.vehicle.as_ref().map_or_else(own, |name| Value::Text(name.clone()));
+        let equations =
+            self.equations.as_ref().map_or_else(own, |word| Value::Phrase(word.clone()));
         let of = vec![
-            Fact::new(Term::Vehicle, Value::Text(self.vehicle.clone())),
-            Fact::new(Term::Equations, Value::Phrase(self.equations.clone())),
+            Fact::new(Term::Vehicle, vehicle),
+            Fact::new(Term::Equations, equations),
             Fact::new(Term::Integration, Value::Phrase(self.integrator.clone())),
         ];
-        let tables = [FactTable::new(Term::Replay, of), self.case_table(), self.summary_table()];
-        tables.into_iter().chain(left_out(&self.failures)).collect()
+        let cases = match &self.pairs {
+            None => self.case_table(),
+            Some(_) => self.pair_table(),
+        };
+        let tables = [FactTable::new(Term::Replay, of), cases, self.summary_table()];
+        let contact = self.pairs.as_ref().map(contact_table);
+        tables.into_iter().chain(contact).chain(left_out(&self.failures)).collect()
     }
 
     fn case_table(&self) -> FactTable {
@@ -46,15 +56,57 @@ impl SimulateDatasetReport {
         FactTable::new(Term::ReplayedCases, rows).with_rows(Term::Case).with_columns(&columns)
     }
 
+    /// A row for each recorded pair.
+    fn pair_table(&self) -> FactTable {
+        let length = |metres| Value::Decimals(Quantity::Length, metres, 2);
+        let angle = |rad| Value::Decimals(Quantity::Angle, rad, 1);
+        let errors = |error: &MotionError| {
+            [
+                length(error.average_error_m),
+                length(error.final_error_m),
+                angle(error.final_heading_error_rad),
+            ]
+        };
+        let both = |compared: &Compared, quantity, decimals| {
+            let value = |si| Value::Decimals(quantity, si, decimals);
+            let recorded = compared.recorded.map(value);
+            [value(compared.forecast), recorded.unwrap_or_else(|| Value::Text(String::new()))]
+        };
+        let row = |(case, pair): (&ReplayedCaseReport, &SimulatedPair)| {
+            let values = errors(&case.error)
+                .into_iter()
+                .chain(errors(&pair.striking))
+                .chain(both(&pair.contact_s, Quantity::Time, 2))
+                .chain(both(&pair.impulse_n_s, Quantity::Impulse, 2));
+            Fact::row(Value::Text(case.case.clone()), values.collect())
+        };
+        let pairs = self.cases.iter().filter_map(|case| Some((case, case.pair.as_ref()?)));
+        let rows = pairs.map(row).collect();
+        FactTable::new(Term::ReplayedCases, rows).with_rows(Term::Case).with_columns(&[
+            Term::StruckPathError,
+            Term::StruckEndError,
+            Term::StruckHeadingError,
+            Term::StrikingPathError,
+            Term::StrikingEndError,
+            Term::StrikingHeadingError,
+            Term::ContactTime,
+            Term::ContactTimeRecorded,
+            Term::ContactImpulse,
+            Term::ContactImpulseRecorded,
+        ])
+    }
+
     fn summary_table(&self) -> FactTable {
+        let striking = self.pairs.as_ref().map(|pairs| (Term::StrikingVehicle, &pairs.striking));
         let groups = [
             (Term::AllCases, &self.overall),
             (Term::Spinning, &self.spinning),
             (Term::NotSpinning, &self.not_spinning),
         ];
-        let rows = groups.into_iter().flat_map(|(group, summary)| {
+        let groups = groups.into_iter().filter_map(|(group, all)| Some((group, all.as_ref()?)));
+        let rows = groups.chain(striking).map(|(group, summary)| {
             let ErrorSummary { average_error_m, final_error_m, final_heading_error_rad, .. } =
-                summary.as_ref()?;
+                summary;
             let row = |error, quantity, summary: &Summary| {
                 let Summary { n, mean, std, median, p90, max, .. } = *summary;
                 let sizes = [mean, std, median, p90, max];
@@ -62,11 +114,11 @@ impl SimulateDatasetReport {
                 let values = [Value::Term(error), Value::Count(n)].into_iter().chain(sizes);
                 Fact::row(Value::Term(group), values.collect())
             };
-            Some([
+            [
                 row(Term::PathError, Quantity::Length, average_error_m),
                 row(Term::EndError, Quantity::Length, final_error_m),
                 row(Term::EndHeadingError, Quantity::Angle, final_heading_error_rad),
-            ])
+            ]
         });
         let columns = [
             Term::ErrorKind,
@@ -82,11 +134,25 @@ impl SimulateDatasetReport {
     }
 }
 
+/// The contact of recorded pairs.
+fn contact_table(pairs: &SimulatedPairs) -> FactTable {
+    let of = |term, value: Option<f64>, word: fn(f64) -> Value| {
+        value.map(|value| Fact::new(term, word(value)))
+    };
+    let ratio = |value| Value::Fixed(value, 2);
+    let facts = [
+        of(Term::ContactTimeRatio, pairs.contact_ratio, ratio),
+        of(Term::ContactTimeError, pairs.contact_error, Value::Share),
+        of(Term::ContactImpulseRatio, pairs.impulse_ratio, ratio),
+        of(Term::ContactImpulseError, pairs.impulse_error, Value::Share),
+    ];
+    FactTable::new(Term::ContactOfPairs, facts.into_iter().flatten().collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::facts::FactWriter;
-    use impactlab_core::compare::MotionError;
     use impactlab_core::units::UnitSystem;
 
     #[test]
@@ -106,18 +172,20 @@ mod tests {
             case: "c1".to_owned(),
             spin: true,
             error,
-            violations: 0,
+            violations: Some(0),
+            pair: None,
             flags: Vec::new(),
         };
         let report = SimulateDatasetReport {
             dataset: "set".into(),
-            vehicle: "car".to_owned(),
-            equations: "corrected".to_owned(),
+            vehicle: Some("car".to_owned()),
+            equations: Some("corrected".to_owned()),
             integrator: "rk4".to_owned(),
             cases: vec![case],
             overall: None,
             spinning: None,
             not_spinning: None,
+            pairs: None,
             failures: Vec::new(),
         };
         let text = report.case_table().to_text(&FactWriter::english(UnitSystem::Us));

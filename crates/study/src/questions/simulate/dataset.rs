@@ -1,4 +1,5 @@
-//! Every case of a trajectory data set against its recorded motion: `simulate --dataset`.
+//! Every case of a trajectory data set, or of one of recorded pairs, against its recorded motion: `simulate
+//! --dataset`.
 
 use crate::caveats::assumed;
 use std::path::PathBuf;
@@ -9,16 +10,20 @@ use serde::{Deserialize, Serialize};
 use crate::ask::inputs::{OpenVehicle, struck_vehicle};
 use crate::ask::question::progress_of;
 use crate::caveats::restrictions;
+use crate::questions::simulate::pairs::{PairReplay, SimulatedPair, SimulatedPairs};
 use crate::{
     Answer, FlagReport, Library, Observer, Provenance, Question, StudyError, VehicleChoice, word,
 };
-use impactlab_core::compare::{DatasetReplay, ErrorSummary, MotionError, Replay, replay_dataset};
+use impactlab_core::compare::{
+    DatasetReplay, ErrorSummary, MotionError, PairRecords, Replay, replay_dataset,
+};
 use impactlab_core::data::{DataError, Dataset, DatasetKind, Outcome};
 use impactlab_core::error_chain;
 use impactlab_core::uncertainty::{CaveatSubject, Caveats};
-use impactlab_core::vehicle::{Equations, Integrator};
+use impactlab_core::vehicle::{Equations, Integrator, Motion};
 
-/// Asks how far the 4DOF model lies from every recorded motion of a data set.
+/// Asks how far the 4DOF model lies from every recorded motion of a data set. Both vehicles of a recorded pair
+/// are followed through all contacts, by what their drivers did.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulateDatasetRequest {
     /// The data set.
@@ -26,7 +31,7 @@ pub struct SimulateDatasetRequest {
     /// One case of it, instead of all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case: Option<String>,
-    /// The struck vehicle.
+    /// The struck vehicle; recorded pairs have their own.
     #[serde(default)]
     pub vehicle: VehicleChoice,
     /// Which equations of motion; those of the vehicle file if not given.
@@ -42,20 +47,23 @@ pub struct SimulateDatasetRequest {
 pub struct SimulateDatasetReport {
     /// The data set.
     pub dataset: PathBuf,
-    /// The struck vehicle.
-    pub vehicle: String,
-    /// Which equations of motion.
-    pub equations: String,
+    /// The struck vehicle; `null` where each case has its own.
+    pub vehicle: Option<String>,
+    /// Which equations of motion; `null` where they are those of the vehicle files of the cases.
+    pub equations: Option<String>,
     /// How they are integrated.
     pub integrator: String,
     /// Each case.
     pub cases: Vec<ReplayedCaseReport>,
-    /// Over all cases.
+    /// The struck vehicle over all cases.
     pub overall: Option<ErrorSummary>,
     /// Over cases that turn by more than 90°.
     pub spinning: Option<ErrorSummary>,
     /// Over the other cases.
     pub not_spinning: Option<ErrorSummary>,
+    /// Recorded pairs: the striking vehicle and the contact over all cases.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pairs: Option<SimulatedPairs>,
     /// Cases that could not be read or simulated, and why.
     pub failures: Vec<String>,
 }
@@ -67,11 +75,16 @@ pub struct ReplayedCaseReport {
     pub case: String,
     /// Whether the recorded motion is a spin.
     pub spin: bool,
-    /// How far the simulation lies from the record.
+    /// How far the simulation of the struck vehicle lies from the record.
     #[serde(flatten)]
     pub error: MotionError,
-    /// How often the simulated kinetic energy grows without a force.
-    pub violations: usize,
+    /// How often the simulated kinetic energy grows without a force; not counted of recorded pairs, whose
+    /// drivers accelerate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub violations: Option<usize>,
+    /// A recorded pair: the striking vehicle and the contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pair: Option<SimulatedPair>,
     /// Wheel lift and roll beyond the limit.
     pub flags: Vec<FlagReport>,
 }
@@ -83,6 +96,8 @@ pub struct SimulateDatasetAnswer {
     pub report: Answer<SimulateDatasetReport>,
     /// The motions.
     pub replay: DatasetReplay,
+    /// The motions of recorded pairs.
+    pub pairs: Vec<PairReplay>,
 }
 
 impl Question for SimulateDatasetRequest {
@@ -103,6 +118,9 @@ impl Question for SimulateDatasetRequest {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<SimulateDatasetAnswer>, StudyError> {
+        if PairRecords::is_at(&self.dataset) {
+            return self.solve_pairs(observer);
+        }
         let Outcome::Complete(dataset) = library.dataset(&self.dataset, observer)? else {
             return Ok(Outcome::Cancelled);
         };
@@ -141,17 +159,33 @@ impl Question for SimulateDatasetRequest {
         caveats.extend(flagged.chain(left_out));
         let report = SimulateDatasetReport {
             dataset: self.dataset.clone(),
-            vehicle: vehicle.name.clone(),
-            equations: word(&vehicle.equations),
+            vehicle: Some(vehicle.name.clone()),
+            equations: Some(word(&vehicle.equations)),
             integrator: word(&self.integrator),
             cases,
             overall: summary(|_| true),
             spinning: summary(|replay| replay.spin),
             not_spinning: summary(|replay| !replay.spin),
+            pairs: None,
             failures,
         };
         let report = Answer { report, caveats, provenance: Provenance::default() };
-        Ok(Outcome::Complete(SimulateDatasetAnswer { report, replay }))
+        Ok(Outcome::Complete(SimulateDatasetAnswer { report, replay, pairs: Vec::new() }))
+    }
+}
+
+impl SimulateDatasetAnswer {
+    /// Every motion: its case, the name of its file without the ending, the motion. That of the striking
+    /// vehicle of a pair follows that of the struck one.
+    pub fn motions(&self) -> impl Iterator<Item = (&str, String, &Motion)> {
+        let alone = self.replay.cases.iter();
+        let alone = alone.map(|case| (case.case.as_str(), case.case.clone(), &case.motion));
+        let pairs =
+            self.pairs.iter().flat_map(|PairReplay { case, motions: [struck, striking] }| {
+                let file = format!("{case}_striking");
+                [(case.as_str(), case.clone(), struck), (case.as_str(), file, striking)]
+            });
+        alone.chain(pairs)
     }
 }
 
@@ -174,7 +208,8 @@ impl ReplayedCaseReport {
             case: replay.case.clone(),
             spin: replay.spin,
             error: replay.error.clone(),
-            violations: replay.violations,
+            violations: Some(replay.violations),
+            pair: None,
             flags: replay.motion.flags.iter().map(FlagReport::from).collect(),
         }
     }

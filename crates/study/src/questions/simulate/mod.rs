@@ -4,6 +4,7 @@ pub(crate) mod dataset;
 pub(crate) mod drive;
 pub(crate) mod flag;
 pub(crate) mod motion_source;
+pub(crate) mod pairs;
 pub(crate) mod recorded_force;
 pub(crate) mod report;
 pub(crate) mod request;
