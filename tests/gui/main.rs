@@ -24,4 +24,5 @@ mod scene_gpu;
 mod settings;
 mod snapshots;
 mod stored;
+mod vehicle_form;
 mod workflow;

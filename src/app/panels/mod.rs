@@ -7,6 +7,7 @@
 mod cases;
 mod comparison;
 mod contents;
+mod crush_form;
 mod data;
 mod doors;
 mod ending;

@@ -1,14 +1,15 @@
 //! The form of a vehicle: what is known of it, and what is estimated by rule with its scatter.
 
-use egui::{CollapsingHeader, ComboBox, Grid, RichText, Ui};
+use egui::{CollapsingHeader, ComboBox, Grid, Response, RichText, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::output::Output;
+use crate::app::panels::crush_form::crush_form_ui;
 use crate::app::widgets::quantity_value;
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::Range;
-use impactlab_core::units::{NumberFormat, UnitSystem};
+use impactlab_core::units::{self, NumberFormat, UnitSystem};
 use impactlab_core::vehicle::sheet::{Drive, Estimate};
 use impactlab_core::vehicle::{DataSheet, SheetQuantity, VehicleClass};
 use impactlab_draw::theme;
@@ -51,6 +52,7 @@ pub fn vehicle_form_ui(
                 quantity_ui(ui, sheet, quantity, estimate, units);
             }
         });
+        crush_form_ui(ui, title, sheet, units);
     });
 }
 
@@ -122,7 +124,9 @@ fn quantity_ui(
                 sheet.set(quantity, value);
             }
         }
-        (None, Some(estimate)) => estimate_ui(ui, estimate, &range, units),
+        (None, Some(Estimate { value, rule, source, .. })) => {
+            estimate_ui(ui, value, &range, units).on_hover_text(estimated_by(rule, source));
+        }
         (None, None) => {
             ui.weak("follows from the stiffness or damping of its file");
         }
@@ -131,10 +135,17 @@ fn quantity_ui(
 }
 
 /// Draws an estimate with the range that holds it with a probability of 90 %.
-fn estimate_ui(ui: &mut Ui, estimate: &Estimate, range: &Range, units: UnitSystem) {
-    let format = NumberFormat::english(units);
-    let text = format.estimate_in_words(range.quantity, &estimate.value);
-    let hint =
-        format!("Estimated: {}\nSource: {}\nIn brackets: 90 %", estimate.rule, estimate.source);
-    ui.add(egui::Label::new(RichText::new(text).italics()).wrap()).on_hover_text(hint);
+pub(super) fn estimate_ui(
+    ui: &mut Ui,
+    value: &units::Estimate,
+    range: &Range,
+    units: UnitSystem,
+) -> Response {
+    let text = NumberFormat::english(units).estimate_in_words(range.quantity, value);
+    ui.add(egui::Label::new(RichText::new(text).italics()).wrap())
+}
+
+/// Where an estimate comes from, for a person.
+pub(super) fn estimated_by(rule: &str, source: &str) -> String {
+    format!("Estimated: {rule}\nSource: {source}\nIn brackets: 90 %")
 }

@@ -197,6 +197,8 @@ fn drag_speed(range: &Range, unit: &Unit) -> f64 {
         Quantity::Angle => 0.006,
         Quantity::AngularVelocity => 0.02,
         Quantity::Time => 0.03,
+        Quantity::ForcePerLength => 200.0,
+        Quantity::ForcePerArea => 2000.0,
         _ => 0.002,
     };
     unit.from_si(f64::min(ordinary, (range.high - range.low) / 1000.0))

@@ -9,6 +9,7 @@ use crate::cli::options::{Words, number, one_of};
 use impactlab_core::collision::contact::{BarrierTest, FaceStiffness};
 use impactlab_core::error_chain;
 use impactlab_core::ranges::{BODY_WIDTH, CRUSH_DEPTH, SPEED, VEHICLE_MASS};
+use impactlab_core::vehicle::CrushFace;
 
 /// Compute A and B of a face from a test against a rigid barrier
 ///
@@ -34,7 +35,7 @@ pub(in crate::cli) struct StiffnessArgs {
     no_damage_speed: f64,
     /// The face
     #[arg(long, value_parser = one_of(FACES), default_value = "front")]
-    face: Face,
+    face: CrushFace,
 }
 
 const EXAMPLES: &str = "\
@@ -47,23 +48,11 @@ A = m b0 b1/L and B = m b1²/L with b1 = (V − b0)/C and C = (C1/2 + C2 + … +
 
 JSON: {face, mean_crush_m, onset_n_per_m, stiffness_n_per_m2}";
 
-/// A face of a vehicle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-enum Face {
-    Front,
-    Side,
-    Rear,
-}
-
-const FACES: Words<Face> =
-    &[("front", "", Face::Front), ("side", "", Face::Side), ("rear", "", Face::Rear)];
-
-impl Face {
-    fn word(self) -> &'static str {
-        FACES.iter().find(|(.., face)| *face == self).map_or("front", |(word, ..)| *word)
-    }
-}
+const FACES: Words<CrushFace> = &[
+    (CrushFace::Front.word(), "", CrushFace::Front),
+    (CrushFace::Side.word(), "", CrushFace::Side),
+    (CrushFace::Rear.word(), "", CrushFace::Rear),
+];
 
 /// Six depths, each with or without a unit.
 fn crush(text: &str) -> Result<[f64; 6], String> {
@@ -78,7 +67,7 @@ fn crush(text: &str) -> Result<[f64; 6], String> {
 /// A and B of a face.
 #[derive(Debug, Serialize)]
 struct PrintedStiffness {
-    face: Face,
+    face: CrushFace,
     mean_crush_m: f64,
     onset_n_per_m: f64,
     stiffness_n_per_m2: f64,

@@ -147,6 +147,8 @@ fn samples_range(channel: Channel) -> Option<Range> {
             | Quantity::Impulse
             | Quantity::AngularImpulse
             | Quantity::Energy
+            | Quantity::ForcePerLength
+            | Quantity::ForcePerArea
             | Quantity::Ratio,
         ) => return None,
     })

@@ -195,9 +195,9 @@ ranges! {
         "height of the roll axis below the CG above the ground";
     ROLL_ARM: "roll arm" = real(Quantity::Length, [0.0, 3.0]),
         "distance from the roll axis to the CG of the sprung mass";
-    CRUSH_ONSET: "crush onset" = in_unit("N/m", [0.0, 1e7]),
+    CRUSH_ONSET: "crush onset" = real(Quantity::ForcePerLength, [0.0, 1e7]),
         "load over the width of a face at which it begins to crush, A";
-    CRUSH_STIFFNESS: "crush stiffness" = in_unit("N/m²", [1e3, 1e9]),
+    CRUSH_STIFFNESS: "crush stiffness" = real(Quantity::ForcePerArea, [1e3, 1e9]),
         "growth of that load with the depth of the crush, B";
     CRUSH_DEPTH: "crush depth" = real(Quantity::Length, [0.0, 5.0]),
         "depth to which a face is crushed";

@@ -67,6 +67,10 @@ pub enum Quantity {
     AngularImpulse,
     /// Energy, J.
     Energy,
+    /// Force over the width on which it acts, N/m.
+    ForcePerLength,
+    /// Growth of a force per width with a depth, N/m².
+    ForcePerArea,
     /// A number without a dimension, such as a coefficient or a share.
     Ratio,
 }
@@ -146,6 +150,10 @@ impl Quantity {
             (Self::AngularImpulse, UnitSystem::Us) => "lbf ft s",
             (Self::Energy, UnitSystem::Si) => "kJ",
             (Self::Energy, UnitSystem::Us) => "ft lbf",
+            (Self::ForcePerLength, UnitSystem::Si) => "kN/m",
+            (Self::ForcePerLength, UnitSystem::Us) => "lbf/in",
+            (Self::ForcePerArea, UnitSystem::Si) => "kN/m²",
+            (Self::ForcePerArea, UnitSystem::Us) => "lbf/in²",
             _ => return self.si_unit(),
         };
         *self.units().iter().find(|unit| unit.symbol == symbol).unwrap_or(&self.units()[0])
@@ -202,6 +210,10 @@ impl Quantity {
                 "lbf ft s" = POUND_FORCE_N * FOOT_M),
             Self::Energy => units!(Energy: "J" = 1.0, "kJ" = 1e3,
                 "ft lbf" = POUND_FORCE_N * FOOT_M),
+            Self::ForcePerLength => units!(ForcePerLength: "N/m" = 1.0, "kN/m" = 1e3, "N/cm" = 1e2,
+                "lbf/in" = POUND_FORCE_N / INCH_M),
+            Self::ForcePerArea => units!(ForcePerArea: "N/m²" = 1.0, "kN/m²" = 1e3, "N/cm²" = 1e4,
+                "lbf/in²" = POUND_FORCE_N / (INCH_M * INCH_M)),
             Self::Ratio => units!(Ratio: "" = 1.0, "%" = 0.01),
         }
     }

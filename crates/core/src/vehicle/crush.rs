@@ -39,64 +39,108 @@ pub struct CrushStiffness {
     pub stiffness_n_per_m2: f64,
 }
 
-/// Keys of the numbers of each face, in the order of front, side, rear.
-const KEYS: [[&str; 2]; 3] = [
-    ["crush.front.onset_n_per_m", "crush.front.stiffness_n_per_m2"],
-    ["crush.side.onset_n_per_m", "crush.side.stiffness_n_per_m2"],
-    ["crush.rear.onset_n_per_m", "crush.rear.stiffness_n_per_m2"],
-];
+/// A face of a vehicle, as a file names it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CrushFace {
+    /// The front.
+    Front,
+    /// The left and the right side.
+    Side,
+    /// The rear.
+    Rear,
+}
+
+impl CrushFace {
+    /// Every face, from the front to the rear.
+    pub const ALL: [Self; 3] = [Self::Front, Self::Side, Self::Rear];
+
+    /// The word of a vehicle file.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Front => "front",
+            Self::Side => "side",
+            Self::Rear => "rear",
+        }
+    }
+
+    /// Keys of A and of B of the face in a vehicle file.
+    const fn keys(self) -> [&'static str; 2] {
+        match self {
+            Self::Front => ["crush.front.onset_n_per_m", "crush.front.stiffness_n_per_m2"],
+            Self::Side => ["crush.side.onset_n_per_m", "crush.side.stiffness_n_per_m2"],
+            Self::Rear => ["crush.rear.onset_n_per_m", "crush.rear.stiffness_n_per_m2"],
+        }
+    }
+}
 
 impl CrushParameters {
     /// Whether nothing is known.
     pub fn is_empty(&self) -> bool {
-        self.faces().iter().all(Option::is_none)
+        self.known().next().is_none()
     }
 
-    fn faces(&self) -> [Option<CrushStiffness>; 3] {
-        [self.front, self.side, self.rear]
+    /// A and B of a face, if they are known.
+    pub fn face(&self, face: CrushFace) -> Option<CrushStiffness> {
+        match face {
+            CrushFace::Front => self.front,
+            CrushFace::Side => self.side,
+            CrushFace::Rear => self.rear,
+        }
+    }
+
+    /// A and B of a face, to be changed; `None` leaves them to the rule.
+    pub fn face_mut(&mut self, face: CrushFace) -> &mut Option<CrushStiffness> {
+        match face {
+            CrushFace::Front => &mut self.front,
+            CrushFace::Side => &mut self.side,
+            CrushFace::Rear => &mut self.rear,
+        }
+    }
+
+    /// The faces of which A and B are known.
+    fn known(&self) -> impl Iterator<Item = (CrushFace, CrushStiffness)> + use<> {
+        let parameters = *self;
+        CrushFace::ALL.into_iter().filter_map(move |face| Some((face, parameters.face(face)?)))
     }
 
     /// Every number with its key and its range.
     pub(super) fn ranges(&self) -> impl Iterator<Item = (&'static str, f64, Range)> + use<> {
-        let numbers = |(face, keys): (Option<CrushStiffness>, [&'static str; 2])| {
-            face.map(|face| {
-                [
-                    (keys[0], face.onset_n_per_m, CRUSH_ONSET),
-                    (keys[1], face.stiffness_n_per_m2, CRUSH_STIFFNESS),
-                ]
-            })
-        };
-        self.faces().into_iter().zip(KEYS).filter_map(numbers).flatten()
+        self.known().flat_map(|(face, known)| {
+            let [onset, stiffness] = face.keys();
+            [
+                (onset, known.onset_n_per_m, CRUSH_ONSET),
+                (stiffness, known.stiffness_n_per_m2, CRUSH_STIFFNESS),
+            ]
+        })
     }
 
     /// Reads the section of a data sheet.
     pub(super) fn read(table: Option<TomlTable<'_>>) -> Result<Self, TomlError> {
-        let Some(mut table) = table else { return Ok(Self::default()) };
-        let mut face = |name: &str| -> Result<Option<CrushStiffness>, TomlError> {
-            let Some(mut face) = table.optional_table(name)? else { return Ok(None) };
+        let mut found = Self::default();
+        let Some(mut table) = table else { return Ok(found) };
+        for of in CrushFace::ALL {
+            let Some(mut face) = table.optional_table(of.word())? else { continue };
             let onset = face.plain("onset_n_per_m", &CRUSH_ONSET)?;
             let onset_n_per_m = onset.ok_or_else(|| face.missing("onset_n_per_m"))?;
             let stiffness = face.plain("stiffness_n_per_m2", &CRUSH_STIFFNESS)?;
             let stiffness_n_per_m2 = stiffness.ok_or_else(|| face.missing("stiffness_n_per_m2"))?;
             face.finish()?;
-            Ok(Some(CrushStiffness { onset_n_per_m, stiffness_n_per_m2 }))
-        };
-        let found = Self { front: face("front")?, side: face("side")?, rear: face("rear")? };
+            *found.face_mut(of) = Some(CrushStiffness { onset_n_per_m, stiffness_n_per_m2 });
+        }
         table.finish()?;
         Ok(found)
     }
 
     /// The section of a file.
     pub(super) fn to_table(self) -> toml::Table {
-        let faces = ["front", "side", "rear"].into_iter().zip(self.faces());
-        let section = |(name, face): (&str, Option<CrushStiffness>)| {
-            let face = face?;
+        let section = |(face, known): (CrushFace, CrushStiffness)| {
             let mut table = toml::Table::new();
-            table.insert("onset_n_per_m".to_owned(), face.onset_n_per_m.into());
-            table.insert("stiffness_n_per_m2".to_owned(), face.stiffness_n_per_m2.into());
-            Some((name.to_owned(), table.into()))
+            table.insert("onset_n_per_m".to_owned(), known.onset_n_per_m.into());
+            table.insert("stiffness_n_per_m2".to_owned(), known.stiffness_n_per_m2.into());
+            (face.word().to_owned(), table.into())
         };
-        faces.filter_map(section).collect()
+        self.known().map(section).collect()
     }
 }
 

@@ -46,7 +46,7 @@ pub use batch::{SimulationRun, simulate_batch};
 pub use constants::VehicleConstants;
 pub use controlled::ControlledVehicle;
 pub use controls::{Controls, SteerHistory, WheelHistory};
-pub use crush::{CrushParameters, CrushStiffness};
+pub use crush::{CrushFace, CrushParameters, CrushStiffness};
 pub use draws::{Sensitivity, VehicleDraws};
 pub use drivers::{
     AntiLock, ClosedLoop, Countersteer, Market, PitDriver, PitEnd, StabilityControl, TurnSide,

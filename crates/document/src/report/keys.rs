@@ -8,8 +8,10 @@ use impactlab_core::units::Quantity;
 /// Names that say only how a question is written down.
 const SILENT: [&str; 7] = ["", "inline", "source", "motion", "numbers", "file", "evidence"];
 
-/// Endings of names with their quantities, the longer ones first.
-const ENDINGS: [(&str, Quantity); 13] = [
+/// Endings of names with their quantities.
+const ENDINGS: [(&str, Quantity); 15] = [
+    ("_n_per_m2", Quantity::ForcePerArea),
+    ("_n_per_m", Quantity::ForcePerLength),
     ("_kg_m2", Quantity::MomentOfInertia),
     ("_rad_s", Quantity::AngularVelocity),
     ("_n_m_s", Quantity::AngularImpulse),
@@ -44,15 +46,10 @@ pub(super) fn is_silent(name: &str) -> bool {
 
 /// The quantity, or the symbol of the unit, that the ending of a name says.
 pub(super) fn quantity_of_key(key: &str) -> Option<Result<Quantity, &'static str>> {
-    let inertia = key.ends_with("_kg_m2");
-    let plain = PLAIN_ENDINGS.iter().find(|(ending, _)| key.ends_with(ending));
-    match plain {
-        Some((_, symbol)) if !inertia => Some(Err(symbol)),
-        _ => {
-            let found = ENDINGS.iter().find(|(ending, _)| key.ends_with(ending));
-            found.map(|(_, quantity)| Ok(*quantity))
-        }
-    }
+    let plain = PLAIN_ENDINGS.iter().map(|(ending, symbol)| (ending, Err(*symbol)));
+    let quantities = ENDINGS.iter().map(|(ending, quantity)| (ending, Ok(*quantity)));
+    let fitting = plain.chain(quantities).filter(|(ending, _)| key.ends_with(*ending));
+    fitting.max_by_key(|(ending, _)| ending.len()).map(|(_, unit)| unit)
 }
 
 /// A name without the unit at its end, in words.
@@ -101,6 +98,8 @@ mod tests {
             ("impulse_n_s", Some(Ok(Quantity::Impulse))),
             ("roll_stiffness_n_m_rad", Some(Err("N m/rad"))),
             ("region_90_m2", Some(Err("m²"))),
+            ("onset_n_per_m", Some(Ok(Quantity::ForcePerLength))),
+            ("stiffness_n_per_m2", Some(Ok(Quantity::ForcePerArea))),
             ("yaw_rate_rad_s", Some(Ok(Quantity::AngularVelocity))),
             ("restitution", None),
         ] {

@@ -46,8 +46,8 @@ pub use outline::{ContactOutline, OutlineElement, USUAL_CORNER_SHARE, USUAL_ELEM
 pub use phases::{CONTACT_GAP_S, ContactPhase, PhaseOfVehicle};
 pub use stiffness::{
     BarrierTest, ByFace, ELASTIC_DEPTH_LOG_SIGMA, ELASTIC_DEPTH_M, FaceLaws, FaceStiffness,
-    PRINTED_FACTORS, SATURATION_DEPTH_M, STIFFNESS_LOG_SIGMA, TESTED_LOG_SIGMA, class_stiffness,
-    stiffness_log_sigma,
+    PRINTED_FACTORS, SATURATION_DEPTH_M, STIFFNESS_LOG_SIGMA, STIFFNESS_RULE, STIFFNESS_SOURCE,
+    TESTED_LOG_SIGMA, class_estimates, class_stiffness, stiffness_log_sigma,
 };
 pub use touch::way_to_touch_m;
 pub use vehicle_pair::{ContactEnergy, PairMotion, PairVehicle, VehiclePair};

@@ -12,7 +12,9 @@
 
 use crate::collision::Side;
 use crate::collision::contact::law::{FaceLaw, FaceLawError, FaceParameters, Recovery};
-use crate::vehicle::{CrushParameters, CrushStiffness, VehicleClass, VehicleParameters};
+use crate::numerics::normal_quantile;
+use crate::units::{Estimate, Interval};
+use crate::vehicle::{CrushFace, CrushParameters, CrushStiffness, VehicleClass, VehicleParameters};
 
 /// A and B of a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,6 +43,15 @@ impl<T> ByFace<T> {
             Side::Front => &self.front,
             Side::Left | Side::Right => &self.side,
             Side::Rear => &self.rear,
+        }
+    }
+
+    /// The value of a face.
+    pub fn at_face(&self, face: CrushFace) -> &T {
+        match face {
+            CrushFace::Front => &self.front,
+            CrushFace::Side => &self.side,
+            CrushFace::Rear => &self.rear,
         }
     }
 
@@ -158,6 +169,12 @@ impl ByFace<FaceStiffness> {
     }
 }
 
+/// The rule of [`class_stiffness`] in a few words.
+pub const STIFFNESS_RULE: &str = "by class and mass, between cars whose A and B are printed";
+/// Where its cars and its scatter come from.
+pub const STIFFNESS_SOURCE: &str =
+    "EDSMAC manual, four cars; scatter chosen, sides after SAE 2020-01-0640";
+
 /// Medians of A and B of a vehicle of which only class and mass are known.
 ///
 /// Passenger cars, and vehicles of no stated class: between the two small cars and the large saloon
@@ -181,6 +198,20 @@ pub fn class_stiffness(class: VehicleClass, mass_kg: f64) -> ByFace<FaceStiffnes
             OFF_ROADER.stiffness.map(|face| face.scaled(mass_kg / OFF_ROADER.mass_kg))
         }
     }
+}
+
+/// A and B of a face by [`class_stiffness`], N/m and N/m², each with the interval of 90 % of its scatter.
+///
+/// - `mass_kg`: more than 0.
+pub fn class_estimates(class: VehicleClass, mass_kg: f64, face: CrushFace) -> [Estimate; 2] {
+    let FaceStiffness { onset_n_per_m, stiffness_n_per_m2 } =
+        *class_stiffness(class, mass_kg).at_face(face);
+    let sigma = STIFFNESS_LOG_SIGMA.at_face(face);
+    let factor = (sigma * normal_quantile(0.95)).exp();
+    [onset_n_per_m, stiffness_n_per_m2].map(|median| Estimate {
+        median,
+        intervals: vec![Interval { level: 0.9, low: median / factor, high: median * factor }],
+    })
 }
 
 impl ByFace<FaceStiffness> {
@@ -367,6 +398,22 @@ mod tests {
         assert_eq!((said.side, said.rear), (by_rule.side, by_rule.rear));
         let sigma = stiffness_log_sigma(&vehicle.crush);
         assert_eq!([sigma.front, sigma.side], [TESTED_LOG_SIGMA, STIFFNESS_LOG_SIGMA.side]);
+    }
+
+    #[test]
+    fn an_estimate_by_class_has_the_median_and_the_scatter_of_the_rule() {
+        let by_rule = class_stiffness(VehicleClass::Suv, 1900.0);
+        for face in CrushFace::ALL {
+            let [onset, stiffness] = class_estimates(VehicleClass::Suv, 1900.0, face);
+            let FaceStiffness { onset_n_per_m, stiffness_n_per_m2 } = *by_rule.at_face(face);
+            assert_eq!([onset.median, stiffness.median], [onset_n_per_m, stiffness_n_per_m2]);
+            for estimate in [onset, stiffness] {
+                let [low, high] = estimate.ninety();
+                let spread = (high / low).ln() / STIFFNESS_LOG_SIGMA.at_face(face);
+                assert!((spread - 2.0 * 1.644_853_6).abs() < 1e-6, "{face:?}: {spread}");
+                assert!((low * high / estimate.median.powi(2) - 1.0).abs() < 1e-12);
+            }
+        }
     }
 
     #[test]

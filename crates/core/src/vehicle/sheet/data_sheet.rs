@@ -32,13 +32,13 @@ pub struct DataSheet {
     pub class: VehicleClass,
     /// Driven axle, if known.
     pub drive: Option<Drive>,
+    /// How stiff its faces are, as far as it is known.
+    pub crush: CrushParameters,
     pub(super) known: BTreeMap<SheetQuantity, f64>,
     /// Roll stiffness, N m/rad, where it is known instead of the roll gradient.
     pub(super) roll_stiffness_n_m_rad: Option<f64>,
     /// Roll damping, N m s/rad, where it is known instead of the damping ratio.
     pub(super) roll_damping_n_m_s_rad: Option<f64>,
-    /// How stiff its faces are, as far as it is known.
-    pub(super) crush: CrushParameters,
     /// Standard deviations of each estimate from its median; 0 where none is given.
     pub(super) latents: BTreeMap<SheetQuantity, f64>,
 }

@@ -33,7 +33,7 @@ pub(super) fn vehicle_rows(
             let source = rule.or_else(|| vehicle.stated.get(&name)).unwrap_or(&vehicle.source);
             InputRow {
                 group: group.to_owned(),
-                label: wording.key(&row.key),
+                label: label(row, wording),
                 value: row.value.clone(),
                 class: if rule.is_some() { InputClass::Estimated } else { InputClass::Given },
                 source: wording.quoted(source),
@@ -53,6 +53,15 @@ pub(super) fn vehicle_rows(
     }
     inputs.extend(estimates.iter().map(|estimate| estimate_row(estimate, group, wording)));
     inputs
+}
+
+/// What a parameter is called: of those of a part of a table, such as a face, with the part.
+fn label(row: &FlatRow, wording: &Wording) -> String {
+    let name = wording.key(&row.key);
+    match &row.path[..] {
+        [_, .., part] => format!("{name}, {}", wording.key(part)),
+        _ => name,
+    }
 }
 
 /// What the rules of a data sheet say of a quantity that it leaves open.
@@ -78,7 +87,30 @@ mod tests {
     use super::*;
     use crate::report::{Language, Paper, ReportDate, ReportSettings};
     use impactlab_core::units::UnitSystem;
-    use impactlab_core::vehicle::Preset;
+    use impactlab_core::vehicle::{CrushStiffness, Preset};
+
+    #[test]
+    fn how_stiff_a_face_is_has_its_face_and_its_unit() {
+        let date = ReportDate::new(2026, 1, 2).unwrap();
+        let (units, paper) = (UnitSystem::Si, Paper::A4);
+        let mut vehicle = Preset::Reference.parameters();
+        let stiffness = CrushStiffness { onset_n_per_m: 60_400.0, stiffness_n_per_m2: 78e4 };
+        vehicle.crush.side = Some(stiffness);
+        for (language, expected) in [
+            (Language::En, [("onset, side", "60.40 kN/m"), ("stiffness, side", "780.0 kN/m²")]),
+            (
+                Language::De,
+                [("Einsatzlast A, Seite", "60,40 kN/m"), ("Steifigkeit B, Seite", "780,0 kN/m²")],
+            ),
+        ] {
+            let wording = Wording::new(&ReportSettings { language, units, paper, date });
+            let rows = vehicle_rows(&vehicle, "struck car", &wording);
+            for (label, value) in expected {
+                let row = rows.iter().find(|row| row.label == label);
+                assert_eq!(row.map(|row| &*row.value), Some(value), "{label}");
+            }
+        }
+    }
 
     #[test]
     fn what_another_mass_has_changed_is_not_said_to_be_of_the_file() {

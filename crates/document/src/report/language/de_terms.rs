@@ -299,6 +299,8 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("left", "links"),
     ("right", "rechts"),
     ("front", "vorn"),
+    ("onset", "Einsatzlast A"),
+    ("stiffness", "Steifigkeit B"),
     ("rear", "hinten"),
     ("into the struck vehicle's front", "in die Front des gestoßenen Fahrzeugs"),
     ("into the struck vehicle's rear", "in das Heck des gestoßenen Fahrzeugs"),

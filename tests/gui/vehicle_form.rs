@@ -1,0 +1,156 @@
+//! How stiff the faces of both cars are, typed into their forms.
+
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use impactlab::app::{App, Command, Output, Pane, State};
+use impactlab_core::units::UnitSystem;
+use impactlab_core::vehicle::{CrushFace, CrushStiffness, DataSheet};
+use impactlab_study::VehicleChoice;
+use impactlab_study::case_file::CaseFile;
+
+use crate::harness::{apply, is_idle, open, step_until};
+use crate::pictures::save;
+
+const SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/pit_right_rear.toml");
+
+fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
+    harness.state().state()
+}
+
+fn is_forecast(state: &State) -> bool {
+    let forecast = &state.session.response.forecast;
+    is_idle(state) && forecast.ok().is_some() && !forecast.is_waiting()
+}
+
+/// The sheets of the struck and of the striking vehicle.
+fn sheets(state: &State) -> [DataSheet; 2] {
+    let simulate = &state.project.simulate;
+    [&simulate.vehicle, &simulate.striking].map(|choice| match choice {
+        VehicleChoice::Sheet(sheet) => DataSheet::clone(sheet),
+        other => panic!("{other:?} is no sheet"),
+    })
+}
+
+fn front(state: &State) -> [Option<CrushStiffness>; 2] {
+    sheets(state).map(|sheet| sheet.crush.face(CrushFace::Front))
+}
+
+/// The scenario with both vehicles in their forms, and its forecast.
+fn with_forms() -> Harness<'static, App> {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the simulation", is_idle);
+    apply(&mut harness, Command::Show(Pane::Vehicle));
+    harness.run_steps(4);
+    for _ in 0..2 {
+        harness.query_all_by_label("Edit a copy").next().expect("a copy").click();
+        harness.run_steps(4);
+    }
+    step_until(&mut harness, "the forecast of the sheets", is_forecast);
+    harness
+}
+
+/// Brings the struck or the striking vehicle's row of the front into view and ticks it or unticks it.
+fn tick_front(harness: &mut Harness<'_, App>, vehicle: usize) {
+    let boxes: Vec<_> = harness.query_all_by_role_and_label(Role::CheckBox, "front").collect();
+    assert_eq!(boxes.len(), 2, "both vehicles have a front");
+    boxes[vehicle].scroll_to_me();
+    drop(boxes);
+    harness.run_steps(4);
+    let boxes: Vec<_> = harness.query_all_by_role_and_label(Role::CheckBox, "front").collect();
+    boxes[vehicle].click_accesskit();
+    drop(boxes);
+    harness.run_steps(4);
+}
+
+fn type_into(harness: &mut Harness<'_, App>, label: &str, typed: &str) {
+    harness.query_all_by_label(label).next().expect(label).focus();
+    harness.run_steps(2);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    harness.key_press(egui::Key::Delete);
+    harness.run_steps(2);
+    harness.event(egui::Event::Text(typed.to_owned()));
+    harness.run_steps(2);
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(4);
+}
+
+fn report(state: &State) -> serde_json::Value {
+    let answer = state.session.response.forecast.ok().expect("a forecast");
+    let mut report = serde_json::to_value(&answer.answer.report).expect("JSON");
+    // The provenance holds the question, which differs in any case.
+    report.as_object_mut().expect("an object").remove("provenance");
+    report
+}
+
+#[test]
+fn a_stiffness_that_is_typed_is_that_of_the_forecast_and_of_the_saved_case() {
+    let mut harness = with_forms();
+    let by_class = report(state(&harness));
+    assert_eq!(front(state(&harness)), [None; 2]);
+    tick_front(&mut harness, 1);
+    let [struck, striking] = front(state(&harness));
+    let of_class = striking.expect("the striking vehicle's front is known now");
+    assert_eq!(struck, None);
+    type_into(&mut harness, "front A, onset", "60.4");
+    type_into(&mut harness, "front B, growth with depth", "2500");
+    let typed = CrushStiffness { onset_n_per_m: 60_400.0, stiffness_n_per_m2: 2.5e6 };
+    assert_eq!(front(state(&harness)), [None, Some(typed)]);
+    step_until(&mut harness, "the forecast with a stiff front", is_forecast);
+    let stiff = report(state(&harness));
+    assert_ne!(stiff, by_class, "the forecast follows from the stiffness");
+    save(&mut harness, "vehicle-form-crush.png");
+
+    // Beyond the range it is refused, with the range.
+    type_into(&mut harness, "front A, onset", "-3");
+    assert_eq!(front(state(&harness)), [None, Some(typed)]);
+    let refusal = harness.get_by_label_contains("not possible, 60.40 stays");
+    let text = refusal.accesskit_node().value().expect("a text");
+    assert!(text.contains("0 to 1") && text.contains("kN/m"), "{text}");
+
+    // The saved case has it, and opens with it.
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("stiff.impactlab");
+    apply(&mut harness, Command::Write(Output::Case, path.clone()));
+    step_until(&mut harness, "the case on disk", |state| state.case.path.is_some());
+    assert!(CaseFile::load(&path).is_ok());
+    let mut again = open(&[path.to_str().expect("text")]);
+    step_until(&mut again, "the forecast of the case", is_forecast);
+    assert_eq!(front(state(&again)), [None, Some(typed)]);
+    assert_eq!(report(state(&again)), stiff);
+
+    // As does a vehicle file.
+    let path = folder.path().join("stiff.toml");
+    let [_, sheet] = sheets(state(&harness));
+    apply(&mut harness, Command::Write(Output::Vehicle(Box::new(sheet)), path.clone()));
+    let text = std::fs::read_to_string(&path).expect("a vehicle file");
+    assert!(text.contains("[crush.front]\nonset_n_per_m = 60400.0\n"), "{text}");
+
+    // Without the tick the face is that of its class again; undo brings back what was typed.
+    harness.run_steps(90);
+    tick_front(&mut harness, 1);
+    assert_eq!(front(state(&harness)), [None; 2]);
+    step_until(&mut harness, "the forecast by class", is_forecast);
+    assert_eq!(report(state(&harness)), by_class);
+    harness.run_steps(90);
+    apply(&mut harness, Command::Undo);
+    assert_eq!(front(state(&harness)), [None, Some(typed)]);
+    assert_ne!(of_class, typed);
+}
+
+#[test]
+fn a_stiffness_is_typed_in_pounds_and_inches() {
+    let mut harness = with_forms();
+    harness.state_mut().state_mut().view.units = UnitSystem::Us;
+    harness.run_steps(4);
+    tick_front(&mut harness, 0);
+    type_into(&mut harness, "front A, onset", "345");
+    type_into(&mut harness, "front B, growth with depth", "113");
+    let [typed, striking] = front(state(&harness));
+    let CrushStiffness { onset_n_per_m, stiffness_n_per_m2 } = typed.expect("typed");
+    // 1 lbf is 4.448 222 N, 1 in is 25.4 mm.
+    assert!((onset_n_per_m / (345.0 * 4.448_222 / 0.0254) - 1.0).abs() < 1e-6);
+    assert!((stiffness_n_per_m2 / (113.0 * 4.448_222 / 0.0254 / 0.0254) - 1.0).abs() < 1e-6);
+    assert_eq!(striking, None);
+    save(&mut harness, "vehicle-form-crush-us.png");
+}
