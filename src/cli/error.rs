@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use impactlab_core::collision::FilterError;
 use impactlab_core::collision::contact::FaceLawError;
-use impactlab_core::data::DataError;
+use impactlab_core::data::{DataError, SeriesError};
 use impactlab_core::ranges::OutOfRange;
 use impactlab_core::site::SiteError;
 use impactlab_document::exchange::ExchangeError;
@@ -44,6 +44,9 @@ pub enum CliError {
     /// A file cannot be read or written.
     #[error(transparent)]
     Data(#[from] DataError),
+    /// The torques at the wheels do not fit the motion.
+    #[error("the torques at the wheels do not fit the motion")]
+    Torques(#[from] SeriesError),
     /// The scenario is not said.
     #[error("nothing to predict: say which scenario with --scenario FILE")]
     NothingToPredict,

@@ -5,6 +5,7 @@ mod both_faces;
 mod case;
 mod caveats;
 mod conditioning;
+mod controls;
 mod density_gpu;
 mod film;
 mod force_network;

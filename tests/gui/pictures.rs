@@ -1,18 +1,23 @@
 //! Pictures of the whole window, which are written below `target/pictures` for inspection.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use egui_kittest::Harness;
 use impactlab::app::{App, Command, Pane, PlaybackCommand, Subject};
 
 use crate::harness::{apply, is_idle, open, step_until};
 
+/// The folder of the pictures.
+pub fn picture_folder() -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pictures");
+    std::fs::create_dir_all(&folder).expect("a folder for pictures");
+    folder
+}
+
 /// Draws the window into a file.
 pub fn save(harness: &mut Harness<'_, App>, name: &str) {
     let image = harness.render().expect("the software renderer always draws");
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pictures");
-    std::fs::create_dir_all(&folder).expect("a folder for pictures");
-    image.save(folder.join(name)).expect("a picture is written");
+    image.save(picture_folder().join(name)).expect("a picture is written");
     let first = image.get_pixel(0, 0);
     assert!(image.pixels().any(|pixel| pixel != first), "{name} is blank");
 }

@@ -30,10 +30,11 @@ pub fn color(role: Role, dark: bool) -> Color32 {
     let (light_ground, dark_ground) = match role {
         Role::Simulation | Role::ComponentX | Role::Model => ([0, 114, 178], [86, 180, 233]),
         Role::Reference => ([60, 60, 60], [215, 215, 215]),
-        Role::Target => ([0, 128, 96], [0, 190, 140]),
+        Role::Target | Role::LeftWheel => ([0, 128, 96], [0, 190, 140]),
         Role::Striking | Role::ComponentY | Role::Validation => ([213, 94, 0], [240, 130, 50]),
         Role::Resultant => ([60, 60, 60], [225, 225, 225]),
         Role::Pulse => ([170, 80, 140], [220, 145, 190]),
+        Role::RightWheel => ([110, 70, 170], [170, 140, 230]),
         Role::Variant(idx) => VARIANTS[idx % VARIANTS.len()],
         Role::Muted => ([150, 150, 150], [120, 120, 120]),
     };

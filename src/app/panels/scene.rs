@@ -31,7 +31,6 @@ use impactlab_document::scene::{FilmTiming, Scene};
 use impactlab_draw::scene::{Follow, ScenePicture, ViewKind, scene_view_ui};
 use impactlab_draw::theme;
 use impactlab_study::RestState;
-use impactlab_study::analysis::Analysis;
 
 /// Seconds of the motion that can be played in a second.
 const SPEEDS: [f64; 5] = [0.05, 0.1, 0.25, 0.5, 1.0];
@@ -57,7 +56,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         return;
     };
     let end_s = series.time_s().last().copied().unwrap_or(0.0);
-    let span = (end_s, &*contacts_s(analysis, end_s));
+    let span = (end_s, &*analysis.contacts_s(end_s));
     clock_ui(ui, &session.playback, span, &mut view.playback_speed, commands);
     restrictions_ui(ui, &report.caveats);
     rest_ui(ui, report.rest.as_ref(), view.units);
@@ -294,12 +293,6 @@ fn with_others(
         figure.overlay(name, i, &other);
     }
     figure
-}
-
-/// When the vehicles of an analysis are in contact, s.
-fn contacts_s(analysis: &Analysis, end_s: f64) -> Vec<[f64; 2]> {
-    let phases = analysis.phases.iter();
-    phases.map(|phase| [phase.start_s, phase.end_s.unwrap_or(end_s)]).collect()
 }
 
 /// Marks below the rail of a slider when the vehicles are in contact.

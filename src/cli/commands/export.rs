@@ -211,9 +211,9 @@ fn write(args: &ExportArgs, (format, built): (FormatArg, &BuiltScene)) -> Result
         FormatArg::HvePulse => hve_pulse(analysis, restrictions.as_deref(), &mut bytes)?,
         FormatArg::HveMotion => hve_motion(analysis, restrictions.as_deref(), &mut bytes)?,
         FormatArg::Motion => {
-            let simulated = analysis.simulation.as_ref().map(|motion| &motion.series);
+            let simulated = analysis.written_motion()?;
             let unknown = || ExchangeError::Unknown { name: analysis.name.clone(), what: "motion" };
-            let series = simulated.or(analysis.reference.as_ref()).ok_or_else(unknown)?;
+            let series = simulated.as_ref().or(analysis.reference.as_ref()).ok_or_else(unknown)?;
             return Ok(write_restricted_series_csv(
                 path,
                 existing,

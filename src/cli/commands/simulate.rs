@@ -231,9 +231,9 @@ fn simulate_one(
     console.check_target(args.out.as_deref(), existing)?;
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     let (report, out) = (&answer.report, args.out.as_deref());
-    if let (Some(path), Some(motion)) = (out, &answer.analysis.simulation) {
+    if let (Some(path), Some(motion)) = (out, answer.analysis.written_motion()?) {
         let restrictions = report.caveats.text();
-        write_restricted_series_csv(path, existing, &motion.series, restrictions.as_deref())?;
+        write_restricted_series_csv(path, existing, &motion, restrictions.as_deref())?;
     }
     let printed = PrintedSimulation { report, out };
     console.print(&printed, |text| {

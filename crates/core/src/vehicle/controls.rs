@@ -1,5 +1,6 @@
 //! What steers, drives, brakes and locks the wheels of a vehicle over time.
 
+use crate::data::Channel;
 use crate::numerics::interpolate;
 use crate::vehicle::drivers::ClosedLoop;
 use crate::vehicle::tire::{LOCKING_SHARE, TireParameters, WheelEffort};
@@ -7,6 +8,14 @@ use crate::vehicle::{VehicleInput, Wheel};
 
 /// Share to which a wheel is locked from which it is said to be.
 const LOCKED_FROM: f64 = 0.5;
+
+/// Channels of the brake torques, in the order of [`Wheel::ALL`](crate::vehicle::Wheel::ALL).
+pub const BRAKE_TORQUES: [Channel; 4] =
+    [Channel::BrakeFl, Channel::BrakeFr, Channel::BrakeRl, Channel::BrakeRr];
+
+/// Channels of the drive torques, in the same order.
+pub const DRIVE_TORQUES: [Channel; 4] =
+    [Channel::DriveFl, Channel::DriveFr, Channel::DriveRl, Channel::DriveRr];
 
 /// Steer angle of the front road wheels over time. It is linear between samples; outside, the first
 /// or the last value holds.
@@ -63,6 +72,32 @@ impl Controls {
         let efforts = self.wheels.iter().flat_map(|history| history.wheels.iter().flatten());
         efforts.into_iter().any(|wheel| wheel.drive_n != 0.0)
             || self.closed_loop.as_ref().is_some_and(ClosedLoop::drives)
+    }
+
+    /// The torques of the wheels at given times, N m, by their channels: those of brakes, engine and bent
+    /// bodywork against the rotation, and those that drive. A locked wheel has no torque of its own. Only
+    /// the histories count. Empty where no wheel is braked or driven.
+    ///
+    /// - `time_s`: the times, s;
+    /// - `rolling_radius_m`: of the tires, more than 0.
+    pub fn torques_n_m(&self, time_s: &[f64], rolling_radius_m: f64) -> Vec<(Channel, Vec<f64>)> {
+        let Some(history) = &self.wheels else { return Vec::new() };
+        let efforts: Vec<[WheelEffort<f64>; 4]> =
+            time_s.iter().map(|&t| history.at(t).unwrap_or([WheelEffort::FREE; 4])).collect();
+        let is_acting = |wheel: &WheelEffort<f64>| wheel.braking_n != 0.0 || wheel.drive_n != 0.0;
+        if !efforts.iter().flatten().any(is_acting) {
+            return Vec::new();
+        }
+        let columns = |channels: [Channel; 4], force_n: fn(&WheelEffort<f64>) -> f64| {
+            let torque = |idx: usize| {
+                let of_wheel = efforts.iter().map(|wheels| force_n(&wheels[idx]));
+                of_wheel.map(|force_n| force_n * rolling_radius_m).collect()
+            };
+            (0..4).map(|idx| (channels[idx], torque(idx))).collect::<Vec<_>>()
+        };
+        let brakes = columns(BRAKE_TORQUES, |wheel| wheel.braking_n);
+        let drive = columns(DRIVE_TORQUES, |wheel| wheel.drive_n);
+        brakes.into_iter().chain(drive).collect()
     }
 
     /// Whether a wheel is locked at a time, by damage or by a brake that asks for more than the road can
@@ -181,5 +216,23 @@ mod tests {
             assert_eq!(history.at(time_s), expected, "at {time_s} s");
         }
         assert_eq!(WheelHistory { time_s: Vec::new(), wheels: Vec::new() }.at(1.0), None);
+    }
+
+    #[test]
+    fn torques_are_forces_at_the_rolling_radius_and_none_where_nothing_acts() {
+        let mut wheels = [WheelEffort::FREE; 4];
+        wheels[1] = WheelEffort { braking_n: 1000.0, ..WheelEffort::FREE };
+        wheels[2] = WheelEffort { drive_n: 200.0, ..WheelEffort::FREE };
+        let history =
+            WheelHistory { time_s: vec![0.0, 1.0], wheels: vec![[WheelEffort::FREE; 4], wheels] };
+        let controls = Controls { wheels: Some(history), ..Controls::default() };
+        let torques = controls.torques_n_m(&[0.0, 0.5, 2.0], 0.3);
+        let of = |channel| torques.iter().find(|(of, _)| *of == channel).map(|(_, n_m)| n_m);
+        assert_eq!(torques.len(), 8);
+        assert_eq!(of(Channel::BrakeFr), Some(&vec![0.0, 150.0, 300.0]));
+        assert_eq!(of(Channel::DriveRl), Some(&vec![0.0, 30.0, 60.0]));
+        assert_eq!(of(Channel::BrakeFl), Some(&vec![0.0; 3]));
+        assert!(controls.torques_n_m(&[0.0], 0.3).is_empty());
+        assert!(Controls::default().torques_n_m(&[0.0], 0.3).is_empty());
     }
 }

@@ -45,7 +45,7 @@ pub use as_printed::Equations;
 pub use batch::{SimulationRun, simulate_batch};
 pub use constants::VehicleConstants;
 pub use controlled::ControlledVehicle;
-pub use controls::{Controls, SteerHistory, WheelHistory};
+pub use controls::{BRAKE_TORQUES, Controls, DRIVE_TORQUES, SteerHistory, WheelHistory};
 pub use crush::{CrushFace, CrushParameters, CrushStiffness};
 pub use draws::{Sensitivity, VehicleDraws};
 pub use drivers::{

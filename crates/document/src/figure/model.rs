@@ -163,6 +163,10 @@ pub enum Role {
     Validation,
     /// The same quantity in another variant of the case; the number counts the variants.
     Variant(usize),
+    /// A wheel on the left side of a vehicle.
+    LeftWheel,
+    /// A wheel on its right side.
+    RightWheel,
     /// An element in the background: raw data behind filtered data, grid and help lines.
     Muted,
 }

@@ -94,6 +94,8 @@ pub struct VehicleTrack {
     pub start: StruckVehicle,
     /// Motion of the vehicle, with at least the channels X, Y and yaw.
     pub motion: TimeSeries,
+    /// What steers, drives, brakes and locks its wheels in this motion.
+    pub controls: Controls,
 }
 
 /// Recorded and computed data of one case.
@@ -144,6 +146,29 @@ impl Analysis {
             controls: &self.controls,
             friction_zones: &self.friction_zones,
         }
+    }
+
+    /// When the vehicles are in contact, s.
+    ///
+    /// - `end_s`: the end of a contact that lasts to the end of the motions.
+    pub fn contacts_s(&self, end_s: f64) -> Vec<[f64; 2]> {
+        let phases = self.phases.iter();
+        phases.map(|phase| [phase.start_s, phase.end_s.unwrap_or(end_s)]).collect()
+    }
+
+    /// The simulated motion as it is written to a file: with the torques at the wheels, if there are any.
+    /// `None` if it could not be simulated.
+    ///
+    /// # Errors
+    /// [`SeriesError`] if the torques do not fit the motion.
+    pub fn written_motion(&self) -> Result<Option<TimeSeries>, SeriesError> {
+        let Some(motion) = &self.simulation else { return Ok(None) };
+        let mut series = motion.series.clone();
+        let radius_m = self.vehicle.tires.rolling_radius_m;
+        for (channel, torque_n_m) in self.controls.torques_n_m(series.time_s(), radius_m) {
+            series.insert(channel, torque_n_m)?;
+        }
+        Ok(Some(series))
     }
 }
 

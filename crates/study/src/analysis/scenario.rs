@@ -180,13 +180,14 @@ fn analysis(
         vehicle: struck.vehicle.clone(),
         footprint: outlines[0],
         force: Some(force),
-        controls: motion.applied_controls.clone().unwrap_or_else(|| struck.controls.clone()),
+        controls: applied(&motion, &struck),
         friction_zones: struck.friction_zones.clone(),
         struck: Some(struck),
         simulation: Some(motion),
         reference: None,
         striking: Some(VehicleTrack {
             footprint: outlines[1],
+            controls: applied(&striking_motion, &striking),
             start: striking,
             motion: striking_motion.series,
         }),
@@ -197,6 +198,11 @@ fn analysis(
         error: None,
         notes: Vec::new(),
     }
+}
+
+/// What was done to the wheels in a motion: as drivers and systems made it, else as the start says.
+fn applied(motion: &Motion, start: &StruckVehicle) -> Controls {
+    motion.applied_controls.clone().unwrap_or_else(|| start.controls.clone())
 }
 
 /// State of a vehicle of a scenario at first contact.
@@ -239,7 +245,10 @@ mod tests {
     use impactlab_core::collision::{ContactLocation, Footprint, MovingFootprint, Side, overlap_m};
     use impactlab_core::data::{Channel, TimeSeries};
     use impactlab_core::numerics::interpolate;
-    use impactlab_core::vehicle::{Ending, HeldSteer, Integrator, Preset};
+    use impactlab_core::units::STANDARD_GRAVITY_M_S2;
+    use impactlab_core::vehicle::{
+        BRAKE_TORQUES, Braking, Ending, HeldSteer, Integrator, PitDriver, Preset, StabilityControl,
+    };
 
     /// A report gave the struck car 4.9 m in one section and 4.52 m in another.
     #[test]
@@ -291,6 +300,52 @@ mod tests {
         let striking = analysis.striking.unwrap().motion;
         assert_eq!(striking.n_samples(), motion.n_samples());
         assert!(analysis.struck.unwrap().contact.y_body_m < 0.0);
+    }
+
+    /// What drivers and systems did to both vehicles is kept with their motions, and written with them.
+    #[test]
+    fn the_inputs_of_both_vehicles_are_those_of_their_endings() {
+        let mut scenario = Scenario::example();
+        let esc = Some(StabilityControl::default());
+        let pit = PitDriver::default();
+        scenario.striking_ending = Some(Ending { pit: Some(pit), esc, ..Ending::default() });
+        let steer = Some(HeldSteer { start_s: 0.2, rise_s: 0.3, road_wheel_rad: 0.05 });
+        let brake = Some(Braking::new(0.4, 0.5, 0.2));
+        let ending = Ending { steer, brake, ..Ending::default() };
+        for one_contact in [false, true] {
+            let settings = Settings {
+                struck: Preset::Target.parameters(),
+                striking: Preset::Bullet2000.parameters(),
+                ending: ending.clone(),
+                integrator: Integrator::Rk4,
+                duration_s: 2.0,
+                ends_at_rest: false,
+                one_contact,
+                friction_zones: Vec::new(),
+            };
+            let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
+            assert_eq!(analysis.controls, ending.controls(&analysis.vehicle));
+            let written = analysis.written_motion().unwrap().unwrap();
+            let at = |series: &TimeSeries, channel, i: usize| series.require(channel).unwrap()[i];
+            assert!((at(&written, Channel::SteerFl, 60) - 0.05).abs() < 1e-12);
+            let (mass_kg, tires) = (analysis.vehicle.mass.mass_kg, analysis.vehicle.tires);
+            let force_n = 0.5 * tires.friction * mass_kg * STANDARD_GRAVITY_M_S2;
+            let torques_n_m = BRAKE_TORQUES.map(|channel| at(&written, channel, 100));
+            let total_n_m: f64 = torques_n_m.iter().sum();
+            assert!((total_n_m - force_n * tires.rolling_radius_m).abs() < 1e-6, "{torques_n_m:?}");
+            assert_eq!(at(&written, Channel::BrakeFl, 30), 0.0, "nobody brakes before 0.4 s");
+            let striking = analysis.striking.unwrap();
+            assert_eq!(striking.controls.closed_loop, None, "as it was, not as it is decided");
+            let wheels = striking.controls.wheels.unwrap();
+            assert_eq!(wheels.time_s, striking.motion.time_s());
+            let driven = |i: usize| wheels.wheels[i].iter().any(|wheel| wheel.drive_n > 0.0);
+            assert!((0..wheels.wheels.len()).any(driven), "the driver holds the throttle");
+            let steer = striking.controls.steer.unwrap();
+            assert_eq!(steer.steer_rad, striking.motion.require(Channel::SteerFl).unwrap());
+            let turned_rad = pit.steering_wheel_rad / pit.steering_ratio;
+            let largest_rad = steer.steer_rad.iter().copied().fold(0.0, f64::max);
+            assert!((largest_rad - turned_rad).abs() < 3e-3, "{largest_rad}, {turned_rad} rad");
+        }
     }
 
     /// Followed through all contacts, vehicles push each other and do not go through each other.

@@ -59,7 +59,7 @@ pub(super) fn striking_track(
         controls: Controls::default(),
         friction_zones: settings.friction_zones.clone(),
     };
-    Ok(Some(VehicleTrack { footprint, start, motion }))
+    Ok(Some(VehicleTrack { footprint, start, motion, controls: Controls::default() }))
 }
 
 /// Integrates the recorded world velocities by the trapezoidal rule from a start [x, y], m. `None`

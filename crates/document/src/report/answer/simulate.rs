@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::figure::{analysis_force_figure, analysis_motion_figure};
+use crate::figure::{analysis_force_figure, analysis_motion_figure, control_figures};
 use crate::report::Block;
 use crate::report::answer::Context;
 use crate::report::answer::facts::{facts_table, facts_with_meanings, provenance_of};
@@ -91,5 +91,10 @@ fn pictures(
     if !yaw_rate.elements.is_empty() {
         pictures.push(picture(words.yaw_rate_picture, yaw_rate));
     }
+    pictures.extend(control_figures(analysis, caveats, units).into_iter().map(|figure| {
+        let quantity = context.wording.term(&figure.y.label);
+        let names = [("name", &*report.name), ("quantity", &*quantity)];
+        PartPicture::figure(fill(words.controls_picture, &names), figure)
+    }));
     pictures
 }

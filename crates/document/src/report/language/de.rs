@@ -83,6 +83,7 @@ pub(super) const WORDS: Words = Words {
     ground_not_drawn: "; das Gelände ist nicht gezeichnet: {why}",
     force_picture: "Stoßkraft von „{name}“ über der Zeit",
     yaw_rate_picture: "Gierrate von „{name}“ über der Zeit",
+    controls_picture: "{quantity} über der Zeit, „{name}“",
     vehicles_drawn: "gezogene Fahrzeuge:",
     forces_drawn: "Kräfte:",
     meaning_force: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, nach der \

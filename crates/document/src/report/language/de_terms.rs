@@ -299,6 +299,17 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("left", "links"),
     ("right", "rechts"),
     ("front", "vorn"),
+    ("Steer angle of the road wheels", "Lenkwinkel der Räder"),
+    ("Braking torque of all wheels", "Bremsmoment aller Räder"),
+    ("Drive torque of all wheels", "Antriebsmoment aller Räder"),
+    (
+        "Braking torque of each wheel, struck vehicle (with ESC)",
+        "Bremsmoment jedes Rades, gestoßenes Fahrzeug (mit ESP)",
+    ),
+    (
+        "Braking torque of each wheel, striking vehicle (with ESC)",
+        "Bremsmoment jedes Rades, stoßendes Fahrzeug (mit ESP)",
+    ),
     ("onset", "Einsatzlast A"),
     ("stiffness", "Steifigkeit B"),
     ("rear", "hinten"),

@@ -80,6 +80,7 @@ pub(super) const WORDS: Words = Words {
     ground_not_drawn: "; the ground is not drawn: {why}",
     force_picture: "Contact force of “{name}” over time",
     yaw_rate_picture: "Yaw rate of “{name}” over time",
+    controls_picture: "{quantity} over time, “{name}”",
     vehicles_drawn: "vehicles drawn:",
     forces_drawn: "forces:",
     meaning_force: "{quantity}: between {low} and {high} with a probability of 90 %, by the distribution of \

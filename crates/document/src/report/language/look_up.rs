@@ -40,7 +40,8 @@ mod tests {
         let latents = Latent::ALL.iter().map(|latent| latent.label());
         let quantities = ReconstructedQuantity::ALL.iter().map(|quantity| quantity.label());
         let sheet = SheetQuantity::ALL.iter().map(|quantity| quantity.label());
-        for label in latents.chain(quantities).chain(sheet) {
+        let controls = crate::figure::CONTROL_LABELS.into_iter();
+        for label in latents.chain(quantities).chain(sheet).chain(controls) {
             assert!(phrase_of(Language::De, label).is_some(), "{label}");
         }
         let measured = Measurements::shipped();

@@ -69,6 +69,7 @@ pub(in crate::report) struct Words {
     pub ground_not_drawn: &'static str,
     pub force_picture: &'static str,
     pub yaw_rate_picture: &'static str,
+    pub controls_picture: &'static str,
     pub vehicles_drawn: &'static str,
     pub forces_drawn: &'static str,
     pub meaning_force: &'static str,

@@ -15,8 +15,9 @@ use impactlab_core::data::{
 };
 use impactlab_core::ranges::{SPEED, STEER_ANGLE, STEERING_RATIO, YAW_RATE};
 use impactlab_core::vehicle::{
-    ContactPoint, Ending, SteerHistory, USUAL_STEERING_RATIO, VehicleParameters, VehicleState,
-    Wheel, WheelEffort, WheelHistory, angle_at_third_g_rad, fishhook, fishhook_amplitude_rad,
+    BRAKE_TORQUES, ContactPoint, DRIVE_TORQUES, Ending, SteerHistory, USUAL_STEERING_RATIO,
+    VehicleParameters, VehicleState, Wheel, WheelEffort, WheelHistory, angle_at_third_g_rad,
+    fishhook, fishhook_amplitude_rad,
 };
 
 /// Speed of the struck vehicle before the impact where nothing says it, m/s: 72 km/h.
@@ -280,10 +281,6 @@ fn front_wheels(series: &TimeSeries) -> Option<Vec<f64>> {
 
 /// The torques of a file over the rolling radius. What it does not record is zero.
 fn wheel_history(series: &TimeSeries, vehicle: &VehicleParameters) -> WheelHistory {
-    const BRAKE: [Channel; 4] =
-        [Channel::BrakeFl, Channel::BrakeFr, Channel::BrakeRl, Channel::BrakeRr];
-    const DRIVE: [Channel; 4] =
-        [Channel::DriveFl, Channel::DriveFr, Channel::DriveRl, Channel::DriveRr];
     let radius_m = vehicle.tires.rolling_radius_m;
     let at = |sample: usize| {
         let force_n = |channel| {
@@ -291,8 +288,8 @@ fn wheel_history(series: &TimeSeries, vehicle: &VehicleParameters) -> WheelHisto
             torque_n_m.map_or(0.0, |torque_n_m| torque_n_m / radius_m)
         };
         Wheel::ALL.map(|wheel| WheelEffort {
-            braking_n: force_n(BRAKE[wheel.index()]),
-            drive_n: force_n(DRIVE[wheel.index()]),
+            braking_n: force_n(BRAKE_TORQUES[wheel.index()]),
+            drive_n: force_n(DRIVE_TORQUES[wheel.index()]),
             ..WheelEffort::none()
         })
     };

@@ -1,0 +1,302 @@
+//! What drivers, brakes and stability control did to the wheels of both vehicles over time.
+
+use crate::figure::{Axis, Band, Figure, FigureElement, LineStyle, Role, Series};
+use impactlab_core::data::{Channel, TimeSeries};
+use impactlab_core::numerics::interpolate;
+use impactlab_core::uncertainty::Caveats;
+use impactlab_core::units::{Quantity, UnitSystem, significant};
+use impactlab_core::vehicle::{BRAKE_TORQUES, Controls, DRIVE_TORQUES, Wheel};
+use impactlab_study::analysis::Analysis;
+
+/// What the figures show: three of both vehicles, and the brakes of the struck and of the striking vehicle.
+pub(crate) const CONTROL_LABELS: [&str; 5] = [
+    "Steer angle of the road wheels",
+    "Braking torque of all wheels",
+    "Drive torque of all wheels",
+    "Braking torque of each wheel, struck vehicle (with ESC)",
+    "Braking torque of each wheel, striking vehicle (with ESC)",
+];
+
+/// Opacity of the time in contact.
+const CONTACT_OPACITY: f32 = 0.25;
+
+/// A vehicle with what was done to its wheels, SI units.
+struct DrivenVehicle<'a> {
+    name: &'static str,
+    role: Role,
+    style: LineStyle,
+    motion: &'a TimeSeries,
+    /// Torques of the wheels by their channels; empty where no wheel is braked or driven.
+    torques_n_m: Vec<(Channel, Vec<f64>)>,
+    has_stability_control: bool,
+}
+
+/// A curve over the samples of a motion, SI units.
+struct Curve<'a> {
+    name: String,
+    role: Role,
+    style: LineStyle,
+    motion: &'a TimeSeries,
+    values: Vec<f64>,
+}
+
+/// The steer angle of the road wheels, and the torques that brake and drive the wheels of both vehicles,
+/// each summed over the wheels; of a vehicle with a stability control also those of each brake. A figure
+/// without a curve that differs from zero is left out: without any, nobody steers, brakes or drives on.
+///
+/// The times in contact are marked.
+pub fn control_figures(analysis: &Analysis, caveats: &Caveats, units: UnitSystem) -> Vec<Figure> {
+    let vehicles = vehicles(analysis);
+    let steer = curves(&vehicles, |vehicle| Some(vehicle.motion.get(Channel::SteerFl)?.to_vec()));
+    let summed =
+        |channels: &[Channel; 4]| curves(&vehicles, |vehicle| vehicle.summed_n_m(channels));
+    let (brakes, drive) = (summed(&BRAKE_TORQUES), summed(&DRIVE_TORQUES));
+    let brakes_of = |role: Role| {
+        let of_role = vehicles.iter().find(|of| of.role == role && of.has_stability_control);
+        of_role.map_or_else(Vec::new, DrivenVehicle::brakes)
+    };
+    let all = CONTROL_LABELS.into_iter().zip([
+        (Quantity::Angle, steer),
+        (Quantity::Moment, brakes),
+        (Quantity::Moment, drive),
+        (Quantity::Moment, brakes_of(Role::Simulation)),
+        (Quantity::Moment, brakes_of(Role::Striking)),
+    ]);
+    let acting = all.filter(|(_, (_, curves))| !curves.is_empty());
+    let figure = |(label, (quantity, curves)): (&str, (Quantity, Vec<Curve<'_>>))| {
+        let axes =
+            [Axis::shown("Time", Quantity::Time, units), Axis::shown(label, quantity, units)];
+        curves_figure(analysis, axes, &curves).with_caveats(caveats)
+    };
+    acting.map(figure).collect()
+}
+
+/// The curve of each vehicle that has one.
+fn curves<'a>(
+    vehicles: &[DrivenVehicle<'a>],
+    values: impl Fn(&DrivenVehicle<'a>) -> Option<Vec<f64>>,
+) -> Vec<Curve<'a>> {
+    vehicles.iter().filter_map(|vehicle| vehicle.curve(values(vehicle)?)).collect()
+}
+
+/// The values of the curves of a figure at an abscissa with their names, such as “Steer angle: struck
+/// vehicle 3.1 · striking vehicle 0 deg”.
+///
+/// - `x_si`: the abscissa, SI units.
+pub fn figure_readout(figure: &Figure, x_si: f64) -> String {
+    let at = figure.x.unit.from_si(x_si);
+    let value = |element: &FigureElement| {
+        let FigureElement::Line(series) = element else { return None };
+        let [x, y] =
+            [0, 1].map(|axis| series.points.iter().map(|point| point[axis]).collect::<Vec<f64>>());
+        Some(format!("{} {}", series.name, significant(interpolate(&x, &y, at)?)))
+    };
+    let values: Vec<String> = figure.elements.iter().filter_map(value).collect();
+    format!("{}: {} {}", figure.y.label, values.join(" · "), figure.y.unit.symbol)
+}
+
+/// The vehicles of which it is known what was done to their wheels.
+fn vehicles(analysis: &Analysis) -> Vec<DrivenVehicle<'_>> {
+    let has_esc = |controls: &Controls| {
+        controls.closed_loop.as_ref().is_some_and(|closed_loop| closed_loop.esc.is_some())
+    };
+    let struck = analysis.simulation.as_ref().map(|motion| {
+        let radius_m = analysis.vehicle.tires.rolling_radius_m;
+        DrivenVehicle {
+            name: "struck vehicle",
+            role: Role::Simulation,
+            style: LineStyle::Solid,
+            motion: &motion.series,
+            torques_n_m: analysis.controls.torques_n_m(motion.series.time_s(), radius_m),
+            has_stability_control: analysis
+                .struck
+                .as_ref()
+                .is_some_and(|struck| has_esc(&struck.controls)),
+        }
+    });
+    let striking = analysis.striking.as_ref().map(|track| {
+        let radius_m = track.start.vehicle.tires.rolling_radius_m;
+        DrivenVehicle {
+            name: "striking vehicle",
+            role: Role::Striking,
+            style: LineStyle::Dashed,
+            motion: &track.motion,
+            torques_n_m: track.controls.torques_n_m(track.motion.time_s(), radius_m),
+            has_stability_control: has_esc(&track.start.controls),
+        }
+    });
+    struck.into_iter().chain(striking).collect()
+}
+
+impl<'a> DrivenVehicle<'a> {
+    /// A curve of this vehicle; `None` where it is zero throughout.
+    fn curve(&self, values: Vec<f64>) -> Option<Curve<'a>> {
+        let is_acting = values.iter().any(|value| *value != 0.0);
+        is_acting.then(|| Curve {
+            name: self.name.to_owned(),
+            role: self.role,
+            style: self.style,
+            motion: self.motion,
+            values,
+        })
+    }
+
+    fn torque_n_m(&self, channel: Channel) -> Option<&[f64]> {
+        self.torques_n_m.iter().find(|(of, _)| *of == channel).map(|(_, values)| &**values)
+    }
+
+    /// The sum of the torques of some channels; `None` without torques.
+    fn summed_n_m(&self, channels: &[Channel; 4]) -> Option<Vec<f64>> {
+        let columns: Option<Vec<&[f64]>> =
+            channels.iter().map(|channel| self.torque_n_m(*channel)).collect();
+        let columns = columns?;
+        let sum = |sample: usize| columns.iter().map(|column| column[sample]).sum();
+        Some((0..self.motion.n_samples()).map(sum).collect())
+    }
+
+    /// The braking torque of each wheel; those that are zero throughout are left out.
+    fn brakes(&self) -> Vec<Curve<'a>> {
+        let of_wheel = |wheel: Wheel| {
+            let index = wheel.index();
+            let curve = self.curve(self.torque_n_m(BRAKE_TORQUES[index])?.to_vec())?;
+            let is_left = index.is_multiple_of(2);
+            Some(Curve {
+                name: wheel.label().to_owned(),
+                role: if is_left { Role::LeftWheel } else { Role::RightWheel },
+                style: if wheel.is_front() { LineStyle::Solid } else { LineStyle::Dashed },
+                ..curve
+            })
+        };
+        Wheel::ALL.into_iter().filter_map(of_wheel).collect()
+    }
+}
+
+/// The curves over time, before the times in contact.
+fn curves_figure(analysis: &Analysis, [x, y]: [Axis; 2], curves: &[Curve<'_>]) -> Figure {
+    let line = |curve: &Curve<'_>| {
+        let samples = curve.motion.time_s().iter().zip(&curve.values);
+        let points = samples.map(|(&t, &v)| [x.unit.from_si(t), y.unit.from_si(v)]).collect();
+        let Curve { name, role, style, .. } = curve;
+        FigureElement::Line(Series { name: name.clone(), role: *role, style: *style, points })
+    };
+    let lines: Vec<FigureElement> = curves.iter().map(line).collect();
+    let values = || curves.iter().flat_map(|curve| curve.values.iter().map(|v| y.unit.from_si(*v)));
+    let [low, high] = [values().fold(0.0, f64::min), values().fold(0.0, f64::max)];
+    let ends_s = curves.iter().filter_map(|curve| curve.motion.time_s().last().copied());
+    let contacts_s = analysis.contacts_s(ends_s.fold(0.0, f64::max));
+    let contacts = contacts_s.into_iter().map(|span_s| {
+        FigureElement::Band(Band {
+            name: "in contact".to_owned(),
+            role: Role::Muted,
+            opacity: CONTACT_OPACITY,
+            x: span_s.map(|time_s| x.unit.from_si(time_s)).to_vec(),
+            low: vec![low; 2],
+            high: vec![high; 2],
+        })
+    });
+    let title = format!("{}: {} over time", analysis.name, y.label);
+    let elements = contacts.chain(lines).collect();
+    Figure::new(title, [x, y], elements)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::collision::Scenario;
+    use impactlab_core::units::STANDARD_GRAVITY_M_S2;
+    use impactlab_core::vehicle::{
+        Braking, Ending, Integrator, PitDriver, Preset, StabilityControl,
+    };
+    use impactlab_study::analysis::{PulseSetup, Settings, analyse_scenario};
+
+    fn analysis(struck: Ending, striking: Ending) -> Analysis {
+        let mut scenario = Scenario::example();
+        scenario.striking_ending = Some(striking);
+        let settings = Settings {
+            struck: Preset::Target.parameters(),
+            striking: Preset::Bullet2000.parameters(),
+            ending: struck,
+            integrator: Integrator::Rk4,
+            duration_s: 2.0,
+            ends_at_rest: false,
+            one_contact: false,
+            friction_zones: Vec::new(),
+        };
+        analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap()
+    }
+
+    fn figures(analysis: &Analysis) -> Vec<Figure> {
+        control_figures(analysis, &Caveats::default(), UnitSystem::Si)
+    }
+
+    fn names(figure: &Figure) -> Vec<&str> {
+        figure.elements.iter().map(FigureElement::name).collect()
+    }
+
+    #[test]
+    fn what_both_vehicles_are_given_is_in_their_curves() {
+        let brake = Braking::new(0.5, 0.6, 0.2);
+        let struck = Ending { brake: Some(brake), ..Ending::default() };
+        let pit = PitDriver::default();
+        let esc = Some(StabilityControl::default());
+        let striking = Ending { pit: Some(pit), esc, ..Ending::default() };
+        let analysis = analysis(struck, striking);
+        let figures = figures(&analysis);
+        let labels: Vec<&str> = figures.iter().map(|figure| &*figure.y.label).collect();
+        assert_eq!(labels[..3], CONTROL_LABELS[..3], "{labels:?}");
+        let [steer, brakes, drive] = [0, 1, 2].map(|i| &figures[i]);
+        assert_eq!(names(steer)[..], ["in contact", "striking vehicle"][..]);
+        assert!(names(brakes).contains(&"struck vehicle"), "{:?}", names(brakes));
+        assert_eq!(*names(drive).last().unwrap(), "striking vehicle");
+        // The torque of the brakes is that of the ending: a share of what the road holds.
+        let (mass_kg, tires) = (analysis.vehicle.mass.mass_kg, analysis.vehicle.tires);
+        let force_n = 0.6 * tires.friction * mass_kg * STANDARD_GRAVITY_M_S2;
+        let expected = force_n * tires.rolling_radius_m / 1e3;
+        let of_struck = |element: &&FigureElement| element.name() == "struck vehicle";
+        let Some(FigureElement::Line(series)) = brakes.elements.iter().find(of_struck) else {
+            panic!("no line of the struck vehicle")
+        };
+        let [t, torque_kn_m] = series.points[150];
+        assert!((t - 1.5).abs() < 1e-9 && (torque_kn_m / expected - 1.0).abs() < 1e-9);
+        assert_eq!(series.points[40][1], 0.0, "nobody brakes before 0.5 s");
+        assert_eq!(series.style, LineStyle::Solid);
+        // The driver turns the wheels by the angle of the steering wheel over the ratio.
+        let Some(FigureElement::Line(series)) = steer.elements.last() else { panic!("no line") };
+        let largest = series.points.iter().map(|point| point[1]).fold(0.0, f64::max);
+        let asked = (pit.steering_wheel_rad / pit.steering_ratio).to_degrees();
+        assert!((largest - asked).abs() < 0.2, "{largest} deg, asked for {asked}");
+        assert_eq!(series.style, LineStyle::Dashed);
+        let readout = figure_readout(brakes, 1.5);
+        let torque = significant(torque_kn_m);
+        assert!(readout.starts_with("Braking torque of all wheels: struck vehicle "), "{readout}");
+        assert!(readout.contains(&torque) && readout.ends_with(" kN m"), "{readout}");
+        // A contact is marked within the curves.
+        let FigureElement::Band(band) = &steer.elements[0] else { panic!("no contact") };
+        assert_eq!(band.x[0], analysis.phases[0].start_s);
+    }
+
+    #[test]
+    fn the_brakes_of_each_wheel_are_those_that_the_stability_control_uses() {
+        let esc = Some(StabilityControl::default());
+        let analysis = analysis(Ending { esc, ..Ending::default() }, Ending::default());
+        let figures = figures(&analysis);
+        let labels: Vec<&str> = figures.iter().map(|figure| &*figure.y.label).collect();
+        assert_eq!(labels, [CONTROL_LABELS[1], CONTROL_LABELS[3]]);
+        let of_wheels = |element: &FigureElement| match element {
+            FigureElement::Line(series) => {
+                Some((series.name.clone(), series.points.iter().map(|p| p[1]).sum::<f64>()))
+            }
+            _ => None,
+        };
+        let wheels: Vec<_> = figures[1].elements.iter().filter_map(of_wheels).collect();
+        let total: f64 = figures[0].elements.iter().filter_map(of_wheels).map(|of| of.1).sum();
+        let sum: f64 = wheels.iter().map(|of| of.1).sum();
+        assert!((sum / total - 1.0).abs() < 1e-9, "{sum} of {total}");
+        assert!(wheels.iter().all(|(name, _)| Wheel::ALL.iter().any(|w| w.label() == name)));
+    }
+
+    #[test]
+    fn nobody_acts_in_a_scenario_that_coasts() {
+        assert!(figures(&analysis(Ending::default(), Ending::default())).is_empty());
+    }
+}
