@@ -54,7 +54,7 @@ fn figures() -> Vec<Figure> {
 fn n_pixels(image: &RgbaImage, color: Color32) -> usize {
     let [r, g, b, _] = color.to_array();
     let is_near = |pixel: &&image::Rgba<u8>| {
-        let difference = |i: usize, of: u8| pixel.0[i].abs_diff(of);
+        let difference = |i: usize, of: u8| u32::from(pixel.0[i].abs_diff(of));
         difference(0, r) + difference(1, g) + difference(2, b) < 24
     };
     image.pixels().filter(is_near).count()
@@ -119,6 +119,8 @@ fn the_motion_panel_shows_what_both_drivers_do_or_that_nobody_does_anything() {
         })
     };
     values(&harness, " kN m");
+    harness.get_by_label("Inputs").click();
+    harness.run_steps(30);
     for dark in [false, true] {
         harness.state_mut().state_mut().view.dark = dark;
         harness.run_steps(4);

@@ -93,7 +93,7 @@ fn a_stiffness_that_is_typed_is_that_of_the_forecast_and_of_the_saved_case() {
     let of_class = striking.expect("the striking vehicle's front is known now");
     assert_eq!(struck, None);
     type_into(&mut harness, "front A, onset", "60.4");
-    type_into(&mut harness, "front B, growth with depth", "2500");
+    type_into(&mut harness, "front B, growth", "2500");
     let typed = CrushStiffness { onset_n_per_m: 60_400.0, stiffness_n_per_m2: 2.5e6 };
     assert_eq!(front(state(&harness)), [None, Some(typed)]);
     step_until(&mut harness, "the forecast with a stiff front", is_forecast);
@@ -145,7 +145,7 @@ fn a_stiffness_is_typed_in_pounds_and_inches() {
     harness.run_steps(4);
     tick_front(&mut harness, 0);
     type_into(&mut harness, "front A, onset", "345");
-    type_into(&mut harness, "front B, growth with depth", "113");
+    type_into(&mut harness, "front B, growth", "113");
     let [typed, striking] = front(state(&harness));
     let CrushStiffness { onset_n_per_m, stiffness_n_per_m2 } = typed.expect("typed");
     // 1 lbf is 4.448 222 N, 1 in is 25.4 mm.

@@ -11,7 +11,8 @@
 
 use rayon::prelude::*;
 
-use crate::evidence::{After, Evidence, ends};
+use crate::evidence::{Evidence, ends};
+use crate::held_wheels::{HeldWheels, wheels_near};
 use crate::later_contact::{FollowedCar, LaterContacts, ParticleContact};
 use crate::{Cars, ImpactState, Latent, LatentValues, Prior};
 use impactlab_core::collision::{Pulse, PulseShape, Side};
@@ -20,16 +21,13 @@ use impactlab_core::numerics::interpolate;
 use impactlab_core::ranges::ROAD_FRICTION;
 use impactlab_core::units::STANDARD_GRAVITY_M_S2;
 use impactlab_core::vehicle::{
-    Braking, ContactLoad, ContactPoint, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Ending,
-    EngineBraking, FrictionZone, HeldSteer, Manoeuvre, Path, PathLimit, SimulationRun,
-    VehicleParameters, VehicleState, Wheel, simulate_paths,
+    Braking, ContactLoad, ContactPoint, DEFAULT_BRAKE_RISE_S, DrivenAxle, Ending, EngineBraking,
+    FrictionZone, HeldSteer, Manoeuvre, Path, PathLimit, SimulationRun, VehicleParameters,
+    VehicleState, simulate_paths,
 };
 
 /// Height of the contact above the road, m: sills and bumpers of passenger cars.
 pub(crate) const CONTACT_HEIGHT_M: f64 = 0.55;
-
-/// When a blocked wheel is caught, s after the first contact.
-const BLOCKED_FROM_S: f64 = 0.03;
 
 /// When the front wheels are turned, s after the first contact.
 const STEERED_FROM_S: f64 = 0.1;
@@ -88,15 +86,6 @@ pub struct ForwardModel {
     later: Option<LaterContacts>,
     zones: Vec<FrictionZone>,
     limit: PathLimit,
-}
-
-/// Wheels of a car that damage holds or may hold.
-#[derive(Debug, Clone)]
-struct HeldWheels {
-    after: After,
-    near: [Wheel; 2],
-    which: Latent,
-    drag: Latent,
 }
 
 /// A car and what happens to it, before it is simulated.
@@ -427,27 +416,6 @@ impl ForwardModel {
     }
 }
 
-impl HeldWheels {
-    /// The wheels that are held in the motion of a particle.
-    fn damage(&self, values: &LatentValues) -> Vec<DamagedWheel> {
-        let locked =
-            |wheel| DamagedWheel { wheel, start_s: BLOCKED_FROM_S, drag_share_of_friction: None };
-        let drag = values.get(self.drag);
-        let dragged = |wheel| DamagedWheel {
-            drag_share_of_friction: (drag < 1.0).then_some(drag),
-            ..locked(wheel)
-        };
-        if !self.after.wheels_are_known() {
-            let idx = values.blocked_of_two(self.which);
-            return idx.map(|idx| dragged(self.near[idx])).into_iter().collect();
-        }
-        let blocked = self.after.blocked_wheels.iter().flatten().copied();
-        let dragging = self.after.dragging_wheels.iter().flatten().copied();
-        let dragging = dragging.filter(|wheel| !blocked.clone().any(|locked| locked == *wheel));
-        blocked.clone().map(locked).chain(dragging.map(dragged)).collect()
-    }
-}
-
 /// Time that wheels need to stop turning under a force that the road cannot hold, s:
 ///
 /// ```text
@@ -486,18 +454,6 @@ fn contact_load(impulse_n_s: [f64; 2], values: &LatentValues, at_m: [f64; 2]) ->
     let [x_body_m, y_body_m] = at_m;
     let contact = ContactPoint { x_body_m, y_body_m, height_m: CONTACT_HEIGHT_M };
     ContactLoad { force, contact, recorded_moment: false }
-}
-
-/// The two wheels next to the damage, the nearer one first.
-fn wheels_near(side: Side, is_behind_cg: bool) -> [Wheel; 2] {
-    match (side, is_behind_cg) {
-        (Side::Left, true) => [Wheel::RearLeft, Wheel::FrontLeft],
-        (Side::Left, false) => [Wheel::FrontLeft, Wheel::RearLeft],
-        (Side::Right, true) => [Wheel::RearRight, Wheel::FrontRight],
-        (Side::Right, false) => [Wheel::FrontRight, Wheel::RearRight],
-        (Side::Front, _) => [Wheel::FrontLeft, Wheel::FrontRight],
-        (Side::Rear, _) => [Wheel::RearLeft, Wheel::RearRight],
-    }
 }
 
 #[cfg(test)]

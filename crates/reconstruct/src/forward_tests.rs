@@ -7,7 +7,7 @@ use crate::{
 };
 use impactlab_core::data::Channel;
 use impactlab_core::numerics::wrap_angle_rad;
-use impactlab_core::vehicle::{Integrator, Preset, TireMarkKind};
+use impactlab_core::vehicle::{Integrator, Preset, TireMarkKind, Wheel};
 
 /// What is found beside the rest pose: a locked wheel, marks and a change of velocity.
 const FOUND: &str = r#"

@@ -29,6 +29,7 @@ mod distribution;
 mod forward;
 mod hand;
 mod hand_checks;
+mod held_wheels;
 mod hinges;
 mod impact_state;
 mod latent;

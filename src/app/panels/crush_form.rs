@@ -16,12 +16,11 @@ const EXPLANATION: &str = "How stiff each face is where vehicles push each other
     flat rigid barrier give it: the load over the width of the face begins at A and grows by B with the \
     depth of the crush. The command `impactlab stiffness` computes both from a test.";
 
-/// Smallest widths of the columns of A and of B, points: so that a value does not move what is beside it.
-const COLUMN_WIDTH: f32 = 120.0;
+/// Largest width of a column, points.
+const COLUMN_WIDTH: f32 = 105.0;
 
 /// Heads of the columns and the ranges of their numbers.
-const NUMBERS: [(&str, Range); 2] =
-    [("A, onset", CRUSH_ONSET), ("B, growth with depth", CRUSH_STIFFNESS)];
+const NUMBERS: [(&str, Range); 2] = [("A, onset", CRUSH_ONSET), ("B, growth", CRUSH_STIFFNESS)];
 
 /// Draws a row for each face with A and B: what is known of it, else the values of its class.
 ///
@@ -31,7 +30,7 @@ pub(super) fn crush_form_ui(ui: &mut Ui, title: &str, sheet: &mut DataSheet, uni
     ui.strong("Crush stiffness").on_hover_text(EXPLANATION);
     let (class, mass_kg) = (sheet.class, sheet.vehicle().mass.mass_kg);
     let grid = Grid::new((title, "crush")).num_columns(3).striped(true);
-    grid.min_col_width(COLUMN_WIDTH).show(ui, |ui| {
+    grid.max_col_width(COLUMN_WIDTH).show(ui, |ui| {
         ui.label("");
         let heads = NUMBERS.map(|(head, range)| ui.label(head).on_hover_text(range.meaning).id);
         ui.end_row();

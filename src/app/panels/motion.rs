@@ -38,10 +38,12 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     };
     let SimulateAnswer { report, analysis } = answer;
     caveats_ui(ui, &report.caveats, commands);
-    ui.horizontal_wrapped(|ui| {
+    let to_controls = ui.horizontal_wrapped(|ui| {
         curves_menu_ui(ui, analysis, &mut view.motion_channels);
         recording_menu_ui(ui, &mut project.beside.recording, &session.sources);
+        let button = ui.button("Inputs").on_hover_text("What drivers and systems do, below");
         ui.weak("Shift + drag in a plot: numbers between two cursors");
+        button.clicked()
     });
     let time_s = session.playback.time_s;
     let shown = Shown {
@@ -85,12 +87,15 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     };
     egui::ScrollArea::vertical().show(ui, |ui| {
         rows_ui(ui, &channels);
-        if !controls.is_empty() {
-            ui.strong("What drivers and systems do").on_hover_text(ABOUT_CONTROLS);
-            rows_ui(ui, &controls);
-        } else if analysis.simulation.is_some() {
-            ui.weak(NOBODY_ACTS);
+        let heading = match (controls.is_empty(), analysis.simulation.is_some()) {
+            (false, _) => ui.strong("What drivers and systems do").on_hover_text(ABOUT_CONTROLS),
+            (true, true) => ui.weak(NOBODY_ACTS),
+            (true, false) => ui.weak("Without a simulation nothing is known of the inputs."),
+        };
+        if to_controls.inner {
+            heading.scroll_to_me(Some(egui::Align::TOP));
         }
+        rows_ui(ui, &controls);
     });
 }
 

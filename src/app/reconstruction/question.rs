@@ -30,8 +30,8 @@ impl ReconstructionQuestion {
         let resumed = runs.resumed(&self.request)?;
         match resumed.solve(library, observer) {
             Err(error) if error.is_of_checkpoint() => {
-                let unusable = resumed.checkpoint.filter(|_| !error.is_checkpoint_in_use());
-                if let Some(path) = unusable {
+                let unusable = resumed.checkpoint_files().filter(|_| !error.is_checkpoint_in_use());
+                for path in unusable.into_iter().flatten() {
                     // It may be missing, or be in a folder that cannot be written.
                     let _ = std::fs::remove_file(path);
                 }

@@ -70,6 +70,7 @@ fn braked_pair(name: &str, stands_s: f64, is_anti_lock: bool) -> PairCase {
         manoeuvres: [Manoeuvre::default(), Manoeuvre { controls, ..Manoeuvre::default() }],
         contact_height_m: None,
         motions: [struck, striking],
+        brake_pedal: None,
         contact: RecordedContact {
             first_s: Some(1.0),
             place_m: Some([-1.5, -0.9]),

@@ -342,7 +342,7 @@ mod tests {
             assert!((0..wheels.wheels.len()).any(driven), "the driver holds the throttle");
             let steer = striking.controls.steer.unwrap();
             assert_eq!(steer.steer_rad, striking.motion.require(Channel::SteerFl).unwrap());
-            let turned_rad = pit.steering_wheel_rad / pit.steering_ratio;
+            let turned_rad = pit.acting().road_wheel_rad();
             let largest_rad = steer.steer_rad.iter().copied().fold(0.0, f64::max);
             assert!((largest_rad - turned_rad).abs() < 3e-3, "{largest_rad}, {turned_rad} rad");
         }

@@ -259,11 +259,13 @@ impl<'a> PairRun<'a> {
         let longest = if self.first_force.is_some() {
             USUAL_TICKS
         } else if self.contact_rate_1_s > 0.0 {
-            let usual_s = self.tick_s * USUAL_TICKS as f64;
+            // As without a divisor, so that one divides every step.
+            let tick_s = self.tick_s * self.pair.step_divisor as f64;
+            let usual_s = tick_s * USUAL_TICKS as f64;
             let is_stiff = self.contact_rate_1_s * usual_s > MAX_RATE_TIMES_STEP;
             let by_rate_s = LONG_RATE_TIMES_STEP / self.contact_rate_1_s;
             let by_slide_s = LONGEST_SLIDE_M / speed_m_s;
-            let ticks = (by_rate_s.min(by_slide_s) / self.tick_s) as usize;
+            let ticks = (by_rate_s.min(by_slide_s) / tick_s) as usize;
             ticks.clamp(if is_stiff { 1 } else { USUAL_TICKS }, LONGEST_CONTACT_TICKS)
         } else if is_apart(TICKS_PER_OUTPUT) {
             TICKS_PER_OUTPUT

@@ -97,10 +97,10 @@ mod tests {
         let stiffness = CrushStiffness { onset_n_per_m: 60_400.0, stiffness_n_per_m2: 78e4 };
         vehicle.crush.side = Some(stiffness);
         for (language, expected) in [
-            (Language::En, [("onset, side", "60.40 kN/m"), ("stiffness, side", "780.0 kN/m²")]),
+            (Language::En, [("onset, side", "60.4 kN/m"), ("stiffness, side", "780 kN/m²")]),
             (
                 Language::De,
-                [("Einsatzlast A, Seite", "60,40 kN/m"), ("Steifigkeit B, Seite", "780,0 kN/m²")],
+                [("Einsatzlast A, Seite", "60,4 kN/m"), ("Steifigkeit B, Seite", "780 kN/m²")],
             ),
         ] {
             let wording = Wording::new(&ReportSettings { language, units, paper, date });

@@ -140,6 +140,10 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("contact across the side", "Kontakt quer zur Seite"),
     ("restitution within its bounds", "Stoßziffer innerhalb ihrer Grenzen"),
     ("friction of the contact", "Reibbeiwert im Kontakt"),
+    (
+        "stiffness of both cars over the usual",
+        "Steifigkeit beider Fahrzeuge gegenüber der üblichen",
+    ),
     ("normal of the contact turned by", "Kontaktnormale gedreht um"),
     ("duration of the contact", "Dauer des Kontakts"),
     ("tire friction over that of the road", "Reibbeiwert der Reifen zu dem der Fahrbahn"),

@@ -6,48 +6,72 @@ use serde::Serialize;
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::NumberFormat;
 
-/// Share of the particles whose cars meet again from which on later contacts are followed: as much as the
-/// intervals of 90 % leave out at one end.
-const FOLLOWED_FROM: f64 = 0.05;
+/// Share of the particles whose cars meet again from which on a person hears of it: as much as the intervals
+/// of 90 % leave out at one end.
+const TOLD_FROM: f64 = 0.05;
 
 /// What a reconstruction makes of later contacts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct LaterContactsReport {
-    /// Share of the particles of a reconstruction from the first contact alone whose cars meet again.
+    /// Share of the particles of a reconstruction from the first contact alone whose cars meet again. A
+    /// striking car of which nothing is known then coasts.
     pub meet_again_share: f64,
     /// Whether both cars were then followed through all contacts.
     pub are_followed: bool,
+    #[serde(skip)]
+    why_not: Option<WhyNot>,
+}
+
+/// Why later contacts are left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum WhyNot {
+    /// It is asked.
+    Asked,
+    /// Nothing of the way of the striking car is among the evidence, so that nothing says whether the cars
+    /// met again.
+    NoEvidence,
 }
 
 impl LaterContactsReport {
     /// What is done where some of the particles of the first contact alone meet again.
-    ///
-    /// - `one_contact`: whether it is asked that no later contact is followed.
-    pub(super) fn new(meet_again_share: f64, one_contact: bool) -> Self {
-        let are_followed = !one_contact && meet_again_share >= FOLLOWED_FROM;
-        Self { meet_again_share, are_followed }
+    pub(super) fn new(meet_again_share: f64, why_not: Option<WhyNot>) -> Self {
+        let are_followed = why_not.is_none() && meet_again_share >= TOLD_FROM;
+        Self { meet_again_share, are_followed, why_not }
     }
 
     /// What a person should know of it; `None` where the cars part for good.
     pub(super) fn caveat(&self) -> Option<Caveat> {
+        if self.meet_again_share < TOLD_FROM {
+            return None;
+        }
         let share = NumberFormat::default().chance(self.meet_again_share, None);
         let meet =
             format!("after the first contact alone the cars meet again in {share} of the motions");
-        if self.are_followed {
-            let text = format!(
-                "{meet}: both were followed through all contacts, the first one by momentum, later ones by \
-                 the crush of their outlines"
-            );
-            return Some(Caveat::new(CaveatKind::Note, text));
-        }
-        (self.meet_again_share >= FOLLOWED_FROM).then(|| {
-            let text = format!(
-                "{meet}, which is left out here: the speeds are those of motions that end otherwise; leave \
-                 out --one-contact"
-            );
-            Caveat::new(CaveatKind::SecondContact, text)
-                .with_value("share of the motions in which the cars meet again", self.meet_again_share)
-                .with_range([0.0, FOLLOWED_FROM])
+        Some(match self.why_not {
+            None => {
+                let text = format!(
+                    "{meet}: both were followed through all contacts, the first one by momentum, later ones \
+                     by the crush of their outlines"
+                );
+                Caveat::new(CaveatKind::Note, text)
+            }
+            Some(WhyNot::NoEvidence) => {
+                let text = format!(
+                    "{meet} if the striking car coasts; later contacts are not followed, since nothing of \
+                     its way is among the evidence ([striking_rest], [[striking_mark]], [striking_edr])"
+                );
+                Caveat::new(CaveatKind::Note, text)
+            }
+            Some(WhyNot::Asked) => {
+                let text = format!(
+                    "{meet}, which is left out here: the speeds are those of motions that end otherwise; \
+                     leave out --one-contact"
+                );
+                let told = "share of the motions in which the cars meet again";
+                Caveat::new(CaveatKind::SecondContact, text)
+                    .with_value(told, self.meet_again_share)
+                    .with_range([0.0, TOLD_FROM])
+            }
         })
     }
 }
@@ -57,13 +81,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn later_contacts_are_followed_where_there_are_some_and_a_person_hears_of_it() {
-        let kind = |share, one_contact| {
-            let report = LaterContactsReport::new(share, one_contact);
+    fn later_contacts_are_followed_where_the_evidence_tells_and_a_person_hears_of_them() {
+        let kind = |share, why_not| {
+            let report = LaterContactsReport::new(share, why_not);
             (report.are_followed, report.caveat().map(|caveat| caveat.kind))
         };
-        assert_eq!(kind(0.01, false), (false, None));
-        assert_eq!(kind(0.3, false), (true, Some(CaveatKind::Note)));
-        assert_eq!(kind(0.3, true), (false, Some(CaveatKind::SecondContact)));
+        assert_eq!(kind(0.01, None), (false, None));
+        assert_eq!(kind(0.3, None), (true, Some(CaveatKind::Note)));
+        assert_eq!(kind(0.3, Some(WhyNot::NoEvidence)), (false, Some(CaveatKind::Note)));
+        assert_eq!(kind(0.3, Some(WhyNot::Asked)), (false, Some(CaveatKind::SecondContact)));
     }
 }

@@ -1,5 +1,6 @@
 //! From the evidence of a collision to the speeds before it: `reconstruct`.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
@@ -7,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
 use crate::questions::reconstruct::assumed::{assumptions, unused};
-use crate::questions::reconstruct::later_contacts::LaterContactsReport;
+use crate::questions::reconstruct::later_contacts::{LaterContactsReport, WhyNot};
 use crate::{
     Answer, Event, FrictionZoneReport, InputKind, Library, Observer, Provenance, Question,
     Sampling, StudyError, VehicleChoice,
@@ -35,9 +36,6 @@ use impactlab_reconstruct::{
 
 /// Effective sample size below which intervals may be too narrow.
 const LEAST_ESS: f64 = 400.0;
-
-/// What the name of the file of a run through all contacts has behind that of the first run.
-const LATER_SUFFIX: &str = ".later";
 
 /// Evaluations of the forward model that each particle is worth at the most.
 const EVALUATIONS_PER_PARTICLE: usize = 150;
@@ -123,8 +121,8 @@ pub struct ReconstructReport {
     pub friction_zones: Vec<FrictionZoneReport>,
     /// What the evidence is alike among the staged collisions that reconstructions were measured on.
     pub known: KnownEvidence,
-    /// Whether the cars meet again, and what was made of it.
-    pub later_contacts: LaterContactsReport,
+    /// Whether the cars meet again, and what was made of it; none where sampling was stopped before.
+    pub later_contacts: Option<LaterContactsReport>,
     /// What was taken to be likely before.
     pub priors: Vec<PriorComponent>,
 }
@@ -168,17 +166,26 @@ impl ReconstructRequest {
         }
     }
 
+    /// The file of the run (`case.run`) and that of the run through all contacts which may follow it
+    /// (`case.later.run`); `None` without a checkpoint.
+    pub fn checkpoint_files(&self) -> Option<[PathBuf; 2]> {
+        let first = self.checkpoint.clone()?;
+        let mut ending = OsString::from("later");
+        if let Some(of_first) = first.extension() {
+            ending.push(".");
+            ending.push(of_first);
+        }
+        let later = first.with_extension(ending);
+        Some([first, later])
+    }
+
     /// Where the run is saved, with a digest of all that its likelihood is made from.
     fn checkpoint(
         &self,
         evidence: &Evidence,
         model: &ForwardModel,
     ) -> Result<Option<SamplerCheckpoint>, StudyError> {
-        let Some(first) = self.checkpoint.clone() else { return Ok(None) };
-        // The run through all contacts, which follows, has a file of its own.
-        let mut later = first.clone().into_os_string();
-        later.push(LATER_SUFFIX);
-        let later = PathBuf::from(later);
+        let Some([first, later]) = self.checkpoint_files() else { return Ok(None) };
         let follows = model.follows_later_contacts();
         let unwanted = [&first, &later].into_iter().find(|path| path.exists() && !self.resume);
         if let Some(path) = unwanted.filter(|_| !follows) {
@@ -319,15 +326,20 @@ impl Question for ReconstructRequest {
         let outside = outside_domain(&evidence, cars, model.zones());
         let friction_zones = model.zones().iter().map(FrictionZoneReport::from_zone).collect();
         let (mut target, mut particles) = self.sampled(&evidence, model, observer)?;
-        let share = target.meet_again_share(&particles);
-        let later_contacts =
-            LaterContactsReport::new(share, self.one_contact || !particles.is_posterior());
-        if later_contacts.are_followed {
+        let why_not = match (self.one_contact, evidence.follows_striking_car()) {
+            (true, _) => Some(WhyNot::Asked),
+            (false, false) => Some(WhyNot::NoEvidence),
+            (false, true) => None,
+        };
+        let of_posterior = particles.is_posterior().then(|| target.meet_again_share(&particles));
+        let later_contacts = of_posterior.map(|share| LaterContactsReport::new(share, why_not));
+        let are_followed = later_contacts.is_some_and(|later| later.are_followed);
+        if are_followed {
             let model = target.model().clone().through_later_contacts(&evidence);
             (target, particles) = self.sampled(&evidence, model, observer)?;
         }
         let mut assumptions = assumptions(&evidence, target.model());
-        assumptions.extend(unused(&evidence, later_contacts.are_followed));
+        assumptions.extend(unused(&evidence, are_followed));
         let posterior = Posterior::new(&target, &particles);
         let (fit, turned_rad) = target.fit(&particles);
         let ground = target.model().zones();
@@ -335,7 +347,7 @@ impl Question for ReconstructRequest {
         let before = by_hand.iter().find(|check| check.speed == HandSpeed::Struck);
         let by_hand_m_s = before.map(|check| [check.value_m_s, check.sigma_m_s]);
         let mut caveats = Caveats::from(of_particles(&particles));
-        caveats.extend(later_contacts.caveat().filter(|_| particles.is_posterior()));
+        caveats.extend(later_contacts.and_then(|later| later.caveat()));
         let modes = posterior.modes(&particles, &turned_rad);
         caveats.extend(several_courses(&modes));
         caveats.extend(outside);
