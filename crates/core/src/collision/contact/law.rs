@@ -311,7 +311,7 @@ pub struct Strip<T> {
 impl<T> Strip<T> {
     /// Its numbers in the order of its fields.
     #[inline(always)]
-    pub(super) fn to_array(self) -> [T; 7] {
+    pub(super) fn into_array(self) -> [T; 7] {
         let Self {
             greatest_m,
             dent_m,

@@ -40,7 +40,7 @@ impl WithSimd for SideBySide<'_> {
             let lane = |lane: usize| &chunk[lane.min(last)];
             let [a, b] = [0, 1].map(|side| {
                 let rows: [[f64; N_STRIP]; MAX_LANES] =
-                    std::array::from_fn(|i| lane(i).strips[side].to_array());
+                    std::array::from_fn(|i| lane(i).strips[side].into_array());
                 Strip::from_array(Packed::columns(simd, &rows))
             });
             let overlaps_m: [f64; MAX_LANES] = std::array::from_fn(|i| lane(i).overlap_m);
