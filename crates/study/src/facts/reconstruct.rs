@@ -30,8 +30,12 @@ impl ReconstructReport {
         tables.into_iter().flatten().collect()
     }
 
-    /// How often such intervals held; none where there are no intervals.
+    /// How often such intervals held; none where there are no intervals, and of cars that were followed
+    /// through later contacts, on which it was not measured.
     fn held_table(&self) -> Option<FactTable> {
+        if self.later_contacts.is_some_and(|later| later.are_followed) {
+            return None;
+        }
         let measured = Measurement::shipped(Measured::reconstruction_of(self.known))?;
         self.has_intervals().then(|| measured.held_table()).flatten()
     }

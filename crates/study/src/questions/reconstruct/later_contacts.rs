@@ -51,7 +51,7 @@ impl LaterContactsReport {
             None => {
                 let text = format!(
                     "{meet}: both were followed through all contacts, the first one by momentum, later ones \
-                     by the crush of their outlines"
+                     by the crush of their outlines; how often such intervals hold the truth was not tried"
                 );
                 Caveat::new(CaveatKind::Note, text)
             }
