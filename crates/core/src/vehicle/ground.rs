@@ -3,6 +3,9 @@
 use crate::vehicle::frames::Heading;
 use crate::vehicle::{FrictionZone, VehicleParameters, VehicleState, Wheel};
 
+/// Distance from the CG within which a zone may be under a wheel before the next step ends, m.
+const NEAR_M: f64 = 5.0;
+
 /// Zones of the ground, prepared for one vehicle. The friction under a wheel is that of the place on
 /// the ground below its centre at the start of a step; it is held over the step.
 #[derive(Debug, Clone)]
@@ -42,6 +45,15 @@ impl<'a> Ground<'a> {
     /// Whether there are zones.
     pub fn has_zones(&self) -> bool {
         !self.zones.is_empty()
+    }
+
+    /// Whether a zone is so near that a wheel may stand in it within the next step.
+    pub fn has_zones_near(&self, x: &VehicleState<f64>) -> bool {
+        let place_m = [x.x_m, x.y_m];
+        self.zones.iter().any(|zone| {
+            let [low, high] = zone.box_m;
+            (0..2).all(|axis| (low[axis] - NEAR_M..=high[axis] + NEAR_M).contains(&place_m[axis]))
+        })
     }
 
     /// Friction of the ground under each wheel over that of the tires, in the order of

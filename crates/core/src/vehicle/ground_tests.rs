@@ -159,3 +159,14 @@ fn a_zone_that_is_none_gives_no_motion() {
     let ends = simulate_paths(&[run], PathLimit { distance_m: 1e3 }, |_, path| path.end);
     assert_eq!(ends, [PathEnd::Failed]);
 }
+
+#[test]
+fn a_zone_that_the_car_never_reaches_changes_nothing() {
+    let vehicle = Preset::Reference.parameters();
+    let far = zone([900.0, 900.0], [950.0, 950.0], 0.1);
+    let [bare, with_zone] = [vec![], vec![far]].map(|zones| locked_from(20.0, zones));
+    let limit = PathLimit { distance_m: f64::INFINITY };
+    let runs = [&bare, &with_zone].map(|manoeuvre| SimulationRun { vehicle: &vehicle, manoeuvre });
+    let paths = simulate_paths(&runs, limit, |_, path| path);
+    assert_eq!(paths[0], paths[1]);
+}

@@ -85,7 +85,7 @@ impl<'a> HeldForceRun<'a> {
         let by_tires_s = self.step_per_speed_s2_m * (speed_m_s + SLIP_ANGLE_SPEED_M_S);
         let by_turn_s = LARGEST_TURN_RAD / x.yaw_rate_rad_s.abs().max(f64::MIN_POSITIVE);
         let longest_s = by_tires_s.min(by_turn_s).min(self.roll_step_s).max(self.run.step_s);
-        if self.run.has_zones() { longest_s.min(ZONE_STEP_S) } else { longest_s }
+        if self.run.has_zones_near(&x) { longest_s.min(ZONE_STEP_S) } else { longest_s }
     }
 
     /// State at the end of a step, which is divided where the vehicle has faster modes than it follows.

@@ -237,7 +237,7 @@ impl<'a> Lane<'a> {
             return Some(PathEnd::Rest);
         }
         self.speed_m_s = speed_m_s;
-        let is_short = self.time_s < self.force_end_s || self.ground.has_zones();
+        let is_short = self.time_s < self.force_end_s || self.ground.has_zones_near(&x);
         let longest_s =
             if is_short { self.longest_step_s.min(CONTACT_STEP_S) } else { self.longest_step_s };
         let by_tires_s = self.step_per_speed_s2_m * (speed_m_s + SLIP_ANGLE_SPEED_M_S);

@@ -114,6 +114,11 @@ impl<'a> Run<'a> {
         self.ground.has_zones()
     }
 
+    /// Whether a zone of the ground is so near that a wheel may stand in it within the next step.
+    pub fn has_zones_near(&self, x: &VehicleState<f64>) -> bool {
+        self.ground.has_zones_near(x)
+    }
+
     /// Inputs over a step of the interval that begins.
     ///
     /// - `state`: at the start of the step; it counts where the ground has zones.
