@@ -40,7 +40,7 @@ fn stills(document: &ReportDocument) -> Vec<(&Picture, &SceneStill)> {
 /// The friction zones in the table of inputs, each with its value.
 fn zones(document: &ReportDocument) -> Vec<String> {
     let markdown = document.to_markdown();
-    let is_zone = |line: &&str| line.contains("friction") && line.contains("corners");
+    let is_zone = |line: &&str| line.starts_with("| ") && line.contains("corners (X; Y)");
     markdown.lines().filter(is_zone).map(str::to_owned).collect()
 }
 
