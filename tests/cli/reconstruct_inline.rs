@@ -15,11 +15,12 @@ const INLINE: &str = include_str!("../data/evidence/inline.toml");
 /// Speed of the striking car before the impact, m/s: 83.7 mph.
 const STRIKING_M_S: f64 = 37.42;
 
-fn reconstructed(evidence: &str) -> Value {
+/// - `particles`: fewer where both cars are followed, which takes minutes.
+fn reconstructed(evidence: &str, particles: &str) -> Value {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("inline.toml");
     fs::write(&path, evidence).unwrap();
-    let args = ["reconstruct", text(&path), "--particles", "300", "--json"];
+    let args = ["reconstruct", text(&path), "--particles", particles, "--json"];
     json(&ok(program().args(args).output().unwrap()))
 }
 
@@ -35,7 +36,7 @@ fn interval(answer: &Value, name: &str, level: f64) -> [f64; 2] {
 /// list and that no key could state.
 #[test]
 fn what_nobody_says_of_the_striking_car_makes_the_answer_wide_and_is_listed() {
-    let answer = reconstructed(INLINE);
+    let answer = reconstructed(INLINE, "300");
     let [low, high] = interval(&answer, "bullet_speed_m_s", 0.95);
     assert!(low < STRIKING_M_S && STRIKING_M_S < high, "{low} to {high} m/s");
     let assumed = answer["assumptions"].to_string();
@@ -54,7 +55,7 @@ fn what_is_known_of_both_cars_gives_the_speed_by_hand() {
     let locked = "[striking_after]\nblocked_wheels = [\"FL\", \"FR\", \"RL\", \"RR\"]\n[prior]";
     let drag = "drag_factor = 0.65\ndrag_factor_sigma = 0.02";
     let evidence = INLINE.replace("friction = 0.65\nfriction_sigma = 0.02", drag);
-    let answer = reconstructed(&evidence.replace("[prior]", locked));
+    let answer = reconstructed(&evidence.replace("[prior]", locked), "120");
     let [low, high] = interval(&answer, "bullet_speed_m_s", 0.90);
     assert!(low < STRIKING_M_S && STRIKING_M_S < high, "{low} to {high} m/s");
     assert!(high - low < 9.0, "{low} to {high} m/s");

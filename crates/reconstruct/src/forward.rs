@@ -13,7 +13,8 @@ use rayon::prelude::*;
 
 use crate::evidence::{Evidence, ends};
 use crate::held_wheels::{HeldWheels, wheels_near};
-use crate::later_contact::{FollowedCar, LaterContacts, ParticleContact};
+use crate::later_contact::{FollowedCar, Later, LaterContacts, ParticleContact};
+use crate::prior::towards;
 use crate::{Cars, ImpactState, Latent, LatentValues, Prior};
 use impactlab_core::collision::{Pulse, PulseShape, Side};
 use impactlab_core::data::{ForceAxes, ForceHistory, Sampling};
@@ -22,8 +23,8 @@ use impactlab_core::ranges::ROAD_FRICTION;
 use impactlab_core::units::STANDARD_GRAVITY_M_S2;
 use impactlab_core::vehicle::{
     Braking, ContactLoad, ContactPoint, DEFAULT_BRAKE_RISE_S, DrivenAxle, Ending, EngineBraking,
-    FrictionZone, HeldSteer, Manoeuvre, Path, PathLimit, SimulationRun, VehicleParameters,
-    VehicleState, simulate_paths,
+    FrictionZone, HeldSteer, Manoeuvre, Path, PathLimit, PitDriver, PitEnd, SimulationRun,
+    VehicleParameters, VehicleState, simulate_paths,
 };
 
 /// Height of the contact above the road, m: sills and bumpers of passenger cars.
@@ -31,6 +32,9 @@ pub(crate) const CONTACT_HEIGHT_M: f64 = 0.55;
 
 /// When the front wheels are turned, s after the first contact.
 const STEERED_FROM_S: f64 = 0.1;
+
+/// When the driver of the striking car who pushes begins to turn in, s after the first contact.
+const PUSH_STEERED_FROM_S: f64 = -0.5;
 
 /// Longest motion that is followed, s.
 const LONGEST_MOTION_S: f64 = 40.0;
@@ -81,9 +85,7 @@ pub struct ForwardModel {
     wheels: [HeldWheels; 2],
     pub(super) restitution: Option<[f64; 2]>,
     follows_striking: bool,
-    /// Whether the cars are followed together where they meet again.
-    follows_contacts: bool,
-    later: Option<LaterContacts>,
+    later: Later,
     zones: Vec<FrictionZone>,
     limit: PathLimit,
 }
@@ -126,8 +128,7 @@ impl ForwardModel {
             ],
             restitution: ends(evidence.prior.restitution),
             follows_striking: evidence.follows_striking_car(),
-            follows_contacts: false,
-            later: None,
+            later: Later::LeftOut,
             zones: Vec::new(),
             limit: PathLimit { distance_m },
             cars,
@@ -144,16 +145,16 @@ impl ForwardModel {
     /// The same with both cars followed through later contacts.
     #[must_use]
     pub fn through_later_contacts(self, evidence: &Evidence) -> Self {
-        let watching = self.watching_contacts();
-        let prior = watching.prior.with_later_contacts(evidence);
-        Self { prior, follows_contacts: true, ..watching }
+        let later = LaterContacts::new(&self.cars).map_or(Later::LeftOut, Later::Followed);
+        let prior = self.prior.with_coasting_striking_car().with_later_contacts(evidence);
+        Self { prior, follows_striking: true, later, ..self }
     }
 
     /// The same model, which also says of each motion whether the cars meet again, as far as their impact
     /// alone moves them. Where the evidence says nothing of the striking car, it coasts.
     #[must_use]
     pub fn watching_contacts(self) -> Self {
-        let later = LaterContacts::new(&self.cars);
+        let later = LaterContacts::new(&self.cars).map_or(Later::LeftOut, Later::Watched);
         let prior = self.prior.with_coasting_striking_car();
         Self { prior, follows_striking: true, later, ..self }
     }
@@ -161,12 +162,16 @@ impl ForwardModel {
     /// The same prior with motions by the impact alone.
     #[cfg(test)]
     pub(crate) fn with_contacts_left_out(self) -> Self {
-        Self { follows_contacts: false, ..self }
+        let later = match self.later {
+            Later::Followed(contacts) => Later::Watched(contacts),
+            other => other,
+        };
+        Self { later, ..self }
     }
 
     /// Whether the cars are followed together where they meet again.
     pub fn follows_later_contacts(&self) -> bool {
-        self.follows_contacts
+        self.later.are_followed()
     }
 
     /// The prior of the case.
@@ -225,7 +230,7 @@ impl ForwardModel {
         let alone = simulate_paths(&runs, self.limit, |idx, path| {
             let (motion, striking_path) = (&prepared[idx], striking_paths.get(idx));
             let meet_again = self.meet_again(motion, &path, striking_path);
-            if meet_again == Some(true) && self.follows_contacts {
+            if meet_again == Some(true) && self.later.are_followed() {
                 return None;
             }
             let striking = motion.striking.as_ref().zip(striking_path);
@@ -247,7 +252,7 @@ impl ForwardModel {
     /// Whether the cars meet again; `None` where that is not looked for.
     fn meet_again(&self, motion: &Prepared, path: &Path, striking: Option<&Path>) -> Option<bool> {
         let from_s = motion.values.get(Latent::PulseDuration);
-        Some(self.later.as_ref()?.meet_again([path, striking?], from_s))
+        Some(self.later.contacts()?.meet_again([path, striking?], from_s))
     }
 
     /// Both cars through all contacts, with failed paths where they cannot be computed.
@@ -259,7 +264,7 @@ impl ForwardModel {
         };
         let striking = motion.striking.as_ref();
         let striking = striking.map(|(vehicle, manoeuvre)| SimulationRun { vehicle, manoeuvre });
-        let cars = self.later.as_ref().zip(striking);
+        let cars = self.later.contacts().zip(striking);
         let followed = cars
             .and_then(|(later, striking)| later.follow([struck, striking], &contact, self.limit));
         followed.unwrap_or_else(|| {
@@ -385,13 +390,7 @@ impl ForwardModel {
         // How tires slide is a matter of the road more than of the car.
         tires.sliding_friction_ratio = values.get(Latent::SlidingRatio);
         tires.longitudinal_friction_ratio = values.get(Latent::LongitudinalFrictionRatio);
-        let brake = values.striking_brakes_from_s().map(|start_s| {
-            let share = values.get(Latent::StrikingBrakeShare)
-                * values.get(Latent::LongitudinalFrictionRatio);
-            Braking::new(start_s, share, DEFAULT_BRAKE_RISE_S)
-        });
-        let [_, striking] = &self.wheels;
-        let damage = striking.damage(values);
+        let ending = self.striking_ending(values);
         let (sin, cos) = impact.heading_difference_rad.sin_cos();
         let in_body = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
         let [vx_body_m_s, vy_body_m_s] = in_body(impact.striking_velocity_m_s);
@@ -402,17 +401,47 @@ impl ForwardModel {
                 vx_body_m_s,
                 vy_body_m_s,
                 yaw_rad: impact.heading_difference_rad,
+                yaw_rate_rad_s: self.striking_yaw_rate_rad_s(values),
                 x_m: impact.striking_m[0],
                 y_m: impact.striking_m[1],
                 ..VehicleState::default()
             },
             contact_load: Some(contact_load(impulse, values, in_body(arm_m))),
-            controls: Ending { brake, damage, ..Ending::default() }.controls(&vehicle),
+            controls: ending.controls(&vehicle),
             duration_s: LONGEST_MOTION_S,
             ends_at_rest: true,
             friction_zones: self.zones_under(values, tire_factor),
         };
         (vehicle, manoeuvre)
+    }
+
+    /// What happens to the wheels of the striking car. A driver who pushes brakes after it if he does.
+    fn striking_ending(&self, values: &LatentValues) -> Ending {
+        let [_, striking] = &self.wheels;
+        let damage = striking.damage(values);
+        let brakes_from_s = values.striking_brakes_from_s();
+        let brake_share = brakes_from_s.map(|_| {
+            values.get(Latent::StrikingBrakeShare) * values.get(Latent::LongitudinalFrictionRatio)
+        });
+        if values.striking_pushes() {
+            let end = brake_share.map_or(PitEnd::Straighten, |_| PitEnd::Brake);
+            let inwards_rad = values.get(Latent::PushSteeringWheel);
+            let pit = PitDriver {
+                start_s: Some(PUSH_STEERED_FROM_S),
+                steering_wheel_rad: Some(towards(self.side) * inwards_rad),
+                end: Some(end),
+                // He goes by the time.
+                struck_turn_rad: Some(f64::INFINITY),
+                longest_s: Some(values.get(Latent::PushDuration)),
+                brake_share,
+                ..PitDriver::default()
+            };
+            return Ending { damage, pit: Some(pit), ..Ending::default() };
+        }
+        let brake = brakes_from_s
+            .zip(brake_share)
+            .map(|(start_s, share)| Braking::new(start_s, share, DEFAULT_BRAKE_RISE_S));
+        Ending { brake, damage, ..Ending::default() }
     }
 }
 

@@ -92,7 +92,7 @@ impl ForwardModel {
             yaw_inertia_kg_m2: inertia(striking_kg, &self.cars.striking.parameters),
             heading_rad,
             velocity_world_m_s: striking_velocity_m_s,
-            yaw_rate_rad_s: 0.0,
+            yaw_rate_rad_s: self.striking_yaw_rate_rad_s(values),
             contact_arm_world_m: arm_m,
         };
         let surface = ContactSurface {
@@ -118,6 +118,12 @@ impl ForwardModel {
             restitution,
             solution: solved(&impact),
         }
+    }
+
+    /// Yaw rate of the striking car at first contact, rad/s; none where it is not among the quantities.
+    pub(crate) fn striking_yaw_rate_rad_s(&self, values: &LatentValues) -> f64 {
+        let inwards_rad_s = values.get(Latent::StrikingYawRate);
+        if inwards_rad_s.is_nan() { 0.0 } else { towards(self.side) * inwards_rad_s }
     }
 
     /// Coefficient of restitution at a closing speed, m/s.

@@ -15,6 +15,10 @@ pub const STRIKING_BRAKES_BEFORE: f64 = 0.4;
 /// Probability that he brakes then or later.
 pub const STRIKING_BRAKES: f64 = 0.8;
 
+/// Probability that the driver of a car that hits a flank behind the CG steers in and pushes on, as in a
+/// PIT manoeuvre, where nobody says whether he does.
+pub const PUSH_PROBABILITY: f64 = 0.5;
+
 /// Probability that a wheel near the damage is blocked if nobody looked.
 pub const BLOCKED_PROBABILITY: f64 = 0.2;
 
@@ -138,6 +142,18 @@ latents! {
     /// How far it is blocked: drag over what the road can hold; more than 1 is locked.
     #[serde(rename = "bullet_blocked_drag")]
     StrikingBlockedDrag: "bullet_blocked_drag", "", "drag of the blocked wheel of the striking car";
+    /// Whether the driver of the striking car steers in and pushes on: below its threshold he does.
+    #[serde(rename = "bullet_push_decision")]
+    PushDecision: "bullet_push_decision", "", "whether the striking driver pushes on";
+    /// By how much he turns the steering wheel towards the struck car, rad.
+    #[serde(rename = "bullet_steering_wheel")]
+    PushSteeringWheel: "bullet_steering_wheel_rad", "rad", "steering wheel of the striking car";
+    /// How long he steers in and keeps his speed, s after the first contact.
+    #[serde(rename = "bullet_push")]
+    PushDuration: "bullet_push_s", "s", "striking driver pushes for";
+    /// Yaw rate of the striking car at first contact, rad/s, towards the struck side.
+    #[serde(rename = "bullet_yaw_rate")]
+    StrikingYawRate: "bullet_yaw_rate_rad_s", "rad/s", "yaw rate of the striking car inwards";
     /// Loads that crush both cars over those of their classes, where later contacts are followed.
     ContactStiffnessFactor: "contact_stiffness_factor", "", "stiffness of both cars over the usual";
     /// Friction of the zones of the ground over that which the site says, in all of them alike.
@@ -150,6 +166,7 @@ impl Latent {
         match self.unit() {
             "m/s" => Quantity::Speed,
             "rad" => Quantity::Angle,
+            "rad/s" => Quantity::AngularVelocity,
             "m" => Quantity::Length,
             "s" => Quantity::Time,
             "kg" => Quantity::Mass,
@@ -188,6 +205,11 @@ impl LatentValues {
             true => Some(0.0),
             false => (decision < STRIKING_BRAKES).then(|| self.get(Latent::StrikingBrakeStart)),
         }
+    }
+
+    /// Whether the driver of the striking car steers in and pushes on.
+    pub fn striking_pushes(&self) -> bool {
+        self.get(Latent::PushDecision) < PUSH_PROBABILITY
     }
 
     /// Drag factor of the struck car with all wheels locked, over the acceleration of gravity.

@@ -14,8 +14,8 @@
 
 use impactlab_core::collision::Pose;
 use impactlab_core::collision::contact::{
-    ContactBody, ContactConditions, ContactOutline, FaceLaws, PairMotion, PairRun, PairVehicle,
-    VehiclePair, way_to_touch_m,
+    ContactBody, ContactConditions, ContactOutline, CoupledSettings, FaceLaws, PairMotion, PairRun,
+    PairVehicle, VehiclePair, way_to_touch_m,
 };
 use impactlab_core::data::{Channel, ForceHistory, Sampling};
 use impactlab_core::vehicle::{
@@ -32,6 +32,9 @@ const GROWTH_M: f64 = 0.02;
 /// Interval at which it is asked how deep one outline lies in the other one, s.
 const INTERVAL_S: f64 = 0.01;
 
+/// Length of the elements of an outline, m: of thousands of motions none is told by itself.
+const LONGEST_ELEMENT_M: f64 = 0.2;
+
 /// Longest way of the striking car that closes the gap between rounded outlines, m.
 const LONGEST_WAY_M: f64 = 1.0;
 
@@ -44,6 +47,30 @@ pub(crate) struct LaterContacts {
     outlines: [ContactOutline; 2],
     /// Radius about the CG in which each outline lies, m.
     reach_m: [f64; 2],
+}
+
+/// What becomes of later contacts.
+#[derive(Debug, Clone)]
+pub(crate) enum Later {
+    /// Nobody looks for them.
+    LeftOut,
+    /// It is told where the cars meet again.
+    Watched(LaterContacts),
+    /// The cars are followed together where they meet again.
+    Followed(LaterContacts),
+}
+
+impl Later {
+    pub fn contacts(&self) -> Option<&LaterContacts> {
+        match self {
+            Self::LeftOut => None,
+            Self::Watched(contacts) | Self::Followed(contacts) => Some(contacts),
+        }
+    }
+
+    pub fn are_followed(&self) -> bool {
+        matches!(self, Self::Followed(_))
+    }
 }
 
 /// Contact of the cars of one particle beside their impact.
@@ -85,7 +112,8 @@ impl FollowedCar {
 impl LaterContacts {
     /// `None` for cars whose outer dimensions make no outline.
     pub fn new(cars: &Cars) -> Option<Self> {
-        let outline = |car: &crate::Car| ContactOutline::from_vehicle(&car.parameters).ok();
+        let outline =
+            |car: &crate::Car| ContactOutline::of_elements(&car.parameters, LONGEST_ELEMENT_M).ok();
         let outlines = [outline(&cars.struck)?, outline(&cars.striking)?];
         let reach = |outline: &ContactOutline| {
             let away_m =
@@ -176,26 +204,31 @@ impl LaterContacts {
                 height_m: CONTACT_HEIGHT_M,
                 ..ContactConditions::default()
             },
-            step_divisor: 1,
-            until_both_rest: true,
+            settings: CoupledSettings {
+                has_long_steps: true,
+                until_both_rest: true,
+                first_force_is_whole: true,
+                ..CoupledSettings::default()
+            },
         };
         let starts = [pose(struck.manoeuvre), pose(&striking_manoeuvre)];
         let mut run = PairRun::new(&pair).ok()?;
-        let mut is_far = false;
+        let mut are_far = [false; 2];
         while run.goes_on(&NOTHING_ELSE).ok()? {
-            let states = run.states();
-            is_far = (0..2).all(|i| {
+            let (states, at_rest) = (run.states(), run.are_at_rest());
+            are_far = [0, 1].map(|i| {
                 let [dx, dy] = [states[i].x_m - starts[i].x_m, states[i].y_m - starts[i].y_m];
                 dx.hypot(dy) > limit.distance_m
             });
-            if is_far {
+            // A car that is far away does not come back to one that is at rest.
+            if (0..2).all(|i| are_far[i] || at_rest[i]) {
                 break;
             }
         }
         let PairMotion { motions: [of_struck, of_striking], .. } = run.finish().ok()?;
         Some([
-            FollowedCar::from_motion(struck.manoeuvre, &of_struck, is_far)?,
-            FollowedCar::from_motion(&striking_manoeuvre, &of_striking, is_far)?,
+            FollowedCar::from_motion(struck.manoeuvre, &of_struck, are_far[0])?,
+            FollowedCar::from_motion(&striking_manoeuvre, &of_striking, are_far[1])?,
         ])
     }
 }

@@ -51,8 +51,8 @@ pub use hand_checks::{HandCheck, HandSpeed};
 pub use hinges::{SpeedChange, SpeedHinge};
 pub use impact_state::ImpactState;
 pub use latent::{
-    BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues, STRIKING_BRAKES,
-    STRIKING_BRAKES_BEFORE,
+    BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues, PUSH_PROBABILITY,
+    STRIKING_BRAKES, STRIKING_BRAKES_BEFORE,
 };
 pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
 pub use modes::{ParticleMode, cluster_keys, modes_by};

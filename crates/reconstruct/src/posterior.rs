@@ -249,11 +249,14 @@ impl BudgetItem {
 }
 
 impl ReconstructionTarget {
-    /// Share of the particles whose cars meet again after the impact, as far as it alone moves them.
-    pub fn meet_again_share(&self, particles: &Particles) -> f64 {
+    /// Share of the particles whose cars meet again after the impact, as far as it alone moves them;
+    /// `None` for cars whose dimensions make no outline.
+    pub fn meet_again_share(&self, particles: &Particles) -> Option<f64> {
         let model = self.model().clone().watching_contacts();
-        let meet = model.motions(&particles.z, |motion| motion.meet_again == Some(true));
-        meet.iter().filter(|meet| **meet).count() as f64 / meet.len().max(1) as f64
+        let meet: Option<Vec<bool>> =
+            model.motions(&particles.z, |motion| motion.meet_again).into_iter().collect();
+        let meet = meet?;
+        Some(meet.iter().filter(|meet| **meet).count() as f64 / meet.len().max(1) as f64)
     }
 
     /// How well the posterior explains each item of the evidence, and by how much the struck car of

@@ -32,6 +32,10 @@
 //! | mass of a car of which no mass is known | log-normal, by its length and width where they are known, else 1790 kg, factor 1.19 | vehicles of the library |
 //! | one scale that weighed both cars, over what it shows | log-normal, 1, as said | [`Weighing`](crate::evidence::Weighing) |
 //! | loads that crush both cars over those of their classes, where later contacts are followed | log-normal, 1, factor 1.49 | [`STIFFNESS_LOG_SIGMA`](impactlab_core::collision::contact::STIFFNESS_LOG_SIGMA) of a side |
+//! | yaw rate of a striking car that hits a flank behind the CG, towards it, where later contacts are followed | normal, 0.3 ± 0.2 rad/s | a car that turns in |
+//! | … its driver steers in and pushes on | 1 of 2 | assumed: a PIT manoeuvre, or an accident |
+//! | … by a turn of the steering wheel of | uniform, 90° to 180° | PIT manoeuvre |
+//! | … for | log-normal, 0.5 s, factor 2 | PIT manoeuvre |
 //! | friction of the zones of a site over that which the site says, in all zones alike | log-normal, 1, factor 1.16 | assumed: grass, gravel and wet patches are known less well than the road |
 //! | yaw inertia, tire curves, sliding friction, rolling resistance | the rules of the data sheet with their scatter | [`DataSheet`](impactlab_core::vehicle::DataSheet) |
 
@@ -102,6 +106,9 @@ const ZONE_FRICTION_SCATTER: f64 = 0.15;
 /// Scatter of the loads that crush both cars about those of their classes: that of a side.
 const CONTACT_STIFFNESS_SCATTER: f64 = 0.4;
 
+/// Turn of the steering wheel by which a car is pushed in a PIT manoeuvre, rad: 90° to 180°.
+const PUSH_STEERING_WHEEL_RAD: [f64; 2] = [PI / 2.0, PI];
+
 /// Least scatter of sliding over peak friction, for the same reason.
 const SLIDING_SCATTER: f64 = 0.08;
 
@@ -150,10 +157,28 @@ impl Prior {
     pub fn with_later_contacts(mut self, evidence: &Evidence) -> Self {
         let stiffness = log_normal(1.0, CONTACT_STIFFNESS_SCATTER, 0.3, 3.0);
         self.assume(Latent::ContactStiffnessFactor, stiffness);
+        if self.is_pit {
+            self.add_push(evidence);
+        }
         if !evidence.follows_striking_car() {
             self.add_striking_ending(evidence);
         }
         self
+    }
+
+    /// The driver of a striking car that hits a flank behind the CG: whether he steers in and pushes on.
+    fn add_push(&mut self, evidence: &Evidence) {
+        self.assume(Latent::StrikingYawRate, normal(0.3, 0.2, -0.5, 1.2));
+        let [any, usual] = [[0.0, 1.0], PUSH_STEERING_WHEEL_RAD]
+            .map(|[low, high]| Distribution::Uniform { low, high });
+        let range = evidence.prior.striking_steering_wheel_rad;
+        match ends(range) {
+            None => self.assume(Latent::PushDecision, any),
+            Some([_, high]) if high > 0.0 => self.fixed.set(Latent::PushDecision, 0.0),
+            Some(_) => return self.fixed.set(Latent::PushDecision, 1.0),
+        }
+        self.open(Latent::PushSteeringWheel, range, (PriorSource::Assumed, usual));
+        self.assume(Latent::PushDuration, log_normal(0.5, 0.7, 0.05, 4.0));
     }
 
     /// Its components, in the order of z.

@@ -1,7 +1,7 @@
 //! A PIT with drivers and systems in both cars.
 
 use crate::collision::contact::{
-    ContactConditions, ContactOutline, PairMotion, PairVehicle, VehiclePair,
+    ContactConditions, ContactOutline, CoupledSettings, PairMotion, PairVehicle, VehiclePair,
 };
 use crate::data::Channel;
 use crate::vehicle::{
@@ -30,8 +30,7 @@ fn pit(endings: [&Ending; 2], distance_m: f64) -> PairMotion {
     VehiclePair {
         vehicles: [of_pair(0), of_pair(1)],
         conditions,
-        step_divisor: 1,
-        until_both_rest: false,
+        settings: CoupledSettings::default(),
     }
     .simulate()
     .unwrap()

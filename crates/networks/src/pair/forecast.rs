@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use crate::pair::scatter::{PairLatents, PairScatter};
 use crate::response::{CoupledDraw, N_RESIDUAL, Predictor};
 use impactlab_core::collision::contact::{
-    ContactBody, ContactConditions, ContactOutline, ContactPhase, FaceLaws, HandOver, PairError,
-    PairMotion, PairRun, PairVehicle, VehiclePair,
+    ContactBody, ContactConditions, ContactOutline, ContactPhase, CoupledSettings, FaceLaws,
+    HandOver, PairError, PairMotion, PairRun, PairVehicle, VehiclePair,
 };
 use impactlab_core::data::{Channel, Outcome};
 use impactlab_core::jobs::{Progress, ProgressCallback};
@@ -225,8 +225,7 @@ impl PairQuestion<'_> {
         let pair = VehiclePair {
             vehicles,
             conditions: drawn.conditions,
-            step_divisor: 1,
-            until_both_rest: false,
+            settings: CoupledSettings::default(),
         };
         let mut run = PairRun::new(&pair)?;
         loop {

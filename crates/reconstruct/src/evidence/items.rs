@@ -7,9 +7,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::evidence::{
-    After, CarEvidence, Damage, Edr, Item, Items, Mark, Measured, PriorRanges, RestPose, Road,
-    VideoPosition, Weighing, after, car, damage, mark, position, prior_ranges, recorder, rest,
-    road, weighing,
+    After, CarEvidence, Damage, DriverBraked, Edr, Item, Items, Mark, Measured, PriorRanges,
+    RestPose, Road, VideoPosition, Weighing, after, car, damage, mark, position, prior_ranges,
+    recorder, rest, road, weighing,
 };
 use crate::likelihood::{ComparedCar, Comparison, Discrepancy, EvidenceTerm, PathResidual, Track};
 use crate::{CollisionMotion, StrikingMotion};
@@ -208,6 +208,20 @@ impl Evidence {
         self.striking_rest.is_some()
             || !self.striking_marks.is_empty()
             || self.striking_edr.is_some()
+    }
+
+    /// Whether somebody says what the driver of the striking car did after the impact, or that its wheels
+    /// were locked: whether the cars push each other hinges on it.
+    pub fn tells_striking_driver(&self) -> bool {
+        let PriorRanges {
+            striking_brake_start_s: start_s,
+            striking_brake_share: share,
+            striking_steering_wheel_rad: wheel_rad,
+            ..
+        } = self.prior;
+        self.striking_after.driver_braked != DriverBraked::Unknown
+            || self.striking_after.is_all_locked()
+            || [start_s, share, wheel_rad].iter().any(Option::is_some)
     }
 
     /// The same without the records of the event data recorders.

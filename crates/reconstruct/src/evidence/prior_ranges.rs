@@ -2,7 +2,7 @@
 
 use impactlab_core::ranges::{
     BRAKE_SHARE, CONTROL_TIME, EVIDENCE_HEADING, EVIDENCE_SPEED, FRICTION_LIMIT, HEADING,
-    RESTITUTION,
+    LARGEST_STEERING_WHEEL_ANGLE, RESTITUTION,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,6 +35,11 @@ const STRIKING_BRAKE_START: Field =
     Field::new("bullet_brake_start", "striking driver brakes from", CONTROL_TIME);
 const STRIKING_BRAKE_SHARE: Field =
     Field::new("bullet_brake_share", "braking of the striking car", BRAKE_SHARE);
+const STRIKING_STEERING_WHEEL: Field = Field::new(
+    "bullet_steering_wheel",
+    "steering wheel of the striking car",
+    LARGEST_STEERING_WHEEL_ANGLE,
+);
 
 /// Ranges in which quantities are taken to lie before the evidence is looked at; each value inside is
 /// equally likely. What has none has the default of [`Prior`](crate::Prior).
@@ -66,6 +71,10 @@ pub struct PriorRanges {
     /// Its braking force over the largest that the road can hold.
     #[serde(rename = "bullet_brake_share")]
     pub striking_brake_share: Option<Bounds>,
+    /// By how much the driver of the striking car turns the steering wheel towards the struck car as he
+    /// pushes it, rad, as in a PIT manoeuvre; 0 to 0 if he does not push on.
+    #[serde(rename = "bullet_steering_wheel_rad")]
+    pub striking_steering_wheel_rad: Option<Bounds>,
 }
 
 impl Item for PriorRanges {
@@ -81,6 +90,7 @@ impl Item for PriorRanges {
             brake_share,
             striking_brake_start_s,
             striking_brake_share,
+            striking_steering_wheel_rad,
         } = self;
         visitor.interval(&STRUCK_SPEED, struck_speed_m_s);
         visitor.interval(&STRIKING_SPEED, striking_speed_m_s);
@@ -92,5 +102,6 @@ impl Item for PriorRanges {
         visitor.interval(&BRAKE_SHARE_RANGE, brake_share);
         visitor.interval(&STRIKING_BRAKE_START, striking_brake_start_s);
         visitor.interval(&STRIKING_BRAKE_SHARE, striking_brake_share);
+        visitor.interval(&STRIKING_STEERING_WHEEL, striking_steering_wheel_rad);
     }
 }

@@ -195,6 +195,27 @@ impl Mixture {
         !self.parts.is_empty() && self.parts.iter().all(|part| part.is_of(dim))
     }
 
+    /// The same with further variables, which are standard normal and independent of the others.
+    ///
+    /// - `dim`: number of all variables.
+    pub fn extended_to(&self, dim: usize) -> Self {
+        let of_part = |part: &Part| {
+            let old = part.mean.len();
+            let mut part = part.clone();
+            part.mean.resize(dim, 0.0);
+            for (j, column) in part.factor.iter_mut().enumerate() {
+                column.resize(dim - j, 0.0);
+            }
+            for j in old..dim {
+                let mut column = vec![0.0; dim - j];
+                column[0] = 1.0;
+                part.factor.push(column);
+            }
+            part
+        };
+        Self { parts: self.parts.iter().map(of_part).collect() }
+    }
+
     /// Number of parts.
     #[cfg(test)]
     pub fn n_parts(&self) -> usize {

@@ -19,6 +19,9 @@
 //! each fit to them was narrower than the one before, so that tails and small modes were lost without
 //! a trace in their effective sample size (BENCHMARKS.md).
 //!
+//! Where a similar target was sampled before ([`SamplerStart`]), most of the first draws are taken from
+//! where its particles lie.
+//!
 //! The same seed gives the same particles to the last digit, whatever the number of threads:
 //! random numbers are drawn on one thread, a stream for each round.
 
@@ -39,8 +42,8 @@ mod tests;
 pub use checkpoint::SamplerCheckpoint;
 pub use error::SamplerError;
 pub(crate) use mixture::standard_normals;
-pub use particles::Particles;
+pub use particles::{Particles, SamplerStart};
 pub use report::{SamplerReport, SamplerStage};
-pub use run::sample;
+pub use run::{sample, sample_from};
 pub use settings::SamplerSettings;
 pub use target::Target;

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::mixture::Mixture;
+
 /// Particles of equal weight from the prior times the likelihood to the power of a temperature.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -25,7 +27,13 @@ pub struct Particles {
     pub ess: f64,
     /// Number of evaluations of the likelihood until now.
     pub n_evaluations: usize,
+    /// Where a similar target may be sampled from.
+    pub start: SamplerStart,
 }
+
+/// Where the particles of a target lie, in a wide sense: a start for the sampling of a similar one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SamplerStart(pub(super) Mixture);
 
 impl Particles {
     /// Whether the particles are of the posterior; those of a cancelled run may not be.
@@ -76,6 +84,7 @@ impl Particles {
 
 #[cfg(test)]
 mod tests {
+    use super::super::mixture::Weighted;
     use super::*;
 
     fn particles(draw: Vec<usize>) -> Particles {
@@ -88,6 +97,7 @@ mod tests {
             log_evidence: 0.0,
             ess: 1.0,
             n_evaluations: n,
+            start: SamplerStart(Mixture::fit(Weighted { z: &[&[0.0]], weight: &[1.0] })),
         }
     }
 

@@ -2,18 +2,25 @@
 
 use std::ops::ControlFlow;
 
-use rand::RngExt;
+use rand::{Rng, RngExt};
 
-use super::mixture::standard_normals;
+use super::mixture::{Mixture, standard_normals};
 use super::population::Population;
 use super::{
     Particles, SamplerCheckpoint, SamplerError, SamplerReport, SamplerSettings, SamplerStage,
-    Target,
+    SamplerStart, Target,
 };
 use impactlab_core::numerics::random_stream;
 
 /// Draws from the prior for each particle of the answer.
 const PRIOR_DRAWS: usize = 20;
+
+/// Draws from the prior and from the start for each particle of the answer, where there is one.
+const STARTED_DRAWS: [usize; 2] = [4, 6];
+
+/// Effective sample size of what a start is fitted to, for each particle of the answer. It is as wide as
+/// that of a low temperature.
+const START_ESS: f64 = 8.0;
 
 /// Largest share of the evaluations that is drawn from the prior, as a divisor.
 const MAX_PRIOR_SHARE: usize = 4;
@@ -74,19 +81,40 @@ pub fn sample(
     checkpoint: Option<&SamplerCheckpoint>,
     report: &mut dyn FnMut(SamplerReport<'_>) -> ControlFlow<()>,
 ) -> Result<Particles, SamplerError> {
+    sample_from(None, target, settings, checkpoint, report)
+}
+
+/// As [`sample`], from where the particles of a similar target lie: most of the first draws are taken
+/// there, the others from the prior as ever. The weights are right wherever the draws come from.
+///
+/// - `start`: of a target whose variables are the first ones of this one.
+///
+/// # Errors
+/// Those of [`sample`].
+pub fn sample_from(
+    start: Option<&SamplerStart>,
+    target: &(impl Target + ?Sized),
+    settings: &SamplerSettings,
+    checkpoint: Option<&SamplerCheckpoint>,
+    report: &mut dyn FnMut(SamplerReport<'_>) -> ControlFlow<()>,
+) -> Result<Particles, SamplerError> {
     settings.check()?;
     let _claim = checkpoint.map(SamplerCheckpoint::claim).transpose()?;
     let saved = match checkpoint {
         Some(checkpoint) => checkpoint.read(settings, target.dim())?,
         None => None,
     };
-    let mut run = Run { target, settings, report, population: Population::default() };
+    let n_started = start.map_or(0, |_| STARTED_DRAWS[1] * settings.n_particles);
+    let mut run = Run { target, settings, report, population: Population::default(), n_started };
     let mut flow = match saved {
         Some(population) => {
             run.population = population;
             ControlFlow::Continue(())
         }
-        None => run.draw_prior()?,
+        None => match start {
+            None => run.draw_prior(PRIOR_DRAWS)?,
+            Some(start) => run.draw_start(start)?,
+        },
     };
     let mut n_saved = 0;
     while flow.is_continue() && !run.is_done() {
@@ -106,6 +134,8 @@ struct Run<'a, T: ?Sized> {
     settings: &'a SamplerSettings,
     report: &'a mut dyn FnMut(SamplerReport<'_>) -> ControlFlow<()>,
     population: Population,
+    /// Number of draws from a start.
+    n_started: usize,
 }
 
 impl<T: Target + ?Sized> Run<'_, T> {
@@ -128,7 +158,9 @@ impl<T: Target + ?Sized> Run<'_, T> {
     }
 
     /// Draws from the prior, until the evidence is possible for some of the particles.
-    fn draw_prior(&mut self) -> Result<ControlFlow<()>, SamplerError> {
+    ///
+    /// - `per_particle`: draws for each particle of the answer.
+    fn draw_prior(&mut self, per_particle: usize) -> Result<ControlFlow<()>, SamplerError> {
         let (n, dim) = (self.settings.n_particles, self.target.dim());
         let share = self.settings.max_evaluations / MAX_PRIOR_SHARE;
         let mut rng = random_stream(self.settings.seed, "reconstruct prior", 0);
@@ -137,7 +169,7 @@ impl<T: Target + ?Sized> Run<'_, T> {
         while flow.is_continue() {
             let goal = match n_possible < MIN_POSSIBLE.min(n) {
                 true => n.max(share),
-                false => n.max(share.min(PRIOR_DRAWS * n)),
+                false => n.max(share.min(per_particle * n)),
             };
             if n_drawn >= goal {
                 break;
@@ -163,6 +195,22 @@ impl<T: Target + ?Sized> Run<'_, T> {
         Ok(flow)
     }
 
+    /// Draws from the prior and from a start.
+    fn draw_start(&mut self, start: &SamplerStart) -> Result<ControlFlow<()>, SamplerError> {
+        let [of_prior, of_start] = STARTED_DRAWS;
+        let flow = self.draw_prior(of_prior)?;
+        if flow.is_break() {
+            return Ok(flow);
+        }
+        let mixture = start.0.extended_to(self.target.dim());
+        let mut rng = random_stream(self.settings.seed, "reconstruct start", 0);
+        let n = of_start * self.settings.n_particles;
+        let temperature = 0.0;
+        let weights = self.population.weights(temperature);
+        let shown = self.shown(temperature, &weights.resample(self.batch(), rng.random()));
+        self.draw_from(mixture, n, &shown, &mut rng)
+    }
+
     /// Draws from a mixture that is fitted at the temperature that the weights allow.
     fn round(&mut self) -> Result<ControlFlow<()>, SamplerError> {
         let number = self.population.n_rounds() as u64;
@@ -174,7 +222,20 @@ impl<T: Target + ?Sized> Run<'_, T> {
         self.population.forget_negligible(&weights);
         let [first, last] = ROUND_DRAWS.map(|draws| draws * self.settings.n_particles as f64);
         let n = ((first + (last - first) * temperature) as usize).max(BATCHES);
-        let z: Vec<Vec<f64>> = (0..n).map(|_| mixture.draw(&mut rng)).collect();
+        self.draw_from(mixture, n, &shown, &mut rng)
+    }
+
+    /// Draws from a mixture.
+    ///
+    /// - `shown`: the particles that are reported meanwhile.
+    fn draw_from(
+        &mut self,
+        mixture: Mixture,
+        n: usize,
+        shown: &Shown,
+        rng: &mut impl Rng,
+    ) -> Result<ControlFlow<()>, SamplerError> {
+        let z: Vec<Vec<f64>> = (0..n).map(|_| mixture.draw(rng)).collect();
         let mut log_likelihood = Vec::with_capacity(n);
         for batch in z.chunks(self.batch()) {
             log_likelihood.extend(self.evaluate(batch)?);
@@ -202,7 +263,8 @@ impl<T: Target + ?Sized> Run<'_, T> {
             false => FIT_ESS,
         };
         let wanted = (share * self.settings.n_particles as f64).max(MIN_FIT_ESS);
-        wanted.min(self.population.n_prior() as f64 / 4.0).max(1.0)
+        let n_first = self.population.n_prior() + self.n_started;
+        wanted.min(n_first as f64 / 4.0).max(1.0)
     }
 
     fn posterior_ess(&self) -> f64 {
@@ -230,6 +292,9 @@ impl<T: Target + ?Sized> Run<'_, T> {
         let weights = population.weights(temperature);
         let u = random_stream(self.settings.seed, "reconstruct answer", 0).random();
         let draw = weights.resample(self.settings.n_particles, u);
+        let wide = START_ESS * self.settings.n_particles as f64;
+        let wide = population.weights(population.temperature_of(wide));
+        let start = SamplerStart(population.mixture(&wide, FIT_PARTICLES, u));
         let particle = |idx: &usize| population.particle(*idx);
         Particles {
             z: draw.iter().map(|idx| particle(idx).0.clone()).collect(),
@@ -239,6 +304,7 @@ impl<T: Target + ?Sized> Run<'_, T> {
             log_evidence: weights.log_evidence,
             ess: weights.effective().max(1.0),
             n_evaluations: population.n_draws(),
+            start,
         }
     }
 }

@@ -254,3 +254,25 @@ fn a_checkpoint_of_another_question_or_of_nothing_is_refused() {
     std::fs::write(&path, b"no checkpoint").unwrap();
     assert!(message(resume("a", &settings, 2)).contains("cannot be read as the checkpoint"));
 }
+
+#[test]
+fn a_start_elsewhere_changes_nothing_but_the_draws() {
+    let before = Function { dim: 1, log_likelihood: |z: &[f64]| normal(z[0], -1.0, 0.2) };
+    let target = Function {
+        dim: 2,
+        log_likelihood: |z: &[f64]| normal(z[0], 1.0, 0.1) + normal(z[1], 0.5, 0.1),
+    };
+    let settings = SamplerSettings { n_particles: 400, max_evaluations: 40_000, ..seed(4) };
+    let start = run(&before, settings).start;
+    let started =
+        sample_from(Some(&start), &target, &settings, None, &mut |_| ControlFlow::Continue(()));
+    let started = started.unwrap();
+    assert!(started.is_posterior() && started.ess >= settings.least_ess, "{}", started.ess);
+    // Product of two normals: mean y / (1 + σ²), variance σ² / (1 + σ²).
+    for (axis, of_likelihood) in [1.0, 0.5].into_iter().enumerate() {
+        let found = mean(&started, |z| z[axis]);
+        assert!((found - of_likelihood / 1.01).abs() < 0.025, "{axis}: {found}");
+    }
+    let cold = run(&target, settings);
+    assert!((started.log_evidence - cold.log_evidence).abs() < 0.25, "{}", started.log_evidence);
+}

@@ -3,8 +3,8 @@
 use crate::analysis::{AnalysisError, Settings, StruckVehicle};
 use impactlab_core::collision::Pose;
 use impactlab_core::collision::contact::{
-    ContactBody, ContactConditions, ContactOutline, FaceLaws, PairError, PairMotion, PairVehicle,
-    VehiclePair, way_to_touch_m,
+    ContactBody, ContactConditions, ContactOutline, CoupledSettings, FaceLaws, PairError,
+    PairMotion, PairVehicle, VehiclePair, way_to_touch_m,
 };
 use impactlab_core::data::ForceHistory;
 use impactlab_core::vehicle::{ContactLoad, Manoeuvre};
@@ -85,13 +85,8 @@ impl ContactPair {
             body: ContactBody { outline: &self.outlines[i], faces: self.faces[i] },
         };
         let vehicles = [vehicle(0), vehicle(1)];
-        VehiclePair {
-            vehicles,
-            conditions: self.conditions,
-            step_divisor: 1,
-            until_both_rest: false,
-        }
-        .simulate()
+        VehiclePair { vehicles, conditions: self.conditions, settings: CoupledSettings::default() }
+            .simulate()
     }
 }
 

@@ -6,11 +6,11 @@ use impactlab_reconstruct::{
     SpeedHinge,
 };
 
-use crate::ReconstructReport;
 use crate::facts::simulate::zones;
 use crate::facts::table::{PREDICTED, RECONSTRUCTED};
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::measured::{Measured, Measurement};
+use crate::{LaterContactsReport, ReconstructReport};
 
 impl ReconstructReport {
     /// What the answer says: the courses of events where there are several, what the speeds hinge on, the
@@ -44,6 +44,12 @@ impl ReconstructReport {
     pub fn speed_table(&self) -> FactTable {
         let mut facts: Vec<Fact> = self.quantities.iter().map(quantity_fact).collect();
         facts.extend(zones(&self.friction_zones));
+        let meet_again = self.later_contacts.filter(LaterContactsReport::is_told);
+        facts.extend(
+            meet_again.map(|later| {
+                Fact::new(Term::MeetAgainByImpact, Value::Share(later.meet_again_share))
+            }),
+        );
         facts.extend([
             Fact::new(Term::Motions, Value::Count(self.n_simulations)),
             Fact::new(Term::Particles, Value::Count(self.n_particles)),

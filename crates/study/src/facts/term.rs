@@ -205,6 +205,8 @@ terms! {
         "In the others it is the force that the network predicts, or that was given";
     LongContact: "probability of contact for more than 0.3 s",
         "Wahrscheinlichkeit eines Kontakts von mehr als 0,3 s", "All phases of contact together";
+    MeetAgainByImpact: "cars meet again, as the impact alone moves them",
+        "Fahrzeuge treffen sich wieder, vom Stoß allein bewegt";
     MeetAgain: "probability that they part and meet again",
         "Wahrscheinlichkeit, dass sie sich trennen und wieder treffen";
     TimeInContact: "time in contact", "Zeit im Kontakt", "All phases of contact together";

@@ -146,6 +146,12 @@ fn run_ui(
             .on_hover_text("More particles are more sure of the intervals and take longer");
         let name = ui.label("Seed");
         ui.add(DragValue::new(&mut request.seed).speed(0.2)).labelled_by(name.id);
+        if preview.evidence.follows_striking_car() {
+            ui.checkbox(&mut request.one_contact, "One contact only").on_hover_text(
+                "Otherwise both cars are followed through all contacts where they meet again, which takes \
+                 minutes",
+            );
+        }
         let button = icon_button(Icon::Play, "Run");
         let can_run = lacks.is_none() && !session.run.is_running();
         let run = ui.add_enabled(can_run, button).on_hover_text("From the evidence to the speeds");

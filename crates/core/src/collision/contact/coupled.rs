@@ -54,6 +54,9 @@ const MAX_RATE_TIMES_STEP: f64 = 0.2;
 /// The same of steps that are longer than usual.
 const LONG_RATE_TIMES_STEP: f64 = 0.1;
 
+/// How much longer both may be where steps are long.
+const LONGER: f64 = 4.0;
+
 /// Longest way that the outlines may slide along each other over a step of a contact, m: a quarter of an
 /// element.
 const LONGEST_SLIDE_M: f64 = USUAL_ELEMENT_M / 4.0;
@@ -72,7 +75,7 @@ const NO_RESIDUAL: [[f64; N_ACCELERATION]; 2] = [[0.0; N_ACCELERATION]; 2];
 
 impl VehiclePair<'_> {
     /// Simulates both vehicles for their duration or, if their manoeuvres end at rest, until the struck
-    /// one is at rest and the striking one is so, too, or moves away from it (see `until_both_rest`). The
+    /// one is at rest and the striking one is so, too, or moves away from it (see [`CoupledSettings`](crate::collision::contact::CoupledSettings)). The
     /// result is deterministic.
     ///
     /// # Errors
@@ -100,6 +103,8 @@ pub struct PairRun<'a> {
     /// Fastest rate of the contact at the last step, 1/s.
     contact_rate_1_s: f64,
     was_pushed: bool,
+    /// Whether each vehicle moved at the instant before.
+    moves: [bool; 2],
     /// Mean contact force on each vehicle over the interval before.
     last_mean: [Option<CollisionForce<f64>>; 2],
     energy: ContactEnergy,
@@ -129,7 +134,7 @@ impl<'a> PairRun<'a> {
                 .map_err(|source| PairError::Vehicle { role: ROLES[i], source })
         };
         let bodies = pair.vehicles.map(|vehicle| vehicle.body);
-        let ticks = (TICKS_PER_OUTPUT * pair.step_divisor) as f64;
+        let ticks = (TICKS_PER_OUTPUT * pair.settings.step_divisor) as f64;
         Ok(Self {
             pair: *pair,
             runs: [run(0)?, run(1)?],
@@ -141,6 +146,7 @@ impl<'a> PairRun<'a> {
             tick_s: OUTPUT_INTERVAL_S / ticks,
             contact_rate_1_s: 0.0,
             was_pushed: false,
+            moves: [true; 2],
             last_mean: [None; 2],
             energy: ContactEnergy::default(),
             normal_work_j: 0.0,
@@ -183,6 +189,11 @@ impl<'a> PairRun<'a> {
         self.known_force().is_some()
     }
 
+    /// Whether each vehicle had come to rest at the instant before.
+    pub fn are_at_rest(&self) -> [bool; 2] {
+        self.moves.map(|moves| !moves)
+    }
+
     /// When the vehicles first touched each other, s; `None` if they have not.
     pub fn first_contact_s(&self) -> Option<f64> {
         self.phases.first_s()
@@ -200,11 +211,11 @@ impl<'a> PairRun<'a> {
         let mut sums = IntervalSums::default();
         let is_last = self.runs[0].is_last();
         if !is_last {
-            let mut left = TICKS_PER_OUTPUT * self.pair.step_divisor;
+            let mut left = TICKS_PER_OUTPUT * self.pair.settings.step_divisor;
             let first = self.output * left;
             while left > 0 {
                 let ticks = self.step_ticks(&states, left);
-                let start_tick = first + TICKS_PER_OUTPUT * self.pair.step_divisor - left;
+                let start_tick = first + TICKS_PER_OUTPUT * self.pair.settings.step_divisor - left;
                 states = self.step(&states, start_tick, ticks, (&mut sums, residuals));
                 left -= ticks;
             }
@@ -220,7 +231,7 @@ impl<'a> PairRun<'a> {
                 .record(mean, self.was_pushed || residuals[i] != NO_RESIDUAL[i])
                 .map_err(|source| PairError::Vehicle { role, source })?;
         }
-        let is_left_behind = !self.pair.until_both_rest && self.is_left_behind(&sums);
+        let is_left_behind = !self.pair.settings.until_both_rest && self.is_left_behind(&sums);
         let goes_on = moves[0] || moves[1] && !is_left_behind;
         if sums.is_pushed {
             let yaw_rad = VehicleState::from_array(*self.runs[0].state()).yaw_rad;
@@ -234,7 +245,7 @@ impl<'a> PairRun<'a> {
             }
             self.output += 1;
         }
-        self.was_pushed = sums.is_pushed;
+        (self.was_pushed, self.moves) = (sums.is_pushed, moves);
         Ok(goes_on)
     }
 
@@ -260,13 +271,15 @@ impl<'a> PairRun<'a> {
             USUAL_TICKS
         } else if self.contact_rate_1_s > 0.0 {
             // As without a divisor, so that one divides every step.
-            let tick_s = self.tick_s * self.pair.step_divisor as f64;
+            let tick_s = self.tick_s * self.pair.settings.step_divisor as f64;
             let usual_s = tick_s * USUAL_TICKS as f64;
             let is_stiff = self.contact_rate_1_s * usual_s > MAX_RATE_TIMES_STEP;
-            let by_rate_s = LONG_RATE_TIMES_STEP / self.contact_rate_1_s;
-            let by_slide_s = LONGEST_SLIDE_M / speed_m_s;
+            let longer = if self.pair.settings.has_long_steps { LONGER } else { 1.0 };
+            let by_rate_s = longer * LONG_RATE_TIMES_STEP / self.contact_rate_1_s;
+            let by_slide_s = longer * LONGEST_SLIDE_M / speed_m_s;
             let ticks = (by_rate_s.min(by_slide_s) / tick_s) as usize;
-            ticks.clamp(if is_stiff { 1 } else { USUAL_TICKS }, LONGEST_CONTACT_TICKS)
+            let least = if is_stiff && longer == 1.0 { 1 } else { USUAL_TICKS };
+            ticks.clamp(least, LONGEST_CONTACT_TICKS)
         } else if is_apart(TICKS_PER_OUTPUT) {
             TICKS_PER_OUTPUT
         } else if is_apart(NEAR_TICKS) {
@@ -335,6 +348,9 @@ impl<'a> PairRun<'a> {
         if end_s >= first.end_s() {
             let hand_over = first.hand_over();
             self.contact.scale_loads(hand_over.scale);
+            if self.pair.settings.first_force_is_whole {
+                self.contact.unload();
+            }
             self.hand_over = Some(hand_over);
         }
     }

@@ -5,6 +5,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::collision::Footprint;
+use crate::collision::contact::CoupledSettings;
 use crate::collision::contact::test_pairs::{
     TestCar, alike, free_body, last_state, mirrored, on_level_tires, simulate, state_at,
 };
@@ -349,7 +350,7 @@ fn a_blow_above_the_roll_axes_rolls_the_cars_away_from_each_other() {
     let roll_at = |height_m: f64| {
         let vehicles = cars.each_ref().map(TestCar::in_pair);
         let conditions = ContactConditions { height_m, ..ContactConditions::default() };
-        let motion = VehiclePair { vehicles, conditions, step_divisor: 1, until_both_rest: false }
+        let motion = VehiclePair { vehicles, conditions, settings: CoupledSettings::default() }
             .simulate()
             .unwrap();
         motion.motions.each_ref().map(|motion| last_state(motion).roll_rad)
@@ -366,8 +367,7 @@ fn what_does_not_go_together_is_refused() {
     let good = VehiclePair {
         vehicles,
         conditions: ContactConditions::default(),
-        step_divisor: 1,
-        until_both_rest: false,
+        settings: CoupledSettings::default(),
     };
     let slippery = ContactConditions { friction: f64::NAN, ..good.conditions };
     let name = |pair: VehiclePair<'_>| match pair.simulate() {
@@ -375,7 +375,13 @@ fn what_does_not_go_together_is_refused() {
         other => panic!("{other:?}"),
     };
     assert_eq!(name(VehiclePair { conditions: slippery, ..good }), "friction");
-    assert_eq!(name(VehiclePair { step_divisor: 0, ..good }), "step_divisor");
+    assert_eq!(
+        name(VehiclePair {
+            settings: CoupledSettings { step_divisor: 0, ..good.settings },
+            ..good
+        }),
+        "step_divisor"
+    );
     let longer = Manoeuvre { duration_s: 2.0, ..cars[1].manoeuvre.clone() };
     let mut pair = good;
     pair.vehicles[1].manoeuvre = &longer;

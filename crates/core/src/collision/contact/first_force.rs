@@ -10,7 +10,8 @@
 //! with the velocity v of one vehicle relative to the other one where each force acts, and the force F_law
 //! (normal loads and friction) that the law would have exerted along the same motion. Work says how stiff
 //! the faces were; the impulse is set by the kinematics and does not. At the end of F the scaled law takes
-//! over within 10 ms, and the same s holds in every later contact.
+//! over within 10 ms, and the same s holds in every later contact. Where F is the whole of the first
+//! contact, the faces have given back at its end what they give: each strip lies at its dent.
 //!
 //! Assumes that F acts at one place of the struck vehicle, as a recorded history has it.
 
@@ -152,7 +153,9 @@ mod tests {
     use crate::collision::contact::test_pairs::{
         TestCar, alike, free_body, last_state, simulate, state_at,
     };
-    use crate::collision::contact::{ContactConditions, FaceLaw, PairError, PairMotion, Recovery};
+    use crate::collision::contact::{
+        ContactConditions, CoupledSettings, FaceLaw, PairError, PairMotion, Recovery, VehiclePair,
+    };
     use crate::data::{ForceHistory, Sampling};
     use crate::vehicle::{ContactPoint, VehicleState};
 
@@ -196,9 +199,11 @@ mod tests {
         cars
     }
 
+    const UNDAMPED: ContactConditions =
+        ContactConditions { friction: 0.4, damping_s_m: 0.0, height_m: 0.5 };
+
     fn moved(cars: &[TestCar; 2]) -> PairMotion {
-        let conditions = ContactConditions { damping_s_m: 0.0, ..ContactConditions::default() };
-        simulate([&cars[0], &cars[1]], conditions, 1).unwrap()
+        simulate([&cars[0], &cars[1]], UNDAMPED, 1).unwrap()
     }
 
     #[test]
@@ -214,6 +219,29 @@ mod tests {
             assert!((energy.first_force_j - 46.55e3).abs() < 300.0, "{factor}: {energy:?}");
             assert!(hand_over.work_j == energy.first_force_j, "{hand_over:?} {energy:?}");
         }
+    }
+
+    #[test]
+    fn a_force_that_is_the_whole_of_the_first_contact_leaves_nothing_to_give_back() {
+        let mut cars = struck_from_behind(1.0, 0.0);
+        let force = &mut cars[0].manoeuvre.contact_load.as_mut().unwrap().force;
+        // As far as both have the same speed: an impulse without restitution.
+        let loaded = force.time_s.iter().filter(|time_s| **time_s < CLOSED_FORM.1[0]).count();
+        for column in [&mut force.time_s, &mut force.fx_n, &mut force.fy_n] {
+            column.truncate(loaded);
+        }
+        let alone_n_s = 9390.3 / 1.173_78;
+        let [whole, part] = [true, false].map(|first_force_is_whole| {
+            let vehicles = [&cars[0], &cars[1]].map(TestCar::in_pair);
+            let pair = VehiclePair {
+                vehicles,
+                conditions: UNDAMPED,
+                settings: CoupledSettings { first_force_is_whole, ..CoupledSettings::default() },
+            };
+            pair.simulate().unwrap().phases[0].impulse_world_n_s[0]
+        });
+        assert!((whole / alone_n_s - 1.0).abs() < 0.01, "{whole}, expected {alone_n_s}");
+        assert!((part / alone_n_s - 1.0).abs() > 0.1, "the faces give back: {part}");
     }
 
     #[test]

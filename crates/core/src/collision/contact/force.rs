@@ -241,6 +241,31 @@ impl<'a> PairContact<'a> {
         self.law_work_j *= factor;
     }
 
+    /// Takes from the elements what they carry: the strips that press each other are taken to have been
+    /// pressed in further, so far that they lie at their dents now.
+    pub fn unload(&mut self) {
+        for (touching, pressed) in self.touching.iter().zip(&self.pressed) {
+            let TouchingElement { own, idx, foot, .. } = *touching;
+            if pressed.load_n_per_m <= 0.0 {
+                continue;
+            }
+            let sides = [(own, idx), (1 - own, foot.element)];
+            for (role, ((vehicle, element), dent_m)) in
+                sides.into_iter().zip(pressed.deflections_m).enumerate()
+            {
+                let body = &self.bodies[vehicle];
+                let face = body.faces.at(body.outline.elements()[element].face);
+                let strip = &mut self.memory[vehicle][element].strips[role];
+                let unloaded = face.with_dent(dent_m);
+                if unloaded.greatest_m > strip.greatest_m {
+                    *strip = unloaded;
+                }
+            }
+            let memory = &mut self.memory[own][idx];
+            (memory.load_n_per_m, memory.stored_j) = (0.0, 0.0);
+        }
+    }
+
     /// Whether the outlines are so far apart that no element can touch within a distance.
     ///
     /// - `margin_m`: the distance.

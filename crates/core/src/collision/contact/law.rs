@@ -42,6 +42,12 @@ const NO_LOAD_N_PER_M: f64 = 1e-9;
 /// Deflection below which there is none, m.
 const NO_DEPTH_M: f64 = 1e-12;
 
+/// Turns in which the greatest deflection that leaves a dent is found.
+const DENT_TURNS: usize = 8;
+
+/// Least share of a greatest deflection that stays as a dent where one is known.
+const LEAST_DENT_SHARE: f64 = 0.1;
+
 /// Share ρ of its greatest deflection h over which a strip unloads, which is the square of the
 /// coefficient of restitution of a linear spring.
 ///
@@ -246,6 +252,19 @@ impl FaceLaw {
     }
 }
 
+impl FaceLaw {
+    /// The law of a strip with a dent: it was pressed in to the h with `(1 − ρ(h)) h = dent`.
+    ///
+    /// - `dent_m`: m, 0 or more.
+    pub fn with_dent(&self, dent_m: f64) -> Strip<f64> {
+        // The share falls slowly with the depth, so that each turn brings two digits.
+        let greatest_m = (0..DENT_TURNS).fold(dent_m, |greatest_m, _| {
+            dent_m / (1.0 - self.recovery_share(greatest_m)).max(LEAST_DENT_SHARE)
+        });
+        self.after(greatest_m)
+    }
+}
+
 impl<P: Copy> FaceLaw<P> {
     /// Load of a strip that was never pressed in as far as this, N/m.
     ///
@@ -302,58 +321,10 @@ pub struct Strip<T> {
     pub dent_m: T,
     /// p_h: load at the greatest deflection, N/m.
     pub load_there_n_per_m: T,
-    onset_n_per_m: T,
-    elastic_depth_m: T,
-    per_stiffness_m2_per_n: T,
-    saturation_n_per_m: T,
-}
-
-impl<T> Strip<T> {
-    /// Its numbers in the order of its fields.
-    #[inline(always)]
-    pub(super) fn into_array(self) -> [T; 7] {
-        let Self {
-            greatest_m,
-            dent_m,
-            load_there_n_per_m,
-            onset_n_per_m,
-            elastic_depth_m,
-            per_stiffness_m2_per_n,
-            saturation_n_per_m,
-        } = self;
-        [
-            greatest_m,
-            dent_m,
-            load_there_n_per_m,
-            onset_n_per_m,
-            elastic_depth_m,
-            per_stiffness_m2_per_n,
-            saturation_n_per_m,
-        ]
-    }
-
-    /// The strip with these numbers.
-    #[inline(always)]
-    pub(super) fn from_array(numbers: [T; 7]) -> Self {
-        let [
-            greatest_m,
-            dent_m,
-            load_there_n_per_m,
-            onset_n_per_m,
-            elastic_depth_m,
-            per_stiffness_m2_per_n,
-            saturation_n_per_m,
-        ] = numbers;
-        Self {
-            greatest_m,
-            dent_m,
-            load_there_n_per_m,
-            onset_n_per_m,
-            elastic_depth_m,
-            per_stiffness_m2_per_n,
-            saturation_n_per_m,
-        }
-    }
+    pub(super) onset_n_per_m: T,
+    pub(super) elastic_depth_m: T,
+    pub(super) per_stiffness_m2_per_n: T,
+    pub(super) saturation_n_per_m: T,
 }
 
 impl<T: Lanes> Strip<T> {

@@ -55,6 +55,15 @@ fn recovery_is_that_of_edsmac_once_the_face_is_crushed() {
     assert!(shares.windows(2).all(|pair| pair[1] <= pair[0]), "{shares:?}");
 }
 
+proptest! {
+    #[test]
+    fn a_strip_with_a_dent_was_pressed_in_so_far_that_the_dent_stays(law in laws(), dent_m in 0.001..1.0_f64) {
+        let strip = law.with_dent(dent_m);
+        prop_assert!((strip.dent_m - dent_m).abs() < 1e-6, "{strip:?}");
+        prop_assert_eq!(strip.load_n_per_m(strip.dent_m), 0.0);
+    }
+}
+
 #[test]
 fn numbers_out_of_range_are_named() {
     let good = FaceParameters {

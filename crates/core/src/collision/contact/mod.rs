@@ -50,4 +50,4 @@ pub use stiffness::{
     TESTED_LOG_SIGMA, class_estimates, class_stiffness, stiffness_log_sigma,
 };
 pub use touch::way_to_touch_m;
-pub use vehicle_pair::{ContactEnergy, PairMotion, PairVehicle, VehiclePair};
+pub use vehicle_pair::{ContactEnergy, CoupledSettings, PairMotion, PairVehicle, VehiclePair};

@@ -161,9 +161,22 @@ impl ContactOutline {
     /// # Errors
     /// [`FootprintError::Range`] if the outer dimensions of the vehicle are out of range.
     pub fn from_vehicle(vehicle: &VehicleParameters) -> Result<Self, FootprintError> {
+        Self::of_elements(vehicle, USUAL_ELEMENT_M)
+    }
+
+    /// The same with elements of another length.
+    ///
+    /// - `longest_element_m`: more than 0.001.
+    ///
+    /// # Errors
+    /// [`FootprintError::Range`], likewise.
+    pub fn of_elements(
+        vehicle: &VehicleParameters,
+        longest_element_m: f64,
+    ) -> Result<Self, FootprintError> {
         let footprint = Footprint::from(&vehicle.geometry);
         let shorter_m = footprint.width_m.min(footprint.length_m);
-        Self::new(footprint, USUAL_CORNER_SHARE * shorter_m, USUAL_ELEMENT_M)
+        Self::new(footprint, USUAL_CORNER_SHARE * shorter_m, longest_element_m)
     }
 
     /// The elements, counter-clockwise from the right end of the front.

@@ -25,6 +25,54 @@ pub(super) fn press_side_by_side(pressings: &[Pressing], pressed: &mut Vec<Press
     pulp::Arch::new().dispatch(SideBySide { pressings, pressed });
 }
 
+impl<T> Strip<T> {
+    /// Its numbers in the order of its fields.
+    #[inline(always)]
+    fn into_array(self) -> [T; N_STRIP] {
+        let Self {
+            greatest_m,
+            dent_m,
+            load_there_n_per_m,
+            onset_n_per_m,
+            elastic_depth_m,
+            per_stiffness_m2_per_n,
+            saturation_n_per_m,
+        } = self;
+        [
+            greatest_m,
+            dent_m,
+            load_there_n_per_m,
+            onset_n_per_m,
+            elastic_depth_m,
+            per_stiffness_m2_per_n,
+            saturation_n_per_m,
+        ]
+    }
+
+    /// The strip with these numbers.
+    #[inline(always)]
+    fn from_array(numbers: [T; N_STRIP]) -> Self {
+        let [
+            greatest_m,
+            dent_m,
+            load_there_n_per_m,
+            onset_n_per_m,
+            elastic_depth_m,
+            per_stiffness_m2_per_n,
+            saturation_n_per_m,
+        ] = numbers;
+        Self {
+            greatest_m,
+            dent_m,
+            load_there_n_per_m,
+            onset_n_per_m,
+            elastic_depth_m,
+            per_stiffness_m2_per_n,
+            saturation_n_per_m,
+        }
+    }
+}
+
 struct SideBySide<'a> {
     pressings: &'a [Pressing],
     pressed: &'a mut Vec<PressedStrips<f64>>,

@@ -2,8 +2,8 @@
 
 use crate::collision::Footprint;
 use crate::collision::contact::{
-    ContactBody, ContactConditions, ContactOutline, FaceLaw, FaceLaws, PairError, PairMotion,
-    PairVehicle, VehiclePair,
+    ContactBody, ContactConditions, ContactOutline, CoupledSettings, FaceLaw, FaceLaws, PairError,
+    PairMotion, PairVehicle, VehiclePair,
 };
 use crate::data::Channel;
 use crate::vehicle::{Manoeuvre, Motion, Preset, VehicleParameters, VehicleState};
@@ -109,7 +109,8 @@ pub fn simulate(
     let vehicles = cars.map(TestCar::in_pair);
     let height_m = cars[0].vehicle.suspension.roll_axis_height_m;
     let conditions = ContactConditions { height_m, ..conditions };
-    VehiclePair { vehicles, conditions, step_divisor, until_both_rest: false }.simulate()
+    let settings = CoupledSettings { step_divisor, ..CoupledSettings::default() };
+    VehiclePair { vehicles, conditions, settings }.simulate()
 }
 
 /// State at a sample of a motion.

@@ -25,11 +25,36 @@ pub struct VehiclePair<'a> {
     pub vehicles: [PairVehicle<'a>; 2],
     /// Friction, damping and height of their contact.
     pub conditions: ContactConditions,
+    /// How they are followed.
+    pub settings: CoupledSettings,
+}
+
+/// How two vehicles that may touch each other are followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CoupledSettings {
     /// Into how many parts the steps are divided: 1, or more to see what they change.
     pub step_divisor: usize,
+    /// Whether steps in contact may be longer where the contact is slow enough: for thousands of motions of
+    /// which none is told by itself.
+    pub has_long_steps: bool,
     /// Whether a motion that ends at rest goes on until both are at rest, although the striking vehicle
     /// moves away from the struck one.
     pub until_both_rest: bool,
+    /// Whether the collision force of the struck vehicle is the whole of the first contact, with what the
+    /// faces give back, as an impulse with a coefficient of restitution is. The faces then carry no load at
+    /// its end, and push only where they are pressed in again.
+    pub first_force_is_whole: bool,
+}
+
+impl Default for CoupledSettings {
+    fn default() -> Self {
+        Self {
+            step_divisor: 1,
+            has_long_steps: false,
+            until_both_rest: false,
+            first_force_is_whole: false,
+        }
+    }
 }
 
 /// Energy that the contact has taken from the vehicles, J.
@@ -90,7 +115,7 @@ impl VehiclePair<'_> {
                 return Err(PairError::Range { name, value, expected: "0 or more" });
             }
         }
-        if self.step_divisor == 0 {
+        if self.settings.step_divisor == 0 {
             let (name, expected) = ("step_divisor", "1 or more");
             return Err(PairError::Range { name, value: 0.0, expected });
         }

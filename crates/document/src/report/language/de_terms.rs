@@ -144,6 +144,13 @@ pub(super) const TERMS: &[(&str, &str)] = &[
         "stiffness of both cars over the usual",
         "Steifigkeit beider Fahrzeuge gegenüber der üblichen",
     ),
+    (
+        "whether the striking driver pushes on",
+        "ob der Fahrer des stoßenden Fahrzeugs weiterschiebt",
+    ),
+    ("steering wheel of the striking car", "Lenkrad des stoßenden Fahrzeugs"),
+    ("striking driver pushes for", "Fahrer des stoßenden Fahrzeugs schiebt während"),
+    ("yaw rate of the striking car inwards", "Gierrate des stoßenden Fahrzeugs einwärts"),
     ("normal of the contact turned by", "Kontaktnormale gedreht um"),
     ("duration of the contact", "Dauer des Kontakts"),
     ("tire friction over that of the road", "Reibbeiwert der Reifen zu dem der Fahrbahn"),

@@ -5,8 +5,8 @@ use impactlab_core::uncertainty::{Caveat, CaveatSubject};
 use impactlab_core::units::{Quantity, significant};
 use impactlab_reconstruct::evidence::{After, DriverBraked, Evidence};
 use impactlab_reconstruct::{
-    BLOCKED_PROBABILITY, BRAKE_PROBABILITY, ForwardModel, Latent, Prior, PriorComponent,
-    PriorSource, STRIKING_BRAKES, STRIKING_BRAKES_BEFORE,
+    BLOCKED_PROBABILITY, BRAKE_PROBABILITY, ForwardModel, Latent, PUSH_PROBABILITY, Prior,
+    PriorComponent, PriorSource, STRIKING_BRAKES, STRIKING_BRAKES_BEFORE,
 };
 
 /// Standard normal variable below which 95 % lie.
@@ -111,6 +111,17 @@ const GROUPS: &[Group] = &[
     },
     Group {
         subject: CaveatSubject::Striking,
+        latents: &[
+            Latent::PushDecision,
+            Latent::PushSteeringWheel,
+            Latent::PushDuration,
+            Latent::StrikingYawRate,
+        ],
+        reason: "it hit a flank behind the CG, as in a PIT manoeuvre; otherwise: [prior] \
+                 bullet_steering_wheel_deg, 0 to 0 if its driver did not push on",
+    },
+    Group {
+        subject: CaveatSubject::Striking,
         latents: &[Latent::StrikingBlockedWheel, Latent::StrikingBlockedDrag],
         reason: "nobody looked; otherwise: [striking_after] blocked_wheels, dragging_wheels",
     },
@@ -208,6 +219,10 @@ fn text(PriorComponent { latent, distribution, .. }: &PriorComponent) -> String 
             let later = share_below(STRIKING_BRAKES) - before;
             let [before, later] = [before, later].map(percent);
             format!("the driver brakes from the first contact on with {before}, later with {later}")
+        }
+        Latent::PushDecision => {
+            let share = percent(share_below(PUSH_PROBABILITY));
+            format!("its driver steers in and pushes on with {share}")
         }
         Latent::ZoneFrictionFactor => {
             let [low, high] = [-Z_95, Z_95].map(|z| significant(distribution.at(z)));

@@ -5,6 +5,8 @@ use serde::Serialize;
 
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::NumberFormat;
+use impactlab_reconstruct::ForwardModel;
+use impactlab_reconstruct::evidence::Evidence;
 
 /// Share of the particles whose cars meet again from which on a person hears of it: as much as the intervals
 /// of 90 % leave out at one end.
@@ -30,6 +32,35 @@ pub(super) enum WhyNot {
     /// Nothing of the way of the striking car is among the evidence, so that nothing says whether the cars
     /// met again.
     NoEvidence,
+    /// Nobody says what the driver of the striking car did, and it is no push of a flank behind the CG: cars
+    /// that were found close to each other would be taken to have pushed each other, although two that
+    /// braked alike were found so, too.
+    DriverUnknown,
+    /// The run was stopped before.
+    Stopped,
+}
+
+impl WhyNot {
+    /// Why later contacts are left out; `None` where they are not.
+    ///
+    /// - `one_contact`: whether it is asked;
+    /// - `is_stopped`: whether the run was.
+    pub(super) fn of(
+        one_contact: bool,
+        evidence: &Evidence,
+        model: &ForwardModel,
+        is_stopped: bool,
+    ) -> Option<Self> {
+        let is_driver_open = !model.prior().is_pit() && !evidence.tells_striking_driver();
+        [
+            (one_contact, Self::Asked),
+            (!evidence.follows_striking_car(), Self::NoEvidence),
+            (is_stopped, Self::Stopped),
+            (is_driver_open, Self::DriverUnknown),
+        ]
+        .into_iter()
+        .find_map(|(holds, why_not)| holds.then_some(why_not))
+    }
 }
 
 impl LaterContactsReport {
@@ -39,9 +70,14 @@ impl LaterContactsReport {
         Self { meet_again_share, are_followed, why_not }
     }
 
+    /// Whether a person hears of it.
+    pub fn is_told(&self) -> bool {
+        self.meet_again_share >= TOLD_FROM
+    }
+
     /// What a person should know of it; `None` where the cars part for good.
     pub(super) fn caveat(&self) -> Option<Caveat> {
-        if self.meet_again_share < TOLD_FROM {
+        if !self.is_told() {
             return None;
         }
         let share = NumberFormat::default().chance(self.meet_again_share, None);
@@ -62,10 +98,17 @@ impl LaterContactsReport {
                 );
                 Caveat::new(CaveatKind::Note, text)
             }
-            Some(WhyNot::Asked) => {
+            Some(why @ (WhyNot::Asked | WhyNot::DriverUnknown | WhyNot::Stopped)) => {
+                let instead = match why {
+                    WhyNot::Stopped => "let the run end",
+                    WhyNot::DriverUnknown => {
+                        "to have them followed, say what its driver did: [striking_after] driver_braked"
+                    }
+                    _ => "leave out --one-contact",
+                };
                 let text = format!(
                     "{meet}, which is left out here: the speeds are those of motions that end otherwise; \
-                     leave out --one-contact"
+                     {instead}"
                 );
                 let told = "share of the motions in which the cars meet again";
                 Caveat::new(CaveatKind::SecondContact, text)
@@ -74,6 +117,13 @@ impl LaterContactsReport {
             }
         })
     }
+}
+
+/// What a person should know where nobody can tell whether the cars meet again.
+pub(super) fn not_looked_for() -> Option<Caveat> {
+    let text = "whether the cars meet again after the impact was not looked for: the outer dimensions of one of \
+                them make no outline";
+    Some(Caveat::new(CaveatKind::SecondContact, text))
 }
 
 #[cfg(test)]
@@ -89,6 +139,8 @@ mod tests {
         assert_eq!(kind(0.01, None), (false, None));
         assert_eq!(kind(0.3, None), (true, Some(CaveatKind::Note)));
         assert_eq!(kind(0.3, Some(WhyNot::NoEvidence)), (false, Some(CaveatKind::Note)));
-        assert_eq!(kind(0.3, Some(WhyNot::Asked)), (false, Some(CaveatKind::SecondContact)));
+        for why_not in [WhyNot::Asked, WhyNot::DriverUnknown, WhyNot::Stopped] {
+            assert_eq!(kind(0.3, Some(why_not)), (false, Some(CaveatKind::SecondContact)));
+        }
     }
 }

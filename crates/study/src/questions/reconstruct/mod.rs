@@ -1,6 +1,7 @@
 //! From the evidence to the speeds before the collision.
 
 mod assumed;
+mod badges;
 pub(crate) mod later_contacts;
 pub(crate) mod paths;
 pub(crate) mod request;

@@ -1,6 +1,7 @@
 //! From the evidence of a collision to the speeds before it: `reconstruct`.
 
 use std::ffi::OsString;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
@@ -8,7 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
 use crate::questions::reconstruct::assumed::{assumptions, unused};
-use crate::questions::reconstruct::later_contacts::{LaterContactsReport, WhyNot};
+use crate::questions::reconstruct::badges::{of_fit, of_particles, of_validation, several_courses};
+use crate::questions::reconstruct::later_contacts::{LaterContactsReport, WhyNot, not_looked_for};
 use crate::{
     Answer, Event, FrictionZoneReport, InputKind, Library, Observer, Provenance, Question,
     Sampling, StudyError, VehicleChoice,
@@ -19,23 +21,17 @@ use impactlab_core::numerics::sha256_hex;
 use impactlab_core::program;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_core::site::Site;
-use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
-use impactlab_core::units::NumberFormat;
-use impactlab_core::vehicle::FrictionZone;
+use impactlab_core::uncertainty::Caveats;
 use impactlab_reconstruct::domain::{check_damage, outside_domain};
 use impactlab_reconstruct::evaluate::KnownEvidence;
 use impactlab_reconstruct::evidence::Evidence;
 use impactlab_reconstruct::sampler::{
-    Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, sample,
+    Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, SamplerStart, sample_from,
 };
 use impactlab_reconstruct::{
-    BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCheck, HandSpeed,
-    LEAST_ESS_FOR_INTERVALS, MarkComparison, Mode, Posterior, PriorComponent, QuantityEstimate,
-    ReconstructionTarget, SpeedHinge,
+    BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCheck, HandSpeed, MarkComparison,
+    Mode, Posterior, PriorComponent, QuantityEstimate, ReconstructionTarget, SpeedHinge,
 };
-
-/// Effective sample size below which intervals may be too narrow.
-const LEAST_ESS: f64 = 400.0;
 
 /// Evaluations of the forward model that each particle is worth at the most.
 const EVALUATIONS_PER_PARTICLE: usize = 150;
@@ -223,29 +219,36 @@ impl ReconstructRequest {
         Ok(sha256_hex([program::version(), &likelihood, &settings].map(str::as_bytes)))
     }
 
-    /// Samples the posterior of a forward model.
+    /// Samples the posterior of a forward model; breaks if the observer did.
+    ///
+    /// - `start`: from the particles of a model without later contacts.
     fn sampled(
         &self,
         evidence: &Evidence,
         model: ForwardModel,
+        start: Option<&SamplerStart>,
         observer: &mut Observer<'_>,
-    ) -> Result<(ReconstructionTarget, Particles), StudyError> {
+    ) -> Result<(ReconstructionTarget, Particles, ControlFlow<()>), StudyError> {
         let checkpoint = self.checkpoint(evidence, &model)?;
         let target = ReconstructionTarget::new(evidence.clone(), model, Discrepancy::default());
         let settings = self.settings();
-        let mut before = None;
+        let (mut before, mut flow) = (None, ControlFlow::Continue(()));
         let mut watch = |report: SamplerReport<'_>| {
             let (temperature, z) = (report.temperature, report.z);
-            observer(Event::Sampling(Sampling { target: &target, temperature, z }))?;
-            let progress = progress(&report, &settings);
-            let done_before = *before.get_or_insert(progress.done);
-            observer(Event::Progress(progress.going_on_from(done_before)))
+            flow = observer(Event::Sampling(Sampling { target: &target, temperature, z }));
+            if flow.is_continue() {
+                let progress = progress(&report, &target, &settings);
+                let done_before = *before.get_or_insert(progress.done);
+                flow = observer(Event::Progress(progress.going_on_from(done_before)));
+            }
+            flow
         };
-        let particles =
-            sample(&target, &settings, checkpoint.as_ref(), &mut watch).map_err(|source| {
-                StudyError::Reconstruction { name: self.evidence.name(), source: Box::new(source) }
+        let particles = sample_from(start, &target, &settings, checkpoint.as_ref(), &mut watch)
+            .map_err(|source| StudyError::Reconstruction {
+                name: self.evidence.name(),
+                source: Box::new(source),
             })?;
-        Ok((target, particles))
+        Ok((target, particles, flow))
     }
 
     fn settings(&self) -> SamplerSettings {
@@ -325,18 +328,16 @@ impl Question for ReconstructRequest {
         })?;
         let outside = outside_domain(&evidence, cars, model.zones());
         let friction_zones = model.zones().iter().map(FrictionZoneReport::from_zone).collect();
-        let (mut target, mut particles) = self.sampled(&evidence, model, observer)?;
-        let why_not = match (self.one_contact, evidence.follows_striking_car()) {
-            (true, _) => Some(WhyNot::Asked),
-            (false, false) => Some(WhyNot::NoEvidence),
-            (false, true) => None,
-        };
-        let of_posterior = particles.is_posterior().then(|| target.meet_again_share(&particles));
-        let later_contacts = of_posterior.map(|share| LaterContactsReport::new(share, why_not));
+        let (mut target, mut particles, flow) = self.sampled(&evidence, model, None, observer)?;
+        let why_not = WhyNot::of(self.one_contact, &evidence, target.model(), flow.is_break());
+        // Where the impact alone does not explain the evidence, later contacts may be why.
+        let share = target.meet_again_share(&particles);
+        let later_contacts = share.map(|share| LaterContactsReport::new(share, why_not));
         let are_followed = later_contacts.is_some_and(|later| later.are_followed);
         if are_followed {
             let model = target.model().clone().through_later_contacts(&evidence);
-            (target, particles) = self.sampled(&evidence, model, observer)?;
+            let start = Some(&particles.start);
+            (target, particles, _) = self.sampled(&evidence, model, start, observer)?;
         }
         let mut assumptions = assumptions(&evidence, target.model());
         assumptions.extend(unused(&evidence, are_followed));
@@ -347,7 +348,7 @@ impl Question for ReconstructRequest {
         let before = by_hand.iter().find(|check| check.speed == HandSpeed::Struck);
         let by_hand_m_s = before.map(|check| [check.value_m_s, check.sigma_m_s]);
         let mut caveats = Caveats::from(of_particles(&particles));
-        caveats.extend(later_contacts.and_then(|later| later.caveat()));
+        caveats.extend(later_contacts.map_or_else(not_looked_for, |later| later.caveat()));
         let modes = posterior.modes(&particles, &turned_rad);
         caveats.extend(several_courses(&modes));
         caveats.extend(outside);
@@ -379,27 +380,6 @@ impl Question for ReconstructRequest {
     }
 }
 
-/// That the evidence leaves more than one course of events possible.
-fn several_courses(modes: &[Mode]) -> Option<Caveat> {
-    let format = NumberFormat::default();
-    let course = |mode: &Mode| {
-        let chance = format.chance(mode.probability, Some(mode.standard_error));
-        format!("{} with {chance}", mode.name)
-    };
-    let courses: Vec<String> = modes.iter().map(course).collect();
-    (modes.len() > 1).then(|| {
-        let text = format!(
-            "{} courses of events are possible ({}): a median or an interval over all of them may be true of \
-             none; use those of each course",
-            modes.len(),
-            courses.join("; ")
-        );
-        Caveat::new(CaveatKind::SeveralCourses, text)
-            .with_value("courses of events", modes.len() as f64)
-            .with_range([1.0, 1.0])
-    })
-}
-
 /// The marks that were found beside those of the particle of median speed, or of that of the most probable
 /// of several courses of events.
 fn compared_marks(
@@ -426,72 +406,21 @@ fn compared_marks(
 /// How far the sampling is: half of it is reaching the posterior.
 ///
 /// - `settings`: those of the sampler, which end it.
-fn progress(report: &SamplerReport<'_>, settings: &SamplerSettings) -> Progress {
+fn progress(
+    report: &SamplerReport<'_>,
+    target: &ReconstructionTarget,
+    settings: &SamplerSettings,
+) -> Progress {
     let of_posterior = (report.ess.unwrap_or(0.0) / settings.least_ess).min(1.0);
     let share = 0.5 * report.temperature.powf(0.2) + 0.5 * of_posterior;
     // Where the sample stays small, the evaluations end it.
     let spent = report.n_evaluations as f64 / settings.max_evaluations as f64;
-    let message = format!("{} motions", report.n_evaluations);
-    Progress::new((1000.0 * share.max(spent.min(1.0))) as u64, 1000, message)
-}
-
-/// Whether there are enough particles, and whether they are of the posterior.
-fn of_particles(particles: &Particles) -> Vec<Caveat> {
-    let stopped = (!particles.is_posterior()).then(|| {
-        let text = "sampling was stopped before all of the evidence was used: these particles are \
-                    not of the posterior, and no intervals are given; let the run end";
-        Caveat::new(CaveatKind::FewParticles, text)
-            .with_value("temperature", particles.temperature)
-            .with_range([1.0, f64::INFINITY])
-    });
-    let few = (particles.ess < LEAST_ESS).then(|| {
-        let consequence = match particles.ess < LEAST_ESS_FOR_INTERVALS {
-            true => "no intervals are given, which would be those of single particles",
-            false => "intervals may be too narrow",
-        };
-        let text = format!(
-            "the particles are worth {:.0} independent ones, expected {LEAST_ESS}: {consequence}; more \
-             particles: --particles",
-            particles.ess
-        );
-        Caveat::new(CaveatKind::FewParticles, text)
-            .with_value("effective sample size", particles.ess)
-            .with_range([LEAST_ESS, f64::INFINITY])
-    });
-    stopped.into_iter().chain(few).collect()
-}
-
-/// What the intervals have been tried on, as long as that is not enough.
-fn of_validation(zones: &[FrictionZone]) -> Caveat {
-    let on_zones = match zones.is_empty() {
-        true => "",
-        false => ", all of which stood on one friction",
+    let through = match target.model().follows_later_contacts() {
+        true => ", through all contacts",
+        false => "",
     };
-    let text = format!(
-        "intervals were tried on 40 simulated collisions of one make of car{on_zones} and on no real \
-         one; how often they held is in docs/guide/limits.md"
-    );
-    Caveat::new(CaveatKind::HardlyValidated, text)
-}
-
-/// Evidence that no particle explains.
-fn of_fit(fit: &[EvidenceFit]) -> Vec<Caveat> {
-    let unexplained = fit.iter().filter(|item| item.is_unexplained());
-    unexplained
-        .map(|item| {
-            let shown = |value: f64| format!("{value:.3} {}", item.unit).trim_end().to_owned();
-            let text = format!(
-                "{}: found {}, expected {}: items of the evidence contradict each other, or the course \
-                 of events is another one; do not rely on the intervals",
-                item.evidence,
-                shown(item.found),
-                shown(item.expected),
-            );
-            Caveat::new(CaveatKind::EvidenceUnexplained, text)
-                .with_value(format!("p of {}", item.evidence), item.p)
-                .with_range([EvidenceFit::UNEXPLAINED_BELOW, 1.0])
-        })
-        .collect()
+    let message = format!("{} motions{through}", report.n_evaluations);
+    Progress::new((1000.0 * share.max(spent.min(1.0))) as u64, 1000, message)
 }
 
 #[cfg(test)]
