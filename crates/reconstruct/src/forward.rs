@@ -19,7 +19,7 @@ use crate::{Cars, ImpactState, Latent, LatentValues, Prior};
 use impactlab_core::collision::{Pulse, PulseShape, Side};
 use impactlab_core::data::{ForceAxes, ForceHistory, Sampling};
 use impactlab_core::numerics::interpolate;
-use impactlab_core::ranges::ROAD_FRICTION;
+use impactlab_core::ranges::{ROAD_FRICTION, STRUCK_TURN};
 use impactlab_core::units::STANDARD_GRAVITY_M_S2;
 use impactlab_core::vehicle::{
     Braking, ContactLoad, ContactPoint, DEFAULT_BRAKE_RISE_S, DrivenAxle, Ending, EngineBraking,
@@ -430,8 +430,8 @@ impl ForwardModel {
                 start_s: Some(PUSH_STEERED_FROM_S),
                 steering_wheel_rad: Some(towards(self.side) * inwards_rad),
                 end: Some(end),
-                // He goes by the time.
-                struck_turn_rad: Some(f64::INFINITY),
+                // He goes by the time: the struck car hardly turns once around before.
+                struck_turn_rad: Some(STRUCK_TURN.high),
                 longest_s: Some(values.get(Latent::PushDuration)),
                 brake_share,
                 ..PitDriver::default()

@@ -54,7 +54,7 @@ const MAX_RATE_TIMES_STEP: f64 = 0.2;
 /// The same of steps that are longer than usual.
 const LONG_RATE_TIMES_STEP: f64 = 0.1;
 
-/// How much longer both may be where steps are long.
+/// How much larger these bounds, and the way below, are where steps are long.
 const LONGER: f64 = 4.0;
 
 /// Longest way that the outlines may slide along each other over a step of a contact, m: a quarter of an
@@ -75,7 +75,8 @@ const NO_RESIDUAL: [[f64; N_ACCELERATION]; 2] = [[0.0; N_ACCELERATION]; 2];
 
 impl VehiclePair<'_> {
     /// Simulates both vehicles for their duration or, if their manoeuvres end at rest, until the struck
-    /// one is at rest and the striking one is so, too, or moves away from it (see [`CoupledSettings`](crate::collision::contact::CoupledSettings)). The
+    /// one is at rest and the striking one is so, too, or moves away from it (see
+    /// [`CoupledSettings`](crate::collision::contact::CoupledSettings)). The
     /// result is deterministic.
     ///
     /// # Errors
@@ -273,13 +274,12 @@ impl<'a> PairRun<'a> {
             // As without a divisor, so that one divides every step.
             let tick_s = self.tick_s * self.pair.settings.step_divisor as f64;
             let usual_s = tick_s * USUAL_TICKS as f64;
-            let is_stiff = self.contact_rate_1_s * usual_s > MAX_RATE_TIMES_STEP;
             let longer = if self.pair.settings.has_long_steps { LONGER } else { 1.0 };
+            let is_stiff = self.contact_rate_1_s * usual_s > longer * MAX_RATE_TIMES_STEP;
             let by_rate_s = longer * LONG_RATE_TIMES_STEP / self.contact_rate_1_s;
             let by_slide_s = longer * LONGEST_SLIDE_M / speed_m_s;
             let ticks = (by_rate_s.min(by_slide_s) / tick_s) as usize;
-            let least = if is_stiff && longer == 1.0 { 1 } else { USUAL_TICKS };
-            ticks.clamp(least, LONGEST_CONTACT_TICKS)
+            ticks.clamp(if is_stiff { 1 } else { USUAL_TICKS }, LONGEST_CONTACT_TICKS)
         } else if is_apart(TICKS_PER_OUTPUT) {
             TICKS_PER_OUTPUT
         } else if is_apart(NEAR_TICKS) {

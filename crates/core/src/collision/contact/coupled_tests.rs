@@ -320,6 +320,29 @@ fn half_the_step_and_half_the_elements_hardly_change_a_pit_manoeuvre() {
     assert_eq!(usual, run(0.08, 1), "another run is another motion");
 }
 
+/// What thousands of motions are followed with.
+#[test]
+fn long_steps_and_long_elements_change_a_pit_manoeuvre_by_less_than_a_car_width() {
+    let run = |longest_element_m, has_long_steps| {
+        let cars = pit_manoeuvre(longest_element_m);
+        let vehicles = [&cars[0], &cars[1]].map(TestCar::in_pair);
+        let conditions = ContactConditions::default();
+        let settings = CoupledSettings { has_long_steps, ..CoupledSettings::default() };
+        VehiclePair { vehicles, conditions, settings }.simulate().unwrap()
+    };
+    let usual = run(0.08, false);
+    for (other, label, limits) in [
+        (run(0.08, true), "long steps", [0.02, 0.01]),
+        (run(0.2, true), "long elements, too", [0.5, 0.25]),
+    ] {
+        let off = difference(&usual, &other);
+        assert!(
+            other != usual && off[0] < limits[0] && off[1] < limits[1],
+            "{label}: {off:?} m, rad"
+        );
+    }
+}
+
 #[test]
 fn vehicles_that_do_not_meet_move_as_by_themselves() {
     let mut cars = pit_manoeuvre(0.08);
