@@ -245,6 +245,26 @@ fn cars_that_draw_apart_are_no_explanation_of_damage() {
 }
 
 #[test]
+fn a_range_of_the_steering_wheel_says_whether_the_striking_driver_pushes() {
+    let push = |range_deg: Option<&str>| {
+        let range = range_deg.map(|range| format!("bullet_steering_wheel_deg = {range}\n"));
+        let evidence = read(&format!("{SPIN}\n[prior]\n{}", range.unwrap_or_default()));
+        let model = ForwardModel::new(&evidence, Cars::new(&evidence, None, None));
+        let model = model.through_later_contacts(&evidence);
+        let sources = [Latent::PushDecision, Latent::PushSteeringWheel].map(|latent| {
+            let of_latent = |it: &&PriorComponent| it.latent == latent;
+            model.prior().components().iter().find(of_latent).map(|it| it.source)
+        });
+        let z = vec![0.0; model.prior().components().len()];
+        (sources, model.prior().values(&z).striking_pushes())
+    };
+    let [assumed, given] = [PriorSource::Assumed, PriorSource::Given].map(Some);
+    assert_eq!(push(None).0, [assumed, assumed]);
+    assert_eq!(push(Some("[90, 180]")), ([None, given], true));
+    assert_eq!(push(Some("[0, 5]")), ([None, None], false));
+}
+
+#[test]
 fn the_wheels_stand_on_the_zones_of_the_ground() {
     let evidence = evidence();
     let cars = Cars::new(&evidence, None, None);

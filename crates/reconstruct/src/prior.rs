@@ -34,7 +34,7 @@
 //! | loads that crush both cars over those of their classes, where later contacts are followed | log-normal, 1, factor 1.49 | [`STIFFNESS_LOG_SIGMA`](impactlab_core::collision::contact::STIFFNESS_LOG_SIGMA) of a side |
 //! | yaw rate of a striking car that hits a flank behind the CG, towards it, where later contacts are followed | normal, 0.3 ± 0.2 rad/s | a car that turns in |
 //! | … its driver steers in and pushes on | 1 of 2 | assumed: a PIT manoeuvre, or an accident |
-//! | … by a turn of the steering wheel of | uniform, 90° to 180° | PIT manoeuvre |
+//! | … by a turn of the steering wheel of | uniform, 90° to 180°; with a range that ends at 5° or less he does not push | PIT manoeuvre |
 //! | … for | log-normal, 0.5 s, factor 2 | PIT manoeuvre |
 //! | friction of the zones of a site over that which the site says, in all zones alike | log-normal, 1, factor 1.16 | assumed: grass, gravel and wet patches are known less well than the road |
 //! | yaw inertia, tire curves, sliding friction, rolling resistance | the rules of the data sheet with their scatter | [`DataSheet`](impactlab_core::vehicle::DataSheet) |
@@ -109,6 +109,9 @@ const CONTACT_STIFFNESS_SCATTER: f64 = 0.4;
 /// Turn of the steering wheel by which a car is pushed in a PIT manoeuvre, rad: 90° to 180°.
 const PUSH_STEERING_WHEEL_RAD: [f64; 2] = [PI / 2.0, PI];
 
+/// Turn of the steering wheel up to which nobody pushes, rad: 5°, the play of a hand on the wheel.
+const LEAST_PUSH_STEERING_RAD: f64 = 0.0873;
+
 /// Least scatter of sliding over peak friction, for the same reason.
 const SLIDING_SCATTER: f64 = 0.08;
 
@@ -174,7 +177,9 @@ impl Prior {
         let range = evidence.prior.striking_steering_wheel_rad;
         match ends(range) {
             None => self.assume(Latent::PushDecision, any),
-            Some([_, high]) if high > 0.0 => self.fixed.set(Latent::PushDecision, 0.0),
+            Some([_, high]) if high > LEAST_PUSH_STEERING_RAD => {
+                self.fixed.set(Latent::PushDecision, 0.0);
+            }
             Some(_) => return self.fixed.set(Latent::PushDecision, 1.0),
         }
         self.open(Latent::PushSteeringWheel, range, (PriorSource::Assumed, usual));

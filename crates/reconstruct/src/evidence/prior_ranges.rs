@@ -72,7 +72,7 @@ pub struct PriorRanges {
     #[serde(rename = "bullet_brake_share")]
     pub striking_brake_share: Option<Bounds>,
     /// By how much the driver of the striking car turns the steering wheel towards the struck car as he
-    /// pushes it, rad, as in a PIT manoeuvre; 0 to 0 if he does not push on.
+    /// pushes it, rad, as in a PIT manoeuvre; where the range ends at 5° or less he does not.
     #[serde(rename = "bullet_steering_wheel_rad")]
     pub striking_steering_wheel_rad: Option<Bounds>,
 }

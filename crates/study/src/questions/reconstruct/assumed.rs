@@ -118,7 +118,7 @@ const GROUPS: &[Group] = &[
             Latent::StrikingYawRate,
         ],
         reason: "it hit a flank behind the CG, as in a PIT manoeuvre; otherwise: [prior] \
-                 bullet_steering_wheel_deg, 0 to 0 if its driver did not push on",
+                 bullet_steering_wheel_deg, 0 to 5 if its driver did not push on",
     },
     Group {
         subject: CaveatSubject::Striking,
