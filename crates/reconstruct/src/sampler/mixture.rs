@@ -31,6 +31,9 @@ const SHARED_PARTICLES_PER_DIM: f64 = 20.0;
 /// Variance that every part has at least, of the variance of the prior.
 const MIN_VARIANCE: f64 = 1e-10;
 
+/// Largest number of a file, far beyond any that is drawn or fitted.
+const LARGEST_NUMBER: f64 = 1e9;
+
 /// Smallest share of the particles on either side of a split.
 const MIN_SHARE: f64 = 0.02;
 
@@ -84,6 +87,10 @@ impl Part {
         covariance.set_diagonal(&diagonal);
         let mut least = MIN_VARIANCE;
         let dim = mean.len();
+        // No variance that is added makes a factor of what is no number.
+        if !covariance.iter().all(|entry| entry.is_finite()) {
+            covariance = DMatrix::identity(dim, dim);
+        }
         let lower = loop {
             let widened =
                 &covariance + DMatrix::from_diagonal_element(mean.len(), mean.len(), least);
@@ -139,19 +146,19 @@ impl Part {
     /// Whether all numbers are finite and belong to as many variables.
     fn is_of(&self, dim: usize) -> bool {
         let is_column = |(j, column): (usize, &Vec<f64>)| {
-            column.len() == dim - j
-                && column[0] > 0.0
-                && column.iter().all(|number| number.is_finite())
+            column.len() == dim - j && column[0] > 0.0 && column.iter().all(is_plausible)
         };
         self.mean.len() == dim
             && self.factor.len() == dim
             && self.factor.iter().enumerate().all(is_column)
-            && self
-                .mean
-                .iter()
-                .chain([&self.ln_weight, &self.ln_scale])
-                .all(|number| number.is_finite())
+            && self.mean.iter().chain([&self.ln_weight, &self.ln_scale]).all(is_plausible)
     }
+}
+
+/// Whether a number that comes from a file may be one of standard normal variables or of their
+/// distribution: sums of its square stay finite.
+pub(super) fn is_plausible(number: &f64) -> bool {
+    number.abs() <= LARGEST_NUMBER
 }
 
 impl Mixture {
@@ -426,6 +433,16 @@ mod tests {
     fn fit(points: &[Vec<f64>]) -> Mixture {
         let z: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
         Mixture::fit(Weighted { z: &z, weight: &vec![1.0 / z.len() as f64; z.len()] })
+    }
+
+    #[test]
+    fn points_whose_squares_overflow_are_fitted_and_not_read_from_a_file() {
+        let mut points = points(0.0);
+        points[3][2] = 1e300;
+        let mixture = fit(&points);
+        assert!(!mixture.is_of(6) && mixture.n_parts() >= 1);
+        points[3][2] = 1e8;
+        assert!(fit(&points).is_of(6));
     }
 
     #[test]

@@ -17,7 +17,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::mixture::{Mixture, Weighted, ln_sum_exp};
+use super::mixture::{Mixture, Weighted, is_plausible, ln_sum_exp};
 
 /// Number of halvings of the range of the temperature.
 const N_BISECTIONS: usize = 50;
@@ -206,7 +206,7 @@ impl Population {
         if n == 0 || [self.log_likelihood.len(), self.log_density.len()] != [n; 2] {
             return Err("its lists of particles differ in length");
         }
-        if self.z.iter().any(|z| z.len() != dim || !z.iter().all(|value| value.is_finite())) {
+        if self.z.iter().any(|z| z.len() != dim || !z.iter().all(is_plausible)) {
             return Err("a particle is not as many finite numbers as the question has variables");
         }
         let values = self.log_likelihood.iter().chain(&self.log_density);
