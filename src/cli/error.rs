@@ -128,6 +128,14 @@ pub enum CliError {
         /// What the figure should show.
         channel: &'static str,
     },
+    /// Nothing acts on the wheels in the way that a figure would show.
+    #[error("{name}: {input}: zero throughout, nothing to show")]
+    NoInput {
+        /// The file or case.
+        name: String,
+        /// What the figure should show.
+        input: &'static str,
+    },
     /// A moment lies outside the recorded motion.
     #[error("{option} is {time_s} s, expected between {start_s} s and {end_s} s")]
     TimeOutside {

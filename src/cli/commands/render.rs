@@ -19,7 +19,7 @@ use impactlab_core::collision::ChannelClass;
 use impactlab_core::data::{Channel, write_atomically};
 use impactlab_core::ranges::{PICTURE_SCALE, SPEED};
 use impactlab_core::vehicle::ContactPoint;
-use impactlab_document::figure::{Figure, write_figure_csv};
+use impactlab_document::figure::{Figure, WheelInput, write_figure_csv};
 use impactlab_study::{
     Drive, ImpactRequest, Library, ScenarioChoice, SimulateRequest, VehicleChoice,
 };
@@ -66,6 +66,10 @@ Example:\n  impactlab render force datasets/fea --case c001 --cfc 60 --out force
 Example:\n  impactlab render motion datasets/trajectories-fea --case FE_c002 --channel yaw-rate \
 --out motion.png")]
     Motion(MotionArgs),
+    /// What drivers and stability control did to the wheels of both cars over time
+    #[command(after_help = "\
+Example:\n  impactlab render controls scenario.toml --plot steering --out steering.png")]
+    Controls(ControlsArgs),
     /// The scene at a moment, from above or in perspective: simulation and reference
     #[command(after_help = "\
 Example:\n  impactlab render scene datasets/trajectories-fea --case FE_c002 --time 1.5 \
@@ -191,6 +195,19 @@ struct MotionArgs {
 }
 
 #[derive(Debug, Args)]
+struct ControlsArgs {
+    #[command(flatten)]
+    source: SourceArgs,
+    /// What is shown
+    #[arg(long, value_parser = one_of(INPUTS))]
+    plot: WheelInput,
+    #[command(flatten)]
+    vehicle: VehicleArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
 struct ImpactFigureArgs {
     /// The scenario: a file, or `pit-right-rear`
     #[arg(value_name = "NAME|FILE")]
@@ -218,6 +235,15 @@ const CHANNELS: Words<Channel> = &[
     ("roll", "", Channel::Roll),
 ];
 
+/// What acts on the wheels.
+const INPUTS: Words<WheelInput> = &[
+    ("steering", "Steer angle of the road wheels", WheelInput::Steering),
+    ("braking", "Braking torque, summed over the wheels", WheelInput::Braking),
+    ("drive", "Drive torque, summed over the wheels", WheelInput::Drive),
+    ("struck-brakes", "Each brake of the struck car, with ESC", WheelInput::StruckBrakes),
+    ("striking-brakes", "Each brake of the striking car, with ESC", WheelInput::StrikingBrakes),
+];
+
 #[derive(Debug, Serialize)]
 struct RenderedFigure<'a> {
     out: &'a Path,
@@ -243,6 +269,7 @@ fn figure(args: &FigureArgs, console: &mut Console<'_>) -> Result<Verdict, CliEr
     let output = match args {
         FigureArgs::Force(args) => &args.output,
         FigureArgs::Motion(args) => &args.output,
+        FigureArgs::Controls(args) => &args.output,
         FigureArgs::Scene(args) => &args.output,
         FigureArgs::Forecast(args) => &args.output,
         FigureArgs::Reconstruction(args) => &args.output,
@@ -269,6 +296,10 @@ fn figure(args: &FigureArgs, console: &mut Console<'_>) -> Result<Verdict, CliEr
             let channel = args.channel;
             let request = args.vehicle.request(&args.source, &console.library)?;
             render_figure::motion(&request, channel, units, console)?
+        }
+        FigureArgs::Controls(args) => {
+            let request = args.vehicle.request(&args.source, &console.library)?;
+            render_figure::controls(&request, args.plot, units, console)?
         }
         FigureArgs::Scene(args) => {
             let (figure, notes, shown) = render_scene::scene(args, units, console)?;

@@ -8,7 +8,8 @@ use impactlab_core::data::{Channel, contact_interval};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::{
-    Figure, ForceFigure, analysis_motion_figure, force_figure, impact_figure,
+    Figure, ForceFigure, WheelInput, analysis_motion_figure, control_figure, force_figure,
+    impact_figure,
 };
 use impactlab_study::{
     Drive, ImpactRequest, RecordedForceRequest, Request, SimulateAnswer, SimulateRequest,
@@ -68,6 +69,19 @@ pub(super) fn motion(
         let (name, channel) = (request.source.name(), channel.header());
         return Err(CliError::NothingToShow { name, channel });
     }
+    Ok((figure, noted(&report.caveats)))
+}
+
+/// What acts on the wheels of both vehicles of a case, a file or a scenario.
+pub(super) fn controls(
+    request: &SimulateRequest,
+    input: WheelInput,
+    units: UnitSystem,
+    console: &mut Console<'_>,
+) -> Result<Noted, CliError> {
+    let SimulateAnswer { report, analysis } = console.answer(request)?;
+    let figure = control_figure(&analysis, input, &report.caveats, units)
+        .ok_or_else(|| CliError::NoInput { name: request.source.name(), input: input.label() })?;
     Ok((figure, noted(&report.caveats)))
 }
 

@@ -8,14 +8,20 @@ use impactlab_core::units::{Quantity, UnitSystem, significant};
 use impactlab_core::vehicle::{BRAKE_TORQUES, Controls, DRIVE_TORQUES, Wheel};
 use impactlab_study::analysis::Analysis;
 
-/// What the figures show: three of both vehicles, and the brakes of the struck and of the striking vehicle.
-pub(crate) const CONTROL_LABELS: [&str; 5] = [
-    "Steer angle of the road wheels",
-    "Braking torque of all wheels",
-    "Drive torque of all wheels",
-    "Braking torque of each wheel, struck vehicle (with ESC)",
-    "Braking torque of each wheel, striking vehicle (with ESC)",
-];
+/// What a figure of the inputs to the wheels shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WheelInput {
+    /// The steer angle of the road wheels of both vehicles.
+    Steering,
+    /// The braking torque of both vehicles, summed over the wheels.
+    Braking,
+    /// The drive torque of both vehicles, summed over the wheels.
+    Drive,
+    /// The braking torque of each wheel of the struck vehicle, where it has a stability control.
+    StruckBrakes,
+    /// The braking torque of each wheel of the striking vehicle, where it has a stability control.
+    StrikingBrakes,
+}
 
 /// Opacity of the time in contact.
 const CONTACT_OPACITY: f32 = 0.25;
@@ -40,35 +46,63 @@ struct Curve<'a> {
     values: Vec<f64>,
 }
 
-/// The steer angle of the road wheels, and the torques that brake and drive the wheels of both vehicles,
-/// each summed over the wheels; of a vehicle with a stability control also those of each brake. A figure
-/// without a curve that differs from zero is left out: without any, nobody steers, brakes or drives on.
-///
-/// The times in contact are marked.
+impl WheelInput {
+    /// All of them, in the order in which they are shown.
+    pub const ALL: [Self; 5] =
+        [Self::Steering, Self::Braking, Self::Drive, Self::StruckBrakes, Self::StrikingBrakes];
+
+    /// As the axis of its figure calls it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Steering => "Steer angle of the road wheels",
+            Self::Braking => "Braking torque of all wheels",
+            Self::Drive => "Drive torque of all wheels",
+            Self::StruckBrakes => "Braking torque of each wheel, struck vehicle (with ESC)",
+            Self::StrikingBrakes => "Braking torque of each wheel, striking vehicle (with ESC)",
+        }
+    }
+
+    fn quantity(self) -> Quantity {
+        match self {
+            Self::Steering => Quantity::Angle,
+            _ => Quantity::Moment,
+        }
+    }
+
+    fn curves<'a>(self, vehicles: &[DrivenVehicle<'a>]) -> Vec<Curve<'a>> {
+        let brakes_of = |role: Role| {
+            let of_role = vehicles.iter().find(|of| of.role == role && of.has_stability_control);
+            of_role.map_or_else(Vec::new, DrivenVehicle::brakes)
+        };
+        match self {
+            Self::Steering => {
+                curves(vehicles, |vehicle| Some(vehicle.motion.get(Channel::SteerFl)?.to_vec()))
+            }
+            Self::Braking => curves(vehicles, |vehicle| vehicle.summed_n_m(&BRAKE_TORQUES)),
+            Self::Drive => curves(vehicles, |vehicle| vehicle.summed_n_m(&DRIVE_TORQUES)),
+            Self::StruckBrakes => brakes_of(Role::Simulation),
+            Self::StrikingBrakes => brakes_of(Role::Striking),
+        }
+    }
+}
+
+/// Every input to the wheels that is not zero throughout: without any, nobody steers, brakes or drives on.
 pub fn control_figures(analysis: &Analysis, caveats: &Caveats, units: UnitSystem) -> Vec<Figure> {
-    let vehicles = vehicles(analysis);
-    let steer = curves(&vehicles, |vehicle| Some(vehicle.motion.get(Channel::SteerFl)?.to_vec()));
-    let summed =
-        |channels: &[Channel; 4]| curves(&vehicles, |vehicle| vehicle.summed_n_m(channels));
-    let (brakes, drive) = (summed(&BRAKE_TORQUES), summed(&DRIVE_TORQUES));
-    let brakes_of = |role: Role| {
-        let of_role = vehicles.iter().find(|of| of.role == role && of.has_stability_control);
-        of_role.map_or_else(Vec::new, DrivenVehicle::brakes)
-    };
-    let all = CONTROL_LABELS.into_iter().zip([
-        (Quantity::Angle, steer),
-        (Quantity::Moment, brakes),
-        (Quantity::Moment, drive),
-        (Quantity::Moment, brakes_of(Role::Simulation)),
-        (Quantity::Moment, brakes_of(Role::Striking)),
-    ]);
-    let acting = all.filter(|(_, (_, curves))| !curves.is_empty());
-    let figure = |(label, (quantity, curves)): (&str, (Quantity, Vec<Curve<'_>>))| {
-        let axes =
-            [Axis::shown("Time", Quantity::Time, units), Axis::shown(label, quantity, units)];
-        curves_figure(analysis, axes, &curves).with_caveats(caveats)
-    };
-    acting.map(figure).collect()
+    let figure = |input| control_figure(analysis, input, caveats, units);
+    WheelInput::ALL.into_iter().filter_map(figure).collect()
+}
+
+/// An input to the wheels over time, with the times in contact marked; `None` where it is zero throughout.
+pub fn control_figure(
+    analysis: &Analysis,
+    input: WheelInput,
+    caveats: &Caveats,
+    units: UnitSystem,
+) -> Option<Figure> {
+    let curves = input.curves(&vehicles(analysis));
+    let y = Axis::shown(input.label(), input.quantity(), units);
+    let axes = [Axis::shown("Time", Quantity::Time, units), y];
+    (!curves.is_empty()).then(|| curves_figure(analysis, axes, &curves).with_caveats(caveats))
 }
 
 /// The curve of each vehicle that has one.
@@ -244,7 +278,8 @@ mod tests {
         let analysis = analysis(struck, striking);
         let figures = figures(&analysis);
         let labels: Vec<&str> = figures.iter().map(|figure| &*figure.y.label).collect();
-        assert_eq!(labels[..3], CONTROL_LABELS[..3], "{labels:?}");
+        let expected = WheelInput::ALL.map(WheelInput::label);
+        assert_eq!(labels[..3], expected[..3], "{labels:?}");
         let [steer, brakes, drive] = [0, 1, 2].map(|i| &figures[i]);
         assert_eq!(names(steer)[..], ["in contact", "striking vehicle"][..]);
         assert!(names(brakes).contains(&"struck vehicle"), "{:?}", names(brakes));
@@ -282,7 +317,8 @@ mod tests {
         let analysis = analysis(Ending { esc, ..Ending::default() }, Ending::default());
         let figures = figures(&analysis);
         let labels: Vec<&str> = figures.iter().map(|figure| &*figure.y.label).collect();
-        assert_eq!(labels, [CONTROL_LABELS[1], CONTROL_LABELS[3]]);
+        let expected = [WheelInput::Braking, WheelInput::StruckBrakes].map(WheelInput::label);
+        assert_eq!(labels, expected);
         let of_wheels = |element: &FigureElement| match element {
             FigureElement::Line(series) => {
                 Some((series.name.clone(), series.points.iter().map(|p| p[1]).sum::<f64>()))

@@ -22,9 +22,7 @@ pub use analysis::{
     analysis_force_figure, analysis_motion_figure, analysis_readout, analysis_scene_figure,
 };
 pub use calibration::{CoveragePoint, ParityPoint, coverage_figure, parity_figure, pit_figure};
-#[cfg(test)]
-pub(crate) use controls::CONTROL_LABELS;
-pub use controls::{control_figures, figure_readout};
+pub use controls::{WheelInput, control_figure, control_figures, figure_readout};
 pub use export::write_figure_csv;
 use force::milliseconds;
 pub use force::{ForceFigure, force_figure};

@@ -31,6 +31,7 @@ pub(in crate::report) fn phrase_of(language: Language, text: &str) -> Option<Str
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::WheelInput;
     use impactlab_core::vehicle::sheet::SheetQuantity;
     use impactlab_reconstruct::{Latent, ReconstructedQuantity};
     use impactlab_study::Measurements;
@@ -40,7 +41,7 @@ mod tests {
         let latents = Latent::ALL.iter().map(|latent| latent.label());
         let quantities = ReconstructedQuantity::ALL.iter().map(|quantity| quantity.label());
         let sheet = SheetQuantity::ALL.iter().map(|quantity| quantity.label());
-        let controls = crate::figure::CONTROL_LABELS.into_iter();
+        let controls = WheelInput::ALL.into_iter().map(WheelInput::label);
         for label in latents.chain(quantities).chain(sheet).chain(controls) {
             assert!(phrase_of(Language::De, label).is_some(), "{label}");
         }
