@@ -173,3 +173,37 @@ fn a_check_reads_every_pair_and_names_what_is_wrong_with_one() {
     let ran = impactlab(&["evaluate", "pairs", text(folder.path()), "--draws", "8"]);
     assert!(ran.out.contains("target_yaw_rad"), "{}{}", ran.out, ran.err);
 }
+
+/// A single pair is drawn like any other case: what the drivers did, both cars, the record beside them.
+#[test]
+fn a_recorded_pair_is_drawn_with_what_its_drivers_did() {
+    let folder = TempDir::new().unwrap();
+    let drawn = |more: &[&str]| {
+        let out = folder.path().join(format!("{}.csv", more[0]));
+        let answer = answer(&[&["render"], more, &["--out", text(&out)]].concat());
+        (answer, fs::read_to_string(&out).unwrap())
+    };
+    let case = [PAIRS, "--case", "d041e"];
+    let (steering, table) = drawn(&[&["controls"], &case[..], &["--plot", "steering"]].concat());
+    assert_eq!(steering["title"], "d041e: Steer angle of the road wheels over time");
+    assert!(table.contains("striking vehicle"), "{table}");
+    let (_, motion) = drawn(&[&["motion"], &case[..], &["--channel", "yaw-rate"]].concat());
+    assert!(motion.contains("recorded"), "{motion}");
+    let picture = folder.path().join("scene.png");
+    let args =
+        ["render", "scene", PAIRS, "--case", "d041e", "--time", "1", "--bullet", "bullet-1500"];
+    let size = ["--size", "300x200", "--scale", "1", "--out", text(&picture)];
+    let scene = answer(&[&args[..], &size].concat());
+    let notes = scene["notes"].to_string();
+    assert!(notes.contains("each recorded pair says itself which vehicles it has"), "{notes}");
+    for (args, expected) in [
+        (&["scene", PAIRS, "--time", "1"][..], "say which case with --case NAME"),
+        (&["scene", PAIRS, "--case", "zz", "--time", "1"], "has no case \"zz\""),
+        (&["controls", "pit-right-rear", "--plot", "drive"], "zero throughout, nothing to show"),
+    ] {
+        let out = folder.path().join("none.png");
+        let ran = impactlab(&[&["render"], args, &["--out", text(&out)]].concat());
+        assert!(ran.code != 0 && !out.exists(), "{args:?}");
+        assert!(ran.err.contains(expected), "{args:?}: {}", ran.err);
+    }
+}

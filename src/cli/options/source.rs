@@ -6,6 +6,7 @@ use clap::Args;
 
 use crate::cli::CliError;
 use impactlab_core::collision::SCENARIO_PRESETS;
+use impactlab_core::compare::PairRecords;
 use impactlab_core::data::{ColumnMap, DataError, DatasetKind, FileKind};
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::{
@@ -63,10 +64,15 @@ impl SourceArgs {
         }
         match &self.case {
             Some(case) => Ok(MotionSource::Case { dataset: path, case: case.clone() }),
-            None if DatasetKind::from_folder(&path).is_some() => Err(CliError::CaseNeeded { path }),
+            None if has_cases(&path) => Err(CliError::CaseNeeded { path }),
             None => Err(DataError::NotRecognised { path }.into()),
         }
     }
+}
+
+/// Whether a folder is a data set of cases that can be simulated one by one.
+fn has_cases(path: &Path) -> bool {
+    PairRecords::is_at(path) || DatasetKind::from_folder(path).is_some()
 }
 
 /// Whether a path is a scenario by its content, its ending or its name.

@@ -14,6 +14,7 @@ mod motion_density;
 mod motion_forecast;
 mod motion_to_rest;
 mod pair_forecast;
+mod recorded_pair;
 mod rest_outcome;
 mod rival;
 mod scenario;
@@ -50,6 +51,7 @@ pub use motion_forecast::{
     forecast_collision, forecast_forces,
 };
 pub use pair_forecast::{BothVehicles, BothVehiclesQuestion, FirstForces, forecast_both};
+pub use recorded_pair::analyse_recorded_pair;
 pub use rest_outcome::{MotionEnd, RestOutcome};
 pub use rival::{Rival, RivalForce};
 pub(crate) use scenario::scale_of_car;

@@ -141,7 +141,7 @@ fn through_all_contacts(
         phases: moved.phases,
         dents_m: moved.dents_m,
         pair: Some(pair),
-        ..analysis(struck, striking, outlines, force, motion, striking_motion)
+        ..analysis(struck, striking, outlines, Some(force), motion, striking_motion)
     })
 }
 
@@ -162,16 +162,18 @@ fn apart(
         (outlines[1], &striking_motion.series),
         pulse.duration_s,
     );
-    let analysis = analysis(struck, striking, outlines, force, motion, striking_motion);
+    let analysis = analysis(struck, striking, outlines, Some(force), motion, striking_motion);
     Ok(Analysis { second_contact, ..analysis })
 }
 
 /// The analysis of two vehicles whose motions are known.
-fn analysis(
+///
+/// - `force`: on the struck vehicle, of the first contact; `None` if it is not known beforehand.
+pub(super) fn analysis(
     struck: StruckVehicle,
     striking: StruckVehicle,
     outlines: [Footprint; 2],
-    force: ForceHistory,
+    force: Option<ForceHistory>,
     motion: Motion,
     striking_motion: Motion,
 ) -> Analysis {
@@ -179,7 +181,7 @@ fn analysis(
         name: String::new(),
         vehicle: struck.vehicle.clone(),
         footprint: outlines[0],
-        force: Some(force),
+        force,
         controls: applied(&motion, &struck),
         friction_zones: struck.friction_zones.clone(),
         struck: Some(struck),

@@ -196,22 +196,7 @@ fn has_other_size(vehicle: &ScenarioVehicle, of_training: &VehicleParameters) ->
 ///
 /// - `is_recorded`: whether the motion is a recorded one, which has its own duration.
 pub(crate) fn by_simulation(request: &SimulateRequest, is_recorded: bool) -> Vec<Caveat> {
-    let mut unused = Vec::new();
-    if is_recorded && request.duration_s != DEFAULT_DURATION_S {
-        unused.push(Caveat::not_used(
-            format!("duration, {} s", request.duration_s),
-            "a recorded motion has its own duration",
-        ));
-    }
-    if is_recorded && matches!(request.source, MotionSource::Case { .. }) {
-        let by_case = "the case says itself what happens to the wheels and how long it lasts";
-        if request.ending.is_some() {
-            unused.push(Caveat::not_used("what happens to the wheels", by_case));
-        }
-        if request.until_rest {
-            unused.push(Caveat::not_used("simulation until rest", by_case));
-        }
-    }
+    let mut unused = if is_recorded { by_record(request) } else { Vec::new() };
     let has_striking =
         !matches!(request.source, MotionSource::Trajectory { .. } | MotionSource::Drive(_))
             && !is_recorded;
@@ -228,6 +213,42 @@ pub(crate) fn by_simulation(request: &SimulateRequest, is_recorded: bool) -> Vec
         unused.push(Caveat::not_used("contact point and sampling", "no force is given"));
     }
     unused
+}
+
+/// Why nobody chooses the vehicles of a recorded pair.
+pub(crate) const VEHICLES_OF_PAIR: &str = "each recorded pair says itself which vehicles it has";
+
+/// What the simulation of a recorded motion does not use of its question.
+fn by_record(request: &SimulateRequest) -> Vec<Caveat> {
+    let mut unused = Vec::new();
+    if request.duration_s != DEFAULT_DURATION_S {
+        unused.push(Caveat::not_used(
+            format!("duration, {} s", request.duration_s),
+            "a recorded motion has its own duration",
+        ));
+    }
+    if matches!(request.source, MotionSource::Case { .. }) {
+        let by_case = "the case says itself what happens to the wheels and how long it lasts";
+        if request.ending.is_some() {
+            unused.push(Caveat::not_used("what happens to the wheels", by_case));
+        }
+        if request.until_rest {
+            unused.push(Caveat::not_used("simulation until rest", by_case));
+        }
+    }
+    unused
+}
+
+/// What the simulation of a recorded pair does not use of its question.
+pub(crate) fn by_recorded_pair(request: &SimulateRequest) -> Vec<Caveat> {
+    let cars = [("struck vehicle", &request.vehicle), ("striking vehicle", &request.striking)];
+    let cars = cars.into_iter().filter(|(_, choice)| **choice != VehicleChoice::Automatic);
+    let cars = cars.map(|(name, _)| Caveat::not_used(name, VEHICLES_OF_PAIR));
+    let one_contact = request.one_contact.then(|| {
+        Caveat::not_used("one contact only", "the whole contact is that of the contact law")
+    });
+    let of_pair = integrator_of_pair(request.integrator);
+    by_record(request).into_iter().chain(cars).chain(one_contact).chain(of_pair).collect()
 }
 
 /// What a forecast does not use of its question, beside that of the simulation.

@@ -1,7 +1,10 @@
 //! A recorded pair of vehicles, made ready to be followed.
 
+use std::path::Path;
+
+use crate::StudyError;
 use impactlab_core::collision::contact::{ContactConditions, ContactOutline, FaceLaws, PairMotion};
-use impactlab_core::compare::PairCase;
+use impactlab_core::compare::{PairCase, PairRecords};
 use impactlab_core::data::Outcome;
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
@@ -15,6 +18,29 @@ pub(crate) struct ReadyPair<'a> {
     outlines: [ContactOutline; 2],
     faces: [FaceLaws; 2],
     predictors: [Option<Predictor>; 2],
+}
+
+/// A recorded pair of a folder by its name.
+///
+/// # Errors
+/// [`StudyError::NoSuchCase`], [`StudyError::CaseUnreadable`], or why the table cannot be read.
+pub(crate) fn load_pair(dataset: &Path, name: &str) -> Result<PairCase, StudyError> {
+    let records = PairRecords::open(dataset)?;
+    let loaded = records.load(name).ok_or_else(|| no_such_pair(dataset, name, &records))?;
+    loaded.map_err(|error| {
+        let (path, problem) = (dataset.to_owned(), error_chain(&error));
+        StudyError::CaseUnreadable { path, problem }
+    })
+}
+
+/// That a folder has no recorded pair of a name.
+pub(crate) fn no_such_pair(dataset: &Path, name: &str, records: &PairRecords) -> StudyError {
+    StudyError::NoSuchCase {
+        path: dataset.to_owned(),
+        case: name.to_owned(),
+        n_cases: records.names().count(),
+        first: records.names().next().unwrap_or_default().to_owned(),
+    }
 }
 
 /// Names the case in a message.

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::caveats::restrictions;
-use crate::caveats::unused::{contact_at_medians, integrator_of_pair};
-use crate::questions::recorded_pair::{ReadyPair, of_case};
+use crate::caveats::unused::{VEHICLES_OF_PAIR, contact_at_medians, integrator_of_pair};
+use crate::questions::recorded_pair::{ReadyPair, no_such_pair, of_case};
 use crate::{
     Answer, Event, FlagReport, Observer, Provenance, ReplayedCaseReport, SimulateDatasetAnswer,
     SimulateDatasetReport, SimulateDatasetRequest, StudyError, VehicleChoice, word,
@@ -90,12 +90,10 @@ impl SimulateDatasetRequest {
         caveats.extend(restrictions::flagged_cases_caveats(&cases));
         caveats.extend(restrictions::left_out_caveat(failures.len(), "cases"));
         caveats.extend(integrator_of_pair(self.integrator));
-        caveats.extend((self.vehicle != VehicleChoice::Automatic).then(|| {
-            Caveat::not_used(
-                "struck vehicle",
-                "each recorded pair says itself which vehicles it has",
-            )
-        }));
+        caveats.extend(
+            (self.vehicle != VehicleChoice::Automatic)
+                .then(|| Caveat::not_used("struck vehicle", VEHICLES_OF_PAIR)),
+        );
         caveats.extend([contact_at_medians()]);
         let summary = |choose: fn(&ReplayedCaseReport) -> bool| {
             let chosen = cases.iter().filter(|case| choose(case));
@@ -123,12 +121,7 @@ impl SimulateDatasetRequest {
         match &self.case {
             None => Ok(all),
             Some(name) if all.contains(name) => Ok(vec![name.clone()]),
-            Some(name) => Err(StudyError::NoSuchCase {
-                path: self.dataset.clone(),
-                case: name.clone(),
-                n_cases: all.len(),
-                first: all.first().cloned().unwrap_or_default(),
-            }),
+            Some(name) => Err(no_such_pair(&self.dataset, name, records)),
         }
     }
 

@@ -6,14 +6,17 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
-    Analysis, AnalysisError, PulseSetup, Settings, analyse_case, analyse_drive, analyse_recording,
-    analyse_scenario,
+    Analysis, AnalysisError, PulseSetup, Settings, analyse_case, analyse_drive,
+    analyse_recorded_pair, analyse_recording, analyse_scenario,
 };
 use crate::ask::checks::{check, check_all, check_count, check_given};
 use crate::ask::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
-use crate::caveats::unused::{by_simulation, contact_at_medians, integrator_of_pair};
+use crate::caveats::unused::{
+    by_recorded_pair, by_simulation, contact_at_medians, integrator_of_pair,
+};
 use crate::caveats::{assumed, restrictions};
 use crate::questions::predict::impulse_rival::Beside;
+use crate::questions::recorded_pair::load_pair;
 use crate::questions::simulate::dataset::take_case;
 use crate::questions::simulate::motion_source::{
     acting_force, contact_height_assumption, pulse_assumptions, recorded_force, start_of_record,
@@ -25,6 +28,7 @@ use crate::{
     SimulateReport, StudyError, VehicleChoice,
 };
 use impactlab_core::collision::Scenario;
+use impactlab_core::compare::{PairCase, PairRecords};
 use impactlab_core::data::write::ModelDigest;
 use impactlab_core::data::{ContactOutside, DatasetKind, Outcome};
 use impactlab_core::ranges::{ROAD_FRICTION, SIMULATED_DURATION, VEHICLE_DRAWS};
@@ -179,6 +183,24 @@ impl SimulateRequest {
         Ok(settings)
     }
 
+    /// The settings of a recorded pair, which has its own vehicles.
+    fn pair_settings(&self, case: &PairCase) -> Result<Settings, StudyError> {
+        let vehicle = |i: usize| match self.equations {
+            Some(equations) => case.vehicles[i].clone().with_equations(equations),
+            None => case.vehicles[i].clone(),
+        };
+        Ok(Settings {
+            struck: vehicle(0),
+            striking: vehicle(1),
+            ending: Ending::default(),
+            integrator: self.integrator,
+            duration_s: self.duration_s,
+            ends_at_rest: false,
+            one_contact: false,
+            friction_zones: self.friction_zones()?,
+        })
+    }
+
     /// The zones of the site.
     fn friction_zones(&self) -> Result<Vec<FrictionZone>, StudyError> {
         let load = |path| InputKind::Site.explain(path, Site::load(path));
@@ -275,6 +297,15 @@ impl Question for SimulateRequest {
     ) -> Result<Outcome<SimulateAnswer>, StudyError> {
         let (mut caveats, mut momentum, mut overlap) = (Caveats::default(), None, None);
         let (settings, analyse): (Settings, Box<Analyse<'_>>) = match &self.source {
+            MotionSource::Case { dataset, case } if PairRecords::is_at(dataset) => {
+                let case = load_pair(dataset, case)?;
+                if self.friction.is_some() {
+                    return Err(StudyError::FrictionOfCase { case: case.name });
+                }
+                caveats.extend(by_recorded_pair(self));
+                let settings = self.pair_settings(&case)?;
+                (settings, Box::new(move |settings| analyse_recorded_pair(&case, settings)))
+            }
             MotionSource::Case { dataset, case } => {
                 let Outcome::Complete(dataset) = library.dataset(dataset, observer)? else {
                     return Ok(Outcome::Cancelled);
