@@ -147,16 +147,6 @@ fn what_the_force_network_does_not_know_is_said() {
     // The example gives its own restitution and friction, which the momentum solution alone uses.
     let of_example = not_used(&answer(&["predict", "force", "--scenario", SCENARIO]));
     assert_eq!(of_example, ["restitution, 0.15", "friction limit, 0.4"]);
-    let turning = "speed_km_h = 54\nyaw_rate_deg_s = 5";
-    let turning = scenario_with(&folder, "turning.toml", "speed_km_h = 54", turning);
-    let report = answer(&["predict", "force", "--scenario", text(&turning)]);
-    let unused = not_used(&report);
-    assert_eq!(unused.len(), 3, "{unused:?}");
-    assert!(unused[0].starts_with("yaw rate of the struck vehicle before the impact, 0.087"));
-    let printed =
-        ok(program().args(["predict", "force", "--scenario"]).arg(&turning).output().unwrap());
-    assert!(printed.contains("not used: yaw rate of the struck vehicle"), "{printed}");
-
     let hard = scenario_with(&folder, "hard.toml", "restitution = 0.15", "restitution = 0.5");
     let truck = scenario_with(&folder, "truck.toml", "length_m = 4.9", "length_m = 9");
     let out = folder.path().join("out");
@@ -174,22 +164,32 @@ fn what_the_force_network_does_not_know_is_said() {
     }
 }
 
+/// The network fades where turning moves the points of contact; the physics about it knows yaw rates.
 #[test]
-fn a_vehicle_that_spins_into_the_impact_is_no_question_for_the_force_network() {
+fn a_vehicle_that_turns_before_the_impact_is_outside_of_what_the_force_network_knows() {
     let folder = TempDir::new().unwrap();
-    let spinning = "speed_km_h = 54\nyaw_rate_deg_s = 200";
-    let spinning = scenario_with(&folder, "spinning.toml", "speed_km_h = 54", spinning);
-    let line = refusal(&["predict", "force", "--scenario", text(&spinning)]);
-    assert!(line.contains("spinning.toml: the vehicles turn before the impact"), "{line}");
+    let turning = |rate: &str| {
+        let with = format!("speed_km_h = 54\nyaw_rate_deg_s = {rate}");
+        scenario_with(&folder, &format!("turning{rate}.toml"), "speed_km_h = 54", &with)
+    };
+    let force = |rate: &str| answer(&["predict", "force", "--scenario", text(&turning(rate))]);
+    let share = |report: &Value| report["applicability"].as_f64().unwrap();
+    let [still, slow, spinning] = ["0", "5", "200"].map(force);
+    assert!(share(&still) >= share(&slow) && share(&slow) > share(&spinning), "{slow}");
+    assert_eq!(share(&spinning), 0.0, "{spinning}");
+    for report in [&slow, &spinning] {
+        let outside = report["outside_training"].to_string();
+        assert!(outside.contains("by yaw rates before the impact"), "{outside}");
+    }
+    // What is left is the momentum solution of turning vehicles.
+    let impulse = |report: &Value| report["impulse_n_s"]["y"]["median"].as_f64();
+    assert!(impulse(&spinning) != impulse(&still), "{spinning}");
     let out = folder.path().join("out");
+    let spinning = turning("200");
     let predict = ["predict", "--scenario", text(&spinning), "--draws", "8", "--out", text(&out)];
-    assert!(
-        refusal(&[&predict[..], &["--one-contact"]].concat()).contains("turn before the impact")
-    );
-    // The momentum solution and the contact law know turning vehicles.
     let by_law = answer(&predict);
-    assert!(by_law["badges"].to_string().contains("turn before the impact"), "{by_law}");
     assert_eq!(by_law["contacts"]["n_known_forces"], 0);
+    assert!(by_law["badges"].to_string().contains("by yaw rates before the impact"), "{by_law}");
     let given = answer(&[&predict[..], &["--given-force", "--overwrite"]].concat());
     assert!(given["outcome"].is_object() && given["contacts"]["n_known_forces"] == 8, "{given}");
 }

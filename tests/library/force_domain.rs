@@ -89,6 +89,7 @@ fn random_scenario(rng: &mut ChaCha8Rng) -> ForceScenario {
         mass_kg,
         struck_velocity_m_s: [struck, 0.0],
         striking_velocity_m_s: [striking * cos, striking * sin],
+        yaw_rate_rad_s: [between(-3.0, 3.0), between(-3.0, 3.0)],
         theta_b_rad,
         side: if contact_m[1] > 0.0 { StruckSide::Left } else { StruckSide::Right },
         contact_m: Some(contact_m),

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::data::{Attributes, CaseBraking, DataError, DatasetKind};
 use crate::ranges::{
     BODY_MASS, BODY_YAW_INERTIA, CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, HEADING, ROAD_FRICTION,
-    Range, SPEED, STRIKING_OFFSET,
+    Range, SPEED, STRIKING_OFFSET, YAW_RATE,
 };
 
 const NO_COLLISION: &str = "the collision cannot be computed";
@@ -45,6 +45,9 @@ const AT_Y: AttributeColumn = needed("contact_y_m", CONTACT_Y);
 const AT_Z: AttributeColumn = optional("contact_z_m", CONTACT_HEIGHT);
 const IZZ_T: AttributeColumn = optional("izz_t_kg_m2", BODY_YAW_INERTIA);
 const IZZ_B: AttributeColumn = optional("izz_b_kg_m2", BODY_YAW_INERTIA);
+const NORMAL: AttributeColumn = optional("contact_normal_rad", HEADING);
+const R_T: AttributeColumn = optional("target_yaw_rate_rad_s", YAW_RATE);
+const R_B: AttributeColumn = optional("bullet_yaw_rate_rad_s", YAW_RATE);
 const STRIKING_X: AttributeColumn = optional("bullet_x0_m", STRIKING_OFFSET);
 const STRIKING_Y: AttributeColumn = optional("bullet_y0_m", STRIKING_OFFSET);
 const SPEED_BEFORE: AttributeColumn = needed("speed_m_s", SPEED);
@@ -52,8 +55,8 @@ const MU: AttributeColumn = needed("mu", ROAD_FRICTION);
 const HEIGHT: AttributeColumn = needed("contact_height_m", CONTACT_HEIGHT);
 
 const FORCE_COLUMNS: &[AttributeColumn] = &[
-    M_T, M_B, V_TX, V_TY, V_BX, V_BY, THETA_B, AT_X, AT_Y, AT_Z, IZZ_T, IZZ_B, STRIKING_X,
-    STRIKING_Y,
+    M_T, M_B, V_TX, V_TY, V_BX, V_BY, THETA_B, AT_X, AT_Y, AT_Z, NORMAL, IZZ_T, IZZ_B, R_T, R_B,
+    STRIKING_X, STRIKING_Y,
 ];
 
 const TRAJECTORY_COLUMNS: &[AttributeColumn] = &[SPEED_BEFORE, MU, AT_X, AT_Y, HEIGHT];
@@ -80,6 +83,9 @@ pub struct ForceAttributes {
     pub struck_velocity_m_s: [f64; 2],
     /// Velocity `[x, y]` of the centre of gravity of the striking vehicle, world axes, m/s.
     pub striking_velocity_m_s: [f64; 2],
+    /// Yaw rates of the struck and of the striking vehicle, rad/s, counter-clockwise positive; 0 where
+    /// the table does not give one.
+    pub yaw_rate_rad_s: [f64; 2],
     /// Heading of the striking vehicle relative to that of the struck vehicle, rad,
     /// counter-clockwise positive.
     pub theta_b_rad: f64,
@@ -88,6 +94,9 @@ pub struct ForceAttributes {
     pub contact_m: [f64; 2],
     /// Height of the point of first contact above the road, m.
     pub contact_height_m: Option<f64>,
+    /// Direction of the contact normal, which points into the struck vehicle, from its heading, rad,
+    /// counter-clockwise positive: 0 for a blow from behind.
+    pub contact_normal_rad: Option<f64>,
     /// The side on which the struck vehicle is hit.
     pub side: Option<StruckSide>,
     /// Whether a corner of the striking vehicle stays hooked to the struck vehicle.
@@ -132,9 +141,11 @@ impl ForceAttributes {
             yaw_inertia_kg_m2: [known(&IZZ_T)?, known(&IZZ_B)?],
             struck_velocity_m_s: [need(&V_TX)?, need(&V_TY)?],
             striking_velocity_m_s: [need(&V_BX)?, need(&V_BY)?],
+            yaw_rate_rad_s: [known(&R_T)?.unwrap_or(0.0), known(&R_B)?.unwrap_or(0.0)],
             theta_b_rad: need(&THETA_B)?,
             contact_m: [need(&AT_X)?, need(&AT_Y)?],
             contact_height_m: known(&AT_Z)?,
+            contact_normal_rad: known(&NORMAL)?,
             side: side(attributes),
             hooked: attributes.flag("hooked"),
             separated: attributes.flag("separated"),

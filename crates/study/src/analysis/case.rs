@@ -61,7 +61,7 @@ fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis,
 }
 
 /// Simulates the struck vehicle of a force case from the origin, heading along X, with the case's
-/// velocities and under the recorded force and yaw moment. The force acts at the height of the CG
+/// velocities and yaw rate and under the recorded force and yaw moment. The force acts at the height of the CG
 /// if the case gives no contact height.
 fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
     let attributes = ForceAttributes::read(&case.attributes)?;
@@ -75,7 +75,9 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
     let height_m = attributes.contact_height_m.unwrap_or(vehicle.geometry.cg_height_m);
     let contact = ContactPoint { x_body_m, y_body_m, height_m };
     let load = ContactLoad { force: force.clone(), contact, recorded_moment: true };
-    let initial = VehicleState { vx_body_m_s, vy_body_m_s, ..VehicleState::default() };
+    let [yaw_rate_rad_s, _] = attributes.yaw_rate_rad_s;
+    let initial =
+        VehicleState { vx_body_m_s, vy_body_m_s, yaw_rate_rad_s, ..VehicleState::default() };
     let controls = settings.ending.controls(&vehicle);
     let manoeuvre = Manoeuvre {
         initial,

@@ -392,22 +392,6 @@ pub enum StudyError {
         /// The scenario or case.
         name: String,
     },
-    /// The vehicles turn so fast before the impact that a force network, which knows no turning
-    /// vehicles, does not answer the question.
-    #[error(
-        "{name}: the vehicles turn before the impact, which moves the points of contact with \
-         {turning_m_s:.1} m/s against each other, beside {moving_m_s:.1} m/s by their velocities; the \
-         force network knows vehicles that do not turn, expected less than half as much; the momentum \
-         solution takes it in: --given-force, or impactlab simulate"
-    )]
-    TurningVehicles {
-        /// The scenario.
-        name: String,
-        /// Speed of one point of contact against the other by turning, m/s.
-        turning_m_s: f64,
-        /// Speed of one vehicle against the other, m/s.
-        moving_m_s: f64,
-    },
     /// Nothing says what should be learned from.
     #[error("nothing to learn from: say which data set with --data, or which log with --log")]
     NothingToLearnFrom,

@@ -1,10 +1,7 @@
 //! Numbers that a question gives and its answer does not depend on: each is listed in the report.
 //!
 //! A force network knows masses, yaw inertias, velocities, headings, contact point and position of
-//! the two vehicles. It has learned from vehicles that do not turn before the impact, so that a yaw
-//! rate is listed as not used; where turning would make up much of the speed at which the contact
-//! points approach, the force has little to do with what the network knows, and the question is
-//! refused.
+//! the two vehicles, and the physics about which it is centred their yaw rates.
 
 use crate::analysis::{PulseSetup, StruckVehicle};
 use crate::{
@@ -12,15 +9,11 @@ use crate::{
     ScenarioChoice, SimulateRequest, StudyError, VehicleChoice,
 };
 use impactlab_core::collision::{
-    FrictionModel, Pose, RestitutionForm, Scenario, ScenarioContact, ScenarioGeometry,
-    ScenarioVehicle,
+    FrictionModel, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle,
 };
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::percent;
 use impactlab_core::vehicle::{ClosedLoop, Integrator, Preset, VehicleParameters};
-
-/// Share of the approach of the contact points that may come from the turning of the vehicles.
-const MAX_TURNING_SHARE: f64 = 0.5;
 
 /// Relative difference of a length from that of the training cases beyond which it is listed.
 const SIZE_TOLERANCE: f64 = 0.1;
@@ -83,27 +76,18 @@ pub(crate) fn contact_at_medians() -> Caveat {
 /// What a force network does not use of a scenario.
 ///
 /// # Errors
-/// [`StudyError::TurningVehicles`] if the vehicles turn so fast that the force of the network is not
-/// that of the scenario; [`StudyError::Scenario`] if they do not meet.
+/// [`StudyError::Scenario`] if they do not meet.
 pub(crate) fn by_force_network(
     choice: &ScenarioChoice,
     scenario: &Scenario,
 ) -> Result<Vec<Caveat>, StudyError> {
-    let geometry = scenario.geometry().map_err(|source| choice.unsolved(source))?;
-    refuse_fast_turning(choice, scenario, &geometry)?;
+    scenario.geometry().map_err(|source| choice.unsolved(source))?;
     let vehicles = [
         ("struck", &scenario.struck, Preset::Target),
         ("striking", &scenario.striking, Preset::Bullet2000),
     ];
     let mut unused = Vec::new();
     for (name, vehicle, of_training) in vehicles {
-        let rate = vehicle.yaw_rate_rad_s;
-        if rate != 0.0 {
-            unused.push(Caveat::not_used(
-                format!("yaw rate of the {name} vehicle before the impact, {rate} rad/s"),
-                "the force network has learned from vehicles that do not turn before the impact",
-            ));
-        }
         if has_other_size(vehicle, &of_training.parameters()) {
             unused.push(Caveat::not_used(
                 format!(
@@ -158,31 +142,6 @@ pub(crate) fn contact_by_force_network(
         unused.push(Caveat::not_used("friction model of the contact", reason));
     }
     unused
-}
-
-fn refuse_fast_turning(
-    choice: &ScenarioChoice,
-    scenario: &Scenario,
-    geometry: &ScenarioGeometry,
-) -> Result<(), StudyError> {
-    let (struck, striking) = (&scenario.struck, &scenario.striking);
-    let [x, y] = geometry.contact_point_world_m;
-    // Velocity of the point of contact by turning alone: r × arm.
-    let turning = |vehicle: &ScenarioVehicle, pose: &Pose| {
-        let rate = vehicle.yaw_rate_rad_s;
-        [-rate * (y - pose.y_m), rate * (x - pose.x_m)]
-    };
-    let (of_struck, of_striking) =
-        (turning(struck, &geometry.struck), turning(striking, &geometry.striking));
-    let turning_m_s = f64::hypot(of_striking[0] - of_struck[0], of_striking[1] - of_struck[1]);
-    let moving_m_s = f64::hypot(
-        striking.vx_world_m_s - struck.vx_world_m_s,
-        striking.vy_world_m_s - struck.vy_world_m_s,
-    );
-    if turning_m_s > MAX_TURNING_SHARE * moving_m_s {
-        return Err(StudyError::TurningVehicles { name: choice.name(), turning_m_s, moving_m_s });
-    }
-    Ok(())
 }
 
 fn has_other_size(vehicle: &ScenarioVehicle, of_training: &VehicleParameters) -> bool {

@@ -175,6 +175,7 @@ mod tests {
         truth.bodies[0].recovery = 0.35;
         let scenarios = (0..6).map(|i| CrushScenario {
             relative_velocity_m_s: [f64::from(i) * 0.4, 1.0 + 0.7 * f64::from(i)],
+            yaw_rate_rad_s: [0.0; 2],
             theta_b_rad: 0.1 + 0.08 * f64::from(i),
             ..example()
         });

@@ -26,7 +26,7 @@ const REFERENCE_ANGLE_RAD: f64 = 0.35;
 /// Two vehicles at first contact. The heading of the struck vehicle is along x and the striking
 /// vehicle is on its right, so that its left front corner touches the right side of the struck
 /// vehicle. The axes are fixed; they coincide with the body axes of the struck vehicle at first
-/// contact. Neither vehicle has a yaw rate then.
+/// contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CrushScenario {
     /// Masses of the struck and the striking vehicle, kg.
@@ -35,6 +35,8 @@ pub struct CrushScenario {
     pub yaw_inertia_kg_m2: [f64; 2],
     /// Velocity of the striking vehicle relative to the struck vehicle, `[x, y]`, m/s.
     pub relative_velocity_m_s: [f64; 2],
+    /// Yaw rates of the struck and the striking vehicle, rad/s, counter-clockwise positive.
+    pub yaw_rate_rad_s: [f64; 2],
     /// Heading of the striking vehicle relative to that of the struck vehicle, rad,
     /// counter-clockwise positive.
     pub theta_b_rad: f64,
@@ -210,13 +212,13 @@ impl<'a> Springs<'a> {
             position_m: [0.0; 2],
             yaw_rad: 0.0,
             velocity_m_s: [0.0; 2],
-            yaw_rate_rad_s: 0.0,
+            yaw_rate_rad_s: scenario.yaw_rate_rad_s[0],
         };
         let striking = Body {
             position_m: [contact_x - (cos * x - sin * y), contact_y - (sin * x + cos * y)],
             yaw_rad: scenario.theta_b_rad,
             velocity_m_s: scenario.relative_velocity_m_s,
-            yaw_rate_rad_s: 0.0,
+            yaw_rate_rad_s: scenario.yaw_rate_rad_s[1],
         };
         [struck, striking]
     }
@@ -402,6 +404,7 @@ pub(super) mod tests {
             mass_kg: [2000.0, 1500.0],
             yaw_inertia_kg_m2: [3600.0, 2700.0],
             relative_velocity_m_s: [1.0, 3.0],
+            yaw_rate_rad_s: [0.0; 2],
             theta_b_rad: 0.35,
             contact_m: [-1.5, -0.925],
             body_idx: 0,

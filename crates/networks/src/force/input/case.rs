@@ -1,6 +1,7 @@
 //! Cases of a force data set in the form from which force models learn: canonical scenarios, and
 //! forces on the common time grid.
 
+use std::f64::consts::FRAC_PI_4;
 use std::path::Path;
 
 use crate::force::ForceScenario;
@@ -28,6 +29,9 @@ const LEAST_NET_SHARE: f64 = 0.01;
 /// Mean force in the last millisecond of a contact above which the record was cut, as a share of the
 /// peak: a force that comes to zero has at most a few per cent there.
 const CUT_SHARE_OF_PEAK: f64 = 0.1;
+
+/// Largest angle of the contact normal from across the struck vehicle in a case that is learned from, rad.
+const LARGEST_TURN_RAD: f64 = FRAC_PI_4;
 
 /// A collision with its force curve, in the canonical form of [`ForceScenario::canonical`].
 #[derive(Debug, Clone, PartialEq)]
@@ -90,6 +94,17 @@ pub enum ForceCaseError {
         /// Impulse as a share of the impulse of the magnitude, %.
         percent: f64,
     },
+    /// The blow is not against a flank, which is all that the network's physics knows.
+    #[error(
+        "case {case}: the contact normal is turned by {turn_deg:.0}° from across the struck vehicle; the \
+         force network learns from blows against a flank"
+    )]
+    NotAFlank {
+        /// Name of the case.
+        case: String,
+        /// Angle of the normal from across, degrees.
+        turn_deg: f64,
+    },
     /// There is no force within the time grid.
     #[error("case {case}: no force in the first {grid_s} s of the record")]
     NoForce {
@@ -137,6 +152,13 @@ impl ForceCase {
             return Err(ForceCaseError::NoNetImpulse { case: name(), percent: 100.0 * net_share });
         }
         let (scenario, mirrored) = scenario.canonical();
+        let turn_rad = scenario.normal_turn_rad();
+        if turn_rad.abs() > LARGEST_TURN_RAD {
+            return Err(ForceCaseError::NotAFlank {
+                case: name(),
+                turn_deg: turn_rad.to_degrees(),
+            });
+        }
         let curve = if mirrored { curve.mirrored() } else { curve };
         let (peak_n, peak_time_s) = curve.peak();
         Ok(Self {
@@ -222,7 +244,10 @@ fn digest(scenario: &ForceScenario, curve: &ForceCurve) -> String {
     let known = [m_t, m_b, vx, vy, scenario.theta_b_rad].map(|value| n_steps(value, DIGEST_STEP));
     let forces = curve.fx_n.iter().chain(&curve.fy_n).map(|force| n_steps(*force, DIGEST_STEP_N));
     let duration = n_steps(curve.duration_s, DIGEST_STEP);
-    content_digest(known.into_iter().chain(forces).chain([duration]))
+    // Of cars that do not turn it is what it was before yaw rates were told.
+    let turning = scenario.yaw_rate_rad_s.map(|rate| n_steps(rate, DIGEST_STEP));
+    let turning = turning.into_iter().filter(|_| scenario.yaw_rate_rad_s != [0.0; 2]);
+    content_digest(known.into_iter().chain(forces).chain([duration]).chain(turning))
 }
 
 impl TrainingCase for ForceCase {

@@ -3,6 +3,8 @@
 //! Two symmetries hold: a mirrored scenario has the mirrored force, and a common velocity of both
 //! vehicles does not change the force, since tire forces during the contact are neglected.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -14,11 +16,15 @@ use impactlab_core::data::{Case, DataError, ForceAttributes, StruckSide, Value};
 use impactlab_core::numerics::wrap_angle_rad;
 use impactlab_core::ranges::{
     BODY_MASS, BODY_YAW_INERTIA, CONTACT_X, CONTACT_Y, FRICTION_LIMIT, HEADING, RESTITUTION, Range,
-    SPEED, STRIKING_OFFSET,
+    SPEED, STRIKING_OFFSET, YAW_RATE,
 };
 
-/// Two vehicles at first contact, in world axes with X along the struck vehicle's heading. Neither
-/// vehicle turns before the contact.
+/// No flank of a car is nearer to its middle line, m.
+const NARROWEST_HALF_WIDTH_M: f64 = 0.65;
+/// No end of a car is nearer to its CG, m.
+const SHORTEST_END_M: f64 = 1.2;
+
+/// Two vehicles at first contact, in world axes with X along the struck vehicle's heading.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ForceScenario {
     /// Masses of the struck and the striking vehicle, kg.
@@ -29,6 +35,10 @@ pub struct ForceScenario {
     /// Velocity `[x, y]` of the striking vehicle's CG, m/s.
     #[serde(rename = "bullet_velocity_m_s")]
     pub striking_velocity_m_s: [f64; 2],
+    /// Yaw rates of the struck and the striking vehicle before the contact, rad/s. The network does not
+    /// use them; the physics about which it is centred does.
+    #[serde(default, skip_serializing_if = "turns_not")]
+    pub yaw_rate_rad_s: [f64; 2],
     /// Heading of the striking vehicle against the struck vehicle's, rad, −π to π.
     pub theta_b_rad: f64,
     /// The side on which the struck vehicle is hit.
@@ -52,6 +62,10 @@ pub struct ForceScenario {
     /// the momentum solution that takes over outside of what it has learned from does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact_law: Option<ContactLaw>,
+}
+
+fn turns_not(yaw_rate_rad_s: &[f64; 2]) -> bool {
+    *yaw_rate_rad_s == [0.0; 2]
 }
 
 /// Restitution and friction of a contact.
@@ -108,10 +122,11 @@ impl ForceScenario {
             mass_kg: attributes.mass_kg,
             struck_velocity_m_s: attributes.struck_velocity_m_s,
             striking_velocity_m_s: attributes.striking_velocity_m_s,
+            yaw_rate_rad_s: attributes.yaw_rate_rad_s,
             theta_b_rad: theta,
             side: attributes.side.unwrap_or_else(side),
             contact_m: Some(attributes.contact_m),
-            normal_rad: None,
+            normal_rad: attributes.contact_normal_rad.or_else(|| end_normal_rad(attributes)),
             striking_position_m: None,
             striking_body: None,
             yaw_inertia_kg_m2: attributes.yaw_inertia_kg_m2,
@@ -119,8 +134,7 @@ impl ForceScenario {
         }
     }
 
-    /// The scenario of an impact, turned so that the struck vehicle heads along X. Yaw rates before
-    /// the contact are ignored, since no force model depends on them.
+    /// The scenario of an impact, turned so that the struck vehicle heads along X.
     ///
     /// # Errors
     /// [`ScenarioError`] if the vehicles do not meet, or slide whatever the friction although it is
@@ -140,6 +154,7 @@ impl ForceScenario {
             mass_kg: [struck.mass_kg, striking.mass_kg],
             struck_velocity_m_s,
             striking_velocity_m_s,
+            yaw_rate_rad_s: [struck.yaw_rate_rad_s, striking.yaw_rate_rad_s],
             theta_b_rad,
             side: struck_side(Some(contact_m[1]), theta_b_rad, approach),
             contact_m: Some(contact_m),
@@ -165,6 +180,8 @@ impl ForceScenario {
         };
         for (i, body) in ["target", "bullet"].into_iter().enumerate() {
             add(&format!("mass_kg of the {body}"), Some(self.mass_kg[i]), BODY_MASS);
+            let rate = self.yaw_rate_rad_s[i];
+            add(&format!("yaw_rate_rad_s of the {body}"), Some(rate), YAW_RATE);
             let inertia = self.yaw_inertia_kg_m2[i];
             add(&format!("yaw_inertia_kg_m2 of the {body}"), inertia, BODY_YAW_INERTIA);
         }
@@ -204,6 +221,7 @@ impl ForceScenario {
             striking_m: self.striking_position_m?,
         };
         let mut impact = case.to_impact(law.restitution, law.friction_limit).ok()?;
+        [impact.struck.yaw_rate_rad_s, impact.striking.yaw_rate_rad_s] = self.yaw_rate_rad_s;
         impact.surface.restitution_form = law.restitution_form;
         Some(impact)
     }
@@ -213,6 +231,32 @@ impl ForceScenario {
         let impact = self.impact(ContactLaw::at_closing_speed(0.0))?;
         let law = ContactLaw::at_closing_speed(impact.closing_speed_m_s());
         self.impact(self.contact_law.unwrap_or(law))
+    }
+
+    /// Angle of the contact normal of a canonical scenario from across the struck vehicle, rad; zero where
+    /// the scenario leaves it open.
+    pub(crate) fn normal_turn_rad(&self) -> f64 {
+        self.normal_rad.map_or(0.0, |normal| wrap_angle_rad(normal - FRAC_PI_2))
+    }
+
+    /// Velocity of the contact point of the striking vehicle relative to that of the struck vehicle by
+    /// their turning alone, `r_b × a_b − r_t × a_t`, m/s.
+    ///
+    /// - `contact_m`: contact point, or one that is tried;
+    /// - `striking_arm_m`: from the CG of the striking vehicle to it, in that vehicle's axes.
+    pub(crate) fn turning_velocity_m_s(
+        &self,
+        [x, y]: [f64; 2],
+        striking_arm_m: [f64; 2],
+    ) -> [f64; 2] {
+        let [of_struck, of_striking] = self.yaw_rate_rad_s;
+        let (sin, cos) = self.theta_b_rad.sin_cos();
+        let [ahead, left] = striking_arm_m;
+        let arm = match self.striking_position_m {
+            Some([at_x, at_y]) => [x - at_x, y - at_y],
+            None => [ahead * cos - left * sin, ahead * sin + left * cos],
+        };
+        [of_struck * y - of_striking * arm[1], of_striking * arm[0] - of_struck * x]
     }
 
     /// Velocity of the striking vehicle relative to the struck vehicle `v_b − v_t`, m/s.
@@ -227,6 +271,7 @@ impl ForceScenario {
         Self {
             struck_velocity_m_s: mirror(self.struck_velocity_m_s),
             striking_velocity_m_s: mirror(self.striking_velocity_m_s),
+            yaw_rate_rad_s: self.yaw_rate_rad_s.map(|rate| -rate),
             theta_b_rad: -self.theta_b_rad,
             side: match self.side {
                 StruckSide::Left => StruckSide::Right,
@@ -251,6 +296,14 @@ impl ForceScenario {
     }
 }
 
+/// The contact normal of a case that does not state it, where it touches the front or the rear between the
+/// flanks; `None` for a blow against a flank, or one that may be.
+fn end_normal_rad(attributes: &ForceAttributes) -> Option<f64> {
+    let [x, y] = attributes.contact_m;
+    let is_end = y.abs() < NARROWEST_HALF_WIDTH_M && x.abs() > SHORTEST_END_M;
+    is_end.then_some(if x < 0.0 { 0.0 } else { PI })
+}
+
 /// The struck side of a case that does not state it: the side of the contact point, else the side
 /// from which the striking vehicle heads towards the struck vehicle, else the side from which it
 /// moves.
@@ -266,8 +319,6 @@ fn struck_side(contact_y_m: Option<f64>, theta_b_rad: f64, approach_m_s: f64) ->
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use std::f64::consts::FRAC_PI_2;
-
     use super::*;
     use crate::force::ForceCase;
     use crate::force::input::shipped;
@@ -279,6 +330,7 @@ pub(crate) mod tests {
             mass_kg: [2000.0, 1500.0],
             struck_velocity_m_s: [15.0, 0.25],
             striking_velocity_m_s: [16.0, 3.5],
+            yaw_rate_rad_s: [0.0; 2],
             theta_b_rad: 0.5,
             side: StruckSide::Right,
             contact_m: Some([-1.5, -0.925]),
@@ -298,6 +350,58 @@ pub(crate) mod tests {
             assert_eq!(scenario.mirrored().mirrored(), scenario);
             assert_ne!(scenario.mirrored(), scenario);
         }
+    }
+
+    #[test]
+    fn a_blow_from_behind_has_its_normal_along_the_car() {
+        let end = |x: f64, y: f64, stated: Option<f64>| {
+            let attributes = ForceAttributes {
+                mass_kg: [2000.0, 1500.0],
+                yaw_inertia_kg_m2: [None; 2],
+                struck_velocity_m_s: [10.0, 0.0],
+                striking_velocity_m_s: [16.0, 0.0],
+                yaw_rate_rad_s: [0.0; 2],
+                theta_b_rad: 0.0,
+                contact_m: [x, y],
+                contact_height_m: None,
+                contact_normal_rad: stated,
+                side: None,
+                hooked: None,
+                separated: None,
+            };
+            ForceScenario::from_attributes(&attributes).normal_rad
+        };
+        assert_eq!(end(-2.6, 0.3, None), Some(0.0));
+        assert_eq!(end(2.2, -0.1, None), Some(PI));
+        assert_eq!([end(-2.3, 0.92, None), end(0.1, 0.3, None)], [None; 2]);
+        assert_eq!(end(-2.5, -0.8, Some(0.1)), Some(0.1));
+    }
+
+    /// The velocity by turning is that of the points of contact less that of the CGs, and it is mirrored
+    /// with the scenario.
+    #[test]
+    fn turning_moves_the_points_of_contact() {
+        let yaw_rate_rad_s = [0.2, -0.4];
+        let turning = ForceScenario { yaw_rate_rad_s, ..example(StruckSide::Right) };
+        let (contact, no_arm) = (turning.contact_m.unwrap(), [f64::NAN; 2]);
+        let [x, y] = turning.turning_velocity_m_s(contact, no_arm);
+        let law = ContactLaw::at_closing_speed(1.0);
+        let whole = ForceScenario { yaw_inertia_kg_m2: [Some(3600.0); 2], ..turning.clone() };
+        let [of_points_x, of_points_y] = whole.impact(law).unwrap().relative_velocity_m_s();
+        let [of_cgs_x, of_cgs_y] = turning.relative_velocity_m_s();
+        assert!((of_points_x - of_cgs_x - x).abs() < 1e-12, "{x}");
+        assert!((of_points_y - of_cgs_y - y).abs() < 1e-12, "{y}");
+        let mirror = turning.mirrored();
+        let of_mirror = mirror.turning_velocity_m_s(mirror.contact_m.unwrap(), no_arm);
+        assert_eq!(of_mirror, [x, -y]);
+        assert_eq!(mirror.mirrored(), turning);
+        // Without a known place the arm turns with the heading.
+        let open = ForceScenario { striking_position_m: None, ..turning };
+        let (sin, cos) = open.theta_b_rad.sin_cos();
+        let [dx, dy] = [contact[0] + 2.75, contact[1] + 2.5];
+        let arm = [dx * cos + dy * sin, dy * cos - dx * sin];
+        let [open_x, open_y] = open.turning_velocity_m_s(contact, arm);
+        assert!((open_x - x).abs() < 1e-12 && (open_y - y).abs() < 1e-12);
     }
 
     #[test]

@@ -12,14 +12,12 @@
 //! cases fill a box nearly evenly, of 3.5 standard deviations a side.
 //!
 //! The direction of the contact normal is one more feature. All training cases are blows against the
-//! side.
-
-use std::f64::consts::FRAC_PI_2;
+//! side. So is the speed that turning gives the contact points against each other, in deviations of the
+//! relative velocity: the physics knows it, the network does not.
 
 use crate::force::network::features::{N_SCENARIO, SCENARIO_NAMES, Standardisation};
 use crate::force::network::features::{OutsideTraining, scenario_numbers};
 use crate::force::{ForceCase, ForceScenario};
-use impactlab_core::numerics::wrap_angle_rad;
 
 /// Number of nearest training cases whose mean distance counts.
 const N_NEAREST: usize = 3;
@@ -35,6 +33,14 @@ const NORMAL_NAME: &str = "contact normal from across the struck vehicle [rad]";
 /// turning either turns the blow.
 const THETA_IDX: usize = 4;
 
+/// Name of the speed that turning gives the contact points.
+const TURNING_NAME: &str = "speed of the contact points by yaw rates before the impact [m/s]";
+/// Index of the velocity across the struck vehicle, whose deviation is the unit of the speed by turning.
+const CLOSING_IDX: usize = 3;
+/// From the CG of a striking vehicle to the corner that touches, in its axes, m, where a scenario does not
+/// say where it stands.
+const USUAL_ARM_M: [f64; 2] = [1.9, 0.9];
+
 /// The training cases of a network as points in the space of the scenario's features.
 #[derive(Debug, Clone)]
 pub(crate) struct ForceDomain {
@@ -44,6 +50,8 @@ pub(crate) struct ForceDomain {
     points: Vec<[f64; N_SCENARIO]>,
     /// d₀.
     spacing: f64,
+    /// Largest speed that turning gives the contact points of a training case, m/s.
+    turning_m_s: f64,
 }
 
 impl ForceDomain {
@@ -63,9 +71,14 @@ impl ForceDomain {
                 false => CONSTANT_SHARE * mean[i].abs().max(1.0),
             }
         });
-        let mut domain = Self { mean, scale, range, points: Vec::new(), spacing: 0.0 };
+        let mut domain =
+            Self { mean, scale, range, points: Vec::new(), spacing: 0.0, turning_m_s: 0.0 };
         let point = |case: &ForceCase| Some(domain.point(&case.scenario, case.scenario.contact_m?));
         domain.points = cases.iter().filter_map(point).collect();
+        let turning = cases
+            .iter()
+            .filter_map(|case| Some(turning_m_s(&case.scenario, case.scenario.contact_m?)));
+        domain.turning_m_s = turning.fold(0.0, f64::max);
         let left_out = |i: usize| {
             let others = domain.points.iter().enumerate().filter(|(j, _)| *j != i);
             nearest(&domain.points[i], others.map(|(_, other)| other))
@@ -81,8 +94,10 @@ impl ForceDomain {
     pub(crate) fn applicability(&self, scenario: &ForceScenario, contact_m: [f64; 2]) -> f64 {
         let numbers = scenario_numbers(scenario, contact_m);
         let beyond = |i: usize| (beyond(numbers[i], self.range[i]) / self.scale[i]).powi(2);
-        let normal = normal_turn_rad(scenario) / self.scale[THETA_IDX];
-        let outside = ((0..N_SCENARIO).map(beyond).sum::<f64>() + normal * normal).sqrt();
+        let normal = scenario.normal_turn_rad() / self.scale[THETA_IDX];
+        let turning = self.turning_deviations(turning_m_s(scenario, contact_m));
+        let others = normal * normal + turning * turning;
+        let outside = ((0..N_SCENARIO).map(beyond).sum::<f64>() + others).sqrt();
         let distance = nearest(&self.point(scenario, contact_m), self.points.iter());
         let far = match self.spacing > 0.0 {
             true => distance / self.spacing - 1.0,
@@ -106,14 +121,27 @@ impl ForceDomain {
                 deviations: beyond / self.scale[i],
             })
         };
-        let turn = normal_turn_rad(scenario);
+        let turn = scenario.normal_turn_rad();
         let normal = (turn.abs() > tolerance(0.0)).then(|| OutsideTraining {
             feature: NORMAL_NAME,
             value: turn,
             range: [0.0; 2],
             deviations: turn.abs() / self.scale[THETA_IDX],
         });
-        (0..N_SCENARIO).filter_map(check).chain(normal).collect()
+        let turning = scenario.contact_m.map_or(0.0, |at| turning_m_s(scenario, at));
+        let range = [0.0, self.turning_m_s];
+        let turning = (beyond(turning, range) > tolerance(range[1])).then(|| OutsideTraining {
+            feature: TURNING_NAME,
+            value: turning,
+            range,
+            deviations: self.turning_deviations(turning),
+        });
+        (0..N_SCENARIO).filter_map(check).chain(normal).chain(turning).collect()
+    }
+
+    /// How far a speed by turning lies beyond that of the training cases, in deviations.
+    fn turning_deviations(&self, turning_m_s: f64) -> f64 {
+        beyond(turning_m_s, [0.0, self.turning_m_s]) / self.scale[CLOSING_IDX]
     }
 
     fn point(&self, scenario: &ForceScenario, contact_m: [f64; 2]) -> [f64; N_SCENARIO] {
@@ -132,9 +160,10 @@ fn tolerance(high: f64) -> f64 {
     1e-6 * (1.0 + high.abs())
 }
 
-/// Angle of the normal from across the struck vehicle, rad; zero where the scenario leaves it open.
-fn normal_turn_rad(scenario: &ForceScenario) -> f64 {
-    scenario.normal_rad.map_or(0.0, |normal| wrap_angle_rad(normal - FRAC_PI_2))
+/// Speed that turning gives the contact points against each other, m/s.
+fn turning_m_s(scenario: &ForceScenario, contact_m: [f64; 2]) -> f64 {
+    let [x, y] = scenario.turning_velocity_m_s(contact_m, USUAL_ARM_M);
+    x.hypot(y)
 }
 
 /// Mean distance to the nearest points; zero if there is none.
@@ -153,6 +182,8 @@ fn nearest<'a>(
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
     use super::*;
     use crate::force::input::shipped;
 
@@ -213,6 +244,18 @@ mod tests {
             assert_eq!(domain.applicability(&turned, contact), expected, "{normal_rad}");
             assert_eq!(domain.outside(&turned).len(), usize::from(expected == 0.0));
         }
+        let mut before = 1.0;
+        for (rate, is_named) in [(0.0, false), (0.05, true), (0.2, true), (0.5, true), (2.0, true)]
+        {
+            let turning = ForceScenario { yaw_rate_rad_s: [rate, -rate], ..seen.clone() };
+            let now = domain.applicability(&turning, contact);
+            assert!(now <= before, "{rate}: {now} after {before}");
+            let outside = domain.outside(&turning);
+            assert_eq!(outside.len(), usize::from(is_named), "{outside:?}");
+            assert!(outside.iter().all(|found| found.feature == TURNING_NAME), "{outside:?}");
+            before = now;
+        }
+        assert_eq!(before, 0.0);
         let fast = ForceScenario { striking_velocity_m_s: [70.0, 3.0], ..seen };
         assert_eq!(domain.applicability(&fast, contact), 0.0);
     }

@@ -35,6 +35,7 @@ pub(super) fn crush_scenario(
         mass_kg: scenario.mass_kg,
         yaw_inertia_kg_m2: yaw_inertia(scenario),
         relative_velocity_m_s: scenario.relative_velocity_m_s(),
+        yaw_rate_rad_s: scenario.yaw_rate_rad_s,
         theta_b_rad: scenario.theta_b_rad,
         contact_m,
         body_idx,

@@ -116,7 +116,7 @@ impl MomentumModel {
             yaw_inertia_kg_m2: self.inertia_per_mass_m2[i] * scenario.mass_kg[i],
             heading_rad,
             velocity_world_m_s,
-            yaw_rate_rad_s: 0.0,
+            yaw_rate_rad_s: scenario.yaw_rate_rad_s[i],
             contact_arm_world_m,
         };
         let striking_arm = [x * cos - y * sin, x * sin + y * cos];

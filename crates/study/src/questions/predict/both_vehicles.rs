@@ -140,17 +140,7 @@ impl PredictMotionRequest {
             return Ok(Outcome::Complete(FirstForces::law()));
         };
         if let MotionSource::Scenario { scenario, .. } = &self.motion.source {
-            match by_force_network(scenario, &scenario.load()?) {
-                Ok(unused) => caveats.extend(unused),
-                Err(error @ StudyError::TurningVehicles { .. }) => {
-                    caveats.push(Caveat::new(
-                        CaveatKind::OutsideDomain,
-                        format!("{error}; the first contact follows from the contact law"),
-                    ));
-                    return Ok(Outcome::Complete(FirstForces::law()));
-                }
-                Err(error) => return Err(error),
-            }
+            caveats.extend(by_force_network(scenario, &scenario.load()?)?);
         }
         let predicted = self.predicted(choice, library, observer)?;
         let Outcome::Complete((force_model, collision)) = predicted else {

@@ -1,6 +1,6 @@
 //! The motion of one struck vehicle by the 4DOF model: `simulate`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -183,13 +183,23 @@ impl SimulateRequest {
         Ok(settings)
     }
 
-    /// The settings of a recorded pair, which has its own vehicles.
-    fn pair_settings(&self, case: &PairCase) -> Result<Settings, StudyError> {
+    /// A recorded pair, which has its own vehicles, with its settings and what it does not use.
+    fn recorded_pair(
+        &self,
+        dataset: &Path,
+        name: &str,
+        caveats: &mut Caveats,
+    ) -> Result<(Settings, PairCase), StudyError> {
+        let case = load_pair(dataset, name)?;
+        if self.friction.is_some() {
+            return Err(StudyError::FrictionOfCase { case: case.name });
+        }
+        caveats.extend(by_recorded_pair(self));
         let vehicle = |i: usize| match self.equations {
             Some(equations) => case.vehicles[i].clone().with_equations(equations),
             None => case.vehicles[i].clone(),
         };
-        Ok(Settings {
+        let settings = Settings {
             struck: vehicle(0),
             striking: vehicle(1),
             ending: Ending::default(),
@@ -198,7 +208,8 @@ impl SimulateRequest {
             ends_at_rest: false,
             one_contact: false,
             friction_zones: self.friction_zones()?,
-        })
+        };
+        Ok((settings, case))
     }
 
     /// The zones of the site.
@@ -298,12 +309,7 @@ impl Question for SimulateRequest {
         let (mut caveats, mut momentum, mut overlap) = (Caveats::default(), None, None);
         let (settings, analyse): (Settings, Box<Analyse<'_>>) = match &self.source {
             MotionSource::Case { dataset, case } if PairRecords::is_at(dataset) => {
-                let case = load_pair(dataset, case)?;
-                if self.friction.is_some() {
-                    return Err(StudyError::FrictionOfCase { case: case.name });
-                }
-                caveats.extend(by_recorded_pair(self));
-                let settings = self.pair_settings(&case)?;
+                let (settings, case) = self.recorded_pair(dataset, case, &mut caveats)?;
                 (settings, Box::new(move |settings| analyse_recorded_pair(&case, settings)))
             }
             MotionSource::Case { dataset, case } => {
