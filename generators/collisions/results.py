@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from history import Histories
+from model import INTERVAL_S
 
 # Variables of a part by their numbers in the file.
 ENERGY, KINETIC, MOMENTUM_X, MOMENTUM_Y, MASS, HOURGLASS, PLACE_X, PLACE_Y, SPIN_Z = 1, 2, 3, 4, 6, 7, 9, 10, 14
@@ -47,7 +48,7 @@ class Result:
     @classmethod
     def read(cls, folder, name):
         facts = json.loads((folder / f"{name}.json").read_text())
-        histories = Histories.read(folder / f"{name}T01")
+        histories = Histories.read(folder / f"{name}T01").even(INTERVAL_S)
         contact = histories.group("contact").values
         # Contacts 1 and 2 are those of the two cars; the first is told on the striking nodes' surface.
         pushed = contact[:, 0] - contact[:, 1]

@@ -23,6 +23,7 @@ import numpy as np
 import radioss
 import scenarios
 from history import Histories
+from collect import present
 from model import Model
 from results import Result
 
@@ -40,11 +41,11 @@ def is_separated(path):
     """Whether the cars have touched and come apart, by the histories that are written so far."""
     try:
         histories = Histories.read(path)
-        impulse = np.abs(histories.group("contact").values[:, 0:2, 0:6]).sum((1, 2))
+        gained = np.abs(np.diff(histories.group("contact").values[:, 0:2, 0:6], axis=0)).sum((1, 2))
     except (OSError, EOFError, StopIteration, ValueError, IndexError):
         return False
     steps = np.diff(histories.time)
-    touching = np.flatnonzero(np.diff(impulse) > CONTACT_FORCE_N * steps)
+    touching = np.flatnonzero(gained > CONTACT_FORCE_N * steps)
     if len(touching) < 5 or histories.time[-1] < .03:
         return False
     return histories.time[-1] - histories.time[touching[-1] + 1] > QUIET_S
@@ -81,7 +82,7 @@ def compute(collision, work, solver, parts=1):
     """Computes one case unless it is finished. Returns what is said of it."""
     folder = work / collision.name
     done = folder / "done.json"
-    if done.exists():
+    if done.exists() and json.loads(done.read_text())["case"] == json.loads(json.dumps(asdict(collision))):
         return "finished before"
     shutil.rmtree(folder, ignore_errors=True)
     model = Model(collision.name, scenarios.placed(collision.mirrored(), parts))
@@ -110,8 +111,12 @@ def main():
     parser.add_argument("--prefix", default="d")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--only", nargs="*", help="names of cases")
+    parser.add_argument("--have", type=Path, help="a data set whose cases are not computed again")
     args = parser.parse_args()
     cases = scenarios.sample(args.cases, args.seed, args.prefix)
+    if args.have:
+        finished = present(args.have, cases)
+        cases = [case for case in cases if case.name not in finished]
     if args.only:
         cases = [case for case in cases if case.name in args.only]
     failed = []

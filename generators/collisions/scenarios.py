@@ -21,6 +21,8 @@ MASSES_KG = {"A": (1200.0, 2200.0), "B": (1700.0, 2700.0), "C": (1050.0, 1600.0)
 # Furthest ahead that a struck car is deformable, m: in front of that its wheel house begins.
 FURTHEST_CORE_X = 0.85
 KINDS = ("pit", "side", "rear")
+# Cars whose points of contact part at first touch somewhere else later.
+LEAST_APPROACH_M_S = 0.3
 
 
 @dataclass(frozen=True)
@@ -95,6 +97,9 @@ def _collision(name, i, u):
         heading = np.radians(between(-15, 15, u[9]))
         velocity = vx + between(1, 12, u[10]), vy + between(-1, 1, u[11])
         place = between(-1.1, 1.1, u[12])
+    if kind != "rear" and _approach(shape, SHAPES[striking], heading, place, velocity[1] - vy, rates) <= LEAST_APPROACH_M_S:
+        # The other way round turning brings the points of contact together.
+        rates = -rates[0], -rates[1]
     velocities = (vx, sign * vy), (velocity[0], sign * velocity[1])
     if kind == "rear":
         place, heading = sign * place, sign * heading
@@ -103,6 +108,12 @@ def _collision(name, i, u):
     return Collision(name, kind, side, (struck, striking), tuple(float(m) for m in masses),
                      tuple((float(a), float(b)) for a, b in velocities),
                      tuple(float(sign * rate) for rate in rates), float(heading), float(place))
+
+
+def _approach(struck, striking, heading, place, closing, rates):
+    """Speed at which the corner of the striking car comes nearer to the flank, turning included, m/s."""
+    corner = rotation(heading) @ np.array([striking.x_front - .25, striking.width / 2])
+    return closing + rates[1] * corner[0] - rates[0] * place
 
 
 def reference(name="t0"):

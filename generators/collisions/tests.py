@@ -41,6 +41,17 @@ class Sample(unittest.TestCase):
             approach = bx - vx if case.kind == "rear" else by - vy
             self.assertGreater(approach, 0, case)
 
+    def test_turning_does_not_part_the_points_of_contact(self):
+        for case in scenarios.sample(120, 3, "d"):
+            if case.kind == "rear":
+                continue
+            mirrored = case.mirrored()
+            (_, vy), (_, by) = mirrored.velocities
+            struck, striking = (SHAPES[name] for name in case.bodies)
+            approach = scenarios._approach(struck, striking, mirrored.heading, case.place, by - vy, mirrored.yaw_rates)
+            # A car that closes more slowly than that does so by its velocity.
+            self.assertGreater(approach, min(by - vy, scenarios.LEAST_APPROACH_M_S), case)
+
     def test_the_mirror_image_of_a_mirror_image_is_the_collision(self):
         case = next(case for case in scenarios.sample(60, 1, "d")
                     if case.side == "left" and case.kind == "rear")
