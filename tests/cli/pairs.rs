@@ -207,3 +207,26 @@ fn a_recorded_pair_is_drawn_with_what_its_drivers_did() {
         assert!(ran.err.contains(expected), "{args:?}: {}", ran.err);
     }
 }
+
+/// A result is never written over a file that the question reads, whichever part of the folder it is.
+#[test]
+fn no_file_of_a_pair_is_replaced_by_its_result() {
+    let folder = TempDir::new().unwrap();
+    let root = folder.path();
+    for part in ["cases", "vehicles"] {
+        fs::create_dir(root.join(part)).unwrap();
+    }
+    let cars = ["vehicles/micro.toml", "vehicles/sedan-wishbone.toml"];
+    for file in ["cases.csv", "cases/d041.csv", cars[0], cars[1]] {
+        fs::copy(format!("{PAIRS}/{file}"), root.join(file)).unwrap();
+    }
+    for file in ["cases.csv", "cases/d041.csv"] {
+        let read = root.join(file);
+        let before = fs::read(&read).unwrap();
+        let args = ["render", "controls", text(root), "--case", "d041", "--plot", "steering"];
+        let out = ["--out", text(&read), "--overwrite"];
+        let ran = impactlab(&[&args[..], &out].concat());
+        assert!(ran.code != 0 && ran.err.contains(file), "{file}: {}", ran.err);
+        assert_eq!(fs::read(&read).unwrap(), before, "{file}");
+    }
+}

@@ -134,6 +134,19 @@ impl PairRecords {
             && ["cases", "vehicles"].iter().all(|folder| root.join(folder).is_dir())
     }
 
+    /// The files of a data set of pairs, in the order of their names. A folder that is none has none.
+    pub fn files(root: &Path) -> Vec<PathBuf> {
+        if !Self::is_at(root) {
+            return Vec::new();
+        }
+        let folders = ["cases", "vehicles"].map(|folder| std::fs::read_dir(root.join(folder)));
+        let inside = folders.into_iter().flatten().flatten().flatten().map(|entry| entry.path());
+        let mut files: Vec<PathBuf> = inside.chain([root.join(CASES_FILE)]).collect();
+        files.retain(|file| file.is_file());
+        files.sort();
+        files
+    }
+
     /// Reads the table of cases. No file of a case is read.
     ///
     /// # Errors

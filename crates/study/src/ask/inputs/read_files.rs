@@ -7,6 +7,7 @@ use crate::{
     ConfigChoice, Drive, ForceQuestion, ForceSource, ModelChoice, MotionSource, Request,
     ScenarioChoice, SeriesFile, SimulateRequest, TrainingOptions, VehicleChoice,
 };
+use impactlab_core::compare::PairRecords;
 use impactlab_core::data::Dataset;
 use impactlab_core::site::Site;
 
@@ -152,6 +153,7 @@ impl Named {
     fn files(self) -> Vec<PathBuf> {
         let Self { path, role } = self;
         match role {
+            _ if PairRecords::is_at(&path) => PairRecords::files(&path),
             _ if path.is_dir() => Dataset::files(&path),
             Role::Site => {
                 std::iter::once(path.clone()).chain(Site::files_named_by(&path)).collect()
