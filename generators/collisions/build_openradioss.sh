@@ -9,7 +9,7 @@
 # The project's own build downloads binary libraries that decks without H3D output do not need. Here the
 # distribution's libraries stand in for them (Debian and Ubuntu: gfortran cmake libmetis-dev liblapack-dev
 # zlib1g-dev libmd-dev libboost-dev libboost-filesystem-dev), and exprtk, one header, is taken from
-# EXPRTK=FILE or downloaded. About 35 minutes on two cores.
+# EXPRTK=FILE or downloaded. About 40 minutes on two cores.
 set -euo pipefail
 
 source_folder=$(realpath "${1:?the folder of the OpenRadioss source}")

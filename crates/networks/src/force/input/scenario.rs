@@ -22,7 +22,7 @@ use impactlab_core::ranges::{
 /// No flank of a car is nearer to its middle line, m.
 const NARROWEST_HALF_WIDTH_M: f64 = 0.65;
 /// No end of a car is nearer to its CG, m.
-const SHORTEST_END_M: f64 = 1.2;
+const SHORTEST_END_M: f64 = 1.6;
 
 /// Two vehicles at first contact, in world axes with X along the struck vehicle's heading.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
