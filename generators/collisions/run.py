@@ -111,12 +111,11 @@ def main():
     parser.add_argument("--prefix", default="d")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--only", nargs="*", help="names of cases")
-    parser.add_argument("--have", type=Path, help="a data set whose cases are not computed again")
+    parser.add_argument("--have", type=Path, nargs="*", default=[], help="data sets whose cases are not computed again")
     args = parser.parse_args()
     cases = scenarios.sample(args.cases, args.seed, args.prefix)
-    if args.have:
-        finished = present(args.have, cases)
-        cases = [case for case in cases if case.name not in finished]
+    finished = {name for dataset in args.have for name in present(dataset, cases)}
+    cases = [case for case in cases if case.name not in finished]
     if args.only:
         cases = [case for case in cases if case.name in args.only]
     failed = []

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+import collect
 import lsdyna
 import radioss
 import scenarios
@@ -58,6 +59,12 @@ class Sample(unittest.TestCase):
         once = case.mirrored()
         self.assertEqual(once.heading, -case.heading)
         self.assertEqual(replace(once, side="left").mirrored(), replace(case, side="right"))
+
+
+    def test_a_quarter_is_held_out(self):
+        for prefix in ("d", "w"):
+            n = sum(collect.is_held_out(f"{prefix}{i:03}") for i in range(1, 1001))
+            self.assertTrue(200 < n < 300, n)
 
 
 class Bodies(unittest.TestCase):

@@ -21,11 +21,16 @@ fn all_shipped_data_sets_load_without_a_problem() {
         panic!("a folder of data sets is a collection");
     };
     assert!(problems.is_empty(), "{problems:?}");
-    assert_eq!(datasets.len(), 5);
+    assert_eq!(datasets.len(), 7);
     for dataset in &datasets {
         assert!(dataset.problems.is_empty(), "{:?}", dataset.problems);
         let is_staged = dataset.root.ends_with("staged");
-        let n_cases = if is_staged { 40 } else { 100 };
+        let n_cases = match dataset.root.file_name().and_then(|name| name.to_str()) {
+            Some("staged") => 40,
+            Some("fea-road") => 59,
+            Some("fea-road-held-out") => 26,
+            _ => 100,
+        };
         assert_eq!(dataset.cases.len(), n_cases, "{}", dataset.root.display());
         for case in &dataset.cases {
             match dataset.kind {
@@ -41,7 +46,7 @@ fn all_shipped_data_sets_load_without_a_problem() {
             assert_eq!(contradictions(&case.series), [], "{}", case.name);
         }
     }
-    assert_eq!(reports, 9);
+    assert_eq!(reports, 13);
 }
 
 #[test]
