@@ -27,8 +27,8 @@ fn all_shipped_data_sets_load_without_a_problem() {
         let is_staged = dataset.root.ends_with("staged");
         let n_cases = match dataset.root.file_name().and_then(|name| name.to_str()) {
             Some("staged") => 40,
-            Some("fea-road") => 59,
-            Some("fea-road-held-out") => 26,
+            Some("fea-road") => 72,
+            Some("fea-road-held-out") => 29,
             _ => 100,
         };
         assert_eq!(dataset.cases.len(), n_cases, "{}", dataset.root.display());
