@@ -116,6 +116,10 @@ fn header(bytes: &[u8]) -> Result<(u64, Metadata), NnError> {
     let Some(header) = usize::try_from(header_bytes).ok().and_then(|n| rest.get(..n)) else {
         return Err(NnError::Truncated { expected: start, got });
     };
+    // The header is padded with spaces; a tab in the place of one would be read as well.
+    if header.iter().any(u8::is_ascii_control) {
+        return Err(NnError::NotSafetensors);
+    }
     Ok((start, serde_json::from_slice(header).map_err(NnError::Header)?))
 }
 

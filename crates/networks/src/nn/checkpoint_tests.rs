@@ -179,6 +179,15 @@ fn every_flipped_bit_is_found() {
     }
 }
 
+#[test]
+fn a_tab_in_the_place_of_a_space_of_the_padding_is_found() {
+    let mut changed = bytes();
+    let end = 8 + u64::from_le_bytes(changed[..8].try_into().unwrap()) as usize;
+    assert_eq!(changed[end - 1], b' ', "the header of the test is padded");
+    changed[end - 1] = b'\t';
+    assert!(matches!(decode(&changed, KIND), Err(NnError::NotSafetensors)));
+}
+
 proptest! {
     #[test]
     fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
