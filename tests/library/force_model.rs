@@ -10,7 +10,7 @@ use candle_core::Tensor;
 use impactlab_core::data::Existing;
 use impactlab_core::error_chain;
 use impactlab_networks::force::{
-    Centre, ForceCase, ForceConfig, ForceError, ForceModel, ForceScenario, ForceTrainSettings,
+    Centre, ForceCase, ForceConfig, ForceModel, ForcePrediction, ForceScenario, ForceTrainSettings,
     ForceTrainingSet, train,
 };
 use impactlab_networks::learning::{ModelFile, TrainingReport};
@@ -269,11 +269,22 @@ fn the_force_vanishes_after_the_contact() {
 }
 
 #[test]
+fn a_body_that_the_model_does_not_know_is_left_open_and_said() {
+    let named = |name: Option<&str>| {
+        let striking_body = name.map(str::to_owned);
+        model().predict(&ForceScenario { striking_body, ..scenario() }).unwrap()
+    };
+    let [unknown, open] = [named(Some("tank")), named(None)];
+    assert!(unknown.is_body_open && unknown.mixture == open.mixture);
+    let said = |prediction: &ForcePrediction| {
+        let texts = prediction.caveats.iter().map(|caveat| caveat.text.clone());
+        texts.filter(|text| text.contains("\"tank\"") && text.contains("(A, B)")).count()
+    };
+    assert_eq!([said(&unknown), said(&open)], [1, 0], "{:?}", unknown.caveats);
+}
+
+#[test]
 fn wrong_questions_are_answered_with_what_is_wrong() {
-    let unknown = ForceScenario { striking_body: Some("tank".to_owned()), ..scenario() };
-    let error = model().predict(&unknown).unwrap_err();
-    assert!(matches!(error, ForceError::UnknownBody { .. }), "{error}");
-    assert!(error.to_string().contains("expected one of A, B"), "{error}");
     let light = ForceScenario { mass_kg: [0.0, 1500.0], ..scenario() };
     let error = model().predict(&light).unwrap_err().to_string();
     assert_eq!(error, "mass of the struck vehicle [kg] is 0, expected 1 to 1e8");

@@ -15,17 +15,6 @@ pub enum ForceError {
         /// Number of cases, none of which has a contact force.
         n_cases: usize,
     },
-    /// The kind of the body of the striking vehicle is unknown to the model.
-    #[error(
-        "body {name:?} of the striking vehicle is unknown to the model, expected one of {}",
-        known.join(", ")
-    )]
-    UnknownBody {
-        /// The kind that was asked for.
-        name: String,
-        /// The kinds that the model knows.
-        known: Vec<String>,
-    },
     /// A number of the scenario is outside its range.
     #[error("{name} is {value}, expected {expected}")]
     Scenario {

@@ -52,7 +52,8 @@ pub struct ForcePrediction {
     pub caveats: Vec<Caveat>,
     /// Whether the contact point was left open and drawn from its distribution.
     pub is_contact_open: bool,
-    /// Whether the striking vehicle's body was left open and drawn from its distribution.
+    /// Whether the striking vehicle's body was left open, or is none that the model knows, and was drawn
+    /// from its distribution.
     pub is_body_open: bool,
 }
 
@@ -82,12 +83,11 @@ impl ForceModel {
     /// training cases, and the result is the mixture over it.
     ///
     /// # Errors
-    /// [`ForceError::Scenario`] for a number out of range, [`ForceError::UnknownBody`],
-    /// [`ForceError::Impact`].
+    /// [`ForceError::Scenario`] for a number out of range, [`ForceError::Impact`].
     pub fn predict(&self, scenario: &ForceScenario) -> Result<ForcePrediction, ForceError> {
         check(scenario)?;
         let (canonical, mirrored) = scenario.canonical();
-        let variants = self.variants(&canonical)?;
+        let variants = self.variants(&canonical);
         let applicability =
             variants.iter().map(|variant| variant.probability * variant.applicability).sum::<f64>();
         let is_inside = variants.iter().all(|variant| variant.applicability == 1.0);
@@ -110,7 +110,8 @@ impl ForceModel {
             }
         };
         let outside = self.domain.outside(&canonical);
-        let caveats = caveats(applicability, &outside, bare);
+        let mut caveats = caveats(applicability, &outside, bare);
+        caveats.extend(self.caveat_of_body(&canonical));
         let turned = |mixture: CurveMixture| if mirrored { mixture.mirrored() } else { mixture };
         let [px, py] = prediction.momentum_impulse_n_s;
         Ok(ForcePrediction {
@@ -124,7 +125,7 @@ impl ForceModel {
             outside,
             caveats,
             is_contact_open: canonical.contact_m.is_none(),
-            is_body_open: canonical.striking_body.is_none() && self.bodies().len() > 1,
+            is_body_open: self.body_idx(&canonical).is_none() && self.bodies().len() > 1,
         })
     }
 
@@ -225,17 +226,30 @@ impl ForceModel {
         Ok((prediction, bare.iter().any(|(force, _)| force.is_approaching)))
     }
 
-    fn variants(&self, scenario: &ForceScenario) -> Result<Vec<Variant>, ForceError> {
+    /// Index of the body of a scenario among those that the model knows; `None` if it is left open or is
+    /// another one.
+    fn body_idx(&self, scenario: &ForceScenario) -> Option<usize> {
         let names = self.bodies();
-        let bodies: Vec<(usize, f64)> = match (&scenario.striking_body, names.len()) {
-            (_, 1) => vec![(0, 1.0)],
-            (None, _) => self.open.body.iter().copied().enumerate().collect(),
-            (Some(name), _) => match names.iter().position(|known| known == name) {
-                Some(idx) => vec![(idx, 1.0)],
-                None => {
-                    return Err(ForceError::UnknownBody { name: name.clone(), known: names });
-                }
-            },
+        let name = scenario.striking_body.as_ref()?;
+        names.iter().position(|known| known == name).or((names.len() == 1).then_some(0))
+    }
+
+    /// What is said of a body that the model does not know.
+    fn caveat_of_body(&self, scenario: &ForceScenario) -> Option<Caveat> {
+        let name = scenario.striking_body.as_ref().filter(|_| self.body_idx(scenario).is_none())?;
+        let known = self.bodies().join(", ");
+        let text = format!(
+            "the body of the striking vehicle, {name:?}, is none of those that the network knows \
+             ({known}): it is left open"
+        );
+        Some(Caveat::new(CaveatKind::OutsideDomain, text))
+    }
+
+    fn variants(&self, scenario: &ForceScenario) -> Vec<Variant> {
+        let bodies: Vec<(usize, f64)> = match self.body_idx(scenario) {
+            Some(idx) => vec![(idx, 1.0)],
+            None if self.bodies().len() == 1 => vec![(0, 1.0)],
+            None => self.open.body.iter().copied().enumerate().collect(),
         };
         let contacts = match scenario.contact_m {
             Some(contact) => vec![contact],
@@ -250,7 +264,7 @@ impl ForceModel {
                 applicability: self.domain.applicability(scenario, contact_m),
             })
         });
-        Ok(pairs.filter(|variant| variant.probability > 0.0).collect())
+        pairs.filter(|variant| variant.probability > 0.0).collect()
     }
 }
 
