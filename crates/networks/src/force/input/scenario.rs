@@ -35,8 +35,7 @@ pub struct ForceScenario {
     /// Velocity `[x, y]` of the striking vehicle's CG, m/s.
     #[serde(rename = "bullet_velocity_m_s")]
     pub striking_velocity_m_s: [f64; 2],
-    /// Yaw rates of the struck and the striking vehicle before the contact, rad/s. The network does not
-    /// use them; the physics about which it is centred does.
+    /// Yaw rates of the struck and the striking vehicle before the contact, rad/s.
     #[serde(default, skip_serializing_if = "turns_not")]
     pub yaw_rate_rad_s: [f64; 2],
     /// Heading of the striking vehicle against the struck vehicle's, rad, −π to π.

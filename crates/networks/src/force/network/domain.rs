@@ -12,10 +12,11 @@
 //! cases fill a box nearly evenly, of 3.5 standard deviations a side.
 //!
 //! The direction of the contact normal is one more feature. All training cases are blows against the
-//! side. So is the speed that turning gives the contact points against each other, in deviations of the
-//! relative velocity: the physics knows it, the network does not.
+//! side. A feature that is alike in all training cases has a twentieth of itself for its deviation, a yaw
+//! rate that is alike in all of them one that moves the contact points as fast as a deviation of the
+//! relative velocity: the physics knows the yaw rates even where the network does not.
 
-use crate::force::network::features::{N_SCENARIO, SCENARIO_NAMES, Standardisation};
+use crate::force::network::features::{N_SCENARIO, N_TURNING, SCENARIO_NAMES, Standardisation};
 use crate::force::network::features::{OutsideTraining, scenario_numbers};
 use crate::force::{ForceCase, ForceScenario};
 
@@ -33,25 +34,24 @@ const NORMAL_NAME: &str = "contact normal from across the struck vehicle [rad]";
 /// turning either turns the blow.
 const THETA_IDX: usize = 4;
 
-/// Name of the speed that turning gives the contact points.
-const TURNING_NAME: &str = "speed of the contact points by yaw rates before the impact [m/s]";
-/// Index of the velocity across the struck vehicle, whose deviation is the unit of the speed by turning.
+/// Name of the distance from the training cases among the features.
+const DISTANCE_NAME: &str = "distance from the nearest training cases, over their own";
+/// Index of the velocity across the struck vehicle.
 const CLOSING_IDX: usize = 3;
-/// From the CG of a striking vehicle to the corner that touches, in its axes, m, where a scenario does not
-/// say where it stands.
-const USUAL_ARM_M: [f64; 2] = [1.9, 0.9];
+/// Numbers by which scenarios are compared, the yaw rates last.
+const N_NUMBERS: usize = N_SCENARIO + N_TURNING;
+/// From a vehicle's CG to where it touches, m.
+const USUAL_ARM_M: f64 = 2.0;
 
 /// The training cases of a network as points in the space of the scenario's features.
 #[derive(Debug, Clone)]
 pub(crate) struct ForceDomain {
-    mean: [f64; N_SCENARIO],
-    scale: [f64; N_SCENARIO],
-    range: [[f64; 2]; N_SCENARIO],
-    points: Vec<[f64; N_SCENARIO]>,
+    mean: [f64; N_NUMBERS],
+    scale: [f64; N_NUMBERS],
+    range: [[f64; 2]; N_NUMBERS],
+    points: Vec<[f64; N_NUMBERS]>,
     /// d₀.
     spacing: f64,
-    /// Largest speed that turning gives the contact points of a training case, m/s.
-    turning_m_s: f64,
 }
 
 impl ForceDomain {
@@ -61,24 +61,26 @@ impl ForceDomain {
     /// - `cases`: the training cases. Those without contact point are left out.
     pub(crate) fn from_cases(standardisation: &Standardisation, cases: &[ForceCase]) -> Self {
         let at = |values: &[f64], i: usize| values.get(i).copied().unwrap_or(0.0);
-        let indices: [usize; N_SCENARIO] = std::array::from_fn(|i| i);
-        let mean = indices.map(|i| at(&standardisation.mean, i));
+        let indices: [usize; N_NUMBERS] = std::array::from_fn(|i| i);
+        // The features of turning, where a model has them, are its last ones.
+        let n_features = standardisation.mean.len();
+        let feature = |i: usize| match i < N_SCENARIO {
+            true => i,
+            false if standardisation.n_turning() > 0 => n_features - N_NUMBERS + i,
+            false => n_features,
+        };
+        let mean = indices.map(|i| at(&standardisation.mean, feature(i)));
         let range = indices.map(|i| standardisation.range.get(i).copied().unwrap_or([0.0; 2]));
-        let scale = indices.map(|i| {
-            let [low, high] = range[i];
-            match high - low > tolerance(high) {
-                true => at(&standardisation.std, i),
-                false => CONSTANT_SHARE * mean[i].abs().max(1.0),
-            }
+        let is_varied = |i: usize| range[i][1] - range[i][0] > tolerance(range[i][1]);
+        let std = |i: usize| at(&standardisation.std, feature(i));
+        let scale = indices.map(|i| match is_varied(i) {
+            true => std(i),
+            false if i >= N_SCENARIO && is_varied(CLOSING_IDX) => std(CLOSING_IDX) / USUAL_ARM_M,
+            false => CONSTANT_SHARE * mean[i].abs().max(1.0),
         });
-        let mut domain =
-            Self { mean, scale, range, points: Vec::new(), spacing: 0.0, turning_m_s: 0.0 };
+        let mut domain = Self { mean, scale, range, points: Vec::new(), spacing: 0.0 };
         let point = |case: &ForceCase| Some(domain.point(&case.scenario, case.scenario.contact_m?));
         domain.points = cases.iter().filter_map(point).collect();
-        let turning = cases
-            .iter()
-            .filter_map(|case| Some(turning_m_s(&case.scenario, case.scenario.contact_m?)));
-        domain.turning_m_s = turning.fold(0.0, f64::max);
         let left_out = |i: usize| {
             let others = domain.points.iter().enumerate().filter(|(j, _)| *j != i);
             nearest(&domain.points[i], others.map(|(_, other)| other))
@@ -95,20 +97,21 @@ impl ForceDomain {
         let numbers = scenario_numbers(scenario, contact_m);
         let beyond = |i: usize| (beyond(numbers[i], self.range[i]) / self.scale[i]).powi(2);
         let normal = scenario.normal_turn_rad() / self.scale[THETA_IDX];
-        let turning = self.turning_deviations(turning_m_s(scenario, contact_m));
-        let others = normal * normal + turning * turning;
-        let outside = ((0..N_SCENARIO).map(beyond).sum::<f64>() + others).sqrt();
-        let distance = nearest(&self.point(scenario, contact_m), self.points.iter());
-        let far = match self.spacing > 0.0 {
-            true => distance / self.spacing - 1.0,
-            false => 0.0,
-        };
+        let outside = ((0..N_NUMBERS).map(beyond).sum::<f64>() + normal * normal).sqrt();
+        let far = self.spacings_away(scenario, contact_m) - 1.0;
         let u = far.max(outside - SLACK).clamp(0.0, 1.0);
         (1.0 - u).powi(2) * (1.0 + 2.0 * u)
     }
 
-    /// The features of a canonical scenario that lie outside the range of the training cases. Features
-    /// that the scenario leaves open are never listed.
+    /// d / d₀ of a scenario; 1 where d₀ is 0.
+    fn spacings_away(&self, scenario: &ForceScenario, contact_m: [f64; 2]) -> f64 {
+        let distance = nearest(&self.point(scenario, contact_m), self.points.iter());
+        if self.spacing > 0.0 { distance / self.spacing } else { 1.0 }
+    }
+
+    /// The features of a canonical scenario that lie outside the range of the training cases; where none
+    /// does and no training case is near, the distance. Features that the scenario leaves open are never
+    /// listed.
     pub(crate) fn outside(&self, scenario: &ForceScenario) -> Vec<OutsideTraining> {
         let numbers = scenario_numbers(scenario, scenario.contact_m.unwrap_or([f64::NAN; 2]));
         let check = |i: usize| {
@@ -128,23 +131,20 @@ impl ForceDomain {
             range: [0.0; 2],
             deviations: turn.abs() / self.scale[THETA_IDX],
         });
-        let turning = scenario.contact_m.map_or(0.0, |at| turning_m_s(scenario, at));
-        let range = [0.0, self.turning_m_s];
-        let turning = (beyond(turning, range) > tolerance(range[1])).then(|| OutsideTraining {
-            feature: TURNING_NAME,
-            value: turning,
-            range,
-            deviations: self.turning_deviations(turning),
-        });
-        (0..N_SCENARIO).filter_map(check).chain(normal).chain(turning).collect()
+        let mut outside: Vec<_> = (0..N_NUMBERS).filter_map(check).chain(normal).collect();
+        let away = scenario.contact_m.map_or(0.0, |contact| self.spacings_away(scenario, contact));
+        if outside.is_empty() && away > 1.0 {
+            outside.push(OutsideTraining {
+                feature: DISTANCE_NAME,
+                value: away,
+                range: [0.0, 1.0],
+                deviations: (away - 1.0) * self.spacing,
+            });
+        }
+        outside
     }
 
-    /// How far a speed by turning lies beyond that of the training cases, in deviations.
-    fn turning_deviations(&self, turning_m_s: f64) -> f64 {
-        beyond(turning_m_s, [0.0, self.turning_m_s]) / self.scale[CLOSING_IDX]
-    }
-
-    fn point(&self, scenario: &ForceScenario, contact_m: [f64; 2]) -> [f64; N_SCENARIO] {
+    fn point(&self, scenario: &ForceScenario, contact_m: [f64; 2]) -> [f64; N_NUMBERS] {
         let numbers = scenario_numbers(scenario, contact_m);
         std::array::from_fn(|i| (numbers[i] - self.mean[i]) / self.scale[i])
     }
@@ -160,18 +160,12 @@ fn tolerance(high: f64) -> f64 {
     1e-6 * (1.0 + high.abs())
 }
 
-/// Speed that turning gives the contact points against each other, m/s.
-fn turning_m_s(scenario: &ForceScenario, contact_m: [f64; 2]) -> f64 {
-    let [x, y] = scenario.turning_velocity_m_s(contact_m, USUAL_ARM_M);
-    x.hypot(y)
-}
-
 /// Mean distance to the nearest points; zero if there is none.
 fn nearest<'a>(
-    point: &[f64; N_SCENARIO],
-    others: impl Iterator<Item = &'a [f64; N_SCENARIO]>,
+    point: &[f64; N_NUMBERS],
+    others: impl Iterator<Item = &'a [f64; N_NUMBERS]>,
 ) -> f64 {
-    let square = |other: &[f64; N_SCENARIO]| {
+    let square = |other: &[f64; N_NUMBERS]| {
         point.iter().zip(other).map(|(a, b)| (a - b).powi(2)).sum::<f64>()
     };
     let mut distances: Vec<f64> = others.map(|other| square(other).sqrt()).collect();
@@ -245,19 +239,35 @@ mod tests {
             assert_eq!(domain.outside(&turned).len(), usize::from(expected == 0.0));
         }
         let mut before = 1.0;
-        for (rate, is_named) in [(0.0, false), (0.05, true), (0.2, true), (0.5, true), (2.0, true)]
-        {
+        for rate in [0.0, 0.05, 0.2, 0.5, 2.0] {
             let turning = ForceScenario { yaw_rate_rad_s: [rate, -rate], ..seen.clone() };
             let now = domain.applicability(&turning, contact);
             assert!(now <= before, "{rate}: {now} after {before}");
             let outside = domain.outside(&turning);
-            assert_eq!(outside.len(), usize::from(is_named), "{outside:?}");
-            assert!(outside.iter().all(|found| found.feature == TURNING_NAME), "{outside:?}");
+            assert_eq!(outside.len(), if rate > 0.0 { 2 } else { 0 }, "{outside:?}");
+            assert!(outside.iter().all(|found| found.feature.starts_with("yaw rate of the")));
             before = now;
         }
         assert_eq!(before, 0.0);
         let fast = ForceScenario { striking_velocity_m_s: [70.0, 3.0], ..seen };
         assert_eq!(domain.applicability(&fast, contact), 0.0);
+    }
+
+    #[test]
+    fn yaw_rates_of_the_training_cases_are_inside_and_features_of_the_network() {
+        let mut cases = shipped("fea");
+        assert_eq!(standardisation(&cases).n_turning(), 0);
+        for (i, case) in cases.iter_mut().enumerate() {
+            case.scenario.yaw_rate_rad_s = [0.6 * (i as f64).sin(), 0.6 * (1.7 * i as f64).cos()];
+        }
+        assert_eq!(standardisation(&cases).n_turning(), N_TURNING);
+        let (domain, seen) = (domain(&cases), cases[10].scenario.clone());
+        let contact = seen.contact_m.unwrap();
+        assert_eq!(domain.applicability(&seen, contact), 1.0);
+        assert_eq!(domain.outside(&seen), vec![]);
+        let fast = ForceScenario { yaw_rate_rad_s: [3.0, 0.0], ..seen };
+        assert_eq!(domain.applicability(&fast, contact), 0.0);
+        assert_eq!(domain.outside(&fast)[0].feature, SCENARIO_NAMES[N_SCENARIO]);
     }
 
     /// A quantity that no training case varies says nothing about other values of it.

@@ -10,18 +10,24 @@ use impactlab_core::uncertainty::{CURVE_N_INSTANTS, Caveat, CaveatKind};
 use impactlab_core::units::significant;
 
 /// Names of the scenario's features as shown to the user, with units.
-pub(super) const SCENARIO_NAMES: [&str; N_SCENARIO] = [
+pub(super) const SCENARIO_NAMES: [&str; N_SCENARIO + N_TURNING] = [
     "mass of the struck vehicle [kg]",
     "mass of the striking vehicle [kg]",
     "v_bx − v_tx [m/s]",
     "v_by − v_ty [m/s]",
     "θ_b [rad]",
     "contact x [m]",
+    "yaw rate of the struck vehicle before the impact [rad/s]",
+    "yaw rate of the striking vehicle before the impact [rad/s]",
 ];
+/// Number of features of a scenario in which nothing turns.
 pub(super) const N_SCENARIO: usize = 6;
+/// Number of features by which vehicles that turn are described. Only a model that has learned from such
+/// vehicles has them, after all others.
+pub(super) const N_TURNING: usize = 2;
 /// Number of features of the scenario's physics.
 const N_PHYSICS: usize = 6;
-/// Number of features of a scenario besides one for each kind of body.
+/// Number of features of a scenario besides one for each kind of body and those of turning.
 pub(crate) const N_FEATURES: usize = N_SCENARIO + N_PHYSICS;
 /// Number of features of each instant.
 pub(crate) const N_INSTANT_FEATURES: usize = 6;
@@ -75,7 +81,7 @@ impl OutsideTraining {
     }
 }
 
-/// The features of a canonical scenario: its numbers, then its physics, then the body.
+/// The features of a canonical scenario: its numbers, then its physics, then the body, then the yaw rates.
 pub(crate) fn features(
     scenario: &ForceScenario,
     centre: &CentreCurve,
@@ -96,16 +102,28 @@ pub(crate) fn features(
         centre.curve.peak().1,
     ];
     let body = (0..n_bodies).map(|i| f64::from(u8::from(i == body_idx)));
-    numbers.into_iter().chain(physics).chain(body).collect()
+    let numbers = &numbers[..N_SCENARIO];
+    let all = numbers.iter().copied().chain(physics).chain(body);
+    all.chain(scenario.yaw_rate_rad_s).collect()
 }
 
 pub(super) fn scenario_numbers(
     scenario: &ForceScenario,
     [contact_x, _]: [f64; 2],
-) -> [f64; N_SCENARIO] {
+) -> [f64; N_SCENARIO + N_TURNING] {
     let [vx, vy] = scenario.relative_velocity_m_s();
     let [struck_mass, striking_mass] = scenario.mass_kg;
-    [struck_mass, striking_mass, vx, vy, scenario.theta_b_rad, contact_x]
+    let [struck_yaw_rate, striking_yaw_rate] = scenario.yaw_rate_rad_s;
+    [
+        struck_mass,
+        striking_mass,
+        vx,
+        vy,
+        scenario.theta_b_rad,
+        contact_x,
+        struck_yaw_rate,
+        striking_yaw_rate,
+    ]
 }
 
 /// The features of each instant, row by row, `[CURVE_N_INSTANTS, N_INSTANT_FEATURES]`.
@@ -135,25 +153,35 @@ impl Standardisation {
     /// # Errors
     /// [`NnError`] with the first number or list that is refused.
     pub(crate) fn check(&self, n_bodies: usize) -> Result<(), NnError> {
-        check_length("standardisation.mean", self.mean.len(), N_FEATURES + n_bodies)?;
-        check_length("standardisation.std", self.std.len(), N_FEATURES + n_bodies)?;
-        check_length("standardisation.range", self.range.len(), N_SCENARIO)?;
+        let n_turning = self.n_turning();
+        let n_features = N_FEATURES + n_bodies + n_turning;
+        check_length("standardisation.mean", self.mean.len(), n_features)?;
+        check_length("standardisation.std", self.std.len(), n_features)?;
+        check_length("standardisation.range", self.range.len(), N_SCENARIO + n_turning)?;
         check_numbers("standardisation.std", &self.std, Expected::Positive)
+    }
+
+    /// Number of features of turning: none for a model that has not learned from vehicles that turn.
+    pub(crate) fn n_turning(&self) -> usize {
+        if self.range.len() > N_SCENARIO { N_TURNING } else { 0 }
     }
 
     /// Statistics over the training cases.
     ///
-    /// - `rows`: their features, all of one length.
+    /// - `rows`: their features, all of one length. Those of turning are left out where none turns.
     pub(crate) fn from_rows(rows: &[Vec<f64>]) -> Self {
         let n = rows.len().max(1) as f64;
         let width = rows.first().map_or(0, Vec::len);
+        let of_turning = width.saturating_sub(N_TURNING)..width;
+        let turns = |row: &Vec<f64>| row.iter().skip(of_turning.start).any(|rate| *rate != 0.0);
+        let width = if rows.iter().any(turns) { width } else { of_turning.start };
         let column = |i: usize| rows.iter().filter_map(move |row| row.get(i).copied());
         let mean: Vec<f64> = (0..width).map(|i| column(i).sum::<f64>() / n).collect();
         let std = (0..width).map(|i| {
             let variance = column(i).map(|x| (x - mean[i]).powi(2)).sum::<f64>() / n;
             if variance.sqrt() > 1e-9 * (1.0 + mean[i].abs()) { variance.sqrt() } else { 1.0 }
         });
-        let range = (0..N_SCENARIO.min(width)).map(|i| {
+        let range = (0..N_SCENARIO.min(width)).chain(of_turning.filter(|i| *i < width)).map(|i| {
             let low = column(i).fold(f64::INFINITY, f64::min);
             [low, column(i).fold(f64::NEG_INFINITY, f64::max)]
         });
@@ -161,7 +189,7 @@ impl Standardisation {
         Self { mean, std, range }
     }
 
-    /// (x − mean) / deviation.
+    /// (x − mean) / deviation, without the features that the training cases have not.
     pub(crate) fn apply(&self, row: &[f64]) -> Vec<f32> {
         let scaled = row.iter().zip(&self.mean).zip(&self.std);
         scaled.map(|((x, mean), std)| ((x - mean) / std) as f32).collect()

@@ -159,7 +159,7 @@ impl NetworkOutput {
 impl ForceNetwork {
     /// A network with random first weights.
     ///
-    /// - `n_bodies`: number of kinds of bodies of the striking vehicle;
+    /// - `n_more`: number of kinds of bodies of the striking vehicle;
     /// - `parameters`: the list to which its parameters are added, empty.
     ///
     /// # Errors
@@ -167,12 +167,12 @@ impl ForceNetwork {
     /// takes.
     pub(crate) fn new(
         config: &NetworkConfig,
-        n_bodies: usize,
+        n_more: usize,
         rng: &mut ChaCha8Rng,
         mut parameters: Parameters,
     ) -> Result<Self, ForceError> {
         let number_type = parameters.number_type();
-        let layers = Layers::new(config, n_bodies, &mut parameters, rng)?;
+        let layers = Layers::new(config, n_more, &mut parameters, rng)?;
         let positions: Vec<f64> = (0..CURVE_N_INSTANTS).map(|t| t as f64).collect();
         let position = positional_encoding(&positions, config.position_channels, number_type)?;
         Ok(Self { config: config.clone(), parameters, layers, position })
@@ -391,12 +391,12 @@ impl ForceNetwork {
 impl Layers {
     fn new(
         config: &NetworkConfig,
-        n_bodies: usize,
+        n_more: usize,
         parameters: &mut Parameters,
         rng: &mut ChaCha8Rng,
     ) -> Result<Self, ForceError> {
         let mut root = parameters.builder(rng);
-        let n_in = N_FEATURES + n_bodies;
+        let n_in = N_FEATURES + n_more;
         let encoder =
             MultiScaleEncoder::new(&mut root.at("encoder"), n_in, &config.encoder_branches)?;
         let channels = config.attention_channels;

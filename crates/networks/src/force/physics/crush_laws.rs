@@ -8,6 +8,7 @@ use crate::learning::Split;
 use impactlab_core::collision::crush::{
     BodyCrush, CrushFit, CrushLaw, CrushSample, CrushScenario, Nose,
 };
+use impactlab_core::numerics::quantile_of_sorted;
 use impactlab_core::uncertainty::CURVE_INTERVAL_S;
 
 /// Yaw inertia over mass where none is known, m²: a uniform body of 4.5 m × 1.8 m has 1.96, cars
@@ -55,7 +56,7 @@ fn sample(case: &ForceCase, law: &CrushLaw, hooked_weight: f64) -> Option<CrushS
 }
 
 /// The prior of the crush model with the bodies that the cases name, their noses from the points
-/// of first contact, and the middle of the contacts for the rear axle.
+/// of first contact, and the median of the contacts for the rear axle.
 fn prior_law(cases: &[ForceCase]) -> CrushLaw {
     let mut names: Vec<&str> = cases.iter().filter_map(|case| body_name(&case.scenario)).collect();
     names.sort_unstable();
@@ -68,12 +69,11 @@ fn prior_law(cases: &[ForceCase]) -> CrushLaw {
             .collect();
         BodyCrush::prior(*name, Nose::fit(&contacts).unwrap_or_default())
     });
-    let contacts: Vec<f64> =
+    let mut contacts: Vec<f64> =
         cases.iter().filter_map(|case| case.scenario.contact_m.map(|[x, _]| x)).collect();
-    let (low, high) = contacts
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
-    let middle = if low.is_finite() { (low + high) / 2.0 } else { 0.0 };
+    contacts.sort_by(f64::total_cmp);
+    // Of the median, which a few contacts far ahead of the axle do not move.
+    let middle = quantile_of_sorted(&contacts, 0.5).unwrap_or(0.0);
     CrushLaw::prior(bodies.collect(), middle)
 }
 

@@ -1,8 +1,8 @@
 //! The momentum solution of a force scenario: rigid bodies whose contact normal lies nearly across
 //! the struck vehicle.
 //!
-//! What a scenario leaves open (the position of the striking vehicle's CG, its yaw inertia, the
-//! contact point) is replaced by an average over the training cases. Restitution, friction limit
+//! What a scenario leaves open, or must not be used (the position of the striking vehicle's CG, yaw
+//! inertias, the contact point), is replaced by an average over the training cases. Restitution, friction limit
 //! and the angle of the normal are fitted to the impulses of these cases. All scenarios are
 //! canonical.
 
@@ -36,6 +36,10 @@ pub struct MomentumModel {
     pub inertia_per_mass_m2: [f64; 2],
     /// Whether the contact point of a scenario is used.
     pub uses_contact: bool,
+    /// Whether place and yaw inertias of a scenario are used where it tells them, beside its contact point.
+    /// They are if any training case turns: then the arms decide how fast the points of contact meet.
+    #[serde(default)]
+    pub uses_place: bool,
 }
 
 impl MomentumModel {
@@ -65,6 +69,7 @@ impl MomentumModel {
             striking_arm_m: [1.9, 0.93],
             inertia_per_mass_m2: [1.8, 1.9],
             uses_contact,
+            uses_place: false,
         }
     }
 
@@ -76,6 +81,8 @@ impl MomentumModel {
     pub fn fit(cases: &[&ForceCase], uses_contact: bool) -> Self {
         let mut model = Self::prior(uses_contact);
         let scenarios = || cases.iter().map(|case| &case.scenario);
+        let turns = |scenario: &ForceScenario| scenario.yaw_rate_rad_s != [0.0; 2];
+        model.uses_place = uses_contact && scenarios().any(turns);
         let mean = |values: &mut dyn Iterator<Item = f64>| {
             Summary::from_values(values).map(|summary| summary.mean)
         };
@@ -110,10 +117,15 @@ impl MomentumModel {
     pub fn impact(&self, scenario: &ForceScenario) -> Impact {
         let known = scenario.contact_m.filter(|_| self.uses_contact);
         let (sin, cos) = scenario.theta_b_rad.sin_cos();
-        let [x, y] = self.striking_arm_m;
+        let own_arm = striking_arm_m(scenario).filter(|_| self.uses_place);
+        let [x, y] = own_arm.unwrap_or(self.striking_arm_m);
+        let inertia_of = |i: usize| {
+            let own = scenario.yaw_inertia_kg_m2[i].filter(|_| self.uses_place);
+            own.unwrap_or(self.inertia_per_mass_m2[i] * scenario.mass_kg[i])
+        };
         let body = |i: usize, heading_rad, velocity_world_m_s, contact_arm_world_m| ImpactBody {
             mass_kg: scenario.mass_kg[i],
-            yaw_inertia_kg_m2: self.inertia_per_mass_m2[i] * scenario.mass_kg[i],
+            yaw_inertia_kg_m2: inertia_of(i),
             heading_rad,
             velocity_world_m_s,
             yaw_rate_rad_s: scenario.yaw_rate_rad_s[i],
@@ -134,12 +146,25 @@ impl MomentumModel {
         }
     }
 
-    /// The impact of a canonical scenario: its impulse and the velocities after it.
+    /// The impact of a canonical scenario: its impulse and the velocities after it. Where the vehicles do not
+    /// approach each other along the fitted normal, that across the struck vehicle is taken, and if they do
+    /// not along this one either, the yaw rates are left out.
     ///
     /// # Errors
     /// [`ImpactError`] for masses or velocities out of range.
     pub fn solve(&self, scenario: &ForceScenario) -> Result<ImpactSolution, ImpactError> {
-        self.impact(scenario).solve()
+        let solution = self.impact(scenario).solve()?;
+        if solution.impulse_world_n_s != [0.0; 2] {
+            return Ok(solution);
+        }
+        // The tilt of the normal, or the place that stands for one that is not known, can have vehicles
+        // part that slide along each other or turn.
+        let straight = Self { normal_turn_rad: 0.0, ..*self };
+        let solution = straight.impact(scenario).solve()?;
+        if solution.impulse_world_n_s != [0.0; 2] {
+            return Ok(solution);
+        }
+        straight.impact(&ForceScenario { yaw_rate_rad_s: [0.0; 2], ..scenario.clone() }).solve()
     }
 
     /// Mean over cases of `|P̂ − P| / |P|`; infinite where one cannot be solved.
@@ -210,9 +235,9 @@ mod tests {
         let truth = MomentumModel { restitution: 0.2, ..MomentumModel::prior(true) };
         let mut cases = shipped("fea");
         for case in &mut cases {
-            case.impulse_n_s = truth.solve(&case.scenario).unwrap().impulse_world_n_s;
             case.scenario.striking_position_m = None;
             case.scenario.yaw_inertia_kg_m2 = [None; 2];
+            case.impulse_n_s = truth.solve(&case.scenario).unwrap().impulse_world_n_s;
         }
         let fitted = MomentumModel::fit(&cases.iter().collect::<Vec<_>>(), true);
         assert!((fitted.restitution - 0.2).abs() < 0.03, "{fitted:?}");

@@ -134,7 +134,8 @@ impl ModelFile for ForceModel {
         let mut rng = random_stream(0, "force network", 0);
         let tensors = file.take_group("network");
         let parameters = Parameters::new(DType::F32).at_most(parameter_budget(&tensors));
-        let network = ForceNetwork::new(&config.network, n_bodies, &mut rng, parameters)?;
+        let n_more = n_bodies + standardisation.n_turning();
+        let network = ForceNetwork::new(&config.network, n_more, &mut rng, parameters)?;
         network.parameters().import(&tensors)?;
         let missing = || NnError::MissingTensor { name: format!("cases.{CURVES}") };
         let curves = file.take_group("cases").remove(CURVES).ok_or_else(missing)?;

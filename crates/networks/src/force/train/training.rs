@@ -239,6 +239,7 @@ impl<'a> ForceTrainingRun<'a> {
         let seen: Vec<Vec<f64>> = parts.train.iter().map(|&idx| rows[idx].clone()).collect();
         let standardisation = Standardisation::from_rows(&seen);
         let rows = rows.iter().map(|row| standardisation.apply(row)).collect();
+        let n_more = bodies.len() + standardisation.n_turning();
         let cases: Vec<&ForceCase> = set.train.iter().collect();
         let residuals = ResidualModel::fit(&set.train, &centres, config.network.factors);
         let tensors =
@@ -246,7 +247,7 @@ impl<'a> ForceTrainingRun<'a> {
         let mut rng = random_stream(settings.seed, "force network", 0);
         let network = {
             let parameters = Parameters::new(DType::F32);
-            ForceNetwork::new(&config.network, bodies.len(), &mut rng, parameters)?
+            ForceNetwork::new(&config.network, n_more, &mut rng, parameters)?
         };
         let optimizer = AdamW::new(optimizer_config(config), network.parameters())?;
         let best_parameters = network.parameters().export()?;

@@ -10,6 +10,12 @@ use impactlab_core::collision::ImpactSolution;
 /// is about the smallest closing speed of a PIT manoeuvre.
 const LATERAL_SPEED_SCALE_M_S: f64 = 0.5;
 
+/// From the CG of a striking vehicle to the corner that touches, in its axes, m, where a scenario does not
+/// say where it stands.
+const USUAL_ARM_M: [f64; 2] = [1.9, 0.9];
+/// The right flank of a struck vehicle, m, where a scenario does not say where it is touched.
+const USUAL_FLANK_Y_M: f64 = -0.92;
+
 /// The columns of a scenario that a model may use.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -29,6 +35,9 @@ pub struct FeatureMap {
     columns: ColumnSet,
     /// Mean contact point along the struck vehicle, m, which replaces an unknown one.
     contact_x_m: f64,
+    /// Whether yaw rates before the impact are columns.
+    #[serde(default)]
+    turns: bool,
     /// Kinds of body, sorted. The first has no column of its own.
     bodies: Vec<String>,
 }
@@ -55,25 +64,40 @@ impl FeatureMap {
         bodies.sort();
         bodies.dedup();
         let contact_x_m = contacts.iter().sum::<f64>() / contacts.len().max(1) as f64;
-        Self { columns, contact_x_m, bodies }
+        let turns = scenarios().any(|scenario| scenario.yaw_rate_rad_s != [0.0; 2]);
+        Self { columns, contact_x_m, turns, bodies }
     }
 
-    /// The row of a scenario: relative velocity along X; relative lateral velocity on a scale that
-    /// is logarithmic for large values, since forces and impulses are powers of it; heading;
-    /// logarithms of the masses; and, with all columns, the contact point along the struck vehicle
+    /// The row of a scenario: relative velocity of the contact points along X; the same across on a scale
+    /// that is logarithmic for large values, since forces and impulses are powers of it; heading;
+    /// logarithms of the masses; yaw rates, if any case has one; and, with all columns, the contact point
+    /// along the struck vehicle
     /// and for each kind of body but the first a 1 if the striking vehicle is of this kind, else a
     /// 0. For an unknown kind all of them have the same share.
     ///
     /// ```text
-    /// [v_x, asinh(v_y / 0.5 m/s), θ_b, ln m_t, ln m_b (, x_c, body …)]
+    /// [v_x, asinh(v_y / 0.5 m/s), θ_b, ln m_t, ln m_b (, r_t, r_b) (, x_c, body …)]
     /// ```
     pub fn row(&self, scenario: &ForceScenario) -> Vec<f64> {
-        let [vx, vy] = scenario.relative_velocity_m_s();
+        let mut known = scenario.clone();
+        if self.columns == ColumnSet::Theta {
+            (known.contact_m, known.striking_position_m) = (None, None);
+        }
+        let contact_m = known.contact_m.unwrap_or([self.contact_x_m, USUAL_FLANK_Y_M]);
+        let of_cgs = scenario.relative_velocity_m_s();
+        let turning = match self.turns {
+            true => known.turning_velocity_m_s(contact_m, USUAL_ARM_M),
+            false => [0.0; 2],
+        };
+        let [vx, vy] = [of_cgs[0] + turning[0], of_cgs[1] + turning[1]];
         let [m_t, m_b] = scenario.mass_kg.map(f64::ln);
         let lateral = (vy / LATERAL_SPEED_SCALE_M_S).asinh();
         let mut row = vec![vx, lateral, scenario.theta_b_rad, m_t, m_b];
+        if self.turns {
+            row.extend(scenario.yaw_rate_rad_s);
+        }
         if self.columns == ColumnSet::ThetaContactAndBody {
-            row.push(scenario.contact_m.map_or(self.contact_x_m, |[x, _]| x));
+            row.push(contact_m[0]);
             let is_known = |body: &String| self.bodies.contains(body);
             let body = scenario.striking_body.as_ref().filter(|body| is_known(body));
             let share = 1.0 / self.bodies.len().max(1) as f64;
@@ -127,5 +151,24 @@ mod tests {
         assert_eq!(all.row(&unknown)[6], 0.5);
         assert!((all.row(&unknown)[5] - -1.54).abs() < 0.05);
         assert_eq!(theta.row(&known).len(), 5);
+    }
+
+    /// In a row stand the velocities of the points of contact, and the yaw rates themselves.
+    #[test]
+    fn turning_is_in_the_row_where_a_case_turns() {
+        let mut cases = shipped("fea");
+        let standing = FeatureMap::fit(&cases.iter().collect::<Vec<_>>(), ColumnSet::Theta);
+        cases[0].scenario.yaw_rate_rad_s = [0.3, 0.0];
+        let cases: Vec<&ForceCase> = cases.iter().collect();
+        let all = FeatureMap::fit(&cases, ColumnSet::ThetaContactAndBody);
+        let still = example(StruckSide::Right);
+        let turning = ForceScenario { yaw_rate_rad_s: [0.3, 0.0], ..still.clone() };
+        assert_eq!(standing.row(&still), standing.row(&turning));
+        let (before, after) = (all.row(&still), all.row(&turning));
+        let [x, y] = still.contact_m.unwrap();
+        assert!((after[0] - before[0] - 0.3 * y).abs() < 1e-12, "{after:?} {before:?}");
+        let across = |row: &[f64]| LATERAL_SPEED_SCALE_M_S * row[1].sinh();
+        assert!((across(&after) - across(&before) + 0.3 * x).abs() < 1e-12);
+        assert_eq!(after[5..7], [0.3, 0.0]);
     }
 }
