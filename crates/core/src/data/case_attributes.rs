@@ -25,34 +25,38 @@ pub struct AttributeColumn {
     pub is_needed: bool,
 }
 
-const fn needed(name: &'static str, range: Range) -> AttributeColumn {
-    AttributeColumn { name, range, is_needed: true }
+impl AttributeColumn {
+    /// A column without which the physics of a case cannot be computed.
+    pub const fn needed(name: &'static str, range: Range) -> Self {
+        Self { name, range, is_needed: true }
+    }
+
+    /// A column that may be missing or have blank cells.
+    pub const fn optional(name: &'static str, range: Range) -> Self {
+        Self { name, range, is_needed: false }
+    }
 }
 
-const fn optional(name: &'static str, range: Range) -> AttributeColumn {
-    AttributeColumn { name, range, is_needed: false }
-}
-
-const M_T: AttributeColumn = needed("m_t_kg", BODY_MASS);
-const M_B: AttributeColumn = needed("m_b_kg", BODY_MASS);
-const V_TX: AttributeColumn = needed("v_tx_m_s", SPEED);
-const V_TY: AttributeColumn = needed("v_ty_m_s", SPEED);
-const V_BX: AttributeColumn = needed("v_bx_m_s", SPEED);
-const V_BY: AttributeColumn = needed("v_by_m_s", SPEED);
-const THETA_B: AttributeColumn = needed("theta_b_rad", HEADING);
-const AT_X: AttributeColumn = needed("contact_x_m", CONTACT_X);
-const AT_Y: AttributeColumn = needed("contact_y_m", CONTACT_Y);
-const AT_Z: AttributeColumn = optional("contact_z_m", CONTACT_HEIGHT);
-const IZZ_T: AttributeColumn = optional("izz_t_kg_m2", BODY_YAW_INERTIA);
-const IZZ_B: AttributeColumn = optional("izz_b_kg_m2", BODY_YAW_INERTIA);
-const NORMAL: AttributeColumn = optional("contact_normal_rad", HEADING);
-const R_T: AttributeColumn = optional("target_yaw_rate_rad_s", YAW_RATE);
-const R_B: AttributeColumn = optional("bullet_yaw_rate_rad_s", YAW_RATE);
-const STRIKING_X: AttributeColumn = optional("bullet_x0_m", STRIKING_OFFSET);
-const STRIKING_Y: AttributeColumn = optional("bullet_y0_m", STRIKING_OFFSET);
-const SPEED_BEFORE: AttributeColumn = needed("speed_m_s", SPEED);
-const MU: AttributeColumn = needed("mu", ROAD_FRICTION);
-const HEIGHT: AttributeColumn = needed("contact_height_m", CONTACT_HEIGHT);
+const M_T: AttributeColumn = AttributeColumn::needed("m_t_kg", BODY_MASS);
+const M_B: AttributeColumn = AttributeColumn::needed("m_b_kg", BODY_MASS);
+const V_TX: AttributeColumn = AttributeColumn::needed("v_tx_m_s", SPEED);
+const V_TY: AttributeColumn = AttributeColumn::needed("v_ty_m_s", SPEED);
+const V_BX: AttributeColumn = AttributeColumn::needed("v_bx_m_s", SPEED);
+const V_BY: AttributeColumn = AttributeColumn::needed("v_by_m_s", SPEED);
+const THETA_B: AttributeColumn = AttributeColumn::needed("theta_b_rad", HEADING);
+const AT_X: AttributeColumn = AttributeColumn::needed("contact_x_m", CONTACT_X);
+const AT_Y: AttributeColumn = AttributeColumn::needed("contact_y_m", CONTACT_Y);
+const AT_Z: AttributeColumn = AttributeColumn::optional("contact_z_m", CONTACT_HEIGHT);
+const IZZ_T: AttributeColumn = AttributeColumn::optional("izz_t_kg_m2", BODY_YAW_INERTIA);
+const IZZ_B: AttributeColumn = AttributeColumn::optional("izz_b_kg_m2", BODY_YAW_INERTIA);
+const NORMAL: AttributeColumn = AttributeColumn::optional("contact_normal_rad", HEADING);
+const R_T: AttributeColumn = AttributeColumn::optional("target_yaw_rate_rad_s", YAW_RATE);
+const R_B: AttributeColumn = AttributeColumn::optional("bullet_yaw_rate_rad_s", YAW_RATE);
+const STRIKING_X: AttributeColumn = AttributeColumn::optional("bullet_x0_m", STRIKING_OFFSET);
+const STRIKING_Y: AttributeColumn = AttributeColumn::optional("bullet_y0_m", STRIKING_OFFSET);
+const SPEED_BEFORE: AttributeColumn = AttributeColumn::needed("speed_m_s", SPEED);
+const MU: AttributeColumn = AttributeColumn::needed("mu", ROAD_FRICTION);
+const HEIGHT: AttributeColumn = AttributeColumn::needed("contact_height_m", CONTACT_HEIGHT);
 
 const FORCE_COLUMNS: &[AttributeColumn] = &[
     M_T, M_B, V_TX, V_TY, V_BX, V_BY, THETA_B, AT_X, AT_Y, AT_Z, NORMAL, IZZ_T, IZZ_B, R_T, R_B,

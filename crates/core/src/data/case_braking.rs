@@ -20,8 +20,7 @@ const CATCH_S: f64 = 0.01;
 /// Largest torque at a wheel, N m.
 const MAX_TORQUE_N_M: f64 = 1e6;
 
-const START: AttributeColumn =
-    AttributeColumn { name: "braking_start_s", range: CONTROL_TIME, is_needed: false };
+const START: AttributeColumn = AttributeColumn::optional("braking_start_s", CONTROL_TIME);
 
 const TORQUE: &str = "braking_torque_n_m";
 

@@ -26,20 +26,15 @@ use crate::vehicle::{
 };
 
 const NO_PAIR: &str = "the pair cannot be simulated";
-const FRICTION: AttributeColumn =
-    AttributeColumn { name: "mu", range: ROAD_FRICTION, is_needed: true };
-const HEIGHT: AttributeColumn =
-    AttributeColumn { name: "contact_height_m", range: CONTACT_HEIGHT, is_needed: false };
-const FIRST_CONTACT: AttributeColumn =
-    AttributeColumn { name: "first_contact_s", range: CONTROL_TIME, is_needed: false };
-const PLACE_X: AttributeColumn =
-    AttributeColumn { name: "contact_x_m", range: CONTACT_X, is_needed: false };
-const PLACE_Y: AttributeColumn =
-    AttributeColumn { name: "contact_y_m", range: CONTACT_Y, is_needed: false };
+const FRICTION: AttributeColumn = AttributeColumn::needed("mu", ROAD_FRICTION);
+const HEIGHT: AttributeColumn = AttributeColumn::optional("contact_height_m", CONTACT_HEIGHT);
+const FIRST_CONTACT: AttributeColumn = AttributeColumn::optional("first_contact_s", CONTROL_TIME);
+const PLACE_X: AttributeColumn = AttributeColumn::optional("contact_x_m", CONTACT_X);
+const PLACE_Y: AttributeColumn = AttributeColumn::optional("contact_y_m", CONTACT_Y);
 const BRAKE_REACTION: AttributeColumn =
-    AttributeColumn { name: "target_reaction_s", range: CONTROL_TIME, is_needed: false };
+    AttributeColumn::optional("target_reaction_s", CONTROL_TIME);
 const BRAKE_DECELERATION: AttributeColumn =
-    AttributeColumn { name: "target_brake_g", range: BRAKE_SHARE, is_needed: false };
+    AttributeColumn::optional("target_brake_g", BRAKE_SHARE);
 
 /// Force from which on the recorded vehicles are in contact, N.
 const CONTACT_FORCE_N: f64 = 100.0;
