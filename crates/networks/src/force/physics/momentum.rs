@@ -147,8 +147,9 @@ impl MomentumModel {
     }
 
     /// The impact of a canonical scenario: its impulse and the velocities after it. Where the vehicles do not
-    /// approach each other along the fitted normal, that across the struck vehicle is taken, and if they do
-    /// not along this one either, the yaw rates are left out.
+    /// approach each other along the fitted normal, that across the struck vehicle is taken. Of a model that
+    /// must not use the place of contact the yaw rates are left out if they do not approach along this one
+    /// either: they would turn points that are nobody's.
     ///
     /// # Errors
     /// [`ImpactError`] for masses or velocities out of range.
@@ -157,11 +158,11 @@ impl MomentumModel {
         if solution.impulse_world_n_s != [0.0; 2] {
             return Ok(solution);
         }
-        // The tilt of the normal, or the place that stands for one that is not known, can have vehicles
-        // part that slide along each other or turn.
+        // The tilt of the normal can have vehicles part that slide along each other.
         let straight = Self { normal_turn_rad: 0.0, ..*self };
         let solution = straight.impact(scenario).solve()?;
-        if solution.impulse_world_n_s != [0.0; 2] {
+        // Points of contact that are known and part are no collision.
+        if solution.impulse_world_n_s != [0.0; 2] || self.uses_contact {
             return Ok(solution);
         }
         straight.impact(&ForceScenario { yaw_rate_rad_s: [0.0; 2], ..scenario.clone() }).solve()
@@ -214,8 +215,9 @@ fn striking_arm_m(scenario: &ForceScenario) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::force::input::shipped;
+    use crate::force::input::{example, shipped};
     use crate::learning::{TEST_SHARE, split};
+    use impactlab_core::data::StruckSide;
 
     #[test]
     fn fitted_on_training_cases_it_meets_their_impulses_better() {
@@ -242,5 +244,31 @@ mod tests {
         let fitted = MomentumModel::fit(&cases.iter().collect::<Vec<_>>(), true);
         assert!((fitted.restitution - 0.2).abs() < 0.03, "{fitted:?}");
         assert!(fitted.mean_error(&cases.iter().collect::<Vec<_>>()) < 0.02, "{fitted:?}");
+    }
+
+    /// Vehicles that slide along each other and are parted by the tilt of the normal collide; points of
+    /// contact that turning parts do not, unless nobody knows where they are.
+    #[test]
+    fn what_the_tilt_parts_collides_and_what_turning_parts_does_not() {
+        let along = ForceScenario {
+            struck_velocity_m_s: [20.0, 0.0],
+            striking_velocity_m_s: [14.0, 0.4],
+            ..example(StruckSide::Right)
+        };
+        let impulse = |model: MomentumModel, scenario: &ForceScenario| {
+            model.solve(scenario).unwrap().impulse_world_n_s[1]
+        };
+        let tilted =
+            |normal_turn_rad| MomentumModel { normal_turn_rad, ..MomentumModel::prior(true) };
+        let is_parted = |model: &MomentumModel| {
+            model.impact(&along).solve().unwrap().impulse_world_n_s == [0.0; 2]
+        };
+        let parted: Vec<MomentumModel> =
+            [-0.2, 0.2].map(tilted).into_iter().filter(is_parted).collect();
+        assert_eq!(parted.len(), 1, "one of both tilts parts them");
+        assert!(impulse(parted[0], &along) > 0.0);
+        let turning = ForceScenario { yaw_rate_rad_s: [0.0, -1.0], ..along };
+        assert_eq!(impulse(MomentumModel::prior(true), &turning), 0.0);
+        assert!(impulse(MomentumModel::prior(false), &turning) > 0.0);
     }
 }
