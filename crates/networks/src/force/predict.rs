@@ -229,15 +229,20 @@ impl ForceModel {
     /// Index of the body of a scenario among those that the model knows; `None` if it is left open or is
     /// another one.
     fn body_idx(&self, scenario: &ForceScenario) -> Option<usize> {
-        let names = self.bodies();
         let name = scenario.striking_body.as_ref()?;
-        names.iter().position(|known| known == name).or((names.len() == 1).then_some(0))
+        self.bodies().iter().position(|known| known == name)
     }
 
-    /// What is said of a body that the model does not know.
+    /// What is said of a body that the model does not know, if the bodies that it has learned from have
+    /// names.
     fn caveat_of_body(&self, scenario: &ForceScenario) -> Option<Caveat> {
         let name = scenario.striking_body.as_ref().filter(|_| self.body_idx(scenario).is_none())?;
-        let known = self.bodies().join(", ");
+        let known: Vec<String> =
+            self.bodies().into_iter().filter(|name| !name.is_empty()).collect();
+        if known.is_empty() {
+            return None;
+        }
+        let known = known.join(", ");
         let text = format!(
             "the body of the striking vehicle, {name:?}, is none of those that the network knows \
              ({known}): it is left open"
