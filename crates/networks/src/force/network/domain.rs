@@ -35,7 +35,7 @@ const NORMAL_NAME: &str = "contact normal from across the struck vehicle [rad]";
 const THETA_IDX: usize = 4;
 
 /// Name of the distance from the training cases among the features.
-const DISTANCE_NAME: &str = "distance from the nearest training cases, over their own";
+const DISTANCE_NAME: &str = "relative distance from the nearest training cases";
 /// Index of the velocity across the struck vehicle.
 const CLOSING_IDX: usize = 3;
 /// Numbers by which scenarios are compared, the yaw rates last.
@@ -268,6 +268,26 @@ mod tests {
         let fast = ForceScenario { yaw_rate_rad_s: [3.0, 0.0], ..seen };
         assert_eq!(domain.applicability(&fast, contact), 0.0);
         assert_eq!(domain.outside(&fast)[0].feature, SCENARIO_NAMES[N_SCENARIO]);
+    }
+
+    /// Half of the cases turn to the left, half to the right: one that does not turn is like none of them.
+    #[test]
+    fn a_scenario_between_the_cases_is_far_from_all_of_them_and_that_is_said() {
+        let template = shipped("fea").swap_remove(10);
+        let case = |i: usize| {
+            let mut case = template.clone();
+            case.scenario.striking_velocity_m_s[1] += 0.05 * i as f64;
+            case.scenario.yaw_rate_rad_s = [if i.is_multiple_of(2) { 1.0 } else { -1.0 }, 0.0];
+            case
+        };
+        let cases: Vec<ForceCase> = (0..20).map(case).collect();
+        let (domain, seen) = (domain(&cases), &cases[10].scenario);
+        let straight = ForceScenario { yaw_rate_rad_s: [0.0; 2], ..seen.clone() };
+        let a = domain.applicability(&straight, seen.contact_m.unwrap());
+        assert!(a < 1.0 && domain.outside(seen) == vec![], "{a}");
+        let outside = domain.outside(&straight);
+        assert_eq!(outside.len(), 1, "{outside:?}");
+        assert!(outside[0].feature == DISTANCE_NAME && outside[0].value > 1.0, "{outside:?}");
     }
 
     /// A quantity that no training case varies says nothing about other values of it.
