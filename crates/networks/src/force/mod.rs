@@ -40,6 +40,7 @@ pub use physics::{
 pub use predict::{ForcePrediction, SHARE_OF_NETWORK};
 pub use regression::ColumnSet;
 pub use train::{
-    FORCE_CHECKPOINT, ForceEpoch, ForceModel, ForceRecord, ForceTrainSettings, ForceTraining,
-    ForceTrainingSet, LossTerms, VarianceFactors, fit_physics, train, train_around,
+    FORCE_CHECKPOINT, FarFactors, ForceEpoch, ForceModel, ForceRecord, ForceTrainSettings,
+    ForceTraining, ForceTrainingSet, LossTerms, VarianceCalibration, VarianceFactors, fit_physics,
+    train, train_around,
 };

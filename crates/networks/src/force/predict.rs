@@ -156,9 +156,12 @@ impl ForceModel {
         let components = output.components(&centres)?.into_iter().zip(variants);
         let components: Vec<CurveComponent> = components
             .flat_map(|(components, variant)| {
-                components.into_iter().map(|component| CurveComponent {
-                    weight: component.weight * variant.probability,
-                    ..component
+                let distance = self.domain.distance(canonical, variant.contact_m);
+                let factors = self.record.detail.variance_factors.at(distance);
+                components.into_iter().map(move |mut component| {
+                    component.weight *= variant.probability;
+                    factors.widen(&mut component);
+                    component
                 })
             })
             .collect();
@@ -176,8 +179,7 @@ impl ForceModel {
         let likely = components.iter().enumerate();
         let likely = likely.filter(|(idx, _)| is_hooking(*idx) == (k > 1 && hooking > 0.5));
         let likely = CurveMixture::new(likely.map(|(_, component)| component.clone()).collect())?;
-        let [likely, mixture] = [likely, CurveMixture::new(components)?]
-            .map(|mixture| self.record.detail.variance_factors.apply(mixture));
+        let mixture = CurveMixture::new(components)?;
         let curves = centres.iter().map(|centre| &centre.curve);
         Ok(CanonicalPrediction {
             mixture,

@@ -340,6 +340,8 @@ terms! {
     Weights: "weights", "Gewichte";
     VarianceFactors: "factors on the variances", "Faktoren auf die Varianzen",
         "From calibration on training cases";
+    FarVarianceFactors: "factors far from the cases", "Faktoren fern von den Fällen",
+        "From calibration on the training cases that are farthest from the others";
     LatentScales: "uncertainty", "Unsicherheit", "Standard deviations of the latent factors";
     CalibratedOn: "uncertainty calibrated on", "Unsicherheit kalibriert an";
     UsualValues: "nothing: the usual values", "nichts: übliche Werte";

@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use impactlab_core::units::Quantity;
-use impactlab_networks::force::{ForceConfig, ForceModel};
+use impactlab_networks::force::{ForceConfig, ForceModel, VarianceFactors};
 use impactlab_networks::learning::TrainingRecord;
 use impactlab_networks::response::{
     ForceOrigin, LATENT_NAMES, LatentScales, ResponseConfig, ResponseModel,
@@ -16,15 +16,11 @@ use crate::{LogReport, ResponseTrainingReport, TrainForceReport};
 impl TrainForceReport {
     /// What the answer says: what was learned from, how well, and which cases are left out.
     pub fn facts(&self) -> Vec<FactTable> {
-        let factors = &self.variance_factors;
-        let factors = [
-            ("latent factors", factors.shared),
-            ("single instants", factors.single),
-            ("duration", factors.duration),
-        ];
-        let factors = Value::named(factors.map(|(name, factor)| (name, Value::Fixed(factor, 2))));
         let mut facts = self.model_facts();
-        facts.extend([Fact::new(Term::VarianceFactors, factors), time(self.seconds)]);
+        facts.push(factors_fact(Term::VarianceFactors, &self.variance_factors.near));
+        let far = self.variance_factors.far.map(|far| far.factors);
+        facts.extend(far.map(|far| factors_fact(Term::FarVarianceFactors, &far)));
+        facts.push(time(self.seconds));
         let losses = self.train.zip(self.validation).map(|(train, validation)| {
             let row = |((name, train), (_, validation))| loss_row(name, &[train, validation]);
             let rows = train.named().into_iter().zip(validation.named()).map(row).collect();
@@ -48,6 +44,16 @@ impl TrainForceReport {
         facts.push(count(Term::Weights, self.n_parameters));
         facts
     }
+}
+
+fn factors_fact(term: Term, factors: &VarianceFactors) -> Fact {
+    let factors = [
+        ("impulse", factors.impulse.unwrap_or(factors.shared)),
+        ("latent factors", factors.shared),
+        ("single instants", factors.single),
+        ("duration", factors.duration),
+    ];
+    Fact::new(term, Value::named(factors.map(|(name, factor)| (name, Value::Fixed(factor, 2)))))
 }
 
 impl ResponseTrainingReport {

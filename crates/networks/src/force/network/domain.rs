@@ -81,12 +81,23 @@ impl ForceDomain {
         let mut domain = Self { mean, scale, range, points: Vec::new(), spacing: 0.0 };
         let point = |case: &ForceCase| Some(domain.point(&case.scenario, case.scenario.contact_m?));
         domain.points = cases.iter().filter_map(point).collect();
-        let left_out = |i: usize| {
-            let others = domain.points.iter().enumerate().filter(|(j, _)| *j != i);
-            nearest(&domain.points[i], others.map(|(_, other)| other))
-        };
-        domain.spacing = (0..domain.points.len()).map(left_out).fold(0.0, f64::max);
+        let left_out = |point| nearest(point, &domain.points, 1);
+        domain.spacing = domain.points.iter().map(left_out).fold(0.0, f64::max);
         domain
+    }
+
+    /// Mean distance of a training case from the three nearest of the others, in standard deviations.
+    pub(crate) fn distance_of_case(&self, case: &ForceCase) -> f64 {
+        let point = self.point(&case.scenario, case.scenario.contact_m.unwrap_or_default());
+        nearest(&point, &self.points, 1)
+    }
+
+    /// Mean distance of a canonical scenario from the three nearest training cases, in standard
+    /// deviations.
+    ///
+    /// - `contact_m`: its contact point, or one that is tried.
+    pub(crate) fn distance(&self, scenario: &ForceScenario, contact_m: [f64; 2]) -> f64 {
+        nearest(&self.point(scenario, contact_m), &self.points, 0)
     }
 
     /// Applicability a of the network, 0 to 1.
@@ -105,7 +116,7 @@ impl ForceDomain {
 
     /// d / d₀ of a scenario; 1 where d₀ is 0.
     fn spacings_away(&self, scenario: &ForceScenario, contact_m: [f64; 2]) -> f64 {
-        let distance = nearest(&self.point(scenario, contact_m), self.points.iter());
+        let distance = self.distance(scenario, contact_m);
         if self.spacing > 0.0 { distance / self.spacing } else { 1.0 }
     }
 
@@ -161,17 +172,17 @@ fn tolerance(high: f64) -> f64 {
 }
 
 /// Mean distance to the nearest points; zero if there is none.
-fn nearest<'a>(
-    point: &[f64; N_NUMBERS],
-    others: impl Iterator<Item = &'a [f64; N_NUMBERS]>,
-) -> f64 {
+///
+/// - `n_own`: how many of the points are this one.
+fn nearest(point: &[f64; N_NUMBERS], others: &[[f64; N_NUMBERS]], n_own: usize) -> f64 {
     let square = |other: &[f64; N_NUMBERS]| {
         point.iter().zip(other).map(|(a, b)| (a - b).powi(2)).sum::<f64>()
     };
-    let mut distances: Vec<f64> = others.map(|other| square(other).sqrt()).collect();
+    let mut distances: Vec<f64> = others.iter().map(|other| square(other).sqrt()).collect();
     distances.sort_by(f64::total_cmp);
-    distances.truncate(N_NEAREST);
-    distances.iter().sum::<f64>() / distances.len().max(1) as f64
+    let near = distances.get(n_own..).unwrap_or_default();
+    let near = near.get(..N_NEAREST).unwrap_or(near);
+    near.iter().sum::<f64>() / near.len().max(1) as f64
 }
 
 #[cfg(test)]

@@ -13,7 +13,8 @@ mod model;
 mod training;
 
 pub(crate) use batch::network_input;
-pub use calibration::VarianceFactors;
+pub(crate) use calibration::CalibrationCase;
+pub use calibration::{FarFactors, VarianceCalibration, VarianceFactors};
 pub use loss::LossTerms;
 pub use model::ForceModel;
 pub use record::{ForceEpoch, ForceRecord, ForceTraining};

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::force::train::{LossTerms, VarianceFactors};
+use crate::force::train::{LossTerms, VarianceCalibration};
 use crate::learning::{CaseId, EpochDetail, NamedLoss, TrainingRecord};
 
 /// The part of the record of an epoch that is specific to the force network.
@@ -23,7 +23,7 @@ pub struct ForceTraining {
     /// The epoch whose weights the model has, counted from 1; 0 for the weights before training.
     pub best_epoch: usize,
     /// Factors on the variances, from the calibration on training cases.
-    pub variance_factors: VarianceFactors,
+    pub variance_factors: VarianceCalibration,
 }
 
 /// The record of how a force model was trained; it is part of the model file.

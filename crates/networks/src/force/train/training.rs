@@ -9,7 +9,7 @@ use crate::force::network::{ForceDomain, ForceNetwork, OpenFeatures, Standardisa
 use crate::force::physics::{CentreCurve, CentreModel, ResidualModel};
 use crate::force::train::batch::CaseTensors;
 use crate::force::train::loss::{Loss, LossTerms};
-use crate::force::train::{ForceModel, VarianceFactors};
+use crate::force::train::{CalibrationCase, ForceModel, VarianceCalibration};
 use crate::force::{
     CentreFit, ForceCase, ForceConfig, ForceEpoch, ForceError, ForceRecord, ForceTraining,
 };
@@ -360,7 +360,8 @@ impl<'a> ForceTrainingRun<'a> {
     /// Builds the model with the parameters of the best epoch and calibrates its variances.
     fn finish(self, set: &ForceTrainingSet) -> Result<ForceModel, ForceError> {
         self.network.parameters().import(&self.best_parameters)?;
-        let variance_factors = self.variance_factors(set)?;
+        let domain = ForceDomain::from_cases(&self.standardisation, &set.train);
+        let variance_factors = self.variance_factors(set, &domain)?;
         let ids = |indices: &[usize]| -> Vec<CaseId> {
             indices.iter().filter_map(|&idx| set.train.get(idx)).map(CaseId::from_case).collect()
         };
@@ -378,7 +379,7 @@ impl<'a> ForceTrainingRun<'a> {
             config: self.settings.config.clone(),
             centre: self.centre,
             residuals: self.residuals,
-            domain: ForceDomain::from_cases(&self.standardisation, &set.train),
+            domain,
             standardisation: self.standardisation,
             open,
             network: self.network,
@@ -390,10 +391,20 @@ impl<'a> ForceTrainingRun<'a> {
     /// Calibrates the variances on the validation cases, to which the network was not fitted, if
     /// there are enough of them, and otherwise on all training cases. The curve of the physics for
     /// each of them comes from parts that were fitted without the case. Test cases are not used.
-    fn variance_factors(&self, set: &ForceTrainingSet) -> Result<VarianceFactors, ForceError> {
+    fn variance_factors(
+        &self,
+        set: &ForceTrainingSet,
+        domain: &ForceDomain,
+    ) -> Result<VarianceCalibration, ForceError> {
         let is_enough = self.validation.len() >= LEAST_CALIBRATION_CASES;
         let chosen = if is_enough { self.validation.clone() } else { self.all() };
-        Ok(VarianceFactors::calibrated(&self.mixtures(set, &chosen)?, self.settings.seed))
+        let mixtures = self.mixtures(set, &chosen)?.into_iter();
+        let cases = mixtures.map(|(case, mixture)| CalibrationCase {
+            case,
+            mixture,
+            distance: domain.distance_of_case(case),
+        });
+        Ok(VarianceCalibration::of_cases(cases.collect(), self.settings.seed))
     }
 
     /// Indices of all training cases.

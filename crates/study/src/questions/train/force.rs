@@ -15,7 +15,7 @@ use crate::{Answer, Event, Library, Observer, Provenance, Question, StudyError, 
 use impactlab_core::data::Outcome;
 use impactlab_core::ranges::EPOCHS;
 use impactlab_networks::force::{
-    ForceConfig, ForceModel, ForceTrainSettings, ForceTrainingSet, LossTerms, VarianceFactors,
+    ForceConfig, ForceModel, ForceTrainSettings, ForceTrainingSet, LossTerms, VarianceCalibration,
     train,
 };
 
@@ -60,7 +60,7 @@ pub struct TrainForceReport {
     /// Epochs in all.
     pub epochs: usize,
     /// Factors on the variances, from calibration on training cases.
-    pub variance_factors: VarianceFactors,
+    pub variance_factors: VarianceCalibration,
     /// Losses of the best epoch over the cases learned from.
     pub train: Option<LossTerms>,
     /// The same over the validation cases.
