@@ -23,6 +23,8 @@ pub enum CaveatKind {
     ImplausibleContact,
     /// The bare physics says something else than the network, beyond the bands of the network.
     Disagreement,
+    /// The collision gives a vehicle that was chosen by name another mass or size than the vehicle has.
+    OtherVehicle,
     /// The outlines of the vehicles overlap where they should touch.
     Overlap,
     /// The vehicles meet again; the motion after that is not theirs.
@@ -129,6 +131,7 @@ impl CaveatKind {
             Self::OutsideDomain => "outside the domain",
             Self::ImplausibleContact => "implausible contact",
             Self::Disagreement => "disagreement",
+            Self::OtherVehicle => "other than the vehicle",
             Self::Overlap => "overlap",
             Self::SecondContact => "second contact",
             Self::ContactNotEnded => "contact not ended",

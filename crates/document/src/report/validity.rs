@@ -125,6 +125,7 @@ fn remedy(kind: CaveatKind, wording: &Wording) -> &'static str {
         CaveatKind::OutsideDomain => words.remedy_outside_domain,
         CaveatKind::ImplausibleContact => words.remedy_implausible_contact,
         CaveatKind::Disagreement => words.remedy_disagreement,
+        CaveatKind::OtherVehicle => words.remedy_other_vehicle,
         CaveatKind::Overlap => words.remedy_overlap,
         CaveatKind::SecondContact => words.remedy_second_contact,
         CaveatKind::ContactNotEnded => words.remedy_contact_not_ended,

@@ -1,5 +1,6 @@
 //! What an answer rests on and what restricts it.
 
 pub(crate) mod assumed;
+pub(crate) mod other_vehicle;
 pub(crate) mod restrictions;
 pub(crate) mod unused;

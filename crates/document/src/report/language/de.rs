@@ -182,6 +182,8 @@ pub(super) const WORDS: Words = Words {
         solchen Kollisionen trainieren.",
     remedy_implausible_contact: "Kontaktpunkt, Seite und Geschwindigkeiten prüfen; die Impulslösung verwenden.",
     remedy_disagreement: "Beide Antworten als möglich ansehen; suchen, was zwischen ihnen entscheidet.",
+    remedy_other_vehicle: "Begründen, warum das Fahrzeug der Kollision vom genannten abweicht (Insassen, \
+                           Ladung), oder der Kollision die Werte dieses Fahrzeugs geben.",
     remedy_overlap: "Die Fahrzeuge auseinanderrücken, bis die Umrisse sich berühren, oder den Kontaktpunkt \
         angeben.",
     remedy_second_contact: "Die Bewegung nur bis zum zweiten Kontakt verwenden.",

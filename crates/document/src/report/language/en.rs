@@ -179,6 +179,8 @@ pub(super) const WORDS: Words = Words {
         collisions.",
     remedy_implausible_contact: "Check contact point, side and velocities; use the momentum solution.",
     remedy_disagreement: "Treat both answers as possible; look for what decides between them.",
+    remedy_other_vehicle: "Say why the vehicle of the collision differs from the one that is named \
+                           (passengers, load), or give the collision the values of that vehicle.",
     remedy_overlap: "Move the vehicles apart until their outlines touch, or give the contact point.",
     remedy_second_contact: "Use the motion up to the second contact only.",
     remedy_contact_not_ended: "Use a record that goes on until the force is zero.",

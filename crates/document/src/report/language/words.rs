@@ -141,6 +141,7 @@ pub(in crate::report) struct Words {
     pub remedy_outside_domain: &'static str,
     pub remedy_implausible_contact: &'static str,
     pub remedy_disagreement: &'static str,
+    pub remedy_other_vehicle: &'static str,
     pub remedy_overlap: &'static str,
     pub remedy_second_contact: &'static str,
     pub remedy_contact_not_ended: &'static str,

@@ -370,6 +370,7 @@ impl PredictMotionRequest {
     fn rests_on(&self, caveat: &Caveat, follows_both: bool) -> bool {
         match (caveat.kind, caveat.subject) {
             (CaveatKind::Overlap | CaveatKind::Note | CaveatKind::NotUsed, _) => true,
+            (CaveatKind::OtherVehicle, of) => follows_both || of == Some(CaveatSubject::Vehicle),
             // That of a record, where it is a record that moves the vehicle.
             (CaveatKind::DoubtfulData, _) => self.force == ForceSource::Given,
             (CaveatKind::Assumed, Some(subject)) => match subject {

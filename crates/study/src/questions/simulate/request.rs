@@ -11,6 +11,7 @@ use crate::analysis::{
 };
 use crate::ask::checks::{check, check_all, check_count, check_given};
 use crate::ask::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
+use crate::caveats::other_vehicle::other_vehicles;
 use crate::caveats::unused::{
     by_recorded_pair, by_simulation, contact_at_medians, integrator_of_pair,
 };
@@ -177,6 +178,8 @@ impl SimulateRequest {
         let striking = scenario.striking_vehicle.as_deref();
         caveats.extend(pulse_assumptions(pulse, pulse.height_m(scenario)));
         let mut settings = self.settings(&open, striking, caveats)?;
+        let choices = [&self.vehicle, &self.striking];
+        caveats.extend(other_vehicles(scenario, choices, [&settings.struck, &settings.striking]));
         if let (None, Some(ending)) = (&self.ending, &scenario.ending) {
             settings.ending.clone_from(ending);
         }
