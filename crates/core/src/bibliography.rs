@@ -48,6 +48,10 @@ sources! {
     /// J. R. Funk, J. M. Cormier, C. E. Bain, *Analytical model for investigating low-speed sideswipe
     /// collisions*, SAE Technical Paper 2004-01-1185, 2004. Staged sideswipes that last about a second.
     FunkCormierBain2004;
+    /// A. E. Gelfand, D. K. Dey, H. Chang, *Model determination using predictive distributions with
+    /// implementation via sampling-based methods*, in Bayesian Statistics 4, Oxford University Press,
+    /// 1992. Each observation against what the others predict, by importance weights.
+    GelfandDeyChang1992;
     /// A. Gelman, X.-L. Meng, H. Stern, *Posterior predictive assessment of model fitness via realized
     /// discrepancies*, Statistica Sinica 6, 1996.
     GelmanMengStern1996;

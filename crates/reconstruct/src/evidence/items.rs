@@ -11,7 +11,7 @@ use crate::evidence::{
     RestPose, Road, VideoPosition, Weighing, after, car, damage, mark, position, prior_ranges,
     recorder, rest, road, weighing,
 };
-use crate::likelihood::{ComparedCar, Comparison, Discrepancy, EvidenceTerm, PathResidual, Track};
+use crate::likelihood::{Compared, ComparedCar, Comparison, Discrepancy, PathResidual, Track};
 use crate::{CollisionMotion, StrikingMotion};
 
 /// Everything that is found. Each item is shown to what reads, writes, draws and tells the evidence by
@@ -102,7 +102,8 @@ impl Evidence {
         visitor.item(&prior_ranges::SECTION, None, prior);
     }
 
-    /// Logarithm of the likelihood of a motion, and its terms if they are wanted.
+    /// Likelihood of a motion, with and without each part of the evidence, and its terms if they are
+    /// wanted.
     ///
     /// The order of the items is that of the terms and of the sums, whose last digits depend on it.
     pub(crate) fn compared(
@@ -110,7 +111,7 @@ impl Evidence {
         discrepancy: &Discrepancy,
         motion: &CollisionMotion,
         wants_terms: bool,
-    ) -> (f64, Vec<EvidenceTerm>) {
+    ) -> Compared {
         let Self {
             case: _,
             friction,
@@ -131,12 +132,15 @@ impl Evidence {
             positions,
             prior: _,
         } = self;
-        let impossible = || (f64::NEG_INFINITY, Vec::new());
-        let Some(track) = Track::from_path(&motion.path) else { return impossible() };
+        let Some(track) = Track::from_path(&motion.path) else { return Compared::impossible() };
         let car = struck_car_of(motion, &track);
         let mut comparison = Comparison::new(discrepancy, motion, car, wants_terms);
         rest.iter().for_each(|rest| rest.compare(&mut comparison));
-        positions.iter().for_each(|position| position.compare(&mut comparison));
+        if !positions.is_empty() {
+            comparison.part("positions in a video", |comparison| {
+                positions.iter().for_each(|position| position.compare(comparison));
+            });
+        }
         marks.iter().for_each(|mark| mark.compare(marks.len(), &mut comparison));
         edr.iter().for_each(|edr| edr.compare(&mut comparison));
         comparison.add_path();
@@ -144,7 +148,7 @@ impl Evidence {
             let striking = motion.striking.as_ref();
             let track = striking.and_then(|striking| Track::from_path(&striking.path));
             let Some((striking, track)) = striking.zip(track.as_ref()) else {
-                return impossible();
+                return Compared::impossible();
             };
             let car = striking_car_of(motion, striking, track);
             let mut own = Comparison::new(discrepancy, motion, car, wants_terms);
@@ -162,7 +166,7 @@ impl Evidence {
             striking_car.compare_striking(&mut comparison);
             damage.compare(&mut comparison);
         }
-        comparison.into_terms()
+        comparison.finish()
     }
 
     /// The residuals of rest pose and positions, in this order, and the distance travelled in all, m.

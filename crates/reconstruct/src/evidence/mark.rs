@@ -113,12 +113,16 @@ impl Mark {
 
     /// - `n_marks`: number of marks of the car, whose ends are in part one witness.
     pub(super) fn compare(&self, n_marks: usize, comparison: &mut Comparison<'_>) {
+        let name = format!("mark {}", self.wheel.word());
+        comparison.part(&name, |comparison| self.add_to(&name, n_marks, comparison));
+    }
+
+    fn add_to(&self, name: &str, n_marks: usize, comparison: &mut Comparison<'_>) {
         let car = comparison.car;
         let place_m = car.vehicle.geometry.wheel_place_m(self.wheel);
         let wheel = car.track.wheel(place_m);
         let nearest = wheel.nearest(&self.points_m);
         let onset = Onset::new(car, self.wheel, &wheel);
-        let name = format!("mark {}", self.wheel.word());
         let (mut squares, mut distance) = (0.0, 0.0);
         for at in &nearest {
             let residual = self.residual(at, place_m, comparison);
@@ -131,7 +135,8 @@ impl Mark {
         let n = nearest.len() as f64;
         // The points of a mark err together, so that their mean counts as one observation.
         let off_m = (squares / n).sqrt();
-        comparison.tell(&format!("{name}, distance to the path"), "m", [0.0, off_m], distance / n);
+        let name_of_distance = format!("{name}, distance to the path");
+        comparison.tell_distance(&name_of_distance, off_m, distance / n);
         let weight = (3.0 / n).min(1.0);
         for at in &nearest {
             let sigma_m = comparison.onset_sigma_m(at.idx);

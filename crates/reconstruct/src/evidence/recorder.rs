@@ -96,14 +96,20 @@ impl Edr {
 
     pub(super) fn compare(&self, comparison: &mut Comparison<'_>) {
         if let Some(Measured { value, sigma }) = self.speed_before() {
-            let expected = comparison.car.speed_before_m_s;
-            let distance = ((value - expected) / sigma).powi(2);
-            comparison.log_likelihood -= distance / 2.0;
-            comparison.tell("EDR speed before the impact", "m/s", [expected, value], distance);
+            let name = "EDR speed before the impact";
+            comparison.part(name, |comparison| {
+                let expected = comparison.car.speed_before_m_s;
+                let distance = ((value - expected) / sigma).powi(2);
+                comparison.log_likelihood -= distance / 2.0;
+                comparison.tell(name, "m/s", [expected, value], distance);
+            });
         }
-        if self.delta_v_x().is_none() && self.delta_v_y().is_none() {
-            return;
+        if self.delta_v_x().is_some() || self.delta_v_y().is_some() {
+            comparison.part("EDR delta-v", |comparison| self.add_delta_v(comparison));
         }
+    }
+
+    fn add_delta_v(&self, comparison: &mut Comparison<'_>) {
         let end_s = self.ends_s.unwrap_or(comparison.value(Latent::PulseDuration));
         let sensor_m = self.sensor_m.map(Option::unwrap_or_default);
         let Some(recorded) = comparison.car.track.recorded_delta_v_m_s(sensor_m, end_s) else {

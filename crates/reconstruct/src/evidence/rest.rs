@@ -104,6 +104,10 @@ impl RestPose {
     }
 
     pub(super) fn compare(&self, comparison: &mut Comparison<'_>) {
+        comparison.part("rest pose", |comparison| self.add_to(comparison));
+    }
+
+    fn add_to(&self, comparison: &mut Comparison<'_>) {
         let Some([found_x_m, found_y_m]) = self.place_m() else { return };
         let track = comparison.car.track;
         let [x_m, y_m, yaw_rad] = track.rest();

@@ -1,6 +1,8 @@
 //! Collects what one motion says of the evidence; each item adds its own terms
 //! ([`evidence`](crate::evidence)).
 
+use std::ops::Range;
+
 use crate::evidence::Measured;
 use crate::likelihood::discrepancy::{Discrepancy, PathResidual, student};
 use crate::likelihood::track::Track;
@@ -23,6 +25,47 @@ pub struct EvidenceTerm {
     pub found: f64,
     /// Squared distance between both in units of what measurement and model err by.
     pub distance: f64,
+    /// Whether what was found can lie to either side of what is expected, as a distance cannot.
+    pub has_sides: bool,
+}
+
+/// A part of the evidence that can be left out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EvidencePart {
+    /// Name for a person.
+    pub name: String,
+    /// Its terms among all.
+    pub terms: Range<usize>,
+    /// Logarithm of the likelihood without it.
+    pub log_without: f64,
+}
+
+/// What a motion says of the evidence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compared {
+    /// Logarithm of the likelihood.
+    pub log_likelihood: f64,
+    /// The parts of the evidence that can be left out.
+    pub parts: Vec<EvidencePart>,
+    /// The items, if they were wanted.
+    pub terms: Vec<EvidenceTerm>,
+}
+
+impl Compared {
+    /// Of a motion that cannot be.
+    pub fn impossible() -> Self {
+        Self { log_likelihood: f64::NEG_INFINITY, parts: Vec::new(), terms: Vec::new() }
+    }
+}
+
+/// A part of the evidence while it is compared.
+struct OpenPart {
+    name: String,
+    terms: Range<usize>,
+    /// Its residuals among those of the path.
+    path: Range<usize>,
+    /// What it adds to the logarithm of the likelihood.
+    adds: f64,
 }
 
 /// One of the cars of a motion, with its path.
@@ -55,6 +98,7 @@ pub(crate) struct Comparison<'a> {
     /// The items, if they are wanted.
     pub terms: Vec<EvidenceTerm>,
     wants_terms: bool,
+    parts: Vec<OpenPart>,
 }
 
 impl<'a> Comparison<'a> {
@@ -65,20 +109,42 @@ impl<'a> Comparison<'a> {
         car: ComparedCar<'a>,
         wants_terms: bool,
     ) -> Self {
-        let (path, terms) = (Vec::new(), Vec::new());
-        Self { discrepancy, motion, car, log_likelihood: 0.0, path, terms, wants_terms }
+        let (path, terms, parts) = (Vec::new(), Vec::new(), Vec::new());
+        Self { discrepancy, motion, car, log_likelihood: 0.0, path, terms, wants_terms, parts }
+    }
+
+    /// A part of the evidence that can be left out, with all that it adds.
+    pub fn part(&mut self, name: &str, compare: impl FnOnce(&mut Self)) {
+        let (before, path, terms) = (self.log_likelihood, self.path.len(), self.terms.len());
+        compare(self);
+        self.parts.push(OpenPart {
+            name: format!("{}{name}", self.car.prefix),
+            terms: terms..self.terms.len(),
+            path: path..self.path.len(),
+            adds: self.log_likelihood - before,
+        });
     }
 
     /// Adds what the same motion says of the evidence of the other car.
     pub fn add(&mut self, other: Comparison<'_>) {
-        let (log_likelihood, terms) = other.into_terms();
-        self.log_likelihood += log_likelihood;
-        self.terms.extend(terms);
+        let n_terms = self.terms.len();
+        self.log_likelihood += other.log_likelihood;
+        self.terms.extend(other.terms);
+        self.parts.extend(other.parts.into_iter().map(|part| OpenPart {
+            terms: part.terms.start + n_terms..part.terms.end + n_terms,
+            ..part
+        }));
     }
 
-    /// Logarithm of the likelihood, and the terms.
-    pub fn into_terms(self) -> (f64, Vec<EvidenceTerm>) {
-        (self.log_likelihood, self.terms)
+    /// What the motion says of all of it.
+    pub fn finish(self) -> Compared {
+        let Self { log_likelihood, terms, parts, .. } = self;
+        let part = |OpenPart { name, terms, path: _, adds }| EvidencePart {
+            name,
+            terms,
+            log_without: log_likelihood - adds,
+        };
+        Compared { log_likelihood, parts: parts.into_iter().map(part).collect(), terms }
     }
 
     /// A quantity of the particle.
@@ -103,8 +169,18 @@ impl<'a> Comparison<'a> {
     ) {
         if self.wants_terms {
             let name = format!("{}{name}", self.car.prefix);
-            self.terms.push(EvidenceTerm { name, unit, expected, found, distance });
+            let has_sides = true;
+            self.terms.push(EvidenceTerm { name, unit, expected, found, distance, has_sides });
         }
+    }
+
+    /// Adds a distance that is told, which has no sides.
+    ///
+    /// - `distance`: squared, in units of what measurement and model err by.
+    pub fn tell_distance(&mut self, name: &str, found_m: f64, distance: f64) {
+        self.tell(name, "m", [0.0, found_m], distance);
+        let told = self.terms.last_mut().filter(|_| self.wants_terms);
+        told.into_iter().for_each(|term| term.has_sides = false);
     }
 
     /// What was measured by itself: it is a part of the prior, and told beside the rest.
@@ -129,7 +205,14 @@ impl<'a> Comparison<'a> {
 
     /// Adds the likelihood of that block.
     pub fn add_path(&mut self) {
-        self.log_likelihood += self.discrepancy.log_density(&self.path, self.car.track.whole_m());
+        let whole_m = self.car.track.whole_m();
+        let density = |path: &[PathResidual]| self.discrepancy.log_density(path, whole_m);
+        let all = density(&self.path);
+        for part in self.parts.iter_mut().filter(|part| !part.path.is_empty()) {
+            let others = [&self.path[..part.path.start], &self.path[part.path.end..]].concat();
+            part.adds += all - density(&others);
+        }
+        self.log_likelihood += all;
     }
 
     /// A number by itself.

@@ -95,6 +95,7 @@ mod tests {
             expected: 1.0,
             found: 2.0,
             distance,
+            has_sides: true,
         };
         let particles = vec![vec![term("near", 0.5), term("far", 16.0)]; 3];
         let fit = EvidenceFit::from_particles(&particles);

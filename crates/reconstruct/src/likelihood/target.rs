@@ -1,8 +1,8 @@
 //! The posterior of a case, for the sampler.
 
 use crate::evidence::Evidence;
-use crate::likelihood::{Discrepancy, EvidenceTerm};
-use crate::sampler::Target;
+use crate::likelihood::{Compared, Discrepancy, EvidenceTerm};
+use crate::sampler::{Likelihood, Target};
 use crate::{CollisionMotion, ForwardModel};
 
 /// The likelihood of the evidence of a case over the quantities of its prior.
@@ -37,15 +37,22 @@ impl ReconstructionTarget {
     /// Logarithm of the likelihood of a motion, up to a constant. It is −∞ where the cars draw apart,
     /// since damage was found.
     pub fn log_likelihood(&self, motion: &CollisionMotion) -> f64 {
+        self.compared(motion, false).log_likelihood
+    }
+
+    /// What a motion says of the evidence.
+    ///
+    /// - `wants_terms`: whether its terms are wanted, too.
+    pub(crate) fn compared(&self, motion: &CollisionMotion, wants_terms: bool) -> Compared {
         if !motion.impact.is_collision() {
-            return f64::NEG_INFINITY;
+            return Compared::impossible();
         }
-        self.evidence.compared(&self.discrepancy, motion, false).0
+        self.evidence.compared(&self.discrepancy, motion, wants_terms)
     }
 
     /// The evidence item by item against a motion; none where the motion could not be computed.
     pub fn terms(&self, motion: &CollisionMotion) -> Vec<EvidenceTerm> {
-        self.evidence.compared(&self.discrepancy, motion, true).1
+        self.evidence.compared(&self.discrepancy, motion, true).terms
     }
 }
 
@@ -56,5 +63,12 @@ impl Target for ReconstructionTarget {
 
     fn log_likelihoods(&self, z: &[Vec<f64>]) -> Vec<f64> {
         self.model.motions(z, |motion| self.log_likelihood(&motion))
+    }
+
+    fn likelihoods(&self, z: &[Vec<f64>]) -> Vec<Likelihood> {
+        self.model.motions(z, |motion| {
+            let Compared { log_likelihood: log, parts, .. } = self.compared(&motion, false);
+            Likelihood { log, without: parts.into_iter().map(|part| part.log_without).collect() }
+        })
     }
 }

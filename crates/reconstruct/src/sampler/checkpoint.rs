@@ -42,7 +42,7 @@ struct Saved<S> {
 }
 
 /// What the file says that it is.
-const KIND: &str = "impactlab reconstruction 3";
+const KIND: &str = "impactlab reconstruction 4";
 
 /// Length of the checksum at the beginning of the file.
 const CHECKSUM_BYTES: usize = 64;

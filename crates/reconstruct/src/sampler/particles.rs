@@ -27,8 +27,22 @@ pub struct Particles {
     pub ess: f64,
     /// Number of evaluations of the likelihood until now.
     pub n_evaluations: usize,
+    /// Particles of the posterior without each part of the evidence, from the same draws; none where
+    /// these are not of the posterior.
+    pub left_out: Vec<LeftOutParticles>,
     /// Where a similar target may be sampled from.
     pub start: SamplerStart,
+}
+
+/// Particles of equal weight of the posterior without one part of the evidence.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeftOutParticles {
+    /// Standard normal variables of each particle, `[n][dim]`.
+    pub z: Vec<Vec<f64>>,
+    /// Effective sample size of all draws by their weights. Few draws lie where the evidence that is
+    /// left out keeps others away, so that it may be small.
+    pub ess: f64,
 }
 
 /// Where the particles of a target lie, in a wide sense: a start for the sampling of a similar one.
@@ -97,6 +111,7 @@ mod tests {
             log_evidence: 0.0,
             ess: 1.0,
             n_evaluations: n,
+            left_out: Vec::new(),
             start: SamplerStart(Mixture::fit(Weighted { z: &[&[0.0]], weight: &[1.0] })),
         }
     }

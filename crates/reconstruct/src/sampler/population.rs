@@ -17,6 +17,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::Likelihood;
 use super::mixture::{Mixture, Weighted, is_plausible, ln_sum_exp};
 
 /// Number of halvings of the range of the temperature.
@@ -40,6 +41,8 @@ struct Proposal {
 pub(super) struct Population {
     z: Vec<Vec<f64>>,
     log_likelihood: Vec<f64>,
+    /// The same without each part of the evidence, `[n][n_parts]`.
+    without: Vec<Vec<f64>>,
     /// `ln Σ_t n_t q_t(z) / N(z; 0, I)` of each particle.
     log_density: Vec<f64>,
     n_prior: usize,
@@ -108,21 +111,21 @@ impl Population {
     }
 
     /// Adds draws from the prior, before any others.
-    pub fn add_prior(&mut self, z: Vec<Vec<f64>>, log_likelihood: &[f64]) {
+    pub fn add_prior(&mut self, z: Vec<Vec<f64>>, likelihood: Vec<Likelihood>) {
         self.n_prior += z.len();
         let log_density = (self.n_prior as f64).ln();
         self.log_density.fill(log_density);
-        self.push(z, log_likelihood, |_| log_density);
+        self.push(z, likelihood, |_| log_density);
     }
 
     /// Adds draws from a mixture.
-    pub fn add(&mut self, z: Vec<Vec<f64>>, log_likelihood: &[f64], mixture: Mixture) {
+    pub fn add(&mut self, z: Vec<Vec<f64>>, likelihood: Vec<Likelihood>, mixture: Mixture) {
         self.proposals.push(Proposal { n_draws: z.len(), mixture });
         let Some(proposal) = self.proposals.last() else { return };
         let of_each = self.z.par_iter().zip(&mut self.log_density);
         of_each.for_each(|(z, sum)| *sum = ln_sum_exp(&[*sum, proposal.ln_share(z)]));
         let (n_prior, proposals) = (self.n_prior as f64, std::mem::take(&mut self.proposals));
-        self.push(z, log_likelihood, |z| {
+        self.push(z, likelihood, |z| {
             let of_mixtures = proposals.iter().map(|proposal| proposal.ln_share(z));
             ln_sum_exp(&std::iter::once(n_prior.ln()).chain(of_mixtures).collect::<Vec<f64>>())
         });
@@ -133,23 +136,38 @@ impl Population {
     fn push(
         &mut self,
         z: Vec<Vec<f64>>,
-        log_likelihood: &[f64],
+        likelihood: Vec<Likelihood>,
         log_density: impl Fn(&[f64]) -> f64 + Sync,
     ) {
-        let all = z.into_iter().zip(log_likelihood);
-        let (z, of_z): (Vec<Vec<f64>>, Vec<f64>) =
-            all.filter(|(_, value)| value.is_finite()).unzip();
+        let all = z.into_iter().zip(likelihood);
+        let (z, of_z): (Vec<Vec<f64>>, Vec<Likelihood>) =
+            all.filter(|(_, of)| of.log.is_finite()).unzip();
         let densities: Vec<f64> = z.par_iter().map(|z| log_density(z)).collect();
         self.z.extend(z);
-        self.log_likelihood.extend(of_z);
+        self.log_likelihood.extend(of_z.iter().map(|of| of.log));
+        self.without.extend(of_z.into_iter().map(|of| of.without));
         self.log_density.extend(densities);
     }
 
     /// Weights at a temperature.
     pub fn weights(&self, temperature: f64) -> Weights {
         let pairs = self.log_likelihood.iter().zip(&self.log_density);
-        let mut weight: Vec<f64> =
-            pairs.map(|(value, density)| temperature * value - density).collect();
+        Self::weights_of(pairs.map(|(value, density)| temperature * value - density).collect())
+    }
+
+    /// Number of parts of the evidence that can be left out.
+    pub fn n_parts(&self) -> usize {
+        self.without.first().map_or(0, Vec::len)
+    }
+
+    /// Weights of the posterior without a part of the evidence.
+    pub fn weights_without(&self, part: usize) -> Weights {
+        let pairs = self.without.iter().zip(&self.log_density);
+        Self::weights_of(pairs.map(|(values, density)| values[part] - density).collect())
+    }
+
+    /// - `weight`: logarithms of the weights, up to a constant.
+    fn weights_of(mut weight: Vec<f64>) -> Weights {
         let log_evidence = ln_sum_exp(&weight);
         weight.iter_mut().for_each(|weight| *weight = (*weight - log_evidence).exp());
         Weights { weight, log_evidence }
@@ -197,20 +215,28 @@ impl Population {
         let remaining: Vec<usize> = (0..self.z.len()).filter(|idx| keep(*idx)).collect();
         self.z = remaining.iter().map(|idx| std::mem::take(&mut self.z[*idx])).collect();
         self.log_likelihood = remaining.iter().map(|idx| self.log_likelihood[*idx]).collect();
+        self.without =
+            remaining.iter().map(|idx| std::mem::take(&mut self.without[*idx])).collect();
         self.log_density = remaining.iter().map(|idx| self.log_density[*idx]).collect();
     }
 
     /// Checks a population that comes from a file, so that nothing is counted or indexed wrongly.
     pub fn check(&self, dim: usize) -> Result<(), &'static str> {
         let n = self.z.len();
-        if n == 0 || [self.log_likelihood.len(), self.log_density.len()] != [n; 2] {
+        let lengths = [self.log_likelihood.len(), self.log_density.len(), self.without.len()];
+        if n == 0 || lengths != [n; 3] {
             return Err("its lists of particles differ in length");
         }
         if self.z.iter().any(|z| z.len() != dim || !z.iter().all(is_plausible)) {
             return Err("a particle is not as many finite numbers as the question has variables");
         }
         let values = self.log_likelihood.iter().chain(&self.log_density);
-        if !values.into_iter().all(|value| value.is_finite()) {
+        let n_parts = self.n_parts();
+        let is_whole = |without: &Vec<f64>| {
+            without.len() == n_parts && without.iter().all(|value| value.is_finite())
+        };
+        if !values.into_iter().all(|value| value.is_finite()) || !self.without.iter().all(is_whole)
+        {
             return Err("a likelihood or a density is no number");
         }
         let is_good = |proposal: &Proposal| proposal.n_draws > 0 && proposal.mixture.is_of(dim);
@@ -239,13 +265,16 @@ mod tests {
 
     fn population(log_likelihood: &[f64]) -> Population {
         let mut population = Population::default();
-        population.add_prior(vec![vec![0.0]; log_likelihood.len()], log_likelihood);
+        let of = |log: &f64| Likelihood { log: *log, without: vec![0.0] };
+        let likelihood = log_likelihood.iter().map(of).collect();
+        population.add_prior(vec![vec![0.0]; log_likelihood.len()], likelihood);
         population
     }
 
     #[test]
     fn weights_of_the_prior_are_powers_of_the_likelihood() {
         let population = population(&[0.0, 2.0_f64.ln(), f64::NEG_INFINITY, 4.0_f64.ln()]);
+        assert_eq!(population.weights_without(0).weight, [1.0 / 3.0; 3], "it says nothing else");
         let half = population.weights(0.5);
         let sum = 1.0 + 2.0_f64.sqrt() + 2.0;
         // What is impossible is counted and not kept.

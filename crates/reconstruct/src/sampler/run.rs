@@ -7,8 +7,8 @@ use rand::{Rng, RngExt};
 use super::mixture::{Mixture, standard_normals};
 use super::population::Population;
 use super::{
-    Particles, SamplerCheckpoint, SamplerError, SamplerReport, SamplerSettings, SamplerStage,
-    SamplerStart, Target,
+    LeftOutParticles, Likelihood, Particles, SamplerCheckpoint, SamplerError, SamplerReport,
+    SamplerSettings, SamplerStage, SamplerStart, Target,
 };
 use impactlab_core::numerics::random_stream;
 
@@ -60,6 +60,9 @@ const MIN_POSTERIOR_ESS: f64 = 20.0;
 
 /// How many times the largest number of evaluations may be exceeded until that is reached.
 const MAX_EXCESS: usize = 4;
+
+/// Particles without a part of the evidence at the most.
+const LEFT_OUT_PARTICLES: usize = 300;
 
 /// Growth of the number of draws after which a run is saved.
 const SAVED_GROWTH: f64 = 1.3;
@@ -143,17 +146,18 @@ impl<T: Target + ?Sized> Run<'_, T> {
         (self.settings.n_particles / BATCHES).max(BATCHES)
     }
 
-    fn evaluate(&self, z: &[Vec<f64>]) -> Result<Vec<f64>, SamplerError> {
-        let mut values = self.target.log_likelihoods(z);
-        if values.len() != z.len() {
-            return Err(SamplerError::WrongCount { expected: z.len(), got: values.len() });
+    fn evaluate(&self, z: &[Vec<f64>]) -> Result<Vec<Likelihood>, SamplerError> {
+        let mut all = self.target.likelihoods(z);
+        if all.len() != z.len() {
+            return Err(SamplerError::WrongCount { expected: z.len(), got: all.len() });
         }
-        for value in &mut values {
-            *value = if value.is_nan() { f64::NEG_INFINITY } else { *value };
+        for of in &mut all {
+            let is_number = !of.log.is_nan() && of.without.iter().all(|value| value.is_finite());
+            of.log = if is_number { of.log } else { f64::NEG_INFINITY };
         }
-        match values.contains(&f64::INFINITY) {
+        match all.iter().any(|of| of.log == f64::INFINITY) {
             true => Err(SamplerError::InfiniteLikelihood),
-            false => Ok(values),
+            false => Ok(all),
         }
     }
 
@@ -176,7 +180,8 @@ impl<T: Target + ?Sized> Run<'_, T> {
             }
             let batch = self.batch().min(goal - n_drawn);
             let z: Vec<Vec<f64>> = (0..batch).map(|_| standard_normals(dim, &mut rng)).collect();
-            let log_likelihood = self.evaluate(&z)?;
+            let likelihood = self.evaluate(&z)?;
+            let log_likelihood: Vec<f64> = likelihood.iter().map(|of| of.log).collect();
             n_possible += log_likelihood.iter().filter(|value| value.is_finite()).count();
             n_drawn += batch;
             flow = (self.report)(SamplerReport {
@@ -187,7 +192,7 @@ impl<T: Target + ?Sized> Run<'_, T> {
                 z: &z,
                 log_likelihood: &log_likelihood,
             });
-            self.population.add_prior(z, &log_likelihood);
+            self.population.add_prior(z, likelihood);
         }
         if !self.population.is_possible() {
             return Err(SamplerError::ImpossibleEverywhere { n_evaluations: n_drawn });
@@ -236,15 +241,15 @@ impl<T: Target + ?Sized> Run<'_, T> {
         rng: &mut impl Rng,
     ) -> Result<ControlFlow<()>, SamplerError> {
         let z: Vec<Vec<f64>> = (0..n).map(|_| mixture.draw(rng)).collect();
-        let mut log_likelihood = Vec::with_capacity(n);
+        let mut likelihood = Vec::with_capacity(n);
         for batch in z.chunks(self.batch()) {
-            log_likelihood.extend(self.evaluate(batch)?);
-            let n_evaluations = self.population.n_draws() + log_likelihood.len();
+            likelihood.extend(self.evaluate(batch)?);
+            let n_evaluations = self.population.n_draws() + likelihood.len();
             if (self.report)(shown.report(n_evaluations)).is_break() {
                 return Ok(ControlFlow::Break(()));
             }
         }
-        self.population.add(z, &log_likelihood, mixture);
+        self.population.add(z, likelihood, mixture);
         Ok(ControlFlow::Continue(()))
     }
 
@@ -296,7 +301,15 @@ impl<T: Target + ?Sized> Run<'_, T> {
         let wide = population.weights(population.temperature_of(wide));
         let start = SamplerStart(population.mixture(&wide, FIT_PARTICLES, u));
         let particle = |idx: &usize| population.particle(*idx);
+        let left_out = |part: usize| {
+            let weights = population.weights_without(part);
+            let drawn = weights.resample(self.settings.n_particles.min(LEFT_OUT_PARTICLES), u);
+            let z = drawn.iter().map(|idx| particle(idx).0.clone()).collect();
+            LeftOutParticles { z, ess: weights.effective() }
+        };
+        let n_parts = if temperature < 1.0 { 0 } else { population.n_parts() };
         Particles {
+            left_out: (0..n_parts).map(left_out).collect(),
             z: draw.iter().map(|idx| particle(idx).0.clone()).collect(),
             log_likelihood: draw.iter().map(|idx| particle(idx).1).collect(),
             draw,

@@ -19,4 +19,19 @@ pub trait Target: Sync {
     /// One call has many particles, which the implementation may evaluate side by side on all
     /// cores. The value of a particle must not depend on the others of the call.
     fn log_likelihoods(&self, z: &[Vec<f64>]) -> Vec<f64>;
+
+    /// The same, and without each part of the evidence that can be left out.
+    fn likelihoods(&self, z: &[Vec<f64>]) -> Vec<Likelihood> {
+        let whole = self.log_likelihoods(z).into_iter();
+        whole.map(|log| Likelihood { log, without: Vec::new() }).collect()
+    }
+}
+
+/// How well a particle goes with the evidence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Likelihood {
+    /// Natural logarithm of the likelihood.
+    pub log: f64,
+    /// The same without each part of the evidence; as many entries for each particle of a target.
+    pub without: Vec<f64>,
 }

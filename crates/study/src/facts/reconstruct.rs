@@ -2,8 +2,8 @@
 
 use impactlab_core::units::Quantity;
 use impactlab_reconstruct::{
-    BudgetItem, EvidenceFit, HandCheck, MarkComparison, Mode, QuantityEstimate, SpeedChange,
-    SpeedHinge,
+    BudgetItem, EvidenceFit, HandCheck, LeftOut, MarkComparison, Mode, QuantityEstimate,
+    SpeedChange, SpeedHinge,
 };
 
 use crate::facts::simulate::zones;
@@ -23,6 +23,7 @@ impl ReconstructReport {
             Some(self.speed_table()),
             self.hand_table(),
             Some(self.fit_table()),
+            self.left_out_table(),
             self.mark_table(),
             self.budget_table(),
             self.held_table(),
@@ -119,6 +120,36 @@ impl ReconstructReport {
     pub fn fit_table(&self) -> FactTable {
         let columns = [Term::Found, Term::Expected, Term::TailProbability, Term::Verdict];
         FactTable::new(Term::Fit, self.fit.iter().map(fit_fact).collect()).with_columns(&columns)
+    }
+
+    /// The speed of the struck car without each part of the evidence, and whether the part goes with the
+    /// others; none if there is one part only.
+    pub fn left_out_table(&self) -> Option<FactTable> {
+        let row = |part: &LeftOut| {
+            let speed = part.struck_speed.as_ref();
+            let nothing = || Value::Text(String::new());
+            let verdict = match (part.p, part.is_contradicted) {
+                (None, _) => Term::NotJudged,
+                (Some(_), true) => Term::Contradicted,
+                (Some(_), false) => Term::GoesWithOthers,
+            };
+            let values = vec![
+                part.p.map_or_else(nothing, Value::Probability),
+                Value::Fixed(part.ess, 0),
+                Value::Term(verdict),
+                speed
+                    .map_or_else(nothing, |of| Value::Estimate(of.quantity(), of.estimate.clone())),
+            ];
+            let name = Value::Phrase(part.evidence.clone());
+            Fact { is_warning: part.is_contradicted, ..Fact::row(name, values) }
+        };
+        let rows = self.left_out.iter().map(row).collect();
+        let columns =
+            [Term::TailProbability, Term::IndependentDraws, Term::Verdict, Term::StruckCar];
+        FactTable::new(Term::LeftOutEvidence, rows)
+            .with_levels(PREDICTED)
+            .with_columns(&columns)
+            .unless_empty()
     }
 
     /// The marks that were found beside those of a particle of median speed; none if none was found.

@@ -324,6 +324,12 @@ terms! {
          einer weiteren Messung";
     Now: "now, ±", "jetzt, ±";
     Then: "then, ±", "dann, ±";
+    LeftOutEvidence: "Without each part of the evidence", "Ohne je einen Teil der Spuren",
+        "The same draws, weighted by the likelihood without the part; p: that the others expect it as far off";
+    IndependentDraws: "independent draws", "unabhängige Ziehungen";
+    GoesWithOthers: "goes with the others", "passt zu den übrigen";
+    Contradicted: "contradicts the others", "widerspricht den übrigen";
+    NotJudged: "too few draws to say", "zu wenige Ziehungen für eine Aussage";
     NotBelievable: "too few particles to say", "zu wenige Partikel für eine Aussage";
     // Trainings and models.
     ForceTraining: "Training of the force network", "Training des Kraftnetzes";

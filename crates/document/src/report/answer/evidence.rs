@@ -20,6 +20,9 @@ pub(super) fn evidence_blocks(report: &ReconstructReport, context: Context<'_>) 
         Block::paragraph(fill(words.fit_text, &[("level", &level)])),
         table(&report.fit_table()),
     ];
+    if let Some(left_out) = report.left_out_table() {
+        blocks.extend([Block::paragraph(words.left_out_text), table(&left_out)]);
+    }
     blocks.extend(compared_marks(report, context));
     if !report.modes.is_empty() {
         blocks.extend([table(&report.course_table()), Block::paragraph(words.modes_text)]);

@@ -127,6 +127,9 @@ pub(super) const WORDS: Words = Words {
         im Mittel, wenn eine Größe zusätzlich gemessen würde.",
     fit_text: "p ist die Wahrscheinlichkeit, dass Messung und Modell stärker abweichen als hier; unter \
         {level} gilt eine Spur als nicht erklärt.",
+    left_out_text: "Die Geschwindigkeit ohne je einen Teil der Spuren. p ist die Wahrscheinlichkeit, dass die übrigen \
+        ihn so weit entfernt erwarten, wie er vorgefunden wurde, oder weiter. Ein Teil, der das Ergebnis mit sich zieht, \
+        wird von einem Ergebnis erklärt, das ihm folgt; hier wird er selbst nicht gefragt.",
     several_courses: "Mehr als ein Ablauf ist möglich. Jeder hat eigene Werte in Abschnitt 4; die unten \
         stehenden über alle können für keinen davon zutreffen.",
     hinges_text: "Eine Ausgleichsgerade durch die Partikel sagt, um wie viel sich eine Geschwindigkeit im Mittel \

@@ -253,6 +253,9 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("ranges beforehand", "vorgegebene Bereiche"),
     ("sideslip of the striking car", "Schwimmwinkel des stoßenden Fahrzeugs"),
     // Items of the fit.
+    ("rest pose", "Endlage"),
+    ("striking car rest pose", "Endlage des stoßenden Fahrzeugs"),
+    ("positions in a video", "Lagen im Video"),
     ("rest x", "Endlage x"),
     ("rest y", "Endlage y"),
     ("rest heading", "Gierwinkel der Endlage"),
@@ -260,6 +263,8 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("striking car rest y", "Endlage y des stoßenden Fahrzeugs"),
     ("striking car rest heading", "Gierwinkel der Endlage des stoßenden Fahrzeugs"),
     ("EDR speed before the impact", "EDR-Geschwindigkeit vor dem Aufprall"),
+    ("EDR delta-v", "EDR-Δv"),
+    ("striking car EDR delta-v", "EDR-Δv des stoßenden Fahrzeugs"),
     ("EDR delta-v along x", "EDR-Δv längs x"),
     ("EDR delta-v along y", "EDR-Δv längs y"),
     (

@@ -125,6 +125,9 @@ pub(super) const WORDS: Words = Words {
         a quantity were measured as well.",
     fit_text: "p is the probability that measurement and model err by more than they do here; an item \
         below {level} counts as unexplained.",
+    left_out_text: "The speed without each part of the evidence in turn. p is the probability that the other parts \
+        expect it as far off as it was found, or farther. A part that pulls the answer along is explained by an \
+        answer that follows it; here it is not asked itself.",
     several_courses: "More than one course of events is possible. Each has figures of its own in section 4; those \
         over all of them, below, may be true of none.",
     hinges_text: "A line through the particles by least squares says by how much a speed moves on the average \

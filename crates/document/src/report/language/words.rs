@@ -97,6 +97,7 @@ pub(in crate::report) struct Words {
     pub budget_picture: &'static str,
     pub budget_text: &'static str,
     pub fit_text: &'static str,
+    pub left_out_text: &'static str,
     pub several_courses: &'static str,
     pub hinges_text: &'static str,
     pub modes_text: &'static str,

@@ -2,10 +2,10 @@
 //! nothing explains.
 
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
-use impactlab_core::units::NumberFormat;
+use impactlab_core::units::{NumberFormat, Quantity};
 use impactlab_core::vehicle::FrictionZone;
 use impactlab_reconstruct::sampler::Particles;
-use impactlab_reconstruct::{EvidenceFit, LEAST_ESS_FOR_INTERVALS, Mode};
+use impactlab_reconstruct::{EvidenceFit, LEAST_ESS_FOR_INTERVALS, LeftOut, Mode};
 
 /// Effective sample size below which intervals may be too narrow.
 const LEAST_ESS: f64 = 400.0;
@@ -68,6 +68,26 @@ pub(super) fn of_validation(zones: &[FrictionZone]) -> Caveat {
          one; how often they held is in docs/guide/limits.md"
     );
     Caveat::new(CaveatKind::HardlyValidated, text)
+}
+
+/// Parts of the evidence that the others contradict, though the answer follows them.
+pub(super) fn of_left_out(left_out: &[LeftOut]) -> Vec<Caveat> {
+    let format = NumberFormat::default();
+    let contradicted = left_out.iter().filter(|part| part.is_contradicted);
+    contradicted
+        .map(|part| {
+            let without = part.struck_speed.as_ref().map_or_else(String::new, |speed| {
+                let speed = format.estimate_in_words(Quantity::Speed, &speed.estimate);
+                format!("; without it the struck car had {speed}")
+            });
+            let text = format!(
+                "{} does not go with the rest of the evidence: one of them is wrong or misread{without}",
+                part.evidence
+            );
+            Caveat::new(CaveatKind::EvidenceUnexplained, text)
+                .with_value(format!("p of {} by the others", part.evidence), part.p.unwrap_or(0.0))
+        })
+        .collect()
 }
 
 /// Evidence that no particle explains.

@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
 use crate::questions::reconstruct::assumed::{assumptions, unused};
-use crate::questions::reconstruct::badges::{of_fit, of_particles, of_validation, several_courses};
+use crate::questions::reconstruct::badges::{
+    of_fit, of_left_out, of_particles, of_validation, several_courses,
+};
 use crate::questions::reconstruct::later_contacts::{LaterContactsReport, WhyNot, not_looked_for};
 use crate::{
     Answer, Event, FrictionZoneReport, InputKind, Library, Observer, Provenance, Question,
@@ -29,8 +31,9 @@ use impactlab_reconstruct::sampler::{
     Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, SamplerStart, sample_from,
 };
 use impactlab_reconstruct::{
-    BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCheck, HandSpeed, MarkComparison,
-    Mode, Posterior, PriorComponent, QuantityEstimate, ReconstructionTarget, SpeedHinge,
+    BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCheck, HandSpeed, LeftOut,
+    MarkComparison, Mode, Posterior, PriorComponent, QuantityEstimate, ReconstructionTarget,
+    SpeedHinge,
 };
 
 /// Evaluations of the forward model that each particle is worth at the most.
@@ -95,6 +98,9 @@ pub struct ReconstructReport {
     pub modes: Vec<Mode>,
     /// How well each item of the evidence is explained.
     pub fit: Vec<EvidenceFit>,
+    /// The answer without each part of the evidence, and whether that part goes with the others; none
+    /// where there is one part only.
+    pub left_out: Vec<LeftOut>,
     /// Each mark that was found beside the one that its wheel leaves in the motion of the particle of
     /// median speed.
     pub marks: Vec<MarkComparison>,
@@ -251,6 +257,24 @@ impl ReconstructRequest {
         Ok((target, particles, flow))
     }
 
+    /// The answer without each part of the evidence.
+    fn left_out(
+        &self,
+        target: &ReconstructionTarget,
+        particles: &Particles,
+        fit: &[EvidenceFit],
+        observer: &mut Observer<'_>,
+    ) -> Vec<LeftOut> {
+        let mut watch = |name: &str, report: SamplerReport<'_>| {
+            let motions = report.n_evaluations;
+            let message = format!("{motions} motions without the {name}");
+            let done = (500.0 * report.temperature.powf(0.2)) as u64;
+            observer(Event::Progress(Progress::new(done, 1000, message)))
+        };
+        let is_doubtful = fit.iter().any(EvidenceFit::is_unexplained);
+        LeftOut::each(target, particles, is_doubtful, self.seed, &mut watch)
+    }
+
     fn settings(&self) -> SamplerSettings {
         SamplerSettings {
             n_particles: self.particles,
@@ -353,6 +377,9 @@ impl Question for ReconstructRequest {
         caveats.extend(several_courses(&modes));
         caveats.extend(outside);
         caveats.extend(of_fit(&fit));
+        let left_out = self.left_out(&target, &particles, &fit, observer);
+        let alone = left_out.iter().map(|part| part.n_simulations).sum::<usize>();
+        caveats.extend(of_left_out(&left_out));
         caveats.push(of_validation(target.model().zones()));
         caveats.extend(assumptions);
         let quantities = posterior.quantities();
@@ -364,9 +391,10 @@ impl Question for ReconstructRequest {
             hinges: posterior.hinges(),
             modes,
             fit,
+            left_out,
             budget: posterior.budget(self.seed),
             ess: particles.ess,
-            n_simulations: particles.n_evaluations + particles.z.len(),
+            n_simulations: particles.n_evaluations + particles.z.len() + alone,
             n_particles: particles.z.len(),
             log_evidence: particles.log_evidence,
             by_hand,
