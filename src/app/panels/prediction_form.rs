@@ -14,7 +14,7 @@ use crate::app::project::Project;
 use crate::app::state::{Session, View};
 use crate::app::widgets::{SliderRange, quantity_slider};
 use impactlab_core::data::StruckSide;
-use impactlab_core::ranges::{BODY_MASS, CONTACT_X, HEADING, SPEED};
+use impactlab_core::ranges::{BODY_MASS, CONTACT_X, HEADING, SPEED, YAW_RATE};
 use impactlab_core::units::UnitSystem;
 use impactlab_networks::force::ForceScenario;
 
@@ -103,8 +103,8 @@ fn start_ui(
     });
 }
 
-/// Draws the masses, the velocities along and across the heading of the struck vehicle, and the
-/// heading of the striking vehicle relative to it.
+/// Draws the masses, the velocities along and across the heading of the struck vehicle, the heading of
+/// the striking vehicle relative to it, and how both turn.
 fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
     for (vehicle, label, hint) in [
         (0, "Struck mass m_t", "Mass of the struck vehicle"),
@@ -137,6 +137,24 @@ fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
     };
     if let Some(theta_b_rad) = quantity_slider(ui, &range, scenario.theta_b_rad, units) {
         set_striking_heading(scenario, theta_b_rad);
+    }
+    let [struck, striking] = &mut scenario.yaw_rate_rad_s;
+    for (value, label, hint) in [
+        (
+            struck,
+            "Struck yaw rate",
+            "How fast the struck vehicle turns before the impact, to the left positive",
+        ),
+        (
+            striking,
+            "Striking yaw rate",
+            "How fast the striking vehicle turns before the impact, to the left positive",
+        ),
+    ] {
+        let range = SliderRange { label, hint, usual: -1.0..=1.0, possible: YAW_RATE };
+        if let Some(yaw_rate_rad_s) = quantity_slider(ui, &range, *value, units) {
+            *value = yaw_rate_rad_s;
+        }
     }
 }
 
