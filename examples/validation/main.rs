@@ -114,9 +114,10 @@ fn replaced(
     let missing = || format!("no table {:?} below {}", table.lines.first(), table.heading);
     let lines: Vec<&str> = document.lines().collect();
     let heading = lines.iter().position(|line| *line == table.heading).ok_or_else(missing)?;
-    let is_row = |line: &&&str| table.lines.iter().skip(1).any(|row| row == **line);
-    let first = lines.iter().skip(heading).find(is_row).ok_or_else(missing)?;
-    let first = lines.iter().position(|line| line == first).ok_or_else(missing)?;
+    // Rows are found by the header above them, so that one who has typed new rows finds them, too.
+    let header = table.lines.first().ok_or_else(missing)?;
+    let below = lines.iter().skip(heading).position(|line| line == header).ok_or_else(missing)?;
+    let first = (heading + below + 2).min(lines.len());
     let n = lines.iter().skip(first).take_while(|line| line.starts_with('|')).count();
     let (before, rest) = lines.split_at(first);
     let (old, after) = rest.split_at(n);
