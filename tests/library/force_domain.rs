@@ -61,12 +61,12 @@ fn inside_of_the_training_the_network_alone_answers() {
         }
     }
     assert!(n_inside >= 195, "{n_inside}");
-    // From the version before the domain: c002 of fea, a test case.
+    // c002 of fea, a test case, as the network was evaluated when it was trained.
     let predicted = model.predict(&cases("fea")[1].scenario).unwrap();
     let [px, py] = [0, 1].map(|axis| predicted.mixture.impulse(axis).mean());
-    let expected = [615.505_047, 2_640.495_234];
-    assert!((px / expected[0] - 1.0).abs() < 1e-5, "{px:?}");
-    assert!((py / expected[1] - 1.0).abs() < 1e-5, "{py:?}");
+    let expected = [707.421_909, 2_538.687_179];
+    let off = [px / expected[0] - 1.0, py / expected[1] - 1.0];
+    assert!(off.iter().all(|off| off.abs() < 1e-5), "{px:?} {py:?}");
 }
 
 /// A collision anywhere in the ranges: any side, any direction.
@@ -176,7 +176,7 @@ fn any_collision_is_finite_and_outside_of_the_training_as_uncertain_as_the_physi
 fn the_network_fades_as_the_struck_gets_lighter() {
     let (model, seen) = (model(), cases("fea-wide")[0].scenario.clone());
     let mut before = (1.0, 0.0);
-    for mass_kg in [1500.0, 1450.0, 1400.0, 1350.0, 1300.0, 1200.0, 1000.0] {
+    for mass_kg in [1300.0, 1200.0, 1100.0, 1000.0, 900.0, 800.0, 600.0] {
         let lighter = ForceScenario { mass_kg: [mass_kg, seen.mass_kg[1]], ..seen.clone() };
         let predicted = model.predict(&lighter).unwrap();
         let [low, _, high] = impulse_quantiles(&predicted, [0.05, 0.5, 0.95]);

@@ -139,7 +139,7 @@ pub struct CrushConfig {
     pub impulse_weight: f64,
     /// Weight of hooked and unseparated cases, 0 to 1.
     pub hooked_weight: f64,
-    /// Largest number of steps of each fit.
+    /// Largest number of steps of each fit. Thirty take three times as long and predict no better.
     pub max_steps: usize,
 }
 
@@ -196,7 +196,7 @@ impl Default for CrushConfig {
             prior_weight: 0.07,
             impulse_weight: 0.5,
             hooked_weight: 0.3,
-            max_steps: 30,
+            max_steps: 10,
         }
     }
 }
