@@ -34,6 +34,7 @@ mod hinges;
 mod impact_state;
 mod latent;
 mod later_contact;
+mod left_out;
 mod likelihood;
 mod modes;
 mod posterior;
@@ -54,7 +55,8 @@ pub use latent::{
     BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues, PUSH_PROBABILITY,
     STRIKING_BRAKES, STRIKING_BRAKES_BEFORE,
 };
-pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, LeftOut, ReconstructionTarget};
+pub use left_out::LeftOut;
+pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
 pub use modes::{ParticleMode, cluster_keys, modes_by};
 pub use posterior::{BudgetItem, LEAST_ESS_FOR_INTERVALS, Mode, Posterior};
 pub use prior::{Prior, PriorComponent, PriorSource};

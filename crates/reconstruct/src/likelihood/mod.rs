@@ -5,7 +5,6 @@ mod comparison;
 mod discrepancy;
 mod draw;
 mod fit;
-mod left_out;
 mod onset;
 mod target;
 mod track;
@@ -13,7 +12,6 @@ mod track;
 pub use comparison::EvidenceTerm;
 pub use discrepancy::Discrepancy;
 pub use fit::EvidenceFit;
-pub use left_out::LeftOut;
 pub use target::ReconstructionTarget;
 
 pub(crate) use comparison::{Compared, ComparedCar, Comparison, SINGLE_DEGREES_OF_FREEDOM};

@@ -75,7 +75,8 @@ pub(super) fn of_left_out(left_out: &[LeftOut]) -> Vec<Caveat> {
     let format = NumberFormat::default();
     let contradicted = left_out.iter().filter(|part| part.is_contradicted);
     contradicted
-        .map(|part| {
+        .filter_map(|part| Some((part, part.p?)))
+        .map(|(part, p)| {
             let without = part.struck_speed.as_ref().map_or_else(String::new, |speed| {
                 let speed = format.estimate_in_words(Quantity::Speed, &speed.estimate);
                 format!("; without it the struck car had {speed}")
@@ -85,7 +86,7 @@ pub(super) fn of_left_out(left_out: &[LeftOut]) -> Vec<Caveat> {
                 part.evidence
             );
             Caveat::new(CaveatKind::EvidenceUnexplained, text)
-                .with_value(format!("p of {} by the others", part.evidence), part.p.unwrap_or(0.0))
+                .with_value(format!("p of {} by the others", part.evidence), p)
         })
         .collect()
 }

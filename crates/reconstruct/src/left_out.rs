@@ -6,12 +6,14 @@ use std::ops::ControlFlow;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::likelihood::comparison::{Compared, EvidenceTerm};
+use crate::likelihood::Compared;
 use crate::posterior::LEAST_ESS_FOR_INTERVALS;
 use crate::sampler::{
     LeftOutParticles, Particles, SamplerReport, SamplerSettings, Target, sample_from,
 };
-use crate::{Posterior, QuantityEstimate, ReconstructedQuantity, ReconstructionTarget};
+use crate::{
+    EvidenceTerm, Posterior, QuantityEstimate, ReconstructedQuantity, ReconstructionTarget,
+};
 use impactlab_core::numerics::normal_cdf;
 
 /// Independent draws below which nothing is said.
