@@ -16,7 +16,7 @@ use impactlab::app::{
 };
 use impactlab_core::collision::{ChannelClass, Scenario};
 use impactlab_core::data::{Existing, Severity};
-use impactlab_core::uncertainty::CaveatKind;
+use impactlab_core::uncertainty::{CaveatKind, Caveats};
 use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_core::vehicle::{Braking, Ending};
 use impactlab_study::case_file::{CaseFile, Variant, unpack};
@@ -48,6 +48,10 @@ fn is_answered(state: &State) -> bool {
         && !state.session.response.forecast.is_waiting()
         && state.session.force.forecast.ok().is_some()
         && !state.session.force.forecast.is_waiting()
+}
+
+fn forecast_caveats<'a>(harness: &'a Harness<'_, App>) -> &'a Caveats {
+    &state(harness).session.response.forecast.ok().expect("a forecast").answer.report.caveats
 }
 
 fn save_as(harness: &mut Harness<'_, App>, path: &Path) {
@@ -464,7 +468,12 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
     let force = &state(&harness).chain()[2];
     assert!(force.source.starts_with("force network"), "{force:?}");
     assert!(force.figure.as_ref().unwrap().contains(" to "), "{force:?}");
-    let caveats = &state(&harness).session.response.forecast.ok().unwrap().answer.report.caveats;
+    // It has learned from such collisions, and from none with a vehicle of nine tonnes.
+    assert!(!forecast_caveats(&harness).has(CaveatKind::OutsideDomain));
+    scenario(&mut harness).striking.mass_kg = 9000.0;
+    harness.run_steps(2);
+    step_until(&mut harness, "the forecast", is_answered);
+    let caveats = forecast_caveats(&harness);
     assert!(caveats.has(CaveatKind::OutsideDomain), "{caveats:?}");
 
     // No figure of another subject stands while the new one is computed.
