@@ -78,11 +78,6 @@ fn numbers_of_a_force_model_without_a_meaning_are_refused() {
             "standardisation.std[2] is -2, expected a number above 0",
         ),
         ("/open/body/0", json!(-0.5), "open.body[0] is -0.5, expected 0 to 1"),
-        (
-            "/record/variance_factors/shared",
-            json!(-1.0),
-            "record.variance_factors.shared is -1, expected a number above 0",
-        ),
         ("/centre/committee/share", json!(2.0), "centre.committee.share is 2, expected 0 to 1"),
         (
             "/centre/momentum/inertia_per_mass_m2/1",
@@ -130,6 +125,30 @@ fn numbers_of_a_force_model_without_a_meaning_are_refused() {
     ] {
         let error = refused(pointer, value);
         assert!(error.starts_with(message), "{error}");
+    }
+}
+
+#[test]
+fn factors_of_a_calibration_without_a_meaning_are_refused() {
+    for (pointer, value, message) in [
+        (
+            "/record/variance_factors/shared",
+            -1.0,
+            "record.variance_factors.shared is -1, expected a number above 0",
+        ),
+        (
+            "/record/variance_factors/far/factors/single",
+            0.0,
+            "record.variance_factors.far.factors.single is 0, expected a number above 0",
+        ),
+        (
+            "/record/variance_factors/far/distance/0",
+            -1.0,
+            "record.variance_factors.far.distance[0] is -1, expected 0 or more",
+        ),
+    ] {
+        let error = refused::<ForceModel>("force.safetensors", set(pointer, json!(value)));
+        assert_eq!(error, message);
     }
 }
 
