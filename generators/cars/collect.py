@@ -1,14 +1,11 @@
 """Makes the data sets of finished cars in the layout of impactlab's trajectories: one folder a car.
 
-    python3 collect.py WORK DEST [--part learn|held-out|all] [--cars 60] [--seed 20261128] [--with-steered]
+    python3 collect.py WORK DEST [--part learn|held-out|all] [--cars 60] [--seed 20261128]
 
 DEST/car-017 has cases.csv, vehicle.toml and trajectories/car-017_00.csv. A quarter of the CARS is held out by
 the hash of their names, so that more cars move none of them from one part to the other. A motion whose
 balances do not hold is left out and named, and so is a car that fails its checks, oversteers or is not
 finished. A car that DEST has already stays as it is until its motions are all there again.
-
-Motions in which the driver steers are left out, too: impactlab replays them with the wheels straight, and
-would learn from them what is not so. `--with-steered` keeps them, for other programs.
 """
 
 import argparse
@@ -103,7 +100,7 @@ def write_table(rows, path):
                             for name, value in of_row.items()})
 
 
-def collect_car(sampled, source, destination, with_steered):
+def collect_car(sampled, source, destination):
     """Writes the data set of a car, whole or not at all; returns the motions that are left out with the
     reasons."""
     rows, left_out = [], {}
@@ -116,9 +113,6 @@ def collect_car(sampled, source, destination, with_steered):
         told = read_json(source / "motions" / f"{motion.name}.json")
         if told["refused"]:
             left_out[motion.name] = told["refused"]
-            continue
-        if motion.steered_rad(table) and not with_steered:
-            left_out[motion.name] = "the driver steers"
             continue
         cut = records.usable(source / "motions" / f"{motion.name}.csv", told["request"])
         write_trajectory(cut.record, trajectories / f"{motion.name}.csv")
@@ -151,7 +145,6 @@ def main():
     parser.add_argument("--part", choices=["all", "learn", "held-out"], default="all")
     parser.add_argument("--cars", type=int, default=cars.DESIGN_CARS)
     parser.add_argument("--seed", type=int, default=20261128)
-    parser.add_argument("--with-steered", action="store_true")
     args = parser.parse_args()
     args.destination.mkdir(parents=True, exist_ok=True)
     before = {of_row["car"]: of_row for of_row in read_table(args.destination / "cars.csv")}
@@ -169,7 +162,7 @@ def main():
         if reason:
             left_out[car.name] = reason
             continue
-        left_out |= collect_car(sampled, source, destination, args.with_steered)
+        left_out |= collect_car(sampled, source, destination)
         n_motions += len(read_table(destination / "cases.csv"))
         table.append(facts(car, read_json(source / "figures.json")))
     if table:

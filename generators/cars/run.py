@@ -1,7 +1,7 @@
 """Makes the cars of a seed and computes their motions, and goes on where it was stopped.
 
     python3 run.py WORK --driver OUT/drive_car --chrono-data OUT/chrono/data/vehicle [--cars 60]
-                   [--seed 20261128] [--jobs 2] [--only car-017 ...]
+                   [--seed 20261128] [--jobs 2] [--only car-017 ...] [--have DATA ...]
 
 Each car has its folder in WORK: `build.json` when it is described and tuned, `figures.json` and
 `vehicle.toml` when it is measured, `motions/NAME.csv` and `motions/NAME.json` for each motion, `checks.json`
@@ -175,10 +175,14 @@ def main():
     parser.add_argument("--seed", type=int, default=20261128)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--only", nargs="*", help="names of cars")
+    parser.add_argument("--have", type=Path, nargs="*", default=[],
+                        help="what collect.py made before: its cars are not computed again")
     args = parser.parse_args()
     args.work.mkdir(parents=True, exist_ok=True)
     work = Work(args.work, args.driver.resolve(), args.chrono_data, args.seed)
-    indices = [i for i in range(args.cars) if not args.only or cars.car(i, args.seed).name in args.only]
+    names = {i: cars.car(i, args.seed).name for i in range(args.cars)}
+    indices = [i for i, name in names.items() if (not args.only or name in args.only)
+               and not any((data / name / "cases.csv").exists() for data in args.have)]
     failed = []
 
     def report(name, what):

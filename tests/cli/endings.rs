@@ -358,6 +358,54 @@ fn a_data_set_with_brakes_is_replayed_with_them() {
     assert!(printed.contains("\"braking_torque_n_m\" is \"plenty\""), "{printed}");
 }
 
+#[test]
+fn a_data_set_with_steering_is_replayed_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().join("data");
+    let files = data.join("trajectories");
+    fs::create_dir_all(&files).unwrap();
+    let cases = fs::read_to_string("datasets/trajectories-fea/cases.csv").unwrap();
+    let mut lines = cases.lines();
+    let (header, first) = (lines.next().unwrap(), lines.next().unwrap());
+    let name = first.split(',').next().unwrap();
+    let file = format!("{name}.csv");
+    fs::copy(format!("datasets/trajectories-fea/trajectories/{file}"), files.join(&file)).unwrap();
+    fs::copy("datasets/trajectories-fea/vehicle.toml", data.join("vehicle.toml")).unwrap();
+    let write = |cells: &str| {
+        let columns = "steering,steering_start_s,steering_rad,steering_rate_rad_s";
+        fs::write(data.join("cases.csv"), format!("{header},{columns}\n{first},{cells}\n"))
+            .unwrap();
+    };
+    let steer = |cells: &str| -> Vec<f64> {
+        write(cells);
+        let out = folder.path().join("out");
+        let _ = answer(&["simulate", "--dataset", text(&data), "--out", text(&out), "--overwrite"]);
+        let motion = fs::read_to_string(out.join(&file)).unwrap();
+        let mut rows = motion.lines();
+        let columns: Vec<&str> = rows.next().unwrap().split(',').collect();
+        let Some(at) = columns.iter().position(|column| *column == "steer_fl_rad") else {
+            return Vec::new();
+        };
+        rows.map(|row| row.split(',').nth(at).unwrap().parse().unwrap()).collect()
+    };
+    let held = steer("held,0.5,-0.2,0.4");
+    for (idx, expected) in [(50, 0.0), (75, -0.1), (100, -0.2), (300, -0.2)] {
+        assert!((held[idx] - expected).abs() < 1e-9, "{idx}: {}", held[idx]);
+    }
+    assert!(steer("none,,,").iter().all(|rad| *rad == 0.0));
+    for (cells, expected) in [
+        ("turned,0.5,-0.2,0.4", "\"steering\" is \"turned\", expected none or held"),
+        ("held,0.5,-0.2,", "steering_rate_rad_s"),
+        ("held,0.5,-2,0.4", "expected -0.9 to 0.9"),
+    ] {
+        write(cells);
+        let output = program().args(["simulate", "--dataset", text(&data)]).output().unwrap();
+        let printed = String::from_utf8_lossy(&output.stdout).into_owned()
+            + &String::from_utf8_lossy(&output.stderr);
+        assert!(printed.contains(expected), "{cells}: {printed}");
+    }
+}
+
 /// A forecast to rest of a scenario with an ending, in a folder of its own.
 fn to_rest(folder: &std::path::Path, ending: &str, args: &[&str]) -> serde_json::Value {
     let path = folder.join("scenario.toml");

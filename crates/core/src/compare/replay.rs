@@ -10,15 +10,15 @@ use crate::compare::{
     MotionError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, physical_violations,
 };
 use crate::data::{
-    Case, CaseBraking, Channel, DataError, Outcome, SeriesError, TIME_TOLERANCE_S, TimeSeries,
-    TrajectoryAttributes,
+    Case, CaseBraking, CaseSteering, Channel, DataError, Outcome, SeriesError, TIME_TOLERANCE_S,
+    TimeSeries, TrajectoryAttributes,
 };
 use crate::jobs::{Progress, ProgressCallback};
 use crate::numerics::Summary;
 use crate::vehicle::{
     ContactLoad, ContactPoint, Controls, Integrator, Manoeuvre, Motion, OUTPUT_INTERVAL_S,
-    SimulationError, SimulationRun, VehicleParameters, VehicleState, WheelEffort, WheelHistory,
-    simulate_batch,
+    SimulationError, SimulationRun, SteerHistory, VehicleParameters, VehicleState, WheelEffort,
+    WheelHistory, simulate_batch,
 };
 
 /// Number of cases that are simulated in parallel between two reports of progress.
@@ -136,7 +136,11 @@ pub fn recorded_manoeuvre(
     Ok(Manoeuvre {
         initial: initial_state(&case.series).map_err(in_case)?,
         contact_load: Some(ContactLoad { force, contact, recorded_moment: true }),
-        controls: Controls { wheels: braked(attributes.braking, vehicle), ..Controls::default() },
+        controls: Controls {
+            steer: attributes.steering.map(steered),
+            wheels: braked(attributes.braking, vehicle),
+            closed_loop: None,
+        },
         duration_s: last.max(OUTPUT_INTERVAL_S),
         ..Manoeuvre::default()
     })
@@ -154,6 +158,12 @@ fn braked(braking: Option<CaseBraking>, vehicle: &VehicleParameters) -> Option<W
         time_s: vec![start_s, start_s + rise_s],
         wheels: vec![[WheelEffort::none(); 4], std::array::from_fn(full)],
     })
+}
+
+/// The front wheels of a case that is steered.
+fn steered(steering: CaseSteering) -> SteerHistory {
+    let CaseSteering { start_s, angle_rad, .. } = steering;
+    SteerHistory { time_s: vec![start_s, steering.end_s()], steer_rad: vec![0.0, angle_rad] }
 }
 
 /// Vehicle state at the first sample of a recorded motion. Yaw rate, roll angle and roll rate are

@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::data::{Attributes, CaseBraking, DataError, DatasetKind};
+use crate::data::{Attributes, CaseBraking, CaseSteering, DataError, DatasetKind};
 use crate::ranges::{
     BODY_MASS, BODY_YAW_INERTIA, CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, HEADING, ROAD_FRICTION,
     Range, SPEED, STRIKING_OFFSET, YAW_RATE,
@@ -129,6 +129,8 @@ pub struct TrajectoryAttributes {
     pub separated: Option<bool>,
     /// What brakes the wheels; `None` for a vehicle that coasts.
     pub braking: Option<CaseBraking>,
+    /// How the front wheels turn; `None` if they stay straight ahead.
+    pub steering: Option<CaseSteering>,
 }
 
 impl ForceAttributes {
@@ -174,6 +176,7 @@ impl TrajectoryAttributes {
             spin: attributes.flag("spin"),
             separated: attributes.flag("fe_separated"),
             braking: CaseBraking::read(attributes)?,
+            steering: CaseSteering::read(attributes)?,
         })
     }
 }

@@ -15,6 +15,7 @@ mod attributes;
 mod budget;
 mod case_attributes;
 mod case_braking;
+mod case_steering;
 mod channel;
 mod clock;
 mod column_map;
@@ -65,6 +66,7 @@ pub use budget::{
 };
 pub use case_attributes::{AttributeColumn, ForceAttributes, StruckSide, TrajectoryAttributes};
 pub use case_braking::CaseBraking;
+pub use case_steering::CaseSteering;
 pub use channel::Channel;
 pub use column_map::{ColumnMap, ColumnRef, ColumnSource, MapError, SignedColumn};
 pub(crate) use columns::Columns;

@@ -48,6 +48,8 @@ ranges! {
         "when brake, drag or steering begins, after the first contact";
     STEERING_WHEEL_ANGLE: "steering-wheel angle" = real(Quantity::Angle, [-25.0, 25.0]),
         "angle of the steering wheel, positive to the left";
+    ROAD_WHEEL_RATE: "rate of the road wheels" = real(Quantity::AngularVelocity, [1e-3, 20.0]),
+        "how fast the front wheels turn to an angle";
     STEERING_RATIO: "steering ratio" = real(Quantity::Ratio, [1.0, 40.0]),
         "angle of the steering wheel over that of the road wheels; 12 to 20 in cars";
     BRAKE_SHARE: "braking" = real(Quantity::Ratio, [0.0, 3.0]),
