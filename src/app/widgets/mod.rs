@@ -7,6 +7,7 @@ mod cost;
 mod dataset_choice;
 mod facts;
 mod figure_frame;
+mod number;
 mod quantity;
 mod time_figure;
 mod written;

@@ -2,25 +2,24 @@
 //!
 //! The values that they edit are in SI units; they are converted only for display.
 
-use std::cell::Cell;
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use egui::emath::Numeric;
-use egui::{DragValue, Response, RichText, Slider, SliderClamping, Ui};
+use egui::{DragValue, Response, Slider, SliderClamping, Ui};
 
-use impactlab_core::data::Severity;
+use crate::app::widgets::number::{Edit, Editing, Number, number_ui};
 use impactlab_core::ranges::Range;
-use impactlab_core::units::{Quantity, Unit, UnitSystem, significant};
-use impactlab_draw::theme;
+use impactlab_core::units::{Quantity, Unit, UnitSystem};
 
 /// Smallest width of a cell that ends at the edge of what can be seen, points.
 const LEAST_CELL_WIDTH: f32 = 80.0;
 
 /// Draws a row of a two-column grid: a label and a number field that edits `value_si`.
 ///
-/// A number that is typed beyond the range is not taken: the field keeps it and says what is possible
-/// and which value stays. Dragging stops at the limit. The range stands in the hint of the field.
+/// Any unit of the quantity may be typed. What is typed and cannot be read, or lies beyond the range, is not
+/// taken: the field keeps it and says what is possible and which value stays. Dragging stops at the limit. The
+/// range stands in the hint of the field.
 ///
 /// - `value_si`: the value in SI units; it is written only when the user changes the field.
 /// - `range`: the admissible values.
@@ -49,25 +48,45 @@ pub fn quantity_value(
     range: &Range,
     units: UnitSystem,
 ) -> (Response, bool) {
-    let unit = range.quantity.display_unit(units);
-    let limits = [range.low, range.high].map(|limit| unit.from_si(limit));
-    let expected = range.expected(&unit);
-    let value = unit.from_si(*value_si);
-    let (response, taken) =
-        bounded(ui, value, &significant(value), limits, &expected, |ui, shown| {
-            let field = DragValue::new(shown)
-                .update_while_editing(false)
-                .speed(drag_speed(range, &unit))
-                .max_decimals(3)
-                .suffix(suffix(&unit));
-            ui.add(field)
-        });
-    let response = response.on_hover_text(hint(range, &unit));
-    if let Some(shown) = taken {
-        // So that a limit in another unit is the limit.
-        *value_si = unit.to_si(shown).clamp(range.low, range.high);
+    let number = number(range, Some(*value_si), units);
+    let (response, edit) = number_ui(ui, &number, |ui, editing| {
+        ui.add(field(editing, drag_speed(range, &number.unit)))
+    });
+    let response = response.on_hover_text(hint(range, &number.unit));
+    if let Edit::Value(shown) = edit {
+        *value_si = to_si(&number, range, shown);
     }
-    (response, taken.is_some())
+    (response, matches!(edit, Edit::Value(_)))
+}
+
+/// A number in the unit in which the user reads and types it.
+fn number<'a>(range: &Range, value_si: Option<f64>, units: UnitSystem) -> Number<'a> {
+    let unit = range.quantity.display_unit(units);
+    Number {
+        quantity: range.quantity,
+        unit,
+        limits: [range.low, range.high].map(|limit| unit.from_si(limit)),
+        expected: range.expected(&unit),
+        is_whole: false,
+        value: value_si.map(|value_si| unit.from_si(value_si)),
+        empty: None,
+    }
+}
+
+/// What was taken, in SI units, so that a limit in another unit is the limit.
+fn to_si(number: &Number<'_>, range: &Range, shown: f64) -> f64 {
+    number.unit.to_si(shown).clamp(range.low, range.high)
+}
+
+fn field<'a>(editing: Editing<'a>, speed: f64) -> DragValue<'a> {
+    let Editing { value, suffix, parse, format } = editing;
+    DragValue::new(value)
+        .update_while_editing(false)
+        .speed(speed)
+        .max_decimals(3)
+        .suffix(suffix)
+        .custom_formatter(format)
+        .custom_parser(parse)
 }
 
 /// What a field shows while it has no value.
@@ -88,102 +107,19 @@ pub fn optional_quantity(
     range: &Range,
     units: UnitSystem,
 ) -> Response {
-    let unit = range.quantity.display_unit(units);
-    let limits = [range.low, range.high].map(|limit| unit.from_si(limit));
-    let expected = range.expected(&unit);
-    let start = unit.from_si(value_si.unwrap_or(empty.start_si.clamp(range.low, range.high)));
-    let is_empty = value_si.is_none();
-    let stays = if is_empty { empty.text.to_owned() } else { significant(start) };
-    let is_cleared = Cell::new(false);
-    let (response, taken) = bounded(ui, start, &stays, limits, &expected, |ui, shown| {
-        let mut is_entered = false;
-        let get_set = |entered: Option<f64>| {
-            if let Some(entered) = entered {
-                (*shown, is_entered) = (entered, true);
-            }
-            *shown
-        };
-        let format = |value: f64, decimals: RangeInclusive<usize>| match is_empty && value == start
-        {
-            true => empty.text.to_owned(),
-            false => egui::emath::format_with_decimals_in_range(value, decimals),
-        };
-        let parse = |text: &str| {
-            is_cleared.set(text.trim().is_empty());
-            text.trim().replace('−', "-").parse().ok()
-        };
-        let field = DragValue::from_get_set(get_set)
-            .update_while_editing(false)
-            .speed(drag_speed(range, &unit))
-            .max_decimals(3)
-            .suffix(if is_empty { String::new() } else { suffix(&unit) })
-            .custom_formatter(format)
-            .custom_parser(parse);
-        let mut response = ui.add(field);
-        // A value that is typed is a value, also where it is that from which the field is dragged.
-        if is_entered {
-            response.mark_changed();
-        }
-        response
+    let number = number(range, *value_si, units);
+    let start = number.unit.from_si(empty.start_si.clamp(range.low, range.high));
+    let number = Number { empty: Some((empty.text, start)), ..number };
+    let (response, edit) = number_ui(ui, &number, |ui, editing| {
+        ui.add(field(editing, drag_speed(range, &number.unit)))
     });
-    if let Some(shown) = taken {
-        *value_si = Some(unit.to_si(shown).clamp(range.low, range.high));
-    } else if is_cleared.get() {
-        *value_si = None;
+    match edit {
+        Edit::Value(shown) => *value_si = Some(to_si(&number, range, shown)),
+        Edit::Cleared => *value_si = None,
+        Edit::None => {}
     }
-    let hint = format!("{}. Empty: {}", hint(range, &unit), empty.text);
+    let hint = format!("{}. Empty: {}", hint(range, &number.unit), empty.text);
     response.on_hover_text(hint)
-}
-
-/// A number that was typed and is not possible, and the value that stays in its place.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Refused {
-    typed: f64,
-    stays: f64,
-}
-
-/// Draws a control for a number, which keeps what was typed where that is not possible, and says so.
-///
-/// - `value`: the value that stays unless another is taken; `stays`: the same in words;
-/// - `limits`: smallest and largest that are taken; `expected`: the same in words;
-/// - returns the response of the control and the number that the user has changed it to in this frame.
-fn bounded(
-    ui: &mut Ui,
-    value: f64,
-    stays: &str,
-    [low, high]: [f64; 2],
-    expected: &str,
-    control: impl FnOnce(&mut Ui, &mut f64) -> Response,
-) -> (Response, Option<f64>) {
-    let id = ui.next_auto_id().with("refused");
-    let refused = ui.data(|data| data.get_temp::<Refused>(id));
-    let refused = refused.filter(|refused| refused.stays == value);
-    let mut shown = refused.map_or(value, |refused| refused.typed);
-    let response = ui.vertical(|ui| {
-        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-        let response = ui.scope(|ui| {
-            if refused.is_some() {
-                ui.visuals_mut().override_text_color = Some(color);
-            }
-            control(ui, &mut shown)
-        });
-        if refused.is_some() {
-            let why = format!("not possible, {stays} stays; expected {expected}");
-            ui.label(RichText::new(why).color(color).small());
-        }
-        response.inner
-    });
-    let response = response.inner;
-    if !response.changed() {
-        return (response, None);
-    }
-    let taken = if response.dragged() { shown.clamp(low, high) } else { shown };
-    if (low..=high).contains(&taken) {
-        ui.data_mut(|data| data.remove::<Refused>(id));
-        return (response, Some(taken));
-    }
-    ui.data_mut(|data| data.insert_temp(id, Refused { typed: shown, stays: value }));
-    (response, None)
 }
 
 /// Change of a number per point that the mouse is dragged, in the shown unit. It also decides how
@@ -204,33 +140,23 @@ fn drag_speed(range: &Range, unit: &Unit) -> f64 {
     unit.from_si(f64::min(ordinary, (range.high - range.low) / 1000.0))
 }
 
-fn suffix(unit: &Unit) -> String {
-    if unit.symbol.is_empty() { String::new() } else { format!(" {}", unit.symbol) }
-}
-
 /// The range and the meaning of a number, as the hint of its field.
 fn hint(range: &Range, unit: &Unit) -> String {
-    format!("{}: {}", range.meaning, range.expected(unit))
+    let expected = range.expected(unit);
+    let others = range.quantity.units().len() > 1;
+    let units = if others { "; any unit may be typed" } else { "" };
+    format!("{}: {expected}{units}", range.meaning)
 }
 
 /// Draws a number field that counts something, and returns its response. A number beyond the range is
 /// treated as by [`quantity_field`].
 pub fn count_field<N: Numeric>(ui: &mut Ui, value: &mut N, range: &Range, speed: f64) -> Response {
-    let unit = range.quantity.display_unit(UnitSystem::Si);
-    let (limits, expected) = ([range.low, range.high], range.expected(&unit));
-    let (response, taken) = bounded(
-        ui,
-        value.to_f64(),
-        &significant(value.to_f64()),
-        limits,
-        &expected,
-        |ui, shown| {
-            let field = DragValue::new(shown).update_while_editing(false).speed(speed);
-            ui.add(field.fixed_decimals(0))
-        },
-    );
-    if let Some(taken) = taken {
-        *value = N::from_f64(taken.round());
+    let number = number(range, Some(value.to_f64()), UnitSystem::Si);
+    let number = Number { is_whole: true, ..number };
+    let (response, edit) =
+        number_ui(ui, &number, |ui, editing| ui.add(field(editing, speed).fixed_decimals(0)));
+    if let Edit::Value(taken) = edit {
+        *value = N::from_f64(taken);
     }
     response
 }
@@ -270,26 +196,28 @@ pub fn quantity_slider(
     value_si: f64,
     units: UnitSystem,
 ) -> Option<f64> {
-    let unit = range.possible.quantity.display_unit(units);
-    let hint = format!("{}\n{}", range.hint, hint(&range.possible, &unit));
+    let number = number(&range.possible, Some(value_si), units);
+    let unit = &number.unit;
+    let hint = format!("{}\n{}", range.hint, hint(&range.possible, unit));
     let name = ui.label(range.label).on_hover_text(&hint);
     let [low, high] = [range.usual.start(), range.usual.end()].map(|end| unit.from_si(*end));
-    let limits = [range.possible.low, range.possible.high];
-    let expected = range.possible.expected(&unit);
-    let possible = limits.map(|limit| unit.from_si(limit));
-    let value = unit.from_si(value_si);
-    let stays = significant(value);
-    let (response, taken) = bounded(ui, value, &stays, possible, &expected, |ui, shown| {
-        let slider = Slider::new(shown, low..=high)
+    let (response, edit) = number_ui(ui, &number, |ui, editing| {
+        let Editing { value, suffix, parse, format } = editing;
+        let slider = Slider::new(value, low..=high)
             .clamping(SliderClamping::Never)
+            .update_while_editing(false)
             .max_decimals(if high - low > 200.0 { 0 } else { 2 })
-            .suffix(suffix(&unit));
+            .suffix(suffix)
+            .custom_formatter(format)
+            .custom_parser(parse);
         ui.add(slider)
     });
     response.labelled_by(name.id).on_hover_text(hint);
     ui.end_row();
-    let [low, high] = limits;
-    taken.map(|shown| unit.to_si(shown).clamp(low, high))
+    match edit {
+        Edit::Value(shown) => Some(to_si(&number, &range.possible, shown)),
+        Edit::Cleared | Edit::None => None,
+    }
 }
 
 /// Draws into a cell of a grid what must not go beyond the edge of the part that can be seen, as a grid
@@ -345,6 +273,10 @@ mod tests {
             ("1e99", 4.5e6, false),
             ("1800", 1800.0, true),
             ("0", 1800.0, false),
+            ("heavy", 1800.0, false),
+            ("1,860", 1800.0, false),
+            ("4100 lb", 4100.0 * 0.453_592_37, true),
+            ("1,86 t", 1860.0, true),
         ] {
             harness.key_press(Key::Tab);
             harness.run();
@@ -356,6 +288,13 @@ mod tests {
             let says = harness.query_by_label_contains("not possible").is_some();
             assert_eq!(says, !is_taken, "{typed}");
         }
+        // Leaving a field as it is does not round its number, and what was typed stands there again.
+        *harness.state_mut() = 1_860.000_4;
+        for _ in 0..2 {
+            harness.key_press(Key::Tab);
+            harness.run();
+        }
+        assert_eq!(*harness.state(), 1_860.000_4);
         // A value from elsewhere, such as by undo, takes the place of what was typed.
         *harness.state_mut() = 1500.0;
         harness.run();

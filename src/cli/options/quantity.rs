@@ -4,19 +4,16 @@ use impactlab_core::ranges::{
     CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, FILM_SPEED, INSTANT, OutOfRange, PICTURE_PIXELS,
     PICTURE_SIDE, Range, WINDOW,
 };
-use impactlab_core::units::Quantity;
+use impactlab_core::units::{Quantity, TypedError};
 use impactlab_core::vehicle::ContactPoint;
 use impactlab_document::scene::FilmSection;
 
 /// An argument that is not the number it should be.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(in crate::cli) enum QuantityError {
-    /// No number at the beginning.
-    #[error("expected a number, in {si} or with one of the units {units}")]
-    NoNumber { si: &'static str, units: String },
-    /// A unit of something else.
-    #[error("{unit:?} is not one of the units {units}")]
-    Unit { unit: String, units: String },
+    /// Not a number, or one with a unit of something else.
+    #[error(transparent)]
+    Typed(#[from] TypedError),
     /// Beyond what makes sense.
     #[error(transparent)]
     Range(#[from] OutOfRange),
@@ -107,41 +104,9 @@ pub(in crate::cli) fn film_section(text: &str) -> Result<FilmSection, QuantityEr
     Ok(FilmSection { from_s, to_s, speed: number(FILM_SPEED)(speed)? })
 }
 
-/// A finite number and, if there is one, its unit; SI without.
+/// A number and, if there is one, its unit; SI without.
 fn quantity(text: &str, quantity: Quantity) -> Result<f64, QuantityError> {
-    let text = text.trim();
-    let is_number = |c: char| c.is_ascii_digit() || "+-.".contains(c);
-    // `1e3`: an e counts only between digits and digits or a sign.
-    let is_exponent = |at: usize| {
-        let after = text[at..].chars().nth(1);
-        at > 0 && after.is_some_and(|c| c.is_ascii_digit() || "+-".contains(c))
-    };
-    let end = text
-        .char_indices()
-        .find(|&(at, c)| !(is_number(c) || "eE".contains(c) && is_exponent(at)))
-        .map_or(text.len(), |(at, _)| at);
-    let (number, unit) = text.split_at(end);
-    let Ok(value) = number.parse::<f64>() else {
-        return Err(QuantityError::NoNumber {
-            si: quantity.si_unit().symbol,
-            units: symbols(quantity),
-        });
-    };
-    let unit = unit.trim();
-    if unit.is_empty() {
-        return Ok(value);
-    }
-    let known = quantity.units().iter();
-    known
-        .filter(|known| !known.symbol.is_empty())
-        .find(|known| known.symbol.eq_ignore_ascii_case(unit))
-        .map(|known| known.to_si(value))
-        .ok_or_else(|| QuantityError::Unit { unit: unit.to_owned(), units: symbols(quantity) })
-}
-
-fn symbols(quantity: Quantity) -> String {
-    let symbols = quantity.units().iter().map(|unit| unit.symbol);
-    symbols.filter(|symbol| !symbol.is_empty()).collect::<Vec<_>>().join(", ")
+    Ok(quantity.parse(text, &quantity.si_unit())?)
 }
 
 #[cfg(test)]

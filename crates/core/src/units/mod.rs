@@ -5,6 +5,7 @@
 mod estimate;
 mod format;
 mod quantity;
+mod typed;
 
 pub use estimate::{Estimate, Interval};
 pub use format::{
@@ -14,3 +15,4 @@ pub use quantity::{
     KILOMETRE_PER_HOUR_M_S, MILE_PER_HOUR_M_S, Quantity, STANDARD_GRAVITY_M_S2, US_SURVEY_FOOT,
     Unit, UnitSystem,
 };
+pub use typed::TypedError;

@@ -1,0 +1,181 @@
+//! A control for a number that keeps what was typed where that is not possible, and says why.
+
+use std::cell::RefCell;
+use std::ops::RangeInclusive;
+
+use egui::{Response, RichText, Ui};
+
+use impactlab_core::data::Severity;
+use impactlab_core::units::{Quantity, Unit, significant};
+use impactlab_draw::theme;
+
+/// A number as a control shows it, in the unit in which it is shown and typed.
+pub(super) struct Number<'a> {
+    /// What it is a number of.
+    pub(super) quantity: Quantity,
+    /// The unit in which it is shown, and that of what is typed without one.
+    pub(super) unit: Unit,
+    /// Smallest and largest that are taken.
+    pub(super) limits: [f64; 2],
+    /// The same in words.
+    pub(super) expected: String,
+    /// Whether it counts something.
+    pub(super) is_whole: bool,
+    /// Its value; `None` if it is not known.
+    pub(super) value: Option<f64>,
+    /// What the control shows of one that is not known, and from where that is dragged; `None` for a number
+    /// that is always known.
+    pub(super) empty: Option<(&'a str, f64)>,
+}
+
+/// What a user did with a control.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Edit {
+    /// Nothing, or nothing that is possible.
+    None,
+    /// Another number.
+    Value(f64),
+    /// No number any more.
+    Cleared,
+}
+
+/// How a control shows and reads its number.
+pub(super) struct Editing<'a> {
+    /// The number that is dragged.
+    pub(super) value: &'a mut f64,
+    /// What stands after it.
+    pub(super) suffix: String,
+    /// Reads a text.
+    pub(super) parse: &'a dyn Fn(&str) -> Option<f64>,
+    /// Writes a number.
+    pub(super) format: &'a dyn Fn(f64, RangeInclusive<usize>) -> String,
+}
+
+/// What was typed and is not possible.
+#[derive(Debug, Clone, PartialEq)]
+struct Refused {
+    text: String,
+    why: String,
+    /// The value that stays in its place.
+    stays: Option<f64>,
+}
+
+/// What has been typed in this frame.
+#[derive(Debug, Clone, PartialEq)]
+enum Typed {
+    Nothing,
+    Value(f64),
+    Cleared,
+    Refused { text: String, why: String },
+}
+
+impl Number<'_> {
+    /// The number in words.
+    fn in_words(&self) -> String {
+        match (self.value, self.empty) {
+            (Some(value), _) => significant(value),
+            (None, Some((text, _))) => text.to_owned(),
+            (None, None) => String::new(),
+        }
+    }
+
+    /// What a text says.
+    fn typed(&self, text: &str) -> Typed {
+        let refused = |why: String| Typed::Refused { text: text.trim().to_owned(), why };
+        if text.trim().is_empty() {
+            return match self.empty {
+                Some(_) => Typed::Cleared,
+                None => Typed::Nothing,
+            };
+        }
+        let value = match self.quantity.parse(text, &self.unit) {
+            Ok(value_si) => self.unit.from_si(value_si),
+            Err(error) => return refused(error.to_string()),
+        };
+        let [low, high] = self.limits;
+        if !(low..=high).contains(&value) || (self.is_whole && value.fract() != 0.0) {
+            return refused(format!("expected {}", self.expected));
+        }
+        Typed::Value(value)
+    }
+}
+
+/// Draws a control for a number.
+///
+/// - `control`: draws it;
+/// - returns the response of the control, and what the user did with it in this frame.
+pub(super) fn number_ui(
+    ui: &mut Ui,
+    number: &Number<'_>,
+    control: impl FnOnce(&mut Ui, Editing<'_>) -> Response,
+) -> (Response, Edit) {
+    let id = ui.next_auto_id().with("refused");
+    let refused = ui.data(|data| data.get_temp::<Refused>(id));
+    let refused = refused.filter(|refused| refused.stays == number.value);
+    let start = number.value.or(number.empty.map(|(_, start)| start)).unwrap_or_default();
+    let typed = RefCell::new(Typed::Nothing);
+    // What the field says of its number, which is no other number when it is left as it was.
+    let written = RefCell::new(String::new());
+    let format = |value: f64, decimals: RangeInclusive<usize>| {
+        let text = match (&refused, number.value, number.empty) {
+            (Some(refused), ..) if value == start => refused.text.clone(),
+            (None, None, Some((text, _))) if value == start => text.to_owned(),
+            _ => egui::emath::format_with_decimals_in_range(value, decimals),
+        };
+        written.borrow_mut().clone_from(&text);
+        text
+    };
+    let parse = |text: &str| {
+        if text == *written.borrow() {
+            return None;
+        }
+        let found = number.typed(text);
+        let value = match &found {
+            Typed::Value(value) => Some(*value),
+            Typed::Nothing | Typed::Cleared | Typed::Refused { .. } => None,
+        };
+        typed.replace(found);
+        value
+    };
+    let is_plain = refused.is_some() || number.value.is_none() || number.unit.symbol.is_empty();
+    let suffix = if is_plain { String::new() } else { format!(" {}", number.unit.symbol) };
+    let mut shown = start;
+    let response = ui.vertical(|ui| {
+        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+        let response = ui.scope(|ui| {
+            if refused.is_some() {
+                ui.visuals_mut().override_text_color = Some(color);
+            }
+            control(ui, Editing { value: &mut shown, suffix, parse: &parse, format: &format })
+        });
+        if let Some(Refused { why, .. }) = &refused {
+            let why = format!("not possible, {} stays; {why}", number.in_words());
+            ui.label(RichText::new(why).color(color).small());
+        }
+        response.inner
+    });
+    let response = response.inner;
+    let forget = |ui: &Ui| ui.data_mut(|data| data.remove::<Refused>(id));
+    let edit = match typed.into_inner() {
+        Typed::Refused { text, why } => {
+            let stays = number.value;
+            ui.data_mut(|data| data.insert_temp(id, Refused { text, why, stays }));
+            Edit::None
+        }
+        Typed::Cleared => {
+            forget(ui);
+            if number.value.is_some() { Edit::Cleared } else { Edit::None }
+        }
+        Typed::Value(value) => {
+            forget(ui);
+            if number.value == Some(value) { Edit::None } else { Edit::Value(value) }
+        }
+        Typed::Nothing if response.changed() => {
+            forget(ui);
+            let value = if number.is_whole { shown.round() } else { shown };
+            Edit::Value(value.clamp(number.limits[0], number.limits[1]))
+        }
+        Typed::Nothing => Edit::None,
+    };
+    (response, edit)
+}
