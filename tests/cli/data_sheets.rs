@@ -74,6 +74,56 @@ fn a_sheet_is_read_wherever_a_vehicle_file_is() {
     assert!(line.contains("wrong.toml:3:11: data_sheet.mass_lb is -3, expected 2.2"), "{line}");
 }
 
+/// The scenario's 2000 kg were driven on the tires of the Corolla, and ended 15 m away.
+#[test]
+fn a_chosen_vehicle_gives_the_scenario_its_mass_and_says_what_it_replaces() {
+    let folder = TempDir::new().unwrap();
+    let own = folder.path().join("own.toml");
+    fs::copy("assets/scenarios/pit_right_rear.toml", &own).unwrap();
+    let scenario = own.to_str().unwrap();
+    let corolla = ["--vehicle", "toyota-corolla-2020"];
+    let asked = |more: &[&str]| {
+        let args = [&["simulate", "--scenario", scenario, "--print-request"], more].concat();
+        json(&args)["source"]["scenario"]["scenario"].clone()
+    };
+    assert_eq!(asked(&[])["file"], scenario, "left open it is the file");
+    let taken = &asked(&corolla)["inline"];
+    let mass_kg = json(&["vehicles", corolla[1]])["mass"]["mass_kg"].clone();
+    assert_eq!(
+        (&taken["target"]["mass_kg"], &taken["target_vehicle"]),
+        (&mass_kg, &corolla[1].into())
+    );
+    assert_eq!(taken["bullet"]["mass_kg"], 2000.0);
+    let args = ["simulate", "--scenario", scenario, "--vehicle-draws", "0", "--json"];
+    let ran = program().args(args).args(corolla).output().unwrap();
+    let note = String::from_utf8(ran.stderr).unwrap();
+    assert!(note.starts_with("note: PIT") && note.contains("instead of 2000"), "{note}");
+    let report: Value = serde_json::from_slice(&ran.stdout).unwrap();
+    assert!(!report["caveats"].to_string().contains("other_vehicle"), "{report}");
+    // A file that names the car and says another mass means that mass.
+    let text = fs::read_to_string(&own).unwrap();
+    fs::write(&own, text.replacen("[target]", "[target]\nvehicle = \"toyota-corolla-2020\"", 1))
+        .unwrap();
+    assert_eq!(asked(&corolla)["inline"]["target"]["mass_kg"], 2000.0);
+    let report = json(&[&args[..5], &corolla].concat());
+    assert!(report["caveats"].to_string().contains("other_vehicle"), "{report}");
+    // The file is an input, although the question has its content.
+    let replaced =
+        program().args(args).args(corolla).args(["--out", scenario, "--overwrite"]).output();
+    let refused = String::from_utf8(replaced.unwrap().stderr).unwrap();
+    assert!(refused.contains("own.toml"), "{refused}");
+    assert!(fs::read_to_string(&own).unwrap().contains("[contact]"));
+}
+
+/// A class says how much its cars differ in mass; with --vehicle the class the mass was taken as known.
+#[test]
+fn a_mass_that_is_estimated_varies_with_the_vehicle() {
+    let args = ["simulate", "--scenario", SCENARIO, "--vehicle", "generic-car"];
+    let report = json(&[&args[..], &["--vehicle-draws", "60"]].concat());
+    let shares = report["uncertainty"]["sensitivity"].as_array().unwrap();
+    assert!(shares.iter().any(|share| share["quantity"] == "mass"), "{shares:?}");
+}
+
 #[test]
 fn the_draws_of_a_simulation_follow_their_seed_and_are_told() {
     let args = ["simulate", "--scenario", SCENARIO, "--vehicle", "toyota-corolla-2020"];
@@ -196,7 +246,8 @@ fn a_collision_of_two_models_of_cars_is_predicted() {
     let model = sheet(
         &folder,
         "mass_kg = 4\nlength_m = 0.6\nwidth_m = 0.3\nwheelbase_m = 0.33\ncg_height_m = 0.07\n\
-         yaw_inertia_kg_m2 = 0.05\nfriction = 1",
+         yaw_inertia_kg_m2 = 0.05\nfriction = 1\nfront_overhang_m = 0.135\n\
+         cg_to_front_axle_m = 0.165",
     );
     let body = |heading_deg: f64, speed_km_h: f64| {
         format!(

@@ -39,7 +39,7 @@ pub use ask::error::StudyError;
 pub use ask::inputs::{
     BadCases, ConfigChoice, DEFAULT_STRIKING, DEFAULT_VEHICLE, EvaluatedCases, InputError,
     InputFile, InputKind, MODEL_ENDING, ModelChoice, ScenarioChoice, SeriesFile, TrainingOptions,
-    VehicleChoice, checkpoint_beside,
+    VehicleChoice, checkpoint_beside, take_vehicle,
 };
 pub use ask::library::Library;
 pub use ask::provenance::Provenance;

@@ -51,10 +51,10 @@ pub(in crate::cli) struct SimulateArgs {
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = NOT_WITH_TRAJECTORY)]
     trajectory: Option<PathBuf>,
     /// The struck vehicle: a file, or a name from `impactlab vehicles`; a data set has its own, else
-    /// reference-2000
+    /// reference-2000. A scenario takes over its mass, yaw inertia and outline
     #[arg(long, value_name = "V.toml|PRESET")]
     vehicle: Option<VehicleArg>,
-    /// The striking vehicle, where it is simulated; mass and inertia are those of the case
+    /// The striking vehicle, where it is simulated; with a data set, mass and inertia are those of the case
     #[arg(id = "bullet", long = "bullet", value_name = "V.toml|PRESET")]
     striking: Option<VehicleArg>,
     /// How the equations of motion are integrated
@@ -208,7 +208,7 @@ fn simulate_one(
     source: MotionSource,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
-    let request = SimulateRequest {
+    let mut request = SimulateRequest {
         source,
         vehicle: VehicleArg::choice(&args.vehicle),
         striking: VehicleArg::choice(&args.striking),
@@ -229,6 +229,7 @@ fn simulate_one(
     };
     let existing = args.overwrite.into();
     console.check_target(args.out.as_deref(), existing)?;
+    console.take_vehicles(&mut request)?;
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     let (report, out) = (&answer.report, args.out.as_deref());
     if let (Some(path), Some(motion)) = (out, answer.analysis.written_motion()?) {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, print_table};
 use impactlab_core::vehicle::sheet::Estimate;
-use impactlab_core::vehicle::{LibraryVehicle, Preset, VehicleParameters};
+use impactlab_core::vehicle::{BuiltInVehicle, LibraryVehicle, Preset, VehicleParameters};
 use impactlab_study::StudyError;
 
 /// List the vehicles that come with the program, or print one as a file to save and edit
@@ -106,19 +106,15 @@ fn print_one(id: &str, estimates: bool, console: &mut Console<'_>) -> Result<(),
 }
 
 fn print_list(console: &mut Console<'_>) -> Result<(), CliError> {
-    let listed = |id, kind, vehicle: VehicleParameters| Listed {
-        id,
-        kind,
-        mass_kg: vehicle.mass.mass_kg,
-        n_estimates: vehicle.estimates.len(),
-        name: vehicle.name,
-        source: vehicle.source,
+    let listed = |of: &BuiltInVehicle| Listed {
+        id: of.id,
+        kind: if of.is_of_library { "library" } else { "preset" },
+        mass_kg: of.parameters.mass.mass_kg,
+        n_estimates: of.parameters.estimates.len(),
+        name: of.parameters.name.clone(),
+        source: of.parameters.source.clone(),
     };
-    let presets = Preset::ALL.iter().map(|vehicle| (vehicle.id(), "preset", vehicle.parameters()));
-    let library =
-        LibraryVehicle::ALL.iter().map(|vehicle| (vehicle.id(), "library", vehicle.parameters()));
-    let all = presets.chain(library);
-    let vehicles: Vec<Listed> = all.map(|(id, kind, vehicle)| listed(id, kind, vehicle)).collect();
+    let vehicles: Vec<Listed> = BuiltInVehicle::all().iter().map(listed).collect();
     if console.json {
         return print_json(console.out, &List { vehicles });
     }

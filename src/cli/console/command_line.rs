@@ -12,7 +12,7 @@ use impactlab_core::data::write::OutputFolder;
 use impactlab_core::site::Site;
 use impactlab_core::uncertainty::Caveats;
 use impactlab_document::scene::LoadedGround;
-use impactlab_study::{Library, Provenance, Question, Request};
+use impactlab_study::{Library, Provenance, Question, Request, SimulateRequest};
 
 /// How a command that did not fail ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,6 +80,22 @@ impl Console<'_> {
         let outcome = under_bar(|observer| question.answer(&self.library, observer))?;
         // Nobody cancels here: Ctrl-C ends the whole program.
         outcome.complete().ok_or(CliError::Cancelled)
+    }
+
+    /// Gives the scenario of a question mass, yaw inertia and outline of the vehicles that are chosen, and says
+    /// on standard error what is another value than in its file.
+    pub(in crate::cli) fn take_vehicles(
+        &mut self,
+        question: &mut SimulateRequest,
+    ) -> Result<(), CliError> {
+        let files = Request::from(question.clone()).files_read();
+        let told = question.take_vehicles()?;
+        self.targets.make_from(&files)?;
+        for line in told {
+            // Nobody is left to tell if standard error is closed.
+            let _ = writeln!(io::stderr(), "note: {}", within_line(&line));
+        }
+        Ok(())
     }
 
     /// Says before the work begins what stands in the way of a file; of nothing if only the question
@@ -163,7 +179,8 @@ impl Console<'_> {
         let output = OutputFolder::begin(folder, existing, known)?;
         self.targets.expect_folder();
         let request: Request = question.clone().into();
-        let output = output.protecting(request.files_read())?;
+        let read = [&request.files_read()[..], self.targets.made_from()].concat();
+        let output = output.protecting(read)?;
         let answer = self.answer(question)?;
         self.targets.answered(&write(&output, &answer)?);
         let (record, _) = self.targets.run_record();

@@ -19,6 +19,8 @@ pub(in crate::cli) struct Targets {
     record: RunRecord,
     /// Everything that was read for the folder.
     read: Vec<PathBuf>,
+    /// What the question was made from, which does not name it any more.
+    made_from: Vec<PathBuf>,
     /// The files whose content stands in the record.
     digested: HashSet<PathBuf>,
 }
@@ -38,6 +40,23 @@ impl Targets {
     /// Says that there will be a folder of results, whose manifest has what is asked from now on.
     pub(super) fn expect_folder(&mut self) {
         self.has_folder = true;
+        let inputs = self.made_from.clone();
+        self.digest(&inputs);
+        self.read.extend(inputs);
+    }
+
+    /// Takes files of which a question was made before there was a folder.
+    ///
+    /// # Errors
+    /// Where one of them will be written.
+    pub(super) fn make_from(&mut self, inputs: &[PathBuf]) -> Result<(), CliError> {
+        self.made_from.extend_from_slice(inputs);
+        self.read(inputs)
+    }
+
+    /// The files that a question was made from.
+    pub(super) fn made_from(&self) -> &[PathBuf] {
+        &self.made_from
     }
 
     /// Takes a question that is about to be asked. Of several the last one stands in a manifest, since

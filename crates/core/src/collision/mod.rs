@@ -42,6 +42,7 @@ mod outline_contact;
 mod polygon;
 mod scenario;
 mod scenario_file;
+mod scenario_of_vehicle;
 mod scenario_preset;
 mod scenario_write;
 mod second_contact;
@@ -81,6 +82,7 @@ pub use pulse::{Pulse, PulseError, PulseShape};
 pub use scenario::{
     ContactLocation, Scenario, ScenarioContact, ScenarioError, ScenarioGeometry, ScenarioVehicle,
 };
+pub use scenario_of_vehicle::{Role, SharedNumber};
 pub use scenario_preset::SCENARIO_PRESETS;
 pub use second_contact::SecondContact;
 

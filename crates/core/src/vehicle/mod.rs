@@ -66,7 +66,7 @@ pub use multibody_record::MultibodyRecord;
 pub use pace::{Pace, rest_instant};
 pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
 pub use path_batch::{MAX_PATH_STEP_S, Path, PathEnd, PathLimit, PathPoint, simulate_paths};
-pub use preset::{Preset, built_in_vehicle};
+pub use preset::{BuiltInVehicle, Preset, built_in_vehicle};
 pub use rest::RestWatch;
 pub use rest::{REST_DURATION_S, REST_SPEED_M_S, REST_YAW_RATE_RAD_S};
 pub use sheet::{DataSheet, LibraryVehicle, SheetQuantity, VehicleClass};

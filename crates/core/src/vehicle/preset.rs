@@ -1,6 +1,7 @@
 //! Vehicles that are part of the program, compiled in from `assets/vehicles/*.toml`.
 
 use std::path::Path;
+use std::sync::LazyLock;
 
 use crate::vehicle::{LibraryVehicle, VehicleParameters};
 
@@ -66,11 +67,40 @@ impl Preset {
     }
 }
 
-/// Parameters of a vehicle that comes with the program, a preset or one of the library, by its id;
-/// `None` if there is none.
+/// A vehicle that comes with the program: a preset, or one of the library.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BuiltInVehicle {
+    /// Its name on the command line.
+    pub id: &'static str,
+    /// Whether it is an ordinary vehicle of the library; else it is one of the data sets.
+    pub is_of_library: bool,
+    /// Its parameters.
+    pub parameters: VehicleParameters,
+}
+
+impl BuiltInVehicle {
+    /// Every vehicle, in the order in which they are listed to the user.
+    pub fn all() -> &'static [Self] {
+        // The files are part of the program; they are read once.
+        static ALL: LazyLock<Vec<BuiltInVehicle>> = LazyLock::new(|| {
+            let presets = Preset::ALL.iter().map(|of| (of.id(), false, of.parameters()));
+            let library = LibraryVehicle::ALL.iter().map(|of| (of.id(), true, of.parameters()));
+            let vehicle =
+                |(id, is_of_library, parameters)| BuiltInVehicle { id, is_of_library, parameters };
+            presets.chain(library).map(vehicle).collect()
+        });
+        &ALL
+    }
+
+    /// The vehicle with an id; `None` if there is none.
+    pub fn from_id(id: &str) -> Option<&'static Self> {
+        Self::all().iter().find(|vehicle| vehicle.id == id)
+    }
+}
+
+/// Parameters of a vehicle that comes with the program by its id; `None` if there is none.
 pub fn built_in_vehicle(id: &str) -> Option<VehicleParameters> {
-    let preset = Preset::from_id(id).map(Preset::parameters);
-    preset.or_else(|| LibraryVehicle::from_id(id).map(LibraryVehicle::parameters))
+    BuiltInVehicle::from_id(id).map(|vehicle| vehicle.parameters.clone())
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Where the numbers of a collision are not those of the vehicle that was chosen for it.
 
-use impactlab_core::collision::{Scenario, ScenarioVehicle};
+use impactlab_core::collision::{Role, Scenario, SharedNumber};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
 use impactlab_core::vehicle::VehicleParameters;
 
@@ -23,66 +23,66 @@ pub(crate) fn other_vehicles(
     choices: [&VehicleChoice; 2],
     vehicles: [&VehicleParameters; 2],
 ) -> Vec<Caveat> {
-    let names = [&scenario.struck_vehicle, &scenario.striking_vehicle];
-    let collision = [&scenario.struck, &scenario.striking];
-    let other = |(i, subject): (usize, CaveatSubject)| {
-        let is_named = *choices[i] != VehicleChoice::Automatic || names[i].is_some();
-        is_named.then(|| other_than(subject, collision[i], vehicles[i])).flatten()
+    let of_role = |((role, choice), vehicle): ((Role, &VehicleChoice), &VehicleParameters)| {
+        let is_named = *choice != VehicleChoice::Automatic || scenario.vehicle_name(role).is_some();
+        is_named.then(|| other_than(scenario, role, vehicle)).flatten()
     };
-    let subjects = [(0, CaveatSubject::Vehicle), (1, CaveatSubject::Striking)];
-    subjects.into_iter().filter_map(other).collect()
+    Role::ALL.into_iter().zip(choices).zip(vehicles).filter_map(of_role).collect()
 }
 
-fn other_than(
-    subject: CaveatSubject,
-    collision: &ScenarioVehicle,
-    vehicle: &VehicleParameters,
-) -> Option<Caveat> {
-    let mass_kg = collision.mass_kg;
-    // The inertia that this mass gives the vehicle, so that a load alone is not listed twice.
-    let of_mass = vehicle.clone().with_mass(mass_kg, None);
-    let (geometry, mass) = (&vehicle.geometry, &vehicle.mass);
-    let rows = [
-        ("mass", "mass.mass_kg", [mass_kg, mass.mass_kg], "kg", MASS_TOLERANCE),
-        (
-            "yaw inertia",
-            "mass.yaw_inertia_kg_m2",
-            [collision.yaw_inertia_kg_m2, of_mass.mass.yaw_inertia_kg_m2],
-            "kg m²",
-            INERTIA_TOLERANCE,
-        ),
-        (
-            "length",
-            "geometry.outer_length_m",
-            [collision.length_m, geometry.outer_length_m],
-            "m",
-            LENGTH_TOLERANCE,
-        ),
-        (
-            "width",
-            "geometry.outer_width_m",
-            [collision.width_m, geometry.outer_width_m],
-            "m",
-            LENGTH_TOLERANCE,
-        ),
-    ];
-    // What is an estimate of the vehicle is no word against the collision.
-    let is_other = |key: &str, [collision, vehicle_has]: [f64; 2], tolerance: f64| {
-        !vehicle.estimates.contains_key(key) && (collision / vehicle_has - 1.0).abs() > tolerance
+fn other_than(scenario: &Scenario, role: Role, vehicle: &VehicleParameters) -> Option<Caveat> {
+    let is_other = |number: &SharedNumber| {
+        let tolerance = match number.key {
+            "mass.mass_kg" => MASS_TOLERANCE,
+            "mass.yaw_inertia_kg_m2" => INERTIA_TOLERANCE,
+            _ => LENGTH_TOLERANCE,
+        };
+        // What is an estimate of the vehicle is no word against the collision, and a place of the centre of
+        // gravity in the outline none against that of the vehicle.
+        !vehicle.estimates.contains_key(number.key)
+            && number.key != "geometry.cg_to_front_end_m"
+            && (number.in_scenario / number.in_vehicle - 1.0).abs() > tolerance
     };
-    let others: Vec<String> = rows
-        .into_iter()
-        .filter(|(_, key, values, _, tolerance)| is_other(key, *values, *tolerance))
-        .map(|(name, _, values, unit, _)| {
-            let [collision, vehicle] = values.map(three_digits);
-            format!("{name} {collision} {unit} instead of {vehicle}")
-        })
-        .collect();
+    let others: Vec<SharedNumber> =
+        scenario.vehicle(role).beside(vehicle).into_iter().filter(is_other).collect();
     if others.is_empty() {
         return None;
     }
-    let text = format!("{} as the collision has it: {}", vehicle.name, others.join(", "));
+    let said = others.iter().map(|number| instead(number, number.in_scenario, number.in_vehicle));
+    let text = format!("{} as the collision has it: {}", vehicle.name, listed(said));
+    let subject = match role {
+        Role::Struck => CaveatSubject::Vehicle,
+        Role::Striking => CaveatSubject::Striking,
+    };
     Some(Caveat { subject: Some(subject), ..Caveat::new(CaveatKind::OtherVehicle, text) })
+}
+
+/// What a scenario takes over from a vehicle, in words; `None` if it says the same.
+pub(crate) fn taken_over(
+    scenario: &Scenario,
+    role: Role,
+    vehicle: &VehicleParameters,
+) -> Option<String> {
+    let before = scenario.vehicle(role);
+    let mut now = before.clone();
+    now.take(vehicle);
+    let told = |(now, before): (SharedNumber, SharedNumber)| {
+        let [now_is, before_was] = [now.in_scenario, before.in_scenario];
+        (now_is != before_was).then(|| instead(&now, now_is, before_was))
+    };
+    let numbers = now.beside(vehicle).into_iter().zip(before.beside(vehicle));
+    let said = listed(numbers.filter_map(told));
+    (!said.is_empty())
+        .then(|| format!("{}: {} as {} has it: {said}", scenario.name, role.label(), vehicle.name))
+}
+
+fn instead(number: &SharedNumber, value: f64, before: f64) -> String {
+    let [value, before] = [value, before].map(three_digits);
+    format!("{} {value} {} instead of {before}", number.name, number.unit)
+}
+
+fn listed(said: impl Iterator<Item = String>) -> String {
+    said.collect::<Vec<String>>().join(", ")
 }
 
 #[cfg(test)]
@@ -93,20 +93,20 @@ mod tests {
     #[test]
     fn a_car_with_the_mass_of_another_one_is_named_with_both() {
         let vehicle = built_in_vehicle("toyota-corolla-2020").unwrap();
-        let mut collision = Scenario::example().struck;
-        let caveat = other_than(CaveatSubject::Vehicle, &collision, &vehicle).unwrap();
+        let mut scenario = Scenario::example();
+        let other = |scenario: &Scenario| other_than(scenario, Role::Struck, &vehicle);
+        let caveat = other(&scenario).unwrap();
+        assert_eq!(caveat.subject, Some(CaveatSubject::Vehicle));
         assert!(caveat.is_warning());
         let mass = three_digits(vehicle.mass.mass_kg);
         assert!(caveat.text.contains(&format!("mass 2000 kg instead of {mass}")), "{caveat}");
-        collision.mass_kg = vehicle.mass.mass_kg + 30.0;
-        collision.yaw_inertia_kg_m2 = vehicle.mass.yaw_inertia_kg_m2;
-        collision.length_m = vehicle.geometry.outer_length_m;
-        collision.width_m = vehicle.geometry.outer_width_m;
-        assert_eq!(other_than(CaveatSubject::Vehicle, &collision, &vehicle), None);
+        scenario.struck.take(&vehicle);
+        scenario.struck.mass_kg += 30.0;
+        assert_eq!(other(&scenario), None);
         // The outline of this one is an estimate.
         let reference = built_in_vehicle("reference-2000").unwrap();
-        let example = Scenario::example().struck;
-        assert!((example.length_m / reference.geometry.outer_length_m - 1.0).abs() > 0.05);
-        assert_eq!(other_than(CaveatSubject::Vehicle, &example, &reference), None);
+        let example = Scenario::example();
+        assert!((example.struck.length_m / reference.geometry.outer_length_m - 1.0).abs() > 0.05);
+        assert_eq!(other_than(&example, Role::Struck, &reference), None);
     }
 }

@@ -1,6 +1,7 @@
 //! What questions refer to: vehicles, scenarios, files, models, settings, cases.
 
 mod cases;
+mod chosen_vehicle;
 mod config;
 mod file;
 mod input_file;
@@ -14,6 +15,7 @@ pub use cases::{BadCases, EvaluatedCases};
 pub(crate) use cases::{
     UsableCases, data_name, data_names, dataset_folders, force_cases, response_cases,
 };
+pub use chosen_vehicle::take_vehicle;
 pub use config::{ConfigChoice, TrainingOptions, checkpoint_beside};
 pub use file::SeriesFile;
 pub use input_file::{InputError, InputFile};

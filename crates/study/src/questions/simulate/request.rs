@@ -366,7 +366,14 @@ impl Question for SimulateRequest {
                 (momentum, overlap) = contact_of(&scenario, &mut caveats);
                 let of_pair = integrator_of_pair(self.integrator);
                 caveats.extend(of_pair.filter(|_| !self.one_contact));
-                (settings, Box::new(move |settings| analyse_scenario(&scenario, pulse, settings)))
+                let median = settings.struck.clone();
+                let analyse = move |settings: &Settings| {
+                    // What the scenario has of the vehicle is drawn with it.
+                    let mut scenario = scenario.clone();
+                    scenario.struck.follow(&median, &settings.struck);
+                    analyse_scenario(&scenario, pulse, settings)
+                };
+                (settings, Box::new(analyse))
             }
         };
         let failed = |source| match source {
