@@ -97,6 +97,24 @@ fn drivers_and_systems_act_in_a_forecast_and_are_drawn() {
     assert!(!stated.contains("after 0.4 to 1.8 s"), "{stated}");
 }
 
+/// The assumption told to name another one by an option that `simulate` alone had.
+#[test]
+fn the_striking_vehicle_of_a_forecast_is_the_one_that_is_named() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let ask = |more: &[&str]| {
+        let usual = ["predict", "--scenario", SCENARIO, "--draws", "8", "--out", text(&out)];
+        answer(&usual.iter().chain(&["--overwrite"]).chain(more).copied().collect::<Vec<_>>())
+    };
+    let assumed = |report: &Value| report["assumptions"].to_string().contains("--bullet");
+    let [open, named] = [&[][..], &["--bullet", "ford-explorer-2004"]].map(ask);
+    assert!(assumed(&open) && !assumed(&named), "{named}");
+    assert_ne!(open["striking"], named["striking"], "its tires carry it elsewhere");
+    let refused =
+        impactlab(&["predict", "--dataset", "datasets/fea", "--case", "c001", "--bullet", "x"]);
+    assert!(refused.code != 0 && refused.err.contains("--scenario"), "{}", refused.err);
+}
+
 #[test]
 fn a_test_against_a_barrier_says_how_stiff_a_face_is_and_a_vehicle_file_takes_it() {
     let folder = TempDir::new().unwrap();

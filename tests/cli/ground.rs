@@ -104,6 +104,36 @@ fn the_zones_of_a_site_are_what_the_wheels_stand_on() {
 }
 
 #[test]
+fn a_forecast_says_how_likely_the_vehicles_come_to_each_lane() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let args = ["predict", "--scenario", "pit-right-rear", "--site", SITE, "--draws", "24"];
+    let args = [&args[..], &["--until-rest", "--brake", "0.6", "--out", text(&out)]].concat();
+    let printed = ok(program().args(&args).output().unwrap());
+    let table = "Parts of the ground that the vehicles come to";
+    assert!(printed.contains(table) && printed.contains("oncoming lane"), "{printed}");
+    let report = json(&ok(program().args(&args).args(["--overwrite", "--json"]).output().unwrap()));
+    let places = report["places"].as_array().unwrap();
+    let names: Vec<&str> = places.iter().map(|place| place["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["own lane", "oncoming lane", "grass verge, right", "grass verge, left"]);
+    for place in places {
+        for vehicle in ["struck", "striking"] {
+            let share = |what: &str| place[format!("{vehicle}_{what}")].as_f64().unwrap();
+            let [enters, ends] = ["enters", "ends"].map(share);
+            assert!((0.0..=1.0).contains(&enters) && ends <= enters, "{place}");
+        }
+    }
+    assert_eq!(places[0]["struck_enters"], 1.0, "it drives there");
+    // It is struck on the right and turns to the left, over the line.
+    let oncoming = places[1]["struck_enters"].as_f64().unwrap();
+    let right = places[2]["struck_enters"].as_f64().unwrap();
+    assert!(oncoming + right > 0.3, "a car that spins needs more than its lane: {places:?}");
+    let bare = [&args[..3], &args[5..], &["--overwrite", "--json"]].concat();
+    let bare = json(&ok(program().args(bare).output().unwrap()));
+    assert!(bare["places"].is_null(), "{bare}");
+}
+
+#[test]
 fn scenes_and_reconstructions_are_drawn_on_their_ground() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("scene.png");

@@ -440,7 +440,9 @@ proptest! {
         let report = forecast(scenario, friction, until_rest);
         let report = report.map_err(|error| TestCaseError::fail(error.to_string()))?;
         match report.outcome.x_m.interval(0.9) {
-            Some([low, high]) => prop_assert!(report.is_end_known() && low < high),
+            Some([low, high]) => {
+                prop_assert!(report.is_end_known() && low < high, "{:?}", report.outcome);
+            }
             None => prop_assert!(!report.is_end_known(), "{:?}", report.outcome),
         }
         let is_outside = report.applicability < 1.0

@@ -4,11 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::evidence::{CarEvidence, Evidence};
 use impactlab_core::collision::Side;
+use impactlab_core::numerics::NORMAL_QUANTILE_95;
 use impactlab_core::vehicle::sheet::{Estimate, SheetQuantity};
 use impactlab_core::vehicle::{DataSheet, VehicleClass, VehicleParameters};
-
-/// Normal quantile of 0.95.
-const Z_95: f64 = 1.644_853_626_951_472_2;
 
 /// Share of the wheelbase behind the CG beyond which a flank is hit as in a PIT manoeuvre.
 const PIT_SHARE: f64 = 0.2;
@@ -77,7 +75,10 @@ impl Car {
         };
         let sheet = completed(sheet, evidence);
         let scatter = sheet.estimates().into_iter().map(|estimate| {
-            (estimate.quantity, (estimate.value.ninety()[1] / estimate.value.median).ln() / Z_95)
+            (
+                estimate.quantity,
+                (estimate.value.ninety()[1] / estimate.value.median).ln() / NORMAL_QUANTILE_95,
+            )
         });
         let scatter = scatter.filter(|(_, sigma)| *sigma > 0.0).collect();
         Self { parameters: lean(sheet.vehicle()), scatter }

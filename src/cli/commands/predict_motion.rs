@@ -13,7 +13,9 @@ use crate::cli::options::{
 };
 use crate::cli::text::print_answer;
 use impactlab_core::data::{ColumnMap, DatasetKind, Existing, write_atomically};
-use impactlab_core::ranges::{DRAWS, REST_LIMIT, ROAD_FRICTION, VEHICLE_DRAWS};
+use impactlab_core::ranges::{
+    DRAWS, REST_LIMIT, ROAD_FRICTION, ROAD_FRICTION_SIGMA, VEHICLE_DRAWS,
+};
 use impactlab_core::vehicle::ContactPoint;
 use impactlab_networks::response::STEP_S;
 use impactlab_networks::shipped::ModelSource;
@@ -41,33 +43,44 @@ pub(in crate::cli) struct PredictMotionArgs {
     /// Which column of the recorded motion is what: time=1:ms,x=2:m,fx=Kraft X:kN
     #[arg(long, value_name = "MAP", requires = "trajectory")]
     map: Option<ColumnMap>,
-    /// The struck vehicle: a preset or a file; a data set has its own, else reference-2000
+    /// The struck vehicle: a preset or a file; a data set has its own, else reference-2000. A scenario takes
+    /// over its mass, yaw inertia and outline
     #[arg(long, value_name = "NAME|FILE")]
     vehicle: Option<VehicleArg>,
+    /// The striking vehicle, likewise, where it is followed
+    #[arg(id = "bullet", long = "bullet", value_name = "NAME|FILE", requires = "scenario")]
+    striking: Option<VehicleArg>,
     /// A force history instead of the predicted one
     #[arg(long, value_name = "FORCE.csv")]
     force: Option<PathBuf>,
     /// Which column of the force file is what: time=1:ms,fx=Kraft X:kN
     #[arg(long, value_name = "MAP", requires = "force")]
     force_map: Option<ColumnMap>,
-    /// Instead of the predicted force, that of the case, or a classic pulse that carries the impulse
-    /// of the scenario
-    #[arg(long, conflicts_with = "force")]
+    /// Of a scenario, instead of the predicted force a classic pulse that carries the impulse of the
+    /// momentum solution; that of a case is its own unless --force-model is given
+    #[arg(long, conflicts_with_all = ["force", "force_model"])]
     given_force: bool,
     /// With --trajectory: where the force acts, as in `simulate`; needed where --force names a force
     /// without a yaw moment
     #[arg(long, value_name = "X,Y,Z", value_parser = contact_point, allow_hyphen_values = true,
         requires = "trajectory")]
     contact: Option<ContactPoint>,
-    /// The force network: `shipped` or a file
-    #[arg(long, default_value_t, value_name = "MODEL")]
-    force_model: ModelSource,
+    /// The force network: `shipped`, which is asked of a scenario where nothing is said, or a file
+    #[arg(long, value_name = "MODEL", conflicts_with = "force")]
+    force_model: Option<ModelSource>,
     /// The response network: `shipped`, `shipped-pretrained` or a file
     #[arg(long, default_value_t, value_name = "MODEL")]
     response_model: ModelSource,
+    /// The ground: a site file, whose zones have their own friction; how likely the vehicles come to its
+    /// lanes and kerbs is said
+    #[arg(long, value_name = "SITE.toml", requires = "scenario")]
+    site: Option<PathBuf>,
     /// Friction of the road, instead of the vehicle's
     #[arg(long, value_name = "MU", value_parser = number(ROAD_FRICTION))]
     friction: Option<f64>,
+    /// Standard deviation of the friction; 7.5 % of it if not given, 0 if it is known exactly
+    #[arg(long, value_name = "SIGMA", value_parser = number(ROAD_FRICTION_SIGMA))]
+    friction_sigma: Option<f64>,
     /// Force histories to draw
     #[arg(long, default_value_t = DEFAULT_DRAWS, value_name = "N", value_parser = count::<usize>(DRAWS))]
     draws: usize,
@@ -145,23 +158,29 @@ pub(in crate::cli) fn run(
         true => REST_LIMIT.high,
         false => DEFAULT_DURATION_S,
     });
-    let request = PredictMotionRequest {
+    let source = source(args)?;
+    let force = force_source(args, &source);
+    let mut request = PredictMotionRequest {
         motion: SimulateRequest {
             vehicle: VehicleArg::choice(&args.vehicle),
+            striking: VehicleArg::choice(&args.striking),
             friction: args.friction,
+            friction_sigma: args.friction_sigma,
+            site: args.site.clone(),
             duration_s: wanted_s,
             until_rest: args.until_rest,
             one_contact: args.one_contact,
             ending,
             vehicle_draws: args.vehicle_draws,
-            ..SimulateRequest::new(source(args)?)
+            ..SimulateRequest::new(source)
         },
-        force: force_source(args),
+        force,
         force_map: args.force_map.clone(),
         response_model: args.response_model.clone().into(),
         draws: args.draws,
         seed: args.seed,
     };
+    console.take_vehicles(&mut request.motion)?;
     if args.scenario.is_some() {
         check_window_end(args.window, wanted_s)?;
     }
@@ -219,10 +238,11 @@ fn source(args: &PredictMotionArgs) -> Result<MotionSource, CliError> {
     }
 }
 
-fn force_source(args: &PredictMotionArgs) -> ForceSource {
-    match &args.force {
-        Some(path) => ForceSource::File(path.clone()),
-        None if args.given_force || args.trajectory.is_some() => ForceSource::Given,
-        None => ForceSource::Predicted(args.force_model.clone().into()),
+fn force_source(args: &PredictMotionArgs, source: &MotionSource) -> ForceSource {
+    match (&args.force, &args.force_model) {
+        (Some(path), _) => ForceSource::File(path.clone()),
+        (None, _) if args.given_force || args.trajectory.is_some() => ForceSource::Given,
+        (None, Some(model)) => ForceSource::Predicted(model.clone().into()),
+        (None, None) => ForceSource::usual(source),
     }
 }

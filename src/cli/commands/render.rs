@@ -20,9 +20,7 @@ use impactlab_core::data::{Channel, write_atomically};
 use impactlab_core::ranges::{PICTURE_SCALE, SPEED};
 use impactlab_core::vehicle::ContactPoint;
 use impactlab_document::figure::{Figure, WheelInput, write_figure_csv};
-use impactlab_study::{
-    Drive, ImpactRequest, Library, ScenarioChoice, SimulateRequest, VehicleChoice,
-};
+use impactlab_study::{Drive, ImpactRequest, ScenarioChoice, SimulateRequest, VehicleChoice};
 
 /// Draw a figure into a PNG, or write its numbers as CSV
 #[derive(Debug, Args)]
@@ -120,10 +118,10 @@ pub(super) struct OutputArgs {
 #[derive(Debug, Args)]
 pub(super) struct VehicleArgs {
     /// The struck vehicle: a file, or a name from `impactlab vehicles`; a trajectory data set has
-    /// its own, else reference-2000
+    /// its own, else reference-2000. A scenario takes over its mass, yaw inertia and outline
     #[arg(long, value_name = "V.toml|PRESET")]
     vehicle: Option<VehicleArg>,
-    /// The striking vehicle, where a force data set records it; mass and inertia are the case's
+    /// The striking vehicle, where it is simulated; with a data set, mass and inertia are the case's
     #[arg(id = "bullet", long = "bullet", value_name = "V.toml|PRESET")]
     striking: Option<VehicleArg>,
     /// For a single force file: forward speed at the start, as in simulate
@@ -157,16 +155,18 @@ impl VehicleArgs {
     pub(super) fn request(
         &self,
         source: &SourceArgs,
-        library: &Library,
+        console: &mut Console<'_>,
     ) -> Result<SimulateRequest, CliError> {
         let start = Drive { speed_m_s: self.speed, contact: self.contact, ..Drive::default() };
-        Ok(SimulateRequest {
+        let mut request = SimulateRequest {
             vehicle: self.struck(),
             striking: VehicleArg::choice(&self.striking),
             vehicle_draws: 0,
             site: self.site.clone(),
-            ..SimulateRequest::new(source.motion_source(library, start)?)
-        })
+            ..SimulateRequest::new(source.motion_source(&console.library, start)?)
+        };
+        console.take_vehicles(&mut request)?;
+        Ok(request)
     }
 }
 
@@ -294,11 +294,11 @@ fn figure(args: &FigureArgs, console: &mut Console<'_>) -> Result<Verdict, CliEr
         }
         FigureArgs::Motion(args) => {
             let channel = args.channel;
-            let request = args.vehicle.request(&args.source, &console.library)?;
+            let request = args.vehicle.request(&args.source, console)?;
             render_figure::motion(&request, channel, units, console)?
         }
         FigureArgs::Controls(args) => {
-            let request = args.vehicle.request(&args.source, &console.library)?;
+            let request = args.vehicle.request(&args.source, console)?;
             render_figure::controls(&request, args.plot, units, console)?
         }
         FigureArgs::Scene(args) => {

@@ -60,11 +60,12 @@ pub(super) fn figure(
     units: UnitSystem,
     console: &mut Console<'_>,
 ) -> Result<Noted, CliError> {
-    let motion = args.vehicle.request(&args.source, &console.library)?;
+    let motion = args.vehicle.request(&args.source, console)?;
+    let force = ForceSource::usual(&motion.source);
     let request = PredictMotionRequest {
         response_model: args.response_model.clone().into(),
         motion: motion.clone(),
-        ..PredictMotionRequest::new(motion.source, ForceSource::Given)
+        ..PredictMotionRequest::new(motion.source, force)
     };
     let answer = console.answer(&request)?;
     let (forecast, analysis) = (&answer.forecast, &answer.analysis);

@@ -198,7 +198,7 @@ pub(super) fn build(
     units: UnitSystem,
     console: &mut Console<'_>,
 ) -> Result<BuiltScene, CliError> {
-    let request = args.vehicle.request(&args.source, &console.library)?;
+    let request = args.vehicle.request(&args.source, console)?;
     let SimulateAnswer { report, analysis } = console.answer(&request)?;
     console.answered(&report.provenance);
     if let Some(time_s) = density_s {
@@ -264,9 +264,10 @@ fn add_ghosts(
     (scene, caveats): (&mut Scene, &mut Caveats),
     console: &mut Console<'_>,
 ) -> Result<Vec<String>, CliError> {
+    let force = ForceSource::usual(&motion.source);
     let request = PredictMotionRequest {
         motion: motion.clone(),
-        ..PredictMotionRequest::new(motion.source, ForceSource::Given)
+        ..PredictMotionRequest::new(motion.source, force)
     };
     let answer = console.answer(&request)?;
     console.answered(&answer.report.provenance);

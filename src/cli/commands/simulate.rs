@@ -17,7 +17,8 @@ use impactlab_core::data::{
     ColumnMap, DatasetKind, Existing, Sampling, write_restricted_series_csv,
 };
 use impactlab_core::ranges::{
-    REST_LIMIT, ROAD_FRICTION, SIMULATED_DURATION, SPEED, VEHICLE_DRAWS, YAW_RATE,
+    REST_LIMIT, ROAD_FRICTION, ROAD_FRICTION_SIGMA, SIMULATED_DURATION, SPEED, VEHICLE_DRAWS,
+    YAW_RATE,
 };
 use impactlab_core::vehicle::{ContactPoint, Equations, Integrator};
 use impactlab_study::analysis::PulseSetup;
@@ -95,7 +96,8 @@ const NOT_WITH_SCENARIO: [&str; 6] =
 const NOT_WITH_TRAJECTORY: [&str; 4] = ["dataset", "scenario", "start", "duration"];
 
 /// What a data set says itself.
-const SINGLE_ONLY: [&str; 6] = ["start", "map", "sampling", "contact", "friction", "duration"];
+const SINGLE_ONLY: [&str; 7] =
+    ["start", "map", "sampling", "contact", "friction", "friction_sigma", "duration"];
 
 const EXAMPLES: &str = "\
 Examples:
@@ -163,6 +165,9 @@ struct SingleArgs {
     /// Peak friction of the road instead of the vehicle file's
     #[arg(long, value_parser = number(ROAD_FRICTION))]
     friction: Option<f64>,
+    /// Standard deviation of the friction; 7.5 % of it if not given, 0 if it is known exactly
+    #[arg(long, value_name = "SIGMA", value_parser = number(ROAD_FRICTION_SIGMA))]
+    friction_sigma: Option<f64>,
     /// Duration, s; 4 if not given
     #[arg(long, value_parser = number(SIMULATED_DURATION))]
     duration: Option<f64>,
@@ -215,6 +220,7 @@ fn simulate_one(
         equations: args.equations,
         integrator: args.integrator,
         friction: args.single.friction,
+        friction_sigma: args.single.friction_sigma,
         site: args.site.clone(),
         duration_s: args.single.duration.unwrap_or(match args.until_rest {
             true => REST_LIMIT.high,

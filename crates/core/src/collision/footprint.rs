@@ -3,8 +3,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::collision::polygon::{clip, twice_area_m2};
 use crate::ranges::OFF_OUTLINE;
 use crate::vehicle::{GeometryParameters, VehicleParameters};
+
+/// Smallest area that an outline and a lane share, m².
+const LEAST_SHARED_M2: f64 = 1e-6;
 
 /// Position and heading of a vehicle in world axes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -212,6 +216,22 @@ impl Footprint {
             .map(|corner| pose.world_from_body(corner))
     }
 
+    /// Whether a part of an area lies below the outline.
+    ///
+    /// - `border_m`: corners `[X, Y]` of the area in world axes, in either sense.
+    pub fn lies_over(&self, pose: &Pose, border_m: &[[f64; 2]]) -> bool {
+        // What is clipped from an area around the outline has sides along it, but no area.
+        twice_area_m2(&clip(border_m, &self.corners_m(pose))).abs() > LEAST_SHARED_M2
+    }
+
+    /// Whether a part of a line lies below the outline.
+    ///
+    /// - `line_m`: points `[X, Y]` of the line in world axes.
+    pub fn crosses(&self, pose: &Pose, line_m: &[[f64; 2]]) -> bool {
+        let corners = self.corners_m(pose);
+        line_m.windows(2).any(|part| clip(part, &corners).len() > 1)
+    }
+
     /// Distance of a point from the outline, m; 0 for a point inside of it.
     ///
     /// - `[x, y]`: the point in body axes, m.
@@ -266,6 +286,27 @@ pub(super) mod examples {
 #[cfg(test)]
 mod tests {
     use super::examples::{CAR, pose};
+
+    #[test]
+    fn an_outline_lies_over_lanes_and_across_lines() {
+        use crate::collision::{Footprint, Pose};
+        let outline = Footprint { length_m: 4.0, width_m: 2.0, cg_from_front_m: 2.0 };
+        let at = |x_m, y_m, yaw_rad| Pose { x_m, y_m, yaw_rad };
+        // A lane with a bend, in both senses, and a line.
+        let mut lane =
+            vec![[-50.0, 2.0], [10.0, 2.0], [20.0, 12.0], [18.0, 14.0], [8.0, 5.0], [-50.0, 5.0]];
+        for _ in 0..2 {
+            assert!(!outline.lies_over(&at(0.0, 0.5, 0.0), &lane));
+            assert!(outline.lies_over(&at(0.0, 1.5, 0.0), &lane));
+            assert!(outline.lies_over(&at(0.0, 0.5, 0.7), &lane), "a corner");
+            assert!(outline.lies_over(&at(0.0, 3.5, 0.0), &lane), "inside");
+            assert!(!outline.lies_over(&at(17.0, 4.0, 0.0), &lane), "within the bend");
+            lane.reverse();
+        }
+        let line = [[-50.0, 2.0], [50.0, 2.0], [50.0, -9.0]];
+        assert!(outline.crosses(&at(0.0, 1.5, 0.0), &line));
+        assert!(!outline.crosses(&at(0.0, 0.5, 0.0), &line));
+    }
 
     #[test]
     fn corners_run_counter_clockwise_from_the_front_left() {

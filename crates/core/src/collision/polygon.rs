@@ -19,8 +19,8 @@ pub(super) fn reach(corners: &[[f64; 2]; 4], along: [f64; 2]) -> f64 {
     corners.iter().map(|&corner| dot(corner, along)).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Intersection of two convex polygons whose corners are in counter-clockwise order (algorithm of
-/// Sutherland and Hodgman).
+/// Part of a polygon within a convex one whose corners are in counter-clockwise order (algorithm of
+/// Sutherland and Hodgman). The parts of one that is not convex are joined by sides without an area.
 pub(super) fn clip(subject: &[[f64; 2]], window: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut polygon = subject.to_vec();
     for (i, &a) in window.iter().enumerate() {
@@ -41,6 +41,15 @@ pub(super) fn clip(subject: &[[f64; 2]], window: &[[f64; 2]]) -> Vec<[f64; 2]> {
         polygon = clipped;
     }
     polygon
+}
+
+/// Twice the area of a polygon, m²; negative with clockwise corners.
+pub(super) fn twice_area_m2(polygon: &[[f64; 2]]) -> f64 {
+    let Some(&[x0, y0]) = polygon.first() else { return 0.0 };
+    let cross = |pair: &[[f64; 2]]| {
+        (pair[0][0] - x0) * (pair[1][1] - y0) - (pair[1][0] - x0) * (pair[0][1] - y0)
+    };
+    polygon.windows(2).map(cross).sum()
 }
 
 /// Centroid of a polygon with counter-clockwise corners; `None` if it has no area.

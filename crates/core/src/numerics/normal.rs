@@ -4,6 +4,10 @@ use std::f64::consts::{PI, SQRT_2};
 
 use statrs::function::erf::{erfc, erfc_inv};
 
+/// Normal quantile of 0.95: an interval of 90 % reaches so many standard deviations from its median to both
+/// sides.
+pub const NORMAL_QUANTILE_95: f64 = 1.644_853_626_951_472_2;
+
 /// Probability density at z: `φ(z) = exp(−z²/2) / √(2π)`.
 pub fn normal_density(z: f64) -> f64 {
     (-z * z / 2.0).exp() / (2.0 * PI).sqrt()

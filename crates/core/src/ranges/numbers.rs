@@ -39,6 +39,8 @@ ranges! {
         "angle of a road wheel; say an angle of the steering wheel as such, with the steering ratio";
     ROAD_FRICTION: "road friction" = real(Quantity::Ratio, [0.01, 2.0]),
         "peak friction between tire and road; 0.8 on dry asphalt, 0.1 on ice";
+    ROAD_FRICTION_SIGMA: "uncertainty of the road friction" = real(Quantity::Ratio, [0.0, 0.5]),
+        "standard deviation of the peak friction between tire and road; 0 if it is known exactly";
 }
 
 ranges! {

@@ -5,13 +5,30 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::numerics::{latin_normals, random_stream};
+use crate::ranges::ROAD_FRICTION;
 use crate::vehicle::{DataSheet, SheetQuantity, VehicleParameters};
+
+/// Standard deviation over the friction of a road that nobody has measured, as the rules of data sheets have
+/// it for dry asphalt: 0.06 of 0.8.
+pub const ROAD_FRICTION_SPREAD: f64 = 0.075;
+
+/// How the friction of a road is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoadDraws {
+    /// Standard deviation of the peak friction.
+    pub sigma: f64,
+    /// Seed: vehicles that are drawn with the same one are on the same road.
+    pub seed: u64,
+}
 
 /// The estimates of a vehicle, drawn several times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VehicleDraws {
     quantities: Vec<SheetQuantity>,
+    /// Of each draw: those of the data sheet, then that of the road.
     latents: Vec<Vec<f64>>,
+    /// Standard deviation of the friction of the road, where that is drawn.
+    road_sigma: Option<f64>,
 }
 
 /// How much of what is uncertain about the end of a motion comes from one estimate.
@@ -52,7 +69,41 @@ impl VehicleDraws {
         let columns: Vec<Vec<f64>> = (0..quantities.len()).map(along).collect();
         let latents =
             (0..n_draws).map(|draw| columns.iter().map(|column| column[draw]).collect()).collect();
-        Self { quantities, latents }
+        Self { quantities, latents, road_sigma: None }
+    }
+
+    /// Draws what is not known of a vehicle and of the road that it is on.
+    ///
+    /// - `uses_sheet`: whether the estimates of its data sheet are drawn, if it has one;
+    /// - `road`: how the friction of the road is drawn; `None` where it is known.
+    pub fn new(
+        vehicle: &VehicleParameters,
+        uses_sheet: bool,
+        road: Option<RoadDraws>,
+        n_draws: usize,
+        seed: u64,
+    ) -> Self {
+        let vehicle = match road {
+            // The road says it, and not the sheet.
+            Some(_) => vehicle.clone().with_friction(vehicle.tires.friction),
+            None => vehicle.clone(),
+        };
+        let nothing = || Self {
+            quantities: Vec::new(),
+            latents: vec![Vec::new(); n_draws],
+            road_sigma: None,
+        };
+        let sheet = vehicle.sheet.as_ref().filter(|_| uses_sheet);
+        let mut draws = sheet.map_or_else(nothing, |sheet| Self::from_sheet(sheet, n_draws, seed));
+        if let Some(RoadDraws { sigma, seed }) = road {
+            let of_road = latin_normals(n_draws, &mut random_stream(seed, "road friction", 0));
+            draws.quantities.push(SheetQuantity::Friction);
+            for (latents, z) in draws.latents.iter_mut().zip(of_road) {
+                latents.push(z);
+            }
+            draws.road_sigma = Some(sigma);
+        }
+        draws
     }
 
     /// Number of draws.
@@ -67,9 +118,20 @@ impl VehicleDraws {
 
     /// The vehicle of each draw.
     ///
-    /// - `vehicle`: a vehicle with the sheet of which the draws are.
+    /// - `vehicle`: the vehicle of which the draws are.
     pub fn vehicles(&self, vehicle: &VehicleParameters) -> Vec<VehicleParameters> {
-        self.latents.iter().map(|latents| vehicle.drawn(latents)).collect()
+        let Some(sigma) = self.road_sigma else {
+            return self.latents.iter().map(|latents| vehicle.drawn(latents)).collect();
+        };
+        let friction = vehicle.tires.friction;
+        let vehicle = vehicle.clone().with_friction(friction);
+        let drawn = |latents: &Vec<f64>| {
+            let (road, of_sheet) = latents.split_last()?;
+            let drawn = if of_sheet.is_empty() { vehicle.clone() } else { vehicle.drawn(of_sheet) };
+            let drawn_friction = friction + sigma * road;
+            Some(drawn.with_friction(drawn_friction.clamp(ROAD_FRICTION.low, ROAD_FRICTION.high)))
+        };
+        self.latents.iter().filter_map(drawn).collect()
     }
 
     /// The estimates by their part in the variance of the end position, the largest first.
@@ -151,6 +213,31 @@ impl Moments {
 mod tests {
     use super::*;
     use crate::vehicle::VehicleClass;
+
+    #[test]
+    fn vehicles_on_one_road_have_one_friction_in_each_draw() {
+        let road = RoadDraws { sigma: 0.06, seed: 5 };
+        let of = |id: &str, uses_sheet, seed| {
+            let vehicle = crate::vehicle::built_in_vehicle(id).unwrap();
+            let draws = VehicleDraws::new(&vehicle, uses_sheet, Some(road), 200, seed);
+            (draws.vehicles(&vehicle), draws)
+        };
+        let (known, draws) = of("reference-2000", false, 1);
+        let (drawn, _) = of("toyota-corolla-2020", true, 2);
+        for (one, other) in known.iter().zip(&drawn) {
+            assert!((one.tires.friction - other.tires.friction).abs() < 1e-12);
+            assert_eq!(one.mass, known[0].mass);
+        }
+        assert!(drawn.iter().any(|of| of.geometry.cg_height_m != drawn[0].geometry.cg_height_m));
+        let n = known.len() as f64;
+        let mean = known.iter().map(|of| of.tires.friction).sum::<f64>() / n;
+        let squares = known.iter().map(|of| (of.tires.friction - mean).powi(2));
+        let sigma = (squares.sum::<f64>() / n).sqrt();
+        assert!((mean - 0.8).abs() < 1e-3 && (sigma / 0.06 - 1.0).abs() < 0.03, "{mean} {sigma}");
+        let ends: Vec<_> = known.iter().map(|of| Some([of.tires.friction, 0.0, 0.0])).collect();
+        let shares = draws.sensitivities(&ends);
+        assert!(shares[0].quantity == SheetQuantity::Friction && shares[0].position_share > 0.99);
+    }
 
     #[test]
     fn the_shares_are_those_of_a_known_dependence() {

@@ -47,7 +47,7 @@ pub use constants::VehicleConstants;
 pub use controlled::ControlledVehicle;
 pub use controls::{BRAKE_TORQUES, Controls, DRIVE_TORQUES, SteerHistory, WheelHistory};
 pub use crush::{CrushFace, CrushParameters, CrushStiffness};
-pub use draws::{Sensitivity, VehicleDraws};
+pub use draws::{ROAD_FRICTION_SPREAD, RoadDraws, Sensitivity, VehicleDraws};
 pub use drivers::{
     AntiLock, ClosedLoop, Countersteer, Market, PitDriver, PitEnd, StabilityControl, TurnSide,
     esc_is_standard,

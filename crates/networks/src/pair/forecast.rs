@@ -58,6 +58,9 @@ pub struct DrawnVehicle {
     pub vehicle: VehicleParameters,
     /// Its network; `None` for the equations of motion alone.
     pub predictor: Option<Predictor>,
+    /// Whether all that is not known of it is drawn; else the road alone, and tires and resistance are drawn as
+    /// those of a vehicle that is not drawn.
+    pub is_whole: bool,
 }
 
 /// How many draws, and of what.
@@ -186,8 +189,11 @@ impl PairQuestion<'_> {
         let scatter = &settings.scatter;
         let own = [0, 1].map(|i| in_turn(self.drawn[i], draw));
         let vehicle = |i: usize| match own[i] {
-            Some(drawn) => drawn.vehicle.clone(),
-            None => latents.vehicle(draw, i, self.vehicles[i], scatter),
+            Some(drawn) if drawn.is_whole => drawn.vehicle.clone(),
+            own => {
+                let median = own.map_or(self.vehicles[i], |drawn| &drawn.vehicle);
+                latents.vehicle(draw, i, median, scatter)
+            }
         };
         let mut manoeuvres =
             [0, 1].map(|i| latents.manoeuvre(draw, i, self.manoeuvres[i], scatter));

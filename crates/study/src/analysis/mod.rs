@@ -8,6 +8,7 @@ mod contact_pair;
 mod contacts;
 mod file;
 mod forecast;
+mod lane_chances;
 mod monte_carlo;
 mod motion_bands;
 mod motion_density;
@@ -42,6 +43,7 @@ pub use contacts::{
 pub use file::{DriveSetup, analyse_drive, analyse_recording};
 pub(crate) use forecast::bands_of_draws;
 pub use forecast::{ForceForecast, ForecastSettings, Mode, pulse_curves};
+pub use lane_chances::{PlaceChance, place_chances};
 pub use monte_carlo::MonteCarloError;
 pub use motion_bands::{MOTION_BAND_LEVELS, MotionBand, MotionBands};
 pub use motion_density::{DensityMap, DensityTask, Region};

@@ -25,7 +25,8 @@ use impactlab_core::uncertainty::{ForceCurve, PlanarMixture};
 use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::{
     ContactLoad, ContactPoint, ControlledVehicle, Controls, FrictionZone, Manoeuvre, Pace,
-    Sensitivity, VehicleDraws, VehicleInput, VehicleParameters, VehicleState, rest_instant,
+    RoadDraws, Sensitivity, VehicleDraws, VehicleInput, VehicleParameters, VehicleState,
+    rest_instant,
 };
 use impactlab_networks::force::{ForceError, ForceModel, ForcePrediction, ForceScenario};
 use impactlab_networks::learning::LearningError;
@@ -53,6 +54,8 @@ pub struct MotionForecastSettings {
     pub duration_s: f64,
     /// Whether the motion is followed until the vehicle is at rest, at the latest to the duration.
     pub until_rest: bool,
+    /// How the friction of the road is drawn; `None` where it is known. It is drawn with the vehicles.
+    pub road: Option<RoadDraws>,
     /// Seed of all random draws.
     pub seed: u64,
 }
@@ -253,13 +256,13 @@ pub fn forecast_forces(
     let duration_s = range.check(settings.duration_s)?;
     // What is uncertain of a car whose motions are known is in the network's strengths.
     let is_known = response.known_car(&struck.vehicle).is_some();
-    let draws = if is_known { None } else { drawn_vehicles(struck, settings, forces.len()) };
+    let draws = drawn_vehicles(struck, settings, forces.len(), !is_known);
     let predictors = predictors(response, struck, draws.as_ref())?;
     let whole_motions = ToRest {
         forces,
         predictors: &predictors,
         struck,
-        has_drawn_vehicles: draws.is_some(),
+        has_drawn_vehicles: draws.is_some() && !is_known && struck.vehicle.sheet.is_some(),
         limit_s: duration_s,
         lasts_to_limit: !settings.until_rest,
         seed: settings.seed,
@@ -398,15 +401,19 @@ struct Part {
     applicability: Applicability,
 }
 
-/// The draws of what the data sheet of the vehicle leaves open, at least one for each force; `None` if
-/// it leaves nothing open or no draws are asked for.
+/// The draws of what is not known of vehicle and road, at least one for each force; `None` if that is
+/// nothing or no draws are asked for.
+///
+/// - `uses_sheet`: whether what the data sheet leaves open is drawn, too.
 pub(super) fn drawn_vehicles(
     struck: &StruckVehicle,
     settings: &MotionForecastSettings,
     n_forces: usize,
+    uses_sheet: bool,
 ) -> Option<VehicleDraws> {
-    let sheet = struck.vehicle.sheet.as_ref().filter(|_| settings.n_vehicles > 0)?;
-    let draws = VehicleDraws::from_sheet(sheet, settings.n_vehicles.max(n_forces), settings.seed);
+    let MotionForecastSettings { n_vehicles, road, seed, .. } = *settings;
+    let n_draws = if n_vehicles > 0 { n_vehicles.max(n_forces) } else { 0 };
+    let draws = VehicleDraws::new(&struck.vehicle, uses_sheet, road, n_draws, seed);
     (!draws.is_empty()).then_some(draws)
 }
 

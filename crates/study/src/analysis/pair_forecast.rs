@@ -91,8 +91,8 @@ struct OneVehicle {
 
 /// The vehicles that stand for one in the draws.
 struct Drawn {
-    /// What its data sheet leaves open; `None` where that is nothing, or its motions are known.
-    sheet: Option<VehicleDraws>,
+    /// What is not known of vehicle and road; `None` where that is nothing.
+    unknown: Option<VehicleDraws>,
     vehicles: Vec<DrawnVehicle>,
     /// The network of the vehicle at its median.
     median: Predictor,
@@ -148,7 +148,7 @@ pub fn forecast_both(
             .ok_or(MotionForecastError::Diverged)
     };
     let (struck, striking) = (of_vehicle(0)?, of_vehicle(1)?);
-    let sensitivity = drawn[0].sheet.as_ref().map_or_else(Vec::new, |draws| {
+    let sensitivity = drawn[0].unknown.as_ref().map_or_else(Vec::new, |draws| {
         let mut ends = vec![None; draws.len()];
         for draw in &found.draws {
             let end = draw.states[0].last().map(|state| [state.x_m, state.y_m, state.yaw_rad]);
@@ -185,7 +185,7 @@ pub fn forecast_both(
         rest: struck.rest,
         learned_s: drawn[0].median.learned_s(),
         force: first_forces.prediction.clone(),
-        n_vehicles: drawn[0].sheet.as_ref().map_or(0, VehicleDraws::len),
+        n_vehicles: drawn[0].unknown.as_ref().map_or(0, VehicleDraws::len),
         sensitivity,
         applicability: usual(drawn[0].applicabilities.iter().collect()),
         both: Some(Box::new(both)),
@@ -204,15 +204,11 @@ impl BothVehiclesQuestion<'_> {
         let seed = if vehicle_idx == 0 { settings.seed } else { settings.seed ^ SEED_OF_STRIKING };
         // What is uncertain of a car whose motions are known is in the network's strengths.
         let is_known = self.response.known_car(&start.vehicle).is_some();
-        let sheet = match is_known {
-            true => None,
-            false => {
-                // One for each draw, or none.
-                let n_vehicles = settings.n_vehicles.min(n_draws);
-                let settings = MotionForecastSettings { seed, n_vehicles, ..*settings };
-                drawn_vehicles(start, &settings, n_draws)
-            }
-        };
+        // One for each draw, or none.
+        let n_vehicles = settings.n_vehicles.min(n_draws);
+        let of_vehicle = MotionForecastSettings { seed, n_vehicles, ..*settings };
+        let unknown = drawn_vehicles(start, &of_vehicle, n_draws, !is_known);
+        let is_whole = !is_known && start.vehicle.sheet.is_some();
         let inputs = self.inputs(vehicle_idx, settings.duration_s)?;
         let fitted =
             |vehicle: &VehicleParameters| -> Result<(Predictor, Applicability), LearningError> {
@@ -225,15 +221,16 @@ impl BothVehiclesQuestion<'_> {
             |vehicle: VehicleParameters| -> Result<(DrawnVehicle, Applicability), LearningError> {
                 let (predictor, applicability) = fitted(&vehicle)?;
                 let predictor = Some(predictor).filter(|_| self.is_corrected[vehicle_idx]);
-                Ok((DrawnVehicle { vehicle, predictor }, applicability))
+                Ok((DrawnVehicle { vehicle, predictor, is_whole }, applicability))
             };
-        let all = sheet.as_ref().map_or_else(Vec::new, |draws| draws.vehicles(&start.vehicle));
+        let all = unknown.as_ref().map_or_else(Vec::new, |draws| draws.vehicles(&start.vehicle));
         let all: Result<Vec<_>, LearningError> = all.into_par_iter().map(made).collect();
         let (vehicles, mut applicabilities): (Vec<_>, Vec<_>) = all?.into_iter().unzip();
-        if applicabilities.is_empty() {
-            applicabilities.push(of_median);
+        // Where the road alone is drawn, the network is judged on the one that is meant.
+        if applicabilities.is_empty() || !is_whole {
+            applicabilities = vec![of_median];
         }
-        Ok(Drawn { sheet, vehicles, median, applicabilities })
+        Ok(Drawn { unknown, vehicles, median, applicabilities })
     }
 
     /// Inputs of a vehicle under the usual force.

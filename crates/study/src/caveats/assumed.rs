@@ -3,9 +3,12 @@
 use impactlab_core::collision::{
     Impact, Scenario, ScenarioGeometry, TOUCH_TOLERANCE_M, default_restitution_in_words,
 };
+use impactlab_core::numerics::NORMAL_QUANTILE_95;
 use impactlab_core::uncertainty::{Caveat, CaveatSubject};
 use impactlab_core::vehicle::sheet::{Estimate, SheetQuantity};
-use impactlab_core::vehicle::{ContactPoint, VehicleParameters};
+use impactlab_core::vehicle::{ContactPoint, ROAD_FRICTION_SPREAD, RoadDraws, VehicleParameters};
+
+use crate::SimulateRequest;
 
 /// Each parameter that was estimated because the data sheet of a vehicle does not state it.
 pub(crate) fn estimates(vehicle: &VehicleParameters) -> Vec<Caveat> {
@@ -21,6 +24,30 @@ fn estimate(estimate: &Estimate) -> Caveat {
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     let value = format!("{} {median}{unit}, 90 %: {low} to {high}", quantity.label());
     Caveat::assumed(subject_of(*quantity), value, format!("{rule}; {source}"))
+}
+
+/// How uncertain the friction of the road is, where nobody said it and no data sheet does.
+///
+/// - `vehicle`: the struck vehicle, with the friction of the question if that says one.
+pub(crate) fn road(question: &SimulateRequest, vehicle: &VehicleParameters) -> Option<Caveat> {
+    let is_estimated =
+        vehicle.sheet.as_ref().is_some_and(|sheet| sheet.known(SheetQuantity::Friction).is_none());
+    if question.friction_sigma.is_some() || is_estimated {
+        return None;
+    }
+    let RoadDraws { sigma, .. } = question.road(vehicle, 0)?;
+    let friction = vehicle.tires.friction;
+    let [median, low, high] =
+        [friction, friction - NORMAL_QUANTILE_95 * sigma, friction + NORMAL_QUANTILE_95 * sigma]
+            .map(three_digits);
+    let value = format!("{}, {median}, 90 %: {low} to {high}", SheetQuantity::Friction.label());
+    let whose = match question.friction {
+        Some(_) => "how well it is known was not said",
+        None => "that of the vehicle's file, as the road was not said; another one: --friction",
+    };
+    let percent = 100.0 * ROAD_FRICTION_SPREAD;
+    let reason = format!("{whose}; σ {percent} % of it, as of dry asphalt: --friction-sigma");
+    Some(Caveat::assumed(CaveatSubject::RoadFriction, value, reason))
 }
 
 /// Where a person finds what a data sheet leaves open: the friction is that of the road.

@@ -3,7 +3,9 @@
 use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
 
-use crate::analysis::{ContactsOutcome, MonteCarloError, MotionOutcome, RestOutcome, RivalForce};
+use crate::analysis::{
+    ContactsOutcome, MonteCarloError, MotionOutcome, PlaceChance, RestOutcome, RivalForce,
+};
 use crate::facts::both_vehicles::course_table;
 use crate::facts::held::held_intervals;
 use crate::facts::simulate::sensitivity;
@@ -21,7 +23,7 @@ impl PredictMotionReport {
                 .filter(|_| self.is_end_known() && self.applicability >= 1.0),
         };
         let first = [self.course_table(), Some(self.motion_table())];
-        let last = [self.rival_table(), self.sensitivity_table(), held];
+        let last = [self.places_table(), self.rival_table(), self.sensitivity_table(), held];
         let tables = first.into_iter().flatten().chain(self.both_vehicles_tables());
         tables.chain(last.into_iter().flatten()).collect()
     }
@@ -30,6 +32,31 @@ impl PredictMotionReport {
     pub fn course_table(&self) -> Option<FactTable> {
         let n_draws = self.contacts.as_ref().map_or(0, |contacts| contacts.n_draws);
         course_table(&self.courses, n_draws)
+    }
+
+    /// Which lanes, kerbs and zones of the site the vehicles come to; likewise, and none without a site.
+    pub fn places_table(&self) -> Option<FactTable> {
+        let n_draws = self.contacts.as_ref().map_or(0, |contacts| contacts.n_draws);
+        let chance =
+            |share: f64| Value::Chance(share, Some(share_standard_error(share, n_draws as f64)));
+        let row = |place: &PlaceChance| {
+            let shares = [
+                place.struck_enters,
+                place.struck_ends,
+                place.striking_enters,
+                place.striking_ends,
+            ];
+            Fact::row(Value::Text(place.name.clone()), shares.map(chance).to_vec())
+        };
+        FactTable::new(Term::PlacesOfSite, self.places.iter().map(row).collect())
+            .with_rows(Term::PlaceOfSite)
+            .with_columns(&[
+                Term::StruckEnters,
+                Term::StruckEndsThere,
+                Term::StrikingEnters,
+                Term::StrikingEndsThere,
+            ])
+            .unless_empty()
     }
 
     /// How the motion of the striking vehicle ends, and how the vehicles are in contact; likewise.

@@ -112,7 +112,7 @@ terms! {
     ToPlace: "to (X; Y)", "bis (X; Y)";
     Draws: "The same over vehicles drawn from what the data sheet leaves open",
         "Dasselbe über Fahrzeuge, gezogen aus dem, was das Datenblatt offen lässt";
-    VehiclesDrawn: "vehicles drawn from the data sheet", "nach dem Datenblatt gezogene Fahrzeuge";
+    VehiclesDrawn: "draws of vehicle and road", "Ziehungen von Fahrzeug und Fahrbahn";
     LeftOut: "could not be computed and are left out", "ließen sich nicht berechnen und fehlen";
     EndX: "X at the end", "X am Ende", "Of the CG, along the road from the impact";
     EndY: "Y at the end", "Y am Ende", "Of the CG, to the left";
@@ -187,6 +187,14 @@ terms! {
     // Both vehicles through all contacts.
     StruckCourses: "What becomes of the struck vehicle", "Was aus dem gestoßenen Fahrzeug wird";
     Course: "course of events", "Verlauf";
+    PlacesOfSite: "Parts of the ground that the vehicles come to", "Teile des Geländes, auf die die Fahrzeuge gelangen";
+    PlaceOfSite: "part of the ground", "Teil des Geländes";
+    StruckEnters: "struck comes over it", "gestoßenes gelangt darauf",
+        "A part of the vehicle, at any time; a vehicle that is over it at first contact counts";
+    StruckEndsThere: "struck ends there", "gestoßenes endet dort", "A part of the vehicle";
+    StrikingEnters: "striking comes over it", "stoßendes gelangt darauf",
+        "A part of the vehicle, at any time; a vehicle that is over it at first contact counts";
+    StrikingEndsThere: "striking ends there", "stoßendes endet dort", "A part of the vehicle";
     CourseMissed: "the vehicles miss each other", "die Fahrzeuge verfehlen sich";
     CourseAcross: "it ends across the front of the striking vehicle",
         "es endet quer vor dem stoßenden Fahrzeug", "Still in contact at the end of the motion";

@@ -4,16 +4,13 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::numerics::NORMAL_QUANTILE_95;
 use crate::units::{self, Interval};
 use crate::vehicle::sheet::{Drive, Rule, SheetQuantity, VehicleClass};
 use crate::vehicle::{CrushParameters, Equations, VehicleMismatch, VehicleParameters};
 
 /// Largest number of standard deviations that an estimate is drawn from its median.
 const MAX_LATENT: f64 = 2.6;
-
-/// Normal quantile of 0.95: the 90 % range of an estimate reaches so many standard deviations from its
-/// median to both sides.
-const LATENT_95: f64 = 1.644_853_626_951_472_2;
 
 /// How often the latent factors are halved until the parameters go together.
 const MAX_HALVINGS: usize = 12;
@@ -148,7 +145,8 @@ impl DataSheet {
         let mut estimates = Vec::new();
         sheet.resolve(|quantity, rule| {
             let at = |latent: f64| bounded(quantity, rule.at(latent));
-            let ninety = Interval { level: 0.9, low: at(-LATENT_95), high: at(LATENT_95) };
+            let ninety =
+                Interval { level: 0.9, low: at(-NORMAL_QUANTILE_95), high: at(NORMAL_QUANTILE_95) };
             estimates.push(Estimate {
                 quantity,
                 unit: quantity.unit(),
@@ -276,7 +274,7 @@ mod tests {
         let sheet = car();
         for (idx, estimate) in sheet.estimates().iter().enumerate() {
             let mut latents = vec![0.0; idx + 1];
-            latents[idx] = LATENT_95;
+            latents[idx] = NORMAL_QUANTILE_95;
             let moved = sheet.at(&latents);
             let value = moved.resolve(|_, _| {}).get(estimate.quantity);
             let (median, [low, high]) = (estimate.value.median, estimate.value.ninety());

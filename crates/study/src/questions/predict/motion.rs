@@ -7,22 +7,23 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
-    Analysis, ContactsOutcome, MotionForecast, MotionForecastSettings, MotionOutcome, RestOutcome,
-    Rival, RivalForce, SecondContacts, Sensitivity, StruckVehicle,
+    Analysis, ContactsOutcome, MotionForecast, MotionForecastSettings, MotionOutcome, PlaceChance,
+    RestOutcome, Rival, RivalForce, SecondContacts, Sensitivity, StruckVehicle, place_chances,
 };
 use crate::ask::checks::{check, check_count};
-use crate::caveats::assumed::contact_default;
+use crate::caveats::assumed::{self, contact_default};
 use crate::caveats::restrictions;
 use crate::caveats::unused::{by_forecast, contact_by_force_network};
 use crate::questions::predict::both_vehicles::{Both, with_contact_law};
 use crate::questions::simulate::dataset::take_case;
 use crate::{
-    Answer, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, Library, ModelChoice,
+    Answer, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, InputKind, Library, ModelChoice,
     MotionSource, Observer, Provenance, Question, SimulateAnswer, SimulateRequest, StudyError,
     VehicleChoice,
 };
 use impactlab_core::data::{ColumnMap, DatasetKind, Outcome};
 use impactlab_core::ranges::{DRAWS, FORECAST_DURATION, REST_LIMIT};
+use impactlab_core::site::Site;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
 use impactlab_networks::force::{ForceModel, ForceScenario, OutsideTraining};
 use impactlab_networks::pair::CourseShare;
@@ -72,6 +73,19 @@ pub enum ForceSource {
     File(PathBuf),
 }
 
+impl ForceSource {
+    /// The force where nobody says which: what was recorded, and of a scenario, of which nothing was, what
+    /// the shipped network says.
+    pub fn usual(source: &MotionSource) -> Self {
+        match source {
+            MotionSource::Scenario { .. } => Self::Predicted(ModelChoice::default()),
+            MotionSource::Case { .. }
+            | MotionSource::Trajectory { .. }
+            | MotionSource::Drive(_) => Self::Given,
+        }
+    }
+}
+
 /// Where the struck vehicle goes, SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct PredictMotionReport {
@@ -110,6 +124,9 @@ pub struct PredictMotionReport {
     pub courses: Vec<CourseShare>,
     /// When and how the vehicles are in contact; likewise.
     pub contacts: Option<ContactsOutcome>,
+    /// How likely the vehicles come to the lanes of the site and cross its kerbs; likewise.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub places: Vec<PlaceChance>,
     /// Probability that the striking vehicle's corner stays caught, of a predicted force.
     pub hooking_probability: Option<f64>,
     /// A second contact of the vehicles in the 4DOF simulation of the same collision; the forecast
@@ -267,6 +284,7 @@ impl Question for PredictMotionRequest {
                 false => simulated.duration_s,
             },
             until_rest: self.motion.until_rest,
+            road: self.motion.road(&struck.vehicle, self.seed),
             seed: self.seed,
         };
         let mut noted = Noted { unused: by_forecast(self), of_force: Vec::new() };
@@ -283,6 +301,9 @@ impl Question for PredictMotionRequest {
         let holds_here = |caveat: &Caveat| self.rests_on(caveat, follows_both);
         let mut caveats: Caveats = simulated.caveats.into_iter().filter(holds_here).collect();
         caveats.extend(noted.unused);
+        if forecast.n_vehicles > 0 {
+            caveats.extend(assumed::road(&self.motion, &struck.vehicle));
+        }
         let provenance = self.provenance(library)?;
         caveats.extend(self.contact_caveats(&forecast)?);
         let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.caveats);
@@ -294,6 +315,7 @@ impl Question for PredictMotionRequest {
             implied_contact: self.implied_contact(&forecast)?,
             flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
             rival: Rival::from_simulation(&forecast, &analysis, self.rival_force()),
+            places: self.places(&forecast, &analysis)?,
             ..self.report(&analysis, struck, &forecast)
         };
         caveats.extend(restrictions::predicted_motion_caveats(&report, &predicted));
@@ -305,6 +327,19 @@ impl Question for PredictMotionRequest {
 }
 
 impl PredictMotionRequest {
+    /// How likely the vehicles come to the lanes and kerbs of the site.
+    fn places(
+        &self,
+        forecast: &MotionForecast,
+        analysis: &Analysis,
+    ) -> Result<Vec<PlaceChance>, StudyError> {
+        let (Some(path), Some(striking)) = (&self.motion.site, &analysis.striking) else {
+            return Ok(Vec::new());
+        };
+        let site = InputKind::Site.explain(path, Site::load(path))?;
+        Ok(place_chances(&site, forecast, [analysis.footprint, striking.footprint]))
+    }
+
     /// What the predicted force of a scenario implies of the contact.
     fn implied_contact(
         &self,
@@ -432,6 +467,7 @@ impl PredictMotionRequest {
             }),
             courses: both.map_or_else(Vec::new, |both| both.courses.clone()),
             contacts: both.map(|both| both.contacts.clone()),
+            places: Vec::new(),
             flags: Vec::new(),
             rival: None,
             implied_contact: None,

@@ -23,7 +23,7 @@ use crate::questions::simulate::motion_source::{
     acting_force, contact_height_assumption, pulse_assumptions, recorded_force, start_of_record,
     trajectory,
 };
-use crate::questions::simulate::vehicle_uncertainty::vehicle_uncertainty;
+use crate::questions::simulate::vehicle_uncertainty::{VehicleUncertainty, vehicle_uncertainty};
 use crate::{
     Answer, InputKind, Library, MomentumReport, MotionSource, Observer, Provenance, Question,
     SimulateReport, StudyError, VehicleChoice,
@@ -32,10 +32,15 @@ use impactlab_core::collision::Scenario;
 use impactlab_core::compare::{PairCase, PairRecords};
 use impactlab_core::data::write::ModelDigest;
 use impactlab_core::data::{ContactOutside, DatasetKind, Outcome};
-use impactlab_core::ranges::{ROAD_FRICTION, SIMULATED_DURATION, VEHICLE_DRAWS};
+use impactlab_core::ranges::{
+    ROAD_FRICTION, ROAD_FRICTION_SIGMA, SIMULATED_DURATION, VEHICLE_DRAWS,
+};
 use impactlab_core::site::Site;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
-use impactlab_core::vehicle::{ContactPoint, Ending, Equations, FrictionZone, Integrator};
+use impactlab_core::vehicle::{
+    ContactPoint, Ending, Equations, FrictionZone, Integrator, ROAD_FRICTION_SPREAD, RoadDraws,
+    VehicleParameters,
+};
 
 /// Asks where the struck vehicle goes, by the 4DOF model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -58,6 +63,10 @@ pub struct SimulateRequest {
     /// Peak friction of the road instead of the vehicle's.
     #[serde(default)]
     pub friction: Option<f64>,
+    /// Standard deviation of the friction of the road, which is drawn with the vehicles. If not given,
+    /// [`ROAD_FRICTION_SPREAD`] of the friction; that of a recorded motion of a data set is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_sigma: Option<f64>,
     /// The ground: a site file, whose zones have their own friction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub site: Option<PathBuf>,
@@ -120,6 +129,7 @@ impl SimulateRequest {
             equations: None,
             integrator: Integrator::default(),
             friction: None,
+            friction_sigma: None,
             site: None,
             duration_s: DEFAULT_DURATION_S,
             vehicle_draws: DEFAULT_VEHICLE_DRAWS,
@@ -194,7 +204,7 @@ impl SimulateRequest {
         caveats: &mut Caveats,
     ) -> Result<(Settings, PairCase), StudyError> {
         let case = load_pair(dataset, name)?;
-        if self.friction.is_some() {
+        if self.states_friction() {
             return Err(StudyError::FrictionOfCase { case: case.name });
         }
         caveats.extend(by_recorded_pair(self));
@@ -213,6 +223,44 @@ impl SimulateRequest {
             friction_zones: self.friction_zones()?,
         };
         Ok((settings, case))
+    }
+
+    /// Whether it says what a record knows itself.
+    fn states_friction(&self) -> bool {
+        self.friction.or(self.friction_sigma).is_some()
+    }
+
+    /// How the friction of the road is drawn; `None` where it is known.
+    ///
+    /// - `vehicle`: the struck vehicle, with the friction of the question if that says one.
+    pub(crate) fn road(&self, vehicle: &VehicleParameters, seed: u64) -> Option<RoadDraws> {
+        let is_of_record = match &self.source {
+            MotionSource::Case { dataset, .. } => {
+                PairRecords::is_at(dataset)
+                    || DatasetKind::from_folder(dataset) == Some(DatasetKind::Trajectory)
+            }
+            MotionSource::Scenario { .. }
+            | MotionSource::Trajectory { .. }
+            | MotionSource::Drive(_) => false,
+        };
+        let usual = ROAD_FRICTION_SPREAD * vehicle.tires.friction;
+        let sigma = self.friction_sigma.unwrap_or(usual);
+        (!is_of_record && sigma > 0.0).then_some(RoadDraws { sigma, seed })
+    }
+
+    /// How the end varies with what is not known of vehicle and road.
+    fn uncertainty(
+        &self,
+        settings: &Settings,
+        analysis: &Analysis,
+        analyse: &Analyse<'_>,
+        caveats: &mut Caveats,
+    ) -> Option<VehicleUncertainty> {
+        let road = self.road(&settings.struck, self.seed);
+        let draws = (self.vehicle_draws, self.seed, road);
+        let uncertainty = vehicle_uncertainty(draws, settings, analysis, analyse)?;
+        caveats.extend(assumed::road(self, &settings.struck));
+        Some(uncertainty)
     }
 
     /// The zones of the site.
@@ -285,6 +333,7 @@ impl Question for SimulateRequest {
 
     fn check(&self) -> Result<(), StudyError> {
         check_given("friction", &ROAD_FRICTION, self.friction)?;
+        check_given("friction_sigma", &ROAD_FRICTION_SIGMA, self.friction_sigma)?;
         check("duration_s", &SIMULATED_DURATION, self.duration_s)?;
         check_count("vehicle_draws", &VEHICLE_DRAWS, self.vehicle_draws)?;
         let of_ending = self.ending.iter().flat_map(Ending::ranges);
@@ -320,7 +369,7 @@ impl Question for SimulateRequest {
                     return Ok(Outcome::Cancelled);
                 };
                 let case = take_case(&dataset, case)?;
-                if let (DatasetKind::Trajectory, Some(_)) = (case.kind, self.friction) {
+                if case.kind == DatasetKind::Trajectory && self.states_friction() {
                     return Err(StudyError::FrictionOfCase { case: case.name.clone() });
                 }
                 caveats.extend(restrictions::doubtful_case_caveats(case));
@@ -364,15 +413,9 @@ impl Question for SimulateRequest {
                 let scenario = scenario.load()?;
                 let settings = self.scenario_settings(&scenario, pulse, &mut caveats)?;
                 (momentum, overlap) = contact_of(&scenario, &mut caveats);
-                let of_pair = integrator_of_pair(self.integrator);
-                caveats.extend(of_pair.filter(|_| !self.one_contact));
+                caveats.extend(integrator_of_pair(self.integrator).filter(|_| !self.one_contact));
                 let median = settings.struck.clone();
-                let analyse = move |settings: &Settings| {
-                    // What the scenario has of the vehicle is drawn with it.
-                    let mut scenario = scenario.clone();
-                    scenario.struck.follow(&median, &settings.struck);
-                    analyse_scenario(&scenario, pulse, settings)
-                };
+                let analyse = move |of: &Settings| analyse_drawn(&scenario, &median, pulse, of);
                 (settings, Box::new(analyse))
             }
         };
@@ -390,8 +433,7 @@ impl Question for SimulateRequest {
             return Ok(Outcome::Cancelled);
         };
         (report.momentum, report.rival) = (momentum, beside.rival);
-        report.uncertainty =
-            vehicle_uncertainty(self.vehicle_draws, self.seed, &settings, &analysis, &analyse);
+        report.uncertainty = self.uncertainty(&settings, &analysis, &analyse, &mut caveats);
         let provenance = self.provenance(&report, beside.model);
         caveats.extend(self.restrictions(&report, &analysis, overlap).chain(beside.caveat));
         let report = Answer { report, caveats, provenance };
@@ -411,6 +453,20 @@ fn contact_of(
     let Ok(impact) = scenario.impact() else { return (None, overlap) };
     caveats.extend(assumed::contact_default(scenario, &impact));
     (MomentumReport::from_impact(&impact, 0.0), overlap)
+}
+
+/// The analysis of a scenario with a vehicle that was drawn, and what the scenario has of it.
+///
+/// - `median`: the vehicle with everything at its median.
+fn analyse_drawn(
+    scenario: &Scenario,
+    median: &VehicleParameters,
+    pulse: &PulseSetup,
+    settings: &Settings,
+) -> Result<Analysis, AnalysisError> {
+    let mut drawn = scenario.clone();
+    drawn.struck.follow(median, &settings.struck);
+    analyse_scenario(&drawn, pulse, settings)
 }
 
 /// Refuses a force that acts at a point far off the struck vehicle.

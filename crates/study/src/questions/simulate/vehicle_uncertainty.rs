@@ -5,7 +5,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use impactlab_core::units::Estimate;
-use impactlab_core::vehicle::{Sensitivity, VehicleDraws};
+use impactlab_core::vehicle::{
+    RoadDraws, Sensitivity, SheetQuantity, VehicleDraws, VehicleParameters,
+};
 
 use crate::EndState;
 use crate::analysis::{Analysis, AnalysisError, MonteCarloError, MotionEnd, RestOutcome, Settings};
@@ -48,25 +50,28 @@ struct DrawnEnd {
 /// Simulates the motion with vehicles drawn from what the data sheet leaves open; `None` if it leaves
 /// nothing open, if no draws are asked for, or if nothing is simulated.
 ///
-/// - `n_draws`, `seed`: number and seed of the draws.
+/// - `n_draws`, `seed`, `road`: number and seed of the draws, and how the friction of the road is drawn.
 /// - `settings`: with the vehicle at the medians of its estimates;
 /// - `central`: the analysis with these settings.
 pub(crate) fn vehicle_uncertainty(
-    n_draws: usize,
-    seed: u64,
+    (n_draws, seed, road): (usize, u64, Option<RoadDraws>),
     settings: &Settings,
     central: &Analysis,
     analyse: &(impl Fn(&Settings) -> Result<Analysis, AnalysisError> + Sync + ?Sized),
 ) -> Option<VehicleUncertainty> {
-    let sheet = settings.struck.sheet.as_ref()?;
+    settings.struck.sheet.as_ref()?;
     central.simulation.as_ref()?;
-    let draws = VehicleDraws::from_sheet(sheet, n_draws, seed);
+    let draws = VehicleDraws::new(&settings.struck, true, road, n_draws, seed);
     if draws.is_empty() {
         return None;
     }
     let vehicles = draws.vehicles(&settings.struck);
-    let end = |struck| {
-        let analysis = analyse(&Settings { struck, ..settings.clone() }).ok()?;
+    let end = |struck: VehicleParameters| {
+        // Both are on one road.
+        let friction = settings.striking.tires.friction * struck.tires.friction;
+        let striking =
+            settings.striking.clone().with_friction(friction / settings.struck.tires.friction);
+        let analysis = analyse(&Settings { struck, striking, ..settings.clone() }).ok()?;
         let motion = analysis.simulation?;
         Some(DrawnEnd {
             state: EndState::from_series(&motion.series).ok()?,
@@ -91,7 +96,8 @@ pub(crate) fn vehicle_uncertainty(
     // What the case or the scenario says itself is no estimate any more.
     let is_estimated = |share: &Sensitivity| {
         let sheet = central.vehicle.sheet.as_ref();
-        sheet.is_some_and(|sheet| sheet.known(share.quantity).is_none())
+        (share.quantity == SheetQuantity::Friction && road.is_some())
+            || sheet.is_some_and(|sheet| sheet.known(share.quantity).is_none())
     };
     let mut sensitivity = draws.sensitivities(&places);
     sensitivity.retain(is_estimated);
