@@ -49,6 +49,8 @@ impl State {
             Command::ForceModel(event) => self.take_force_model(&event),
             Command::ResponseModel(event) => self.take_response_model(&event),
             Command::Archive(event) => self.take_archive_event(event.take(), context),
+            Command::DeclineOffer => self.session.offered = None,
+            Command::ChooseVehicle(role, choice) => self.choose_vehicle(role, *choice),
             Command::PredictCase => self.predict_case(),
             Command::PredictScenario => self.predict_scenario(),
             Command::UseModel(network, path) => self.use_model(network, path),
@@ -108,6 +110,7 @@ impl State {
     /// nothing but the listed data set. The force of the case is predicted if the view follows the
     /// selected case.
     pub(super) fn select(&mut self, subject: Subject) {
+        self.session.offered = None;
         if let Subject::Case { dataset, .. } = &subject {
             self.view.listed = Some(dataset.clone());
         }

@@ -26,12 +26,13 @@ use crate::app::report::ReportCommand;
 use crate::app::source::OpenedPath;
 use crate::app::state::Subject;
 use crate::app::workspaces::Workspace;
+use impactlab_core::collision::Role;
 use impactlab_core::data::{ColumnMap, Outcome, Severity};
 use impactlab_document::figure::Figure;
 use impactlab_networks::force::ForceModel;
 use impactlab_networks::response::ResponseModel;
 use impactlab_networks::response::evaluate::Comparison;
-use impactlab_study::{Cost, Request};
+use impactlab_study::{Cost, Request, VehicleChoice};
 
 /// An action that the user requests.
 #[derive(Debug, Clone)]
@@ -78,6 +79,10 @@ pub enum Command {
     Write(Output, PathBuf),
     /// Write something to a file or a folder, and replace what is there.
     Replace(Output, PathBuf),
+    /// Leave what was opened beside the variant.
+    DeclineOffer,
+    /// Choose a vehicle, from which the scenario takes over what it is.
+    ChooseVehicle(Role, Box<VehicleChoice>),
     /// Predict the force of the selected case.
     PredictCase,
     /// Predict the force of the collision in the scenario pane.

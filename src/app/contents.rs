@@ -7,8 +7,10 @@ use crate::app::network::TrainedModel;
 use crate::app::panes::Pane;
 use crate::app::source::{Content, Source};
 use crate::app::state::{State, Subject};
+use crate::app::widgets::{vehicle_label, vehicle_name};
+use impactlab_core::collision::Role;
 use impactlab_core::units::Quantity;
-use impactlab_study::{DEFAULT_STRIKING, DEFAULT_VEHICLE, SimulateRequest, VehicleChoice};
+use impactlab_study::{DEFAULT_STRIKING, DEFAULT_VEHICLE};
 
 /// A part of the case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr, strum::VariantArray)]
@@ -99,10 +101,13 @@ impl State {
     }
 
     fn vehicle_entries(&self) -> [ContentsEntry; 2] {
-        let SimulateRequest { vehicle, striking, .. } = &self.project.simulate;
-        let struck = choice_text(vehicle, DEFAULT_VEHICLE.id());
-        let striking = choice_text(striking, DEFAULT_STRIKING.id());
-        [("Struck", struck), ("Striking", striking)].map(|(label, detail)| {
+        let of = [
+            ("Struck", Role::Struck, DEFAULT_VEHICLE),
+            ("Striking", Role::Striking, DEFAULT_STRIKING),
+        ];
+        of.map(|(label, role, default)| {
+            let assumed = format!("left open (else {})", vehicle_name(default.id()));
+            let detail = vehicle_label(&self.project.chosen_vehicle(role), &assumed);
             let show = Command::Show(Pane::Vehicle);
             ContentsEntry::new(Group::Vehicles, label, detail, show)
         })
@@ -223,15 +228,6 @@ impl State {
             ContentsEntry::new(Group::Results, label, detail, show).missing(missing)
         };
         links.map(entry).collect()
-    }
-}
-
-fn choice_text(choice: &VehicleChoice, assumed: &str) -> String {
-    match choice {
-        VehicleChoice::Automatic => format!("left open (else {assumed})"),
-        VehicleChoice::Preset(id) => id.clone(),
-        VehicleChoice::File(path) => file_name(path),
-        VehicleChoice::Sheet(sheet) => sheet.name.clone(),
     }
 }
 

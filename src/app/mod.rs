@@ -29,6 +29,7 @@ mod measure;
 mod menu;
 mod model;
 mod network;
+mod offer;
 mod open;
 mod output;
 mod pane;
@@ -58,6 +59,7 @@ mod training_status;
 mod unfinished;
 mod update;
 mod variants;
+mod vehicles;
 mod widgets;
 mod workspaces;
 
@@ -287,6 +289,7 @@ impl eframe::App for App {
         menu::menu_ui(ui, &mut self.state, history, &mut commands);
         case::case_bar_ui(ui, &mut self.state, &mut commands);
         chain::chain_ui(ui, &self.state, &mut commands);
+        offer::offer_ui(ui, &self.state, &mut commands);
         menu::status_ui(ui, &self.state, &mut commands);
         self.panes_ui(ui, &mut commands);
         dialog::dialogs_ui(ui, &mut self.state, &mut commands);

@@ -16,6 +16,7 @@ use crate::app::source::{Content, Source, read_source};
 use crate::app::state::{Session, State, Subject};
 use crate::app::tasks::TaskKey;
 use crate::app::workspaces::Workspace;
+use impactlab_core::collision::Role;
 use impactlab_core::data::{ColumnMap, Existing, Severity};
 use impactlab_networks::learning::ModelFile;
 use impactlab_networks::response::ResponseModel;
@@ -61,11 +62,16 @@ impl State {
         match InputFile::load_as(&path, kind) {
             Ok(InputFile::Evidence(evidence)) => self.open_evidence(path, *evidence),
             Ok(InputFile::Vehicle(vehicle)) => {
-                self.project.simulate.vehicle = VehicleChoice::File(path);
-                self.ask_again();
                 self.say(Severity::Info, format!("struck vehicle: {}", vehicle.name));
+                self.choose_vehicle(Role::Struck, VehicleChoice::File(path));
             }
             Ok(InputFile::Scenario(scenario)) => {
+                for role in Role::ALL {
+                    // It says itself which vehicle it is about.
+                    if scenario.vehicle_name(role).is_some() {
+                        *self.project.vehicle_mut(role) = VehicleChoice::Automatic;
+                    }
+                }
                 self.project.impact.scenario = ScenarioChoice::Inline(scenario);
                 self.select(Subject::Scenario);
             }

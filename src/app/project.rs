@@ -66,6 +66,24 @@ pub struct Beside {
     pub pulse: PulseSetup,
     /// What happens to the wheels after the impact, while something is selected that says it itself.
     pub ending: Option<Ending>,
+    /// The road, while something is selected that says it itself.
+    #[serde(skip_serializing_if = "Road::is_open")]
+    pub road: Road,
+}
+
+/// What is said of the road.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Road {
+    /// Peak friction; `None` for that of the vehicle.
+    pub friction: Option<f64>,
+    /// Its standard deviation; `None` where nobody says how well it is known.
+    pub sigma: Option<f64>,
+}
+
+impl Road {
+    fn is_open(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 impl Default for Project {
@@ -107,7 +125,10 @@ impl Project {
     ///
     /// - `takes_ending`: whether what was selected leaves open what happens to the wheels.
     pub(in crate::app) fn put_aside(&mut self, takes_ending: bool) {
-        let Self { simulate, beside, .. } = self;
+        let Self { simulate, predict_motion, beside, .. } = self;
+        if !matches!(simulate.source, MotionSource::Case { .. }) {
+            predict_motion.force = ForceSource::Given;
+        }
         match std::mem::take(&mut simulate.source) {
             MotionSource::Drive(mut drive) if drive != Drive::default() => {
                 let own = [&mut drive.force, &mut drive.steer, &mut drive.wheels];
@@ -120,6 +141,11 @@ impl Project {
             MotionSource::Case { .. }
             | MotionSource::Drive(_)
             | MotionSource::Trajectory { .. } => {}
+        }
+        let road =
+            Road { friction: simulate.friction.take(), sigma: simulate.friction_sigma.take() };
+        if !road.is_open() {
+            beside.road = road;
         }
         let ending = simulate.ending.take();
         if takes_ending {
@@ -138,7 +164,23 @@ impl Project {
             MotionSource::Case { .. } | MotionSource::Trajectory { .. } => {}
         }
         simulate.ending = if takes_ending { beside.ending.take() } else { None };
+        // A case of a data set says itself on which road it was recorded.
+        if !matches!(source, MotionSource::Case { .. }) {
+            let Road { friction, sigma } = std::mem::take(&mut beside.road);
+            (simulate.friction, simulate.friction_sigma) = (friction, sigma);
+        }
         simulate.source = source;
+        self.take_usual_force();
+    }
+
+    /// Drives the forecast by the force that drives it where nobody says which, unless a force of the network
+    /// that was asked for goes on to another case.
+    fn take_usual_force(&mut self) {
+        let is_case = matches!(self.simulate.source, MotionSource::Case { .. });
+        if !is_case || !matches!(self.predict_motion.force, ForceSource::Predicted(_)) {
+            self.predict_motion.force = ForceSource::usual(&self.simulate.source);
+        }
+        self.keep_in_step();
     }
 
     /// The scenario in the scenario pane; `None` if its file cannot be read.
@@ -156,6 +198,16 @@ impl Project {
         match &mut self.simulate.source {
             MotionSource::Scenario { pulse, .. } => pulse,
             _ => &mut self.beside.pulse,
+        }
+    }
+
+    /// The road of the scenario: its friction and the standard deviation of that.
+    pub fn road_mut(&mut self) -> [&mut Option<f64>; 2] {
+        match &self.simulate.source {
+            MotionSource::Scenario { .. } => {
+                [&mut self.simulate.friction, &mut self.simulate.friction_sigma]
+            }
+            _ => [&mut self.beside.road.friction, &mut self.beside.road.sigma],
         }
     }
 
@@ -350,6 +402,8 @@ impl FoundQuestions {
                 project.predict_force.model = model.clone();
             }
             project.predict_motion = motion;
+        } else {
+            project.take_usual_force();
         }
         if let Some(force) = predict_force {
             project.predict_force = force;

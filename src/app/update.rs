@@ -31,6 +31,7 @@ impl State {
         }
         self.select_something();
         self.keep_questions_in_step();
+        self.session.chosen_vehicles.update(&self.project);
         let Session { cases, sources, replays, .. } = &mut self.session;
         cases.update(sources, replays, &self.view);
         self.update_ground();
@@ -116,8 +117,8 @@ impl State {
         }
     }
 
-    /// Selects the first case or file of what the user opened last, once everything is loaded. If
-    /// nothing is selected after that, the first case or file of all sources is selected, so that
+    /// Offers the first case or file of what the user opened last to the variant, once everything is loaded.
+    /// If nothing is selected after that, the first case or file of all sources is selected, so that
     /// the window shows something at the first start. If no open data set is listed, the first one
     /// is.
     fn select_something(&mut self) {
@@ -129,9 +130,11 @@ impl State {
         let opened = |source: &&Source| Some(&source.opened) == wanted.as_ref();
         let first = first_subject(sources.iter().filter(opened));
         if let Some(subject) = first {
-            self.select(subject);
+            self.offer(subject);
         }
+        // Data of another case are not taken into one that was opened.
         if self.project.subject().is_none()
+            && self.case.path.is_none()
             && let Some(subject) = first_subject(self.session.sources.iter())
         {
             self.select(subject);

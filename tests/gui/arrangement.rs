@@ -55,6 +55,22 @@ fn a_newcomer_gets_to_a_forecast_by_each_of_the_three_doors() {
     harness.run_steps(3);
     assert_eq!(state(&harness).view.workspaces.shown, Workspace::Data);
     apply(&mut harness, Command::Open(vec![FEA.into()]));
+    // Data lie beside the variant until they are taken into it.
+    step_until(&mut harness, "the data", |state| {
+        state.session.offered.is_some() && !state.session.sources.is_empty()
+    });
+    assert_eq!(state(&harness).project.subject(), Some(Subject::Scenario));
+    harness.run_steps(3);
+    save(&mut harness, "offer.png");
+    let before = state(&harness).project.clone();
+    harness.get_by_label("Leave it beside").click();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Use in this variant").is_none());
+    assert_eq!(state(&harness).project, before);
+    apply(&mut harness, Command::Open(vec![FEA.into()]));
+    step_until(&mut harness, "the data again", |state| state.session.offered.is_some());
+    harness.run_steps(3);
+    harness.get_by_label("Use in this variant").click();
     step_until(&mut harness, "a case", |state| {
         matches!(state.project.subject(), Some(Subject::Case { .. })) && is_forecast(state)
     });

@@ -296,17 +296,21 @@ fn a_motion_is_predicted_alike() {
     few_draws(&mut harness);
     select(&mut harness, FORCES, "c002");
     let of_case = [&["predict", "--dataset", FORCES, "--case", "c002"][..], &drawn].concat();
+    // Where nobody says which force, it is that which was recorded, and of a scenario the predicted one.
+    let usual = |harness: &Harness<'_, App>| state(harness).project.predict_motion.force.clone();
+    assert_eq!(usual(&harness), ForceSource::Given);
+    compare_motion(&mut harness, ForceSource::Given, CommandLine::new(&of_case));
+    let predicted = [&of_case[..], &["--force-model", "shipped"]].concat();
     compare_motion(
         &mut harness,
         ForceSource::Predicted(ModelChoice::default()),
-        CommandLine::new(&of_case),
+        CommandLine::new(&predicted),
     );
-    let given = [&of_case[..], &["--given-force"]].concat();
-    compare_motion(&mut harness, ForceSource::Given, CommandLine::new(&given));
 
     // The window asks about a scenario in memory, the command line about a file.
     apply(&mut harness, Command::Open(vec![SCENARIO.into()]));
     step_until(&mut harness, "the scenario", is_idle);
+    assert_eq!(usual(&harness), ForceSource::Predicted(ModelChoice::default()));
     let of_scenario = [&["predict", "--scenario", SCENARIO][..], &drawn].concat();
     let predicted = CommandLine::new(&of_scenario).asks_differently(&["motion"]);
     compare_motion(&mut harness, ForceSource::Predicted(ModelChoice::default()), predicted);

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use egui::Key;
+use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{
@@ -485,6 +486,29 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
     motion.click();
     harness.run_steps(3);
     harness.get_by_label("components");
+}
+
+/// The popup closed on a click into its own field, and a space that was typed then let time run.
+#[test]
+fn a_variant_is_renamed_with_mouse_and_keyboard() {
+    let mut harness = pit();
+    harness.get_by_label("Name…").click();
+    harness.run_steps(4);
+    harness.get_by_role_and_label(Role::TextInput, "Name of the variant").click();
+    harness.run_steps(4);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
+    for (key, text) in [(None, "wet"), (Some(Key::Space), " "), (None, "road")] {
+        if let Some(key) = key {
+            harness.key_press(key);
+        }
+        harness.event(egui::Event::Text(text.to_owned()));
+        harness.run_steps(2);
+    }
+    assert!(!state(&harness).session.playback.is_playing);
+    harness.key_press(Key::Enter);
+    harness.run_steps(4);
+    assert_eq!(state(&harness).case.file.shown, "wet road");
+    assert!(harness.query_by_label("Name of the variant").is_none(), "it is done");
 }
 
 #[test]

@@ -247,7 +247,7 @@ fn the_vehicle_of_a_file_is_asked_for_beside_its_curve() {
     harness.get_by_label("F_y is zero throughout").click();
     harness.run_steps(2);
     settle(&mut harness);
-    choose(&mut harness, ("Struck vehicle", 0), "target-2000");
+    choose(&mut harness, ("Struck vehicle", 0), "FEA target (2000 kg)");
     let chosen = &state(&harness).project.simulate.vehicle;
     assert_eq!(*chosen, impactlab_study::VehicleChoice::Preset("target-2000".to_owned()));
     harness.get_by_label("Open with these columns").click();

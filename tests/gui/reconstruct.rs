@@ -368,7 +368,8 @@ fn a_data_sheet_stands_in_for_what_the_evidence_does_not_say() {
     assert!(wheelbase_m(&harness) > any + 0.3, "{} {any}", wheelbase_m(&harness));
     harness.set_size(egui::vec2(1280.0, 1700.0));
     harness.run_steps(4);
-    harness.get_by_label(&format!("Else as {id}")).click();
+    let name = &built_in_vehicle(id).unwrap().name;
+    harness.get_by_label(&format!("Else as {name}")).click();
     harness.run_steps(20);
     save(&mut harness, "reconstruct-sheet.png");
     assert_eq!(collisions(&harness), [""; 0]);

@@ -83,7 +83,8 @@ fn a_predicted_force_spreads_the_forecast_and_playing_moves_it() {
     step_until(&mut harness, "the predicted force", |state| {
         state.motion_forecast().is_some_and(|of| of.is_predicted())
     });
-    assert!(area(state(&harness)) > 1.5 * given, "{} {given}", area(state(&harness)));
+    // The road is uncertain under either force.
+    assert!(area(state(&harness)) > 1.2 * given, "{} {given}", area(state(&harness)));
     apply(&mut harness, Command::Playback(PlaybackCommand::SetTime(1.0)));
     apply(&mut harness, Command::Playback(PlaybackCommand::Toggle));
     harness.run_steps(20);

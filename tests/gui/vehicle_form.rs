@@ -4,12 +4,14 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{App, Command, Output, Pane, State};
+use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::units::UnitSystem;
-use impactlab_core::vehicle::{CrushFace, CrushStiffness, DataSheet};
+use impactlab_core::vehicle::{CrushFace, CrushStiffness, DataSheet, built_in_vehicle};
 use impactlab_study::VehicleChoice;
 use impactlab_study::case_file::CaseFile;
 
 use crate::harness::{apply, is_idle, open, step_until};
+use crate::import::choose;
 use crate::pictures::save;
 
 const SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/pit_right_rear.toml");
@@ -50,6 +52,80 @@ fn with_forms() -> Harness<'static, App> {
     harness
 }
 
+/// One vehicle has one mass: the scenario takes that of the car, and says where it says otherwise.
+#[test]
+fn a_car_that_is_chosen_is_the_car_of_the_scenario() {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the simulation", is_idle);
+    apply(&mut harness, Command::Show(Pane::Vehicle));
+    harness.run_steps(4);
+    let before = state(&harness).project.clone();
+    harness.get_by_role_and_label(Role::ComboBox, "Struck vehicle").click();
+    harness.run_steps(4);
+    save(&mut harness, "vehicle-list.png");
+    choose(&mut harness, ("Struck vehicle", 0), "Toyota Corolla 2020");
+    step_until(&mut harness, "the simulation of the Corolla", is_idle);
+    let corolla = built_in_vehicle("toyota-corolla-2020").unwrap();
+    let struck =
+        |harness: &Harness<'_, App>| state(harness).project.scenario().unwrap().struck.clone();
+    assert_eq!(struck(&harness).mass_kg, corolla.mass.mass_kg);
+    assert_eq!(struck(&harness).length_m, corolla.geometry.outer_length_m);
+    let said = state(&harness).session.messages.last().expect("what was replaced");
+    assert!(said.text.contains("instead of 2000"), "{}", said.text);
+    save(&mut harness, "vehicle-chosen.png");
+
+    apply(&mut harness, Command::Show(Pane::Scenario));
+    harness.run_steps(4);
+    assert!(harness.query_by_label_contains("back to").is_none());
+    harness.query_all_by_role_and_label(Role::SpinButton, "Mass").next().expect("a field").focus();
+    typed(&mut harness, "1,9 t");
+    assert_eq!(struck(&harness).mass_kg, 1900.0);
+    assert!(
+        struck(&harness).yaw_inertia_kg_m2 > 1.2 * corolla.mass.yaw_inertia_kg_m2,
+        "it is estimated"
+    );
+    step_until(&mut harness, "the simulation of a loaded one", is_idle);
+    let caveats = &state(&harness).analysis().expect("an answer").report.caveats;
+    assert!(caveats.has(CaveatKind::OtherVehicle), "{caveats:?}");
+    harness.get_by_label_contains("back to").scroll_to_me();
+    harness.run_steps(4);
+    save(&mut harness, "scenario-override.png");
+    harness.get_by_label_contains("back to").click();
+    harness.run_steps(4);
+    assert_eq!(struck(&harness).mass_kg, corolla.mass.mass_kg);
+    assert!(harness.query_by_label_contains("back to").is_none(), "the inertia goes with it");
+    for _ in 0..3 {
+        apply(&mut harness, Command::Undo);
+    }
+    harness.run_steps(4);
+    let now = &state(&harness).project;
+    assert_eq!(
+        (&now.simulate.vehicle, now.scenario()),
+        (&before.simulate.vehicle, before.scenario())
+    );
+}
+
+#[test]
+fn the_scenario_follows_a_vehicle_that_is_edited() {
+    let mut harness = with_forms();
+    let striking =
+        |harness: &Harness<'_, App>| state(harness).project.scenario().unwrap().striking.clone();
+    let before = striking(&harness);
+    let [_, sheet] = sheets(state(&harness));
+    assert_eq!(sheet.vehicle().mass.mass_kg, before.mass_kg);
+    let fields: Vec<_> = harness.query_all_by_role_and_label(Role::SpinButton, "mass").collect();
+    assert_eq!(fields.len(), 2, "a row in each form");
+    fields[1].focus();
+    drop(fields);
+    // Any unit may be typed.
+    typed(&mut harness, "4100 lb");
+    let [_, sheet] = sheets(state(&harness));
+    let mass_kg = 4100.0 * 0.453_592_37;
+    assert!((sheet.vehicle().mass.mass_kg - mass_kg).abs() < 1e-6, "{sheet:?}");
+    assert!((striking(&harness).mass_kg - mass_kg).abs() < 1e-6, "{:?}", striking(&harness));
+    assert_eq!(striking(&harness).length_m, before.length_m, "what it says otherwise stays");
+}
+
 /// Brings the struck or the striking vehicle's row of the front into view and ticks it or unticks it.
 fn tick_front(harness: &mut Harness<'_, App>, vehicle: usize) {
     let boxes: Vec<_> = harness.query_all_by_role_and_label(Role::CheckBox, "front").collect();
@@ -63,13 +139,18 @@ fn tick_front(harness: &mut Harness<'_, App>, vehicle: usize) {
     harness.run_steps(4);
 }
 
-fn type_into(harness: &mut Harness<'_, App>, label: &str, typed: &str) {
+fn type_into(harness: &mut Harness<'_, App>, label: &str, typed_text: &str) {
     harness.query_all_by_label(label).next().expect(label).focus();
+    typed(harness, typed_text);
+}
+
+/// Types into the field that has the focus.
+fn typed(harness: &mut Harness<'_, App>, text: &str) {
     harness.run_steps(2);
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
     harness.key_press(egui::Key::Delete);
     harness.run_steps(2);
-    harness.event(egui::Event::Text(typed.to_owned()));
+    harness.event(egui::Event::Text(text.to_owned()));
     harness.run_steps(2);
     harness.key_press(egui::Key::Enter);
     harness.run_steps(4);

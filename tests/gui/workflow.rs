@@ -164,9 +164,14 @@ fn a_dropped_file_opens_and_a_figure_is_exported() {
     )));
     harness.input_mut().dropped_files.push(Arc::new(dropped));
     step_until(&mut harness, "the drop", |state| {
-        state.session.sources.len() == 2 && is_idle(state)
+        state.session.sources.len() == 2 && state.session.offered.is_some() && is_idle(state)
     });
-    step_until(&mut harness, "the file, which is selected by itself", shows("c002"));
+    harness.run_steps(2);
+    harness.get_by_label_contains(
+        "c002.csv is open beside this variant, which asks about c001 of fea",
+    );
+    harness.get_by_label("Use in this variant").click();
+    step_until(&mut harness, "the file", shows("c002"));
     harness.get_by_label_contains("c002.csv · force");
     let analysis = state(&harness).analysis().unwrap().analysis.clone();
     let figure = impactlab_document::figure::analysis_scene_figure(

@@ -1,6 +1,7 @@
 //! The bar below the menu: the case that is open and its variants.
 
-use egui::{Button, Panel, RichText, Ui};
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{Button, Panel, PopupCloseBehavior, RichText, Ui};
 
 use crate::app::case::{CaseCommand, VariantCommand};
 use crate::app::command::Command;
@@ -43,7 +44,10 @@ pub fn case_bar_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) 
             if copy.clicked() {
                 commands.push(Command::Variant(VariantCommand::Duplicate));
             }
-            ui.menu_button("Name…", |ui| rename_ui(ui, state, commands));
+            // A click into one of its fields leaves it open.
+            let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+            let names = MenuButton::new("Name…").config(stays);
+            names.ui(ui, |ui| rename_ui(ui, state, commands));
             let can_remove = state.case.file.variants.len() > 1;
             ui.add_enabled_ui(can_remove, |ui| {
                 ui.menu_button("Remove…", |ui| {
@@ -64,8 +68,8 @@ pub fn case_bar_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) 
 /// Draws the fields for the name of the variant and for the notes of the case.
 fn rename_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     let name = ui.label("Name of the variant");
-    let id = egui::Id::unique("variant name");
     let shown = state.case.file.shown.clone();
+    let id = egui::Id::unique("variant name").with(&shown);
     let mut typed = ui.data(|data| data.get_temp::<String>(id)).unwrap_or(shown);
     let field = ui.text_edit_singleline(&mut typed).labelled_by(name.id);
     let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));

@@ -17,8 +17,8 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::app::project::Project;
-use impactlab_study::ForceQuestion;
 use impactlab_study::case_file::{CaseFile, Variant};
+use impactlab_study::{ForceQuestion, ForceSource};
 
 /// Name of a case that has no file yet, and of the first variant of a case.
 const UNTITLED: &str = "untitled";
@@ -91,6 +91,10 @@ impl OpenCase {
         }
         let start = Project::default();
         let mut blank = shown.clone();
+        // Nobody has chosen a force that is the usual one of what is selected.
+        if blank.predict_motion.force == ForceSource::usual(&blank.simulate.source) {
+            blank.predict_motion.force.clone_from(&start.predict_motion.force);
+        }
         blank.simulate.source.clone_from(&start.simulate.source);
         if matches!(blank.predict_force.collision, ForceQuestion::Case { .. }) {
             let scenario = blank.impact.scenario.clone();

@@ -154,6 +154,7 @@ impl State {
             self.drop_reconstruction();
         }
         self.drop_answers();
+        self.session.offered = None;
         self.session.force.forecast.drop_answer();
         for SeriesFile { path, map } in self.project.sources() {
             let is_open = self.session.sources.iter().any(|source| source.path == path);
@@ -241,8 +242,7 @@ impl State {
         let networks = self.project.networks.clone();
         let mut project = Project { networks, ..Project::default() };
         let (scenario, pulse) = (project.impact.scenario.clone(), project.beside.pulse);
-        project.simulate.source = MotionSource::Scenario { scenario, pulse };
-        project.keep_in_step();
+        project.take_up(MotionSource::Scenario { scenario, pulse }, false);
         self.show_project(project);
     }
 

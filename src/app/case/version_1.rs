@@ -157,6 +157,7 @@ pub(super) fn take_forms(variant: &mut Variant) -> Result<(), serde_json::Error>
         start,
         pulse: shown.pulse,
         ending: shown.ending,
+        ..Beside::default()
     };
     variant.view = serde_json::to_value(beside)?;
     variant.forms = Value::Null;

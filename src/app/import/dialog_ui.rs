@@ -61,7 +61,7 @@ impl ImportDialog {
                 ui.add_space(GAP);
                 ui.vertical(|ui| {
                     self.preview_ui(ui);
-                    self.left_open_ui(ui, project);
+                    self.left_open_ui(ui, project, commands);
                 });
             });
         });
@@ -278,7 +278,7 @@ impl ImportDialog {
     }
 
     /// Draws what a force or a motion does not say about the struck vehicle.
-    fn left_open_ui(&self, ui: &mut Ui, project: &mut Project) {
+    fn left_open_ui(&self, ui: &mut Ui, project: &mut Project, commands: &mut Vec<Command>) {
         let Some((_, Ok(preview))) = &self.preview else { return };
         let title = match preview.kind {
             FileKind::Force => "What a force does not say about the struck vehicle",
@@ -288,7 +288,7 @@ impl ImportDialog {
         ui.separator();
         ui.strong(title);
         Grid::new("import start").num_columns(2).show(ui, |ui| {
-            file_vehicle_ui(ui, &mut project.simulate.vehicle);
+            file_vehicle_ui(ui, &project.simulate.vehicle, self.units, commands);
             if preview.kind == FileKind::Force {
                 start_fields(ui, project.start_mut(), self.units);
             }

@@ -8,25 +8,30 @@ use crate::app::output::Output;
 use crate::app::panels::ending::ending_form;
 use crate::app::panels::scenario_plan::scenario_plan_ui;
 use crate::app::panes::PaneContext;
-use crate::app::project::Project;
-use crate::app::state::Subject;
-use crate::app::widgets::{EmptyField, caveats_ui, facts_ui, optional_quantity, quantity_field};
+use crate::app::project::{Beside, Project};
+use crate::app::state::{Session, Subject};
+use crate::app::vehicles::ChosenVehicles;
+use crate::app::widgets::{
+    EmptyField, caveats_ui, facts_ui, optional_quantity, quantity_field, quantity_value,
+};
 use impactlab_core::collision::{
-    ContactLocation, DEFAULT_FRICTION_LIMIT, PulseShape, RestitutionForm, Scenario,
-    ScenarioContact, ScenarioVehicle, Side, default_restitution_in_words,
+    ContactLocation, DEFAULT_FRICTION_LIMIT, PulseShape, RestitutionForm, Role, Scenario,
+    ScenarioContact, ScenarioVehicle, SharedNumber, Side, default_restitution_in_words,
 };
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::{
     BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
     CONTACT_HEIGHT, CONTACT_OFFSET, FRICTION_LIMIT, FRICTION_OF_CRITICAL, HEADING, POSITION,
-    PULSE_DURATION, RESTITUTION, Range, SPEED, YAW_RATE,
+    PULSE_DURATION, RESTITUTION, ROAD_FRICTION, ROAD_FRICTION_SIGMA, Range, SPEED, YAW_RATE,
 };
-use impactlab_core::units::UnitSystem;
+use impactlab_core::units::{NumberFormat, UnitSystem, significant};
+use impactlab_core::vehicle::{BuiltInVehicle, ROAD_FRICTION_SPREAD, VehicleParameters};
 use impactlab_draw::theme;
+use impactlab_study::DEFAULT_VEHICLE;
 use impactlab_study::analysis::PulseSetup;
 
-/// Draws the plan view of the vehicles at first contact, the momentum solution, and the form that
-/// edits the scenario.
+/// Draws the plan view of the vehicles at first contact, the forms that edit the scenario, and the momentum
+/// solution.
 pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -49,45 +54,70 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         if let Some(scenario) = project.scenario_mut() {
             scenario_plan_ui(ui, scenario, solved, view.units, session.fit_plots, commands);
         }
+        if let Some(Err(problem)) = answer {
+            let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+            ui.colored_label(color, problem);
+        }
+        let mut pulse = *project.pulse_mut();
+        let Project { impact, beside, .. } = &mut **project;
+        if let Some(scenario) = impact.scenario.inline_mut() {
+            forms_ui(ui, scenario, &mut pulse, beside, session, view.units);
+        }
+        *project.pulse_mut() = pulse;
+        road_form(ui, project.road_mut(), session.chosen_vehicles.get(Role::Struck), view.units);
+        ui.separator();
         match answer {
             Some(Ok(answer)) => {
                 let report = &answer.report;
                 facts_ui(ui, &report.name, &report.facts(), view.units);
                 caveats_ui(ui, &report.caveats, commands);
             }
-            Some(Err(problem)) => {
-                let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-                ui.colored_label(color, problem);
-            }
+            Some(Err(_)) => {}
             None => drop(ui.spinner()),
         }
-        ui.separator();
-        let mut pulse = *project.pulse_mut();
-        let Project { impact, beside, .. } = &mut **project;
-        let Some(scenario) = impact.scenario.inline_mut() else { return };
-        contact_form(ui, &mut scenario.contact, &mut pulse, view.units);
-        let Scenario { ending, striking_ending, .. } = scenario;
-        for (vehicle, ending) in [("struck vehicle", ending), ("striking vehicle", striking_ending)]
-        {
-            ending_form(ui, vehicle, ending, &mut beside.steering_ratio, view.units);
-        }
-        vehicles_form(ui, scenario, view.units);
-        *project.pulse_mut() = pulse;
     });
 }
 
-fn vehicles_form(ui: &mut Ui, scenario: &mut Scenario, units: UnitSystem) {
-    let Scenario { struck, striking, .. } = scenario;
-    for (title, vehicle) in [("Struck vehicle", struck), ("Striking vehicle", striking)] {
+/// Draws what is entered of a scenario.
+fn forms_ui(
+    ui: &mut Ui,
+    scenario: &mut Scenario,
+    pulse: &mut PulseSetup,
+    beside: &mut Beside,
+    session: &Session,
+    units: UnitSystem,
+) {
+    vehicles_form(ui, scenario, &session.chosen_vehicles, units);
+    contact_form(ui, &mut scenario.contact, pulse, units);
+    let Scenario { ending, striking_ending, .. } = scenario;
+    for (vehicle, ending) in [("struck vehicle", ending), ("striking vehicle", striking_ending)] {
+        ending_form(ui, vehicle, ending, &mut beside.steering_ratio, units);
+    }
+}
+
+fn vehicles_form(ui: &mut Ui, scenario: &mut Scenario, chosen: &ChosenVehicles, units: UnitSystem) {
+    for (title, role) in [("Struck vehicle", Role::Struck), ("Striking vehicle", Role::Striking)] {
         egui::CollapsingHeader::new(title).default_open(true).show(ui, |ui| {
-            Grid::new(title).num_columns(2).show(ui, |ui| vehicle_form(ui, vehicle, units));
+            let of = chosen.get(role);
+            if let Some(of) = of {
+                ui.add(egui::Label::new(&of.name).wrap());
+            }
+            let vehicle = scenario.vehicle_mut(role);
+            Grid::new(title).num_columns(2).show(ui, |ui| vehicle_form(ui, vehicle, of, units));
         });
     }
 }
 
 /// Draws the fields of one vehicle in a two-column grid. The velocity is edited as speed and course
 /// in world axes.
-fn vehicle_form(ui: &mut Ui, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
+///
+/// - `of`: the vehicle that it is; what the scenario says otherwise can be set back to its value.
+fn vehicle_form(
+    ui: &mut Ui,
+    vehicle: &mut ScenarioVehicle,
+    of: Option<&VehicleParameters>,
+    units: UnitSystem,
+) {
     let mut speed_m_s = vehicle.vx_world_m_s.hypot(vehicle.vy_world_m_s);
     let mut course_rad = vehicle.vy_world_m_s.atan2(vehicle.vx_world_m_s);
     // The course says which way.
@@ -98,19 +128,46 @@ fn vehicle_form(ui: &mut Ui, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
         vehicle.vx_world_m_s = speed_m_s * course_rad.cos();
         vehicle.vy_world_m_s = speed_m_s * course_rad.sin();
     }
+    quantity_field(ui, "Heading", &mut vehicle.heading_rad, &HEADING, units);
+    quantity_field(ui, "Yaw rate", &mut vehicle.yaw_rate_rad_s, &YAW_RATE, units);
+    let shared = of.map(|of| vehicle.beside(of));
+    let mass_before_kg = vehicle.mass_kg;
+    let cg_range = BODY_CG.at_most(vehicle.length_m);
     let fields = [
-        ("Heading", &mut vehicle.heading_rad, HEADING),
-        ("Yaw rate", &mut vehicle.yaw_rate_rad_s, YAW_RATE),
         ("Mass", &mut vehicle.mass_kg, BODY_MASS),
         ("Yaw inertia", &mut vehicle.yaw_inertia_kg_m2, BODY_YAW_INERTIA),
         ("Length", &mut vehicle.length_m, BODY_LENGTH),
         ("Width", &mut vehicle.width_m, BODY_WIDTH),
+        ("CG behind front", &mut vehicle.cg_from_front_m, cg_range),
     ];
-    for (label, value, range) in fields {
-        quantity_field(ui, label, value, &range, units);
+    for (i, (label, value, range)) in fields.into_iter().enumerate() {
+        let name = ui.label(label);
+        ui.horizontal(|ui| {
+            let (field, _) = quantity_value(ui, value, &range, units);
+            field.labelled_by(name.id);
+            if let Some(other) = shared.map(|shared| shared[i]).filter(SharedNumber::differs) {
+                reset_ui(ui, value, &other, &range, units);
+            }
+        });
+        ui.end_row();
     }
-    let range = BODY_CG.at_most(vehicle.length_m);
-    quantity_field(ui, "CG behind front", &mut vehicle.cg_from_front_m, &range, units);
+    // An inertia that is that of the car goes with the mass where it is estimated by it.
+    if let (Some(of), Some([_, inertia, ..])) = (of, shared)
+        && vehicle.mass_kg != mass_before_kg
+        && !inertia.differs()
+    {
+        let loaded = of.clone().with_mass(vehicle.mass_kg, None);
+        vehicle.yaw_inertia_kg_m2 = loaded.mass.yaw_inertia_kg_m2;
+    }
+}
+
+/// Draws the button that sets a number of the scenario back to that of its vehicle.
+fn reset_ui(ui: &mut Ui, value: &mut f64, other: &SharedNumber, range: &Range, units: UnitSystem) {
+    let own = NumberFormat::english(units).rounded(other.quantity, other.in_vehicle);
+    let hint = format!("The vehicle has {own}. Click to take that over");
+    if ui.small_button(format!("back to {own}")).on_hover_text(hint).clicked() {
+        *value = other.in_vehicle.clamp(range.low, range.high);
+    }
 }
 
 /// Draws the fields of restitution and friction.
@@ -166,6 +223,37 @@ fn stated_field(
     let field = optional_quantity(ui, value, empty, range, units);
     field.labelled_by(name.id).on_hover_text(hint);
     ui.end_row();
+}
+
+/// Draws the fields of the road.
+///
+/// - `vehicle`: the struck vehicle, whose friction counts where none is said.
+fn road_form(
+    ui: &mut Ui,
+    [friction, sigma]: [&mut Option<f64>; 2],
+    vehicle: Option<&VehicleParameters>,
+    units: UnitSystem,
+) {
+    let default = || BuiltInVehicle::from_id(DEFAULT_VEHICLE.id()).map(|of| &of.parameters);
+    let usual = vehicle.or_else(default).map_or(0.8, |of| of.tires.friction);
+    let spread = ROAD_FRICTION_SPREAD * friction.unwrap_or(usual);
+    egui::CollapsingHeader::new("Road").default_open(true).show(ui, |ui| {
+        Grid::new("road").num_columns(2).show(ui, |ui| {
+            let name = ui.label("Friction μ");
+            let text = format!("{} (vehicle)", significant(usual));
+            let empty = EmptyField { text: &text, start_si: usual };
+            let field = optional_quantity(ui, friction, empty, &ROAD_FRICTION, units);
+            field.labelled_by(name.id);
+            ui.end_row();
+            let name = ui.label("± (standard deviation)");
+            let text = format!("{} (usual)", significant(spread));
+            let empty = EmptyField { text: &text, start_si: spread };
+            let field = optional_quantity(ui, sigma, empty, &ROAD_FRICTION_SIGMA, units);
+            let hint = "How well the friction is known; it is drawn in the forecast. 0: exactly";
+            field.labelled_by(name.id).on_hover_text(hint);
+            ui.end_row();
+        });
+    });
 }
 
 /// Draws the fields of the contact location, restitution and friction, and of the pulse over which

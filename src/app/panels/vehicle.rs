@@ -1,41 +1,37 @@
 //! The “Vehicle” pane: the struck and the striking vehicle, the settings of the simulation, and the
 //! speed and contact point for files that contain only a force.
 
-use egui::{ComboBox, Grid, Response, ScrollArea, Ui};
+use egui::{ComboBox, Grid, ScrollArea, Ui};
 
 use crate::app::command::Command;
-use crate::app::model::file_name;
 use crate::app::panels::file_start::file_start_ui;
 use crate::app::panels::vehicle_form::vehicle_form_ui;
 use crate::app::panes::PaneContext;
 use crate::app::project::Project;
-use crate::app::widgets::{facts_ui, quantity_field, value_row, within_view};
+use crate::app::widgets::{VehiclePicker, facts_ui, quantity_field, value_ui, vehicle_name};
+use impactlab_core::collision::Role;
 use impactlab_core::data::Severity;
 use impactlab_core::error_chain;
 use impactlab_core::ranges::{REST_LIMIT, SIMULATED_DURATION};
-use impactlab_core::vehicle::{
-    DataSheet, Equations, Integrator, LibraryVehicle, Preset, VehicleParameters, built_in_vehicle,
-};
+use impactlab_core::units::UnitSystem;
+use impactlab_core::vehicle::{DataSheet, Equations, Integrator, VehicleParameters};
+use impactlab_document::report::vehicle_parameters;
 use impactlab_study::{
     DEFAULT_DURATION_S, DEFAULT_STRIKING, DEFAULT_VEHICLE, MotionSource, VehicleChoice,
 };
 
-/// Largest width of the lists of vehicles, points.
-const LIST_WIDTH: f32 = 240.0;
-
-/// Largest width of those lists that stand among narrow fields, points.
+/// Largest width of the list of vehicles where it stands among narrow fields, points.
 const NARROW_LIST_WIDTH: f32 = 150.0;
 
-/// Largest height of the lists of vehicles, points.
-const LIST_HEIGHT: f32 = 480.0;
-
 /// Draws the choice of the vehicles, the equations and the integrator, the start of single force
-/// files, and, if the struck vehicle is a preset, its parameters.
+/// files, and the parameters of the vehicles that are chosen.
 pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         let PaneContext { project, view, commands, .. } = &mut *pane;
         Grid::new("vehicle choice").num_columns(2).show(ui, |ui| {
-            choice_ui(ui, project, commands);
+            for role in Role::ALL {
+                vehicle_choice_ui(ui, role, project, view.units, commands);
+            }
             let equations = [None, Some(Equations::Corrected), Some(Equations::Paper)];
             list_ui(ui, "Equations", &mut project.simulate.equations, &equations, equations_label);
             let integrators = [Integrator::Rk4, Integrator::Euler];
@@ -60,24 +56,19 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             one_contact_ui(ui, project);
             ui.end_row();
         });
-        for (title, choice) in [
-            ("Struck vehicle", &mut project.simulate.vehicle),
-            ("Striking vehicle", &mut project.simulate.striking),
-        ] {
-            if let VehicleChoice::Sheet(sheet) = choice {
-                ui.separator();
-                vehicle_form_ui(ui, title, sheet, view.units, commands);
-            }
+        for role in Role::ALL {
+            sheet_ui(ui, role, project, view.units, commands);
         }
         ui.separator();
         file_start_ui(ui, pane);
         uncertainty_ui(ui, pane);
-        let project = &pane.project;
-        if let VehicleChoice::Preset(id) = &project.simulate.vehicle
-            && let Some(vehicle) = built_in_vehicle(id)
-        {
-            ui.separator();
-            parameters_ui(ui, &vehicle);
+        for role in Role::ALL {
+            let chosen = pane.session.chosen_vehicles.get(role);
+            let is_sheet = matches!(pane.project.vehicle_mut(role), VehicleChoice::Sheet(_));
+            if let Some(vehicle) = chosen.filter(|_| !is_sheet) {
+                ui.separator();
+                parameters_ui(ui, role, vehicle, pane.view.units);
+            }
         }
     });
 }
@@ -116,50 +107,64 @@ pub(super) fn one_contact_ui(ui: &mut Ui, project: &mut Project) {
     }
 }
 
-/// Draws the choice of the struck and of the striking vehicle.
-fn choice_ui(ui: &mut Ui, project: &mut Project, commands: &mut Vec<Command>) {
-    let open = format!("as the data set says, else {}", DEFAULT_VEHICLE.id());
-    let hint = "A vehicle file of your own: open it, or drop it here";
-    let default = DEFAULT_VEHICLE.parameters();
-    vehicle_choice_ui(
-        ui,
-        "Struck vehicle",
-        hint,
-        &mut project.simulate.vehicle,
-        &open,
-        &default,
-        commands,
-    );
-    let open = format!("not known, assumed to be {}", DEFAULT_STRIKING.id());
-    let hint = "With the mass and yaw inertia of the case or the scenario";
-    let default = DEFAULT_STRIKING.parameters();
-    vehicle_choice_ui(
-        ui,
-        "Striking vehicle",
-        hint,
-        &mut project.simulate.striking,
-        &open,
-        &default,
-        commands,
-    );
-}
-
-/// Draws a row of a two-column grid with the choice of a vehicle among those that come with the
-/// program.
-///
-/// - `open`, `default`: which vehicle is used if the user chooses none, as text and itself.
-fn vehicle_choice_ui(
+/// Draws the form of a data sheet that is edited. The scenario follows it.
+fn sheet_ui(
     ui: &mut Ui,
-    title: &str,
-    hint: &str,
-    choice: &mut VehicleChoice,
-    open: &str,
-    default: &VehicleParameters,
+    role: Role,
+    project: &mut Project,
+    units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
+    let VehicleChoice::Sheet(sheet) = project.vehicle_mut(role) else { return };
+    ui.separator();
+    let before = sheet.clone();
+    vehicle_form_ui(ui, title(role), sheet, units, commands);
+    if **sheet != *before
+        && let Ok(before) = before.checked_vehicle()
+    {
+        project.follow_vehicle(role, &before);
+    }
+}
+
+/// What stands in front of the choice of a vehicle.
+const fn title(role: Role) -> &'static str {
+    match role {
+        Role::Struck => "Struck vehicle",
+        Role::Striking => "Striking vehicle",
+    }
+}
+
+/// Draws two rows of a two-column grid with the choice of a vehicle among those that come with the program.
+fn vehicle_choice_ui(
+    ui: &mut Ui,
+    role: Role,
+    project: &mut Project,
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
+    let default = match role {
+        Role::Struck => DEFAULT_VEHICLE,
+        Role::Striking => DEFAULT_STRIKING,
+    };
+    let default_name = vehicle_name(default.id());
+    let named = project.scenario().and_then(|scenario| scenario.vehicle_name(role));
+    let is_of_dataset = matches!(project.simulate.source, MotionSource::Case { .. });
+    let open = match (named, role) {
+        (Some(name), _) => format!("as the scenario says: {}", vehicle_name(name)),
+        (None, Role::Struck) if is_of_dataset => {
+            format!("as the data set says, else {default_name}")
+        }
+        (None, _) => format!("not known, assumed to be {default_name}"),
+    };
+    let hint = "The scenario takes over its mass, yaw inertia and outline. A vehicle file of your own: open \
+                it, or drop it here";
+    let title = title(role);
     let name = ui.label(title);
-    let label = chosen_label(choice, open);
-    choice_list_ui(ui, title, &name, hint, choice, open, &[], &label);
+    let picker = VehiclePicker { salt: title, name: &name, hint, open: &open, own: &[], units };
+    let mut choice = project.vehicle_mut(role).clone();
+    if picker.show(ui, &mut choice) {
+        commands.push(Command::ChooseVehicle(role, Box::new(choice.clone())));
+    }
     ui.end_row();
     if matches!(choice, VehicleChoice::Sheet(_)) {
         return;
@@ -167,31 +172,30 @@ fn vehicle_choice_ui(
     ui.label("");
     let hint = "A copy with fields for every value: known, or estimated by rule with scatter";
     if ui.small_button("Edit a copy").on_hover_text(hint).clicked() {
-        match edited_copy(choice, default) {
-            Ok(sheet) => *choice = VehicleChoice::Sheet(Box::new(sheet)),
+        match edited_copy(&project.chosen_vehicle(role), &default.parameters()) {
+            Ok(sheet) => *project.vehicle_mut(role) = VehicleChoice::Sheet(Box::new(sheet)),
             Err(why) => commands.push(Command::Say(Severity::Error, why)),
         }
     }
     ui.end_row();
 }
 
-/// What a choice is called.
-pub(super) fn chosen_label(choice: &VehicleChoice, open: &str) -> String {
-    match choice {
-        VehicleChoice::Automatic => open.to_owned(),
-        VehicleChoice::Preset(id) => id.clone(),
-        VehicleChoice::File(path) => file_name(path),
-        VehicleChoice::Sheet(sheet) => format!("{} (edited)", sheet.name),
-    }
-}
-
 /// Draws a row of a two-column grid with the vehicle that a file is about, which it does not say.
-pub(in crate::app) fn file_vehicle_ui(ui: &mut Ui, choice: &mut VehicleChoice) {
+pub(in crate::app) fn file_vehicle_ui(
+    ui: &mut Ui,
+    choice: &VehicleChoice,
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
     let name = ui.label("Struck vehicle");
-    let open = format!("{} (assumed)", DEFAULT_VEHICLE.id());
-    let label = chosen_label(choice, &open);
+    let open = format!("{} (assumed)", vehicle_name(DEFAULT_VEHICLE.id()));
     let hint = "Its mass, inertia and tires: the file does not say them";
-    choice_list_ui(ui, "vehicle of the file", &name, hint, choice, &open, &[], &label);
+    let salt = "vehicle of the file";
+    let picker = VehiclePicker { salt, name: &name, hint, open: &open, own: &[], units };
+    let mut choice = choice.clone();
+    if picker.show(ui, &mut choice) {
+        commands.push(Command::ChooseVehicle(Role::Struck, Box::new(choice)));
+    }
     ui.end_row();
 }
 
@@ -203,15 +207,15 @@ pub(super) fn evidence_vehicle_ui(
     title: &str,
     choice: &mut VehicleChoice,
     own: &[VehicleChoice],
+    units: UnitSystem,
 ) {
     let name = ui.label("Data sheet");
     let open = "none: estimated as of any car";
-    let label = chosen_label(choice, open);
     let hint = "What the evidence does not say is taken from it; a file of your own is in the list once \
                 it is the vehicle of the case: open it, or drop it here";
     ui.scope(|ui| {
         ui.set_max_width(NARROW_LIST_WIDTH);
-        choice_list_ui(ui, title, &name, hint, choice, open, own, &label);
+        VehiclePicker { salt: title, name: &name, hint, open, own, units }.show(ui, choice);
     });
     ui.end_row();
 }
@@ -223,34 +227,6 @@ fn edited_copy(choice: &VehicleChoice, default: &VehicleParameters) -> Result<Da
     DataSheet::from_parameters(vehicle).ok_or_else(|| {
         format!("no data sheet leads to all parameters of {}: edit its file instead", vehicle.name)
     })
-}
-
-/// Draws the list of the vehicles that come with the program, after those of the user.
-fn choice_list_ui(
-    ui: &mut Ui,
-    title: &str,
-    name: &Response,
-    hint: &str,
-    choice: &mut VehicleChoice,
-    open: &str,
-    own: &[VehicleChoice],
-    label: &str,
-) {
-    let list = ComboBox::from_id_salt(title).selected_text(label).truncate().height(LIST_HEIGHT);
-    let options_ui = |ui: &mut Ui| {
-        ui.selectable_value(choice, VehicleChoice::Automatic, open);
-        for vehicle in own {
-            ui.selectable_value(choice, vehicle.clone(), chosen_label(vehicle, open));
-        }
-        let presets = Preset::ALL.iter().map(|preset| preset.id());
-        for id in presets.chain(LibraryVehicle::ALL.iter().map(|vehicle| vehicle.id())) {
-            ui.selectable_value(choice, VehicleChoice::Preset(id.to_owned()), id);
-        }
-    };
-    within_view(ui, |ui| list.width(ui.available_width().min(LIST_WIDTH)).show_ui(ui, options_ui))
-        .response
-        .labelled_by(name.id)
-        .on_hover_text(hint);
 }
 
 /// Draws a row of a two-column grid: a label and a drop-down list of a few values.
@@ -291,30 +267,17 @@ fn integrator_label(integrator: Integrator) -> &'static str {
     }
 }
 
-/// Draws the parameters of a vehicle with the names and SI units of its file, marks the estimates,
-/// and lists the rule by which each estimate was made.
-fn parameters_ui(ui: &mut Ui, vehicle: &VehicleParameters) {
+/// Draws the parameters of a vehicle, marks the estimates, and tells in the hint of each where it comes from.
+fn parameters_ui(ui: &mut Ui, role: Role, vehicle: &VehicleParameters, units: UnitSystem) {
+    ui.weak(title(role));
     ui.strong(&vehicle.name);
     ui.weak(&vehicle.source);
-    let Ok(tables) = toml::Table::try_from(vehicle) else { return };
-    Grid::new("parameters").striped(true).num_columns(2).show(ui, |ui| {
-        for (table, values) in &tables {
-            let is_value = table != "estimates" && table != "stated";
-            let Some(values) = values.as_table().filter(|_| is_value) else { continue };
-            for (key, value) in values {
-                let name = format!("{table}.{key}");
-                let mark = match vehicle.stated.get(&name) {
-                    _ if vehicle.estimates.contains_key(&name) => " (estimate)".to_owned(),
-                    Some(note) => format!(" ({note})"),
-                    None => String::new(),
-                };
-                value_row(ui, key, &format!("{value}{mark}"));
-            }
-        }
-    });
-    egui::CollapsingHeader::new("Rules of the estimates").show(ui, |ui| {
-        for (key, rule) in &vehicle.estimates {
-            ui.add(egui::Label::new(format!("{key}: {rule}")).wrap());
+    Grid::new(("parameters", title(role))).striped(true).num_columns(2).show(ui, |ui| {
+        for parameter in vehicle_parameters(vehicle, units) {
+            let mark = if parameter.is_estimate { " (estimate)" } else { "" };
+            ui.label(parameter.label).on_hover_text(parameter.source);
+            value_ui(ui, &format!("{}{mark}", parameter.value));
+            ui.end_row();
         }
     });
 }

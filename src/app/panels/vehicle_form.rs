@@ -32,7 +32,7 @@ pub fn vehicle_form_ui(
         ui.horizontal_wrapped(|ui| {
             ui.weak(
                 "Tick what you know. The rest is estimated by rule, and its scatter is in the bands. \
-                 Mass, yaw inertia and outline of a scenario or a case come before those here.",
+                 A scenario takes over mass, yaw inertia and outline, but for what it says otherwise.",
             );
             let hint = "As a vehicle file, for other cases and the command line";
             if ui.button("Save vehicle…").on_hover_text(hint).clicked() {

@@ -18,9 +18,11 @@ use crate::app::report::ReportSession;
 use crate::app::response::{DensityChoice, ResponseSession};
 use crate::app::scene::SceneSession;
 use crate::app::source::Source;
+use crate::app::state::Subject;
 use crate::app::tasks::Tasks;
 use crate::app::unfinished::UnfinishedTrainings;
 use crate::app::variants::OtherVariants;
+use crate::app::vehicles::ChosenVehicles;
 use crate::app::widgets::BetweenCursors;
 use impactlab_core::data::Severity;
 use impactlab_core::uncertainty::Caveats;
@@ -57,6 +59,8 @@ pub struct Session {
     pub unfinished: UnfinishedTrainings,
     /// What the work of the forms will cost.
     pub costs: Costs,
+    /// The vehicles that are chosen.
+    pub chosen_vehicles: ChosenVehicles,
     /// The cases that the case table lists, in their order.
     pub cases: CaseList,
     /// The ground of the scene.
@@ -79,7 +83,9 @@ pub struct Session {
     pub history_ends: bool,
     /// Whether the three ways to begin are shown in the place of the panes.
     pub shows_doors: bool,
-    /// The path that the user opened last. Its first case or file is selected once it is loaded.
+    /// What was opened while the variant asks about something else.
+    pub offered: Option<Subject>,
+    /// The path that the user opened last. Its first case or file is offered to the variant once it is loaded.
     pub select_when_loaded: Option<PathBuf>,
     /// The path in the text field of the data pane, as the user has typed it so far.
     pub typed_path: String,

@@ -10,6 +10,7 @@ mod figure_frame;
 mod number;
 mod quantity;
 mod time_figure;
+mod vehicle_picker;
 mod written;
 
 pub use assumptions::{assumptions_ui, evidence_assumptions_ui};
@@ -24,4 +25,5 @@ pub use quantity::{
     quantity_slider, quantity_value, value_row, value_ui, within_view,
 };
 pub use time_figure::{BetweenCursors, time_figure};
+pub use vehicle_picker::{VehiclePicker, vehicle_label, vehicle_name};
 pub use written::{config_field, written_field};

@@ -33,19 +33,36 @@ impl FlatRow {
     }
 }
 
-/// Every value in a JSON value that is not null, in its order.
+/// Every value in a JSON value that is not null, in its order, with all digits of its numbers.
 pub(super) fn flatten(value: &Value, wording: &Wording, paths: &ShownPaths) -> Vec<FlatRow> {
+    rows(value, Writing { wording, paths, rounds: false })
+}
+
+/// The same of values that were computed: with the digits that are shown of a result.
+pub(super) fn flatten_rounded(value: &Value, wording: &Wording) -> Vec<FlatRow> {
+    rows(value, Writing { wording, paths: &ShownPaths::default(), rounds: true })
+}
+
+fn rows(value: &Value, writing: Writing<'_>) -> Vec<FlatRow> {
     let mut rows = Vec::new();
-    walk(value, &mut Vec::new(), "", wording, paths, &mut rows);
+    walk(value, &mut Vec::new(), "", writing, &mut rows);
     rows
+}
+
+/// How values are written.
+#[derive(Clone, Copy)]
+struct Writing<'a> {
+    wording: &'a Wording,
+    paths: &'a ShownPaths,
+    /// Whether numbers have the digits that are shown of a result.
+    rounds: bool,
 }
 
 fn walk(
     value: &Value,
     path: &mut Vec<String>,
     key: &str,
-    wording: &Wording,
-    paths: &ShownPaths,
+    writing: Writing<'_>,
     rows: &mut Vec<FlatRow>,
 ) {
     let is_plain = |value: &Value| !value.is_object() && !value.is_array();
@@ -56,7 +73,7 @@ fn walk(
                 path.push(key.to_owned());
             }
             for (name, field) in fields {
-                walk(field, path, name, wording, paths, rows);
+                walk(field, path, name, writing, rows);
             }
             if !key.is_empty() {
                 path.pop();
@@ -64,10 +81,9 @@ fn walk(
         }
         Value::Array(items) if items.iter().all(is_plain) => {
             let listed = items.iter().take(MAX_LISTED);
-            let mut texts: Vec<String> =
-                listed.map(|item| plain(key, item, wording, paths)).collect();
+            let mut texts: Vec<String> = listed.map(|item| plain(key, item, writing)).collect();
             if items.len() > MAX_LISTED {
-                texts.push(format!("… ({} {})", items.len(), wording.words.values));
+                texts.push(format!("… ({} {})", items.len(), writing.wording.words.values));
             }
             if !texts.is_empty() {
                 rows.push(FlatRow {
@@ -79,18 +95,19 @@ fn walk(
         }
         Value::Array(items) => {
             for (idx, item) in items.iter().enumerate() {
-                walk(item, path, &format!("{key} {}", idx + 1), wording, paths, rows);
+                walk(item, path, &format!("{key} {}", idx + 1), writing, rows);
             }
         }
         plain_value => {
-            let value = plain(key, plain_value, wording, paths);
+            let value = plain(key, plain_value, writing);
             rows.push(FlatRow { path: path.clone(), key: key.to_owned(), value });
         }
     }
 }
 
 /// A number with the unit that its name says, a word, or a path.
-fn plain(key: &str, value: &Value, wording: &Wording, paths: &ShownPaths) -> String {
+fn plain(key: &str, value: &Value, writing: Writing<'_>) -> String {
+    let Writing { wording, paths, rounds } = writing;
     match value {
         Value::Bool(true) => wording.words.yes.to_owned(),
         Value::Bool(false) => wording.words.no.to_owned(),
@@ -101,8 +118,10 @@ fn plain(key: &str, value: &Value, wording: &Wording, paths: &ShownPaths) -> Str
         Value::Number(number) if number.is_f64() => {
             let number = number.as_f64().unwrap_or(f64::NAN);
             match quantity_of_key(key) {
+                Some(Ok(quantity)) if rounds => wording.rounded(quantity, number),
                 Some(Ok(quantity)) => wording.given(quantity, number),
                 Some(Err(symbol)) => wording.with_unit(&trimmed(significant(number)), symbol),
+                None if rounds => wording.local(&trimmed(significant(number))),
                 None => wording.given_number(number),
             }
         }

@@ -42,6 +42,7 @@ mod build;
 
 mod write;
 
+pub use answer::{VehicleParameter, vehicle_parameters};
 pub use build::report_case;
 pub use document::{
     Block, Column, InputClass, Picture, PictureContent, ReportDocument, Section, SectionKind, Table,

@@ -4,7 +4,7 @@ use std::ops::Deref;
 
 use crate::report::language::{Words, phrase_of, words_of};
 use crate::report::{Language, ReportSettings};
-use impactlab_core::units::NumberFormat;
+use impactlab_core::units::{NumberFormat, UnitSystem};
 
 /// Writes numbers and texts in the language and the units of a report. Numbers are written by the
 /// format of the whole program.
@@ -29,6 +29,11 @@ impl Wording {
     pub fn new(settings: &ReportSettings) -> Self {
         let (language, units) = (settings.language, settings.units);
         Self { format: NumberFormat { units, language }, words: words_of(language) }
+    }
+
+    /// Texts and numbers of the window.
+    pub fn english(units: UnitSystem) -> Self {
+        Self { format: NumberFormat::english(units), words: words_of(Language::En) }
     }
 
     /// A text that the program has in English only: marked as such in a report in another language.

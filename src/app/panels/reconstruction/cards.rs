@@ -6,8 +6,9 @@ use crate::app::looks::{self, Icon, icon_button};
 use crate::app::panels::reconstruction::fields::{
     FieldRows, ShownFields, is_narrow, sentence_case,
 };
-use crate::app::panels::vehicle::{chosen_label, evidence_vehicle_ui};
+use crate::app::panels::vehicle::evidence_vehicle_ui;
 use crate::app::reconstruction::{MarkKey, ReconstructionCommand};
+use crate::app::widgets::vehicle_label;
 use impactlab_core::units::UnitSystem;
 use impactlab_reconstruct::evidence::{
     Damage, Evidence, Group, Item, Items, STRIKING_CAR, STRUCK_CAR, Section,
@@ -118,11 +119,11 @@ impl Cards<'_, '_> {
             if let Some(sheet) = chosen {
                 let header = match &*sheet {
                     VehicleChoice::Automatic => "Data sheet, dimensions".to_owned(),
-                    chosen => format!("Else as {}", chosen_label(chosen, "")),
+                    chosen => format!("Else as {}", vehicle_label(chosen, "")),
                 };
                 CollapsingHeader::new(header).id_salt(("dimensions", section.key)).show(ui, |ui| {
                     grid("dimensions").num_columns(2).show(ui, |ui| {
-                        evidence_vehicle_ui(ui, &title, sheet, sheets.own);
+                        evidence_vehicle_ui(ui, &title, sheet, sheets.own, *units);
                         let mut rows = FieldRows::new(ui, *units, (section.key, idx));
                         rows.shown = ShownFields::Plain;
                         item.fields(&mut rows);

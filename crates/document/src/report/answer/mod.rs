@@ -28,6 +28,8 @@ mod tire_marks;
 
 pub(super) mod stills;
 
+pub use crate::report::answer::vehicle_inputs::{VehicleParameter, vehicle_parameters};
+
 use crate::report::answer::stills::Grounds;
 use crate::report::numbers::Wording;
 use crate::report::parts::Part;

@@ -1,13 +1,37 @@
 //! The parameters of a vehicle, as rows of the table of inputs.
 
 use crate::report::InputClass;
-use crate::report::flatten::{FlatRow, flatten};
+use crate::report::flatten::{FlatRow, flatten_rounded};
 use crate::report::numbers::Wording;
 use crate::report::parts::InputRow;
-use crate::report::paths::ShownPaths;
-use impactlab_core::units::{Quantity, Unit};
+use impactlab_core::units::{Quantity, Unit, UnitSystem};
 use impactlab_core::vehicle::VehicleParameters;
 use impactlab_core::vehicle::sheet::Estimate;
+
+/// A parameter of a vehicle in words.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct VehicleParameter {
+    /// What it is called.
+    pub label: String,
+    /// Its value with its unit.
+    pub value: String,
+    /// Whether it is estimated.
+    pub is_estimate: bool,
+    /// Where it comes from: a source, or a rule.
+    pub source: String,
+}
+
+/// The parameters of a vehicle with their sources, as the table of inputs of a report has them.
+pub fn vehicle_parameters(vehicle: &VehicleParameters, units: UnitSystem) -> Vec<VehicleParameter> {
+    let rows = vehicle_rows(vehicle, "", &Wording::english(units)).into_iter();
+    let parameter = |row: InputRow| VehicleParameter {
+        is_estimate: row.class == InputClass::Estimated,
+        label: row.label,
+        value: row.value,
+        source: row.source,
+    };
+    rows.map(parameter).collect()
+}
 
 /// Every parameter with its source. What follows from a data sheet is told by the estimates of that,
 /// with their intervals; what a vehicle file estimates, by its rule; what was said elsewhere, by that.
@@ -19,7 +43,7 @@ pub(super) fn vehicle_rows(
     wording: &Wording,
 ) -> Vec<InputRow> {
     let fields = serde_json::to_value(vehicle).unwrap_or_default();
-    let rows = flatten(&fields, wording, &ShownPaths::default());
+    let rows = flatten_rounded(&fields, wording);
     let is_text = |row: &&FlatRow| {
         row.path.first().is_none_or(|name| name != "estimates" && name != "stated")
             && row.key != "source"
