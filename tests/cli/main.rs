@@ -30,6 +30,7 @@ mod reconstruct;
 mod reconstruct_absurd;
 mod reconstruct_inline;
 mod reconstruct_killed;
+mod replays;
 mod report;
 mod response;
 mod restrictions;

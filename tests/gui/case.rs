@@ -1,7 +1,9 @@
 //! A case in the window: variants, saving, opening, and what is asked before it is left.
 
+mod chain;
 mod example;
 mod killed;
+mod names;
 
 use std::fs;
 use std::ops::ControlFlow;
@@ -9,7 +11,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use egui::Key;
-use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{
@@ -17,8 +18,6 @@ use impactlab::app::{
 };
 use impactlab_core::collision::{ChannelClass, Scenario};
 use impactlab_core::data::{Existing, Severity};
-use impactlab_core::uncertainty::{CaveatKind, Caveats};
-use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_core::vehicle::{Braking, Ending};
 use impactlab_study::case_file::{CaseFile, Variant, unpack};
 use impactlab_study::{CheckRequest, ForceSource, Library, ModelChoice, Report, Request};
@@ -49,10 +48,6 @@ fn is_answered(state: &State) -> bool {
         && !state.session.response.forecast.is_waiting()
         && state.session.force.forecast.ok().is_some()
         && !state.session.force.forecast.is_waiting()
-}
-
-fn forecast_caveats<'a>(harness: &'a Harness<'_, App>) -> &'a Caveats {
-    &state(harness).session.response.forecast.ok().expect("a forecast").answer.report.caveats
 }
 
 fn save_as(harness: &mut Harness<'_, App>, path: &Path) {
@@ -439,76 +434,6 @@ fn without_a_file_dialog_a_path_is_asked_for_in_the_window() {
     step_until(&mut harness, "the case", |state| state.case.path.is_some());
     assert_eq!(state(&harness).case.path.as_ref(), Some(&written));
     assert!(CaseFile::load(&written).is_ok());
-}
-
-#[test]
-fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
-    let mut harness = pit();
-    let chain = state(&harness).chain();
-    let titles: Vec<&str> = chain.iter().map(|link| link.title).collect();
-    assert_eq!(titles, ["Scenario", "Impact", "Force", "Motion", "Outcome"]);
-    assert!(chain.iter().all(|link| link.figure.is_some() && !link.is_late), "{chain:?}");
-    let report = &state(&harness).session.response.forecast.ok().unwrap().answer.report;
-    assert!(report.known_until_s() > report.outcome.time_s, "every contact is followed");
-    let figure = chain[4].figure.clone().unwrap();
-    let format = NumberFormat::english(UnitSystem::Si);
-    let x = format.estimate_in_words(Quantity::Length, &report.outcome.x_m);
-    assert!(figure.starts_with(&format!("X {x}, Y ")), "{figure} {x}");
-    // Two figures of one quantity do not differ: that of the scenario panel is the chain's.
-    let delta_v_m_s =
-        state(&harness).session.impact.ok().unwrap().report.struck.delta_v_magnitude_m_s;
-    let delta_v = Quantity::Speed.shown(delta_v_m_s, UnitSystem::Si);
-    assert_eq!(chain[1].figure, Some(format!("Δv {delta_v}")));
-    assert!(!chain[1].warnings.iter().any(|warning| warning.contains("second contact")));
-
-    // The force network's impulse takes the place of the pulse once it drives the forecast.
-    let project = &mut harness.state_mut().state_mut().project;
-    project.predict_motion.force = ForceSource::Predicted(ModelChoice::default());
-    harness.run_steps(2);
-    step_until(&mut harness, "the forecast", is_answered);
-    let force = &state(&harness).chain()[2];
-    assert!(force.source.starts_with("force network"), "{force:?}");
-    assert!(force.figure.as_ref().unwrap().contains(" to "), "{force:?}");
-    // It has learned from such collisions, and from none with a vehicle of nine tonnes.
-    assert!(!forecast_caveats(&harness).has(CaveatKind::OutsideDomain));
-    scenario(&mut harness).striking.mass_kg = 9000.0;
-    harness.run_steps(2);
-    step_until(&mut harness, "the forecast", is_answered);
-    let caveats = forecast_caveats(&harness);
-    assert!(caveats.has(CaveatKind::OutsideDomain), "{caveats:?}");
-
-    // No figure of another subject stands while the new one is computed.
-    apply(&mut harness, Command::Select(Subject::File("nowhere.csv".into())));
-    let chain = state(&harness).chain();
-    assert!(chain[1..].iter().all(|link| link.figure.is_none()), "{chain:?}");
-    // A click leads to the panel.
-    let motion = harness.query_all_by_label_contains("Motion:").next().expect("the link");
-    motion.click();
-    harness.run_steps(3);
-    harness.get_by_label("components");
-}
-
-/// The popup closed on a click into its own field, and a space that was typed then let time run.
-#[test]
-fn a_variant_is_renamed_with_mouse_and_keyboard() {
-    let mut harness = pit();
-    harness.get_by_label("Name…").click();
-    harness.run_steps(4);
-    harness.get_by_role_and_label(Role::TextInput, "Name of the variant").click();
-    harness.run_steps(4);
-    harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
-    for (key, text) in [(None, "wet"), (Some(Key::Space), " "), (None, "road")] {
-        if let Some(key) = key {
-            harness.key_press(key);
-        }
-        harness.event(egui::Event::Text(text.to_owned()));
-        harness.run_steps(2);
-    }
-    assert!(!state(&harness).session.playback.is_playing);
-    harness.key_press(Key::Enter);
-    harness.run_steps(4);
-    assert_eq!(state(&harness).case.file.shown, "wet road");
-    assert!(harness.query_by_label("Name of the variant").is_none(), "it is done");
 }
 
 #[test]

