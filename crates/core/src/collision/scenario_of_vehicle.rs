@@ -38,8 +38,6 @@ pub struct SharedNumber {
     pub key: &'static str,
     /// Its quantity.
     pub quantity: Quantity,
-    /// Its SI unit.
-    pub unit: &'static str,
     /// Value of the scenario, SI.
     pub in_scenario: f64,
     /// Value of the vehicle, SI. The yaw inertia is that of the vehicle with the mass of the scenario, so
@@ -61,27 +59,22 @@ impl ScenarioVehicle {
         of_vehicle.take(vehicle);
         let loaded = vehicle.clone().with_mass(self.mass_kg, None);
         of_vehicle.yaw_inertia_kg_m2 = loaded.mass.yaw_inertia_kg_m2;
-        let number = |name, key, quantity, unit, value: fn(&Self) -> f64| SharedNumber {
+        let number = |name, key, quantity, value: fn(&Self) -> f64| SharedNumber {
             name,
             key,
             quantity,
-            unit,
             in_scenario: value(self),
             in_vehicle: value(&of_vehicle),
         };
         let length = Quantity::Length;
         [
-            number("mass", "mass.mass_kg", Quantity::Mass, "kg", |of| of.mass_kg),
-            number(
-                "yaw inertia",
-                "mass.yaw_inertia_kg_m2",
-                Quantity::MomentOfInertia,
-                "kg m²",
-                |of| of.yaw_inertia_kg_m2,
-            ),
-            number("length", "geometry.outer_length_m", length, "m", |of| of.length_m),
-            number("width", "geometry.outer_width_m", length, "m", |of| of.width_m),
-            number("CG behind the front", "geometry.cg_to_front_end_m", length, "m", |of| {
+            number("mass", "mass.mass_kg", Quantity::Mass, |of| of.mass_kg),
+            number("yaw inertia", "mass.yaw_inertia_kg_m2", Quantity::MomentOfInertia, |of| {
+                of.yaw_inertia_kg_m2
+            }),
+            number("length", "geometry.outer_length_m", length, |of| of.length_m),
+            number("width", "geometry.outer_width_m", length, |of| of.width_m),
+            number("CG behind the front", "geometry.cg_to_front_end_m", length, |of| {
                 of.cg_from_front_m
             }),
         ]
@@ -117,6 +110,8 @@ impl ScenarioVehicle {
             let loaded = now.clone().with_mass(own.mass_kg, None);
             self.yaw_inertia_kg_m2 = loaded.mass.yaw_inertia_kg_m2;
         }
+        // The CG of one and the length of the other.
+        self.cg_from_front_m = self.cg_from_front_m.min(self.length_m);
     }
 }
 
@@ -193,6 +188,11 @@ mod tests {
         car.follow(&before, &now);
         assert_eq!([car.mass_kg, car.length_m, car.width_m], [1500.0, 4.4, 1.9]);
         assert_eq!(names(&car, &now), ["length"]);
+        let mut short = Scenario::example().struck;
+        short.length_m = 1.8;
+        short.cg_from_front_m = before.geometry.cg_to_front_end_m;
+        short.follow(&before, &now);
+        assert_eq!([short.length_m, short.cg_from_front_m], [1.8, 1.8], "within its outline");
         // A mass of the scenario stays, and the inertia goes with it.
         car.mass_kg = 1700.0;
         car.yaw_inertia_kg_m2 = before.clone().with_mass(1700.0, None).mass.yaw_inertia_kg_m2;

@@ -40,7 +40,7 @@ pub(crate) fn road(question: &SimulateRequest, vehicle: &VehicleParameters) -> O
     let [median, low, high] =
         [friction, friction - NORMAL_QUANTILE_95 * sigma, friction + NORMAL_QUANTILE_95 * sigma]
             .map(three_digits);
-    let value = format!("{}, {median}, 90 %: {low} to {high}", SheetQuantity::Friction.label());
+    let value = format!("{} {median}, 90 %: {low} to {high}", SheetQuantity::Friction.label());
     let whose = match question.friction {
         Some(_) => "how well it is known was not said",
         None => "that of the vehicle's file, as the road was not said; another one: --friction",

@@ -78,7 +78,8 @@ pub(crate) fn taken_over(
 
 fn instead(number: &SharedNumber, value: f64, before: f64) -> String {
     let [value, before] = [value, before].map(three_digits);
-    format!("{} {value} {} instead of {before}", number.name, number.unit)
+    let unit = number.quantity.si_unit().symbol;
+    format!("{} {value} {unit} instead of {before}", number.name)
 }
 
 fn listed(said: impl Iterator<Item = String>) -> String {

@@ -7,7 +7,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{InputKind, StudyError};
-use impactlab_core::vehicle::{DataSheet, Preset, VehicleParameters, built_in_vehicle};
+use impactlab_core::vehicle::{
+    BuiltInVehicle, DataSheet, Preset, VehicleParameters, built_in_vehicle,
+};
 
 /// The struck vehicle where neither the question nor the data set says which it is: the car that
 /// the shipped response network has learned.
@@ -34,7 +36,7 @@ pub enum VehicleChoice {
 impl VehicleChoice {
     /// What a person typed: the id of a vehicle that comes with the program, else a file.
     pub fn named(name: &str) -> Self {
-        match built_in_vehicle(name) {
+        match BuiltInVehicle::from_id(name) {
             Some(_) => Self::Preset(name.to_owned()),
             None => Self::File(PathBuf::from(name)),
         }
