@@ -11,6 +11,7 @@ use crate::{
 use impactlab_core::collision::{
     FrictionModel, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle,
 };
+use impactlab_core::site::Site;
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::percent;
 use impactlab_core::vehicle::{ClosedLoop, Integrator, Preset, VehicleParameters};
@@ -26,6 +27,18 @@ pub(crate) fn zones_by_network(struck: &StruckVehicle) -> Option<Caveat> {
             format!("friction zones: {}", names.join(", ")),
             "the response network has learned motions on one ground: the forecast has the friction of \
              the vehicle's tires everywhere",
+        )
+    })
+}
+
+/// Lanes and kerbs, where the draws of a forecast are not whole motions.
+pub(crate) fn lanes_by_network(site: &Site) -> Option<Caveat> {
+    let has_places = !site.lanes.is_empty() || !site.kerbs.is_empty();
+    has_places.then(|| {
+        Caveat::not_used(
+            "lanes and kerbs of the site",
+            "how likely a vehicle comes to them is counted in whole motions: those of both vehicles through \
+             all contacts, of a scenario",
         )
     })
 }

@@ -13,7 +13,7 @@ use crate::analysis::{
 use crate::ask::checks::{check, check_count};
 use crate::caveats::assumed::{self, contact_default};
 use crate::caveats::restrictions;
-use crate::caveats::unused::{by_forecast, contact_by_force_network};
+use crate::caveats::unused::{by_forecast, contact_by_force_network, lanes_by_network};
 use crate::questions::predict::both_vehicles::{Both, with_contact_law};
 use crate::questions::simulate::dataset::take_case;
 use crate::{
@@ -315,7 +315,7 @@ impl Question for PredictMotionRequest {
             implied_contact: self.implied_contact(&forecast)?,
             flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
             rival: Rival::from_simulation(&forecast, &analysis, self.rival_force()),
-            places: self.places(&forecast, &analysis)?,
+            places: self.places(&forecast, &analysis, &mut caveats)?,
             ..self.report(&analysis, struck, &forecast)
         };
         caveats.extend(restrictions::predicted_motion_caveats(&report, &predicted));
@@ -332,11 +332,14 @@ impl PredictMotionRequest {
         &self,
         forecast: &MotionForecast,
         analysis: &Analysis,
+        caveats: &mut Caveats,
     ) -> Result<Vec<PlaceChance>, StudyError> {
-        let (Some(path), Some(striking)) = (&self.motion.site, &analysis.striking) else {
+        let Some(path) = &self.motion.site else { return Ok(Vec::new()) };
+        let site = InputKind::Site.explain(path, Site::load(path))?;
+        let (Some(_), Some(striking)) = (&forecast.both, &analysis.striking) else {
+            caveats.extend(lanes_by_network(&site));
             return Ok(Vec::new());
         };
-        let site = InputKind::Site.explain(path, Site::load(path))?;
         Ok(place_chances(&site, forecast, [analysis.footprint, striking.footprint]))
     }
 
