@@ -1,12 +1,22 @@
 //! The vehicles that are chosen, and what the scenario takes over from them.
 
+use std::borrow::Cow;
+
 use crate::app::project::Project;
 use crate::app::state::State;
 use impactlab_core::collision::Role;
 use impactlab_core::data::Severity;
 use impactlab_core::error_chain;
-use impactlab_core::vehicle::VehicleParameters;
+use impactlab_core::vehicle::{DataSheet, VehicleParameters};
 use impactlab_study::{VehicleChoice, take_vehicle};
+
+/// What stands above or in front of what is of a vehicle.
+pub const fn vehicle_title(role: Role) -> &'static str {
+    match role {
+        Role::Struck => "Struck vehicle",
+        Role::Striking => "Striking vehicle",
+    }
+}
 
 /// The vehicles that are chosen, read once.
 #[derive(Debug, Clone, Default)]
@@ -23,11 +33,11 @@ impl ChosenVehicles {
     /// Reads those that have changed.
     pub(super) fn update(&mut self, project: &Project) {
         for role in Role::ALL {
-            let choice = project.chosen_vehicle(role);
             let (read, vehicle) = &mut self.of[role as usize];
-            if *read != choice {
+            let choice = project.chosen_vehicle(role);
+            if *read != *choice {
                 *vehicle = choice.chosen().ok().flatten();
-                *read = choice;
+                *read = choice.into_owned();
             }
         }
     }
@@ -43,15 +53,23 @@ impl Project {
     }
 
     /// The vehicle that is chosen, or that the scenario names.
-    pub fn chosen_vehicle(&self, role: Role) -> VehicleChoice {
+    pub fn chosen_vehicle(&self, role: Role) -> Cow<'_, VehicleChoice> {
         let choice = match role {
             Role::Struck => &self.simulate.vehicle,
             Role::Striking => &self.simulate.striking,
         };
         let named = self.scenario().and_then(|scenario| scenario.vehicle_name(role));
         match (choice, named) {
-            (VehicleChoice::Automatic, Some(name)) => VehicleChoice::named(name),
-            _ => choice.clone(),
+            (VehicleChoice::Automatic, Some(name)) => Cow::Owned(VehicleChoice::named(name)),
+            _ => Cow::Borrowed(choice),
+        }
+    }
+
+    /// Takes a data sheet, which begins as the vehicle that was chosen: what the scenario has of that stays.
+    pub fn edit_vehicle(&mut self, role: Role, sheet: DataSheet) {
+        *self.vehicle_mut(role) = VehicleChoice::Sheet(Box::new(sheet));
+        if let Some(scenario) = self.scenario_mut() {
+            scenario.name_vehicle(role, None);
         }
     }
 

@@ -91,10 +91,10 @@ impl OpenCase {
         }
         let start = Project::default();
         let mut blank = shown.clone();
-        // Nobody has chosen a force that is the usual one of what is selected.
-        if blank.predict_motion.force == ForceSource::usual(&blank.simulate.source) {
-            blank.predict_motion.force.clone_from(&start.predict_motion.force);
+        if blank.predict_motion.force != ForceSource::usual(&blank.simulate.source) {
+            return true;
         }
+        blank.predict_motion.force.clone_from(&start.predict_motion.force);
         blank.simulate.source.clone_from(&start.simulate.source);
         if matches!(blank.predict_force.collision, ForceQuestion::Case { .. }) {
             let scenario = blank.impact.scenario.clone();

@@ -10,7 +10,7 @@ use crate::app::panels::scenario_plan::scenario_plan_ui;
 use crate::app::panes::PaneContext;
 use crate::app::project::{Beside, Project};
 use crate::app::state::{Session, Subject};
-use crate::app::vehicles::ChosenVehicles;
+use crate::app::vehicles::{ChosenVehicles, vehicle_title};
 use crate::app::widgets::{
     EmptyField, caveats_ui, facts_ui, optional_quantity, quantity_field, quantity_value,
 };
@@ -96,7 +96,8 @@ fn forms_ui(
 }
 
 fn vehicles_form(ui: &mut Ui, scenario: &mut Scenario, chosen: &ChosenVehicles, units: UnitSystem) {
-    for (title, role) in [("Struck vehicle", Role::Struck), ("Striking vehicle", Role::Striking)] {
+    for role in Role::ALL {
+        let title = vehicle_title(role);
         egui::CollapsingHeader::new(title).default_open(true).show(ui, |ui| {
             let of = chosen.get(role);
             if let Some(of) = of {

@@ -8,6 +8,7 @@ use crate::app::panels::file_start::file_start_ui;
 use crate::app::panels::vehicle_form::vehicle_form_ui;
 use crate::app::panes::PaneContext;
 use crate::app::project::Project;
+use crate::app::vehicles::vehicle_title;
 use crate::app::widgets::{VehiclePicker, facts_ui, quantity_field, value_ui, vehicle_name};
 use impactlab_core::collision::Role;
 use impactlab_core::data::Severity;
@@ -118,19 +119,11 @@ fn sheet_ui(
     let VehicleChoice::Sheet(sheet) = project.vehicle_mut(role) else { return };
     ui.separator();
     let before = sheet.clone();
-    vehicle_form_ui(ui, title(role), sheet, units, commands);
+    vehicle_form_ui(ui, vehicle_title(role), sheet, units, commands);
     if **sheet != *before
         && let Ok(before) = before.checked_vehicle()
     {
         project.follow_vehicle(role, &before);
-    }
-}
-
-/// What stands in front of the choice of a vehicle.
-const fn title(role: Role) -> &'static str {
-    match role {
-        Role::Struck => "Struck vehicle",
-        Role::Striking => "Striking vehicle",
     }
 }
 
@@ -158,7 +151,7 @@ fn vehicle_choice_ui(
     };
     let hint = "The scenario takes over its mass, yaw inertia and outline. A vehicle file of your own: open \
                 it, or drop it here";
-    let title = title(role);
+    let title = vehicle_title(role);
     let name = ui.label(title);
     let picker = VehiclePicker { salt: title, name: &name, hint, open: &open, own: &[], units };
     let mut choice = project.vehicle_mut(role).clone();
@@ -173,7 +166,7 @@ fn vehicle_choice_ui(
     let hint = "A copy with fields for every value: known, or estimated by rule with scatter";
     if ui.small_button("Edit a copy").on_hover_text(hint).clicked() {
         match edited_copy(&project.chosen_vehicle(role), &default.parameters()) {
-            Ok(sheet) => *project.vehicle_mut(role) = VehicleChoice::Sheet(Box::new(sheet)),
+            Ok(sheet) => project.edit_vehicle(role, sheet),
             Err(why) => commands.push(Command::Say(Severity::Error, why)),
         }
     }
@@ -269,10 +262,10 @@ fn integrator_label(integrator: Integrator) -> &'static str {
 
 /// Draws the parameters of a vehicle, marks the estimates, and tells in the hint of each where it comes from.
 fn parameters_ui(ui: &mut Ui, role: Role, vehicle: &VehicleParameters, units: UnitSystem) {
-    ui.weak(title(role));
+    ui.weak(vehicle_title(role));
     ui.strong(&vehicle.name);
     ui.weak(&vehicle.source);
-    Grid::new(("parameters", title(role))).striped(true).num_columns(2).show(ui, |ui| {
+    Grid::new(("parameters", vehicle_title(role))).striped(true).num_columns(2).show(ui, |ui| {
         for parameter in vehicle_parameters(vehicle, units) {
             let mark = if parameter.is_estimate { " (estimate)" } else { "" };
             ui.label(parameter.label).on_hover_text(parameter.source);
