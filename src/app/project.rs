@@ -66,7 +66,7 @@ pub struct Beside {
     pub pulse: PulseSetup,
     /// What happens to the wheels after the impact, while something is selected that says it itself.
     pub ending: Option<Ending>,
-    /// The road, while something is selected that says it itself.
+    /// The road of the scenario, while that is not selected.
     #[serde(skip_serializing_if = "Road::is_open")]
     pub road: Road,
 }
@@ -129,6 +129,8 @@ impl Project {
         if !matches!(simulate.source, MotionSource::Case { .. }) {
             predict_motion.force = ForceSource::Given;
         }
+        let road =
+            Road { friction: simulate.friction.take(), sigma: simulate.friction_sigma.take() };
         match std::mem::take(&mut simulate.source) {
             MotionSource::Drive(mut drive) if drive != Drive::default() => {
                 let own = [&mut drive.force, &mut drive.steer, &mut drive.wheels];
@@ -137,15 +139,12 @@ impl Project {
                 }
                 beside.start = drive;
             }
-            MotionSource::Scenario { pulse, .. } => beside.pulse = pulse,
+            MotionSource::Scenario { pulse, .. } => {
+                (beside.pulse, beside.road) = (pulse, road);
+            }
             MotionSource::Case { .. }
             | MotionSource::Drive(_)
             | MotionSource::Trajectory { .. } => {}
-        }
-        let road =
-            Road { friction: simulate.friction.take(), sigma: simulate.friction_sigma.take() };
-        if !road.is_open() {
-            beside.road = road;
         }
         let ending = simulate.ending.take();
         if takes_ending {
@@ -160,15 +159,15 @@ impl Project {
         let Self { simulate, beside, .. } = self;
         match source {
             MotionSource::Drive(_) => beside.start = Drive::default(),
-            MotionSource::Scenario { .. } => beside.pulse = PulseSetup::default(),
+            MotionSource::Scenario { .. } => {
+                beside.pulse = PulseSetup::default();
+                // What else is selected is not on the road of the scenario.
+                let Road { friction, sigma } = std::mem::take(&mut beside.road);
+                (simulate.friction, simulate.friction_sigma) = (friction, sigma);
+            }
             MotionSource::Case { .. } | MotionSource::Trajectory { .. } => {}
         }
         simulate.ending = if takes_ending { beside.ending.take() } else { None };
-        // A case of a data set says itself on which road it was recorded.
-        if !matches!(source, MotionSource::Case { .. }) {
-            let Road { friction, sigma } = std::mem::take(&mut beside.road);
-            (simulate.friction, simulate.friction_sigma) = (friction, sigma);
-        }
         simulate.source = source;
         self.take_usual_force();
     }

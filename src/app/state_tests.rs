@@ -32,6 +32,29 @@ fn project_and_view_survive_a_restart() {
     assert_eq!(sources, [PathBuf::from("a.csv")]);
 }
 
+/// A friction that is said of the scenario went on to a recorded log that was selected after it.
+#[test]
+fn the_road_of_the_scenario_is_not_that_of_a_recording() {
+    let mut state = State::default();
+    state.select(Subject::Scenario);
+    let [friction, sigma] = state.project.road_mut();
+    (*friction, *sigma) = (Some(0.3), Some(0.02));
+    let of = |state: &State| {
+        let simulate = &state.project.simulate;
+        [simulate.friction, simulate.friction_sigma]
+    };
+    for subject in [
+        Subject::File(PathBuf::from("log.csv")),
+        Subject::Case { dataset: PathBuf::from("d"), case: "c001".to_owned() },
+    ] {
+        state.select(subject);
+        assert_eq!(of(&state), [None; 2]);
+        assert_eq!(state.project.road_mut().map(|number| *number), [Some(0.3), Some(0.02)]);
+        state.select(Subject::Scenario);
+        assert_eq!(of(&state), [Some(0.3), Some(0.02)]);
+    }
+}
+
 /// Trainings and comparisons had settings of their own, which no question has.
 #[test]
 fn a_state_with_the_settings_of_earlier_trainings_is_read() {
