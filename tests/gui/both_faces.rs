@@ -10,7 +10,10 @@ use impactlab::app::{
     App, Command, ComparisonCommand, Latest, Network, Pane, QuestionJob, ReconstructionCommand,
     State, Subject, TrainingCommand, TrainingMode,
 };
-use impactlab_study::{ConfigChoice, ForceSource, ModelChoice, Question, Request, SimulateAnswer};
+use impactlab_core::collision::Role;
+use impactlab_study::{
+    ConfigChoice, ForceSource, ModelChoice, Question, Request, SimulateAnswer, VehicleChoice,
+};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -201,6 +204,29 @@ fn a_scenario_is_solved_simulated_and_predicted_alike() {
     let (request, answer) = latest(&state(&harness).session.force.forecast);
     CommandLine::new(&["predict", "force", "--dataset", FORCES, "--case", "c002"])
         .compare(request, &answer.report);
+}
+
+/// Both have the scenario of the chosen car in the question, whole.
+#[test]
+fn a_car_and_a_road_that_are_chosen_are_asked_about_alike() {
+    let mut harness = open_on(SCENARIO);
+    for (role, id) in
+        [(Role::Struck, "toyota-corolla-2020"), (Role::Striking, "ford-explorer-2004")]
+    {
+        let choice = VehicleChoice::Preset(id.to_owned());
+        apply(&mut harness, Command::ChooseVehicle(role, Box::new(choice)));
+    }
+    let [friction, sigma] = harness.state_mut().state_mut().project.road_mut();
+    (*friction, *sigma) = (Some(0.55), Some(0.05));
+    step_until(&mut harness, "the simulation", |state| {
+        let asked = state.session.analysis.question.as_ref();
+        is_idle(state) && asked.is_some_and(|of| Some(of) == state.simulate_request().as_ref())
+    });
+    let (request, answer) = latest(&state(&harness).session.analysis);
+    let cars = ["--vehicle", "toyota-corolla-2020", "--bullet", "ford-explorer-2004"];
+    let road = ["--friction", "0.55", "--friction-sigma", "0.05"];
+    let asks = [&["simulate", "--scenario", SCENARIO][..], &cars, &road].concat();
+    CommandLine::new(&asks).compare(request, &answer.report);
 }
 
 #[test]
