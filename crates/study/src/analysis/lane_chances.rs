@@ -15,13 +15,17 @@ const STRIDE: usize = 2;
 pub struct PlaceChance {
     /// What the site calls it; its number where it has no name.
     pub name: String,
+    /// Whether a part of the struck vehicle is over it at first contact.
+    pub struck_starts: bool,
     /// Probability that a part of the struck vehicle comes over it; 1 where it is over it at first contact.
     pub struck_enters: f64,
     /// Probability that a part of the struck vehicle is over it at the end.
     pub struck_ends: f64,
-    /// The first of the striking vehicle.
+    /// Whether a part of the striking vehicle is over it at first contact.
+    pub striking_starts: bool,
+    /// Probability that a part of the striking vehicle comes over it, likewise.
     pub striking_enters: f64,
-    /// The second of the striking vehicle.
+    /// Probability that a part of the striking vehicle is over it at the end.
     pub striking_ends: f64,
 }
 
@@ -48,11 +52,18 @@ pub fn place_chances(
             })
         };
         let ends = |i| share(i, &|path| path.last().is_some_and(|pose| over(i, pose)));
+        // All draws begin at the same place.
+        let starts = |i: usize| {
+            let first = paths[i].first().and_then(|path| path.first());
+            first.is_some_and(|pose| over(i, pose))
+        };
         let name = if name.is_empty() { fallback } else { name.to_owned() };
         PlaceChance {
             name,
+            struck_starts: starts(0),
             struck_enters: enters(0),
             struck_ends: ends(0),
+            striking_starts: starts(1),
             striking_enters: enters(1),
             striking_ends: ends(1),
         }

@@ -7,15 +7,19 @@ use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
 
 impl ImpulseRival {
+    /// Whether the two say the same.
+    pub fn verdict(&self) -> Term {
+        match (self.is_in_network_intervals, self.is_in_momentum_intervals) {
+            (true, true) => Term::ImpulsesAgree,
+            (true, false) => Term::AgreeInNetwork,
+            (false, true) => Term::AgreeInMomentum,
+            (false, false) => Term::MethodsDisagree,
+        }
+    }
+
     /// Whether the force network says the same, with both values and their intervals.
     pub fn table(&self) -> FactTable {
-        let (agree, is_whole) = match (self.is_in_network_intervals, self.is_in_momentum_intervals)
-        {
-            (true, true) => (Term::ImpulsesAgree, true),
-            (true, false) => (Term::AgreeInNetwork, false),
-            (false, true) => (Term::AgreeInMomentum, false),
-            (false, false) => (Term::MethodsDisagree, false),
-        };
+        let agree = self.verdict();
         let radians = 1.0_f64.to_radians();
         let pdof = |term, deg: &impactlab_core::units::Estimate| {
             Fact::estimate(term, Quantity::Angle, &deg.scaled(radians))
@@ -34,7 +38,7 @@ impl ImpulseRival {
         if self.applicability < 1.0 {
             facts.push(Fact::new(Term::NetworkShare, Value::Share(self.applicability)));
         }
-        if !is_whole {
+        if agree != Term::ImpulsesAgree {
             facts.push(Fact::new(Term::WhyApart, Value::Term(Term::NetworkLearned)));
         }
         FactTable::new(Term::Agreement, facts).with_levels(PREDICTED)

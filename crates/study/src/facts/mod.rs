@@ -8,6 +8,7 @@
 mod table;
 mod term;
 
+mod answer;
 mod both_vehicles;
 mod check;
 mod compare;

@@ -11,10 +11,14 @@ use crate::measured::Measured;
 impl PredictForceReport {
     /// What the answer says: the force with its intervals, and the courses that the contact may take.
     pub fn facts(&self) -> Vec<FactTable> {
-        // The cases that were counted lie within what the network has learned from.
-        let held = held_intervals(Measured::ForceNetwork, &self.model)
-            .filter(|_| self.applicability >= 1.0);
-        [Some(self.force_table()), self.course_table(), held].into_iter().flatten().collect()
+        let tables = [Some(self.force_table()), self.course_table(), self.held_table()];
+        tables.into_iter().flatten().collect()
+    }
+
+    /// How often such intervals held; none outside of what the network has learned from, where the cases
+    /// that were counted lie.
+    pub fn held_table(&self) -> Option<FactTable> {
+        held_intervals(Measured::ForceNetwork, &self.model).filter(|_| self.applicability >= 1.0)
     }
 
     /// The force with its intervals.

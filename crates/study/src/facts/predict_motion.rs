@@ -4,7 +4,7 @@ use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
 
 use crate::analysis::{
-    ContactsOutcome, MonteCarloError, MotionOutcome, PlaceChance, RestOutcome, RivalForce,
+    ContactsOutcome, MonteCarloError, MotionOutcome, PlaceChance, RestOutcome, Rival, RivalForce,
 };
 use crate::facts::both_vehicles::course_table;
 use crate::facts::held::held_intervals;
@@ -17,15 +17,20 @@ use crate::{FlagReport, PredictMotionReport, StrikingReport};
 impl PredictMotionReport {
     /// What the answer says: how the motion ends, and what that depends on.
     pub fn facts(&self) -> Vec<FactTable> {
-        let held = match self.contacts {
-            Some(_) => held_intervals(Measured::Pairs, &self.response_model),
-            None => held_intervals(Measured::ResponseNetwork, &self.response_model)
-                .filter(|_| self.is_end_known() && self.applicability >= 1.0),
-        };
-        let first = [self.course_table(), Some(self.motion_table())];
+        let first = [self.course_table(), Some(self.answer_table()), Some(self.motion_table())];
+        let held = self.held_table();
         let last = [self.places_table(), self.rival_table(), self.sensitivity_table(), held];
         let tables = first.into_iter().flatten().chain(self.both_vehicles_tables());
         tables.chain(last.into_iter().flatten()).collect()
+    }
+
+    /// How often such intervals held; none where that was not measured on such forecasts.
+    pub fn held_table(&self) -> Option<FactTable> {
+        match self.contacts {
+            Some(_) => held_intervals(Measured::Pairs, &self.response_model),
+            None => held_intervals(Measured::ResponseNetwork, &self.response_model)
+                .filter(|_| self.is_end_known() && self.applicability >= 1.0),
+        }
     }
 
     /// What becomes of the struck vehicle; none where it was followed by itself.
@@ -103,16 +108,8 @@ impl PredictMotionReport {
             RivalForce::Same => (Term::RivalSameForce, Term::NetworkCorrects),
             RivalForce::Momentum => (Term::RivalMomentum, Term::OtherForce),
         };
-        // After a second contact no place has a probability.
         let is_known = self.is_end_known();
-        let is_in_region = is_known && rival.is_in_region();
-        let (agree, is_whole) = match (is_in_region, rival.is_within_known_error()) {
-            (true, true) => (Term::MethodsAgree, true),
-            (true, false) => (Term::AgreeInRegion, false),
-            (false, true) if is_known => (Term::AgreeWithinError, false),
-            (false, true) => (Term::AgreeWithinErrorAlone, false),
-            (false, false) => (Term::MethodsDisagree, false),
-        };
+        let agree = self.ends_verdict(rival);
         let mut facts = vec![
             Fact::new(Term::MethodsVerdict, Value::Term(agree)),
             Fact::new(Term::OtherMethod, Value::Term(method)),
@@ -126,10 +123,23 @@ impl PredictMotionReport {
         if is_known {
             facts.push(Fact::new(Term::RivalRegion, Value::Share(rival.region_level)));
         }
-        if !is_whole {
+        if agree != Term::MethodsAgree {
             facts.push(Fact::new(Term::WhyApart, Value::Term(why)));
         }
         Some(FactTable::new(Term::Agreement, facts))
+    }
+
+    /// Whether both methods end alike. After a second contact no place has a probability.
+    pub(super) fn ends_verdict(&self, rival: &Rival) -> Term {
+        let is_known = self.is_end_known();
+        let is_in_region = is_known && rival.is_in_region();
+        match (is_in_region, rival.is_within_known_error()) {
+            (true, true) => Term::MethodsAgree,
+            (true, false) => Term::AgreeInRegion,
+            (false, true) if is_known => Term::AgreeWithinError,
+            (false, true) => Term::AgreeWithinErrorAlone,
+            (false, false) => Term::MethodsDisagree,
+        }
     }
 
     /// Which estimates of the vehicle the end depends on; none if no share is clear.
@@ -139,7 +149,7 @@ impl PredictMotionReport {
 
     /// A probability over the forces and vehicles that were drawn. Draws under one force and of one
     /// vehicle are not independent and count once.
-    fn chance(&self, chance: f64) -> Value {
+    pub(super) fn chance(&self, chance: f64) -> Value {
         let n = match (self.n_forces.max(self.n_vehicles), &self.rest) {
             (1, None) => return Value::Chance(chance, None),
             (1, Some(rest)) => rest.n_draws,
@@ -170,9 +180,14 @@ impl PredictMotionReport {
                 facts.push(Fact::number(end, Quantity::Time, outcome.time_s));
             }
         }
+        // A motion to rest has said its end with the rest.
+        if self.rest.is_none() {
+            facts.extend([
+                Fact::estimate(Term::EndX, Quantity::Length, &outcome.x_m),
+                Fact::estimate(Term::EndY, Quantity::Length, &outcome.y_m),
+            ]);
+        }
         facts.extend([
-            Fact::estimate(Term::EndX, Quantity::Length, &outcome.x_m),
-            Fact::estimate(Term::EndY, Quantity::Length, &outcome.y_m),
             Fact::estimate(Term::HeadingChange, Quantity::Angle, &outcome.heading_change_rad),
             Fact::number(Term::SpeedAtEnd, Quantity::Speed, outcome.speed_m_s),
             Fact::number(Term::YawRateAtEnd, Quantity::AngularVelocity, outcome.yaw_rate_rad_s),
@@ -184,10 +199,6 @@ impl PredictMotionReport {
         facts.extend(region.map(|area_m2| Fact::new(Term::Region90, Value::Area(area_m2))));
         let error = outcome.monte_carlo.iter().filter(|_| is_known);
         facts.extend(error.flat_map(MonteCarloError::facts));
-        facts.extend([
-            Fact::new(Term::QuarterTurn, self.chance(outcome.p_quarter_turn)),
-            Fact::new(Term::HalfTurn, self.chance(outcome.p_half_turn)),
-        ]);
         let hooking = self.hooking_probability;
         facts.extend(hooking.map(|chance| Fact::new(Term::Hooking, Value::Chance(chance, None))));
         facts.extend(self.implied_contact.iter().flat_map(|implied| implied.facts()));

@@ -33,7 +33,7 @@ impl ReconstructReport {
 
     /// How often such intervals held; none where there are no intervals, and of cars that were followed
     /// through later contacts, on which it was not measured.
-    fn held_table(&self) -> Option<FactTable> {
+    pub fn held_table(&self) -> Option<FactTable> {
         if self.later_contacts.is_some_and(|later| later.are_followed) {
             return None;
         }

@@ -42,6 +42,26 @@ terms! {
     Median: "median", "Median", "As likely exceeded as not";
     StruckVehicle: "struck vehicle", "gestoßenes Fahrzeug";
     StrikingVehicle: "striking vehicle", "stoßendes Fahrzeug";
+    // The answer to a forecast.
+    TheAnswer: "The answer", "Die Antwort";
+    WhereAtRest: "where it comes to rest", "wo es zum Stillstand kommt", "Of the CG, from the place of the first contact";
+    WhereAtEnd: "where it is when the forecast ends", "wo es am Ende der Vorhersage ist", "Of the CG, from the place of the first contact";
+    StruckComesOver: "the struck vehicle comes over", "das gestoßene Fahrzeug gerät auf";
+    StrikingComesOver: "the striking vehicle comes over", "das stoßende Fahrzeug gerät auf";
+    StruckEndsOver: "the struck vehicle ends on", "das gestoßene Fahrzeug endet auf";
+    StrikingEndsOver: "the striking vehicle ends on", "das stoßende Fahrzeug endet auf";
+    MovedFirstBy: "the force of the first contact is that of", "die Kraft des ersten Kontakts folgt";
+    ForceNetwork: "the force network", "dem Kraftnetz";
+    MomentumSolution: "the momentum solution", "der Impulslösung";
+    ImpulsesVerdict: "the impulses of force network and momentum solution",
+        "die Impulse von Kraftnetz und Impulslösung";
+    EndsVerdict: "the ends by network and 4DOF model", "die Enden nach Netz und 4DOF-Modell";
+    HingesOn: "the end depends on", "das Ende hängt ab von",
+        "Estimates of vehicle and road with 10 % or more of the variance of place or heading at the end";
+    HingesOnNone: "no single estimate of vehicle or road with 10 % or more; the rest is force, contact and drivers",
+        "keinem einzelnen Schätzwert von Fahrzeug oder Fahrbahn zu 10 % oder mehr; das Übrige sind Kraft, Kontakt und Fahrer";
+    OfPlace: "of the variance of the place", "der Varianz des Orts";
+    OfHeading: "of that of the heading", "der des Winkels";
     // The impact.
     Impact: "Contact and impulse; the impulse acts on the struck vehicle, world axes",
         "Kontakt und Impuls; der Impuls wirkt auf das gestoßene Fahrzeug, Weltachsen";

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::caveats::restrictions;
 use crate::questions::predict::impulse_rival::Beside;
 use crate::{
-    Answer, ImpulseRival, Library, Observer, Provenance, Question, ScenarioChoice, StudyError,
+    Answer, ImpulseRival, Library, ModelChoice, Observer, Provenance, Question, ScenarioChoice,
+    StudyError,
 };
 use impactlab_core::collision::{
     BodyAfter, FrictionModel, ImpactSolution, PrincipalDirectionOfForce, Regime, RestitutionForm,
@@ -161,7 +162,8 @@ impl Question for ImpactRequest {
             true => Outcome::Complete(Beside::default()),
             false => {
                 let asked = (&self.scenario, &scenario);
-                Beside::ask(asked, &solution, SEED, library, observer)?
+                let network = (ModelChoice::default(), SEED);
+                Beside::ask(asked, &solution, network, library, observer)?
             }
         };
         let Outcome::Complete(Beside { rival, caveat, model }) = beside else {

@@ -31,6 +31,7 @@ pub(super) fn part(
     let names = [("name", &*report.scenario), ("vehicle", &*report.vehicle)];
     let mut blocks = vec![Block::paragraph(fill(words.ask_motion, &names))];
     blocks.extend(report.course_table().iter().map(|table| facts_table(table, context)));
+    blocks.push(facts_table(&report.answer_table(), context));
     let is_one = report.n_forces <= 1 && report.n_vehicles == 0;
     let meaning = if is_one { words.meaning_motion_one } else { words.meaning_motion };
     match report.is_end_known() {

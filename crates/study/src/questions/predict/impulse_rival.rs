@@ -67,18 +67,18 @@ pub(crate) struct Beside {
 }
 
 impl Beside {
-    /// Asks the shipped force network about a scenario. That it cannot be asked is no error: the momentum
+    /// Asks a force network about a scenario. That it cannot be asked is no error: the momentum
     /// solution stands without it.
     ///
     /// - `choice`: the scenario as the network is asked about it, `scenario` the same as it was solved;
-    /// - `seed`: of the draws.
+    /// - `model`, `seed`: the network, and the seed of its draws.
     ///
     /// # Errors
     /// [`StudyError`] if the network cannot be read.
     pub fn ask(
         (choice, scenario): (&ScenarioChoice, &Scenario),
         solution: &ImpactSolution,
-        seed: u64,
+        (model, seed): (ModelChoice, u64),
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<Self>, StudyError> {
@@ -89,7 +89,6 @@ impl Beside {
         let Some(pdof) = pdof.filter(|_| solution.regime != Regime::NotApproaching) else {
             return Ok(Outcome::Complete(Self::default()));
         };
-        let model = ModelChoice::default();
         let digest = library.force_model_digest(&model)?;
         let collision = ForceQuestion::Scenario(choice.clone());
         let request = PredictForceRequest { model, seed, ..PredictForceRequest::new(collision) };
@@ -198,7 +197,8 @@ mod tests {
         let solution = scenario.solve().unwrap();
         let library = Library::default();
         let mut go_on = |_: crate::Event<'_>| ControlFlow::Continue(());
-        let beside = Beside::ask((&choice, scenario), &solution, 0, &library, &mut go_on);
+        let asked = (ModelChoice::default(), 0);
+        let beside = Beside::ask((&choice, scenario), &solution, asked, &library, &mut go_on);
         beside.unwrap().complete().unwrap()
     }
 

@@ -15,12 +15,14 @@ use crate::caveats::assumed::{self, contact_default};
 use crate::caveats::restrictions;
 use crate::caveats::unused::{by_forecast, contact_by_force_network, lanes_by_network};
 use crate::questions::predict::both_vehicles::{Both, with_contact_law};
+use crate::questions::predict::impulse_rival::Beside;
 use crate::questions::simulate::dataset::take_case;
 use crate::{
-    Answer, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, InputKind, Library, ModelChoice,
-    MotionSource, Observer, Provenance, Question, SimulateAnswer, SimulateRequest, StudyError,
-    VehicleChoice,
+    Answer, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, ImpulseRival, InputKind, Library,
+    ModelChoice, MotionSource, Observer, Provenance, Question, SimulateAnswer, SimulateRequest,
+    StudyError, VehicleChoice,
 };
+use impactlab_core::data::write::ModelDigest;
 use impactlab_core::data::{ColumnMap, DatasetKind, Outcome};
 use impactlab_core::ranges::{DRAWS, FORECAST_DURATION, REST_LIMIT};
 use impactlab_core::site::Site;
@@ -129,6 +131,9 @@ pub struct PredictMotionReport {
     pub places: Vec<PlaceChance>,
     /// Probability that the striking vehicle's corner stays caught, of a predicted force.
     pub hooking_probability: Option<f64>,
+    /// The impulse of the first contact of a scenario by momentum solution and force network; none where
+    /// the network has nothing of its own to say.
+    pub impulses: Option<ImpulseRival>,
     /// A second contact of the vehicles in the 4DOF simulation of the same collision; the forecast
     /// does not know of it.
     pub flags: Vec<FlagReport>,
@@ -304,7 +309,11 @@ impl Question for PredictMotionRequest {
         if forecast.n_vehicles > 0 {
             caveats.extend(assumed::road(&self.motion, &struck.vehicle));
         }
-        let provenance = self.provenance(library)?;
+        let Outcome::Complete(beside) = self.impulses(library, observer)? else {
+            return Ok(Outcome::Cancelled);
+        };
+        let provenance = self.provenance(beside.model, library)?;
+        caveats.extend(beside.caveat);
         caveats.extend(self.contact_caveats(&forecast)?);
         let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.caveats);
         let predicted = match &forecast.both {
@@ -314,6 +323,7 @@ impl Question for PredictMotionRequest {
         let report = PredictMotionReport {
             implied_contact: self.implied_contact(&forecast)?,
             flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
+            impulses: beside.rival,
             rival: Rival::from_simulation(&forecast, &analysis, self.rival_force()),
             places: self.places(&forecast, &analysis, &mut caveats)?,
             ..self.report(&analysis, struck, &forecast)
@@ -341,6 +351,26 @@ impl PredictMotionRequest {
             return Ok(Vec::new());
         };
         Ok(place_chances(&site, forecast, [analysis.footprint, striking.footprint]))
+    }
+
+    /// The impulse of a scenario by the momentum solution and by the force network that moves the vehicle,
+    /// or the shipped one; nothing for a motion of another source.
+    fn impulses(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<Beside>, StudyError> {
+        let nothing = Ok(Outcome::Complete(Beside::default()));
+        let MotionSource::Scenario { scenario: choice, .. } = &self.motion.source else {
+            return nothing;
+        };
+        let scenario = choice.load()?;
+        let Ok(solution) = scenario.solve() else { return nothing };
+        let model = match &self.force {
+            ForceSource::Predicted(model) => model.clone(),
+            ForceSource::Given | ForceSource::File(_) => ModelChoice::default(),
+        };
+        Beside::ask((choice, &scenario), &solution, (model, self.seed), library, observer)
     }
 
     /// What the predicted force of a scenario implies of the contact.
@@ -425,10 +455,16 @@ impl PredictMotionRequest {
     }
 
     /// The seed and the networks that answer.
-    fn provenance(&self, library: &Library) -> Result<Provenance, StudyError> {
+    ///
+    /// - `beside`: a force network that was asked beside a given force.
+    fn provenance(
+        &self,
+        beside: Option<ModelDigest>,
+        library: &Library,
+    ) -> Result<Provenance, StudyError> {
         let force = match &self.force {
             ForceSource::Predicted(model) => Some(library.force_model_digest(model)?),
-            ForceSource::Given | ForceSource::File(_) => None,
+            ForceSource::Given | ForceSource::File(_) => beside,
         };
         let response = library.response_model_digest(&self.response_model)?;
         Ok(Provenance::from_seed(self.seed).with_models(force.into_iter().chain([response])))
@@ -473,6 +509,7 @@ impl PredictMotionRequest {
             places: Vec::new(),
             flags: Vec::new(),
             rival: None,
+            impulses: None,
             implied_contact: None,
             force_applicability: predicted.map(|force| force.applicability),
             outside_training: predicted.map_or_else(Vec::new, |force| force.outside.clone()),

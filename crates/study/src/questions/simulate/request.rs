@@ -25,8 +25,8 @@ use crate::questions::simulate::motion_source::{
 };
 use crate::questions::simulate::vehicle_uncertainty::{VehicleUncertainty, vehicle_uncertainty};
 use crate::{
-    Answer, InputKind, Library, MomentumReport, MotionSource, Observer, Provenance, Question,
-    SimulateReport, StudyError, VehicleChoice,
+    Answer, InputKind, Library, ModelChoice, MomentumReport, MotionSource, Observer, Provenance,
+    Question, SimulateReport, StudyError, VehicleChoice,
 };
 use impactlab_core::collision::Scenario;
 use impactlab_core::compare::{PairCase, PairRecords};
@@ -295,7 +295,8 @@ impl SimulateRequest {
         let scenario = choice.load()?;
         match scenario.solve() {
             Ok(solution) if !self.alone => {
-                Beside::ask((choice, &scenario), &solution, self.seed, library, observer)
+                let network = (ModelChoice::default(), self.seed);
+                Beside::ask((choice, &scenario), &solution, network, library, observer)
             }
             _ => nothing,
         }

@@ -1,0 +1,197 @@
+//! The answer to a forecast in one table: does it spin, where does it stop, does it come into another
+//! lane, do the methods agree, and what does it hinge on?
+
+use impactlab_core::numerics::share_standard_error;
+use impactlab_core::units::{Estimate, Quantity};
+
+use crate::analysis::{PlaceChance, Sensitivity};
+use crate::facts::table::PREDICTED;
+use crate::facts::{Fact, FactTable, Term, Value};
+use crate::{ImpulseRival, PredictMotionReport};
+
+/// Share of the variance of the end from which on an estimate is named.
+const NAMED_SHARE: f64 = 0.1;
+
+/// Lanes, kerbs and zones that are named of each vehicle.
+const N_PLACES: usize = 3;
+
+impl PredictMotionReport {
+    /// The answer in one table.
+    pub fn answer_table(&self) -> FactTable {
+        let mut facts = vec![
+            Fact::new(Term::QuarterTurn, self.chance(self.outcome.p_quarter_turn)),
+            Fact::new(Term::HalfTurn, self.chance(self.outcome.p_half_turn)),
+        ];
+        facts.extend(self.end_facts());
+        facts.extend(self.place_facts());
+        facts.extend(self.impulses.iter().flat_map(|impulses| self.impulse_facts(impulses)));
+        let verdict = self.rival.as_ref().map(|rival| self.ends_verdict(rival));
+        facts.extend(verdict.map(|term| Fact::new(Term::EndsVerdict, Value::Term(term))));
+        facts.extend(self.hinge_fact());
+        FactTable::new(Term::TheAnswer, facts).with_levels(PREDICTED)
+    }
+
+    /// Where it stops, or where it is and how fast.
+    fn end_facts(&self) -> Vec<Fact> {
+        let outcome = &self.outcome;
+        let place = |x: &Estimate, y: &Estimate| {
+            let of = |axis: &str, estimate: &Estimate| {
+                let estimate = Value::Estimate(Quantity::Length, estimate.clone());
+                Value::Joined(vec![Value::Text(axis.to_owned()), estimate], " ")
+            };
+            Value::Joined(vec![of("X", x), of("Y", y)], ", ")
+        };
+        match &self.rest {
+            Some(rest) => vec![
+                Fact::new(Term::ShareAtRest, Value::ShareOfDraws(rest.share_at_rest, rest.n_draws)),
+                Fact::new(Term::WhereAtRest, place(&rest.x_m, &rest.y_m)),
+            ],
+            None => {
+                let term = match outcome.is_at_rest {
+                    true => Term::WhereAtRest,
+                    false => Term::WhereAtEnd,
+                };
+                let place = place(&outcome.x_m, &outcome.y_m);
+                let after = Value::Given(Quantity::Time, outcome.time_s);
+                let text = vec![place, after];
+                vec![Fact::new(term, Value::Joined(text, "; t = "))]
+            }
+        }
+    }
+
+    /// The likeliest lanes, kerbs and zones that each vehicle comes over and was not on.
+    fn place_facts(&self) -> Vec<Fact> {
+        let n_draws = self.contacts.as_ref().map_or(0, |contacts| contacts.n_draws);
+        let chance =
+            |share: f64| Value::Chance(share, Some(share_standard_error(share, n_draws as f64)));
+        let likeliest = |starts: fn(&PlaceChance) -> bool, enters: fn(&PlaceChance) -> f64| {
+            let entered = |place: &&PlaceChance| !starts(place) && enters(place) > 0.0;
+            let mut places: Vec<&PlaceChance> = self.places.iter().filter(entered).collect();
+            places.sort_by(|a, b| enters(b).total_cmp(&enters(a)));
+            places.truncate(N_PLACES);
+            places
+        };
+        let named = |term: Term, place: &PlaceChance, share: f64| {
+            let name = vec![Value::Term(term), Value::Text(place.name.clone())];
+            Fact::row(Value::Joined(name, " "), vec![chance(share)])
+        };
+        let struck = likeliest(|it| it.struck_starts, |it| it.struck_enters);
+        let struck = struck.into_iter().flat_map(|place| {
+            [
+                named(Term::StruckComesOver, place, place.struck_enters),
+                named(Term::StruckEndsOver, place, place.struck_ends),
+            ]
+        });
+        let striking = likeliest(|it| it.striking_starts, |it| it.striking_enters);
+        let striking = striking.into_iter().flat_map(|place| {
+            [
+                named(Term::StrikingComesOver, place, place.striking_enters),
+                named(Term::StrikingEndsOver, place, place.striking_ends),
+            ]
+        });
+        struck.chain(striking).collect()
+    }
+
+    /// The impulse of the first contact by both methods, the one that moves the vehicle first.
+    fn impulse_facts(&self, impulses: &ImpulseRival) -> Vec<Fact> {
+        let network = (Term::NetworkImpulse, &impulses.network_impulse_n_s);
+        let momentum = (Term::MomentumImpulse, &impulses.momentum_impulse_n_s);
+        let (moved_by, both) = match &self.force_model {
+            Some(_) => (Some(Term::ForceNetwork), [network, momentum]),
+            None if self.force.is_none() => (Some(Term::MomentumSolution), [momentum, network]),
+            None => (None, [momentum, network]),
+        };
+        let estimate = |(term, of): (Term, &Estimate)| Fact::estimate(term, Quantity::Impulse, of);
+        let moved_by = moved_by.map(|term| Fact::new(Term::MovedFirstBy, Value::Term(term)));
+        let verdict = Fact::new(Term::ImpulsesVerdict, Value::Term(impulses.verdict()));
+        moved_by.into_iter().chain(both.map(estimate)).chain([verdict]).collect()
+    }
+
+    /// Estimates of vehicle and road that the end depends on; none where no vehicles were drawn.
+    fn hinge_fact(&self) -> Option<Fact> {
+        let named = |share: &&Sensitivity| {
+            share.is_clear() && share.position_share.max(share.heading_share) >= NAMED_SHARE
+        };
+        let text = |share: &Sensitivity| {
+            let part =
+                |of: f64, term| Value::Joined(vec![Value::Share(of), Value::Term(term)], " ");
+            let parts = vec![
+                Value::Phrase(share.label.to_owned()),
+                part(share.position_share, Term::OfPlace),
+                part(share.heading_share, Term::OfHeading),
+            ];
+            Value::Joined(parts, ", ")
+        };
+        let all: Vec<Value> = self.sensitivity.iter().filter(named).map(text).collect();
+        let value = match all.is_empty() {
+            true => Value::Term(Term::HingesOnNone),
+            false => Value::Joined(all, "; "),
+        };
+        (self.n_vehicles > 0).then(|| Fact::new(Term::HingesOn, value))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use super::*;
+    use crate::analysis::PulseSetup;
+    use crate::facts::FactWriter;
+    use crate::{
+        ForceSource, Library, MotionSource, PredictMotionRequest, Question, ScenarioChoice,
+    };
+    use impactlab_core::collision::Scenario;
+    use impactlab_core::units::UnitSystem;
+
+    fn forecast(force: Option<ForceSource>) -> PredictMotionReport {
+        let scenario = ScenarioChoice::Inline(Box::new(Scenario::example()));
+        let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
+        let force = force.unwrap_or_else(|| ForceSource::usual(&source));
+        let request = PredictMotionRequest { draws: 8, ..PredictMotionRequest::new(source, force) };
+        let mut go_on = |_: crate::Event<'_>| ControlFlow::Continue(());
+        let answer = request.answer(&Library::default(), &mut go_on).unwrap();
+        answer.complete().unwrap().report.report
+    }
+
+    fn names(report: &PredictMotionReport) -> Vec<String> {
+        let text = report.answer_table().to_text(&FactWriter::english(UnitSystem::Si));
+        text.rows.into_iter().map(|row| row.cells[0].clone()).collect()
+    }
+
+    /// What moves the vehicle stands before what does not, and both stand there.
+    #[test]
+    fn the_impulse_that_moves_the_vehicle_stands_first() {
+        let size = |report: &PredictMotionReport| {
+            let names = names(report);
+            let at = |of: &str| names.iter().position(|name| name.ends_with(of)).unwrap();
+            [at("impulse, force network"), at("impulse, momentum solution")]
+        };
+        let [network, momentum] = size(&forecast(None));
+        assert!(network < momentum);
+        let [network, momentum] = size(&forecast(Some(ForceSource::Given)));
+        assert!(momentum < network);
+    }
+
+    /// A lane that every draw comes into is told; one on which the vehicle was is not.
+    #[test]
+    fn a_place_that_the_vehicle_was_on_is_not_told() {
+        let place = |name: &str, struck_starts| PlaceChance {
+            name: name.to_owned(),
+            struck_starts,
+            struck_enters: 1.0,
+            struck_ends: 0.5,
+            striking_starts: true,
+            striking_enters: 1.0,
+            striking_ends: 1.0,
+        };
+        let places = vec![place("own lane", true), place("other lane", false)];
+        let names = names(&PredictMotionReport { places, ..forecast(None) });
+        assert!(
+            names.contains(&"the struck vehicle comes over other lane".to_owned()),
+            "{names:?}"
+        );
+        assert!(!names.iter().any(|name| name.contains("own lane")), "{names:?}");
+        assert!(!names.iter().any(|name| name.contains("striking vehicle")), "{names:?}");
+    }
+}
