@@ -75,9 +75,13 @@ fn switch<T>(ui: &mut Ui, label: &str, part: &mut Option<T>, usual: T) {
     ui.end_row();
 }
 
+/// A driver who brakes hard after the usual time of reaction.
+pub(super) fn hard_braking() -> Braking {
+    Braking::new(REACTION_S, HARD_BRAKING, DEFAULT_BRAKE_RISE_S)
+}
+
 fn brake_fields(ui: &mut Ui, brake: &mut Option<Braking>, units: UnitSystem) {
-    let usual = Braking::new(REACTION_S, HARD_BRAKING, DEFAULT_BRAKE_RISE_S);
-    switch(ui, "The driver brakes", brake, usual);
+    switch(ui, "The driver brakes", brake, hard_braking());
     let Some(brake) = brake else { return };
     quantity_field(ui, "from", &mut brake.start_s, &CONTROL_TIME, units);
     quantity_field(ui, "share of friction", &mut brake.share_of_friction, &BRAKE_SHARE, units);

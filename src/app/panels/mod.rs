@@ -37,6 +37,7 @@ mod training_force;
 mod training_losses;
 mod training_parts;
 mod training_response;
+mod until_rest;
 mod variants;
 mod vehicle;
 mod vehicle_form;

@@ -5,6 +5,7 @@ use egui::{ComboBox, Grid, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::panels::file_start::file_start_ui;
+use crate::app::panels::until_rest::until_rest_ui;
 use crate::app::panels::vehicle_form::vehicle_form_ui;
 use crate::app::panes::PaneContext;
 use crate::app::project::Project;
@@ -13,13 +14,11 @@ use crate::app::widgets::{VehiclePicker, facts_ui, quantity_field, value_ui, veh
 use impactlab_core::collision::Role;
 use impactlab_core::data::Severity;
 use impactlab_core::error_chain;
-use impactlab_core::ranges::{REST_LIMIT, SIMULATED_DURATION};
+use impactlab_core::ranges::SIMULATED_DURATION;
 use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::{DataSheet, Equations, Integrator, VehicleParameters};
 use impactlab_document::report::vehicle_parameters;
-use impactlab_study::{
-    DEFAULT_DURATION_S, DEFAULT_STRIKING, DEFAULT_VEHICLE, MotionSource, VehicleChoice,
-};
+use impactlab_study::{DEFAULT_STRIKING, DEFAULT_VEHICLE, MotionSource, VehicleChoice};
 
 /// Largest width of the list of vehicles where it stands among narrow fields, points.
 const NARROW_LIST_WIDTH: f32 = 150.0;
@@ -82,21 +81,6 @@ fn uncertainty_ui(ui: &mut Ui, pane: &PaneContext<'_>) {
     ui.separator();
     ui.label("4DOF model:");
     facts_ui(ui, &answer.report.name, &uncertainty.facts(), pane.view.units);
-}
-
-/// Draws the choice whether motions are followed to rest. The duration is then the time after which they
-/// are followed no further: where it was the usual one, it becomes the usual one of that.
-pub(super) fn until_rest_ui(ui: &mut Ui, project: &mut Project) {
-    let hint = "Simulation and forecast end where the vehicle has come to rest, at the latest after \
-                the duration";
-    let choice = ui.checkbox(&mut project.simulate.until_rest, "Until rest").on_hover_text(hint);
-    let (before, after) = match project.simulate.until_rest {
-        true => (DEFAULT_DURATION_S, REST_LIMIT.high),
-        false => (REST_LIMIT.high, DEFAULT_DURATION_S),
-    };
-    if choice.changed() && project.simulate.duration_s == before {
-        project.simulate.duration_s = after;
-    }
 }
 
 /// Draws, of a scenario, the choice whether the vehicles are followed through all contacts.

@@ -11,6 +11,7 @@ use crate::analysis::{
 };
 use crate::ask::checks::{check, check_all, check_count, check_given};
 use crate::ask::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
+use crate::caveats::driver::open_driver;
 use crate::caveats::other_vehicle::other_vehicles;
 use crate::caveats::unused::{
     by_recorded_pair, by_simulation, contact_at_medians, integrator_of_pair,
@@ -436,6 +437,10 @@ impl Question for SimulateRequest {
         (report.momentum, report.rival) = (momentum, beside.rival);
         report.uncertainty = self.uncertainty(&settings, &analysis, &analyse, &mut caveats);
         let provenance = self.provenance(&report, beside.model);
+        // That of the simulation beside a forecast is said with the forecast.
+        if !self.alone {
+            caveats.extend(open_driver(self)?);
+        }
         caveats.extend(self.restrictions(&report, &analysis, overlap).chain(beside.caveat));
         let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
