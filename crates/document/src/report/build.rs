@@ -149,6 +149,7 @@ impl Builder<'_> {
             if variants.len() > 1 {
                 blocks.push(Block::heading(2, fill(words.variant, &[("name", &variant.name)])));
             }
+            let first = blocks.len();
             for answer in &variant.answers {
                 match answer {
                     Err(error) => {
@@ -160,6 +161,8 @@ impl Builder<'_> {
                     }
                 }
             }
+            let of_variant = blocks.split_off(first);
+            blocks.extend(without_repeated_tables(of_variant));
         }
         blocks
     }
@@ -393,6 +396,19 @@ pub(super) fn parts_of(variant: &VariantParts) -> impl Iterator<Item = &Part> {
 
 fn methods(variants: &[VariantParts]) -> BTreeSet<Method> {
     variants.iter().flat_map(parts_of).flat_map(|part| &part.methods).copied().collect()
+}
+
+/// Blocks in which each table stands once: what several answers of a variant have in common, such as the
+/// two methods beside each other, is said with the first of them.
+fn without_repeated_tables(blocks: Vec<Block>) -> Vec<Block> {
+    let mut kept: Vec<Block> = Vec::new();
+    for block in blocks {
+        let is_repeated = matches!(block, Block::Table(_)) && kept.contains(&block);
+        if !is_repeated {
+            kept.push(block);
+        }
+    }
+    kept
 }
 
 /// What the parts contribute, each once.

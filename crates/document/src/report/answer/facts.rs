@@ -4,10 +4,9 @@ use std::path::Path;
 
 use crate::report::answer::Context;
 use crate::report::language::phrase_of;
-use crate::report::numbers::{Wording, fill};
+use crate::report::numbers::Wording;
 use crate::report::parts::PartProvenance;
 use crate::report::{Block, Column, Table};
-use impactlab_core::units::IntervalText;
 use impactlab_study::Provenance;
 use impactlab_study::facts::{FactTable, FactWriter, TextTable};
 
@@ -16,27 +15,15 @@ pub(super) fn facts_table(table: &FactTable, context: Context<'_>) -> Block {
     with_writer(context, |writer| Block::Table(table.to_text(writer).into()))
 }
 
-/// A table of facts, and below it what the intervals of 90 % mean, a sentence each.
-///
-/// - `meaning`: what an interval says, as a template with `{quantity}`, `{low}` and `{high}`.
-pub(super) fn facts_with_meanings(
+/// A table of facts, and below it one sentence that says what its intervals mean, or that there are none.
+pub(super) fn facts_with_meaning(
     table: &FactTable,
     meaning: &str,
     context: Context<'_>,
 ) -> [Block; 2] {
-    let sentences: Vec<String> = with_writer(context, |writer| {
-        let intervals = table.intervals(0.9, writer);
-        let sentence = |(quantity, text): &(String, IntervalText)| {
-            let values = [("quantity", &**quantity), ("low", &*text.low), ("high", &*text.high)];
-            fill(meaning, &values)
-        };
-        intervals.iter().map(sentence).collect()
-    });
-    let below = match sentences.is_empty() {
-        true => Block::paragraph(context.wording.words.no_intervals),
-        false => Block::List { items: sentences },
-    };
-    [facts_table(table, context), below]
+    let has_intervals = with_writer(context, |writer| !table.intervals(0.9, writer).is_empty());
+    let sentence = if has_intervals { meaning } else { context.wording.words.no_intervals };
+    [facts_table(table, context), Block::paragraph(sentence)]
 }
 
 /// Calls a function with the writer of facts in the language of a report.

@@ -3,7 +3,7 @@
 use crate::figure::{ForceComponent, ForecastFigure, forecast_figure};
 use crate::report::Block;
 use crate::report::answer::Context;
-use crate::report::answer::facts::{facts_table, facts_with_meanings, provenance_of};
+use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
 use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::{Part, PartPicture};
@@ -16,7 +16,7 @@ pub(super) fn part(answer: &PredictForceAnswer, context: Context<'_>) -> Part {
     let words = wording.words;
     let mut blocks = vec![Block::paragraph(fill(words.ask_force, &[("name", &report.scenario)]))];
     let meaning = words.meaning_force;
-    blocks.extend(facts_with_meanings(&report.force_table(), meaning, context));
+    blocks.extend(facts_with_meaning(&report.force_table(), meaning, context));
     blocks.extend(report.course_table().map(|table| facts_table(&table, context)));
     Part {
         kind: words.title_force.to_owned(),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::figure::{FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure};
 use crate::report::Block;
 use crate::report::answer::Context;
-use crate::report::answer::facts::{facts_table, facts_with_meanings, provenance_of};
+use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
 use crate::report::answer::predict_force::applicability;
 use crate::report::answer::stills::forecast_still;
 use crate::report::answer::vehicle_inputs::vehicle_rows;
@@ -35,7 +35,7 @@ pub(super) fn part(
     let is_one = report.n_forces <= 1 && report.n_vehicles == 0;
     let meaning = if is_one { words.meaning_motion_one } else { words.meaning_motion };
     match report.is_end_known() {
-        true => blocks.extend(facts_with_meanings(&report.motion_table(), meaning, context)),
+        true => blocks.extend(facts_with_meaning(&report.motion_table(), meaning, context)),
         false => {
             blocks.push(facts_table(&report.motion_table(), context));
             blocks.push(Block::paragraph(words.after_second_contact));

@@ -9,7 +9,7 @@ use crate::report::Block;
 use crate::report::answer::Context;
 use crate::report::answer::evidence::evidence_blocks;
 use crate::report::answer::evidence_inputs::evidence_rows;
-use crate::report::answer::facts::{facts_table, facts_with_meanings, provenance_of};
+use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
 use crate::report::answer::stills::reconstruction_still;
 use crate::report::method::Method;
 use crate::report::numbers::fill;
@@ -44,7 +44,7 @@ pub(super) fn part(
     }
     let speeds = report.speed_table();
     match report.has_intervals() {
-        true => blocks.extend(facts_with_meanings(&speeds, words.meaning_posterior, context)),
+        true => blocks.extend(facts_with_meaning(&speeds, words.meaning_posterior, context)),
         false => {
             blocks.push(facts_table(&speeds, context));
             blocks.push(Block::paragraph(fill(words.too_few_particles, &[("ess", &ess)])));

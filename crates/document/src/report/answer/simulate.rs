@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::figure::{analysis_force_figure, analysis_motion_figure, control_figures};
 use crate::report::Block;
 use crate::report::answer::Context;
-use crate::report::answer::facts::{facts_table, facts_with_meanings, provenance_of};
+use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
 use crate::report::answer::stills::simulation_stills;
 use crate::report::answer::tire_marks::computed_marks;
 use crate::report::answer::vehicle_inputs::vehicle_rows;
@@ -26,7 +26,7 @@ pub(super) fn part(
     let words = wording.words;
     let names = [("name", &*report.name), ("vehicle", &*report.vehicle)];
     let mut blocks = vec![Block::paragraph(fill(words.ask_simulate, &names))];
-    blocks.extend(facts_with_meanings(&report.motion_table(), "", context));
+    blocks.extend(facts_with_meaning(&report.motion_table(), "", context));
     let beside = report.rival.as_ref();
     blocks.extend(beside.map(|rival| facts_table(&rival.table(), context)));
     blocks.extend(report.contact_table().iter().map(|table| facts_table(table, context)));
@@ -35,7 +35,7 @@ pub(super) fn part(
     let mut draws = Vec::new();
     if let Some(uncertainty) = &report.uncertainty {
         let drawn = uncertainty.draw_table();
-        blocks.extend(facts_with_meanings(&drawn, words.meaning_draws, context));
+        blocks.extend(facts_with_meaning(&drawn, words.meaning_draws, context));
         let shares = uncertainty.sensitivity_table();
         sensitivity.extend(shares.map(|table| facts_table(&table, context)));
         draws.push((words.vehicles_drawn, uncertainty.n_draws.to_string()));

@@ -76,8 +76,8 @@ pub(super) const WORDS: Words = Words {
     impact_picture: "Der Stoß „{name}“ von oben: Impuls und Geschwindigkeitsänderungen",
     friction_zones: "Bereiche mit eigenem Reibbeiwert",
     zone_value: "Reibbeiwert {friction}; Ecken (X; Y) {corners}",
-    meaning_draws: "{quantity}: neun von zehn gezogenen Fahrzeugen liegen zwischen {low} und {high}; nur was \
-        das Datenblatt offen lässt, wird variiert.",
+    meaning_draws: "In jeder Zeile liegen neun von zehn gezogenen Fahrzeugen im Bereich von 90 %; variiert wird nur, was \
+        das Datenblatt offen lässt.",
     scene_picture: "Simulation von „{name}“ von oben, Fahrzeuge am Ende",
     contact_picture: "Simulation von „{name}“ in Perspektive, Fahrzeuge am Ende des Kontakts",
     ground_not_drawn: "; das Gelände ist nicht gezeichnet: {why}",
@@ -86,19 +86,18 @@ pub(super) const WORDS: Words = Words {
     controls_picture: "{quantity} über der Zeit, „{name}“",
     vehicles_drawn: "gezogene Fahrzeuge:",
     forces_drawn: "Kräfte:",
-    meaning_force: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, nach der \
-        Verteilung des Kraftnetzes. Wie oft solche Intervalle zutrafen, steht in Abschnitt 7 für \
-        die Größen, die geprüft wurden.",
+    meaning_force: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach der Verteilung des \
+        Kraftnetzes. Wie oft solche Bereiche zutrafen, steht in Abschnitt 7, soweit es geprüft wurde.",
     force_network: "Kraftnetz",
     response_network: "Bewegungsnetz",
     applicability: "Das {network} gilt zu {share} von 1; der Rest der Verteilung ist der der Physik allein.",
     force_forecast_picture: "Vorhergesagte Kraft von „{name}“: Betrag über der Zeit mit Bändern",
-    meaning_motion: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, nach der \
-        Verteilung des Bewegungsnetzes über die gezogenen Kräfte und Fahrzeuge. Wie oft solche \
-        Bereiche des Ortes zutrafen, steht in Abschnitt 7.",
-    meaning_motion_one: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, nach der \
-        Verteilung des Bewegungsnetzes für diese eine Kraft und dieses Fahrzeug, deren eigene \
-        Unsicherheit fehlt. Wie oft solche Bereiche des Ortes zutrafen, steht in Abschnitt 7.",
+    meaning_motion: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach der Verteilung des \
+        Bewegungsnetzes über die gezogenen Kräfte und Fahrzeuge. Wie oft solche Bereiche des Ortes zutrafen, \
+        steht in Abschnitt 7.",
+    meaning_motion_one: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach der Verteilung des \
+        Bewegungsnetzes für diese eine Kraft und dieses Fahrzeug, deren eigene Unsicherheit fehlt. Wie oft \
+        solche Bereiche des Ortes zutrafen, steht in Abschnitt 7.",
     learned_duration: "Das Bewegungsnetz hat aus Bewegungen von bis zu {time} gelernt; was danach kommt, ist \
         die Physik mit den gelernten Stärken.",
     forecast_scene_picture: "Vorhersage von „{name}“ von oben: Bahnen, Dichte und Bereiche von 50 und 90 % am Ende",
@@ -107,9 +106,8 @@ pub(super) const WORDS: Words = Words {
     after_second_contact: "Die Fahrzeuge berühren sich vor dem Ende erneut, und dieser Kontakt wird nicht berechnet: \
         wohin sie danach kommen, hat keine Wahrscheinlichkeit, und die Mediane sind die einer Bewegung ohne ihn.",
     forecast_yaw_picture: "Vorhersage von „{name}“: Gierwinkel über der Zeit mit Bändern",
-    meaning_posterior: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, unter \
-        Berücksichtigung der Spuren, wenn die Annahmen in Abschnitt 3 und die Modelle in \
-        Abschnitt 5 zutreffen.",
+    meaning_posterior: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach den vorgefundenen Spuren, \
+        wenn die Annahmen in Abschnitt 3 und die Verfahren in Abschnitt 5 zutreffen.",
     meaning_doubtful: "Auf diese Intervalle ist kein Verlass: siehe die Warnung „{badge}“ in Abschnitt 6.",
     too_few_particles: "Es wird kein Intervall angegeben: Der effektive Stichprobenumfang ist {ess}, oder die \
         Rechnung wurde beendet, bevor alle Spuren zählten; die Grenzen eines Intervalls wären die \

@@ -73,8 +73,8 @@ pub(super) const WORDS: Words = Words {
     impact_picture: "The impact “{name}” from above: impulse and changes of velocity",
     friction_zones: "zones of their own friction",
     zone_value: "friction {friction}; corners (X; Y) {corners}",
-    meaning_draws: "{quantity}: nine of ten drawn vehicles lie between {low} and {high}; only what the data \
-        sheet leaves open is varied.",
+    meaning_draws: "In each row nine of ten drawn vehicles lie in the interval of 90 %; only what the data sheet \
+        leaves open is varied.",
     scene_picture: "Simulation of “{name}” from above, vehicles at the end",
     contact_picture: "Simulation of “{name}” in perspective, vehicles at the end of the contact",
     ground_not_drawn: "; the ground is not drawn: {why}",
@@ -83,20 +83,19 @@ pub(super) const WORDS: Words = Words {
     controls_picture: "{quantity} over time, “{name}”",
     vehicles_drawn: "vehicles drawn:",
     forces_drawn: "forces:",
-    meaning_force: "{quantity}: between {low} and {high} with a probability of 90 %, by the distribution of \
-        the force network. Section 7 says how often such intervals held, for those quantities that \
-        were validated.",
+    meaning_force: "Each value lies in its interval of 90 % with that probability, by the distribution of the force \
+        network. Section 7 says how often such intervals held, for those quantities that were validated.",
     force_network: "force network",
     response_network: "response network",
     applicability: "The {network} applies to {share} of 1; the rest of the distribution is that of the \
         physics alone.",
     force_forecast_picture: "Predicted force of “{name}”: size over time with its bands",
-    meaning_motion: "{quantity}: between {low} and {high} with a probability of 90 %, by the distribution of \
-        the response network over the forces and vehicles that were drawn. Section 7 says how often \
+    meaning_motion: "Each value lies in its interval of 90 % with that probability, by the distribution of the response \
+        network over the forces and vehicles that were drawn. Section 7 says how often such regions of the \
+        position held.",
+    meaning_motion_one: "Each value lies in its interval of 90 % with that probability, by the distribution of the response \
+        network for this one force and vehicle, whose own uncertainty is left out. Section 7 says how often \
         such regions of the position held.",
-    meaning_motion_one: "{quantity}: between {low} and {high} with a probability of 90 %, by the distribution of \
-        the response network for this one force and vehicle, whose own uncertainty is left out. \
-        Section 7 says how often such regions of the position held.",
     learned_duration: "The response network has learned from motions of up to {time}; what comes after that is \
         the physics with the strengths that it knows.",
     forecast_scene_picture: "Forecast of “{name}” from above: paths, and density with the regions of 50 and 90 % at \
@@ -106,8 +105,8 @@ pub(super) const WORDS: Words = Words {
     after_second_contact: "The vehicles meet again before the end, and that contact is not computed: where they go \
         after it has no probability, and the medians are those of a motion without it.",
     forecast_yaw_picture: "Forecast of “{name}”: heading over time with its bands",
-    meaning_posterior: "{quantity}: between {low} and {high} with a probability of 90 %, given the evidence, if \
-        the assumptions of section 3 and the models of section 5 hold.",
+    meaning_posterior: "Each value lies in its interval of 90 % with that probability, given the evidence, if the assumptions \
+        of section 3 and the models of section 5 hold.",
     meaning_doubtful: "These intervals are not to be relied on: see the warning “{badge}” in section 6.",
     too_few_particles: "No interval is given: the particles are worth {ess} independent ones, or the run was \
         stopped before all of the evidence counted, and the ends of an interval would be those of single \
