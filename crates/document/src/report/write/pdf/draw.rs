@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::num::NonZeroU16;
 
+use krilla::SerializeSettings;
 use krilla::color::rgb;
+use krilla::configure::{Accessibility, ConfigurationBuilder};
 use krilla::destination::XyzDestination;
 use krilla::geom::{PathBuilder, Point, Rect, Size, Transform};
 use krilla::image::Image;
@@ -24,7 +26,7 @@ use crate::report::language::words_of;
 use crate::report::numbers::fill;
 use crate::report::write::pdf::PdfError;
 use crate::report::write::pdf::flow::{Flow, MARGIN_PT, Part, Role};
-use crate::report::write::pdf::fonts::Fonts;
+use crate::report::write::pdf::fonts::{Fonts, REPLACEMENT};
 use crate::report::write::pdf::page::{Drawing, Ink, Item, OutlineEntry, Owner, PageItems};
 
 /// Size of header and footer, points.
@@ -43,7 +45,7 @@ pub fn pdf(document: &ReportDocument, drawing: Option<&Drawing<'_>>) -> Result<V
     let pictures = pictures(document, drawing)?;
     let flow = Flow::from_document(document, &fonts)?;
     let [width_pt, height_pt] = flow.size_pt;
-    let mut pdf = krilla::Document::new();
+    let mut pdf = krilla::Document::new_with(settings()?);
     let mut drawn = Drawn { flow: &flow, document, pictures, contents: BTreeMap::new() };
     for (idx, page) in flow.pages.iter().enumerate() {
         let settings = PageSettings::from_wh(width_pt, height_pt)
@@ -59,6 +61,13 @@ pub fn pdf(document: &ReportDocument, drawing: Option<&Drawing<'_>>) -> Result<V
     pdf.set_outline(outline(&flow.outline));
     pdf.set_metadata(metadata(document));
     Ok(pdf.finish()?)
+}
+
+/// A file that says of itself that it can be read by ear (PDF/UA-1), and is checked for it.
+fn settings() -> Result<SerializeSettings, PdfError> {
+    let builder = ConfigurationBuilder::new().with_accessibility_validator(Accessibility::UA1);
+    let configuration = builder.finish()?;
+    Ok(SerializeSettings { configuration, ..SerializeSettings::default() })
 }
 
 /// The pictures by their numbers, drawn side by side.
@@ -175,7 +184,8 @@ impl Drawn<'_> {
         surface.set_fill(Some(Fill { paint: color.into(), ..Fill::default() }));
         let stroke = Stroke { paint: color.into(), width: BOLD * size_pt, ..Stroke::default() };
         surface.set_stroke(is_bold.then_some(stroke));
-        let mut rest = text;
+        let text: String = text.chars().map(readable).collect();
+        let mut rest = text.as_str();
         while let Some(first) = rest.chars().next() {
             let face = self.flow.fonts.letter(first).face;
             let is_other = |c: char| self.flow.fonts.letter(c).face != face;
@@ -306,9 +316,18 @@ fn tag(role: &Role) -> TagKind {
         Role::Table { summary } => Tag::Table.with_summary(Some(summary.clone())).into(),
         Role::Row => Tag::TR.into(),
         Role::HeaderCell => Tag::TH(TableHeaderScope::Column).into(),
+        Role::RowHeaderCell => Tag::TH(TableHeaderScope::Row).into(),
         Role::Cell => Tag::TD.into(),
         Role::Caption => Tag::Caption.into(),
         Role::Figure { alt } => Tag::Figure(Some(alt.clone())).into(),
+    }
+}
+
+/// A letter, or what stands for one that no reader can say.
+fn readable(letter: char) -> char {
+    match letter.is_control() || matches!(letter, '\u{FEFF}' | '\u{FFFE}') {
+        true => REPLACEMENT,
+        false => letter,
     }
 }
 

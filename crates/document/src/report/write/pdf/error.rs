@@ -1,5 +1,6 @@
 //! Why a PDF cannot be written.
 
+use krilla::configure::ConfigurationError;
 use krilla::error::KrillaError;
 
 /// A PDF that cannot be written.
@@ -35,6 +36,13 @@ pub enum PdfError {
         /// Why.
         why: &'static str,
     },
+}
+
+impl From<ConfigurationError> for PdfError {
+    /// Reports are written to one standard, which does not contradict itself.
+    fn from(_: ConfigurationError) -> Self {
+        Self::Assembly { why: "the standard of the file contradicts itself" }
+    }
 }
 
 impl From<KrillaError> for PdfError {

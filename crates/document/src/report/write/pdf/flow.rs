@@ -33,6 +33,7 @@ pub(super) enum Role {
     Table { summary: String },
     Row,
     HeaderCell,
+    RowHeaderCell,
     Cell,
     Caption,
     Figure { alt: String },

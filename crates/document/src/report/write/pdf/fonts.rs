@@ -7,7 +7,7 @@ use skrifa::instance::{LocationRef, Size};
 use crate::report::write::pdf::PdfError;
 
 /// What stands for a letter that no font has.
-const REPLACEMENT: char = '\u{FFFD}';
+pub(super) const REPLACEMENT: char = '\u{FFFD}';
 
 /// A font with what the layout needs of it.
 struct Face {

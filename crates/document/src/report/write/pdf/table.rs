@@ -81,7 +81,10 @@ impl Setting<'_> {
         let cells = self.cells(row, flow.fonts);
         let n = cells.iter().map(Vec::len).max().unwrap_or(0);
         let owner = flow.part(Role::Row, self.owner);
-        let owners: Vec<Owner> = cells.iter().map(|_| flow.part(Role::Cell, owner)).collect();
+        // The first cell says what its row is about.
+        let role =
+            |idx: usize| if idx == 0 && cells.len() > 1 { Role::RowHeaderCell } else { Role::Cell };
+        let owners: Vec<Owner> = (0..cells.len()).map(|idx| flow.part(role(idx), owner)).collect();
         let step_pt = CELL_PT * LEADING;
         let mut done = 0;
         while done < n {
