@@ -328,8 +328,8 @@ fn german_has_its_decimal_sign_date_and_words_and_us_units_their_symbols() {
     for word in ["Stoßziffer", "Gierrate", "Reibbeiwert", "Geschwindigkeitsänderung"] {
         assert_says(&german, word);
     }
-    // What there is in English only is marked.
-    assert_says(&german, "(engl.)");
+    // What there is in English only stands in quotation marks.
+    assert_says(&german, "Texte in Anführungszeichen");
     let bytes = pdf(&german, None).expect("a PDF");
     let read = lopdf::Document::load_mem(&bytes).expect("readable");
     let language = read.catalog().and_then(|catalog| catalog.get(b"Lang")).expect("a language");

@@ -36,11 +36,11 @@ impl Wording {
         Self { format: NumberFormat::english(units), words: words_of(Language::En) }
     }
 
-    /// A text that the program has in English only: marked as such in a report in another language.
+    /// A text that the program has in English only: in quotation marks in a report in another language.
     pub fn quoted(&self, text: &str) -> String {
         match (self.language, text.is_empty()) {
             (Language::En, _) | (_, true) => text.to_owned(),
-            (Language::De, false) => format!("„{text}“ (engl.)"),
+            (Language::De, false) => format!("„{text}“"),
         }
     }
 

@@ -16,10 +16,9 @@ pub(super) const WORDS: Words = Words {
         wurde aus dem Fall und den Dateien berechnet, die er nennt.",
     units_si: "Einheiten: m, km/h, Grad, kN, kJ, kg. Winkel und Gierraten sind nach links positiv.",
     units_us: "Einheiten: ft, mph, Grad, lbf, ft lbf, lb. Winkel und Gierraten sind nach links positiv.",
-    language_note: "Texte in Anführungszeichen mit dem Zusatz „(engl.)“ gibt das Programm nur auf Englisch \
-        aus: Annahmen mit ihren Gründen, Einschränkungen, Schätzregeln, Hinweise und \
-        Fehlermeldungen. Auch die Literaturangaben und die Beschriftungen in den Bildern sind \
-        englisch.",
+    language_note: "Texte in Anführungszeichen gibt das Programm nur auf Englisch aus: Annahmen mit ihren Gründen, \
+        Einschränkungen, Schätzregeln, Hinweise und Fehlermeldungen. Auch die Literaturangaben und die \
+        Beschriftungen in den Bildern sind englisch.",
     notes: "Bemerkungen des Bearbeiters",
     changed_notice: "Seit dem Speichern des Falls hat sich etwas geändert: {what}. Die Antworten gelten für \
         den jetzigen Stand und können von den damaligen abweichen.",
