@@ -246,10 +246,9 @@ pub(super) const WORDS: Words = Words {
         neuronales Netz um diesen Mittelwert sagt die Verteilung des ganzen Verlaufs als \
         Mischung voraus, einmal an Trainingsfällen kalibriert. Außerhalb des Gelernten tritt die \
         Impulslösung mit ihren gemessenen Fehlern an seine Stelle.",
-    limits_force: "Es hat aus simulierten Stößen auf ein Fahrzeugmodell gelernt, mit Annäherung von 0,8 bis \
-        5,0 m/s; das absolute Kraftniveau kann um etwa 40 % falsch sein. Es kennt keine \
-        Fahrzeuge, die vor dem Stoß drehen, keine Fahrzeuggröße, keine Stoßziffer und keine \
-        Reibung zwischen ihnen.",
+    limits_force: "Es hat aus 240 simulierten Stößen gegen die Flanke einer Limousine, zu einem Zehntel eines SUV, gelernt, mit Annäherung von 0,5 bis \
+        12 m/s; das absolute Kraftniveau kann um etwa 40 % falsch sein, und die größten Kräfte schneller Stöße \
+        sind zu klein. Es kennt keine Fahrzeuggröße, keine Stoßziffer und keine Reibung zwischen ihnen.",
     method_response: "Bewegungsnetz",
     method_response_text: "Jeder Schritt der Bewegung ist einer des 4DOF-Modells mit einer begrenzten zusätzlichen \
         Beschleunigung: Effekte bekannter Form mit gelernten Stärken und ein Rest aus einem \

@@ -242,10 +242,9 @@ pub(super) const WORDS: Words = Words {
         are averaged with it. A neural network around this centre predicts the distribution of \
         the whole curve as a mixture, calibrated once on training cases. Outside of what it \
         learned from, the momentum solution with its measured errors takes its place.",
-    limits_force: "It learned from simulated impacts on one model of a struck vehicle, which \
-        close at 0.8 to 5.0 m/s; the absolute force level may be off by some 40 %. It knows no \
-        vehicles that turn before the impact, no size of the vehicles, no restitution and no \
-        friction between them.",
+    limits_force: "It learned from 240 simulated impacts against the flanks of a saloon and, in a tenth of them, an SUV, which close at 0.5 to 12 m/s; \
+        the absolute force level may be off by some 40 %, and peaks of fast collisions are too low. It knows no \
+        size of the vehicles, no restitution and no friction between them.",
     method_response: "Response network",
     method_response_text: "Each step of the motion is one of the 4DOF model with a bounded acceleration added: \
         effects of known form with learned strengths, and a remainder by a neural network. \
