@@ -24,6 +24,7 @@ mod measurements;
 mod model_budgets;
 mod ranges;
 mod report;
+mod report_opinion;
 mod report_stills;
 mod report_tables;
 mod response_model;

@@ -42,7 +42,7 @@ pub fn report(case: &CaseFile, settings: &ReportSettings) -> (ReportDocument, Ca
 }
 
 /// The example of the program, asked once for all tests.
-fn pit() -> &'static (ReportDocument, CaseReport) {
+pub fn pit() -> &'static (ReportDocument, CaseReport) {
     static PIT: OnceLock<(ReportDocument, CaseReport)> = OnceLock::new();
     PIT.get_or_init(|| {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/examples/pit.impactlab");
@@ -429,7 +429,7 @@ fn where_methods_disagree_the_first_page_says_so() {
     };
     let rival = answer.rival.as_ref().expect("the 4DOF model");
     assert!(!rival.is_within_known_error(), "{rival:?}");
-    let blocks = &document.section(SectionKind::Answers).expect("answers").blocks;
+    let blocks = &document.section(SectionKind::Opinion).expect("an opinion").blocks;
     let Some(Block::Notice { text }) = blocks.first() else { panic!("{:?}", blocks.first()) };
     assert!(text.contains("network and physics do not say the same"), "{text}");
     assert_says(&document, "Do the methods agree?");

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::app::project::Project;
-use impactlab_study::case_file::{CaseFile, Variant};
+use impactlab_study::case_file::{CaseFile, Expert, Variant};
 use impactlab_study::{ForceQuestion, ForceSource};
 
 /// Name of a case that has no file yet, and of the first variant of a case.
@@ -102,8 +102,11 @@ impl OpenCase {
         }
         blank.keep_in_step();
         let is_blank = |variant: &Variant| *variant == start.to_variant(FIRST_VARIANT);
-        let CaseFile { name, notes, variants, .. } = &self.file;
-        let is_new = name == UNTITLED && notes.is_empty() && variants.len() == 1;
+        let CaseFile { name, notes, expert, variants, .. } = &self.file;
+        let is_new = name == UNTITLED
+            && notes.is_empty()
+            && *expert == Expert::default()
+            && variants.len() == 1;
         !(is_new && is_blank(&blank.to_variant(&self.file.shown)))
     }
 }
@@ -112,7 +115,7 @@ fn fingerprint_of(file: &CaseFile) -> String {
     // What JSON cannot hold, such as a file name that is not Unicode, is seen all the same.
     let variants = serde_json::to_string(&file.variants);
     let variants = variants.unwrap_or_else(|_| format!("{:?}", file.variants));
-    format!("{}\n{}\n{variants}", file.name, file.notes)
+    format!("{}\n{}\n{:?}\n{variants}", file.name, file.notes, file.expert)
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use crate::report::answer::{Context, part_of};
 use crate::report::document::{Picture, Section, SectionKind};
 use crate::report::method::{Method, method_blocks};
 use crate::report::numbers::{Wording, fill};
+use crate::report::opinion::{Asked, opinion_blocks};
 use crate::report::parts::{InputRow, Part, PartPicture};
 use crate::report::paths::ShownPaths;
 use crate::report::provenance::{change_notice, log_blocks, provenance_blocks};
@@ -81,6 +82,7 @@ impl Builder<'_> {
     fn document(&self, variants: &[VariantParts]) -> ReportDocument {
         let (settings, words) = (self.settings, self.wording.words);
         let blocks = |kind| match kind {
+            SectionKind::Opinion => self.opinion(variants),
             SectionKind::Answers => self.answers(variants),
             SectionKind::Pictures => self.pictures(variants),
             SectionKind::Inputs => self.inputs(variants),
@@ -96,11 +98,12 @@ impl Builder<'_> {
             SectionKind::Provenance => self.provenance(variants),
             SectionKind::Log => log_blocks(self.case, self.wording),
         };
+        // The opinion has no number; the sections of its annex are counted from 1.
         let numbered = SectionKind::ALL.iter().copied().enumerate();
-        let sections = numbered.map(|(idx, kind)| Section {
-            kind,
-            title: format!("{} {}", idx + 1, section_title(kind, self.wording)),
-            blocks: blocks(kind),
+        let sections = numbered.map(|(number, kind)| {
+            let title = section_title(kind, self.wording);
+            let title = if number == 0 { title.to_owned() } else { format!("{number} {title}") };
+            Section { kind, title, blocks: blocks(kind) }
         });
         ReportDocument {
             title: format!("{}: {}", words.report, self.case.name),
@@ -116,7 +119,19 @@ impl Builder<'_> {
         }
     }
 
-    /// What the report is about, what has changed, and every question with its answer.
+    /// What has changed or has no answer, where methods do not agree, and the opinion.
+    fn opinion(&self, variants: &[VariantParts]) -> Vec<Block> {
+        let (case, on_disk) = (self.case, self.on_disk);
+        let (wording, paths) = (self.wording, self.paths);
+        let mut blocks: Vec<Block> = Vec::new();
+        blocks.extend(change_notice(&self.report.changes, wording, paths));
+        blocks.extend(self.unanswered(variants));
+        blocks.extend(self.disagreements(variants));
+        blocks.extend(opinion_blocks(Asked { case, on_disk, variants, wording, paths }));
+        blocks
+    }
+
+    /// What the report is about, and every question with its answer.
     fn answers(&self, variants: &[VariantParts]) -> Vec<Block> {
         let (settings, words) = (self.settings, self.wording.words);
         let date = settings.date.written(settings.language);
@@ -126,9 +141,6 @@ impl Builder<'_> {
             ("version", impactlab_core::program::version()),
         ];
         let mut blocks = Vec::new();
-        blocks.extend(change_notice(&self.report.changes, self.wording, self.paths));
-        blocks.extend(self.unanswered(variants));
-        blocks.extend(self.disagreements(variants));
         blocks.push(Block::paragraph(fill(words.intro, &values)));
         blocks.push(Block::paragraph(match settings.units {
             UnitSystem::Si => words.units_si,
@@ -441,6 +453,7 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
 fn section_title(kind: SectionKind, wording: &Wording) -> &'static str {
     let words = wording.words;
     match kind {
+        SectionKind::Opinion => words.section_opinion,
         SectionKind::Answers => words.section_answers,
         SectionKind::Pictures => words.section_pictures,
         SectionKind::Inputs => words.section_inputs,

@@ -37,6 +37,8 @@ pub struct ReportDocument {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, strum::VariantArray)]
 #[serde(rename_all = "snake_case")]
 pub enum SectionKind {
+    /// The answer in two pages, for those who decide; the other sections are its annex.
+    Opinion,
     /// What was asked, and what came out.
     Answers,
     /// Scenes, and curves.

@@ -2,7 +2,7 @@
 //! Markdown and JSON.
 //!
 //! ```text
-//! case ──> questions, each asked once ──┬──> answers ──> parts: answer, inputs, evidence, pictures ──> document
+//! case ──> questions, each asked once ──┬──> answers ──> parts: opinion, answer, inputs, pictures, … ──> document
 //!                                       └──> changes, digests, log ─────────────────────────────────────^
 //! ```
 //!
@@ -33,6 +33,8 @@ mod validation;
 mod answer;
 
 mod parts;
+
+mod opinion;
 
 mod provenance;
 

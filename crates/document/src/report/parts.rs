@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::figure::Figure;
 use crate::report::method::Method;
+use crate::report::opinion::PartOpinion;
 use crate::report::{Block, InputClass, PictureContent};
 use crate::scene::SceneStill;
 use impactlab_core::uncertainty::Caveats;
@@ -60,6 +61,8 @@ pub(super) struct Part {
     pub kind: String,
     /// Heading: kind of question and name of the collision.
     pub title: String,
+    /// What it says on the first pages; none for an answer that no opinion is given on.
+    pub opinion: Option<PartOpinion>,
     /// The question and its answer.
     pub answer: Vec<Block>,
     /// Scenes and curves.

@@ -61,7 +61,11 @@ pub(super) fn provenance_blocks(
 }
 
 /// The file of the case itself, by its content.
-fn own_file(on_disk: Option<&CaseOnDisk>, wording: &Wording, paths: &ShownPaths) -> String {
+pub(super) fn own_file(
+    on_disk: Option<&CaseOnDisk>,
+    wording: &Wording,
+    paths: &ShownPaths,
+) -> String {
     let words = wording.words;
     let Some(CaseOnDisk { file, is_as_saved }) = on_disk else {
         return words.case_in_no_file.to_owned();
@@ -131,14 +135,13 @@ fn models(report: &CaseReport, wording: &Wording, paths: &ShownPaths) -> Block {
     Block::Table(Table::new(words.models_caption, columns, rows))
 }
 
-/// What was done and when, and the place for the signature.
+/// What was done and when.
 pub(super) fn log_blocks(case: &CaseFile, wording: &Wording) -> Vec<Block> {
     let words = wording.words;
-    let signature = Block::paragraph(words.signature);
     if case.log.is_empty() {
-        return vec![Block::paragraph(words.no_log), signature];
+        return vec![Block::paragraph(words.no_log)];
     }
     let rows = case.log.iter().map(|entry| [entry.time.clone(), wording.quoted(&entry.event)]);
     let table = Table::new(words.log_caption, [words.time, words.event], rows.collect());
-    vec![Block::Table(table), signature]
+    vec![Block::Table(table)]
 }

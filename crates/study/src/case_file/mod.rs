@@ -63,6 +63,9 @@ pub struct CaseFile {
     /// What the analyst wrote about it.
     #[serde(default)]
     pub notes: String,
+    /// Who gives the opinion, and who asked for it.
+    #[serde(default, skip_serializing_if = "Expert::is_empty")]
+    pub expert: Expert,
     /// Name of the variant that the window shows.
     pub shown: String,
     /// The variants, each with a name of its own.
@@ -81,6 +84,28 @@ pub struct CaseFile {
     #[serde(default, skip_serializing)]
     #[schemars(with = "Option<String>")]
     seal: IgnoredAny,
+}
+
+/// Who gives the opinion, and who asked for it; what was not said is none.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Expert {
+    /// Name of the expert.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Training and appointment.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub qualifications: Option<String>,
+    /// Who instructed the expert, when, and to find out what.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instruction: Option<String>,
+}
+
+impl Expert {
+    /// Whether nothing was said.
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// One way in which it may have happened.
@@ -133,6 +158,7 @@ impl CaseFile {
             program: impactlab_core::program::version().to_owned(),
             name: name.into(),
             notes: String::new(),
+            expert: Expert::default(),
             shown: variant.name.clone(),
             variants: vec![variant],
             files: Vec::new(),

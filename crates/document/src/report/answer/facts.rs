@@ -11,7 +11,7 @@ use impactlab_study::Provenance;
 use impactlab_study::facts::{FactTable, FactWriter, TextTable};
 
 /// A table of facts.
-pub(super) fn facts_table(table: &FactTable, context: Context<'_>) -> Block {
+pub(in crate::report) fn facts_table(table: &FactTable, context: Context<'_>) -> Block {
     with_writer(context, |writer| Block::Table(table.to_text(writer).into()))
 }
 
@@ -27,7 +27,10 @@ pub(super) fn facts_with_meaning(
 }
 
 /// Calls a function with the writer of facts in the language of a report.
-fn with_writer<T>(context: Context<'_>, write: impl FnOnce(&FactWriter<'_>) -> T) -> T {
+pub(in crate::report) fn with_writer<T>(
+    context: Context<'_>,
+    write: impl FnOnce(&FactWriter<'_>) -> T,
+) -> T {
     let Context { wording, paths, .. } = context;
     write(&FactWriter {
         format: **wording,

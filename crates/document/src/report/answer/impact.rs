@@ -6,6 +6,7 @@ use crate::report::answer::Context;
 use crate::report::answer::facts::{facts_table, provenance_of};
 use crate::report::method::Method;
 use crate::report::numbers::fill;
+use crate::report::opinion::opinion_of_impact;
 use crate::report::parts::{Part, PartPicture};
 use impactlab_study::ImpactAnswer;
 
@@ -13,7 +14,8 @@ use impactlab_study::ImpactAnswer;
 pub(super) fn part(answer: &ImpactAnswer, context: Context<'_>) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
-    let mut blocks = vec![Block::paragraph(fill(words.ask_impact, &[("name", &report.name)]))];
+    let question = fill(words.ask_impact, &[("name", &report.name)]);
+    let mut blocks = vec![Block::paragraph(question.clone())];
     blocks.extend(report.solution_tables().iter().map(|table| facts_table(table, context)));
     blocks.push(Block::paragraph(words.no_intervals));
     blocks.extend(report.rival.iter().map(|rival| facts_table(&rival.table(), context)));
@@ -25,6 +27,7 @@ pub(super) fn part(answer: &ImpactAnswer, context: Context<'_>) -> Part {
     Part {
         kind: words.title_impact.to_owned(),
         title: format!("{}: {}", words.title_impact, report.name),
+        opinion: Some(opinion_of_impact(report, &question, context)),
         answer: blocks,
         pictures: picture.into_iter().collect(),
         caveats: report.caveats.clone(),

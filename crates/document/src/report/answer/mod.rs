@@ -28,6 +28,8 @@ mod tire_marks;
 
 pub(super) mod stills;
 
+pub(super) use crate::report::answer::facts::{facts_table, with_writer};
+
 pub use crate::report::answer::vehicle_inputs::{VehicleParameter, vehicle_parameters};
 
 use crate::report::answer::stills::Grounds;

@@ -6,6 +6,7 @@ use crate::report::answer::Context;
 use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
 use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
+use crate::report::opinion::opinion_of_force;
 use crate::report::parts::{Part, PartPicture};
 use impactlab_networks::force::metrics::BAND_LEVELS;
 use impactlab_study::PredictForceAnswer;
@@ -14,13 +15,15 @@ use impactlab_study::PredictForceAnswer;
 pub(super) fn part(answer: &PredictForceAnswer, context: Context<'_>) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
-    let mut blocks = vec![Block::paragraph(fill(words.ask_force, &[("name", &report.scenario)]))];
+    let question = fill(words.ask_force, &[("name", &report.scenario)]);
+    let mut blocks = vec![Block::paragraph(question.clone())];
     let meaning = words.meaning_force;
     blocks.extend(facts_with_meaning(&report.force_table(), meaning, context));
     blocks.extend(report.course_table().map(|table| facts_table(&table, context)));
     Part {
         kind: words.title_force.to_owned(),
         title: format!("{}: {}", words.title_force, report.scenario),
+        opinion: Some(opinion_of_force(report, &question, context)),
         answer: blocks,
         pictures: vec![picture(answer, wording)],
         domain: vec![applicability(words.force_network, report.applicability, wording)],

@@ -11,6 +11,7 @@ use crate::report::answer::stills::forecast_still;
 use crate::report::answer::vehicle_inputs::vehicle_rows;
 use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
+use crate::report::opinion::opinion_of_forecast;
 use crate::report::parts::{Part, PartPicture};
 use impactlab_core::data::Channel;
 use impactlab_core::units::Quantity;
@@ -29,7 +30,8 @@ pub(super) fn part(
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
     let names = [("name", &*report.scenario), ("vehicle", &*report.vehicle)];
-    let mut blocks = vec![Block::paragraph(fill(words.ask_motion, &names))];
+    let question = fill(words.ask_motion, &names);
+    let mut blocks = vec![Block::paragraph(question.clone())];
     blocks.extend(report.course_table().iter().map(|table| facts_table(table, context)));
     blocks.push(facts_table(&report.answer_table(), context));
     let is_one = report.n_forces <= 1 && report.n_vehicles == 0;
@@ -55,6 +57,7 @@ pub(super) fn part(
     Part {
         kind: words.title_motion.to_owned(),
         title: format!("{}: {}", words.title_motion, report.scenario),
+        opinion: Some(opinion_of_forecast(report, &question, context)),
         answer: blocks,
         pictures: pictures(request, answer, context),
         inputs: vehicle_rows(&answer.analysis.vehicle, words.struck_vehicle, wording),

@@ -13,6 +13,7 @@ use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_o
 use crate::report::answer::stills::reconstruction_still;
 use crate::report::method::Method;
 use crate::report::numbers::fill;
+use crate::report::opinion::opinion_of_reconstruction;
 use crate::report::parts::{Part, PartPicture};
 use impactlab_core::uncertainty::CaveatKind;
 use impactlab_reconstruct::ReconstructedQuantity;
@@ -34,7 +35,8 @@ pub(super) fn part(
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
     let ess = wording.fixed(report.ess, 0);
-    let mut blocks = vec![Block::paragraph(fill(words.ask_reconstruct, &[("name", &report.case)]))];
+    let question = fill(words.ask_reconstruct, &[("name", &report.case)]);
+    let mut blocks = vec![Block::paragraph(question.clone())];
     if report.modes.len() > 1 {
         blocks.push(Block::paragraph(words.several_courses));
         blocks.push(facts_table(&report.course_table(), context));
@@ -67,6 +69,7 @@ pub(super) fn part(
     Part {
         kind: words.title_reconstruct.to_owned(),
         title: format!("{}: {}", words.title_reconstruct, report.case),
+        opinion: Some(opinion_of_reconstruction(report, &question, context)),
         answer: blocks,
         pictures: pictures(request.site.as_deref(), answer, context),
         inputs: evidence_rows(request, answer, wording),

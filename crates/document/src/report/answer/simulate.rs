@@ -12,6 +12,7 @@ use crate::report::answer::vehicle_inputs::vehicle_rows;
 use crate::report::answer::zone_inputs::zone_rows;
 use crate::report::method::Method;
 use crate::report::numbers::fill;
+use crate::report::opinion::opinion_of_simulation;
 use crate::report::parts::{Part, PartPicture};
 use impactlab_core::data::Channel;
 use impactlab_study::{SimulateAnswer, SimulateRequest};
@@ -25,7 +26,8 @@ pub(super) fn part(
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
     let names = [("name", &*report.name), ("vehicle", &*report.vehicle)];
-    let mut blocks = vec![Block::paragraph(fill(words.ask_simulate, &names))];
+    let question = fill(words.ask_simulate, &names);
+    let mut blocks = vec![Block::paragraph(question.clone())];
     blocks.extend(facts_with_meaning(&report.motion_table(), "", context));
     let beside = report.rival.as_ref();
     blocks.extend(beside.map(|rival| facts_table(&rival.table(), context)));
@@ -49,6 +51,7 @@ pub(super) fn part(
     Part {
         kind: words.title_simulate.to_owned(),
         title: format!("{}: {}", words.title_simulate, report.name),
+        opinion: Some(opinion_of_simulation(report, &question, context)),
         answer: blocks,
         pictures: pictures(request.site.as_deref(), answer, context),
         inputs: [

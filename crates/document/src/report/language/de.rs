@@ -32,6 +32,8 @@ pub(super) const WORDS: Words = Words {
     same_as: "Dieselbe Frage wie in Variante „{name}“, mit derselben Antwort.",
     inputs_same_as: "Wie in Variante „{name}“, außer dem, was die Tabelle nennt.",
     inputs_all_same: "Wie in Variante „{name}“.",
+    annex: "Anhang",
+    section_opinion: "Gutachten",
     section_answers: "Fragen und Antworten",
     section_pictures: "Lagebilder und Verläufe",
     section_inputs: "Eingangsgrößen",

@@ -30,6 +30,8 @@ pub(super) const WORDS: Words = Words {
     same_as: "The same question as in variant “{name}”, with the same answer.",
     inputs_same_as: "As in variant “{name}”, except for what the table says.",
     inputs_all_same: "As in variant “{name}”.",
+    annex: "Annex",
+    section_opinion: "Opinion",
     section_answers: "Questions and answers",
     section_pictures: "Scenes and curves",
     section_inputs: "Inputs",

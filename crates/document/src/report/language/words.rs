@@ -26,6 +26,8 @@ pub(in crate::report) struct Words {
     pub same_as: &'static str,
     pub inputs_same_as: &'static str,
     pub inputs_all_same: &'static str,
+    pub annex: &'static str,
+    pub section_opinion: &'static str,
     pub section_answers: &'static str,
     pub section_pictures: &'static str,
     pub section_inputs: &'static str,

@@ -1,11 +1,12 @@
 //! Lets a document flow over pages.
 
 use crate::report::write::pdf::PdfError;
+use crate::report::write::pdf::contents::Contents;
 use crate::report::write::pdf::fonts::Fonts;
 use crate::report::write::pdf::lines::lines;
 use crate::report::write::pdf::page::{Ink, Item, OutlineEntry, Owner, PageItems};
 use crate::report::write::pdf::table::flow_table;
-use crate::report::{Block, Picture, ReportDocument};
+use crate::report::{Block, Picture, ReportDocument, SectionKind};
 
 /// Distance of the text from the edges of the page, points.
 pub(super) const MARGIN_PT: f32 = 54.0;
@@ -74,12 +75,20 @@ impl<'a> Flow<'a> {
         let (pages, parts, outline) = (vec![PageItems::default()], Vec::new(), Vec::new());
         let mut flow = Self { fonts, size_pt, pages, parts, outline, y_pt: HIGH_MARGIN_PT };
         flow.heading(1, 19.0, &document.title, &[]);
+        let mut contents = None;
         for section in &document.sections {
             flow.space(10.0);
             flow.heading(1, 14.0, &section.title, &section.blocks);
             for (idx, block) in section.blocks.iter().enumerate() {
                 flow.block(block, section.blocks.get(idx + 1..).unwrap_or_default());
             }
+            if section.kind == SectionKind::Opinion {
+                flow.new_page();
+                contents = Some(Contents::without_pages(&mut flow, document));
+            }
+        }
+        if let Some(contents) = contents {
+            contents.with_pages(&mut flow);
         }
         Ok(flow)
     }
@@ -266,7 +275,7 @@ pub(super) fn caption_style() -> Style {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{Language, Paper, Section, SectionKind, Table};
+    use crate::report::{Language, Paper, Section, Table};
     use impactlab_core::units::UnitSystem;
 
     fn document(blocks: Vec<Block>) -> ReportDocument {

@@ -11,6 +11,8 @@ mod page;
 
 mod flow;
 
+mod contents;
+
 mod table;
 
 mod draw;

@@ -1,0 +1,274 @@
+//! The opinion as blocks of the report.
+
+use crate::report::build::{VariantParts, parts_of};
+use crate::report::method::Method;
+use crate::report::numbers::{Wording, fill};
+use crate::report::opinion::differences::differences;
+use crate::report::opinion::part::PartOpinion;
+use crate::report::opinion::words::opinion_words;
+use crate::report::parts::Part;
+use crate::report::paths::ShownPaths;
+use crate::report::provenance::own_file;
+use crate::report::{Block, Column, Table};
+use impactlab_study::case_file::{CaseFile, CaseOnDisk, UsedFile};
+
+/// Variants that stand beside each other in one table.
+const MOST_BESIDE: usize = 4;
+
+/// What the opinion is made of.
+#[derive(Clone, Copy)]
+pub(in crate::report) struct Asked<'a> {
+    /// The case.
+    pub case: &'a CaseFile,
+    /// Its file, if it is as it stands there.
+    pub on_disk: Option<&'a CaseOnDisk>,
+    /// Its variants with their answers.
+    pub variants: &'a [VariantParts],
+    /// Numbers and texts.
+    pub wording: &'a Wording,
+    /// Files by their names.
+    pub paths: &'a ShownPaths,
+}
+
+/// A variant with the answers that speak for it.
+struct Spoken<'a> {
+    name: &'a str,
+    parts: Vec<&'a Part>,
+}
+
+impl<'a> Spoken<'a> {
+    fn opinions(&self) -> impl Iterator<Item = &'a PartOpinion> {
+        self.parts.iter().filter_map(|part| part.opinion.as_ref())
+    }
+}
+
+/// The opinion.
+pub(in crate::report) fn opinion_blocks(asked: Asked<'_>) -> Vec<Block> {
+    let words = opinion_words(asked.wording.language);
+    let spoken = spoken(asked.variants);
+    let mut blocks = vec![Block::heading(2, words.question_and_answer)];
+    blocks.extend(answers(&spoken, asked.wording));
+    blocks.extend(courses(&spoken, asked.wording));
+    blocks.extend(figures(&spoken, asked.wording));
+    blocks.push(Block::heading(2, words.how_sure));
+    blocks.extend(held(&spoken, asked.wording));
+    blocks.push(Block::heading(2, words.hinges));
+    blocks.push(hinges(&spoken));
+    blocks.push(Block::heading(2, words.warnings));
+    blocks.extend(warnings(asked.variants, asked.wording));
+    blocks.push(Block::heading(2, words.not_considered));
+    let methods: std::collections::BTreeSet<Method> =
+        spoken.iter().flat_map(|it| &it.parts).flat_map(|part| &part.methods).copied().collect();
+    let limit = |method: &Method| {
+        format!("{}: {}", method.name(asked.wording), method.limits(asked.wording))
+    };
+    blocks.push(Block::List { items: methods.iter().map(limit).collect() });
+    blocks.push(Block::heading(2, words.who));
+    blocks.extend(who(asked));
+    blocks
+}
+
+/// The answers of the highest rank of each variant. A variant without any says nothing here; that its
+/// questions have no answer stands above.
+fn spoken(variants: &[VariantParts]) -> Vec<Spoken<'_>> {
+    let of_variant = |variant: &'_ VariantParts| {
+        let rank = |part: &&Part| part.opinion.as_ref().map(|opinion| opinion.rank);
+        parts_of(variant).filter_map(|part| rank(&part)).max()
+    };
+    let each = variants.iter().filter_map(|variant| {
+        let highest = of_variant(variant)?;
+        let is_highest =
+            |part: &&Part| part.opinion.as_ref().is_some_and(|opinion| opinion.rank == highest);
+        Some(Spoken { name: &variant.name, parts: parts_of(variant).filter(is_highest).collect() })
+    });
+    each.collect()
+}
+
+/// Each question once, and below it the answer of each variant.
+fn answers(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
+    let words = opinion_words(wording.language);
+    let mut questions: Vec<(&str, Vec<String>)> = Vec::new();
+    for variant in spoken {
+        for opinion in variant.opinions() {
+            let values = [("name", variant.name), ("answer", &*opinion.answer)];
+            let answer = match spoken.len() {
+                1 => opinion.answer.clone(),
+                _ => fill(words.of_variant, &values),
+            };
+            match questions.iter_mut().find(|(question, _)| *question == opinion.question) {
+                Some((_, answers)) => answers.push(answer),
+                None => questions.push((&opinion.question, vec![answer])),
+            }
+        }
+    }
+    if questions.is_empty() {
+        return vec![Block::paragraph(words.nothing_to_say)];
+    }
+    let blocks = questions.into_iter().flat_map(|(question, answers)| {
+        let answer = match <[String; 1]>::try_from(answers) {
+            Ok([one]) => Block::paragraph(one),
+            Err(items) => Block::List { items },
+        };
+        [Block::paragraph(question), answer]
+    });
+    blocks.collect()
+}
+
+/// Courses of events of the variants beside each other, before any median.
+fn courses(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
+    let words = opinion_words(wording.language);
+    let rows = |it: &Spoken<'_>| it.opinions().flat_map(|of| of.courses.clone()).collect();
+    let columns: Vec<(String, Vec<[String; 2]>)> =
+        spoken.iter().map(|it| (it.name.to_owned(), rows(it))).collect();
+    beside(words.courses, [words.course, words.probability], &columns, words.in_no_draw)
+}
+
+/// The figures of the variants beside each other, with what differs between them.
+fn figures(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
+    let words = opinion_words(wording.language);
+    let column = |(idx, it): (usize, &Spoken<'_>)| {
+        let differs = match (idx, spoken.first()) {
+            (0, _) | (_, None) => words.first_variant.to_owned(),
+            (_, Some(first)) => differences(&first.parts, &it.parts, wording),
+        };
+        let differs = (spoken.len() > 1).then(|| [words.differs.to_owned(), differs]);
+        let figures = it.opinions().flat_map(|of| of.figures.clone());
+        (it.name.to_owned(), differs.into_iter().chain(figures).collect())
+    };
+    let columns: Vec<(String, Vec<[String; 2]>)> = spoken.iter().enumerate().map(column).collect();
+    beside(words.figures, [wording.words.quantity, wording.words.value], &columns, "–")
+}
+
+/// Tables of what several variants say, a column for each; none without rows.
+///
+/// - `titles`: of the rows, and of the column of a single variant;
+/// - `missing`: what stands where a variant does not have a row.
+fn beside(
+    caption: &str,
+    [rows_title, single]: [&str; 2],
+    columns: &[(String, Vec<[String; 2]>)],
+    missing: &str,
+) -> Vec<Block> {
+    let tables = columns.chunks(MOST_BESIDE).filter_map(|chunk| {
+        let mut names: Vec<&String> = Vec::new();
+        for [name, _] in chunk.iter().flat_map(|(_, rows)| rows) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        let cell = |rows: &[[String; 2]], name: &str| {
+            let found = rows.iter().find(|[of, _]| of == name);
+            found.map_or(missing, |[_, value]| value).to_owned()
+        };
+        let row = |name: &&String| {
+            let cells = chunk.iter().map(|(_, rows)| cell(rows, name));
+            std::iter::once((*name).clone()).chain(cells).collect()
+        };
+        let rows: Vec<Vec<String>> = names.iter().map(row).collect();
+        let title = |(name, _): &(String, _)| match columns.len() {
+            1 => single.to_owned(),
+            _ => name.clone(),
+        };
+        let titles = std::iter::once(rows_title.to_owned()).chain(chunk.iter().map(title));
+        let columns = titles.map(|title| Column { title, is_numeric: false }).collect();
+        let table = Table { caption: caption.to_owned(), columns, rows };
+        (!names.is_empty()).then_some(Block::Table(table))
+    });
+    tables.collect()
+}
+
+/// How often such intervals held, each table once, and what the known error is.
+fn held(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
+    let words = opinion_words(wording.language);
+    let mut blocks: Vec<Block> = Vec::new();
+    for table in spoken.iter().flat_map(Spoken::opinions).filter_map(|of| of.held.as_ref()) {
+        if !blocks.contains(table) {
+            blocks.push(table.clone());
+        }
+    }
+    if blocks.is_empty() {
+        blocks.push(Block::paragraph(words.not_counted));
+    }
+    blocks.push(Block::paragraph(words.known_error));
+    blocks
+}
+
+/// What the answers hinge on, each sentence once.
+fn hinges(spoken: &[Spoken<'_>]) -> Block {
+    let mut items: Vec<(String, Vec<&str>)> = Vec::new();
+    for variant in spoken {
+        for sentence in variant.opinions().flat_map(|of| &of.hinges) {
+            match items.iter_mut().find(|(known, _)| known == sentence) {
+                Some((_, of)) => of.push(variant.name),
+                None => items.push((sentence.clone(), vec![variant.name])),
+            }
+        }
+    }
+    let item = |(sentence, of): (String, Vec<&str>)| match of.len() == spoken.len() {
+        true => sentence,
+        false => format!("{}: {sentence}", of.join(", ")),
+    };
+    Block::List { items: items.into_iter().map(item).collect() }
+}
+
+/// The warnings of all answers by name, each with the variants that have it.
+fn warnings(variants: &[VariantParts], wording: &Wording) -> Vec<Block> {
+    let words = opinion_words(wording.language);
+    let mut found: Vec<(String, Vec<&str>)> = Vec::new();
+    for variant in variants {
+        for caveat in parts_of(variant).flat_map(|part| part.caveats.iter()) {
+            if !caveat.is_warning() {
+                continue;
+            }
+            let label = wording.term(caveat.kind.label());
+            match found.iter_mut().find(|(known, _)| *known == label) {
+                Some((_, of)) if of.contains(&&*variant.name) => {}
+                Some((_, of)) => of.push(&variant.name),
+                None => found.push((label, vec![&variant.name])),
+            }
+        }
+    }
+    if found.is_empty() {
+        return vec![Block::paragraph(words.no_warnings)];
+    }
+    let item = |(label, of): (String, Vec<&str>)| match variants.len() {
+        1 => label,
+        _ => format!("{label} ({})", of.join(", ")),
+    };
+    let all: Vec<String> = found.into_iter().map(item).collect();
+    vec![Block::paragraph(format!("{}. {}", all.join("; "), words.warnings_told))]
+}
+
+/// Who gives the opinion, for whom, from which materials; and the place for the signature.
+fn who(asked: Asked<'_>) -> Vec<Block> {
+    let words = opinion_words(asked.wording.language);
+    let expert = &asked.case.expert;
+    let line = |template: &str, text: &Option<String>| {
+        let text = text.as_deref().map(str::trim).filter(|text| !text.is_empty());
+        fill(template, &[("text", text.unwrap_or(words.not_stated))])
+    };
+    let mut items = vec![
+        line(words.expert, &expert.name),
+        line(words.qualifications, &expert.qualifications),
+        line(words.instruction, &expert.instruction),
+    ];
+    let material = |path: &std::path::PathBuf| {
+        let sha256 = match UsedFile::read(path) {
+            Ok(file) => file.sha256,
+            Err(_) => asked.wording.words.missing.to_owned(),
+        };
+        let values = [("name", &*asked.paths.name(path)), ("sha256", &*sha256)];
+        fill(words.material, &values)
+    };
+    let materials: Vec<String> = asked.case.used_paths().iter().map(material).collect();
+    match materials.is_empty() {
+        true => items.push(words.no_materials.to_owned()),
+        false => items.push(format!("{} {}", words.materials, materials.join("; "))),
+    }
+    items.push(own_file(asked.on_disk, asked.wording, asked.paths));
+    vec![
+        Block::List { items },
+        Block::paragraph(words.traced),
+        Block::paragraph(asked.wording.words.signature),
+    ]
+}

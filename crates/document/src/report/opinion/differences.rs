@@ -1,0 +1,82 @@
+//! What a variant says otherwise than the first one.
+
+use crate::report::InputClass;
+use crate::report::numbers::Wording;
+use crate::report::opinion::words::opinion_words;
+use crate::report::parts::{InputRow, Part};
+
+/// Differences that are named; more are counted.
+const MOST_NAMED: usize = 5;
+
+/// What the questions of a variant say otherwise than those of the first one: values that are other or
+/// more, and values that are missing.
+pub(super) fn differences(first: &[&Part], other: &[&Part], wording: &Wording) -> String {
+    let words = opinion_words(wording.language);
+    let [before, now] = [asked(first, wording), asked(other, wording)];
+    let mut named: Vec<String> = Vec::new();
+    let mut add = |text: String| {
+        if !named.contains(&text) {
+            named.push(text);
+        }
+    };
+    for row in now.iter().filter(|row| !before.contains(row)) {
+        add(format!("{}: {}", name(row), row.value));
+    }
+    let is_gone = |row: &&&InputRow| !now.iter().any(|other| key(other) == key(row));
+    for row in before.iter().filter(is_gone) {
+        add(format!("{} {}", words.without, name(row)));
+    }
+    let n_more = named.len().saturating_sub(MOST_NAMED);
+    named.truncate(MOST_NAMED);
+    let mut text = named.join("; ");
+    if n_more > 0 {
+        text.push_str(&words.more.replace("{n}", &n_more.to_string()));
+    }
+    if text.is_empty() { words.asked_alike.to_owned() } else { text }
+}
+
+/// What the questions say; what follows from it by rule is not.
+fn asked<'a>(parts: &[&'a Part], wording: &Wording) -> Vec<&'a InputRow> {
+    let sources = [wording.words.source_question, wording.words.source_file];
+    let is_asked =
+        |row: &&InputRow| row.class == InputClass::Given && sources.contains(&row.source.as_str());
+    parts.iter().flat_map(|part| &part.inputs).filter(is_asked).collect()
+}
+
+fn key(row: &InputRow) -> (&str, &str) {
+    (&row.group, &row.label)
+}
+
+/// The innermost thing that a value belongs to, and the value.
+fn name(row: &InputRow) -> String {
+    let inner = row.group.rsplit(", ").next().unwrap_or_default();
+    if inner.is_empty() { row.label.clone() } else { format!("{inner}, {}", row.label) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::units::UnitSystem;
+
+    fn part(rows: &[[&str; 2]]) -> Part {
+        let wording = Wording::english(UnitSystem::Si);
+        let row = |[label, value]: &[&str; 2]| InputRow {
+            group: "motion, brake".to_owned(),
+            label: (*label).to_owned(),
+            value: (*value).to_owned(),
+            class: InputClass::Given,
+            source: wording.words.source_question.to_owned(),
+        };
+        Part { inputs: rows.iter().map(row).collect(), ..Part::default() }
+    }
+
+    #[test]
+    fn what_is_other_more_and_missing_is_named_and_nothing_else() {
+        let wording = Wording::english(UnitSystem::Si);
+        let first = part(&[["mass", "2000 kg"], ["start", "0 s"], ["side", "left"]]);
+        let other = part(&[["mass", "1500 kg"], ["start", "0 s"], ["share", "0.8"]]);
+        let text = differences(&[&first], &[&other], &wording);
+        assert_eq!(text, "brake, mass: 1500 kg; brake, share: 0.8; without brake, side");
+        assert_eq!(differences(&[&first], &[&first], &wording), "asked as the first variant");
+    }
+}

@@ -1,0 +1,37 @@
+//! What one answer contributes to the opinion.
+
+use crate::report::Block;
+
+/// How much of the case an answer decides. Of each variant the answers of the highest rank speak.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::report) enum Rank {
+    /// The impulse alone.
+    Impact,
+    /// The force over time.
+    Force,
+    /// One motion.
+    Simulation,
+    /// The motion with its uncertainty.
+    Forecast,
+    /// Speeds from what was found.
+    Reconstruction,
+}
+
+/// What one answer contributes to the opinion.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::report) struct PartOpinion {
+    /// How much it decides.
+    pub rank: Rank,
+    /// What was asked, a sentence.
+    pub question: String,
+    /// What came out, in sentences.
+    pub answer: String,
+    /// Courses of events with their probabilities; empty where there is one only.
+    pub courses: Vec<[String; 2]>,
+    /// The figures that variants are compared by, with their values.
+    pub figures: Vec<[String; 2]>,
+    /// How often such intervals held; none where that was not measured.
+    pub held: Option<Block>,
+    /// What the answer hinges on, in sentences.
+    pub hinges: Vec<String>,
+}

@@ -1,0 +1,180 @@
+//! The texts of the opinion in each language.
+
+use crate::report::Language;
+
+/// Texts of the opinion, in one language. Names in braces are filled in.
+pub(super) struct OpinionWords {
+    pub question_and_answer: &'static str,
+    pub of_variant: &'static str,
+    pub nothing_to_say: &'static str,
+    pub courses: &'static str,
+    pub course: &'static str,
+    pub probability: &'static str,
+    pub figures: &'static str,
+    pub differs: &'static str,
+    pub first_variant: &'static str,
+    pub asked_alike: &'static str,
+    pub without: &'static str,
+    pub more: &'static str,
+    pub in_no_draw: &'static str,
+    pub how_sure: &'static str,
+    pub not_counted: &'static str,
+    pub known_error: &'static str,
+    pub hinges: &'static str,
+    pub warnings: &'static str,
+    pub no_warnings: &'static str,
+    pub warnings_told: &'static str,
+    pub not_considered: &'static str,
+    pub who: &'static str,
+    pub expert: &'static str,
+    pub qualifications: &'static str,
+    pub instruction: &'static str,
+    pub not_stated: &'static str,
+    pub materials: &'static str,
+    pub material: &'static str,
+    pub no_materials: &'static str,
+    pub traced: &'static str,
+    pub turns: &'static str,
+    pub comes_to_rest: &'static str,
+    pub lower_bounds: &'static str,
+    pub at_rest: &'static str,
+    pub still_moves: &'static str,
+    pub end_hinges: &'static str,
+    pub no_hinge: &'static str,
+    pub nothing_drawn: &'static str,
+    pub several_courses: &'static str,
+    pub no_intervals: &'static str,
+    pub too_few_to_say: &'static str,
+    pub at_medians: &'static str,
+    pub over_draws: &'static str,
+    pub force_hinges: &'static str,
+    pub impact_hinges: &'static str,
+    pub speed_hinges: &'static str,
+    pub share_hinges: &'static str,
+}
+
+/// The texts of the opinion in a language.
+pub(super) fn opinion_words(language: Language) -> &'static OpinionWords {
+    match language {
+        Language::En => &EN,
+        Language::De => &DE,
+    }
+}
+
+const EN: OpinionWords = OpinionWords {
+    question_and_answer: "Question and answer",
+    of_variant: "Variant “{name}”: {answer}",
+    nothing_to_say: "The case asks nothing that an opinion could be given on; its answers are in section 1.",
+    courses: "Courses of events",
+    course: "What becomes of the struck vehicle",
+    probability: "Probability",
+    figures: "Figures; in brackets the interval that holds with a probability of 90 %",
+    differs: "what differs",
+    first_variant: "the variant that the others are compared with",
+    asked_alike: "asked as the first variant",
+    without: "without",
+    more: "; and {n} more, see section 3",
+    in_no_draw: "in no draw",
+    how_sure: "How sure the answer is",
+    not_counted: "For answers of this kind it was not counted how often their intervals held.",
+    known_error: "The intervals were tried on computed collisions whose outcome was known; the known errors are in \
+        section 7. The method was not validated against real collisions. The bounds are those of 95 % \
+        confidence.",
+    hinges: "What the answer hinges on",
+    warnings: "Warnings",
+    no_warnings: "The program warns of nothing.",
+    warnings_told: "Section 6 says what each of them means and what can be done.",
+    not_considered: "What was not considered",
+    who: "Expert, instruction and materials",
+    expert: "Expert: {text}",
+    qualifications: "Qualifications: {text}",
+    instruction: "Instruction: {text}",
+    not_stated: "not stated",
+    materials: "Materials:",
+    material: "{name}, SHA-256 {sha256}",
+    no_materials: "Materials: no files but the case itself.",
+    traced: "Every figure of this opinion is traced in the annex, sections 1 to 10.",
+    turns: "The struck vehicle turns by 90° or more with a probability of {quarter}, and by 180° or more with a \
+        probability of {half}.",
+    comes_to_rest: "It comes to rest within {limit} in {share} of the draws, after a path of {distance}.",
+    lower_bounds: "Since less than 95 % of the draws come to rest in that time, upper ends of times and distances are \
+        lower bounds.",
+    at_rest: "It is at rest {time} after the first contact.",
+    still_moves: "{time} after the first contact it still moves, at {speed} in the mean.",
+    end_hinges: "Of the estimates of vehicle and road, the end depends most on: {hinges}.",
+    no_hinge: "No single estimate of vehicle or road decides 10 % or more of the variance of place or heading at the \
+        end; the rest is the force, the contact and the drivers.",
+    nothing_drawn: "Nothing was drawn that the answer could be seen to depend on; it holds for the values of section \
+        3 as they stand.",
+    several_courses: "More than one course of events is possible; the figures over all of them may be true of none.",
+    no_intervals: "The particles allow no intervals.",
+    too_few_to_say: "The particles do not allow to say what the speeds hinge on.",
+    at_medians: "With each input at its median:",
+    over_draws: "over the drawn vehicles",
+    force_hinges: "The force follows from masses, velocities and the place of contact of section 3; how much it \
+        changes with each of them was not computed.",
+    impact_hinges: "The impulse follows from masses, velocities, place of contact, restitution and friction of \
+        section 3; how much it changes with each of them was not computed.",
+    speed_hinges: "{name}: speed of the struck car {struck}, of the striking car {striking}.",
+    share_hinges: "{name}: {place} of the variance of the place at the end, {heading} of that of the heading.",
+};
+
+const DE: OpinionWords = OpinionWords {
+    question_and_answer: "Beweisfrage und Antwort",
+    of_variant: "Variante „{name}“: {answer}",
+    nothing_to_say: "Der Fall stellt keine Frage, zu der ein Gutachten möglich ist; seine Antworten stehen in \
+        Abschnitt 1.",
+    courses: "Mögliche Geschehensabläufe",
+    course: "Verbleib des gestoßenen Fahrzeugs",
+    probability: "Wahrscheinlichkeit",
+    figures: "Ergebnisse; in Klammern der Bereich, der mit einer Wahrscheinlichkeit von 90 % zutrifft",
+    differs: "Unterschied",
+    first_variant: "Variante, mit der die anderen verglichen werden",
+    asked_alike: "gefragt wie die erste Variante",
+    without: "ohne",
+    more: "; und {n} weitere, siehe Abschnitt 3",
+    in_no_draw: "in keiner Ziehung",
+    how_sure: "Wie sicher die Antwort ist",
+    not_counted: "Für Antworten dieser Art wurde nicht gezählt, wie oft ihre Bereiche zutrafen.",
+    known_error: "Die Bereiche wurden an berechneten Zusammenstößen geprüft, deren Ausgang bekannt war; die bekannten \
+        Fehler stehen in Abschnitt 7. Das Verfahren ist nicht an realen Unfällen validiert. Die Grenzen gelten \
+        mit einer Sicherheit von 95 %.",
+    hinges: "Wovon die Antwort abhängt",
+    warnings: "Warnungen",
+    no_warnings: "Das Programm warnt vor nichts.",
+    warnings_told: "Was sie bedeuten und was zu tun ist, steht in Abschnitt 6.",
+    not_considered: "Was nicht berücksichtigt wurde",
+    who: "Sachverständiger, Auftrag und Anknüpfungstatsachen",
+    expert: "Sachverständiger: {text}",
+    qualifications: "Qualifikation: {text}",
+    instruction: "Auftrag: {text}",
+    not_stated: "keine Angabe",
+    materials: "Unterlagen:",
+    material: "{name}, SHA-256 {sha256}",
+    no_materials: "Unterlagen: keine Dateien außer dem Fall selbst.",
+    traced: "Jede Zahl dieses Gutachtens ist im Anhang, Abschnitte 1 bis 10, nachzuvollziehen.",
+    turns: "Das gestoßene Fahrzeug dreht sich mit einer Wahrscheinlichkeit von {quarter} um 90° oder mehr, mit einer \
+        Wahrscheinlichkeit von {half} um 180° oder mehr.",
+    comes_to_rest: "Es kommt in {share} der Ziehungen innerhalb von {limit} zum Stillstand, nach einem Weg von \
+        {distance}.",
+    lower_bounds: "Da in dieser Zeit weniger als 95 % der Ziehungen zum Stillstand kommen, sind die oberen Enden von \
+        Zeiten und Wegen untere Schranken.",
+    at_rest: "{time} nach dem ersten Kontakt steht es still.",
+    still_moves: "{time} nach dem ersten Kontakt bewegt es sich noch, im Mittel mit {speed}.",
+    end_hinges: "Von den Schätzwerten für Fahrzeug und Fahrbahn bestimmen das Ende vor allem: {hinges}.",
+    no_hinge: "Kein einzelner Schätzwert für Fahrzeug oder Fahrbahn bestimmt 10 % oder mehr der Varianz von Ort oder \
+        Winkel am Ende; das Übrige sind Kraft, Kontakt und Fahrer.",
+    nothing_drawn: "Es wurde nichts gezogen, woran eine Abhängigkeit zu erkennen wäre; die Antwort gilt für die Werte \
+        in Abschnitt 3, so wie sie dort stehen.",
+    several_courses: "Mehr als ein Geschehensablauf ist möglich; die Zahlen über alle treffen womöglich auf keinen zu.",
+    no_intervals: "Die Ziehungen lassen keine Bereiche zu.",
+    too_few_to_say: "Die Ziehungen lassen keine Aussage darüber zu, wovon die Geschwindigkeiten abhängen.",
+    at_medians: "Mit jeder Eingangsgröße in ihrem Median:",
+    over_draws: "über die gezogenen Fahrzeuge",
+    force_hinges: "Die Kraft folgt aus Massen, Geschwindigkeiten und Kontaktort in Abschnitt 3; wie stark sie sich mit \
+        jedem davon ändert, wurde nicht berechnet.",
+    impact_hinges: "Der Impuls folgt aus Massen, Geschwindigkeiten, Kontaktort, Stoßziffer und Reibbeiwert in Abschnitt \
+        3; wie stark er sich mit jedem davon ändert, wurde nicht berechnet.",
+    speed_hinges: "{name}: Geschwindigkeit des gestoßenen Fahrzeugs {struck}, des stoßenden {striking}.",
+    share_hinges: "{name}: {place} der Varianz des Endorts, {heading} der des Endwinkels.",
+};

@@ -1,0 +1,108 @@
+//! The opinion at the front of a report: short, with probabilities before medians, what differs between
+//! variants, and who gives it.
+
+use impactlab_core::units::UnitSystem;
+use impactlab_document::report::{Block, Language, Paper, ReportDocument, SectionKind, Table, pdf};
+use impactlab_study::case_file::{CaseFile, Expert};
+
+use crate::report::{impact_case, pit, report, settings, staged};
+
+fn opinion(document: &ReportDocument) -> &[Block] {
+    assert_eq!(document.sections[0].kind, SectionKind::Opinion);
+    &document.sections[0].blocks
+}
+
+fn tables(document: &ReportDocument) -> Vec<&Table> {
+    let table = |block| match block {
+        &Block::Table(ref table) => Some(table),
+        _ => None,
+    };
+    opinion(document).iter().filter_map(table).collect()
+}
+
+fn says(document: &ReportDocument, text: &str) -> bool {
+    opinion(document).iter().any(|block| match block {
+        Block::Heading { text: of, .. }
+        | Block::Paragraph { text: of }
+        | Block::Notice { text: of } => of.contains(text),
+        Block::List { items } => items.iter().any(|item| item.contains(text)),
+        Block::Table(table) => table.rows.iter().flatten().any(|cell| cell.contains(text)),
+        Block::Picture(_) => false,
+    })
+}
+
+/// The variants of the example differ in the driver and in the mass: that is named, and nothing else.
+#[test]
+fn variants_stand_beside_each_other_with_what_differs_and_courses_come_first() {
+    let (document, _) = pit();
+    let all = tables(document);
+    assert!(all[0].caption.starts_with("Courses of events"), "{}", all[0].caption);
+    let figures = all[1];
+    assert_eq!(figures.columns.len(), 4);
+    let differs = &figures.rows[0];
+    assert!(differs[2].contains("brake"), "{differs:?}");
+    assert!(differs[3].contains("1500 kg") && !differs[3].contains("brake"), "{differs:?}");
+    assert!(figures.rows.iter().any(|row| row[0].contains("quarter turn") && row[1].contains('%')));
+    assert!(says(document, "not validated against real collisions"));
+    assert!(says(document, "No single estimate of vehicle or road"));
+}
+
+#[test]
+fn the_opinion_of_the_example_takes_at_most_two_pages() {
+    let (document, _) = pit();
+    let bytes = pdf(document, None).expect("a PDF");
+    let read = lopdf::Document::load_mem(&bytes).expect("readable");
+    let text = |page: u32| -> String {
+        let text = read.extract_text(&[page]).expect("text");
+        text.split_whitespace().collect()
+    };
+    assert!(text(1).contains("Questionandanswer"));
+    let annex = (1..=3).find(|page| text(*page).contains("Annex")).expect("an annex");
+    assert!(annex <= 3, "the annex begins on page {annex}");
+    assert!(text(annex).contains("10Logofthecase"), "no contents");
+}
+
+#[test]
+fn who_gives_the_opinion_is_of_the_case_and_what_was_not_said_is_said() {
+    let mut case = impact_case("pit", "");
+    let en = settings(Language::En, UnitSystem::Si, Paper::A4);
+    let (document, _) = report(&case, &en);
+    assert!(says(&document, "Expert: not stated"));
+    case.expert = Expert { name: Some("A. Beispiel".to_owned()), ..Expert::default() };
+    let (document, _) = report(&case, &en);
+    assert!(says(&document, "Expert: A. Beispiel"));
+    assert!(says(&document, "Instruction: not stated"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("case.impactlab");
+    case.save(&path, impactlab_core::data::Existing::Refuse).expect("saved");
+    assert_eq!(CaseFile::load(&path).expect("a case").expert, case.expert);
+}
+
+/// A reconstruction names its speeds and what they hinge on, with the hash of the evidence.
+#[test]
+fn a_reconstruction_has_an_opinion_with_its_materials() {
+    let (_, case, document, _) = staged();
+    assert!(says(document, "struck car"));
+    assert!(says(document, &case.files[0].sha256));
+}
+
+/// Readers by ear get the file that they need: PDF/UA-1, with a title and headers of rows.
+#[test]
+fn the_pdf_says_that_it_can_be_read_by_ear() {
+    let (document, _) =
+        report(&impact_case("pit", ""), &settings(Language::De, UnitSystem::Si, Paper::A4));
+    let bytes = pdf(&document, None).expect("a PDF");
+    let text = String::from_utf8_lossy(&bytes);
+    assert!(text.contains("pdfuaid:part"), "no identifier of PDF/UA");
+    let read = lopdf::Document::load_mem(&bytes).expect("readable");
+    let scopes = read.objects.values().filter_map(|object| object.as_dict().ok());
+    let is_row = |of: &lopdf::Dictionary| {
+        of.get(b"Scope").and_then(|scope| scope.as_name()).is_ok_and(|name| name == b"Row")
+    };
+    let in_attributes = |of: &lopdf::Dictionary| {
+        let all = of.get(b"A").and_then(|a| a.as_array());
+        all.is_ok_and(|all| all.iter().filter_map(|a| a.as_dict().ok()).any(is_row))
+            || of.get(b"A").and_then(|a| a.as_dict()).is_ok_and(is_row)
+    };
+    assert!(scopes.into_iter().any(|of| is_row(of) || in_attributes(of)), "no row has a header");
+}
