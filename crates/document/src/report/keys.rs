@@ -6,7 +6,8 @@ use crate::report::numbers::Wording;
 use impactlab_core::units::Quantity;
 
 /// Names that say only how a question is written down.
-const SILENT: [&str; 7] = ["", "inline", "source", "motion", "numbers", "file", "evidence"];
+const SILENT: [&str; 8] =
+    ["", "inline", "source", "motion", "collision", "numbers", "file", "evidence"];
 
 /// Endings of names with their quantities.
 const ENDINGS: [(&str, Quantity); 15] = [
