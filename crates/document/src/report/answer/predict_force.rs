@@ -36,7 +36,7 @@ pub(super) fn part(answer: &PredictForceAnswer, context: Context<'_>) -> Part {
 
 /// How far a network applies.
 pub(super) fn applicability(network: &str, share: f64, wording: &Wording) -> String {
-    let share = wording.fixed(share, 2);
+    let share = wording.percent(share);
     fill(wording.words.applicability, &[("network", network), ("share", &share)])
 }
 

@@ -91,7 +91,7 @@ pub(super) const WORDS: Words = Words {
         Kraftnetzes. Wie oft solche Bereiche zutrafen, steht in Abschnitt 7, soweit es geprüft wurde.",
     force_network: "Kraftnetz",
     response_network: "Bewegungsnetz",
-    applicability: "Das {network} gilt zu {share} von 1; der Rest der Verteilung ist der der Physik allein.",
+    applicability: "Das {network} trägt {share} der Verteilung; der Rest ist die der Physik allein.",
     force_forecast_picture: "Vorhergesagte Kraft von „{name}“: Betrag über der Zeit mit Bändern",
     meaning_motion: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach der Verteilung des \
         Bewegungsnetzes über die gezogenen Kräfte und Fahrzeuge. Wie oft solche Bereiche des Ortes zutrafen, \

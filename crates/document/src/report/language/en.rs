@@ -89,8 +89,7 @@ pub(super) const WORDS: Words = Words {
         network. Section 7 says how often such intervals held, for those quantities that were validated.",
     force_network: "force network",
     response_network: "response network",
-    applicability: "The {network} applies to {share} of 1; the rest of the distribution is that of the \
-        physics alone.",
+    applicability: "The {network} carries {share} of the distribution; the rest is that of the physics alone.",
     force_forecast_picture: "Predicted force of “{name}”: size over time with its bands",
     meaning_motion: "Each value lies in its interval of 90 % with that probability, by the distribution of the response \
         network over the forces and vehicles that were drawn. Section 7 says how often such regions of the \
