@@ -4,7 +4,7 @@ use crate::report::build::{VariantParts, parts_of};
 use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
 use crate::report::opinion::differences::differences;
-use crate::report::opinion::part::PartOpinion;
+use crate::report::opinion::part::{PartOpinion, Rank};
 use crate::report::opinion::words::opinion_words;
 use crate::report::parts::Part;
 use crate::report::paths::ShownPaths;
@@ -120,7 +120,13 @@ fn courses(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     let rows = |it: &Spoken<'_>| it.opinions().flat_map(|of| of.courses.clone()).collect();
     let columns: Vec<(String, Vec<[String; 2]>)> =
         spoken.iter().map(|it| (it.name.to_owned(), rows(it))).collect();
-    beside(words.courses, [words.course, words.probability], &columns, words.in_no_draw)
+    let titles = [words.course, words.probability];
+    let mut blocks = beside(words.courses, titles, &columns, words.in_no_draw);
+    let is_forecast = |of: &PartOpinion| of.rank == Rank::Forecast && !of.courses.is_empty();
+    if spoken.iter().flat_map(Spoken::opinions).any(is_forecast) {
+        blocks.push(Block::paragraph(words.turns_of_courses));
+    }
+    blocks
 }
 
 /// The figures of the variants beside each other, with what differs between them.

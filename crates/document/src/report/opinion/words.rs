@@ -35,6 +35,7 @@ pub(super) struct OpinionWords {
     pub no_materials: &'static str,
     pub traced: &'static str,
     pub turns: &'static str,
+    pub turns_of_courses: &'static str,
     pub comes_to_rest: &'static str,
     pub lower_bounds: &'static str,
     pub at_rest: &'static str,
@@ -94,8 +95,9 @@ const EN: OpinionWords = OpinionWords {
     material: "{name}, SHA-256 {sha256}",
     no_materials: "Materials: no files but the case itself.",
     traced: "Every figure of this opinion is traced in the annex, sections 1 to 10.",
-    turns: "The struck vehicle turns by 90° or more with a probability of {quarter}, and by 180° or more with a \
-        probability of {half}.",
+    turns: "At the end the struck vehicle is turned by 90° or more with a probability of {quarter}, and by 180° or \
+        more with a probability of {half}.",
+    turns_of_courses: "Courses of events count the largest turn on the way, the probabilities above and below that at the end.",
     comes_to_rest: "It comes to rest within {limit} in {share} of the draws, after a path of {distance}.",
     lower_bounds: "Since less than 95 % of the draws come to rest in that time, upper ends of times and distances are \
         lower bounds.",
@@ -153,8 +155,9 @@ const DE: OpinionWords = OpinionWords {
     material: "{name}, SHA-256 {sha256}",
     no_materials: "Unterlagen: keine Dateien außer dem Fall selbst.",
     traced: "Jede Zahl dieses Gutachtens ist im Anhang, Abschnitte 1 bis 10, nachzuvollziehen.",
-    turns: "Das gestoßene Fahrzeug dreht sich mit einer Wahrscheinlichkeit von {quarter} um 90° oder mehr, mit einer \
-        Wahrscheinlichkeit von {half} um 180° oder mehr.",
+    turns: "Am Ende ist das gestoßene Fahrzeug mit einer Wahrscheinlichkeit von {quarter} um 90° oder mehr gedreht, mit \
+        einer Wahrscheinlichkeit von {half} um 180° oder mehr.",
+    turns_of_courses: "Die Geschehensabläufe zählen die größte Drehung unterwegs, die Wahrscheinlichkeiten darüber und darunter die am Ende.",
     comes_to_rest: "Es kommt in {share} der Ziehungen innerhalb von {limit} zum Stillstand, nach einem Weg von \
         {distance}.",
     lower_bounds: "Da in dieser Zeit weniger als 95 % der Ziehungen zum Stillstand kommen, sind die oberen Enden von \
