@@ -45,7 +45,8 @@ pub fn write_scene(
     existing: Existing,
     dark: bool,
 ) -> Result<(), String> {
-    let canvas = Canvas { dark, ..Canvas::default() };
+    let usual = Canvas::default();
+    let canvas = Canvas { scale: Canvas::scene_scale(usual.size_px), dark, ..usual };
     scene_image(picture, canvas)
         .and_then(|image| save_png(&image, path, existing))
         .map_err(|error| error_chain(&error))

@@ -4,17 +4,17 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
-use egui::ColorImage;
+use egui::{Color32, ColorImage};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, FilmCommand, Output, Pane};
-use impactlab_core::data::{Existing, Outcome};
-use impactlab_core::uncertainty::Caveats;
+use impactlab_core::data::{Existing, Outcome, Severity};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::{FilmSection, FilmTiming, SimulationScene, simulation_scene};
-use impactlab_draw::Canvas;
 use impactlab_draw::film::{Film, FilmError, FrameRenderer, write_film};
 use impactlab_draw::scene::{Camera, Follow, ScenePicture, ViewKind};
+use impactlab_draw::{Canvas, theme};
 use impactlab_study::{Library, MotionSource, Question, SimulateRequest};
 use openh264::decoder::Decoder;
 use openh264::formats::YUVSource;
@@ -130,6 +130,48 @@ fn every_frame_is_the_picture_of_its_instant() {
             own < 2.5 && other > 1.5 * own,
             "frame {idx}: {own} of its own, {other} of another"
         );
+    }
+}
+
+/// Rows of a picture in which the scene reaches the left and the right edge, which no text does.
+fn scene_rows(image: &ColorImage, background: Color32) -> Vec<usize> {
+    let rows = image.pixels.chunks_exact(image.size[0]).enumerate();
+    let is_scene =
+        |row: &[Color32]| row.first() != Some(&background) && row.last() != Some(&background);
+    rows.filter(|(_, row)| is_scene(row)).map(|(idx, _)| idx).collect()
+}
+
+#[test]
+fn the_scene_goes_from_edge_to_edge_and_its_text_does_not_move() {
+    let mut film = film();
+    let sentence =
+        "a sentence that is longer than a small frame is wide, and stands in one line of it";
+    let kinds = [CaveatKind::WheelLift, CaveatKind::Overlap, CaveatKind::NotAtRest];
+    let scene = Arc::make_mut(&mut film.picture.scene);
+    scene.caveats = kinds.map(|kind| Caveat::new(kind, sentence)).into_iter().collect();
+    for (size_px, least_share, dark) in [
+        ([1920, 1080], 0.88, false),
+        ([1920, 1080], 0.88, true),
+        ([1280, 720], 0.88, false),
+        ([320, 240], 0.72, false),
+    ] {
+        let canvas = Canvas { size_px, scale: Canvas::scene_scale(size_px), dark };
+        let background = if dark { Color32::from_gray(27) } else { Color32::WHITE };
+        let warning = theme::severity_color(Severity::Warning, dark);
+        let mut renderer = FrameRenderer::new(canvas).expect("a possible size");
+        let mut rows: Option<Vec<usize>> = None;
+        for (time_s, speed) in [(0.2, 1.0), (0.45, 0.25), (1.5, 1.0)] {
+            let picture = ScenePicture { time_s, ..film.picture.clone() };
+            let image = renderer.draw(&picture, speed).clone();
+            let own = scene_rows(&image, background);
+            let share = own.len() as f64 / f64::from(size_px[1]);
+            assert!(share > least_share, "{size_px:?}: {share}");
+            let below = own.last().expect("a scene") + 1;
+            let foot = image.pixels.iter().skip(below * image.size[0]);
+            let n_warning = foot.filter(|pixel| **pixel == warning).count();
+            assert!(n_warning > 10, "{size_px:?}, dark {dark}: {n_warning} pixels of a warning");
+            assert_eq!(*rows.get_or_insert_with(|| own.clone()), own, "{size_px:?} at {time_s} s");
+        }
     }
 }
 

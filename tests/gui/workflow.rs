@@ -191,7 +191,7 @@ fn a_dropped_file_opens_and_a_figure_is_exported() {
         assert!(path.metadata().unwrap().len() > 1000, "{name}");
     }
     let png = image::open(folder.path().join("scene.png")).unwrap();
-    assert_eq!((png.width(), png.height()), (1600, 1000));
+    assert_eq!((png.width(), png.height()), (1920, 1080));
     let bad = folder.path().join("no/folder/scene.png");
     apply(&mut harness, Command::Write(Output::Picture(Box::new(figure)), bad));
     step_until(&mut harness, "the failure", |state| {

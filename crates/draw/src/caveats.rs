@@ -1,141 +1,106 @@
-//! A figure as it is exported: with its title, and with what restricts it as text below it.
+//! A figure as it is exported: with its title, and with one line of what restricts it below it.
+//!
+//! A picture shows an answer. Everything that restricts it stands with the answer itself, in the report
+//! and in the numbers of the picture; the picture has the first of it and how much more there is.
 
-use egui::text::{LayoutJob, TextFormat};
-use egui::{Color32, FontId, RichText, Ui};
+use egui::text::{LayoutJob, TextFormat, TextWrapping};
+use egui::{FontId, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
 
 use crate::{FigureOptions, figure_ui, theme};
 use impactlab_core::data::Severity;
-use impactlab_core::uncertainty::{Caveat, Caveats};
+use impactlab_core::uncertainty::Caveats;
 use impactlab_document::figure::Figure;
 
-/// Size of the text below a figure, points.
+/// Size of the line, and height of the room that it takes, points.
 const TEXT_SIZE: f32 = 10.5;
-/// Largest share of the height of the picture that the text takes.
-const LARGEST_SHARE: f32 = 0.4;
-/// Room above and between the paragraphs, points.
-const SPACING: f32 = 3.0;
+pub(crate) const LINE_HEIGHT: f32 = 15.0;
+/// Size of the title of a figure, points.
+const TITLE_SIZE: f32 = 15.0;
+/// Room between the line and the number of the others, points.
+const BETWEEN: f32 = 8.0;
+/// Narrowest line, as a number of letters, that stands beside the number of the others in words.
+const LEAST_LETTERS: f32 = 30.0;
 
-/// Draws a figure below its title and above what restricts it: label and sentence of each badge,
-/// and what was assumed. Where the picture is too small for all of it, the values that were assumed
-/// are only counted; what does not fit even then is said to be in the table of the figure.
+/// Draws a figure below its title and above the line of what restricts it.
 pub fn picture_ui(ui: &mut Ui, figure: &Figure) {
-    framed_ui(ui, &figure.title, &figure.caveats, |ui, height| {
-        figure_ui(ui, figure, &FigureOptions { height, ..FigureOptions::default() });
-    });
-}
-
-/// Draws something below its title and above what restricts it, as [`picture_ui`] does.
-///
-/// - `draw`: given the height that is left, points; `None` if that is all the space there is.
-pub fn framed_ui(
-    ui: &mut Ui,
-    title: &str,
-    caveats: &Caveats,
-    draw: impl FnOnce(&mut Ui, Option<f32>),
-) {
-    let area = ui.available_size();
-    let heading = ui.label(RichText::new(title).strong().size(15.0));
-    let paragraphs = fitting(ui, caveats, [area.x, area.y * LARGEST_SHARE]);
-    let text_height: f32 = paragraphs.iter().map(|job| height(ui, job, area.x) + SPACING).sum();
-    let between = ui.spacing().item_spacing.y;
-    let rest = area.y - heading.rect.height() - text_height - 2.0 * between - SPACING;
-    draw(ui, (!paragraphs.is_empty()).then_some(rest));
-    if !paragraphs.is_empty() {
-        ui.add_space(SPACING);
-    }
-    ui.spacing_mut().item_spacing.y = SPACING;
-    for job in paragraphs {
-        ui.add(egui::Label::new(job).wrap());
+    let width = ui.available_width();
+    ui.label(RichText::new(&figure.title).strong().size(TITLE_SIZE));
+    let line = RestrictionLine::new(&figure.caveats);
+    let height = line.as_ref().map(|_| ui.available_height() - LINE_HEIGHT);
+    figure_ui(ui, figure, &FigureOptions { height, ..FigureOptions::default() });
+    if let Some(line) = line {
+        let bottom = ui.max_rect().bottom();
+        let left_top = pos2(ui.max_rect().left(), bottom - LINE_HEIGHT);
+        line.ui(ui, Rect::from_min_size(left_top, vec2(width, LINE_HEIGHT)));
     }
 }
 
-/// A paragraph below a figure.
-struct Paragraph {
+/// What restricts a picture, in a line.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RestrictionLine {
     severity: Severity,
-    label: &'static str,
+    /// What it is about.
+    label: String,
     text: String,
+    /// How many restrictions and assumptions there are beside it.
+    n_others: usize,
 }
 
-impl From<&Caveat> for Paragraph {
-    fn from(caveat: &Caveat) -> Self {
-        let (severity, label) = (caveat.severity, caveat.kind.label());
-        Self { severity, label, text: caveat.statement() }
-    }
-}
-
-/// The paragraphs below a figure, as many as fit into width and height, points.
-fn fitting(ui: &Ui, caveats: &Caveats, [width, largest]: [f32; 2]) -> Vec<LayoutJob> {
-    let restrictions: Vec<LayoutJob> =
-        caveats.restrictions().iter().map(|caveat| layout(ui, &Paragraph::from(*caveat))).collect();
-    let all = |assumed: Vec<Paragraph>| -> Vec<LayoutJob> {
-        let assumed = assumed.iter().map(|paragraph| layout(ui, paragraph));
-        restrictions.iter().cloned().chain(assumed).collect()
-    };
-    let size = |jobs: &[LayoutJob]| -> f32 {
-        jobs.iter().map(|job| height(ui, job, width) + SPACING).sum()
-    };
-    let in_full = all(together(caveats));
-    if size(&in_full) <= largest {
-        return in_full;
-    }
-    let mut short = all(counted(caveats));
-    if size(&short) <= largest {
-        return short;
-    }
-    let n_all = short.len();
-    while !short.is_empty() && size(&short) > largest - TEXT_SIZE - SPACING {
-        short.pop();
-    }
-    let text = format!("{} more, see the numbers of this figure (CSV)", n_all - short.len());
-    short.push(layout(ui, &Paragraph { severity: Severity::Warning, label: "not shown", text }));
-    short
-}
-
-/// What was assumed, and what is not used, in a paragraph each.
-fn together(caveats: &Caveats) -> Vec<Paragraph> {
-    grouped(caveats, |texts| texts.join("; "))
-}
-
-/// How many values were assumed, and how many are not used.
-fn counted(caveats: &Caveats) -> Vec<Paragraph> {
-    let count = |texts: Vec<String>| {
-        let n = texts.len();
-        format!(
-            "{n} {}, see the numbers of this figure (CSV)",
-            if n == 1 { "value" } else { "values" }
-        )
-    };
-    grouped(caveats, count)
-}
-
-/// The assumptions as one paragraph for each label.
-fn grouped(caveats: &Caveats, joined: impl Fn(Vec<String>) -> String) -> Vec<Paragraph> {
-    let mut groups: Vec<(&'static str, Vec<String>)> = Vec::new();
-    for caveat in caveats.assumptions() {
-        let (label, text) = (caveat.kind.label(), caveat.statement());
-        match groups.iter_mut().find(|(known, _)| *known == label) {
-            Some((_, texts)) => texts.push(text),
-            None => groups.push((label, vec![text])),
+impl RestrictionLine {
+    /// The first restriction, or else what was assumed; `None` where there is neither.
+    pub(crate) fn new(caveats: &Caveats) -> Option<Self> {
+        let (restrictions, n_assumed) = (caveats.restrictions(), caveats.assumptions().count());
+        if let Some(first) = restrictions.first() {
+            let label = match first.is_warning() {
+                true => format!("Warning: {}: ", first.kind.label()),
+                false => format!("{}: ", capitalised(first.kind.label())),
+            };
+            let n_others = restrictions.len() - 1 + n_assumed;
+            let (severity, text) = (first.severity, first.statement());
+            return Some(Self { severity, label, text, n_others });
         }
+        let summary = caveats.summaries().into_iter().next()?;
+        let of_kind = caveats.assumptions().filter(|caveat| caveat.kind == summary.kind).count();
+        Some(Self {
+            severity: Severity::Info,
+            label: format!("{}: ", capitalised(summary.kind.label())),
+            text: summary.text,
+            n_others: n_assumed - of_kind,
+        })
     }
-    let severity = Severity::Info;
-    let paragraph = |(label, texts)| Paragraph { severity, label, text: joined(texts) };
-    groups.into_iter().map(paragraph).collect()
-}
 
-/// A paragraph with its label in the colour of its severity. The severity of a warning is a word, too.
-fn layout(ui: &Ui, paragraph: &Paragraph) -> LayoutJob {
-    let visuals = ui.visuals();
-    let color = theme::severity_color(paragraph.severity, visuals.dark_mode);
-    let format = |color: Color32| TextFormat::simple(FontId::proportional(TEXT_SIZE), color);
-    let label = match paragraph.severity > Severity::Info {
-        true => format!("Warning: {}: ", paragraph.label),
-        false => format!("{}: ", capitalised(paragraph.label)),
-    };
-    let mut job = LayoutJob::default();
-    job.append(&label, 0.0, format(color));
-    job.append(&paragraph.text, 0.0, format(visuals.strong_text_color()));
-    job
+    /// Draws the line. The number of the others always stands there; the sentence ends with “…” where it
+    /// is too long.
+    pub(crate) fn ui(&self, ui: &mut Ui, rect: Rect) {
+        let visuals = ui.visuals();
+        let (strong, weak) = (visuals.strong_text_color(), visuals.text_color());
+        let color = theme::severity_color(self.severity, visuals.dark_mode);
+        let format = |color| TextFormat::simple(FontId::proportional(TEXT_SIZE), color);
+        let others = match (self.n_others, rect.width() < LEAST_LETTERS * TEXT_SIZE) {
+            (0, _) => String::new(),
+            (n, true) => format!("+{n}"),
+            (n, false) => format!("and {n} more, listed with the answer"),
+        };
+        let mut job = LayoutJob::single_section(others.clone(), format(weak));
+        job.wrap = TextWrapping::truncate_at_width(rect.width());
+        let others_galley = ui.painter().layout_job(job);
+        let taken = if others.is_empty() { 0.0 } else { others_galley.size().x + BETWEEN };
+        let mut job = LayoutJob::default();
+        job.append(&self.label, 0.0, format(color));
+        job.append(&self.text, 0.0, format(strong));
+        job.wrap = TextWrapping::truncate_at_width((rect.width() - taken).max(0.0));
+        let galley = ui.painter().layout_job(job);
+        let place = |x: f32, size: Vec2| pos2(x, rect.center().y - size.y / 2.0);
+        let end = rect.left() + galley.size().x;
+        ui.painter().galley(place(rect.left(), galley.size()), galley, strong);
+        if !others.is_empty() {
+            let at = place(end + BETWEEN, others_galley.size());
+            ui.painter().galley(at, others_galley, weak);
+        }
+        let whole = format!("{}{} {others}", self.label, self.text);
+        let response = ui.interact(rect, ui.scope_id().with("restriction"), Sense::hover());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, whole.trim()));
+    }
 }
 
 fn capitalised(text: &str) -> String {
@@ -143,9 +108,26 @@ fn capitalised(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Height of a paragraph in lines of a width, points.
-fn height(ui: &Ui, job: &LayoutJob, width: f32) -> f32 {
-    let mut job = job.clone();
-    job.wrap.max_width = width;
-    ui.painter().layout_job(job).size().y
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
+
+    #[test]
+    fn a_warning_comes_first_and_the_others_are_counted() {
+        let rest = Caveat::new(CaveatKind::NotAtRest, "not at rest: it still moves");
+        let warning = Caveat::new(CaveatKind::WheelLift, "a wheel lifts");
+        let friction = Caveat::assumed(CaveatSubject::RoadFriction, "0.7", "it is dry");
+        let note = Caveat::new(CaveatKind::Note, "a note restricts nothing");
+        let all = Caveats::from(vec![rest.clone(), note.clone(), friction.clone(), warning]);
+        let line = RestrictionLine::new(&all).unwrap();
+        assert_eq!((line.label.as_str(), line.n_others), ("Warning: wheel lift: ", 2));
+        let line = RestrictionLine::new(&Caveats::from(vec![friction.clone(), rest])).unwrap();
+        assert_eq!((line.label.as_str(), line.n_others), ("Not at rest: ", 1));
+        let unused = Caveat::not_used("restitution, 0.15", "the network knows it");
+        let assumed = Caveats::from(vec![unused, friction]);
+        let line = RestrictionLine::new(&assumed).unwrap();
+        assert_eq!((line.text.as_str(), line.n_others), ("road friction", 1));
+        assert_eq!(RestrictionLine::new(&Caveats::from(vec![note])), None);
+    }
 }

@@ -26,11 +26,21 @@ pub struct Canvas {
 
 impl Default for Canvas {
     fn default() -> Self {
-        Self { size_px: [1600, 1000], scale: 2.0, dark: false }
+        Self { size_px: [1920, 1080], scale: 2.0, dark: false }
     }
 }
 
+/// Width and height of a frame whose text has the usual size, points.
+const FRAME_POINTS: [f32; 2] = [960.0, 540.0];
+
 impl Canvas {
+    /// Pixels per point of a picture of a scene in which text takes the same share of the picture at every
+    /// size, but is never smaller than on a screen.
+    pub fn scene_scale(size_px: [u32; 2]) -> f32 {
+        let shares = [0, 1].map(|side| size_px[side] as f32 / FRAME_POINTS[side]);
+        shares[0].min(shares[1]).max(1.0)
+    }
+
     /// Checks the size, before anything is allocated for it.
     ///
     /// # Errors

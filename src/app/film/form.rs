@@ -19,7 +19,7 @@ impl FilmForm {
     /// A film of the whole scene at its own speed, as it is seen.
     pub fn new(picture: ScenePicture, dark: bool) -> Self {
         let timing = FilmTiming::from_scene(&picture.scene);
-        let canvas = Canvas { size_px: [1920, 1080], dark, ..Canvas::default() };
+        let canvas = Canvas { dark, ..Canvas::default() };
         Self { film: Film { picture, timing, canvas } }
     }
 

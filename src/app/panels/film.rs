@@ -12,6 +12,7 @@ use impactlab_core::error_chain;
 use impactlab_core::ranges::{FILM_RATE, FILM_SIDE, FILM_SPEED, INSTANT};
 use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::FilmTiming;
+use impactlab_draw::Canvas;
 use impactlab_draw::film::Film;
 use impactlab_draw::theme;
 
@@ -30,6 +31,7 @@ pub fn film_ui(ui: &mut Ui, form: &mut FilmForm, is_busy: bool, commands: &mut V
         size_row(ui, film);
         timing_rows(ui, film);
     });
+    film.canvas.scale = Canvas::scene_scale(film.canvas.size_px);
     sections_ui(ui, form);
     ui.separator();
     let is_possible = summary_ui(ui, &form.film);

@@ -20,6 +20,7 @@ use impactlab_core::data::{Channel, write_atomically};
 use impactlab_core::ranges::{PICTURE_SCALE, SPEED};
 use impactlab_core::vehicle::ContactPoint;
 use impactlab_document::figure::{Figure, WheelInput, write_figure_csv};
+use impactlab_draw::Canvas;
 use impactlab_study::{Drive, ImpactRequest, ScenarioChoice, SimulateRequest, VehicleChoice};
 
 /// Draw a figure into a PNG, or write its numbers as CSV
@@ -107,11 +108,12 @@ pub(super) struct OutputArgs {
     #[arg(long)]
     dark: bool,
     /// Width x height, pixels
-    #[arg(long, value_parser = size_px, default_value = "1600x1000")]
+    #[arg(long, value_parser = size_px, default_value = "1920x1080")]
     size: [u32; 2],
-    /// Pixels per point: 2 for print and slides
-    #[arg(long, value_parser = number(PICTURE_SCALE), default_value = "2")]
-    scale: f64,
+    /// Pixels per point: larger text and lines; 2 if not given, for print and slides, and for a scene in
+    /// proportion to its size
+    #[arg(long, value_parser = number(PICTURE_SCALE))]
+    scale: Option<f64>,
 }
 
 /// With what a case is simulated.
@@ -351,19 +353,23 @@ fn write_csv(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-fn canvas(output: &OutputArgs) -> impactlab_draw::Canvas {
+/// The canvas of a picture.
+///
+/// - `usual_scale`: pixels per point where nobody says them.
+fn canvas(output: &OutputArgs, usual_scale: f32) -> Canvas {
     let OutputArgs { size, scale, dark, .. } = *output;
-    impactlab_draw::Canvas { size_px: size, scale: scale as f32, dark }
+    Canvas { size_px: size, scale: scale.map_or(usual_scale, |scale| scale as f32), dark }
 }
 
 fn write_png(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
-    let image = impactlab_draw::figure_image(figure, canvas(output))?;
+    let image = impactlab_draw::figure_image(figure, canvas(output, Canvas::default().scale))?;
     impactlab_draw::save_png(&image, &output.out, output.overwrite.into())?;
     Ok(())
 }
 
 fn write_scene(shown: ShownScene, output: &OutputArgs) -> Result<(), CliError> {
-    let image = impactlab_draw::scene::scene_image(&shown.picture(), canvas(output))?;
+    let canvas = canvas(output, Canvas::scene_scale(output.size));
+    let image = impactlab_draw::scene::scene_image(&shown.picture(), canvas)?;
     impactlab_draw::save_png(&image, &output.out, output.overwrite.into())?;
     Ok(())
 }

@@ -52,9 +52,9 @@ pub(super) struct FilmArgs {
     /// Width x height, pixels, both even
     #[arg(long, value_parser = size_px, default_value = "1920x1080")]
     size: [u32; 2],
-    /// Pixels per point: larger text and lines
-    #[arg(long, value_parser = number(PICTURE_SCALE), default_value = "2")]
-    scale: f64,
+    /// Pixels per point: larger text and lines; in proportion to the size if not given
+    #[arg(long, value_parser = number(PICTURE_SCALE))]
+    scale: Option<f64>,
 }
 
 /// How a reconstruction is sampled, if the scene is of one.
@@ -213,7 +213,8 @@ fn make(
     use impactlab_study::Event;
 
     let FilmArgs { size, scale, dark, .. } = *args;
-    let canvas = Canvas { size_px: size, scale: scale as f32, dark };
+    let scale = scale.map_or_else(|| Canvas::scene_scale(size), |scale| scale as f32);
+    let canvas = Canvas { size_px: size, scale, dark };
     let film = Film { picture: shown.picture(), timing, canvas };
     let existing = args.overwrite.into();
     let made = match kind {

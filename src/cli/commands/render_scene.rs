@@ -22,6 +22,9 @@ use impactlab_document::scene::{
 use impactlab_study::analysis::{Analysis, DensityTask};
 use impactlab_study::{ForceSource, PredictMotionRequest, SimulateAnswer, SimulateRequest};
 
+/// Distance of the camera from a car that it follows, m: the car is an eighth of the width of a picture.
+const FOLLOW_M: f64 = 35.0;
+
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
     #[command(flatten)]
@@ -67,7 +70,8 @@ struct CameraArgs {
     /// In perspective: height of the camera above the horizon; such as 30deg
     #[arg(long, value_name = "ANGLE", value_parser = number(CAMERA_ELEVATION))]
     elevation: Option<f64>,
-    /// Distance of the camera from what it looks at; the whole scene is seen if not given
+    /// Distance of the camera from what it looks at; if not given 35 m from the car that it follows, or
+    /// where the whole scene is seen
     #[arg(long, value_name = "LENGTH", value_parser = number(CAMERA_DISTANCE))]
     distance: Option<f64>,
     /// The car in the middle of the picture
@@ -140,7 +144,7 @@ impl ShownScene {
             scene: Arc::new(self.scene),
             time_s: self.time_s,
             is_placed: false,
-            distance_m: distance,
+            distance_m: distance.or(follow.map(|_| FOLLOW_M)),
             follow: match follow {
                 None => Follow::Nothing,
                 Some(FollowArg::Struck) => Follow::Struck,

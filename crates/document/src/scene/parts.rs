@@ -255,9 +255,18 @@ impl Scene {
     ///
     /// - `view`: how it is seen, such as “from above”.
     pub fn heading(&self, view: &str, time_s: f64) -> String {
+        format!("{}: scene {view} at {time_s:.2} s{}", self.title, self.after(time_s))
+    }
+
+    /// The same where the time stands beside it.
+    pub fn heading_beside_time(&self, view: &str, time_s: f64) -> String {
+        format!("{}: scene {view}{}", self.title, self.after(time_s))
+    }
+
+    /// What a heading adds once the vehicles have met again.
+    fn after(&self, time_s: f64) -> &'static str {
         let met = self.crosses.iter().any(|cross| cross.time_s <= time_s);
-        let after = if met { ", after a second contact that is not computed" } else { "" };
-        format!("{}: scene {view} at {time_s:.2} s{after}", self.title)
+        if met { ", after a second contact that is not computed" } else { "" }
     }
 
     /// Lowest and highest `[X, Y]` of everything that is shown at any time, m.

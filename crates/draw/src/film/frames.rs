@@ -1,19 +1,17 @@
 //! The frames of a film: pictures of a scene, one after the other.
 
-use egui::{Color32, ColorImage, Context, Pos2, RawInput, Rect, TexturesDelta, Vec2};
+use egui::{Color32, ColorImage, Context, Pos2, RawInput, Rect, TexturesDelta, UiBuilder, Vec2};
 
-use crate::caveats::framed_ui;
-use crate::scene::{ScenePicture, SceneView, scene_view_ui};
+use crate::film::strip::Strip;
+use crate::scene::{ScenePicture, SceneView, scene_picture_ui};
 use crate::{Canvas, SoftwareRenderer, theme};
 use impactlab_core::ranges::OutOfRange;
 
 /// Passes after which fonts and layout of the first frame no longer change.
 const SETTLING_PASSES: usize = 4;
-/// Margin around the picture, points.
-const MARGIN: i8 = 12;
 
-/// Draws pictures of scenes off screen, each below its title and above what restricts it. What does not
-/// change from one picture to the next is kept: fonts, layout, and the ground of the scene.
+/// Draws pictures of scenes off screen, each below its title and above its legend and what restricts it.
+/// What does not change from one picture to the next is kept: fonts, layout, and the ground of the scene.
 pub struct FrameRenderer {
     canvas: Canvas,
     context: Context,
@@ -37,7 +35,7 @@ impl FrameRenderer {
             canvas,
             context,
             renderer: SoftwareRenderer::default(),
-            view: SceneView::underlaid(),
+            view: SceneView::in_frame(),
             n_passes: 0,
             image: ColorImage::filled(size, ground_color(canvas.dark)),
         })
@@ -47,12 +45,11 @@ impl FrameRenderer {
     ///
     /// - `speed`: seconds of the scene that are played in a second, for the time stamp.
     pub fn draw(&mut self, picture: &ScenePicture, speed: f64) -> &ColorImage {
-        self.view.set_speed(speed);
         while self.n_passes + 1 < SETTLING_PASSES {
-            self.pass(picture, true);
+            self.pass(picture, speed, true);
         }
         let is_first = self.n_passes < SETTLING_PASSES;
-        let output = self.pass(picture, is_first);
+        let output = self.pass(picture, speed, is_first);
         let pixels_per_point = output.pixels_per_point;
         let primitives = self.context.tessellate(output.shapes, pixels_per_point);
         self.image.pixels.fill(ground_color(self.canvas.dark));
@@ -62,7 +59,12 @@ impl FrameRenderer {
     }
 
     /// Lays the picture out once.
-    fn pass(&mut self, picture: &ScenePicture, places_camera: bool) -> egui::FullOutput {
+    fn pass(
+        &mut self,
+        picture: &ScenePicture,
+        speed: f64,
+        places_camera: bool,
+    ) -> egui::FullOutput {
         let Self { canvas, context, renderer, view, n_passes, .. } = self;
         let size = Vec2::from(canvas.size_px.map(|side| side as f32)) / canvas.scale;
         let mut input = RawInput {
@@ -74,24 +76,16 @@ impl FrameRenderer {
             viewport.native_pixels_per_point = Some(canvas.scale);
         }
         let mut output = context.run_ui(input, |ui| {
-            egui::Frame::new().inner_margin(MARGIN).show(ui, |ui| {
-                framed_ui(ui, &picture.title(), &picture.scene.caveats, |ui, height| {
-                    let height = height.unwrap_or_else(|| ui.available_height());
-                    if places_camera {
-                        view.place(picture);
-                    }
-                    let mut camera = picture.camera;
-                    scene_view_ui(
-                        ui,
-                        &picture.scene,
-                        picture.time_s,
-                        view,
-                        &mut camera,
-                        picture.follow,
-                        height,
-                    );
-                });
+            let strip = Strip::new(ui, picture, size);
+            let rect = strip.scene_rect();
+            if places_camera {
+                view.place(picture);
+            }
+            let (mut camera, at) = (picture.camera, (&picture.scene, picture.time_s));
+            ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+                scene_picture_ui(ui, at, view, &mut camera, picture.follow, rect.size());
             });
+            strip.ui(ui, picture, speed);
         });
         let mut textures: TexturesDelta = std::mem::take(&mut output.textures_delta);
         renderer.update_textures(&mut textures);

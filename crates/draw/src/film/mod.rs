@@ -15,6 +15,7 @@ mod encoder;
 mod frames;
 mod make;
 mod mp4;
+mod strip;
 
 pub use frames::FrameRenderer;
 pub use make::{Film, FilmError, write_film, write_frames};

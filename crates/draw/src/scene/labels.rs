@@ -9,8 +9,10 @@ use crate::scene::Projection;
 use crate::scene::grid::grid_step;
 use crate::scene::measures::{draw_measure, draw_measure_text, measure_text_place};
 use crate::scene::shade::{ground_color, role_color, zone_color};
+use impactlab_core::data::Severity;
+use impactlab_core::uncertainty::Caveat;
 use impactlab_core::units::Quantity;
-use impactlab_document::scene::{AreaKind, CarLook, Scene, SceneRole};
+use impactlab_document::scene::{AreaKind, CarLook, GroundArea, Scene, SceneRole};
 
 /// Sizes of text, points.
 const SMALL: f32 = 10.0;
@@ -19,6 +21,8 @@ const USUAL: f32 = 12.0;
 const EDGE: f32 = 6.0;
 /// Labels along an axis, at most.
 const MAX_LABELS: usize = 60;
+/// Places along and up a picture at which the name of a zone may stand.
+const PLACES: [usize; 2] = [24, 18];
 /// Steps by which a name gives way to others.
 const MAX_MOVES: usize = 8;
 /// Wanted length of the scale bar, points.
@@ -29,7 +33,7 @@ const AXES_RADII: [f32; 2] = [24.0, 40.0];
 /// Length of the arrows of the axes over the radius of their plate.
 const ARROW_SHARE: f32 = 0.65;
 /// Width of what the time stamp takes, and height of each of its lines, points.
-const STAMP_WIDTH: f32 = 116.0;
+const STAMP_WIDTH: f32 = 150.0;
 const STAMP_LINE: f32 = 17.0;
 /// Width and height of what the scale bar takes, points.
 const BAR_SIZE: Vec2 = vec2(150.0, 46.0);
@@ -49,8 +53,9 @@ pub struct Labels<'a> {
     pub points: f32,
     /// Whether the theme is dark.
     pub dark: bool,
-    /// Seconds of the scene that are played in a second, which the time stamp of a film says.
-    pub speed: Option<f64>,
+    /// Whether the time and what restricts the scene stand over the picture; in a frame of a film they
+    /// stand beside it.
+    pub is_stamped: bool,
 }
 
 impl Labels<'_> {
@@ -59,7 +64,9 @@ impl Labels<'_> {
     pub fn draw(&self, painter: &Painter, scene: &Scene, time_s: f64) {
         let mut taken = vec![self.scale_bar(painter, scene), self.axes(painter)];
         taken.extend(self.north(painter, scene));
-        self.stamp(painter, scene, time_s, &mut taken);
+        if self.is_stamped {
+            self.stamp(painter, scene, time_s, &mut taken);
+        }
         self.names(painter, scene, time_s, &mut taken);
         self.arrows(painter, scene, &mut taken);
         self.zones(painter, scene, &mut taken);
@@ -234,18 +241,45 @@ impl Labels<'_> {
         plate
     }
 
-    /// Names of zones of friction, each within its zone.
+    /// Names of zones of friction, each within its zone: of two verges, neither has the name of the other.
     fn zones(&self, painter: &Painter, scene: &Scene, taken: &mut Vec<Rect>) {
         let areas = scene.ground.iter().flat_map(|site| &site.areas);
         for zone in areas.filter(|area| area.kind == AreaKind::FrictionZone) {
-            let at = zone.label_m().and_then(|[x, y]| self.on_screen([x, y, 0.0]));
-            let Some(at) = at else { continue };
+            let wanted = zone.label_m().and_then(|[x, y]| self.on_screen([x, y, 0.0]));
+            let Some(wanted) = wanted else { continue };
             let (font, color) = (FontId::proportional(SMALL + 1.0), zone_color(self.dark));
             let galley = painter.layout_no_wrap(zone.name.clone(), font, color);
-            let place = Align2::CENTER_CENTER.anchor_size(at, galley.size());
-            let place = below_others(place, taken);
-            self.name(painter, place, galley, color, taken);
+            if let Some(place) = self.place_in_zone(zone, wanted, galley.size(), taken) {
+                self.name(painter, place, galley, color, taken);
+            }
         }
+    }
+
+    /// The free place for a name that is nearest to where it is wanted and has its middle in its zone.
+    fn place_in_zone(
+        &self,
+        zone: &GroundArea,
+        wanted: Pos2,
+        size: Vec2,
+        taken: &[Rect],
+    ) -> Option<Rect> {
+        let is_free = |at: &Pos2| {
+            let place = Align2::CENTER_CENTER.anchor_size(*at, size).expand(2.0);
+            let pixel = (*at - self.rect.min) * self.points;
+            let ground_m = self.projection.ground_at([f64::from(pixel.x), f64::from(pixel.y)]);
+            self.rect.contains_rect(place)
+                && taken.iter().all(|other| !other.intersects(place))
+                && ground_m.is_some_and(|at_m| zone.contains(at_m))
+        };
+        let along = |n: usize| (0..=n).map(move |i| i as f32 / n as f32);
+        let shares = along(PLACES[0]).flat_map(|x| along(PLACES[1]).map(move |y| vec2(x, y)));
+        let places = shares.map(|share| self.rect.min + share * self.rect.size());
+        let free = std::iter::once(wanted).chain(places).filter(is_free);
+        let nearest = free.min_by(|a, b| {
+            let off = |at: &Pos2| at.distance_sq(wanted);
+            off(a).total_cmp(&off(b))
+        });
+        nearest.map(|at| Align2::CENTER_CENTER.anchor_size(at, size))
     }
 
     /// The direction of grid north, below those of the axes.
@@ -378,23 +412,22 @@ impl Labels<'_> {
         }
     }
 
-    /// The time at the left top, with what restricts the scene.
+    /// The time at the left top, and below it one warning with the number of the others.
     fn stamp(&self, painter: &Painter, scene: &Scene, time_s: f64, taken: &mut Vec<Rect>) {
         let at = self.rect.left_top() + vec2(EDGE + 2.0, EDGE);
-        let speed = self.speed.filter(|speed| *speed != 1.0);
-        let speed = speed.map_or(String::new(), |speed| format!("  × {speed}"));
-        let text = format!("t = {time_s:.3} s{speed}");
+        let text = format!("t = {time_s:.3} s");
         let color = self.text_color();
-        let mut place = self.text(painter, at, Align2::LEFT_TOP, &text, USUAL + 1.0, color);
+        let place = self.text(painter, at, Align2::LEFT_TOP, &text, USUAL + 1.0, color);
         taken.push(place);
-        let warnings = scene.caveats.iter().filter(|caveat| caveat.is_warning());
-        let severity =
-            crate::theme::severity_color(impactlab_core::data::Severity::Warning, self.dark);
-        for caveat in warnings {
-            let at = place.left_bottom() + vec2(0.0, 4.0);
-            place = self.text(painter, at, Align2::LEFT_TOP, caveat.kind.label(), SMALL, severity);
-            taken.push(place);
-        }
+        let mut warnings = scene.caveats.iter().filter(|caveat| caveat.is_warning());
+        let Some(first) = warnings.next() else { return };
+        let label = match warnings.count() {
+            0 => first.kind.label().to_owned(),
+            n => format!("{} and {n} more", first.kind.label()),
+        };
+        let color = crate::theme::severity_color(Severity::Warning, self.dark);
+        let at = place.left_bottom() + vec2(0.0, 4.0);
+        taken.push(self.text(painter, at, Align2::LEFT_TOP, &label, SMALL, color));
     }
 }
 
@@ -407,19 +440,18 @@ fn axes_plate(picture: Rect) -> Rect {
 }
 
 /// What text and symbols cover of a picture, wherever its camera is: the axes with north, the scale bar,
-/// the time with what restricts the scene.
-pub fn covered(picture: Rect, scene: &Scene) -> [Rect; 3] {
+/// the time with a warning.
+///
+/// - `is_stamped`: whether the time stands over the picture.
+pub fn covered(picture: Rect, scene: &Scene, is_stamped: bool) -> Vec<Rect> {
     let has_north = scene.ground.as_ref().is_some_and(|ground| ground.north_rad.is_some());
     let mut axes = axes_plate(picture);
     axes.max.y += if has_north { NORTH_PLATE } else { 0.0 };
-    let warnings = scene.caveats.iter().filter(|caveat| caveat.is_warning());
-    let lines = 1 + warnings.count();
+    let lines = 1 + usize::from(scene.caveats.iter().any(Caveat::is_warning));
     let stamp = Vec2::new(STAMP_WIDTH, EDGE + STAMP_LINE * lines as f32);
-    [
-        axes,
-        Rect::from_min_max(picture.max - BAR_SIZE, picture.max),
-        Rect::from_min_size(picture.min, stamp),
-    ]
+    let stamp = is_stamped.then(|| Rect::from_min_size(picture.min, stamp));
+    let bar = Rect::from_min_max(picture.max - BAR_SIZE, picture.max);
+    [axes, bar].into_iter().chain(stamp).collect()
 }
 
 /// A number with the decimals that its step requires.

@@ -1,6 +1,8 @@
 //! The names of what a scene shows.
 
-use egui::{Color32, Painter, Rect, Sense, Stroke, Ui, Vec2, pos2};
+use std::sync::Arc;
+
+use egui::{Color32, FontId, Galley, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};
 
 use crate::scene::marks::ASPHALT;
 use crate::scene::shade::{ground_line_color, mark_color, role_color, zone_color};
@@ -25,6 +27,118 @@ pub fn legend_ui(ui: &mut Ui, scene: &Scene) {
             ui.painter().galley(at, galley, text_color);
         }
     });
+}
+
+/// Size of the names in the rows below a frame, height of a row, room between names, points.
+const ROW_FONT: f32 = 9.5;
+const ROW_HEIGHT: f32 = 13.0;
+const BETWEEN: f32 = 10.0;
+/// Size of a sample there, and room behind it, points.
+const SAMPLE: Vec2 = vec2(16.0, 9.0);
+const BEHIND_SAMPLE: f32 = 4.0;
+
+/// The names of what a scene shows in rows of a frame, which have the same place at every time.
+pub(crate) struct LegendRows {
+    rows: Vec<Vec<LegendName>>,
+    /// What is said of the names for which there is no room.
+    more: Option<Arc<Galley>>,
+}
+
+struct LegendName {
+    sample: (Color32, Entry),
+    name: Arc<Galley>,
+}
+
+impl LegendRows {
+    /// The names of a scene in rows.
+    ///
+    /// - `width`: of a row, points;
+    /// - `most`: how many rows there may be; names beyond them are counted.
+    pub(crate) fn new(ui: &Ui, scene: &Scene, width: f32, most: usize) -> Self {
+        let (dark, color) = (ui.visuals().dark_mode, ui.visuals().text_color());
+        let galley = |text: String, widest: f32| {
+            let font = FontId::proportional(ROW_FONT);
+            let mut job = egui::text::LayoutJob::simple_singleline(text, font, color);
+            job.wrap = egui::text::TextWrapping::truncate_at_width(widest);
+            ui.painter().layout_job(job)
+        };
+        let names: Vec<LegendName> = entries(scene, dark)
+            .into_iter()
+            .map(|(name, color, kind)| {
+                let name = galley(name.to_owned(), width - SAMPLE.x - BEHIND_SAMPLE);
+                LegendName { sample: (color, kind), name }
+            })
+            .collect();
+        let widths: Vec<f32> = names.iter().map(LegendName::width).collect();
+        let count = |n: usize| galley(format!("and {n} more"), width);
+        let more_width = count(names.len()).size().x + BETWEEN;
+        let n_in_rows = in_rows(&widths, width, (most, more_width));
+        let mut names = names.into_iter();
+        let rows = n_in_rows.iter().map(|n| names.by_ref().take(*n).collect()).collect();
+        let n_more = names.len();
+        Self { rows, more: (n_more > 0).then(|| count(n_more)) }
+    }
+
+    /// Height of all rows, points.
+    pub(crate) fn height(&self) -> f32 {
+        ROW_HEIGHT * self.rows.len() as f32
+    }
+
+    /// Draws the rows below a place.
+    pub(crate) fn draw(&self, painter: &Painter, at: Pos2) {
+        let color = painter.ctx().global_style().visuals.text_color();
+        let mut end = at + vec2(0.0, ROW_HEIGHT / 2.0);
+        for (idx, row) in self.rows.iter().enumerate() {
+            end = at + vec2(0.0, ROW_HEIGHT * (idx as f32 + 0.5));
+            for LegendName { sample: (tint, kind), name } in row {
+                let place = egui::Align2::LEFT_CENTER.anchor_size(end, SAMPLE);
+                draw_sample(painter, place, *tint, *kind);
+                let left = end + vec2(SAMPLE.x + BEHIND_SAMPLE, -name.size().y / 2.0);
+                painter.galley(left, Arc::clone(name), color);
+                end.x += SAMPLE.x + BEHIND_SAMPLE + name.size().x + BETWEEN;
+            }
+        }
+        if let Some(more) = &self.more {
+            painter.galley(end - vec2(0.0, more.size().y / 2.0), Arc::clone(more), color);
+        }
+    }
+}
+
+impl LegendName {
+    fn width(&self) -> f32 {
+        SAMPLE.x + BEHIND_SAMPLE + self.name.size().x
+    }
+}
+
+/// How many of the names go into each row, from the first one on.
+///
+/// - `widths`: of the names, `width`: of a row, points;
+/// - `most`: how many rows there may be, and the room that is kept at the end of the last one where not
+///   all names have a place, points.
+fn in_rows(widths: &[f32], width: f32, (most, more): (usize, f32)) -> Vec<usize> {
+    let filled = |last: f32| {
+        let (mut rows, mut used) = (Vec::new(), f32::INFINITY);
+        for of_name in widths {
+            let room = if rows.len() == most { last } else { width };
+            if used + of_name <= room {
+                if let Some(n) = rows.last_mut() {
+                    *n += 1;
+                }
+                used += of_name + BETWEEN;
+            } else if rows.len() < most {
+                rows.push(1);
+                used = of_name + BETWEEN;
+            } else {
+                break;
+            }
+        }
+        rows
+    };
+    let all = filled(width);
+    match all.iter().sum::<usize>() == widths.len() {
+        true => all,
+        false => filled(width - more),
+    }
 }
 
 /// Draws the sample beside a name.
@@ -140,4 +254,24 @@ fn ground_entries(scene: &Scene, dark: bool) -> impl Iterator<Item = (&str, Colo
         (name, ground_line_color(line.kind, dark), Entry::Line)
     });
     zones.chain(lines)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_fill_rows_and_what_is_left_keeps_room_for_its_number() {
+        for (widths, expected) in [
+            (&[][..], &[][..]),
+            (&[40.0, 40.0, 40.0], &[2, 1]),
+            (&[40.0, 40.0, 40.0, 40.0], &[2, 2]),
+            // The fifth name has no place, so that the fourth gives way to the number.
+            (&[40.0, 40.0, 40.0, 40.0, 40.0], &[2, 1]),
+            // A name that is as wide as a row has one of its own.
+            (&[100.0, 100.0], &[1, 1]),
+        ] {
+            assert_eq!(in_rows(widths, 100.0, (2, 30.0)), expected, "{widths:?}");
+        }
+    }
 }

@@ -73,10 +73,9 @@ pub struct SceneView {
     seen: Option<(Rect, Projection, f32)>,
     /// Whether clicks are taken by somebody else, so that a double click does not fit the camera.
     pub takes_clicks: bool,
-    /// Seconds of the scene that are played in a second, where the time stamp says it.
-    speed: Option<f64>,
-    /// Whether the picture is not painted, because whoever draws off screen copies it below the text.
-    is_underlaid: bool,
+    /// Whether the picture is part of a frame of a film: it is not painted but copied below the text, and
+    /// the time stands beside it.
+    is_in_frame: bool,
     /// Left, top, width and height of the last picture on the screen, pixels.
     area_px: [usize; 4],
 }
@@ -84,8 +83,8 @@ pub struct SceneView {
 impl SceneView {
     /// A view whose picture is copied below the text and not painted, which takes far less time where
     /// egui's triangles are drawn on the CPU.
-    pub(crate) fn underlaid() -> Self {
-        Self { is_underlaid: true, ..Self::default() }
+    pub(crate) fn in_frame() -> Self {
+        Self { is_in_frame: true, ..Self::default() }
     }
 
     /// Draws on the graphics processor of the window from now on.
@@ -96,11 +95,6 @@ impl SceneView {
     /// Why the graphics processor does not draw any more, once.
     pub fn take_refusal(&mut self) -> Option<String> {
         self.refusal.take()
-    }
-
-    /// Says beside the time how fast it is played: seconds of the scene in a second.
-    pub(crate) fn set_speed(&mut self, speed: f64) {
-        self.speed = Some(speed);
     }
 
     /// Copies the last picture to its place in an image of the whole screen.
@@ -174,6 +168,20 @@ pub fn scene_view_ui(
     legend_ui(ui, scene);
     let used = ui.cursor().top() - top;
     let size = Vec2::new(ui.available_width().max(32.0), (height - used).max(64.0));
+    scene_picture_ui(ui, (scene, time_s), view, usual, follow, size)
+}
+
+/// Draws a scene at a time without its legend.
+///
+/// - `size`: of the picture, points.
+pub(crate) fn scene_picture_ui(
+    ui: &mut Ui,
+    (scene, time_s): (&Arc<Scene>, f64),
+    view: &mut SceneView,
+    usual: &mut Camera,
+    follow: Follow,
+    size: Vec2,
+) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let named = || egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture of the scene");
     response.widget_info(named);
@@ -186,12 +194,13 @@ pub fn scene_view_ui(
     let rect =
         Rect::from_min_size(pos2(left / points, top / points), Vec2::new(width, height) / points);
     let size = size_px.map(|side| side as f64);
+    let is_stamped = !view.is_in_frame;
     let mut camera = match view.camera {
         Some(camera) if camera.kind == usual.kind => camera,
-        _ => fitted_clear(*usual, scene, rect, points),
+        _ => fitted_clear(*usual, (scene, is_stamped), rect, points),
     };
     if response.double_clicked() && !view.takes_clicks {
-        camera = fitted_clear(*usual, scene, rect, points);
+        camera = fitted_clear(*usual, (scene, is_stamped), rect, points);
     }
     camera = keyed(ui, &response, moved(ui, &response, camera, rect, size), size);
     if let Some(target_m) = follow.target_m(scene, time_s) {
@@ -203,12 +212,12 @@ pub fn scene_view_ui(
     let look = SceneLook { size_px, camera, dark, pixels_per_point: points };
     let [left, top] = [left, top].map(|at| at.max(0.0) as usize);
     view.area_px = [left, top, size_px[0], size_px[1]];
-    match view.is_underlaid {
+    match view.is_in_frame {
         true => drop(view.canvas.draw(scene, &look, time_s)),
         false => paint(ui, rect, view, scene, time_s, &look),
     }
     let projection = look.projection();
-    let labels = Labels { rect, projection: &projection, points, dark, speed: view.speed };
+    let labels = Labels { rect, projection: &projection, points, dark, is_stamped };
     view.seen = Some((rect, projection, points));
     labels.draw(&ui.painter().with_clip_rect(rect), scene, time_s);
     response
@@ -217,11 +226,17 @@ pub fn scene_view_ui(
 /// The camera from which everything is seen, as far back that nothing lies under the text and the symbols
 /// at the edge; as near as it can be where the picture is too small for that.
 ///
+/// - `is_stamped`: whether the time stands over the picture;
 /// - `rect`: the picture;
 /// - `points`: its pixels per point.
-fn fitted_clear(usual: Camera, scene: &Scene, rect: Rect, points: f32) -> Camera {
+fn fitted_clear(
+    usual: Camera,
+    (scene, is_stamped): (&Scene, bool),
+    rect: Rect,
+    points: f32,
+) -> Camera {
     let size = [rect.width(), rect.height()].map(|side| f64::from(side * points));
-    let (places_m, covered) = (scene.places_m(), covered(rect, scene));
+    let (places_m, covered) = (scene.places_m(), covered(rect, scene, is_stamped));
     let nearest = usual.fitted(&places_m, size);
     let is_clear = |camera: &Camera| {
         let projection = Projection::new(camera, size);

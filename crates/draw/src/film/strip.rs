@@ -1,0 +1,84 @@
+//! The text of a frame: title and time in a line above the scene, legend and restriction below it. Each has
+//! the same place at every time of a scene, and the scene goes from edge to edge between them.
+
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{FontId, Rect, Ui, Vec2, pos2, vec2};
+
+use crate::caveats::{LINE_HEIGHT, RestrictionLine};
+use crate::scene::{LegendRows, ScenePicture};
+
+/// Height of the line above the scene, and size of its text, points.
+const HEAD_HEIGHT: f32 = 20.0;
+const HEAD_SIZE: f32 = 13.0;
+/// Distance of text from the edges at the sides, and room above and below what stands below the scene,
+/// points.
+const SIDE: f32 = 8.0;
+const ROOM: f32 = 1.0;
+/// Most rows of the legend, and the largest share of the height of the frame that they take together; one
+/// row is always there.
+const MOST_ROWS: usize = 2;
+const LEGEND_SHARE: f32 = 0.12;
+const ROW_HEIGHT: f32 = 13.0;
+
+/// The text of a frame.
+pub struct Strip {
+    size: Vec2,
+    legend: LegendRows,
+    restriction: Option<RestrictionLine>,
+}
+
+impl Strip {
+    /// The text of a frame of a size, points.
+    pub fn new(ui: &Ui, picture: &ScenePicture, size: Vec2) -> Self {
+        let n_rows = (LEGEND_SHARE * size.y / ROW_HEIGHT) as usize;
+        let width = (size.x - 2.0 * SIDE).max(1.0);
+        let legend = LegendRows::new(ui, &picture.scene, width, n_rows.clamp(1, MOST_ROWS));
+        Self { size, legend, restriction: RestrictionLine::new(&picture.scene.caveats) }
+    }
+
+    /// Where the scene is, points.
+    pub fn scene_rect(&self) -> Rect {
+        let line = if self.restriction.is_some() { LINE_HEIGHT } else { 0.0 };
+        let foot = self.legend.height() + line;
+        let foot = if foot > 0.0 { foot + 2.0 * ROOM } else { 0.0 };
+        let bottom = (self.size.y - foot).max(HEAD_HEIGHT + 1.0);
+        Rect::from_min_max(pos2(0.0, HEAD_HEIGHT), pos2(self.size.x, bottom))
+    }
+
+    /// Draws the text.
+    ///
+    /// - `speed`: seconds of the scene that are played in a second.
+    pub fn ui(&self, ui: &mut Ui, picture: &ScenePicture, speed: f64) {
+        let color = ui.visuals().strong_text_color();
+        let line = |text: String, widest: f32| {
+            let font = FontId::proportional(HEAD_SIZE);
+            let mut job = LayoutJob::simple_singleline(text, font, color);
+            job.wrap = TextWrapping::truncate_at_width(widest.max(0.0));
+            ui.painter().layout_job(job)
+        };
+        let time = line(time_text(picture.time_s, speed), self.size.x);
+        // The widest time of a scene, so that none moves the title.
+        let end_s = picture.scene.end_s.max(picture.time_s);
+        let room = line(time_text(end_s, 0.125), self.size.x).size().x.max(time.size().x);
+        let view = picture.camera.kind.phrase();
+        let title = picture.scene.heading_beside_time(view, picture.time_s);
+        let title = line(title, self.size.x - room - 3.0 * SIDE);
+        let top = |height: f32| (HEAD_HEIGHT - height) / 2.0;
+        ui.painter().galley(pos2(SIDE, top(title.size().y)), title, color);
+        let left = self.size.x - SIDE - room;
+        ui.painter().galley(pos2(left, top(time.size().y)), time, color);
+        let scene = self.scene_rect();
+        self.legend.draw(ui.painter(), scene.left_bottom() + vec2(SIDE, ROOM));
+        if let Some(restriction) = &self.restriction {
+            let at = scene.left_bottom() + vec2(SIDE, ROOM + self.legend.height());
+            let width = (self.size.x - 2.0 * SIDE).max(1.0);
+            restriction.ui(ui, Rect::from_min_size(at, vec2(width, LINE_HEIGHT)));
+        }
+    }
+}
+
+/// The time of a frame, with the speed at which it is played where that is another than its own.
+fn time_text(time_s: f64, speed: f64) -> String {
+    let speed = if speed == 1.0 { String::new() } else { format!("  × {speed}") };
+    format!("t = {time_s:.3} s{speed}")
+}
