@@ -13,6 +13,10 @@ use impactlab_draw::SoftwareRenderer;
 /// Longest time to wait for background work. Only work that hangs exceeds it.
 const PATIENCE: Duration = Duration::from_secs(600);
 
+/// Range of the pause between two frames while work is awaited.
+const SHORTEST_PAUSE: Duration = Duration::from_millis(2);
+const LONGEST_PAUSE: Duration = Duration::from_millis(100);
+
 /// Colour that a real window shows where nothing is painted.
 const WINDOW_GROUND: Color32 = Color32::BLACK;
 
@@ -59,6 +63,10 @@ pub fn open_at(
         .build_eframe(move |cc| App::new(cc, paths, state_file))
 }
 
+/// Time between two frames while work is awaited, over that which a frame takes: drawing without a
+/// graphics card has a small share of a core, and the work that is awaited has the rest.
+const PAUSE_PER_FRAME: u32 = 7;
+
 /// Draws frames until the state fulfils a condition.
 ///
 /// - `what`: what is awaited, for the message if it takes too long.
@@ -66,8 +74,11 @@ pub fn step_until(harness: &mut Harness<'_, App>, what: &str, wanted: impl Fn(&S
     let start = Instant::now();
     while !wanted(harness.state().state()) {
         assert!(start.elapsed() < PATIENCE, "waited in vain for {what}");
+        let frame = Instant::now();
         harness.step();
-        std::thread::sleep(Duration::from_millis(2));
+        std::thread::sleep(
+            (frame.elapsed() * PAUSE_PER_FRAME).clamp(SHORTEST_PAUSE, LONGEST_PAUSE),
+        );
     }
     for _ in 0..4 {
         harness.step();
