@@ -13,9 +13,9 @@ use impactlab_core::vehicle::Ending;
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::case_file::Variant;
 use impactlab_study::{
-    DEFAULT_VEHICLE_DRAWS, Drive, ForceQuestion, ForceSource, ImpactRequest, ModelChoice,
-    MotionSource, PredictForceRequest, PredictMotionRequest, ReconstructRequest, Request,
-    ScenarioChoice, SeriesFile, SimulateRequest,
+    Drive, ForceQuestion, ForceSource, ImpactRequest, ModelChoice, MotionSource,
+    PredictForceRequest, PredictMotionRequest, ReconstructRequest, Request, ScenarioChoice,
+    SeriesFile, SimulateRequest,
 };
 
 /// What the user works on. The questions are those that the case stores and the command line asks;
@@ -375,7 +375,7 @@ impl FoundQuestions {
         let Self { impact, simulate, predict_force, predict_motion, reconstruct } = self;
         let of_motion = || {
             let motion = predict_motion.as_ref()?.motion.clone();
-            Some(SimulateRequest { vehicle_draws: DEFAULT_VEHICLE_DRAWS, ..motion })
+            Some(SimulateRequest { vehicle_draws: None, ..motion })
         };
         if let Some(simulate) = simulate.or_else(of_motion) {
             project.simulate = simulate;

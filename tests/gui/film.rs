@@ -29,7 +29,7 @@ use crate::reconstruct::evidence_in;
 fn film() -> Film {
     let dataset = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea").into();
     let source = MotionSource::Case { dataset, case: "FE_c002".to_owned() };
-    let request = SimulateRequest { vehicle_draws: 0, ..SimulateRequest::new(source) };
+    let request = SimulateRequest { vehicle_draws: Some(0), ..SimulateRequest::new(source) };
     let answer = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
     let answer = answer.expect("a shipped case is simulated").complete().expect("not cancelled");
     let scene = simulation_scene(&SimulationScene {

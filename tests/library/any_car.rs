@@ -376,7 +376,7 @@ fn forecast(
     let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
     let shipped = ForceSource::Predicted(ModelSource::Shipped.into());
     let mut request = PredictMotionRequest::new(source, shipped);
-    (request.draws, request.motion.vehicle_draws) = (2, 2);
+    (request.draws, request.motion.vehicle_draws) = (2, Some(2));
     request.motion.friction = Some(friction);
     (request.motion.duration_s, request.motion.until_rest) = (3.0, until_rest);
     let mut go_on = |_: Event<'_>| ControlFlow::Continue(());

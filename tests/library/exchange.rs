@@ -26,8 +26,11 @@ fn case() -> (SimulateAnswer, Scene) {
 /// A motion and its scene.
 fn simulated(source: MotionSource) -> (SimulateAnswer, Scene) {
     // Each vehicle for itself, so that something restricts the motion.
-    let request =
-        SimulateRequest { vehicle_draws: 0, one_contact: true, ..SimulateRequest::new(source) };
+    let request = SimulateRequest {
+        vehicle_draws: Some(0),
+        one_contact: true,
+        ..SimulateRequest::new(source)
+    };
     let answer = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
     let answer = answer.expect("a motion").complete().expect("not cancelled");
     let caveats = answer.report.caveats.clone();

@@ -23,8 +23,11 @@ fn case_of(name: &str, question: impl Into<Request>) -> CaseFile {
 fn on_ground(site: PathBuf) -> CaseFile {
     let scenario = ScenarioChoice::File(PathBuf::from("pit-right-rear"));
     let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
-    let question =
-        SimulateRequest { vehicle_draws: 0, site: Some(site), ..SimulateRequest::new(source) };
+    let question = SimulateRequest {
+        vehicle_draws: Some(0),
+        site: Some(site),
+        ..SimulateRequest::new(source)
+    };
     case_of("pit", question)
 }
 

@@ -58,7 +58,7 @@ fn braked_simulation() -> CaseFile {
     let scenario = ScenarioChoice::File(PathBuf::from("pit-right-rear"));
     let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
     let question = SimulateRequest {
-        vehicle_draws: 0,
+        vehicle_draws: Some(0),
         ending: Some(Ending { brake: Some(Braking::new(0.3, 1.5, 0.1)), ..Ending::default() }),
         ..SimulateRequest::new(source)
     };

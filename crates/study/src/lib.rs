@@ -96,9 +96,7 @@ pub use questions::simulate::recorded_force::{RecordedForceAnswer, RecordedForce
 pub use questions::simulate::report::{
     EndState, ForceReport, FrictionZoneReport, RestState, SimulateReport,
 };
-pub use questions::simulate::request::{
-    DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, SimulateAnswer, SimulateRequest,
-};
+pub use questions::simulate::request::{DEFAULT_DURATION_S, SimulateAnswer, SimulateRequest};
 pub use questions::simulate::tire_marks::TireMarkReport;
 pub use questions::simulate::vehicle_uncertainty::VehicleUncertainty;
 pub use questions::train::fine_tune::{FineTuneRequest, Learning};

@@ -234,7 +234,7 @@ fn forecast(simulate: &SimulateRequest, shown: &FormsProject) -> PredictMotionRe
         FormsForceChoice::Predicted => ForceSource::Predicted(model_of(&shown.force.model)),
     };
     PredictMotionRequest {
-        motion: SimulateRequest { vehicle_draws: DEFAULT_DRAWS, ..simulate.clone() },
+        motion: SimulateRequest { vehicle_draws: None, ..simulate.clone() },
         response_model: model_of(model),
         draws: forecast.n_curves.unwrap_or(DEFAULT_DRAWS),
         seed: forecast.seed,

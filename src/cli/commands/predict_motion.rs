@@ -84,10 +84,10 @@ pub(in crate::cli) struct PredictMotionArgs {
     /// Force histories to draw
     #[arg(long, default_value_t = DEFAULT_DRAWS, value_name = "N", value_parser = count::<usize>(DRAWS))]
     draws: usize,
-    /// Vehicles to draw from what the data sheet of the struck vehicle leaves open, at least one for
-    /// each force; 0 takes the medians alone
-    #[arg(long, default_value_t = DEFAULT_DRAWS, value_name = "N", value_parser = count::<usize>(VEHICLE_DRAWS))]
-    vehicle_draws: usize,
+    /// Vehicles to draw from what the data sheet of the struck vehicle and the road leave open, at least
+    /// one for each force; 0 takes the medians alone; if not given, 200, or 32 for one vehicle by itself
+    #[arg(long, value_name = "N", value_parser = count::<usize>(VEHICLE_DRAWS))]
+    vehicle_draws: Option<usize>,
     /// How long, s; 4 if not given; a recorded motion has its own duration
     #[arg(long, value_name = "S", value_parser = number(REST_LIMIT))]
     duration: Option<f64>,

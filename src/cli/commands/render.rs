@@ -163,7 +163,7 @@ impl VehicleArgs {
         let mut request = SimulateRequest {
             vehicle: self.struck(),
             striking: VehicleArg::choice(&self.striking),
-            vehicle_draws: 0,
+            vehicle_draws: Some(0),
             site: self.site.clone(),
             ..SimulateRequest::new(source.motion_source(&console.library, start)?)
         };

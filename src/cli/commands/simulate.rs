@@ -23,8 +23,8 @@ use impactlab_core::ranges::{
 use impactlab_core::vehicle::{ContactPoint, Equations, Integrator};
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::{
-    DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, Drive, MotionSource, ScenarioChoice, SeriesFile,
-    SimulateDatasetRequest, SimulateRequest,
+    DEFAULT_DURATION_S, Drive, MotionSource, ScenarioChoice, SeriesFile, SimulateDatasetRequest,
+    SimulateRequest,
 };
 
 /// Simulate the motion after an impact, or compare a whole data set with the simulation
@@ -172,10 +172,9 @@ struct SingleArgs {
     #[arg(long, value_parser = number(SIMULATED_DURATION))]
     duration: Option<f64>,
     /// Vehicles to draw from what the data sheet of the struck vehicle leaves open; 0 takes the
-    /// medians alone
-    #[arg(long, value_name = "N", default_value_t = DEFAULT_VEHICLE_DRAWS,
-        value_parser = count::<usize>(VEHICLE_DRAWS))]
-    vehicle_draws: usize,
+    /// medians alone; 100 if not given
+    #[arg(long, value_name = "N", value_parser = count::<usize>(VEHICLE_DRAWS))]
+    vehicle_draws: Option<usize>,
     /// Seed of these draws
     #[arg(long, default_value_t = 0)]
     seed: u64,

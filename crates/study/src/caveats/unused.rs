@@ -227,9 +227,7 @@ pub(crate) fn by_recorded_pair(request: &SimulateRequest) -> Vec<Caveat> {
 pub(crate) fn by_forecast(request: &PredictMotionRequest) -> Vec<Caveat> {
     let mut unused = Vec::new();
     let is_predicted = matches!(request.force, ForceSource::Predicted(_));
-    let follows_both = matches!(request.motion.source, MotionSource::Scenario { .. })
-        && !request.motion.one_contact;
-    if !is_predicted && !follows_both && request.draws != DEFAULT_DRAWS {
+    if !is_predicted && !request.is_of_both() && request.draws != DEFAULT_DRAWS {
         unused.push(Caveat::not_used(
             format!("number of drawn forces, {}", request.draws),
             "the force is given, so that none is drawn",

@@ -95,3 +95,34 @@ pub(super) fn given_force(
     caveats.extend(restrictions::cut_record_caveat(&force));
     Ok(force)
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::analysis::PulseSetup;
+    use crate::questions::predict::motion::ONE_VEHICLE_DRAWS;
+    use crate::{
+        COARSE_DRAWS, DEFAULT_DRAWS, ForceSource, MotionSource, PredictMotionRequest, Question,
+        ScenarioChoice,
+    };
+    use impactlab_core::collision::Scenario;
+
+    #[test]
+    fn one_vehicle_is_drawn_less_often_than_both_unless_somebody_says_how_often() {
+        let scenario = ScenarioChoice::Inline(Box::new(Scenario::example()));
+        let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
+        let both = PredictMotionRequest::new(source, ForceSource::Given);
+        assert_eq!(both.n_vehicles(), DEFAULT_DRAWS);
+        let mut one = both.clone();
+        one.motion.one_contact = true;
+        assert_eq!(one.n_vehicles(), ONE_VEHICLE_DRAWS);
+        // Its road is drawn where nothing else is, so that there is an answer in the meantime.
+        let coarse = one.coarse().map(|coarse| coarse.n_vehicles());
+        assert_eq!(coarse, Some(COARSE_DRAWS));
+        for n in [0, 200] {
+            one.motion.vehicle_draws = Some(n);
+            assert_eq!(one.n_vehicles(), n);
+        }
+        (one.draws, one.motion.vehicle_draws) = (COARSE_DRAWS, Some(COARSE_DRAWS));
+        assert_eq!(one.coarse(), None, "it is no coarser");
+    }
+}

@@ -86,9 +86,10 @@ pub struct SimulateRequest {
     /// both are followed through all contacts.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub one_contact: bool,
-    /// How many vehicles are drawn from what the data sheet of the struck vehicle leaves open.
-    #[serde(default = "default_vehicle_draws")]
-    pub vehicle_draws: usize,
+    /// How many vehicles are drawn from what the data sheet of the struck vehicle and the road leave open;
+    /// if not given, as many as the answer needs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vehicle_draws: Option<usize>,
     /// Seed of these draws.
     #[serde(default)]
     pub seed: u64,
@@ -97,12 +98,8 @@ pub struct SimulateRequest {
     pub alone: bool,
 }
 
-/// Vehicles that are drawn where nobody says how many.
-pub const DEFAULT_VEHICLE_DRAWS: usize = 100;
-
-fn default_vehicle_draws() -> usize {
-    DEFAULT_VEHICLE_DRAWS
-}
+/// Vehicles that a simulation draws where nobody says how many.
+const DEFAULT_VEHICLE_DRAWS: usize = 100;
 
 /// Duration of a simulation where nobody says it, s: that of the trajectory data sets.
 pub const DEFAULT_DURATION_S: f64 = 4.0;
@@ -133,7 +130,7 @@ impl SimulateRequest {
             friction_sigma: None,
             site: None,
             duration_s: DEFAULT_DURATION_S,
-            vehicle_draws: DEFAULT_VEHICLE_DRAWS,
+            vehicle_draws: None,
             seed: 0,
             alone: false,
             ending: None,
@@ -258,7 +255,8 @@ impl SimulateRequest {
         caveats: &mut Caveats,
     ) -> Option<VehicleUncertainty> {
         let road = self.road(&settings.struck, self.seed);
-        let draws = (self.vehicle_draws, self.seed, road);
+        let n_draws = self.vehicle_draws.unwrap_or(DEFAULT_VEHICLE_DRAWS);
+        let draws = (n_draws, self.seed, road);
         let uncertainty = vehicle_uncertainty(draws, settings, analysis, analyse)?;
         caveats.extend(assumed::road(self, &settings.struck));
         Some(uncertainty)
@@ -337,7 +335,9 @@ impl Question for SimulateRequest {
         check_given("friction", &ROAD_FRICTION, self.friction)?;
         check_given("friction_sigma", &ROAD_FRICTION_SIGMA, self.friction_sigma)?;
         check("duration_s", &SIMULATED_DURATION, self.duration_s)?;
-        check_count("vehicle_draws", &VEHICLE_DRAWS, self.vehicle_draws)?;
+        if let Some(n_draws) = self.vehicle_draws {
+            check_count("vehicle_draws", &VEHICLE_DRAWS, n_draws)?;
+        }
         let of_ending = self.ending.iter().flat_map(Ending::ranges);
         check_all(of_ending.map(|(key, value, range)| (format!("ending.{key}"), value, range)))?;
         self.source.check()

@@ -134,7 +134,7 @@ mod tests {
     fn report(source: MotionSource, vehicle: &str, n_draws: usize) -> Answer<SimulateReport> {
         let request = SimulateRequest {
             vehicle: VehicleChoice::named(vehicle),
-            vehicle_draws: n_draws,
+            vehicle_draws: Some(n_draws),
             ..SimulateRequest::new(source)
         };
         let mut go_on = |_: crate::Event<'_>| ControlFlow::Continue(());
