@@ -12,6 +12,9 @@ use crate::{ImpulseRival, PredictMotionReport};
 /// Share of the variance of the end from which on an estimate is named.
 const NAMED_SHARE: f64 = 0.1;
 
+/// Share of draws at rest from which on the ends of 90 % intervals are those of places at rest.
+const ENOUGH_AT_REST: f64 = 0.95;
+
 /// Lanes, kerbs and zones that are named of each vehicle.
 const N_PLACES: usize = 3;
 
@@ -42,10 +45,16 @@ impl PredictMotionReport {
             Value::Joined(vec![of("X", x), of("Y", y)], ", ")
         };
         match &self.rest {
-            Some(rest) => vec![
-                Fact::new(Term::ShareAtRest, Value::ShareOfDraws(rest.share_at_rest, rest.n_draws)),
-                Fact::new(Term::WhereAtRest, place(&rest.x_m, &rest.y_m)),
-            ],
+            Some(rest) => {
+                // Draws that still move count with where they are then.
+                let term = match rest.share_at_rest < ENOUGH_AT_REST {
+                    true => Term::WhereAtRestOrLimit,
+                    false => Term::WhereAtRest,
+                };
+                let share = Value::ShareOfDraws(rest.share_at_rest, rest.n_draws);
+                let place = place(&rest.x_m, &rest.y_m);
+                vec![Fact::new(Term::ShareAtRest, share), Fact::new(term, place)]
+            }
             None => {
                 let term = match outcome.is_at_rest {
                     true => Term::WhereAtRest,

@@ -45,6 +45,7 @@ terms! {
     // The answer to a forecast.
     TheAnswer: "The answer", "Die Antwort";
     WhereAtRest: "where it comes to rest", "wo es zum Stillstand kommt", "Of the CG, from the place of the first contact";
+    WhereAtRestOrLimit: "where it is at rest, or when it is followed no further", "wo es stillsteht oder nicht weiter verfolgt wird", "Of the CG, from the place of the first contact";
     WhereAtEnd: "where it is when the forecast ends", "wo es am Ende der Vorhersage ist", "Of the CG, from the place of the first contact";
     StruckComesOver: "the struck vehicle comes over", "das gestoßene Fahrzeug gerät auf";
     StrikingComesOver: "the striking vehicle comes over", "das stoßende Fahrzeug gerät auf";
