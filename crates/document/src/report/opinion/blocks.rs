@@ -266,7 +266,11 @@ fn who(asked: Asked<'_>) -> Vec<Block> {
         let values = [("name", &*asked.paths.name(path)), ("sha256", &*sha256)];
         fill(words.material, &values)
     };
-    let materials: Vec<String> = asked.case.used_paths().iter().map(material).collect();
+    // By name: the folders of a package are others than those of the case.
+    let mut used = asked.case.used_paths();
+    used.sort_by_key(|path| (asked.paths.name(path), path.clone()));
+    used.dedup();
+    let materials: Vec<String> = used.iter().map(material).collect();
     match materials.is_empty() {
         true => items.push(words.no_materials.to_owned()),
         false => items.push(format!("{} {}", words.materials, materials.join("; "))),
