@@ -57,8 +57,11 @@ pub(super) fn part(
     let doubts = report.caveats.iter().filter(|caveat| is_doubt(caveat.kind));
     let mut doubts: Vec<String> = doubts.map(|caveat| wording.term(caveat.kind.label())).collect();
     doubts.dedup();
+    let mut opinion = opinion_of_reconstruction(report, &question, context);
     for badge in doubts {
-        blocks.push(Block::paragraph(fill(words.meaning_doubtful, &[("badge", &badge)])));
+        let doubt = fill(words.meaning_doubtful, &[("badge", &badge)]);
+        opinion.answer = format!("{} {doubt}", opinion.answer);
+        blocks.push(Block::paragraph(doubt));
     }
     let draws = [
         (words.particles, report.n_particles.to_string()),
@@ -69,7 +72,7 @@ pub(super) fn part(
     Part {
         kind: words.title_reconstruct.to_owned(),
         title: format!("{}: {}", words.title_reconstruct, report.case),
-        opinion: Some(opinion_of_reconstruction(report, &question, context)),
+        opinion: Some(opinion),
         answer: blocks,
         pictures: pictures(request.site.as_deref(), answer, context),
         inputs: evidence_rows(request, answer, wording),
