@@ -13,7 +13,7 @@ use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::{FilmSection, FilmTiming, SimulationScene, simulation_scene};
 use impactlab_draw::film::{Film, FilmError, FrameRenderer, write_film};
-use impactlab_draw::scene::{Camera, Follow, ScenePicture, ViewKind};
+use impactlab_draw::scene::{Camera, Follow, SceneCourse, ScenePicture, ViewKind};
 use impactlab_draw::{Canvas, theme};
 use impactlab_study::{Library, MotionSource, Question, SimulateRequest};
 use openh264::decoder::Decoder;
@@ -47,6 +47,7 @@ fn film() -> Film {
     };
     let picture = ScenePicture {
         scene: Arc::new(scene),
+        courses: Vec::new(),
         time_s: 0.0,
         camera: Camera { kind: ViewKind::Perspective, ..Camera::default() },
         is_placed: false,
@@ -173,6 +174,29 @@ fn the_scene_goes_from_edge_to_edge_and_its_text_does_not_move() {
             assert_eq!(*rows.get_or_insert_with(|| own.clone()), own, "{size_px:?} at {time_s} s");
         }
     }
+}
+
+#[test]
+fn courses_of_events_stand_side_by_side_with_their_probabilities() {
+    let film = film();
+    let course =
+        |name: &str| SceneCourse { name: name.to_owned(), scene: Arc::clone(&film.picture.scene) };
+    let drawn = |courses: Vec<SceneCourse>| {
+        let picture = ScenePicture { time_s: 0.5, courses, ..film.picture.clone() };
+        let mut renderer = FrameRenderer::new(film.canvas).expect("a possible size");
+        renderer.draw(&picture, 1.0).clone()
+    };
+    let image = drawn(vec![course("62 %: it spins"), course("38 %: it slides off")]);
+    let rows = scene_rows(&image, Color32::WHITE);
+    // Two scenes of 239 pixels with 2 between them.
+    let pair = |row: &usize| {
+        let row = &image.pixels[480 * row..480 * (row + 1)];
+        row[..239].iter().zip(&row[241..]).filter(|(a, b)| a != b).count()
+    };
+    let n_other: usize = rows.iter().map(pair).sum();
+    assert!((50..2500).contains(&n_other), "{n_other} pixels differ by more than the names");
+    let alone = drawn(Vec::new());
+    assert!(alone.pixels != image.pixels);
 }
 
 #[test]

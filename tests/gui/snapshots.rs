@@ -105,6 +105,7 @@ fn check_scene(
     let input = SimulationScene { analysis, others: &[], units, caveats: &caveats };
     let picture = ScenePicture {
         scene: Arc::new(simulation_scene(&input)),
+        courses: Vec::new(),
         time_s,
         camera: Camera { kind, ..Camera::default() },
         is_placed: false,
@@ -181,8 +182,15 @@ fn what_was_measured_is_in_the_picture() {
         let camera = Camera { kind: ViewKind::Above, ..Camera::default() };
         let (scene, distance_m) = (Arc::clone(scene), None);
         let follow = Follow::Nothing;
-        let picture =
-            ScenePicture { scene, time_s: 0.3, camera, is_placed: false, distance_m, follow };
+        let picture = ScenePicture {
+            scene,
+            courses: Vec::new(),
+            time_s: 0.3,
+            camera,
+            is_placed: false,
+            distance_m,
+            follow,
+        };
         let canvas = Canvas { size_px: [480, 300], scale: 1.0, dark: false };
         scene_image(&picture, canvas).expect("a picture").into_raw()
     };

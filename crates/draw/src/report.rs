@@ -31,6 +31,7 @@ impl From<&SceneStill> for ScenePicture {
     fn from(still: &SceneStill) -> Self {
         Self {
             scene: Arc::clone(&still.scene),
+            courses: Vec::new(),
             time_s: still.time_s,
             camera: Camera { kind: still.view, ..Camera::default() },
             is_placed: false,

@@ -100,6 +100,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         |settings| {
             let picture = ScenePicture {
                 scene: measured.added_to(&scene),
+                courses: Vec::new(),
                 time_s,
                 camera: placed.unwrap_or(settings.camera),
                 is_placed: placed.is_some(),

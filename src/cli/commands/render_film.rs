@@ -14,6 +14,7 @@ use crate::cli::options::{
 };
 use impactlab_core::ranges::{FILM_RATE, FILM_SPEED, INSTANT, PICTURE_SCALE};
 use impactlab_document::scene::{FilmSection, FilmTiming, Scene};
+use impactlab_draw::scene::SceneCourse;
 use impactlab_study::{EvidenceChoice, InputKind, ReconstructRequest};
 
 /// What is filmed, and how.
@@ -89,10 +90,10 @@ pub(super) fn run(args: &FilmArgs, console: &mut Console<'_>) -> Result<Verdict,
         FilmKind::Mp4 => console.check_target(Some(&args.out), args.overwrite.into())?,
         FilmKind::Pictures => console.expect_folder(),
     }
-    let (scene, mut notes) = scene(args, console)?;
+    let (scene, courses, mut notes) = scene(args, console)?;
     let timing = timing(args, &scene, &mut notes);
     let instants = timing.instants(&scene)?;
-    let shown = args.seen.shown(scene, timing.from_s);
+    let shown = args.seen.shown(scene, timing.from_s).beside(courses);
     let title = shown.subject();
     let duration_s = instants.len() as f64 / f64::from(args.fps);
     make(args, (kind, shown, timing), console)?;
@@ -113,15 +114,18 @@ pub(super) fn run(args: &FilmArgs, console: &mut Console<'_>) -> Result<Verdict,
     Ok(Verdict::Clean)
 }
 
-/// The scene that is filmed, and notes on how it was made: a reconstruction of evidence, a simulation of
+/// The scene that is filmed, its courses of events where several are possible, and notes on how it was made: a reconstruction of evidence, a simulation of
 /// everything else.
-fn scene(args: &FilmArgs, console: &mut Console<'_>) -> Result<(Scene, Vec<String>), CliError> {
+fn scene(
+    args: &FilmArgs,
+    console: &mut Console<'_>,
+) -> Result<(Scene, Vec<SceneCourse>, Vec<String>), CliError> {
     let (case, units) = (&args.seen.case, args.units.into());
     match reconstruction(case, &args.sampled)? {
         Some(request) => cars_scene(&request, units, console),
         None => {
             let BuiltScene { scene, notes, .. } = build(case, None, units, console)?;
-            Ok((scene, notes))
+            Ok((scene, Vec::new(), notes))
         }
     }
 }

@@ -10,12 +10,13 @@ use crate::cli::commands::render_figure::{Noted, noted};
 use crate::cli::commands::render_scene::{ShownScene, ViewArg};
 use crate::cli::console::Console;
 use crate::cli::options::EvidenceArgs;
-use impactlab_core::units::UnitSystem;
+use impactlab_core::units::{UnitSystem, percent};
 use impactlab_document::figure::{
     ReconstructionScene, budget_figure, marginal_figure, prior_values, reconstruction_scene_figure,
 };
 use impactlab_document::scene::{LoadedGround, ReconstructionParts, Scene, reconstruction_scene};
-use impactlab_reconstruct::ReconstructedQuantity;
+use impactlab_draw::scene::SceneCourse;
+use impactlab_reconstruct::{Mode, ReconstructedQuantity};
 use impactlab_study::{NamedPath, ReconstructAnswer, ReconstructRequest, ReconstructedPaths};
 
 /// The evidence, and what is drawn.
@@ -105,17 +106,24 @@ pub(super) fn figure(
     Ok(((figure, notes), cars))
 }
 
-/// The scene of a reconstruction with the cars as bodies and a particle of median speed, and notes on how
-/// it was made.
+/// The scene of a reconstruction with the cars as bodies and a particle of median speed, the scene of each
+/// course of events where several are possible, and notes on how they were made.
 pub(super) fn cars_scene(
     request: &ReconstructRequest,
     units: UnitSystem,
     console: &mut Console<'_>,
-) -> Result<(Scene, Vec<String>), CliError> {
+) -> Result<(Scene, Vec<SceneCourse>, Vec<String>), CliError> {
     let of = Reconstructed::new(request, console)?;
     let scene = of.cars(&ReconstructedPaths::from_answer(&of.answer), units);
+    let modes = &of.answer.report.modes;
+    let course = |mode: &Mode| {
+        let paths = ReconstructedPaths::from_mode(&of.answer, mode);
+        let name = format!("{}: {}", percent(mode.probability), mode.name);
+        SceneCourse { name, scene: Arc::new(of.cars(&paths, units)) }
+    };
+    let courses = if modes.len() > 1 { modes.iter().map(course).collect() } else { Vec::new() };
     let notes = of.notes().into_iter().chain(of.far_notes(&scene)).collect();
-    Ok((scene, notes))
+    Ok((scene, courses, notes))
 }
 
 /// The scene of a reconstruction for other programs: with the paths of a particle of each course of events.

@@ -19,6 +19,7 @@ use impactlab_document::figure::{
 use impactlab_document::scene::{
     FilmTiming, ForecastScene, LoadedGround, Scene, SimulationScene, add_forecast, simulation_scene,
 };
+use impactlab_draw::scene::SceneCourse;
 use impactlab_study::analysis::{Analysis, DensityTask};
 use impactlab_study::{ForceSource, PredictMotionRequest, SimulateAnswer, SimulateRequest};
 
@@ -101,6 +102,7 @@ enum FollowArg {
 /// A scene as it is to be seen.
 pub(super) struct ShownScene {
     scene: Scene,
+    courses: Vec<SceneCourse>,
     time_s: f64,
     view: ViewArg,
     camera: CameraArgs,
@@ -109,7 +111,12 @@ pub(super) struct ShownScene {
 impl ShownScene {
     /// A scene of which everything is seen.
     pub(super) fn fitted(scene: Scene, time_s: f64, view: ViewArg) -> Self {
-        Self { scene, time_s, view, camera: CameraArgs::default() }
+        Self { scene, courses: Vec::new(), time_s, view, camera: CameraArgs::default() }
+    }
+
+    /// The same with courses of events side by side; alone if there are none.
+    pub(super) fn beside(self, courses: Vec<SceneCourse>) -> Self {
+        Self { courses, ..self }
     }
 
     /// What the scene is of.
@@ -142,6 +149,7 @@ impl ShownScene {
                 ..usual
             },
             scene: Arc::new(self.scene),
+            courses: self.courses,
             time_s: self.time_s,
             is_placed: false,
             distance_m: distance.or(follow.map(|_| FOLLOW_M)),
@@ -233,7 +241,7 @@ pub(super) fn build(
 impl SeenArgs {
     /// A scene as these options show it.
     pub(super) fn shown(&self, scene: Scene, time_s: f64) -> ShownScene {
-        ShownScene { scene, time_s, view: self.view, camera: self.camera }
+        ShownScene { scene, courses: Vec::new(), time_s, view: self.view, camera: self.camera }
     }
 }
 

@@ -32,7 +32,9 @@ impl Strip {
     pub fn new(ui: &Ui, picture: &ScenePicture, size: Vec2) -> Self {
         let n_rows = (LEGEND_SHARE * size.y / ROW_HEIGHT) as usize;
         let width = (size.x - 2.0 * SIDE).max(1.0);
-        let legend = LegendRows::new(ui, &picture.scene, width, n_rows.clamp(1, MOST_ROWS));
+        // Courses of events have the same names.
+        let scene = picture.drawn().first().map_or(&picture.scene, |first| *first);
+        let legend = LegendRows::new(ui, scene, width, n_rows.clamp(1, MOST_ROWS));
         Self { size, legend, restriction: RestrictionLine::new(&picture.scene.caveats) }
     }
 

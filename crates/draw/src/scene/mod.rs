@@ -29,6 +29,6 @@ pub use canvas::{SceneCanvas, SceneLook};
 pub use impactlab_document::scene::ViewKind;
 pub(crate) use legend::LegendRows;
 pub use measures::{draw_measure, draw_measure_text, measure_text_place};
-pub use picture::{ScenePicture, scene_image};
+pub use picture::{SceneCourse, ScenePicture, scene_image};
 pub(crate) use view::scene_picture_ui;
 pub use view::{Follow, SceneView, scene_view_ui};

@@ -14,6 +14,9 @@ use impactlab_document::scene::Scene;
 pub struct ScenePicture {
     /// The scene.
     pub scene: Arc<Scene>,
+    /// Courses of events that stand side by side in place of the scene, which is of all of them; none if
+    /// it stands alone.
+    pub courses: Vec<SceneCourse>,
     /// The time, s.
     pub time_s: f64,
     /// Kind and directions of the view. It is fitted to the scene.
@@ -26,7 +29,24 @@ pub struct ScenePicture {
     pub follow: Follow,
 }
 
+/// One of several possible courses of events.
+#[derive(Debug, Clone)]
+pub struct SceneCourse {
+    /// What happens, with its probability.
+    pub name: String,
+    /// Its scene.
+    pub scene: Arc<Scene>,
+}
+
 impl ScenePicture {
+    /// The scenes that are drawn: the courses of events, or the scene.
+    pub(crate) fn drawn(&self) -> Vec<&Arc<Scene>> {
+        match self.courses.as_slice() {
+            [] => vec![&self.scene],
+            courses => courses.iter().map(|course| &course.scene).collect(),
+        }
+    }
+
     /// What the picture shows.
     pub fn title(&self) -> String {
         self.scene.heading(self.camera.kind.phrase(), self.time_s)

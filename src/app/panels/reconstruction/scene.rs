@@ -172,6 +172,7 @@ fn cars_ui(
     let exported = |settings: &SceneSettings| {
         let picture = ScenePicture {
             scene: Arc::clone(scene),
+            courses: Vec::new(),
             time_s,
             camera: placed.unwrap_or(settings.camera),
             is_placed: placed.is_some(),
