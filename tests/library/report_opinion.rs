@@ -13,11 +13,12 @@ fn opinion(document: &ReportDocument) -> &[Block] {
 }
 
 fn tables(document: &ReportDocument) -> Vec<&Table> {
-    let table = |block| match block {
-        &Block::Table(ref table) => Some(table),
+    let blocks = opinion(document).iter();
+    let tables = blocks.filter_map(|block| match block {
+        Block::Table(table) => Some(table),
         _ => None,
-    };
-    opinion(document).iter().filter_map(table).collect()
+    });
+    tables.collect()
 }
 
 fn says(document: &ReportDocument, text: &str) -> bool {

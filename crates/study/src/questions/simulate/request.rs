@@ -407,9 +407,7 @@ impl Question for SimulateRequest {
                 caveats.extend(by_simulation(self, false));
                 let setup = drive.setup(&settings, library, &mut caveats)?;
                 let name = drive.name();
-                let analyse =
-                    move |settings: &Settings| analyse_drive(&name, setup.clone(), settings);
-                (settings, Box::new(analyse))
+                (settings, Box::new(move |of| analyse_drive(&name, setup.clone(), of)))
             }
             MotionSource::Scenario { scenario, pulse } => {
                 let scenario = scenario.load()?;
@@ -438,9 +436,7 @@ impl Question for SimulateRequest {
         report.uncertainty = self.uncertainty(&settings, &analysis, &analyse, &mut caveats);
         let provenance = self.provenance(&report, beside.model);
         // That of the simulation beside a forecast is said with the forecast.
-        if !self.alone {
-            caveats.extend(open_driver(self)?);
-        }
+        caveats.extend((!self.alone).then(|| open_driver(self)).transpose()?.flatten());
         caveats.extend(self.restrictions(&report, &analysis, overlap).chain(beside.caveat));
         let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
