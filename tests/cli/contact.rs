@@ -133,7 +133,7 @@ fn a_second_contact_is_flagged() {
     assert_eq!(drawn["kind"], "second_contact", "{report}");
     let probability = drawn["probability"].as_f64().unwrap();
     assert!(probability > 0.5, "{drawn}");
-    assert!(drawn["message"].as_str().unwrap().contains(" % of 200 draws"), "{drawn}");
+    assert!(drawn["message"].as_str().unwrap().contains(" % of 32 draws"), "{drawn}");
     let drawn = |key: &str| drawn[key].as_f64().unwrap();
     assert!(drawn("time_s") > 0.1 && drawn("closing_speed_m_s") > 0.5, "{report}");
     let rear = std::fs::read_to_string(SCENARIO).unwrap().replace("heading_deg = 18", "");
