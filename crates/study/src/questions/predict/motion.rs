@@ -38,7 +38,7 @@ pub const DEFAULT_DRAWS: usize = 200;
 
 /// Vehicles that a forecast of the struck vehicle by itself draws where nobody says how many. Each has a
 /// distribution of its own, and not a single motion as in a forecast of both vehicles: 200 of them move
-/// the results no less from seed to seed than 32 do, and take six times as long.
+/// the results no less from seed to seed than 32 do, and take four times as long.
 pub const ONE_VEHICLE_DRAWS: usize = 32;
 
 /// How many force curves and vehicles the coarse answer draws.
