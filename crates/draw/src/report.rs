@@ -9,7 +9,7 @@ use impactlab_document::report::{PictureContent, Pixels};
 use impactlab_document::scene::SceneStill;
 
 /// Size of a picture in a report, pixels; its sides are as those of its place on the page.
-const SIZE_PX: [u32; 2] = [1560, 905];
+const SIZE_PX: [u32; 2] = [1560, 655];
 /// Pixels per point: letters are as large as those of the captions.
 const SCALE: f32 = 2.25;
 

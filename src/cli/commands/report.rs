@@ -169,5 +169,5 @@ impl ReportArgs {
     }
 }
 
-/// Draws the pictures of a PDF.
+/// Draws the pictures.
 const DRAWING: Option<&Drawing<'static>> = Some(&impactlab_draw::report_picture);

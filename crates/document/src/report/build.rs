@@ -2,25 +2,25 @@
 
 use std::collections::BTreeSet;
 
-use crate::figure::FigureElement;
+use crate::report::alt::alt_text;
 use crate::report::answer::stills::Grounds;
 use crate::report::answer::{Context, part_of};
+use crate::report::answers::{answer_blocks, warning};
 use crate::report::document::{Picture, Section, SectionKind};
+use crate::report::holders::AnswerNames;
+use crate::report::input_table::input_table;
 use crate::report::method::{Method, method_blocks};
 use crate::report::numbers::{Wording, fill};
 use crate::report::opinion::{Asked, opinion_blocks};
-use crate::report::parts::{InputRow, Part, PartPicture};
+use crate::report::parts::{InputRow, Part, PartPicture, PartProvenance};
 use crate::report::paths::ShownPaths;
 use crate::report::provenance::{change_notice, log_blocks, provenance_blocks};
 use crate::report::validation::validation_blocks;
 use crate::report::validity::validity_blocks;
-use crate::report::{
-    Block, InputClass, Language, PictureContent, ReportDocument, ReportSettings, Table,
-};
+use crate::report::{Block, ReportDocument, ReportSettings};
 use impactlab_core::data::Outcome;
 use impactlab_core::error_chain;
-use impactlab_core::uncertainty::{Caveat, CaveatKind};
-use impactlab_core::units::UnitSystem;
+use impactlab_core::uncertainty::CaveatKind;
 use impactlab_study::case_file::{CaseError, CaseFile, CaseOnDisk, CaseReport};
 use impactlab_study::{Library, Observer};
 
@@ -83,7 +83,9 @@ impl Builder<'_> {
         let (settings, words) = (self.settings, self.wording.words);
         let blocks = |kind| match kind {
             SectionKind::Opinion => self.opinion(variants),
-            SectionKind::Answers => self.answers(variants),
+            SectionKind::Answers => {
+                answer_blocks(self.case, &settings.date, variants, self.wording)
+            }
             SectionKind::Pictures => self.pictures(variants),
             SectionKind::Inputs => self.inputs(variants),
             SectionKind::Evidence => {
@@ -131,90 +133,6 @@ impl Builder<'_> {
         blocks
     }
 
-    /// What the report is about, and every question with its answer.
-    fn answers(&self, variants: &[VariantParts]) -> Vec<Block> {
-        let (settings, words) = (self.settings, self.wording.words);
-        let date = settings.date.written(settings.language);
-        let values = [
-            ("case", &*self.case.name),
-            ("date", &*date),
-            ("version", impactlab_core::program::version()),
-        ];
-        let mut blocks = Vec::new();
-        blocks.push(Block::paragraph(fill(words.intro, &values)));
-        blocks.push(Block::paragraph(match settings.units {
-            UnitSystem::Si => words.units_si,
-            UnitSystem::Us => words.units_us,
-        }));
-        if settings.language != Language::En {
-            blocks.push(Block::paragraph(words.language_note));
-        }
-        let notes = self.case.notes.lines().map(str::trim).filter(|line| !line.is_empty());
-        let notes: Vec<Block> = notes.map(Block::paragraph).collect();
-        if !notes.is_empty() {
-            blocks.push(Block::heading(2, words.notes));
-            blocks.extend(notes);
-        }
-        let mut written: Vec<(&str, &Part)> = Vec::new();
-        let level = if variants.len() > 1 { 3 } else { 2 };
-        for variant in variants {
-            if variants.len() > 1 {
-                blocks.push(Block::heading(2, fill(words.variant, &[("name", &variant.name)])));
-            }
-            let first = blocks.len();
-            for answer in &variant.answers {
-                match answer {
-                    Err(error) => {
-                        let error = self.wording.quoted(error);
-                        blocks.push(Block::notice(fill(words.no_answer, &[("error", &error)])));
-                    }
-                    Ok(part) => {
-                        blocks.extend(self.answer(level, &variant.name, part, &mut written))
-                    }
-                }
-            }
-            let of_variant = blocks.split_off(first);
-            blocks.extend(without_repeated_tables(of_variant));
-        }
-        blocks
-    }
-
-    /// A question with what may be wrong with its answer, and the answer, unless both have been told
-    /// already.
-    ///
-    /// - `level`: of the heading.
-    fn answer<'b>(
-        &self,
-        level: u8,
-        variant: &'b str,
-        part: &'b Part,
-        written: &mut Vec<(&'b str, &'b Part)>,
-    ) -> Vec<Block> {
-        let words = self.wording.words;
-        let mut blocks = vec![Block::heading(level, part.title.clone())];
-        let is_same = |other: &Part| {
-            (&other.title, &other.answer, &other.caveats)
-                == (&part.title, &part.answer, &part.caveats)
-        };
-        if let Some((name, _)) = written.iter().find(|(_, other)| is_same(other)) {
-            blocks.push(Block::paragraph(fill(words.same_as, &[("name", name)])));
-            return blocks;
-        }
-        written.push((variant, part));
-        let warnings = part.caveats.iter().filter(|caveat| caveat.is_warning());
-        let notices = warnings.map(|caveat| Block::notice(self.warning(caveat)));
-        let (question, rest) = part.answer.split_at(part.answer.len().min(1));
-        blocks.extend(question.iter().cloned());
-        blocks.extend(notices);
-        blocks.extend(rest.iter().cloned());
-        blocks
-    }
-
-    fn warning(&self, caveat: &Caveat) -> String {
-        let (warning, label) = (self.wording.words.warning, self.wording.term(caveat.kind.label()));
-        format!("{warning}: {label}: {}", self.wording.quoted(&caveat.text))
-    }
-
     /// Where two methods do not say the same of one collision, for the first page.
     fn disagreements(&self, variants: &[VariantParts]) -> Vec<Block> {
         let mut said = BTreeSet::new();
@@ -223,7 +141,7 @@ impl Builder<'_> {
                 let apart = part.caveats.iter();
                 let apart = apart.filter(|caveat| caveat.kind == CaveatKind::Disagreement);
                 said.extend(apart.map(|caveat| {
-                    let warning = self.warning(caveat);
+                    let warning = warning(caveat, self.wording);
                     match variants.len() > 1 {
                         true => format!("{}, {}: {warning}", variant.name, part.title),
                         false => format!("{}: {warning}", part.title),
@@ -258,7 +176,7 @@ impl Builder<'_> {
                 of_variant.push(Block::Picture(Box::new(Picture {
                     number,
                     caption: format!("{} {number}: {}", words.figure, picture.caption),
-                    alt: self.alt(picture),
+                    alt: alt_text(picture, self.wording),
                     content: picture.content.clone(),
                 })));
             }
@@ -268,27 +186,6 @@ impl Builder<'_> {
             blocks.append(&mut of_variant);
         }
         or(blocks, words.no_pictures)
-    }
-
-    /// What a picture shows, for those who cannot see it.
-    fn alt(&self, picture: &PartPicture) -> String {
-        let words = self.wording.words;
-        match &picture.content {
-            PictureContent::Scene(still) => {
-                let values = [("title", &*picture.caption), ("names", &*listed(still.names()))];
-                fill(words.scene_alt, &values)
-            }
-            PictureContent::Figure(figure) => {
-                let names = figure.elements.iter().map(FigureElement::name);
-                let values = [
-                    ("title", &*picture.caption),
-                    ("x", &*figure.x.text()),
-                    ("y", &*figure.y.text()),
-                    ("names", &*listed(names)),
-                ];
-                fill(words.axes_alt, &values)
-            }
-        }
     }
 
     /// The inputs of each variant, of the later ones only what the first does not have.
@@ -315,7 +212,6 @@ impl Builder<'_> {
 
     /// A table for each group, in the order in which the groups are first named.
     fn input_tables(&self, variant: &str, rows: &[&InputRow]) -> Vec<Block> {
-        let words = self.wording.words;
         let mut groups: Vec<&str> = Vec::new();
         for row in rows {
             if !groups.contains(&row.group.as_str()) {
@@ -323,25 +219,12 @@ impl Builder<'_> {
             }
         }
         let table = |group: &&str| {
-            let of_group = rows.iter().filter(|row| row.group == **group);
+            let of_group = rows.iter().filter(|row| row.group == **group).copied();
             let values = [("name", variant), ("group", group)];
-            let columns = [words.quantity, words.value, words.class, words.source];
-            let rows = of_group.map(|row| self.input_row(row)).collect();
-            Block::Table(Table::new(fill(words.inputs_caption, &values), columns, rows))
+            let caption = fill(self.wording.words.inputs_caption, &values);
+            input_table(&caption, &of_group.collect::<Vec<_>>(), self.wording)
         };
-        groups.iter().map(table).collect()
-    }
-
-    fn input_row(&self, row: &InputRow) -> [String; 4] {
-        let words = self.wording.words;
-        let class = match row.class {
-            InputClass::Given => words.class_given,
-            InputClass::Measured => words.class_measured,
-            InputClass::Estimated => words.class_estimated,
-            InputClass::Assumed => words.class_assumed,
-        };
-        let InputRow { label, value, source, .. } = row.clone();
-        [label, value, class.to_owned(), source]
+        groups.iter().flat_map(table).collect()
     }
 
     fn validation(&self, variants: &[VariantParts]) -> Vec<Block> {
@@ -381,23 +264,27 @@ impl Builder<'_> {
     }
 
     fn provenance(&self, variants: &[VariantParts]) -> Vec<Block> {
-        let mut answers = Vec::new();
+        let mut answers: Vec<(AnswerNames<'_>, &PartProvenance)> = Vec::new();
         for variant in variants {
             for part in parts_of(variant) {
-                let name = match variants.len() {
-                    1 => part.title.clone(),
-                    _ => format!("{}: {}", variant.name, part.title),
+                let is_alike = |(names, provenance): &&mut (AnswerNames<'_>, &PartProvenance)| {
+                    names.title == part.title && **provenance == part.provenance
                 };
-                answers.push((name, part.provenance.clone()));
+                match answers.iter_mut().find(is_alike) {
+                    Some((names, _)) => names.variants.push(&variant.name),
+                    None => {
+                        let variants = vec![&*variant.name];
+                        answers
+                            .push((AnswerNames { title: &part.title, variants }, &part.provenance));
+                    }
+                }
             }
         }
-        provenance_blocks(
-            (self.case, self.on_disk),
-            self.report,
-            &answers,
-            self.wording,
-            self.paths,
-        )
+        let named: Vec<(String, PartProvenance)> = answers
+            .into_iter()
+            .map(|(names, provenance)| (names.text(variants, self.wording), provenance.clone()))
+            .collect();
+        provenance_blocks((self.case, self.on_disk), self.report, &named, self.wording, self.paths)
     }
 }
 
@@ -408,19 +295,6 @@ pub(super) fn parts_of(variant: &VariantParts) -> impl Iterator<Item = &Part> {
 
 fn methods(variants: &[VariantParts]) -> BTreeSet<Method> {
     variants.iter().flat_map(parts_of).flat_map(|part| &part.methods).copied().collect()
-}
-
-/// Blocks in which each table stands once: what several answers of a variant have in common, such as the
-/// two methods beside each other, is said with the first of them.
-fn without_repeated_tables(blocks: Vec<Block>) -> Vec<Block> {
-    let mut kept: Vec<Block> = Vec::new();
-    for block in blocks {
-        let is_repeated = matches!(block, Block::Table(_)) && kept.contains(&block);
-        if !is_repeated {
-            kept.push(block);
-        }
-    }
-    kept
 }
 
 /// What the parts contribute, each once.
@@ -437,17 +311,6 @@ fn distinct(variants: &[VariantParts], blocks_of: impl Fn(&Part) -> &Vec<Block>)
 /// Blocks, or a sentence if there are none.
 fn or(blocks: Vec<Block>, otherwise: &str) -> Vec<Block> {
     if blocks.is_empty() { vec![Block::paragraph(otherwise)] } else { blocks }
-}
-
-/// Names, each once.
-fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    let mut each: Vec<&str> = Vec::new();
-    for name in names {
-        if !name.is_empty() && !each.contains(&name) {
-            each.push(name);
-        }
-    }
-    each.join(", ")
 }
 
 fn section_title(kind: SectionKind, wording: &Wording) -> &'static str {

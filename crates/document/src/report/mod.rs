@@ -40,6 +40,16 @@ mod provenance;
 
 mod validity;
 
+mod beside;
+
+mod alt;
+
+mod holders;
+
+mod answers;
+
+mod input_table;
+
 mod build;
 
 mod write;

@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 
 use crate::report::build::{VariantParts, parts_of};
+use crate::report::holders::AnswerNames;
 use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
+use crate::report::opinion::considered_methods;
 use crate::report::parts::Part;
 use crate::report::{Block, Table};
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
@@ -18,16 +20,18 @@ pub(super) fn validity_blocks(
 ) -> Vec<Block> {
     let words = wording.words;
     let mut blocks = vec![Block::paragraph(words.validity_text)];
-    let limits = methods
-        .iter()
-        .map(|method| format!("{}: {}", method.name(wording), method.limits(wording)));
+    let considered = considered_methods(variants);
+    let others = methods.difference(&considered);
+    let limits = others.map(|it| format!("{}: {}", it.name(wording), it.limits(wording)));
     let limits: Vec<String> = limits.collect();
     if !limits.is_empty() {
+        blocks.push(Block::paragraph(words.validity_models));
         blocks.push(Block::List { items: limits });
     }
     let domain = each_once(variants, |part| part.domain.clone());
+    let holders_of = |holders: &[AnswerNames<'_>]| holders_text(holders, variants, wording);
     if !domain.is_empty() {
-        let rows = domain.into_iter().map(|(text, holders)| [text, holders.join("; ")]).collect();
+        let rows = domain.into_iter().map(|(text, holders)| [text, holders_of(&holders)]).collect();
         let columns = [words.sentence, words.holds_for];
         blocks.push(Block::Table(Table::new(words.domain_caption, columns, rows)));
     }
@@ -45,24 +49,40 @@ pub(super) fn validity_blocks(
 fn each_once<T: PartialEq>(
     variants: &[VariantParts],
     items: impl Fn(&Part) -> Vec<T>,
-) -> Vec<(T, Vec<String>)> {
-    let mut found: Vec<(T, Vec<String>)> = Vec::new();
+) -> Vec<(T, Vec<AnswerNames<'_>>)> {
+    let mut found: Vec<(T, Vec<AnswerNames<'_>>)> = Vec::new();
     for variant in variants {
         for part in parts_of(variant) {
-            let name = match variants.len() {
-                1 => part.kind.clone(),
-                _ => format!("{}: {}", variant.name, part.kind),
-            };
             for item in items(part) {
                 match found.iter_mut().find(|(known, _)| *known == item) {
-                    Some((_, names)) if !names.contains(&name) => names.push(name.clone()),
-                    Some(_) => {}
-                    None => found.push((item, vec![name.clone()])),
+                    Some((_, holders)) => add_holder(holders, &part.kind, &variant.name),
+                    None => {
+                        let mut holders = Vec::new();
+                        add_holder(&mut holders, &part.kind, &variant.name);
+                        found.push((item, holders));
+                    }
                 }
             }
         }
     }
     found
+}
+
+/// Adds an answer by the kind of its question.
+fn add_holder<'a>(holders: &mut Vec<AnswerNames<'a>>, kind: &'a str, variant: &'a str) {
+    match holders.iter_mut().find(|it| it.title == kind) {
+        Some(it) if it.variants.contains(&variant) => {}
+        Some(it) => it.variants.push(variant),
+        None => holders.push(AnswerNames { title: kind, variants: vec![variant] }),
+    }
+}
+
+fn holders_text(
+    holders: &[AnswerNames<'_>],
+    variants: &[VariantParts],
+    wording: &Wording,
+) -> String {
+    holders.iter().map(|it| it.text(variants, wording)).collect::<Vec<_>>().join("; ")
 }
 
 /// Every restriction once, warnings first, with the answers that have it; of what was assumed and what is
@@ -74,14 +94,14 @@ fn caveat_rows(variants: &[VariantParts], wording: &Wording) -> Vec<[String; 4]>
         restrictions.chain(part.caveats.summaries()).collect()
     });
     found.sort_by_key(|(caveat, _)| !caveat.is_warning());
-    let row = |(caveat, holders): (Caveat, Vec<String>)| {
+    let row = |(caveat, holders): (Caveat, Vec<AnswerNames<'_>>)| {
         let severity = if caveat.is_warning() { words.warning } else { words.note };
         let label = format!("{severity}: {}", wording.term(caveat.kind.label()));
         [
             label,
             sentence(&caveat, wording),
             remedy(caveat.kind, wording).to_owned(),
-            holders.join("; "),
+            holders_text(&holders, variants, wording),
         ]
     };
     found.into_iter().map(row).collect()

@@ -26,8 +26,15 @@ pub(super) const WORDS: Words = Words {
     change_model: "the {network} network “{name}” is another one",
     unanswered_notice: "{n} of {all} questions have no answer; why is said below.",
     no_answer: "No answer: {error}",
+    no_answer_of: "{name}: no answer: {error}",
     variant: "Variant: {name}",
-    same_as: "The same question as in variant “{name}”, with the same answer.",
+    variant_column: "Variant",
+    all_variants: "all variants",
+    alike: "In all variants: {values}.",
+    beside_intervals: "{caption}; in brackets the interval of 90 %",
+    variants_beside: "The variants stand beside each other. Intervals of 50 % are in the answers that \
+        `impactlab case run --json` gives.",
+    not_asked_of: "Not asked: {names}.",
     inputs_same_as: "As in variant “{name}”, except for what the table says.",
     inputs_all_same: "As in variant “{name}”.",
     annex: "Annex",
@@ -109,9 +116,9 @@ pub(super) const WORDS: Words = Words {
     meaning_posterior: "Each value lies in its interval of 90 % with that probability, given the evidence, if the assumptions \
         of section 3 and the models of section 5 hold.",
     meaning_doubtful: "These intervals are not to be relied on: see the warning “{badge}” in section 6.",
-    too_few_particles: "No interval is given: the particles are worth {ess} independent ones, or the run was \
-        stopped before all of the evidence counted, and the ends of an interval would be those of single \
-        particles. Ask again with more particles, and let the run end.",
+    too_few_particles: "No interval is given: the sample is equivalent to only {ess} independent draws, or the run was \
+        stopped before the evidence had its full weight, so that the ends of an interval would rest on single \
+        draws. Ask again with more particles, and let the run end.",
     particles: "particles:",
     simulated_motions: "simulated motions:",
     ess: "effective sample size:",
@@ -164,8 +171,11 @@ pub(super) const WORDS: Words = Words {
         record; “estimated by rule” follows from other values by a rule with known scatter; \
         “assumed” is what nobody said.",
     inputs_caption: "{name}: {group}",
-    validity_text: "Each model with what it leaves out; then each restriction that the program found, with \
-        its sentence and a remedy.",
+    inputs_said: "{caption}; said by the question",
+    common_source: "* {source}",
+    validity_text: "What the models of the opinion leave out is said there. Each restriction that the \
+        program found follows, with its sentence and a remedy.",
+    validity_models: "The other models leave out:",
     badges_caption: "Restrictions of the answers",
     restriction: "Restriction",
     sentence: "What it says",
@@ -339,6 +349,11 @@ pub(super) const WORDS: Words = Words {
     not_drawn: "This build draws no pictures: {caption}",
     scene_alt: "{title}. Cars on the ground. Shown: {names}.",
     axes_alt: "{title}. Horizontal axis: {x}. Vertical axis: {y}. Shown: {names}.",
+    car_alt: "At {time} {name}: X {x}, Y {y}, heading {heading}.",
+    line_alt: "{name}: from {y0} at {x0} to {y1} at {x1}; least {low} at {at_low}, greatest {high} at {at_high}.",
+    place_alt: "{name}: from ({x0}; {y0}) to ({x1}; {y1}).",
+    band_alt: "{name}: {low} to {high} at {x}.",
+    instant_alt: "{name}: at {x}.",
     picture_elsewhere: "The picture is in the PDF of this report.",
     noted: "Note: {note}.",
     seed: "seed",

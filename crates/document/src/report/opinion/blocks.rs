@@ -1,5 +1,9 @@
 //! The opinion as blocks of the report.
 
+use std::collections::BTreeSet;
+
+use crate::report::Block;
+use crate::report::beside::{NamedRows, beside};
 use crate::report::build::{VariantParts, parts_of};
 use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
@@ -9,11 +13,7 @@ use crate::report::opinion::words::opinion_words;
 use crate::report::parts::Part;
 use crate::report::paths::ShownPaths;
 use crate::report::provenance::own_file;
-use crate::report::{Block, Column, Table};
 use impactlab_study::case_file::{CaseFile, CaseOnDisk, UsedFile};
-
-/// Variants that stand beside each other in one table.
-const MOST_BESIDE: usize = 4;
 
 /// What the opinion is made of.
 #[derive(Clone, Copy)]
@@ -57,8 +57,7 @@ pub(in crate::report) fn opinion_blocks(asked: Asked<'_>) -> Vec<Block> {
     blocks.push(Block::heading(2, words.warnings));
     blocks.extend(warnings(asked.variants, asked.wording));
     blocks.push(Block::heading(2, words.not_considered));
-    let methods: std::collections::BTreeSet<Method> =
-        spoken.iter().flat_map(|it| &it.parts).flat_map(|part| &part.methods).copied().collect();
+    let methods = methods_of(&spoken);
     let limit = |method: &Method| {
         format!("{}: {}", method.name(asked.wording), method.limits(asked.wording))
     };
@@ -82,6 +81,15 @@ fn spoken(variants: &[VariantParts]) -> Vec<Spoken<'_>> {
         Some(Spoken { name: &variant.name, parts: parts_of(variant).filter(is_highest).collect() })
     });
     each.collect()
+}
+
+/// By what the answers of the opinion were computed; what these methods leave out is said there.
+pub(in crate::report) fn considered_methods(variants: &[VariantParts]) -> BTreeSet<Method> {
+    methods_of(&spoken(variants))
+}
+
+fn methods_of(spoken: &[Spoken<'_>]) -> BTreeSet<Method> {
+    spoken.iter().flat_map(|it| &it.parts).flat_map(|part| &part.methods).copied().collect()
 }
 
 /// Each question once, and below it the answer of each variant.
@@ -118,7 +126,7 @@ fn answers(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
 fn courses(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     let words = opinion_words(wording.language);
     let rows = |it: &Spoken<'_>| it.opinions().flat_map(|of| of.courses.clone()).collect();
-    let columns: Vec<(String, Vec<[String; 2]>)> =
+    let columns: Vec<(String, NamedRows)> =
         spoken.iter().map(|it| (it.name.to_owned(), rows(it))).collect();
     let titles = [words.course, words.probability];
     let mut blocks = beside(words.courses, titles, &columns, words.in_no_draw);
@@ -141,46 +149,8 @@ fn figures(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
         let figures = it.opinions().flat_map(|of| of.figures.clone());
         (it.name.to_owned(), differs.into_iter().chain(figures).collect())
     };
-    let columns: Vec<(String, Vec<[String; 2]>)> = spoken.iter().enumerate().map(column).collect();
+    let columns: Vec<(String, NamedRows)> = spoken.iter().enumerate().map(column).collect();
     beside(words.figures, [wording.words.quantity, wording.words.value], &columns, "–")
-}
-
-/// Tables of what several variants say, a column for each; none without rows.
-///
-/// - `titles`: of the rows, and of the column of a single variant;
-/// - `missing`: what stands where a variant does not have a row.
-fn beside(
-    caption: &str,
-    [rows_title, single]: [&str; 2],
-    columns: &[(String, Vec<[String; 2]>)],
-    missing: &str,
-) -> Vec<Block> {
-    let tables = columns.chunks(MOST_BESIDE).filter_map(|chunk| {
-        let mut names: Vec<&String> = Vec::new();
-        for [name, _] in chunk.iter().flat_map(|(_, rows)| rows) {
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-        let cell = |rows: &[[String; 2]], name: &str| {
-            let found = rows.iter().find(|[of, _]| of == name);
-            found.map_or(missing, |[_, value]| value).to_owned()
-        };
-        let row = |name: &&String| {
-            let cells = chunk.iter().map(|(_, rows)| cell(rows, name));
-            std::iter::once((*name).clone()).chain(cells).collect()
-        };
-        let rows: Vec<Vec<String>> = names.iter().map(row).collect();
-        let title = |(name, _): &(String, _)| match columns.len() {
-            1 => single.to_owned(),
-            _ => name.clone(),
-        };
-        let titles = std::iter::once(rows_title.to_owned()).chain(chunk.iter().map(title));
-        let columns = titles.map(|title| Column { title, is_numeric: false }).collect();
-        let table = Table { caption: caption.to_owned(), columns, rows };
-        (!names.is_empty()).then_some(Block::Table(table))
-    });
-    tables.collect()
 }
 
 /// How often such intervals held, each table once, and what the known error is.

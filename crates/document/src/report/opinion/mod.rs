@@ -12,7 +12,7 @@ mod blocks;
 
 mod words;
 
-pub(super) use blocks::{Asked, opinion_blocks};
+pub(super) use blocks::{Asked, considered_methods, opinion_blocks};
 pub(super) use of_answer::{
     opinion_of_force, opinion_of_forecast, opinion_of_impact, opinion_of_reconstruction,
     opinion_of_simulation,

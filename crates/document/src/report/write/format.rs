@@ -9,7 +9,7 @@ use crate::report::{Drawing, PdfError, ReportDocument, pdf};
 pub enum ReportFormat {
     /// Tagged PDF with embedded fonts.
     Pdf,
-    /// Markdown with pipe tables.
+    /// Markdown with pipe tables and its pictures in it.
     Markdown,
     /// The document as it is in memory.
     Json,
@@ -52,7 +52,7 @@ impl ReportFormat {
 impl ReportDocument {
     /// The content of its file. The same document gives the same bytes.
     ///
-    /// - `drawing`: draws the pictures of a PDF; with `None` their captions stand alone.
+    /// - `drawing`: draws the pictures; with `None` their captions stand alone. JSON has none.
     ///
     /// # Errors
     /// [`WriteError`] if a picture cannot be drawn, or the file cannot be made.
@@ -63,7 +63,10 @@ impl ReportDocument {
     ) -> Result<Vec<u8>, WriteError> {
         match format {
             ReportFormat::Pdf => Ok(pdf(self, drawing)?),
-            ReportFormat::Markdown => Ok(self.to_markdown().into_bytes()),
+            ReportFormat::Markdown => match drawing {
+                Some(drawing) => Ok(self.to_markdown_with_pictures(drawing)?.into_bytes()),
+                None => Ok(self.to_markdown().into_bytes()),
+            },
             ReportFormat::Json => Ok(self.to_json()?.into_bytes()),
         }
     }

@@ -1,22 +1,65 @@
 //! A report as Markdown.
 
+use std::collections::BTreeMap;
+
+use base64::prelude::{BASE64_STANDARD, Engine};
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder, ImageError};
+use rayon::prelude::*;
+
 use crate::report::language::words_of;
-use crate::report::{Block, Picture, ReportDocument, Table};
+use crate::report::write::pictures::{Drawing, Pixels, drawn_pictures};
+use crate::report::{Block, PdfError, Picture, ReportDocument, Table};
 
 /// Characters that mean something in Markdown or in HTML.
 const MARKUP: [char; 14] = ['\\', '`', '*', '_', '{', '}', '[', ']', '<', '>', '#', '|', '~', '&'];
 
 impl ReportDocument {
-    /// The document as Markdown with pipe tables. Names cannot bring markup in.
+    /// The document as Markdown with pipe tables. Names cannot bring markup in. Pictures are told.
     pub fn to_markdown(&self) -> String {
+        self.text(&BTreeMap::new())
+    }
+
+    /// The same with its pictures in it, as PNG behind the text: one file holds all of the report.
+    ///
+    /// # Errors
+    /// [`PdfError::Picture`] if a picture cannot be drawn.
+    pub fn to_markdown_with_pictures(&self, drawing: &Drawing<'_>) -> Result<String, PdfError> {
+        let pictures = drawn_pictures(self, Some(drawing))?;
+        let encoded = pictures.into_par_iter().map(|(number, Pixels { size_px, rgba })| {
+            let [width, height] = size_px;
+            let mut png = Vec::new();
+            let written = PngEncoder::new(&mut png).write_image(
+                &rgba,
+                width,
+                height,
+                ExtendedColorType::Rgba8,
+            );
+            let failed = |error: ImageError| PdfError::Picture { number, why: error.to_string() };
+            written.map_err(failed)?;
+            Ok((number, BASE64_STANDARD.encode(png)))
+        });
+        Ok(self.text(&encoded.collect::<Result<_, PdfError>>()?))
+    }
+
+    /// - `pictures`: PNG files in base 64 by the numbers of the pictures.
+    fn text(&self, pictures: &BTreeMap<usize, String>) -> String {
         let mut text = format!("# {}\n", escaped(&self.title));
         let elsewhere = words_of(self.language).picture_elsewhere;
         for section in &self.sections {
             text.push_str(&format!("\n## {}\n", escaped(&section.title)));
             for block in &section.blocks {
                 text.push('\n');
-                push_block(&mut text, block, elsewhere);
+                match block {
+                    Block::Picture(picture) if pictures.contains_key(&picture.number) => {
+                        push_drawn(&mut text, picture);
+                    }
+                    block => push_block(&mut text, block, elsewhere),
+                }
             }
+        }
+        for (number, png) in pictures {
+            text.push_str(&format!("\n[figure-{number}]: data:image/png;base64,{png}\n"));
         }
         text
     }
@@ -57,6 +100,12 @@ fn push_table(text: &mut String, table: &Table) {
 
 fn push_picture(text: &mut String, picture: &Picture, elsewhere: &str) {
     text.push_str(&format!("{}\n\n{} {elsewhere}\n", line(&picture.caption), line(&picture.alt)));
+}
+
+/// A picture that stands behind the text.
+fn push_drawn(text: &mut String, picture: &Picture) {
+    let Picture { number, caption, alt, .. } = picture;
+    text.push_str(&format!("![{}][figure-{number}]\n\n{}\n", escaped(alt), line(caption)));
 }
 
 /// A line of its own: what would make it a list, a number of one, or a rule is escaped too.

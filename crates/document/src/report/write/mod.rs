@@ -6,10 +6,13 @@ mod markdown;
 
 mod pdf;
 
+mod pictures;
+
 mod columns;
 
 mod format;
 
 pub use columns::column_widths;
 pub use format::{FormatError, ReportFormat, WriteError};
-pub use pdf::{Drawing, PdfError, Pixels, pdf};
+pub use pdf::{PdfError, pdf};
+pub use pictures::{Drawing, Pixels};

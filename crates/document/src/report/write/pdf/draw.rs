@@ -19,7 +19,6 @@ use krilla::tagging::{
     TagGroup, TagKind, TagTree,
 };
 use krilla::text::{GlyphId, KrillaGlyph};
-use rayon::prelude::*;
 
 use crate::report::ReportDocument;
 use crate::report::language::words_of;
@@ -27,7 +26,8 @@ use crate::report::numbers::fill;
 use crate::report::write::pdf::PdfError;
 use crate::report::write::pdf::flow::{Flow, MARGIN_PT, Part, Role};
 use crate::report::write::pdf::fonts::{Fonts, REPLACEMENT};
-use crate::report::write::pdf::page::{Drawing, Ink, Item, OutlineEntry, Owner, PageItems};
+use crate::report::write::pdf::page::{Ink, Item, OutlineEntry, Owner, PageItems};
+use crate::report::write::pictures::{Drawing, Pixels, drawn_pictures};
 
 /// Size of header and footer, points.
 const SMALL_PT: f32 = 7.5;
@@ -70,25 +70,16 @@ fn settings() -> Result<SerializeSettings, PdfError> {
     Ok(SerializeSettings { configuration, ..SerializeSettings::default() })
 }
 
-/// The pictures by their numbers, drawn side by side.
+/// The pictures by their numbers, as the file holds them.
 fn pictures(
     document: &ReportDocument,
     drawing: Option<&Drawing<'_>>,
 ) -> Result<BTreeMap<usize, Image>, PdfError> {
-    let Some(drawing) = drawing else { return Ok(BTreeMap::new()) };
-    let all: Vec<_> = document.pictures().collect();
-    let drawn = all.into_par_iter().map(|picture| {
-        let number = picture.number;
-        let failed = |why| PdfError::Picture { number, why };
-        let pixels = drawing(&picture.content).map_err(failed)?;
+    let image = |(number, pixels): (usize, Pixels)| {
         let [width, height] = pixels.size_px;
-        let bytes = u64::from(width) * u64::from(height) * 4;
-        if bytes == 0 || bytes != pixels.rgba.len() as u64 {
-            return Err(failed("its pixels are not as many as its size says".to_owned()));
-        }
-        Ok((number, Image::from_rgba8(pixels.rgba, width, height)))
-    });
-    drawn.collect()
+        (number, Image::from_rgba8(pixels.rgba, width, height))
+    };
+    Ok(drawn_pictures(document, drawing)?.into_iter().map(image).collect())
 }
 
 fn metadata(document: &ReportDocument) -> Metadata {

@@ -20,8 +20,8 @@ const BODY_PT: f32 = 9.5;
 const CAPTION_PT: f32 = 8.5;
 /// Room below a heading that keeps it from the foot of a page, points.
 const BELOW_HEADING_PT: f32 = 72.0;
-/// Height of a picture over its width.
-pub(super) const PICTURE_ASPECT: f32 = 0.58;
+/// Height of a picture over its width: three of them fit onto a page.
+pub(super) const PICTURE_ASPECT: f32 = 0.42;
 
 /// What a part of the document is, for readers that cannot see the page.
 #[derive(Debug, Clone, PartialEq)]

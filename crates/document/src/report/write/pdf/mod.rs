@@ -21,4 +21,3 @@ mod error;
 
 pub use draw::pdf;
 pub use error::PdfError;
-pub use page::{Drawing, Pixels};

@@ -1,19 +1,5 @@
 //! What stands on a page, before it is drawn.
 
-use crate::report::PictureContent;
-
-/// Draws a picture into pixels: width, height, RGBA row by row. An error says why it cannot.
-pub type Drawing<'a> = dyn Fn(&PictureContent) -> Result<Pixels, String> + Sync + 'a;
-
-/// A picture.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Pixels {
-    /// Width and height.
-    pub size_px: [u32; 2],
-    /// Red, green, blue, opacity of each pixel, row by row from the top.
-    pub rgba: Vec<u8>,
-}
-
 /// Colours of text and lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ink {

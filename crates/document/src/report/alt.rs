@@ -1,0 +1,143 @@
+//! What a picture shows, with its values, for those who cannot see it.
+
+use crate::figure::{Figure, FigureElement, Series};
+use crate::report::PictureContent;
+use crate::report::numbers::{Wording, fill};
+use crate::report::parts::PartPicture;
+use crate::scene::SceneStill;
+use impactlab_core::units::Quantity;
+
+/// Elements of a picture whose values are told; of more the names alone are.
+const MOST_TOLD: usize = 8;
+
+/// The text that stands for a picture.
+pub(super) fn alt_text(picture: &PartPicture, wording: &Wording) -> String {
+    match &picture.content {
+        PictureContent::Scene(still) => scene_text(&picture.caption, still, wording),
+        PictureContent::Figure(figure) => figure_text(&picture.caption, figure, wording),
+    }
+}
+
+fn scene_text(title: &str, still: &SceneStill, wording: &Wording) -> String {
+    let words = wording.words;
+    let values = [("title", title), ("names", &*listed(still.names()))];
+    let mut sentences = vec![fill(words.scene_alt, &values)];
+    // To a tenth: as far as a picture can be read.
+    let value = |si: f64, quantity: Quantity| {
+        let unit = quantity.display_unit(wording.units);
+        wording.with_unit(&wording.fixed(unit.from_si(si), 1), unit.symbol)
+    };
+    let mut told: Vec<&str> = Vec::new();
+    for car in &still.scene.cars {
+        // Of cars that belong together, such as draws, the first stands for all.
+        if told.contains(&&*car.name) || told.len() == MOST_TOLD {
+            continue;
+        }
+        told.push(&car.name);
+        let pose = car.at(still.time_s).pose;
+        let values = [
+            ("name", &*car.name),
+            ("time", &*wording.given(Quantity::Time, still.time_s)),
+            ("x", &*value(pose.x_m, Quantity::Length)),
+            ("y", &*value(pose.y_m, Quantity::Length)),
+            ("heading", &*value(pose.yaw_rad, Quantity::Angle)),
+        ];
+        sentences.push(fill(words.car_alt, &values));
+    }
+    sentences.join(" ")
+}
+
+fn figure_text(title: &str, figure: &Figure, wording: &Wording) -> String {
+    let words = wording.words;
+    let names = listed(figure.elements.iter().map(FigureElement::name));
+    let [x, y] = [figure.x.text(), figure.y.text()];
+    let values = [("title", title), ("x", &*x), ("y", &*y), ("names", &*names)];
+    let mut sentences = vec![fill(words.axes_alt, &values)];
+    let told = figure.elements.iter().filter_map(|element| element_text(element, figure, wording));
+    sentences.extend(told.take(MOST_TOLD));
+    sentences.join(" ")
+}
+
+/// The values of an element, in the units of the axes; none of what has no few values.
+fn element_text(element: &FigureElement, figure: &Figure, wording: &Wording) -> Option<String> {
+    let words = wording.words;
+    let number = |value: f64| wording.number(value);
+    if !(figure.x.names.is_empty() && figure.y.names.is_empty()) {
+        return None;
+    }
+    match element {
+        FigureElement::Line(series) | FigureElement::Path(crate::figure::Path { series, .. }) => {
+            line_text(series, figure.equal_aspect, wording)
+        }
+        FigureElement::Arrow(series) => line_text(series, true, wording),
+        FigureElement::Band(band) => {
+            let (x, low, high) = (band.x.last()?, band.low.last()?, band.high.last()?);
+            let [x, low, high] = [*x, *low, *high].map(number);
+            let values = [("name", &*band.name), ("x", &*x), ("low", &*low), ("high", &*high)];
+            Some(fill(words.band_alt, &values))
+        }
+        FigureElement::VerticalLine { name, x, .. } => {
+            Some(fill(words.instant_alt, &[("name", name), ("x", &number(*x))]))
+        }
+        FigureElement::Points(_) | FigureElement::Polygon(_) | FigureElement::HeatMap(_) => None,
+    }
+}
+
+/// Where a line begins and ends; in a plan the two places, over an axis the least and the greatest value.
+fn line_text(series: &Series, is_plan: bool, wording: &Wording) -> Option<String> {
+    let is_finite = |point: &&[f64; 2]| point.iter().all(|value| value.is_finite());
+    let finite: Vec<[f64; 2]> = series.points.iter().filter(is_finite).copied().collect();
+    let (first, last) = (finite.first()?, finite.last()?);
+    let least = finite.iter().min_by(|a, b| a[1].total_cmp(&b[1]))?;
+    let greatest = finite.iter().max_by(|a, b| a[1].total_cmp(&b[1]))?;
+    let [x0, y0, x1, y1] = [first[0], first[1], last[0], last[1]].map(|it| wording.number(it));
+    let [low, at_low] = [least[1], least[0]].map(|it| wording.number(it));
+    let [high, at_high] = [greatest[1], greatest[0]].map(|it| wording.number(it));
+    let template = if is_plan { wording.words.place_alt } else { wording.words.line_alt };
+    let values = [
+        ("name", &*series.name),
+        ("x0", &*x0),
+        ("y0", &*y0),
+        ("x1", &*x1),
+        ("y1", &*y1),
+        ("low", &*low),
+        ("at_low", &*at_low),
+        ("high", &*high),
+        ("at_high", &*at_high),
+    ];
+    (!series.name.is_empty()).then(|| fill(template, &values))
+}
+
+/// Names, each once.
+fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let mut each: Vec<&str> = Vec::new();
+    for name in names {
+        if !name.is_empty() && !each.contains(&name) {
+            each.push(name);
+        }
+    }
+    each.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Axis, Role};
+    use impactlab_core::units::UnitSystem;
+
+    #[test]
+    fn a_curve_is_told_by_its_ends_and_its_extremes() {
+        let axes = [
+            Axis::shown("Time", Quantity::Time, UnitSystem::Si),
+            Axis::shown("Force", Quantity::Force, UnitSystem::Si),
+        ];
+        let curve = vec![[0.0, 1.0], [0.1, 60.5], [0.2, -2.0], [0.3, 4.0]];
+        let elements = vec![FigureElement::line("|F|", Role::Resultant, curve)];
+        let picture =
+            PartPicture::figure("Contact force".to_owned(), Figure::new("force", axes, elements));
+        let text = alt_text(&picture, &Wording::english(UnitSystem::Si));
+        for value in ["Contact force", "|F|", "60.5", "0.1", "-2", "0.3", "4"] {
+            assert!(text.contains(value), "{value:?} is not in {text}");
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! What was asked, and what came out: each question once, with the answers of all variants beside each
+//! other.
+
+use crate::report::beside::{Said, beside_each_other};
+use crate::report::build::VariantParts;
+use crate::report::numbers::{Wording, fill};
+use crate::report::parts::Part;
+use crate::report::{Block, Language, ReportDate};
+use impactlab_core::uncertainty::Caveat;
+use impactlab_core::units::UnitSystem;
+use impactlab_study::case_file::CaseFile;
+
+/// A question with the variants that have an answer to it.
+struct Question<'a> {
+    title: &'a str,
+    answers: Vec<(&'a str, &'a Part)>,
+}
+
+/// What the report is about, and every question with its answers.
+pub(super) fn answer_blocks(
+    case: &CaseFile,
+    date: &ReportDate,
+    variants: &[VariantParts],
+    wording: &Wording,
+) -> Vec<Block> {
+    let words = wording.words;
+    let date = date.written(wording.language);
+    let values =
+        [("case", &*case.name), ("date", &*date), ("version", impactlab_core::program::version())];
+    let mut blocks = Vec::new();
+    blocks.push(Block::paragraph(fill(words.intro, &values)));
+    blocks.push(Block::paragraph(match wording.units {
+        UnitSystem::Si => words.units_si,
+        UnitSystem::Us => words.units_us,
+    }));
+    if wording.language != Language::En {
+        blocks.push(Block::paragraph(words.language_note));
+    }
+    if variants.len() > 1 {
+        blocks.push(Block::paragraph(words.variants_beside));
+    }
+    let notes = case.notes.lines().map(str::trim).filter(|line| !line.is_empty());
+    let notes: Vec<Block> = notes.map(Block::paragraph).collect();
+    if !notes.is_empty() {
+        blocks.push(Block::heading(2, words.notes));
+        blocks.extend(notes);
+    }
+    blocks.extend(without_answer(variants, wording));
+    let mut told: Vec<Block> = Vec::new();
+    for question in questions(variants) {
+        told.push(Block::heading(2, question.title));
+        let said = question.answers.iter().map(|(name, part)| {
+            let blocks = part_blocks(part, wording);
+            Said { name, blocks }
+        });
+        let said: Vec<Said<'_>> = said.collect();
+        told.extend(beside_each_other(&said, wording));
+        told.extend(not_asked(&question, variants, wording));
+    }
+    blocks.extend(without_repeated_tables(told));
+    blocks
+}
+
+/// A restriction with its sentence.
+pub(super) fn warning(caveat: &Caveat, wording: &Wording) -> String {
+    let (warning, label) = (wording.words.warning, wording.term(caveat.kind.label()));
+    format!("{warning}: {label}: {}", wording.quoted(&caveat.text))
+}
+
+/// The questions in the order in which they are first asked. Two of one variant that have the same
+/// heading are two questions.
+fn questions(variants: &[VariantParts]) -> Vec<Question<'_>> {
+    let mut questions: Vec<Question<'_>> = Vec::new();
+    for variant in variants {
+        for part in variant.answers.iter().flatten() {
+            let name: &str = &variant.name;
+            let is_free = |question: &&mut Question<'_>| {
+                question.title == part.title && question.answers.iter().all(|(of, _)| *of != name)
+            };
+            match questions.iter_mut().find(is_free) {
+                Some(question) => question.answers.push((name, part)),
+                None => {
+                    questions.push(Question { title: &part.title, answers: vec![(name, part)] });
+                }
+            }
+        }
+    }
+    questions
+}
+
+/// Which variants do not have a question that others have.
+fn not_asked(
+    question: &Question<'_>,
+    variants: &[VariantParts],
+    wording: &Wording,
+) -> Option<Block> {
+    let is_missing = |variant: &&VariantParts| {
+        question.answers.iter().all(|(name, _)| *name != variant.name.as_str())
+    };
+    let names: Vec<&str> = variants.iter().filter(is_missing).map(|it| &*it.name).collect();
+    let text = || fill(wording.words.not_asked_of, &[("names", &names.join(", "))]);
+    (!names.is_empty()).then(|| Block::paragraph(text()))
+}
+
+/// Questions without an answer, with the reason.
+fn without_answer<'a>(
+    variants: &'a [VariantParts],
+    wording: &'a Wording,
+) -> impl Iterator<Item = Block> + 'a {
+    let words = wording.words;
+    let errors = variants.iter().flat_map(|variant| {
+        let errors = variant.answers.iter().filter_map(|answer| answer.as_ref().err());
+        errors.map(|error| (&*variant.name, error))
+    });
+    errors.map(move |(name, error)| {
+        let error = wording.quoted(error);
+        Block::notice(match variants.len() {
+            1 => fill(words.no_answer, &[("error", &error)]),
+            _ => fill(words.no_answer_of, &[("name", name), ("error", &error)]),
+        })
+    })
+}
+
+/// A question with what may be wrong with its answer, and the answer.
+fn part_blocks(part: &Part, wording: &Wording) -> Vec<Block> {
+    let warnings = part.caveats.iter().filter(|caveat| caveat.is_warning());
+    let notices = warnings.map(|caveat| Block::notice(warning(caveat, wording)));
+    let (question, rest) = part.answer.split_at(part.answer.len().min(1));
+    question.iter().cloned().chain(notices).chain(rest.iter().cloned()).collect()
+}
+
+/// Blocks in which each table stands once: what several answers have in common, such as the two methods
+/// beside each other, is said with the first of them, and so is what stands below such a table.
+fn without_repeated_tables(blocks: Vec<Block>) -> Vec<Block> {
+    let mut kept: Vec<Block> = Vec::new();
+    let mut is_below_repeated = false;
+    for block in blocks {
+        let is_told_again = match block {
+            Block::Table(_) => kept.contains(&block),
+            Block::Paragraph { .. } => is_below_repeated && kept.contains(&block),
+            _ => false,
+        };
+        is_below_repeated = is_told_again;
+        if !is_told_again {
+            kept.push(block);
+        }
+    }
+    kept
+}
