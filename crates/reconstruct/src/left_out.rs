@@ -14,7 +14,7 @@ use crate::sampler::{
 use crate::{
     EvidenceTerm, Posterior, QuantityEstimate, ReconstructedQuantity, ReconstructionTarget,
 };
-use impactlab_core::numerics::normal_cdf;
+use impactlab_core::numerics::{normal_cdf, wrap_angle_rad};
 
 /// Independent draws below which nothing is said.
 const LEAST_ESS: f64 = 30.0;
@@ -198,10 +198,7 @@ fn tail_probability(particles: &[&[EvidenceTerm]]) -> Option<f64> {
         let terms: Vec<&EvidenceTerm> =
             particles.iter().filter_map(|terms| terms.get(idx)).collect();
         terms.iter().all(|term| term.has_sides).then(|| {
-            let below = terms.iter().map(|term| {
-                let side = (term.found - term.expected).signum();
-                normal_cdf(side * term.distance.sqrt())
-            });
+            let below = standard_differences(&terms).into_iter().map(normal_cdf);
             let u = below.sum::<f64>() / terms.len() as f64;
             2.0 * u.min(1.0 - u)
         })
@@ -211,9 +208,33 @@ fn tail_probability(particles: &[&[EvidenceTerm]]) -> Option<f64> {
     Some((least * tails.len() as f64).min(1.0))
 }
 
+/// What was found less what each particle expects, in standard deviations. Whole turns of an angle do
+/// not count: all of its differences are told about their mean direction, so that half a turn, which is
+/// as far off as an angle can be, lies to one side of all particles.
+fn standard_differences(terms: &[&EvidenceTerm]) -> Vec<f64> {
+    let differences: Vec<f64> = terms.iter().map(|term| term.found - term.expected).collect();
+    let is_angle = terms.first().is_some_and(|term| term.unit == "rad");
+    let (sin, cos) = differences.iter().fold((0.0, 0.0), |(sin, cos), difference| {
+        (sin + difference.sin(), cos + difference.cos())
+    });
+    let middle = sin.atan2(cos);
+    let standard = |(difference, term): (&f64, &&EvidenceTerm)| {
+        let about_middle = match is_angle {
+            true => middle + wrap_angle_rad(difference - middle),
+            false => *difference,
+        };
+        match difference.abs() {
+            0.0 => 0.0,
+            size => about_middle / size * term.distance.sqrt(),
+        }
+    };
+    differences.iter().zip(terms).map(standard).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     fn term(found: f64, expected: f64, sigma: f64) -> EvidenceTerm {
         let distance = ((found - expected) / sigma).powi(2);
@@ -241,5 +262,24 @@ mod tests {
         assert!(p(101.0) < 1e-6 && p(-1.0) < 1e-6);
         let distance = EvidenceTerm { has_sides: false, ..term(3.0, 0.0, 1.0) };
         assert_eq!(tail_probability(&[&[distance]]), None);
+    }
+
+    /// A heading that is off by half a turn lies at the border at which angles are told anew, so that
+    /// half of the particles expect it to the left and half to the right.
+    #[test]
+    fn half_a_turn_is_a_contradiction_and_whole_turns_are_none() {
+        let p = |off: f64| {
+            let of: Vec<[EvidenceTerm; 1]> = (-50..=50)
+                .map(|k| {
+                    let expected = f64::from(k) * 0.002;
+                    let found = expected + wrap_angle_rad(off - expected);
+                    [EvidenceTerm { unit: "rad", ..term(found, expected, 0.04) }]
+                })
+                .collect();
+            let of: Vec<&[EvidenceTerm]> = of.iter().map(|terms| &terms[..]).collect();
+            tail_probability(&of).unwrap()
+        };
+        assert!(p(PI) < 1e-6 && p(-PI) < 1e-6 && p(PI / 2.0) < 1e-6, "{}", p(PI));
+        assert!(p(0.0) > 0.95 && p(2.0 * PI) > 0.95, "{}", p(0.0));
     }
 }

@@ -29,7 +29,7 @@ const SPEED_BEFORE_SIGMA: Sigma = Sigma::share(
     "±",
     SPEED_SIGMA,
     [0.04, 0.3],
-    "4 %, the accuracy that 49 CFR 563 asks for, and at least the rounding of the record",
+    "4 %, as stated for early recorders (49 CFR 563 asks for 1 km/h), and at least the rounding of the record",
 );
 const DELTA_V_X: Field = Field::new("delta_v_x", "Δv ahead", SPEED);
 const DELTA_V_Y: Field = Field::new("delta_v_y", "Δv to the left", SPEED).turned();
