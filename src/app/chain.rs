@@ -145,7 +145,7 @@ fn force_link(
 fn motion_link(motion: Option<&MotionAnswer>) -> Link {
     let figure = motion.map(|motion| {
         let share = motion.answer.report.applicability;
-        format!("network applies by {}", percent(share))
+        format!("network {}, physics the rest", percent(share))
     });
     let source = match motion {
         Some(motion) => format!("response network {}", motion.answer.report.response_model),

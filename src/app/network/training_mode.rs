@@ -31,7 +31,7 @@ impl TrainingMode {
         match self {
             Self::FineTuneShipped => "fine-tune the shipped pre-trained network",
             Self::FineTuneCurrent => "fine-tune the current model",
-            Self::Condition => "tell the current model of a car (seconds)",
+            Self::Condition => "fit the current model to one car (seconds)",
             Self::FromScratch => "train a new network on trajectories alone",
             Self::Pretrain => "pre-train a new network on simulations",
         }

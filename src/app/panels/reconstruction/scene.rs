@@ -191,8 +191,8 @@ fn cars_ui(
 fn live_ui(ui: &mut Ui, live: &LiveParticles, units: UnitSystem) {
     let reached = match live.temperature {
         ..=0.0 => "before the evidence".to_owned(),
-        1.0.. => "all of the evidence counts, still sampling".to_owned(),
-        share => format!("the evidence counts {} so far", percent(share)),
+        1.0.. => "still sampling".to_owned(),
+        share => format!("still sampling, evidence at {} of its weight", percent(share)),
     };
     let speeds = live.speeds_m_s.map(|ends| {
         let unit = Quantity::Speed.display_unit(units);
