@@ -12,8 +12,8 @@ use impactlab_core::uncertainty::{Caveat, Caveats};
 use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem};
 use impactlab_core::vehicle::Integrator;
 use impactlab_document::report::{
-    Block, Language, Paper, PictureContent, Pixels, ReportDate, ReportDocument, ReportSettings,
-    SectionKind, pdf, report_case,
+    Block, Language, Paper, PictureContent, Pixels, ReportDate, ReportDocument, ReportFormat,
+    ReportSettings, SectionKind, pdf, report_case,
 };
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::case_file::{CaseFile, CaseReport, Variant, pack, unpack};
@@ -263,6 +263,22 @@ fn the_same_case_gives_the_same_bytes_also_from_its_package() {
 /// Draws any figure as a gray field.
 fn gray(_: &PictureContent) -> Result<Pixels, String> {
     Ok(Pixels { size_px: [16, 9], rgba: [128, 128, 128, 255].repeat(16 * 9) })
+}
+
+#[test]
+fn markdown_holds_its_pictures() {
+    let (document, _) = pit();
+    let bytes = document.bytes(ReportFormat::Markdown, Some(&gray)).expect("Markdown");
+    let text = String::from_utf8(bytes).expect("a text");
+    for picture in document.pictures() {
+        let name = format!("[figure-{}]", picture.number);
+        assert_eq!(text.matches(&name).count(), 2, "{name} stands once and is told once");
+    }
+    // The first bytes of a PNG file.
+    let start = "data:image/png;base64,iVBORw0KGgo";
+    assert_eq!(text.matches(start).count(), document.pictures().count());
+    let told = document.bytes(ReportFormat::Markdown, None).expect("Markdown");
+    assert!(!String::from_utf8(told).expect("a text").contains("base64"));
 }
 
 #[test]

@@ -55,7 +55,7 @@ pub(super) fn answer_blocks(
         });
         let said: Vec<Said<'_>> = said.collect();
         told.extend(beside_each_other(&said, wording));
-        told.extend(not_asked(&question, variants, wording));
+        told.extend(not_answered(&question, variants, wording));
     }
     blocks.extend(without_repeated_tables(told));
     blocks
@@ -88,8 +88,8 @@ fn questions(variants: &[VariantParts]) -> Vec<Question<'_>> {
     questions
 }
 
-/// Which variants do not have a question that others have.
-fn not_asked(
+/// Which variants have no answer to a question that others have one to.
+fn not_answered(
     question: &Question<'_>,
     variants: &[VariantParts],
     wording: &Wording,
@@ -98,7 +98,7 @@ fn not_asked(
         question.answers.iter().all(|(name, _)| *name != variant.name.as_str())
     };
     let names: Vec<&str> = variants.iter().filter(is_missing).map(|it| &*it.name).collect();
-    let text = || fill(wording.words.not_asked_of, &[("names", &names.join(", "))]);
+    let text = || fill(wording.words.not_answered_for, &[("names", &names.join(", "))]);
     (!names.is_empty()).then(|| Block::paragraph(text()))
 }
 

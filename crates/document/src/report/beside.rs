@@ -77,10 +77,10 @@ pub(super) fn beside_each_other(said: &[Said<'_>], wording: &Wording) -> Vec<Blo
             }
         }
     }
-    let beside = columns.chunks(MOST_BESIDE).flat_map(|columns| merged(columns, wording));
-    beside.collect()
+    merged(&columns, wording)
 }
 
+/// The blocks of all variants as those of one.
 fn merged(columns: &[Speaker], wording: &Wording) -> Vec<Block> {
     if let [only] = columns {
         return only.blocks.clone();
@@ -321,12 +321,38 @@ mod tests {
             &wording,
         );
         assert_eq!(blocks[..2], [question, Block::notice("brakes: few draws")]);
-        assert_eq!(blocks[3..], [Block::paragraph("In all variants: vehicle: a car.")]);
+        assert_eq!(
+            blocks[3..],
+            [Block::paragraph("The same in each of these variants: vehicle: a car.")]
+        );
         let table = only_table(&blocks);
         let titles: Vec<&str> = table.columns.iter().map(|column| &*column.title).collect();
         assert_eq!(titles, ["Quantity", "coasts, coasts again", "brakes"]);
         assert_eq!(table.rows, [["X", "4 m (3 to 5 m)", "2 m (1 to 3 m)"]]);
         assert!(table.caption.contains("90 %"), "{}", table.caption);
+    }
+
+    /// A table is divided where it has too many columns; no column loses the name of its variant.
+    #[test]
+    fn of_many_variants_each_has_its_name_and_texts_are_said_once() {
+        let wording = Wording::english(UnitSystem::Si);
+        let question = Block::paragraph("Where does it go?");
+        let names = ["a", "b", "c", "d", "e"];
+        let said: Vec<Said<'_>> = names
+            .iter()
+            .map(|name| {
+                let blocks = vec![question.clone(), table(&[["X", name, "", "1 to 2 m"]])];
+                Said { name, blocks }
+            })
+            .collect();
+        let blocks = beside_each_other(&said, &wording);
+        let [first, Block::Table(four), Block::Table(one)] = &blocks[..] else {
+            panic!("{blocks:?}")
+        };
+        assert_eq!(*first, question);
+        assert_eq!((four.columns.len(), one.columns.len()), (5, 2));
+        assert_eq!(one.columns[1].title, "e");
+        assert_eq!(one.rows, [["X", "e (1 to 2 m)"]]);
     }
 
     #[test]

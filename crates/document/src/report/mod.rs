@@ -8,7 +8,7 @@
 //!
 //! - [`report_case`] asks the questions and makes the [`ReportDocument`], which is plain data.
 //! - [`ReportDocument::to_json`], [`ReportDocument::to_markdown`] and [`pdf`] write it. Pictures are
-//!   drawn by a function that the caller passes on, since drawing needs the feature `gui`.
+//!   drawn by a function that the caller passes on, since drawing is the work of a crate above.
 //! - Numbers are formatted by [`units`](impactlab_core::units), as those in the window.
 //! - The same case, files, settings and date give the same bytes: nothing reads a clock.
 

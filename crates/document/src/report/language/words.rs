@@ -29,7 +29,7 @@ pub(in crate::report) struct Words {
     pub alike: &'static str,
     pub beside_intervals: &'static str,
     pub variants_beside: &'static str,
-    pub not_asked_of: &'static str,
+    pub not_answered_for: &'static str,
     pub inputs_same_as: &'static str,
     pub inputs_all_same: &'static str,
     pub annex: &'static str,
