@@ -16,6 +16,7 @@ mod data_shipped;
 mod data_writes;
 mod dependencies;
 mod endings;
+mod evidence_guide;
 mod exchange;
 mod force_baselines;
 mod force_domain;
