@@ -41,7 +41,8 @@ pub struct FigureOptions {
     pub id: String,
     /// Group of plots that share the cursor and the horizontal axis.
     pub link: Option<Id>,
-    /// Position of the cursor along x, in the unit of the axis.
+    /// Position of the cursor along x, in the unit of the axis; not drawn beyond the curves, whose axis it
+    /// would stretch.
     pub cursor_x: Option<f64>,
     /// Two cursors along x, in the unit of the axis.
     pub span: Option<[f64; 2]>,
@@ -143,7 +144,7 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         for element in &figure.elements {
             draw_element(plot_ui, dark, element, figure.log_y);
         }
-        if let Some(x) = options.cursor_x {
+        if let Some(x) = options.cursor_x.filter(|x| reaches(figure, *x)) {
             let stroke = Stroke::new(theme::LINE_WIDTH, theme::cursor_color(dark));
             plot_ui.vline(VLine::new("", x).stroke(stroke).allow_hover(false));
         }
@@ -346,5 +347,42 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, dark: bool, element: &'a FigureElemen
         FigureElement::VerticalLine { name, x, .. } => {
             plot.vline(VLine::new(name, *x).stroke(stroke).style(PlotLineStyle::dashed_dense()));
         }
+    }
+}
+
+/// Whether a place along x lies over a curve; anywhere does in a figure without curves.
+fn reaches(figure: &Figure, x: f64) -> bool {
+    let ends = figure.elements.iter().filter_map(|element| {
+        // Curves over time ascend.
+        let [first, last] = match element {
+            FigureElement::Line(series) => {
+                [series.points.first()?, series.points.last()?].map(|point| point[0])
+            }
+            FigureElement::Band(band) => [*band.x.first()?, *band.x.last()?],
+            _ => return None,
+        };
+        Some([first, last])
+    });
+    let mut curves = ends.peekable();
+    curves.peek().is_none() || curves.any(|[first, last]| first <= x && x <= last)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::units::{Quantity, UnitSystem};
+    use impactlab_document::figure::{Axis, Role};
+
+    #[test]
+    fn a_cursor_reaches_as_far_as_the_curves() {
+        let axis = |quantity| Axis::shown("axis", quantity, UnitSystem::Si);
+        let axes = [axis(Quantity::Time), axis(Quantity::Force)];
+        let curve = |points| FigureElement::line("F", Role::Resultant, points);
+        let mut figure = Figure::new("force", axes, vec![curve(vec![[0.0, 1.0], [0.1, 2.0]])]);
+        assert!(reaches(&figure, 0.0) && reaches(&figure, 0.1) && !reaches(&figure, 2.0));
+        figure.elements.push(curve(vec![[0.0, 0.0], [3.0, 0.0]]));
+        assert!(reaches(&figure, 2.0));
+        figure.elements.clear();
+        assert!(reaches(&figure, 2.0));
     }
 }
