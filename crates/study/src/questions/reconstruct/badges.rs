@@ -42,11 +42,11 @@ pub(super) fn of_particles(particles: &Particles) -> Vec<Caveat> {
     });
     let few = (particles.ess < LEAST_ESS).then(|| {
         let consequence = match particles.ess < LEAST_ESS_FOR_INTERVALS {
-            true => "no intervals are given, which would be those of single particles",
+            true => "no intervals are given, which would rest on single draws",
             false => "intervals may be too narrow",
         };
         let text = format!(
-            "the particles are worth {:.0} independent ones, expected {LEAST_ESS}: {consequence}; more \
+            "the sample is equivalent to {:.0} independent draws, expected {LEAST_ESS}: {consequence}; more \
              particles: --particles",
             particles.ess
         );
