@@ -62,6 +62,9 @@ impl Language {
 /// Digits of a number that was given, at most: more would be those of the conversion of its unit.
 const GIVEN_DIGITS: i32 = 8;
 
+/// Speed and rate of turning below which something stands still, in the unit of display.
+const STANDSTILL: f64 = 1e-3;
+
 impl EstimateText {
     /// The interval of a level; `None` if there is none.
     pub fn at(&self, level: f64) -> Option<&IntervalText> {
@@ -111,7 +114,10 @@ impl NumberFormat {
     /// as `12.35 kN`.
     pub fn value(&self, quantity: Quantity, value_si: f64) -> String {
         let unit = quantity.display_unit(self.units);
-        self.with_unit(&significant(unit.from_si(value_si)), unit.symbol)
+        let value = unit.from_si(value_si);
+        let is_rate = matches!(quantity, Quantity::Speed | Quantity::AngularVelocity);
+        let value = if is_rate && value.abs() < STANDSTILL { 0.0 } else { value };
+        self.with_unit(&significant(value), unit.symbol)
     }
 
     /// A pure number with four significant digits.
@@ -175,7 +181,7 @@ impl NumberFormat {
     }
 
     /// A median with its intervals. The interval of 90 %, or the widest if there is none, decides the
-    /// digits of all: two of its width, and none that it makes meaningless.
+    /// digits of all: two of its width, and none that it makes meaningless. Bounds are rounded outwards.
     pub fn estimate(&self, quantity: Quantity, estimate: &Estimate) -> EstimateText {
         self.estimate_in(quantity.display_unit(self.units), estimate)
     }
@@ -185,9 +191,8 @@ impl NumberFormat {
         let in_unit = estimate.mapped(|si| unit.from_si(si));
         let deciding = in_unit.interval(0.9).or(in_unit.intervals.last().map(Interval::ends));
         let width = deciding.map_or(0.0, |[low, high]| (high - low).abs());
-        let number = |value: f64| with_width(value, width);
         let interval = |interval: &Interval| {
-            let [low, high] = interval.ends().map(number);
+            let [low, high] = bounds(interval.ends(), width);
             let texts = [&low, &high].map(|end| self.with_unit(end, unit.symbol));
             let first = match (unit.symbol, self.language) {
                 ("deg", Language::De) => texts[0].clone(),
@@ -198,7 +203,7 @@ impl NumberFormat {
             IntervalText { level: interval.level, low, high, range }
         };
         EstimateText {
-            median: self.with_unit(&number(in_unit.median), unit.symbol),
+            median: self.with_unit(&with_width(in_unit.median, width), unit.symbol),
             intervals: in_unit.intervals.iter().map(interval).collect(),
         }
     }
@@ -211,12 +216,13 @@ impl NumberFormat {
             return self.value(quantity, estimate.median);
         };
         let [low, high] = ends.map(|si| unit.from_si(si));
-        let number = |value: f64| self.local(&with_width(value, (high - low).abs()));
-        let median = number(unit.from_si(estimate.median));
+        let width = (high - low).abs();
+        let median = self.local(&with_width(unit.from_si(estimate.median), width));
         if low == high {
             return self.with_unit(&median, unit.symbol);
         }
-        let text = format!("{median} ({} {} {})", number(low), self.to(), number(high));
+        let [low, high] = bounds([low, high], width).map(|bound| self.local(&bound));
+        let text = format!("{median} ({low} {} {high})", self.to());
         self.with_unit(&text, unit.symbol)
     }
 
@@ -246,6 +252,22 @@ impl NumberFormat {
 /// A number with two digits of a width, so that no digit is shown that the width makes meaningless;
 /// with four significant digits if the width is zero.
 fn with_width(value: f64, width: f64) -> String {
+    rounded_by(value, width, f64::round)
+}
+
+/// Both ends of an interval with two digits of a width, rounded outwards: the interval that is shown
+/// holds the one that was computed.
+fn bounds([low, high]: [f64; 2], width: f64) -> [String; 2] {
+    // What conversions of units leave at the last digits moves no bound.
+    let near = |steps: f64| (steps - steps.round()).abs() < 1e-6;
+    let down = |steps: f64| if near(steps) { steps.round() } else { steps.floor() };
+    [rounded_by(low, width, down), rounded_by(high, width, |steps| -down(-steps))]
+}
+
+/// A number with two digits of a width, or with four significant ones if that is zero.
+///
+/// - `round`: to a whole number of steps of the last digit.
+fn rounded_by(value: f64, width: f64, round: impl Fn(f64) -> f64) -> String {
     match width {
         0.0 => significant(value),
         width if !width.is_finite() => value.to_string(),
@@ -253,7 +275,7 @@ fn with_width(value: f64, width: f64) -> String {
             let decimals = (1 - width.log10().floor() as i32).clamp(0, 6) as usize;
             let scale = 10.0_f64.powi(decimals as i32);
             // Adding zero turns a negative zero into a positive one.
-            format!("{:.decimals$}", (value * scale).round() / scale + 0.0)
+            format!("{:.decimals$}", round(value * scale) / scale + 0.0)
         }
     }
 }
@@ -321,6 +343,7 @@ mod tests {
             assert_eq!(significant(value), expected);
         }
         assert_eq!(EN.value(Quantity::Force, 12_345.0), "12.35 kN");
+        assert_eq!(DE_US.value(Quantity::Speed, -2.7e-6), "0 mph");
         assert_eq!(
             EN.vector(Quantity::Length, [3.0, 4.0], ["x", "y"]),
             "5.000 m (x 3.000, y 4.000)"
@@ -332,16 +355,17 @@ mod tests {
         let shown = |median, ninety: [f64; 2]| {
             EN.estimate_in_words(Quantity::Length, &Estimate::new(median, ninety, ninety))
         };
-        assert_eq!(shown(30.741, [26.52, 57.24]), "31 (27 to 57) m");
+        assert_eq!(shown(30.741, [26.52, 57.24]), "31 (26 to 58) m");
         assert_eq!(shown(-0.004, [-0.31, 0.27]), "0.00 (-0.31 to 0.27) m");
-        assert_eq!(shown(52.22, [51.55, 52.86]), "52.2 (51.6 to 52.9) m");
+        assert_eq!(shown(0.5, [0.3, 0.1 + 0.6]), "0.50 (0.30 to 0.70) m");
+        assert_eq!(shown(52.22, [51.55, 52.86]), "52.2 (51.5 to 52.9) m");
         assert_eq!(shown(2.0, [2.0, 2.0]), "2.000 m");
         assert_eq!(shown(2.0, [1.0, f64::INFINITY]), "2 (1 to inf) m");
         let nested = Estimate::new(32.209, [30.11, 34.52], [26.789, 37.193]);
         let text = EN.estimate(Quantity::Length, &nested);
         let ranges: Vec<&str> =
             text.intervals.iter().map(|interval| interval.range.as_str()).collect();
-        assert_eq!((&*text.median, &*ranges), ("32 m", &["30 to 35 m", "27 to 37 m"][..]));
+        assert_eq!((&*text.median, &*ranges), ("32 m", &["30 to 35 m", "26 to 38 m"][..]));
         assert_eq!(EN.measured(Quantity::Speed, 12.34, 0.876), "44.4 ± 3.2 km/h");
     }
 
@@ -351,7 +375,7 @@ mod tests {
         assert_eq!(DE_US.value(Quantity::Angle, 0.5), "28,65°");
         assert_eq!(DE_US.local("2.5 kN. v1.x 3.0"), "2,5 kN. v1.x 3,0");
         let turn = Estimate::new(0.5, [0.4, 0.6], [0.3, 0.7]);
-        assert_eq!(DE_US.estimate(Quantity::Angle, &turn).intervals[1].range, "17° bis 40°");
+        assert_eq!(DE_US.estimate(Quantity::Angle, &turn).intervals[1].range, "17° bis 41°");
     }
 
     #[test]

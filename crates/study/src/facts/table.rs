@@ -432,7 +432,7 @@ mod tests {
         let table = FactTable::new(Term::Forecast, facts).with_levels(PREDICTED);
         let text = table.to_text(&FactWriter::english(UnitSystem::Si));
         assert_eq!(text.header, ["quantity", "median", "50 %", "90 %"]);
-        assert_eq!(text.rows[0].cells, ["X at the end", "32 m", "30 to 35 m", "27 to 37 m"]);
+        assert_eq!(text.rows[0].cells, ["X at the end", "32 m", "30 to 35 m", "26 to 38 m"]);
         assert_eq!(text.rows[1].cells[1..], ["90.7 m²", "", ""]);
         assert_eq!(text.rows[0].hint, Some("Of the CG, along the road from the impact"));
     }
