@@ -30,6 +30,7 @@ impl State {
             Command::List(path) => self.view.listed = Some(path),
             Command::AskMapping(path) => self.ask_mapping(path),
             Command::OpenMapped(path, map) => {
+                self.keep_said(&path);
                 self.end_mapping();
                 self.load(path, Some(map));
             }
@@ -118,7 +119,14 @@ impl State {
         if before.as_ref() != Some(&subject) {
             self.project.put_aside(self.takes_ending(before.as_ref()));
             let takes_ending = self.takes_ending(Some(&subject));
+            let said = match &subject {
+                Subject::File(path) => self.session.said_of_files.remove(path),
+                _ => None,
+            };
             self.project.take_up(self.source_of(subject), takes_ending);
+            if let Some(said) = said {
+                self.take_said(said);
+            }
             self.drop_answers();
             self.session.playback.time_s = 0.0;
             self.session.fit_plots = true;

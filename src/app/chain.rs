@@ -11,7 +11,7 @@ use crate::app::response::MotionAnswer;
 use crate::app::state::{State, Subject};
 use impactlab_core::data::Severity;
 use impactlab_core::numerics::quantile_of_sorted;
-use impactlab_core::uncertainty::Caveats;
+use impactlab_core::uncertainty::{Caveat, Caveats};
 use impactlab_core::units::{Estimate, Interval, NumberFormat, Quantity, UnitSystem, percent};
 use impactlab_draw::theme;
 use impactlab_study::{Answer, SimulateReport};
@@ -77,7 +77,7 @@ impl State {
             title: "Impact",
             figure: delta_v.map(|m_s| format!("Δv {}", Quantity::Speed.shown(m_s, units))),
             source: source.to_owned(),
-            warnings: warnings(report.map(|report| &report.caveats)),
+            warnings: warnings(report.map(|report| &report.caveats), units),
             is_late: false,
             pane,
         }
@@ -181,14 +181,16 @@ fn outcome_link(
         }
         (None, None) => (None, "no motion".to_owned(), Pane::Scene),
     };
-    let warnings = warnings(motion.map(|motion| &motion.answer.report.caveats));
+    let warnings = warnings(motion.map(|motion| &motion.answer.report.caveats), units);
     Link { title: "Outcome", figure, source, warnings, is_late: false, pane }
 }
 
 /// The sentences of the caveats that warn.
-fn warnings(caveats: Option<&Caveats>) -> Vec<String> {
+fn warnings(caveats: Option<&Caveats>, units: UnitSystem) -> Vec<String> {
     let warnings = caveats.into_iter().flatten().filter(|caveat| caveat.is_warning());
-    warnings.map(|caveat| format!("{}: {}", caveat.kind.label(), caveat.text)).collect()
+    let told =
+        |caveat: &Caveat| format!("{}: {}", caveat.kind.label(), caveat.in_units(units).text);
+    warnings.map(told).collect()
 }
 
 /// Draws the chain; a click on a link shows its panel.

@@ -193,7 +193,7 @@ impl Command {
         match self {
             Self::Ask(Purpose::Save(output)) | Self::Write(output, _) => output.is_outdated(),
             Self::CopyNumbers(figure) => figure.caveats.is_outdated(),
-            Self::Film(FilmCommand::Ask(picture)) => picture.scene.caveats.is_outdated(),
+            Self::Film(FilmCommand::Ask(picture, _)) => picture.scene.caveats.is_outdated(),
             _ => false,
         }
     }

@@ -10,7 +10,7 @@ use impactlab_document::figure::{Figure, write_figure_csv};
 use impactlab_document::report::{ReportDocument, ReportFormat};
 use impactlab_document::scene::Scene;
 use impactlab_draw::scene::{ScenePicture, scene_image};
-use impactlab_draw::{Canvas, figure_image, report_picture, save_png};
+use impactlab_draw::{Canvas, figure_image, report_drawing, save_png};
 
 /// Writes a figure to a file: its numbers if the path ends in `.csv`, otherwise a PNG picture.
 ///
@@ -62,7 +62,7 @@ pub fn write_report(
     existing: Existing,
 ) -> Result<(), String> {
     let format = ReportFormat::from_path(path).map_err(|error| error_chain(&error))?;
-    let bytes = document.bytes(format, Some(&report_picture));
+    let bytes = document.bytes(format, Some(&report_drawing));
     let bytes = bytes.map_err(|error| error_chain(&error))?;
     write_atomically(path, existing, |out| out.write_all(&bytes))
         .map_err(|error| error_chain(&error))

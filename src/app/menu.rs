@@ -10,7 +10,7 @@ use crate::app::dialog::Purpose;
 use crate::app::film::FilmCommand;
 use crate::app::keyboard;
 use crate::app::looks::{self, Icon, icon, icon_button};
-use crate::app::network::Network;
+use crate::app::network::{Network, TrainedModel};
 use crate::app::output::Output;
 use crate::app::panels;
 use crate::app::panes::Pane;
@@ -18,6 +18,7 @@ use crate::app::reconstruction::ReconstructionCommand;
 use crate::app::report::ReportCommand;
 use crate::app::state::State;
 use crate::app::tasks::TaskKey;
+use crate::app::training_status::TrainingStatus;
 use crate::app::widgets::duration_text;
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::Severity;
@@ -226,89 +227,101 @@ fn help_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws the status line: the work in progress with its progress bars, and the latest message.
+/// Width of the bar of a job in the status line, points.
+const JOB_WIDTH: f32 = 300.0;
+
+/// Draws the status line: the work in progress with its progress bars, and the latest message beside it,
+/// so that the panes keep their place when work begins or ends.
 pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     Panel::bottom("status").show(ui, |ui| {
-        let tasks = &state.session.tasks;
-        for source in &state.session.sources {
-            if let Some((progress, elapsed)) = tasks.progress(&TaskKey::Load(source.opened.clone()))
-            {
-                let cancel = Command::Close(source.opened.clone());
-                let what = format!("Loading {}", source.name());
-                progress_ui(ui, &what, progress, elapsed, cancel, commands);
-            }
-        }
-        for (path, replay) in &state.session.replays {
-            if let Some(job) = replay.question.job() {
-                let cancel = Command::CancelReplay(path.clone());
-                let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-                job_ui(ui, &format!("Simulating {name}"), job, cancel, commands);
-            }
-        }
-        let (force, response) = (&state.session.force.training, &state.session.response.training);
-        if force.run.is_running() {
-            training_job_ui(ui, Network::Force, force.run.is_paused(), force.progress(), commands);
-        }
-        if response.run.is_running() {
-            let is_paused = response.run.is_paused();
-            training_job_ui(ui, Network::Response, is_paused, response.progress(), commands);
-        }
-        if let Some((what, progress, elapsed)) = state.session.response.comparison.progress() {
-            let what = format!("{what}, {}", progress.message);
-            let cancel = Command::Compare(ComparisonCommand::Cancel);
-            progress_ui(ui, &what, progress, elapsed, cancel, commands);
-        }
-        // In its own workspace the reconstruction shows its progress itself.
-        if let Some(job) = state.session.reconstruction.run.job()
-            && state.view.workspaces.shown != Workspace::Reconstruct
-        {
-            let cancel = Command::Reconstruct(ReconstructionCommand::Cancel);
-            job_ui(ui, "Reconstructing", job, cancel, commands);
-        }
-        if let Some((progress, elapsed)) = tasks.progress(&TaskKey::Report)
-            && state.view.workspaces.shown != Workspace::Report
-        {
-            let cancel = Command::Report(ReportCommand::Cancel);
-            progress_ui(ui, "Making the report", progress, elapsed, cancel, commands);
-        }
-        if let Some(path) = tasks.film()
-            && let Some((progress, elapsed)) = tasks.progress(&TaskKey::Film(path.to_owned()))
-        {
-            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-            let what = format!("Making {name}");
-            progress_ui(ui, &what, progress, elapsed, Command::Film(FilmCommand::Cancel), commands);
-        }
-        if state.session.frame_times.is_shown {
-            ui.weak(state.session.frame_times.text());
-        }
         panels::interrupted_ui(ui, &state.session, commands);
-        let Some(latest) = state.session.messages.last() else {
-            ui.weak("Ready. Drop a folder or a file here to open it.");
-            return;
-        };
-        ui.horizontal(|ui| {
-            if ui.small_button("Dismiss").clicked() {
-                commands.push(Command::DismissMessage);
+        ui.horizontal_wrapped(|ui| {
+            jobs_ui(ui, state, commands);
+            if state.session.frame_times.is_shown {
+                ui.weak(state.session.frame_times.text());
             }
-            let older = state.session.messages.len() - 1;
-            if older > 0 {
-                let others = state.session.messages.iter().rev().skip(1).take(20);
-                let text: Vec<&str> = others.map(|message| message.text.as_str()).collect();
-                let all = ui.small_button(format!("+{older}")).on_hover_text(text.join("\n"));
-                if all.clicked() {
-                    commands.push(Command::ShowMessages);
-                }
-            }
-            let color = theme::severity_color(latest.severity, state.view.dark);
-            looks::icon_ui(ui, severity_icon(latest.severity), color);
-            let text = match latest.severity {
-                Severity::Error => format!("Error: {}", latest.text),
-                Severity::Warning => format!("Warning: {}", latest.text),
-                Severity::Info => latest.text.clone(),
-            };
-            ui.add(egui::Label::new(RichText::new(text).color(color)).wrap());
+            message_ui(ui, state, commands);
         });
     });
+}
+
+/// Draws the jobs that are running.
+fn jobs_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let tasks = &state.session.tasks;
+    for source in &state.session.sources {
+        if let Some((progress, left)) = tasks.progress(&TaskKey::Load(source.opened.clone())) {
+            let cancel = Command::Close(source.opened.clone());
+            let what = format!("Loading {}", source.name());
+            progress_ui(ui, &what, progress, left, cancel, commands);
+        }
+    }
+    for (path, replay) in &state.session.replays {
+        if let Some(job) = replay.question.job() {
+            let cancel = Command::CancelReplay(path.clone());
+            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+            job_ui(ui, &format!("Simulating {name}"), job, cancel, commands);
+        }
+    }
+    let (force, response) = (&state.session.force.training, &state.session.response.training);
+    if force.run.is_running() {
+        training_job_ui(ui, force, commands);
+    }
+    if response.run.is_running() {
+        training_job_ui(ui, response, commands);
+    }
+    if let Some((what, progress, left)) = state.session.response.comparison.progress() {
+        let what = format!("{what}, {}", progress.message);
+        let cancel = Command::Compare(ComparisonCommand::Cancel);
+        progress_ui(ui, &what, progress, left, cancel, commands);
+    }
+    // In its own workspace the reconstruction shows its progress itself.
+    if let Some(job) = state.session.reconstruction.run.job()
+        && state.view.workspaces.shown != Workspace::Reconstruct
+    {
+        let cancel = Command::Reconstruct(ReconstructionCommand::Cancel);
+        job_ui(ui, "Reconstructing", job, cancel, commands);
+    }
+    if let Some((progress, left)) = tasks.progress(&TaskKey::Report)
+        && state.view.workspaces.shown != Workspace::Report
+    {
+        let cancel = Command::Report(ReportCommand::Cancel);
+        progress_ui(ui, "Making the report", progress, left, cancel, commands);
+    }
+    if let Some(path) = tasks.film()
+        && let Some((progress, left)) = tasks.progress(&TaskKey::Film(path.to_owned()))
+    {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        let what = format!("Making {name}");
+        progress_ui(ui, &what, progress, left, Command::Film(FilmCommand::Cancel), commands);
+    }
+}
+
+/// Draws the latest message.
+fn message_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let Some(latest) = state.session.messages.last() else {
+        ui.weak("Ready. Drop a folder or a file here to open it.");
+        return;
+    };
+    if ui.small_button("Dismiss").clicked() {
+        commands.push(Command::DismissMessage);
+    }
+    let older = state.session.messages.len() - 1;
+    if older > 0 {
+        let others = state.session.messages.iter().rev().skip(1).take(20);
+        let text: Vec<&str> = others.map(|message| message.text.as_str()).collect();
+        let all = ui.small_button(format!("+{older}")).on_hover_text(text.join("\n"));
+        if all.clicked() {
+            commands.push(Command::ShowMessages);
+        }
+    }
+    let color = theme::severity_color(latest.severity, state.view.dark);
+    looks::icon_ui(ui, severity_icon(latest.severity), color);
+    let text = match latest.severity {
+        Severity::Error => format!("Error: {}", latest.text),
+        Severity::Warning => format!("Warning: {}", latest.text),
+        Severity::Info => latest.text.clone(),
+    };
+    ui.add(egui::Label::new(RichText::new(text).color(color)).wrap());
 }
 
 /// The icon beside a message.
@@ -341,59 +354,55 @@ pub fn messages_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws a row for a training in progress, with a button that brings the training pane to the
+/// Draws a training in progress, with a button that brings the training pane to the
 /// front.
-fn training_job_ui(
+fn training_job_ui<M: TrainedModel>(
     ui: &mut Ui,
-    network: Network,
-    is_paused: bool,
-    progress: (Option<f32>, Option<Duration>),
+    status: &TrainingStatus<M>,
     commands: &mut Vec<Command>,
 ) {
-    ui.horizontal(|ui| {
-        if ui.small_button("Show").clicked() {
-            commands.push(Command::ShowTraining(network));
+    if ui.small_button("Show").clicked() {
+        commands.push(Command::ShowTraining(M::NETWORK));
+    }
+    let paused = if status.run.is_paused() { ", paused" } else { "" };
+    let part = if status.is_fitting() { ", fits before the epochs" } else { "" };
+    let what = format!("{}{paused}{part}", M::NETWORK.label());
+    match status.progress() {
+        (Some(fraction), left) => {
+            let left = left.map_or(String::new(), |t| format!(": {} left", duration_text(t)));
+            let bar = ProgressBar::new(fraction).desired_width(JOB_WIDTH);
+            ui.add(bar.text(format!("{what}{left}")));
         }
-        let paused = if is_paused { ", paused" } else { "" };
-        let what = format!("{}{paused}", network.label());
-        match progress {
-            (Some(fraction), left) => {
-                let left = left.map_or(String::new(), |t| format!(": {} left", duration_text(t)));
-                let bar = ProgressBar::new(fraction).desired_width(420.0);
-                ui.add(bar.text(format!("{what}{left}")));
-            }
-            (None, _) => drop((ui.spinner(), ui.label(what))),
-        }
-    });
+        (None, _) => drop((ui.spinner(), ui.label(what))),
+    }
+    ui.separator();
 }
 
-/// Draws a row for a running job: a button to cancel, the share done and the time left.
+/// Draws a running job: a button to cancel, the share done and the time left.
 fn job_ui<T>(ui: &mut Ui, what: &str, job: &Job<T>, cancel: Command, commands: &mut Vec<Command>) {
-    progress_ui(ui, what, job.progress(), job.elapsed(), cancel, commands);
+    progress_ui(ui, what, job.progress(), job.time_left(), cancel, commands);
 }
 
 fn progress_ui(
     ui: &mut Ui,
     what: &str,
     progress: &Progress,
-    elapsed: Duration,
+    left: Option<Duration>,
     cancel: Command,
     commands: &mut Vec<Command>,
 ) {
-    ui.horizontal(|ui| {
-        if ui.small_button("Cancel").clicked() {
-            commands.push(cancel);
+    if ui.small_button("Cancel").clicked() {
+        commands.push(cancel);
+    }
+    let left = left.map_or(String::new(), |t| format!(", {} left", duration_text(t)));
+    match progress.fraction() {
+        Some(fraction) => {
+            let text = format!("{what}: {:.0} %{left}", 100.0 * fraction);
+            ui.add(ProgressBar::new(fraction).desired_width(JOB_WIDTH).text(text));
         }
-        let left = progress.time_left(elapsed);
-        let left = left.map_or(String::new(), |t| format!(", {} left", duration_text(t)));
-        match progress.fraction() {
-            Some(fraction) => {
-                let text = format!("{what}: {:.0} %{left}", 100.0 * fraction);
-                ui.add(ProgressBar::new(fraction).desired_width(420.0).text(text))
-            }
-            None => ui.horizontal(|ui| (ui.spinner(), ui.label(what))).response,
-        };
-    });
+        None => drop((ui.spinner(), ui.label(what))),
+    }
+    ui.separator();
 }
 
 /// Draws a hint over the window that says what can be dropped, while the user drags a file over it.

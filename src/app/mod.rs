@@ -76,7 +76,6 @@ use crate::app::reading::ReadingRecord;
 use crate::app::store::{OpenedState, Store, open_state};
 use impactlab_core::data::Severity;
 use impactlab_core::error_chain;
-use impactlab_draw::scene::SceneView;
 use impactlab_draw::scene::gpu::WindowDevice;
 use impactlab_draw::{DensityGpu, theme};
 
@@ -253,8 +252,9 @@ impl eframe::App for App {
         self.state.update(context);
         let mut commands = Vec::new();
         let session = &mut self.state.session;
-        let views = [&mut session.scene.view, &mut session.reconstruction.cars.view];
-        for refusal in views.map(SceneView::take_refusal).into_iter().flatten() {
+        let [of_cars, of_courses] = session.reconstruction.cars.take_refusals();
+        let refusals = [session.scene.view.take_refusal(), of_cars, of_courses];
+        for refusal in refusals.into_iter().flatten() {
             self.state.say(Severity::Warning, scenes_on_cpu(&refusal));
         }
         keyboard::commands(context, self.state.session.dialogs.is_any_open(), &mut commands);
@@ -367,8 +367,8 @@ fn draw_scenes_on(cc: &CreationContext<'_>, state: &mut State) {
     let Some(window) = &cc.wgpu_render_state else { return };
     match WindowDevice::new(window) {
         Ok(device) => {
-            state.session.scene.view.draw_on(device.clone());
-            state.session.reconstruction.cars.view.draw_on(device);
+            state.session.reconstruction.cars.draw_on(&device);
+            state.session.scene.view.draw_on(device);
         }
         Err(error) => state.say(Severity::Warning, scenes_on_cpu(&error_chain(&error))),
     }

@@ -39,10 +39,18 @@ pub fn offer_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         return;
     };
     let [offered_name, now_name] = [offered, &now].map(|subject| state.name_of(subject));
+    let said = match offered {
+        Subject::File(path) => state.session.said_of_files.get(path),
+        _ => None,
+    };
     Panel::top("offer").show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             looks::icon_ui(ui, Icon::Info, ui.visuals().hyperlink_color);
             ui.label(format!("{offered_name} is open beside this variant, which asks about {now_name}."));
+            if let Some(said) = said {
+                let said = said.text(state.view.units);
+                ui.label(format!("With it come the struck vehicle and its start as said: {said}."));
+            }
             let hint = format!(
                 "The variant then asks about {offered_name} in place of {now_name}. Undo brings that back"
             );

@@ -128,7 +128,9 @@ impl State {
         }
         let source = self.session.sources.iter().find(|source| source.path == path);
         let map = source.and_then(|source| source.map.clone());
-        dialogs.open(Dialog::Import(Box::new(ImportDialog::open(path, map))));
+        let said = (!self.asks_about_file(&path)).then(|| self.said_now());
+        let dialog = ImportDialog::open(path, map, said);
+        self.session.dialogs.open(Dialog::Import(Box::new(dialog)));
     }
 
     /// Closes the dialog and asks about the next file that waits.
@@ -139,13 +141,18 @@ impl State {
         }
     }
 
-    /// Closes the uppermost dialog. A file that it asked about and that could not be opened otherwise is
-    /// not tried again when the program is started next.
+    /// Closes the uppermost dialog. A file that it asked about and that could not be opened otherwise leaves
+    /// nothing behind: no entry, no message, and it is not tried again when the program is started next.
     pub(super) fn close_dialog(&mut self) {
         let Some(Dialog::Import(dialog)) = self.session.dialogs.close() else { return };
+        let path = dialog.path();
         self.forget_sources(|source| {
-            source.path == dialog.path() && matches!(source.content, Content::Failed(_))
+            source.path == path && matches!(source.content, Content::Failed(_))
         });
+        if !self.session.sources.iter().any(|source| source.path == path) {
+            let of_path = path.display().to_string();
+            self.session.messages.retain(|message| !message.text.starts_with(&of_path));
+        }
         self.end_mapping();
     }
 
@@ -240,6 +247,7 @@ impl State {
     /// afterwards.
     pub(super) fn close(&mut self, path: &Path) {
         self.forget_sources(|source| source.opened == path || source.path == path);
+        self.session.said_of_files.remove(path);
         let is_open = |open: &Path| self.session.sources.iter().any(|s| s.path == *open);
         let subject = self.project.subject();
         let closed = match &subject {

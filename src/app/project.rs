@@ -10,6 +10,7 @@ use crate::app::state::Subject;
 use impactlab_core::collision::{ChannelClass, Scenario};
 use impactlab_core::site::PixelMap;
 use impactlab_core::vehicle::Ending;
+use impactlab_draw::scene::CameraKey;
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::case_file::Variant;
 use impactlab_study::{
@@ -69,6 +70,12 @@ pub struct Beside {
     /// The road of the scenario, while that is not selected.
     #[serde(skip_serializing_if = "Road::is_open")]
     pub road: Road,
+    /// The keys between which the camera moves in films of the scene.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub camera_keys: Vec<CameraKey>,
+    /// The same of the reconstructed scene.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub reconstruction_camera_keys: Vec<CameraKey>,
 }
 
 /// What is said of the road.

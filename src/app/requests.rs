@@ -166,7 +166,7 @@ impl State {
     pub(in crate::app) fn train_force_request(&self) -> Result<(Request, String), &'static str> {
         let NetworkQuestions { train_force, use_others, .. } = &self.project.networks;
         let datasets = open_datasets(&self.session.sources, &[DatasetKind::Force]);
-        let chosen = chosen_dataset(&datasets, &train_force.data);
+        let chosen = chosen_dataset(&datasets, &train_force.data, self.view.listed.as_deref());
         let chosen = chosen.ok_or("open a force data set to train on first")?;
         let is_extra = |of: &&OpenDataset<'_>| *use_others && of.path != chosen.path;
         let extra: Vec<_> = datasets.iter().filter(is_extra).collect();
@@ -268,11 +268,11 @@ impl State {
         Ok(CompareRequest { data, vehicle, ..request.clone() })
     }
 
-    /// Returns the folder and the name of the wanted data set, or of the first open one of the
-    /// given kinds if the wanted one is not open; `None` if none is open.
+    /// Returns the folder and the name of the wanted data set; if that one is not open, of the listed
+    /// one or else the first open one of the given kinds; `None` if none is open.
     fn chosen_data(&self, wanted: &Path, kinds: &[DatasetKind]) -> Option<(PathBuf, String)> {
         let datasets = open_datasets(&self.session.sources, kinds);
-        let chosen = chosen_dataset(&datasets, wanted)?;
+        let chosen = chosen_dataset(&datasets, wanted, self.view.listed.as_deref())?;
         Some((chosen.path.to_owned(), chosen.name()))
     }
 }

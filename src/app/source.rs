@@ -66,10 +66,17 @@ pub fn open_datasets<'a>(sources: &'a [Source], kinds: &[DatasetKind]) -> Vec<Op
     kinds.iter().flat_map(of_kind).collect()
 }
 
-/// Returns the data set at the wanted path, or the first data set if that one is not among them.
-pub fn chosen_dataset<'a>(datasets: &[OpenDataset<'a>], wanted: &Path) -> Option<OpenDataset<'a>> {
-    let chosen = datasets.iter().find(|of| of.path == wanted);
-    chosen.or(datasets.first()).copied()
+/// Returns the data set at the wanted path; if that one is not among them, the one in use, or else the
+/// first.
+///
+/// - `in_use`: path of the data set whose cases are listed.
+pub fn chosen_dataset<'a>(
+    datasets: &[OpenDataset<'a>],
+    wanted: &Path,
+    in_use: Option<&Path>,
+) -> Option<OpenDataset<'a>> {
+    let at = |path: &Path| datasets.iter().find(|of| of.path == path);
+    at(wanted).or_else(|| at(in_use?)).or(datasets.first()).copied()
 }
 
 /// The result of opening a path.

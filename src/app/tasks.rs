@@ -71,7 +71,7 @@ trait Work {
     /// The command that follows once the task has ended; the outer `None` while it is running.
     fn poll(&mut self) -> Option<Option<Command>>;
 
-    fn progress(&self) -> (&Progress, Duration);
+    fn progress(&self) -> (&Progress, Option<Duration>);
 
     fn cancel(&self);
 }
@@ -87,8 +87,8 @@ impl<T: Send + 'static> Work for Running<T> {
         Some(self.then.take().and_then(|then| then(result)))
     }
 
-    fn progress(&self) -> (&Progress, Duration) {
-        (self.job.progress(), self.job.elapsed())
+    fn progress(&self) -> (&Progress, Option<Duration>) {
+        (self.job.progress(), self.job.time_left())
     }
 
     fn cancel(&self) {
@@ -199,8 +199,8 @@ impl Tasks {
         self.get(key).is_some()
     }
 
-    /// Progress of a task that is running, and the time since its start.
-    pub fn progress(&self, key: &TaskKey) -> Option<(&Progress, Duration)> {
+    /// Progress of a task that is running, and the estimated time left.
+    pub fn progress(&self, key: &TaskKey) -> Option<(&Progress, Option<Duration>)> {
         self.get(key).map(|work| work.progress())
     }
 

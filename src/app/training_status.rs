@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::app::archive::{ArchiveEntry, ArchiveKind, StoredFact};
 use crate::app::network::TrainedModel;
 use crate::app::training::{TrainingEnd, TrainingSlot, time_left};
 use crate::app::unfinished::{TrainingDiary, training_options};
 use crate::app::widgets::duration_text;
+use impactlab_core::jobs::{Progress, TimeLeft};
 use impactlab_networks::learning::{EpochSummary, TrainingReport};
 use impactlab_study::{Library, Question, Request};
 
@@ -33,6 +34,10 @@ pub struct TrainingStatus<M: TrainedModel> {
     pub best_epoch: Option<usize>,
     /// Durations of the epochs of all trainings, including those for the calibration, s.
     seconds: Vec<f64>,
+    /// When the training began.
+    started: Instant,
+    /// The time that the fits before the first epoch still take, as of the latest of their reports.
+    fits_left: (TimeLeft, Duration),
     /// The reason why the training gave no model.
     pub problem: Option<String>,
     /// The name of the data, shown to the user.
@@ -52,6 +57,8 @@ impl<M: TrainedModel> Default for TrainingStatus<M> {
             history: Vec::new(),
             best_epoch: None,
             seconds: Vec::new(),
+            started: Instant::now(),
+            fits_left: (TimeLeft::default(), Duration::ZERO),
             problem: None,
             data: String::new(),
             checkpoint: None,
@@ -112,11 +119,18 @@ impl<M: TrainedModel> TrainingStatus<M> {
     }
 
     fn take(&mut self, report: TrainingReport) {
-        if let TrainingReport::Epoch(epoch) = &report {
-            self.seconds.extend(epoch.summary.seconds);
-            if epoch.training_idx == 0 {
-                self.best_epoch = epoch.best_epoch;
-                self.history.push(epoch.summary.clone());
+        match &report {
+            TrainingReport::Fit { done, n_fits, .. } => {
+                let (left, at) = &mut self.fits_left;
+                *at = self.started.elapsed();
+                left.take(*at, &Progress::new(*done as u64, *n_fits as u64, ""));
+            }
+            TrainingReport::Epoch(epoch) => {
+                self.seconds.extend(epoch.summary.seconds);
+                if epoch.training_idx == 0 {
+                    self.best_epoch = epoch.best_epoch;
+                    self.history.push(epoch.summary.clone());
+                }
             }
         }
         self.latest = Some(report);
@@ -141,16 +155,27 @@ impl<M: TrainedModel> TrainingStatus<M> {
         Some(entry)
     }
 
-    /// Returns the share that is done, 0 to 1, and the remaining time at the pace of the latest
-    /// epochs; `None` for both before the first epoch and after the end.
+    /// Whether something is being fitted before the first epoch.
+    pub fn is_fitting(&self) -> bool {
+        !self.is_over && matches!(self.latest, Some(TrainingReport::Fit { .. }))
+    }
+
+    /// Returns the share that is done, 0 to 1, and the remaining time: of the fits before the first
+    /// epoch, then of the epochs at the pace of the latest ones; `None` for both before the first fit
+    /// or epoch and after the end.
     pub fn progress(&self) -> (Option<f32>, Option<Duration>) {
-        let Some(TrainingReport::Epoch(epoch)) = self.latest.as_ref().filter(|_| !self.is_over)
-        else {
-            return (None, None);
-        };
-        let (done, total) = epoch.progress();
-        let left = time_left(self.seconds.iter().copied(), total.saturating_sub(done));
-        (Some(epoch.share_done() as f32), left)
+        match self.latest.as_ref().filter(|_| !self.is_over) {
+            None => (None, None),
+            Some(TrainingReport::Fit { done, n_fits, .. }) => {
+                let (left, at) = &self.fits_left;
+                (Progress::new(*done as u64, *n_fits as u64, "").fraction(), left.at(*at))
+            }
+            Some(TrainingReport::Epoch(epoch)) => {
+                let (done, total) = epoch.progress();
+                let left = time_left(self.seconds.iter().copied(), total.saturating_sub(done));
+                (Some(epoch.share_done() as f32), left)
+            }
+        }
     }
 
     /// Returns a description of what the training is doing, shown to the user.
@@ -158,7 +183,7 @@ impl<M: TrainedModel> TrainingStatus<M> {
         let what = match &self.latest {
             _ if self.run.is_cancelled() => "ending".to_owned(),
             None => "preparing".to_owned(),
-            Some(TrainingReport::Fit { what, .. }) => what.clone(),
+            Some(TrainingReport::Fit { what, .. }) => format!("before the epochs: {what}"),
             Some(TrainingReport::Epoch(epoch)) => {
                 let part = epoch.part().map_or(String::new(), |part| format!("{part}, "));
                 let (done, n_epochs) = (epoch.epoch_in_training(), epoch.n_in_training());
@@ -166,5 +191,24 @@ impl<M: TrainedModel> TrainingStatus<M> {
             }
         };
         if self.run.is_paused() { format!("paused: {what}") } else { what }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_networks::force::ForceModel;
+
+    #[test]
+    fn fits_before_the_epochs_have_a_share_and_a_time_left() {
+        let mut status = TrainingStatus::<ForceModel>::default();
+        assert_eq!(status.progress(), (None, None));
+        let what = "fitting crush law".to_owned();
+        status.take(TrainingReport::Fit { what: what.clone(), done: 0, n_fits: 5 });
+        assert_eq!(status.progress(), (Some(0.0), None));
+        status.take(TrainingReport::Fit { what, done: 2, n_fits: 5 });
+        let (share, left) = status.progress();
+        assert!(share == Some(0.4) && left.is_some() && status.is_fitting(), "{share:?} {left:?}");
+        assert_eq!(status.doing(), "before the epochs: fitting crush law");
     }
 }

@@ -217,12 +217,12 @@ fn data_layout() -> Layout {
     let motion = build.tabs(&[Pane::Motion]);
     let force = build.tabs(&[Pane::Force]);
     let comparison = build.tabs(&[Pane::Comparison]);
-    let left = build.linear(LinearDir::Vertical, &[(data, 0.28), (cases, 0.72)]);
+    let left = build.linear(LinearDir::Vertical, &[(data, 0.32), (cases, 0.68)]);
     let middle = build.linear(LinearDir::Vertical, &[(scene, 0.45), (motion, 0.55)]);
     let right = build.linear(LinearDir::Vertical, &[(force, 0.5), (comparison, 0.5)]);
-    let plots = build.linear(LinearDir::Horizontal, &[(middle, 0.59), (right, 0.41)]);
+    let plots = build.linear(LinearDir::Horizontal, &[(middle, 0.62), (right, 0.38)]);
     let work = build.beside(plots, &[Pane::ForcePrediction, Pane::MotionForecast]);
-    let root = build.linear(LinearDir::Horizontal, &[(left, 0.27), (work, 0.73)]);
+    let root = build.linear(LinearDir::Horizontal, &[(left, 0.25), (work, 0.75)]);
     build.layout("data panes", root)
 }
 

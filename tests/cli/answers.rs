@@ -76,6 +76,54 @@ fn a_vehicle_that_still_rolls_at_the_end_is_said_to_move() {
     );
 }
 
+/// Under a locked steering a car rolls in circles: it is followed to the limit and no further, and that it still
+/// moves is said once.
+#[test]
+fn a_car_that_rolls_in_circles_is_followed_to_the_limit_and_no_further() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let few = ["--draws", "2", "--vehicle-draws", "2", "--steer-angle", "5deg"];
+    let args = ["predict", "--scenario", SCENARIO, "--until-rest", "--duration", "2", "--out"];
+    let report = answer(&[&args[..], &[text(&out)], &few].concat());
+    assert_eq!(report["rest"]["limit_s"], 2.0, "{}", report["rest"]);
+    assert_eq!(report["rest"]["share_at_rest"], 0.0, "{}", report["rest"]);
+    let badges = report["badges"].as_array().unwrap();
+    let n_moving = badges.iter().filter(|badge| badge["kind"] == "not_at_rest").count();
+    assert_eq!(n_moving, 1, "{badges:?}");
+    let motion = fs::read_to_string(out.join("trajectory.csv")).unwrap();
+    let end_s: f64 = motion.lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
+    assert!((end_s - 2.0).abs() < 0.011, "{end_s}");
+}
+
+/// The record of a case stood nowhere beside what methods say of its force.
+#[test]
+fn five_questions_come_first_and_the_record_stands_beside_both_methods() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let case = ["predict", "--dataset", "datasets/fea", "--case", "c001", "--vehicle-draws", "0"];
+    let args = [&case[..], &["--out", text(&out)]].concat();
+    let printed = ok(program().args(&args).output().unwrap());
+    let at = |text: &str| printed.find(text).unwrap_or_else(|| panic!("{text} in {printed}"));
+    let questions = [
+        "Will it spin?",
+        "Where does it stop?",
+        "Does it cross into the next lane?",
+        "How sure is that?",
+        "What would change it?",
+        "The answer in numbers",
+        "Force of the first contact by each method",
+    ];
+    assert!(questions.map(at).is_sorted(), "{printed}");
+    let table = &printed[at("Force of the first contact by each method")..];
+    let header = table.lines().nth(1).unwrap();
+    for column in ["force network", "momentum solution", "record"] {
+        assert!(header.contains(column), "{header}");
+    }
+    let report = answer(&[&args[..], &["--overwrite"]].concat());
+    assert!(report["recorded"]["force"]["peak_n"].as_f64().unwrap() > 1e4, "{report}");
+    assert!(report["impulses"]["network_peak_n"]["median"].is_number(), "{report}");
+}
+
 #[test]
 fn a_force_outside_the_time_of_the_motion_is_refused_by_every_question() {
     let folder = TempDir::new().unwrap();

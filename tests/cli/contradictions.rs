@@ -86,3 +86,41 @@ fn a_mirrored_axis_and_held_positions_are_named() {
         assert!(ran.error_line().contains(words), "{}", ran.err);
     }
 }
+
+#[test]
+fn a_speed_that_is_not_that_of_the_path_is_named_with_its_line() {
+    let folder = TempDir::new().unwrap();
+    let header = "Time [s],x [m],y [m],Speed [m/s]";
+    let file = log(&folder, "speed.csv", header, |angle, _| {
+        format!("{},{}", place(angle), 3.6 * SPEED_M_S)
+    });
+    let checked = impactlab(&["check", text(&file)]);
+    let says = "as if km/h were read as m/s; map speed=4:km/h";
+    assert!(checked.out.contains(says), "{}", checked.out);
+    assert!(checked.out.contains("speed.csv:"), "{}", checked.out);
+    let mended = impactlab(&["check", text(&file), "--map", "speed=4:km/h"]);
+    assert!(!mended.out.contains("as fast over the whole path"), "{}", mended.out);
+}
+
+#[test]
+fn a_force_that_pulls_at_its_contact_point_is_named() {
+    let folder = TempDir::new().unwrap();
+    let pulse = |name: &str, peak_n: f64| {
+        let row = |i: i32| {
+            let force_n = peak_n * (f64::from(i) / 100.0 * std::f64::consts::PI).sin();
+            format!("{},0,{force_n}\n", f64::from(i) * 1e-3)
+        };
+        let rows: String = (0..=100).map(row).collect();
+        write(&folder, name, &format!("time_s,fx_n,fy_n\n{rows}"))
+    };
+    let out = |file: &PathBuf| {
+        let simulate = ["simulate", "--force", text(file), "--vehicle", "generic-car"];
+        let ran =
+            impactlab(&[&simulate[..], &["--speed", "20", "--contact", "-1.5,-0.9,0.5"]].concat());
+        assert_eq!(ran.code, 0, "{}", ran.err);
+        format!("{}{}", ran.out, ran.err)
+    };
+    let says = "the force pulls at its contact point";
+    assert!(!out(&pulse("pushes.csv", 4e4)).contains(says));
+    assert!(out(&pulse("pulls.csv", -4e4)).contains(says));
+}

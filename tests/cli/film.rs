@@ -108,6 +108,28 @@ fn a_name_without_an_ending_is_a_folder_of_numbered_pictures() {
 }
 
 #[test]
+fn the_camera_moves_from_key_to_key() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = |name: &str, options: &[&str]| -> Vec<Vec<u8>> {
+        let out = folder.path().join(name);
+        let fixed = ["--size", "160x90", "--fps", "5", "--to", "0.6"];
+        assert_eq!(film(&out, &[&fixed, options].concat())["n_frames"], 4, "{options:?}");
+        let picture = |idx: usize| fs::read(out.join(format!("frame-{idx:05}.png")));
+        (1..=4).map(|idx| picture(idx).expect("a picture")).collect()
+    };
+    let far = frames("far", &["--follow", "struck", "--distance", "60"]);
+    let near = frames("near", &["--follow", "struck", "--distance", "12"]);
+    let keys = ["--key", "t=0,distance=60,follow=struck", "--key", "t=0.6,distance=12"];
+    let keyed = frames("keyed", &keys);
+    assert!(keyed[0] == far[0] && keyed[3] == near[3], "the first and the last frame are keys");
+    for idx in [1, 2] {
+        assert!(keyed[idx] != far[idx] && keyed[idx] != near[idx], "frame {idx} lies between them");
+    }
+    let standing = frames("standing", &["--key", "t=0.3,distance=60,follow=struck"]);
+    assert!(standing == far, "a single key is a camera that stands");
+}
+
+#[test]
 fn the_manifest_of_pictures_names_the_ground() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("frames");
@@ -140,6 +162,14 @@ fn what_cannot_be_filmed_is_said_and_leaves_no_file() {
         ("film.mp4", vec!["--fps", "0"], "frames per second is 0, expected 1 to 120"),
         ("film.mp4", vec!["--playback", "0.001", "--fps", "120"], "expected 2 to 36000"),
         ("nowhere/film.mp4", vec![], "there is no folder"),
+        ("film.mp4", vec!["--key", "t=1", "--key", "t=0.5"], "at 0.5 s comes after that at 1 s"),
+        ("film.mp4", vec!["--key", "t=1", "--key", "t=1"], "each at a time of its own"),
+        ("film.mp4", vec!["--key", "t=900"], "the camera key at 900 s lies outside the film"),
+        ("film.mp4", vec!["--to", "1", "--key", "t=1.2"], "between 0.000 s and 1.000 s"),
+        ("film.mp4", vec!["--key", "t=0,distance=1"], "camera distance is 1 m, expected 2 to"),
+        ("film.mp4", vec!["--key", "t=0,elevation=60"], "camera elevation is 60 rad, expected"),
+        ("film.mp4", vec!["--key", "t=0,zoom=2"], "expected t, x, y, distance, azimuth"),
+        ("film.mp4", vec!["--key", "distance=20"], "expected a time, such as t=0.5"),
     ] {
         let error = refused(&name(file), &options);
         assert!(error.contains(part), "{options:?}: {error}");

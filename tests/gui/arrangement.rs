@@ -39,7 +39,7 @@ fn a_newcomer_gets_to_a_forecast_by_each_of_the_three_doors() {
     save(&mut harness, "workspace-case-forecast.png");
 
     apply(&mut harness, Command::ShowDoors);
-    harness.get_by_label("Look at the example").click();
+    harness.get_by_label("Look at the example case").click();
     harness.run_steps(3);
     step_until(&mut harness, "all variants of the example", |state| {
         let variants = state.answered_variants();

@@ -4,6 +4,7 @@ mod chain;
 mod example;
 mod killed;
 mod names;
+mod notes;
 
 use std::fs;
 use std::ops::ControlFlow;

@@ -7,13 +7,15 @@ use std::sync::Arc;
 use egui::{Color32, ColorImage};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, FilmCommand, Output, Pane};
+use impactlab::app::{
+    App, Command, FilmCommand, Output, Pane, PlaybackCommand, ReconstructionCommand,
+};
 use impactlab_core::data::{Existing, Outcome, Severity};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::{FilmSection, FilmTiming, SimulationScene, simulation_scene};
 use impactlab_draw::film::{Film, FilmError, FrameRenderer, write_film};
-use impactlab_draw::scene::{Camera, Follow, SceneCourse, ScenePicture, ViewKind};
+use impactlab_draw::scene::{Camera, CameraKey, Follow, SceneCourse, ScenePicture, ViewKind};
 use impactlab_draw::{Canvas, theme};
 use impactlab_study::{Library, MotionSource, Question, SimulateRequest};
 use openh264::decoder::Decoder;
@@ -23,7 +25,7 @@ use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
 
 use crate::harness::{apply, is_idle, open, step_until};
 use crate::pictures::save;
-use crate::reconstruct::evidence_in;
+use crate::reconstruct::{EVIDENCE, evidence_in, is_answered, opened};
 
 /// A small film of a shipped case, partly in slow motion.
 fn film() -> Film {
@@ -54,7 +56,8 @@ fn film() -> Film {
         distance_m: None,
         follow: Follow::Struck,
     };
-    Film { picture, timing, canvas: Canvas { size_px: [480, 270], scale: 1.0, dark: false } }
+    let canvas = Canvas { size_px: [480, 270], scale: 1.0, dark: false };
+    Film { picture, timing, canvas, keys: Vec::new() }
 }
 
 fn make(film: &Film, path: &Path) -> Result<Outcome<()>, FilmError> {
@@ -132,6 +135,38 @@ fn every_frame_is_the_picture_of_its_instant() {
             "frame {idx}: {own} of its own, {other} of another"
         );
     }
+}
+
+#[test]
+fn the_camera_of_a_film_moves_from_key_to_key() {
+    let (folder, mut film) = (tempfile::tempdir().expect("a folder"), film());
+    let far = Camera { target_m: [5.0, 0.0], distance_m: 90.0, ..film.picture.camera };
+    let near = Camera { distance_m: 15.0, azimuth_rad: 0.5, ..far };
+    let (first, last) = (Follow::Nothing, Follow::Struck);
+    film.keys = vec![CameraKey::new(0.2, &far, first), CameraKey::new(1.4, &near, last)];
+    let path = folder.path().join("film.mp4");
+    assert!(matches!(make(&film, &path), Ok(Outcome::Complete(()))));
+    let frames = decoded(&path, 10);
+    let drawn = |time_s: f64, (camera, follow): (Camera, Follow)| {
+        let picture = &film.picture;
+        let picture = ScenePicture { time_s, camera, follow, is_placed: true, ..picture.clone() };
+        let mut renderer = FrameRenderer::new(film.canvas).expect("a possible size");
+        renderer.draw(&picture, 1.0).clone()
+    };
+    let ends = [(frames.first(), 0.2), (frames.last(), 1.5)];
+    let cameras = [(far, first), (near, last)];
+    for (idx, (frame, time_s)) in ends.into_iter().enumerate() {
+        let frame = frame.expect("frames");
+        let own = difference(frame, &drawn(time_s, cameras[idx]));
+        let other = difference(frame, &drawn(time_s, cameras[1 - idx]));
+        assert!(own < 2.5 && other > 1.5 * own, "{time_s} s: {own} of its own, {other} of another");
+    }
+    film.keys.reverse();
+    let error = film.instants().expect_err("keys out of order").to_string();
+    assert!(error.contains("expected keys in the order of time"), "{error}");
+    film.keys = vec![CameraKey::new(2.0, &far, first)];
+    let error = film.instants().expect_err("a key after the film").to_string();
+    assert!(error.contains("expected times between 0.200 s and 1.500 s"), "{error}");
 }
 
 /// Rows of a picture in which the scene reaches the left and the right edge, which no text does.
@@ -250,7 +285,7 @@ fn sizes_that_no_film_has_are_refused() {
 }
 
 /// Opens the form by the menu of the scene that is shown.
-fn ask_film(harness: &mut Harness<'_, App>) {
+pub fn ask_film(harness: &mut Harness<'_, App>) {
     // Every pane with a figure has a menu of this name.
     for idx in 0..harness.get_all_by_label("Export").count() {
         harness.get_all_by_label("Export").nth(idx).expect("a menu").click();
@@ -269,7 +304,7 @@ fn last_message(harness: &Harness<'_, App>) -> Option<String> {
 }
 
 /// The film that the form asks about.
-fn film_of_form(harness: &Harness<'_, App>) -> Film {
+pub fn film_of_form(harness: &Harness<'_, App>) -> Film {
     harness.state().state().session.dialogs.film().expect("the form is open").film.clone()
 }
 
@@ -313,6 +348,80 @@ fn the_window_films_the_cars_of_a_reconstruction() {
     assert!(last_message(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
 
     cancel_a_long_one(&mut harness, film, &folder.path().join("other.mp4"));
+}
+
+#[test]
+fn courses_of_events_of_a_reconstruction_are_seen_and_filmed_side_by_side() {
+    // Without the recorder, and with wheels at which nobody looked, much is possible.
+    let known = "[after]\nblocked_wheels = []\n[edr]\nspeed_before_m_s = 17\n";
+    let text = EVIDENCE.replace(known, "");
+    assert_ne!(text, EVIDENCE);
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("evidence.toml");
+    std::fs::write(&path, text).expect("a file");
+    let mut harness = opened(&path, [2400.0, 1400.0], 60);
+    harness.get_by_label("Run").click();
+    harness.run_steps(4);
+    step_until(&mut harness, "the speeds", is_answered);
+    harness.get_by_label("Cars").click();
+    harness.run_steps(4);
+    let of = |harness: &Harness<'_, App>| -> (Vec<String>, f64) {
+        let courses = harness.state().state().session.reconstruction.courses();
+        let ends_s = courses
+            .iter()
+            .filter_map(|(_, paths)| Some(paths.median.as_ref()?.path.points.last()?.time_s));
+        let end_s = ends_s.fold(0.0, f64::max);
+        (courses.into_iter().map(|(title, _)| title).collect(), end_s)
+    };
+    let (titles, end_s) = of(&harness);
+    assert!(titles.len() > 1, "{titles:?}");
+    assert_eq!(harness.state().state().end_time_s(), end_s, "one clock for the longest of them");
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetTime(1.5)));
+    harness.run_steps(3);
+    save(&mut harness, "reconstruct-courses.png");
+    let place = |harness: &Harness<'_, App>, title: &str| {
+        assert!(title.contains(" % ± "), "{title}");
+        harness.get_by_label(&format!("Picture of the scene: {title}")).rect()
+    };
+    let places: Vec<egui::Rect> = titles.iter().map(|title| place(&harness, title)).collect();
+    let is_as_large = |other: &egui::Rect| (other.size() - places[0].size()).length() < 0.2;
+    assert!(places.iter().all(is_as_large), "{places:?}");
+
+    // The mouse over one of them moves the camera of all, which the film takes over.
+    let camera = |harness: &Harness<'_, App>| {
+        harness.state().state().session.reconstruction.cars.courses_view.moved_camera()
+    };
+    assert_eq!(camera(&harness), None);
+    harness.hover_at(places[1].center());
+    harness.run_steps(2);
+    harness.key_press(egui::Key::Plus);
+    harness.run_steps(3);
+    let moved = camera(&harness).expect("the camera was moved");
+    ask_film(&mut harness);
+    let film = film_of_form(&harness);
+    let filmed: Vec<&String> = film.picture.courses.iter().map(|course| &course.name).collect();
+    assert_eq!(filmed, titles.iter().collect::<Vec<_>>());
+    assert!(film.picture.is_placed && film.picture.camera == moved);
+    assert!((film.timing.to_s - end_s).abs() < 1e-9, "{} of {end_s} s", film.timing.to_s);
+    assert!(film.picture.courses.iter().all(|course| course.scene.struck().is_some()));
+    apply(&mut harness, Command::CloseDialog);
+
+    // One scene of all of them, or one of them alone.
+    harness.get_by_label("Courses side by side").click();
+    harness.run_steps(4);
+    assert!(harness.query_by_label("Picture of the scene").is_some());
+    harness.get_by_label("Courses side by side").click();
+    harness.run_steps(4);
+    assert!(harness.query_by_label("Picture of the scene").is_none());
+    apply(&mut harness, Command::Reconstruct(ReconstructionCommand::ShowMode(Some(1))));
+    harness.run_steps(4);
+    assert!(harness.query_by_label("Picture of the scene").is_some());
+    assert!(harness.query_by_label("Courses side by side").is_none());
+    // Where there is no room they share one scene.
+    apply(&mut harness, Command::Reconstruct(ReconstructionCommand::ShowMode(None)));
+    harness.set_size(egui::vec2(700.0, 460.0));
+    harness.run_steps(6);
+    assert!(harness.query_by_label_contains("Picture of the scene: ").is_none());
 }
 
 /// Begins a film that takes long and cancels it, after which nothing of it is left.

@@ -250,6 +250,36 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
 }
 
 #[test]
+fn a_running_training_learns_from_the_data_in_use_and_shows_its_own_losses_alone() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/");
+    let paths = ["fea-road", "fea"].map(|name| format!("{folder}{name}"));
+    let mut harness = open(&[&*paths[0], &*paths[1]]);
+    step_until(&mut harness, "the data", is_idle);
+    apply(&mut harness, Command::List(paths[1].as_str().into()));
+    apply(&mut harness, Command::Show(Pane::Training));
+    {
+        let form = &mut harness.state_mut().state_mut().project.networks.train_force;
+        form.epochs = Some(100_000);
+        form.training.config = ConfigChoice::File(small().config());
+    }
+    let command = |command| Command::Train(Network::Force, command);
+    let context = harness.ctx.clone();
+    harness.state_mut().apply(command(TrainingCommand::Start), &context);
+    // It stops at its first report, before any epoch.
+    harness.state_mut().apply(command(TrainingCommand::Pause(true)), &context);
+    let is_at_rest = |state: &State| state.session.force.training.run.is_at_rest();
+    step_until(&mut harness, "the first report", is_at_rest);
+    assert_eq!(state(&harness).session.force.training.data, "fea");
+    assert!(harness.query_by_label_contains("Losses while training on").is_none());
+    harness.get_by_label("The losses of this training are drawn here from its first epoch on.");
+    apply(&mut harness, command(TrainingCommand::Pause(false)));
+    step_until(&mut harness, "an epoch", |state| state.session.force.training.history.len() > 2);
+    harness.get_by_label_contains("Losses while training on fea");
+    apply(&mut harness, command(TrainingCommand::Cancel));
+    step_until(&mut harness, "the end", |state| !state.session.force.training.run.is_running());
+}
+
+#[test]
 fn a_bad_model_and_bad_settings_say_what_is_wrong() {
     let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
     step_until(&mut harness, "the data", is_idle);

@@ -247,11 +247,14 @@ fn the_vehicle_of_a_file_is_asked_for_beside_its_curve() {
     harness.get_by_label("F_y is zero throughout").click();
     harness.run_steps(2);
     settle(&mut harness);
+    let vehicle = |harness: &Harness<'_, App>| state(harness).project.simulate.vehicle.clone();
+    let before = vehicle(&harness);
     choose(&mut harness, ("Struck vehicle", 0), "FEA target (2000 kg)");
-    let chosen = &state(&harness).project.simulate.vehicle;
-    assert_eq!(*chosen, impactlab_study::VehicleChoice::Preset("target-2000".to_owned()));
+    assert_eq!(vehicle(&harness), before, "the variant gets it with the file");
     harness.get_by_label("Open with these columns").click();
     step_until(&mut harness, "the force", |state| state.analysis().is_some() && is_idle(state));
+    let chosen = impactlab_study::VehicleChoice::Preset("target-2000".to_owned());
+    assert_eq!(vehicle(&harness), chosen);
     let report = &state(&harness).analysis().expect("it is simulated").report;
     assert!(report.vehicle.starts_with("FEA target"), "{}", report.vehicle);
 }
@@ -265,4 +268,29 @@ fn components_in_different_units_are_asked_about() {
     let mut harness = open(&[&path]);
     settle(&mut harness);
     harness.get_by_label_contains("two components of one vector are rarely recorded in different");
+}
+
+/// The dialog wrote vehicle and speed into a variant that asked about something else.
+#[test]
+fn what_is_said_of_a_vehicle_waits_for_the_button_that_takes_the_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, path) = write(folder.path(), "f.csv", &german_export("Zeit [ms];Kraft [kN];Status"));
+    let mut harness = open(&["datasets/trajectories-fea", &path]);
+    settle(&mut harness);
+    step_until(&mut harness, "the first case", is_idle);
+    harness.get_by_label("F_y is zero throughout").click();
+    harness.run_steps(2);
+    settle(&mut harness);
+    let before = state(&harness).project.simulate.clone();
+    choose(&mut harness, ("Struck vehicle", 0), "FEA target (2000 kg)");
+    harness.get_by_label("Open with these columns").click();
+    step_until(&mut harness, "the file", |state| state.session.offered.is_some() && is_idle(state));
+    assert_eq!(state(&harness).project.simulate, before, "opening changes no question");
+    harness
+        .get_by_label_contains("With it come the struck vehicle and its start as said: FEA target");
+    harness.get_by_label("Use in this variant").click();
+    harness.run_steps(4);
+    let now = &state(&harness).project.simulate;
+    assert_eq!(now.vehicle, impactlab_study::VehicleChoice::Preset("target-2000".to_owned()));
+    assert_ne!(now.source, before.source);
 }

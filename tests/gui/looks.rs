@@ -1,7 +1,10 @@
 //! Whether the window can be read in a small window and on a dense screen.
 
-use egui::{Rect, Shape};
+use std::collections::BTreeSet;
+
+use egui::{Id, Rect, Shape};
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Pane, State, Subject, Workspace};
 use impactlab_study::{ForceSource, ModelChoice};
 
@@ -111,4 +114,35 @@ fn no_text_stands_on_another_in_a_small_window() {
 #[test]
 fn no_text_stands_on_another_on_a_dense_screen() {
     every_view_is_readable("dense", ([1280.0, 800.0], 2.0));
+}
+
+#[test]
+fn the_data_workspace_shows_a_screenful_of_cases_in_a_small_window() {
+    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea");
+    let mut harness = open_at(([1280.0, 720.0], 1.0), &[data], None);
+    step_until(&mut harness, "case", is_idle);
+    apply(&mut harness, Command::ShowWorkspace(Workspace::Data));
+    harness.run_steps(4);
+    // Rows out of sight are not drawn.
+    assert!(harness.query_by_label("c008").is_some());
+    let legend = harness.get_by_label("F_x").rect();
+    assert!(legend.bottom() < 720.0 && legend.right() < 1280.0, "{legend:?}");
+}
+
+#[test]
+fn a_click_in_the_legend_hides_a_curve_and_shows_it_again() {
+    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea");
+    let mut harness = open_at(([1440.0, 900.0], 1.0), &[data], None);
+    step_until(&mut harness, "case", is_idle);
+    apply(&mut harness, Command::ShowWorkspace(Workspace::Data));
+    harness.run_steps(4);
+    let hidden = |harness: &Harness<'_, App>| -> BTreeSet<String> {
+        let id = Id::unique(("hidden in", "force"));
+        harness.ctx.data(|data| data.get_temp(id)).unwrap_or_default()
+    };
+    for expected in [vec!["F_x"], vec![]] {
+        harness.get_by_label("F_x").click();
+        harness.run_steps(4);
+        assert!(hidden(&harness).iter().eq(expected.iter()), "{:?}", hidden(&harness));
+    }
 }

@@ -13,7 +13,7 @@ use impactlab_core::vehicle::built_in_vehicle;
 use impactlab_reconstruct::evidence::{Edr, Evidence, RestPose, Stated};
 use impactlab_study::{EvidenceChoice, VehicleChoice};
 
-use crate::harness::{apply, open_at, open_with, step_until};
+use crate::harness::{apply, open, open_at, open_with, step_until};
 use crate::looks::collisions;
 use crate::pictures::save;
 
@@ -60,7 +60,7 @@ fn is_outdated(harness: &Harness<'_, App>) -> bool {
 }
 
 /// Opens a window of a size on a file with evidence and few particles.
-fn opened(path: &Path, size: [f32; 2], particles: usize) -> Harness<'static, App> {
+pub fn opened(path: &Path, size: [f32; 2], particles: usize) -> Harness<'static, App> {
     let mut harness = open_at((size, 1.0), &[path.to_str().expect("a plain name")], None);
     harness.run_steps(4);
     harness.state_mut().state_mut().project.reconstruct.as_mut().expect("evidence").particles =
@@ -69,7 +69,8 @@ fn opened(path: &Path, size: [f32; 2], particles: usize) -> Harness<'static, App
     harness
 }
 
-fn is_answered(state: &State) -> bool {
+/// Whether the evidence has been reconstructed.
+pub fn is_answered(state: &State) -> bool {
     let of = &state.session.reconstruction;
     !of.run.is_running() && of.answer().is_some()
 }
@@ -82,6 +83,23 @@ fn run(harness: &mut Harness<'static, App>) {
         live.is_some_and(|live| !live.paths.drawn.is_empty() && live.paths.drawn.len() <= 60)
     });
     assert!(harness.query_by_label_contains("Not the answer yet").is_some());
+}
+
+#[test]
+fn the_question_what_happened_leads_to_a_form_for_what_was_found() {
+    let mut harness = open(&[]);
+    harness.run_steps(3);
+    harness.get_by_label("Reconstruct a collision").click();
+    harness.run_steps(4);
+    assert_eq!(state(&harness).view.workspaces.shown, Workspace::Reconstruct);
+    assert!(!state(&harness).session.shows_doors && state(&harness).evidence().is_none());
+    for label in ["Open an evidence file…", "Look at the example", "New evidence"] {
+        assert!(harness.query_by_label(label).is_some(), "{label}");
+    }
+    harness.get_by_label("New evidence").click();
+    harness.run_steps(4);
+    assert!(evidence(&harness).missing().is_some());
+    assert!(harness.query_by_label("Add evidence").is_some());
 }
 
 #[test]

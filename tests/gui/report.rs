@@ -113,7 +113,7 @@ fn a_report_is_saved_as_its_ending_says_unless_the_case_has_changed() {
         apply(&mut harness, Command::Write(Output::Report(document.clone()), path.clone()));
         step_until(&mut harness, name, |state| !state.session.tasks.is_writing());
         let format = ReportFormat::from_path(&path).expect("a format");
-        let drawing = &impactlab_draw::report_picture;
+        let drawing = &impactlab_draw::report_drawing;
         let expected = document.bytes(format, Some(drawing)).expect("a report");
         assert!(std::fs::read(&path).expect("a file") == expected, "{name}");
     }

@@ -62,6 +62,9 @@ fn a_car_that_is_chosen_is_the_car_of_the_scenario() {
     let before = state(&harness).project.clone();
     harness.get_by_role_and_label(Role::ComboBox, "Struck vehicle").click();
     harness.run_steps(4);
+    for cell in ["Class", "Year", "2020", "suv"] {
+        assert!(harness.query_all_by_label(cell).next().is_some(), "{cell}");
+    }
     save(&mut harness, "vehicle-list.png");
     choose(&mut harness, ("Struck vehicle", 0), "Toyota Corolla 2020");
     step_until(&mut harness, "the simulation of the Corolla", is_idle);

@@ -207,7 +207,7 @@ fn times_of_a_clock_are_shifted_to_zero() {
     ] {
         let text = format!("{header}\n-5,0\n-4,-12\n-3,-75\n0,-100\n");
         let error = read(&text, &ColumnMap::default()).unwrap_err();
-        let correction = error.correction(None).unwrap_or_else(|| panic!("{error}"));
+        let [correction] = &error.corrections(None)[..] else { panic!("{error}") };
         assert_eq!(correction.label(), label);
         assert_eq!(correction.to_string().ends_with(":deg"), !unit.is_empty(), "{correction}");
         assert!(error.to_string().contains(&format!("--map \"{correction}\"")), "{error}");

@@ -222,3 +222,57 @@ fn files_of_tests_scenes_and_drawings_are_called_by_their_names() {
         .unwrap();
     assert_eq!(read_any_series(&path, None).unwrap().series.n_samples(), 3);
 }
+
+#[test]
+fn thousands_are_read_as_the_numbers_or_the_map_say() {
+    let read = |text: &str, map: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("f.csv");
+        fs::write(&path, text).unwrap();
+        let map: ColumnMap = map.parse().unwrap();
+        read_any_series(&path, Some(&map))
+    };
+    let fx = |text: &str, map: &str| {
+        read(text, map).unwrap().series.require(Channel::Fx).unwrap().to_vec()
+    };
+    let german = "t [ms];Fx [N];Fy [N]\n0;0,5;0\n1;1.860;0\n2;12.345,5;0\n";
+    assert_eq!(fx(german, ""), [0.5, 1860.0, 12_345.5]);
+    let swiss = "t [ms];Fx [N];Fy [N]\n0;0.5;0\n1;1'860;0\n2;12\u{2019}345.5;0\n";
+    assert_eq!(fx(swiss, ""), [0.5, 1860.0, 12_345.5]);
+    let english = "t [ms],Fx [N],Fy [N]\n0,0.5,0\n1,\"1,860\",0\n2,\"12,345.5\",0\n";
+    assert_eq!(fx(english, ""), [0.5, 1860.0, 12_345.5]);
+    // The first number with a fraction stands behind the lines in which the header is looked for.
+    let mut late: String = (0..400).map(|i| format!("{i};1.860;0\n")).collect();
+    late = format!("t [ms];Fx [N];Fy [N]\n{late}400;0,5;0\n");
+    assert_eq!(fx(&late, "")[0], 1860.0);
+    // Three decimals beside a number that can have no thousands.
+    assert_eq!(fx("t [s];Fx [N];Fy [N]\n0.001;1.860;0\n0.002;2;0\n", ""), [1.86, 2.0]);
+    let open = "t [ms];Fx [N];Fy [N]\n0;5;0\n1;1.860;0\n2;12.345;0\n";
+    let error = read(open, "").unwrap_err();
+    let message = error.to_string();
+    let says = "f.csv:3:2: \"Fx [N]\" is \"1.860\", with a decimal sign or with thousands, and nothing in \
+                the file says which; --map \"decimal=point\" or --map \"thousands=point\"";
+    assert!(message.contains(says), "{message}");
+    let labels: Vec<String> =
+        error.corrections(None).iter().map(|of| of.label().to_owned()).collect();
+    assert_eq!(labels, ["Decimal points", "Points between thousands"]);
+    for (map, expected) in [
+        ("decimal=point", [5.0, 1.86, 12.345]),
+        ("thousands=point", [5.0, 1860.0, 12_345.0]),
+        ("decimal=comma", [5.0, 1860.0, 12_345.0]),
+        ("thousands=apostrophe", [5.0, 1.86, 12.345]),
+    ] {
+        assert_eq!(fx(open, map), expected, "{map}");
+    }
+    // What the map says is not bent: this is no number with points between thousands.
+    assert!(read("t [ms];Fx [N];Fy [N]\n0;0.5;0\n1;2;0\n", "thousands=point").is_err());
+}
+
+#[test]
+fn a_separator_that_is_said_counts() {
+    // Which of them divides the fields is found wrong: there are as many numbers between commas.
+    let text = "t;fx;fy\n0,5;1,5;2,5\n1,5;2,5;3,5\n";
+    let loaded = read(text, "separator=semicolon,time=1:s,fx=2:N,fy=3:N");
+    assert_eq!(loaded.dialect.separator, Separator::Semicolon);
+    assert_eq!(loaded.series.require(Channel::Fy).unwrap(), [2.5, 3.5]);
+}

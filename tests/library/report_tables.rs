@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
+use impactlab_core::collision::Scenario;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_core::vehicle::{Braking, Ending};
 use impactlab_document::report::Block;
-use impactlab_document::report::{Language, Paper, ReportDocument, Table};
+use impactlab_document::report::{Language, Paper, ReportDocument, SectionKind, Table};
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::case_file::{CaseFile, CaseReport, Variant};
 use impactlab_study::{MotionSource, Report, ScenarioChoice, SimulateReport, SimulateRequest};
@@ -138,4 +139,57 @@ fn found_tire_marks_stand_beside_the_computed_ones() {
         let expected: Vec<String> = lengths.into_iter().chain(distances).map(shown).collect();
         assert_eq!(row[1..], expected, "{mark:?}");
     }
+}
+
+/// A case that simulates a scenario whose numbers stand in the question.
+fn inline_simulation() -> CaseFile {
+    let scenario = ScenarioChoice::Inline(Box::new(Scenario::example()));
+    let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
+    let question = SimulateRequest { vehicle_draws: Some(0), ..SimulateRequest::new(source) };
+    let questions = vec![question.into()];
+    CaseFile::new("inline", Variant { name: "inline".to_owned(), questions, ..Variant::default() })
+}
+
+/// Names and words of files stood in the inputs as they are written there.
+#[test]
+fn inputs_are_told_in_words_of_the_field() {
+    let english =
+        ["velocity along X", "CG behind front", "restitution acts", "method of integration"];
+    let german = [
+        "Geschwindigkeit längs X",
+        "Schwerpunkt hinter der Front",
+        "Stoßziffer bezogen auf",
+        "Integrationsverfahren",
+    ];
+    for (language, names) in [(Language::En, english), (Language::De, german)] {
+        let case = inline_simulation();
+        let (document, _) = report(&case, &settings(language, UnitSystem::Si, Paper::A4));
+        let markdown = document.to_markdown();
+        for name in names {
+            assert!(markdown.contains(name), "{name:?} is not in the report");
+        }
+        for raw in ["| vx |", "cg from front", "Automatic", "Rk4"] {
+            assert!(!markdown.contains(raw), "{raw:?} is in the report");
+        }
+    }
+}
+
+/// What nobody changed is one sentence, and no row of a table.
+#[test]
+fn settings_that_nobody_changed_are_gathered() {
+    let (document, _) = report(&inline_simulation(), &english());
+    let inputs = document.section(SectionKind::Inputs).expect("inputs");
+    let sentence = inputs.blocks.iter().find_map(|block| match block {
+        Block::Paragraph { text } if text.starts_with("Left as the program has them") => Some(text),
+        _ => None,
+    });
+    let sentence = sentence.expect("a sentence");
+    assert!(sentence.contains("method of integration Runge–Kutta, 4th order"), "{sentence}");
+    assert!(!sentence.contains("restitution"), "{sentence}");
+    let rows = inputs.blocks.iter().filter_map(|block| match block {
+        Block::Table(table) => Some(&table.rows),
+        _ => None,
+    });
+    let mut cells = rows.flatten().flatten();
+    assert!(cells.all(|cell| cell != "method of integration"));
 }

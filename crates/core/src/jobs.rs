@@ -24,6 +24,8 @@
 //! assert!(matches!(job.wait(), Update::Finished(45)));
 //! ```
 
+mod time_left;
+
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -34,6 +36,8 @@ use std::time::{Duration, Instant};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use thread_priority::{ThreadPriority, set_current_thread_priority};
+
+pub use time_left::TimeLeft;
 
 /// The progress of a computation.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -115,8 +119,8 @@ impl<T> Update<Result<T, String>> {
 
 /// A message from the thread of a job.
 enum JobMessage<T> {
-    /// The computation has reported its progress.
-    Progress(Progress),
+    /// The computation has reported its progress, at a time since its start.
+    Progress(Progress, Duration),
     /// The computation has ended.
     End(Update<T>),
 }
@@ -127,6 +131,7 @@ pub struct Job<T> {
     name: String,
     started: Instant,
     progress: Progress,
+    time_left: TimeLeft,
     cancel: Arc<AtomicBool>,
     receiver: Receiver<JobMessage<T>>,
     ended: bool,
@@ -194,11 +199,12 @@ impl<T: Send + 'static> Job<T> {
         let cancel = Arc::new(AtomicBool::new(false));
         let (sender, receiver) = channel();
         let cancelled = Arc::clone(&cancel);
+        let started = Instant::now();
         let run = move || {
             let mut report = |progress: Progress| {
                 // Sending fails only after the job was dropped, which has set the flag that is
                 // tested below.
-                let _ = sender.send(JobMessage::Progress(progress));
+                let _ = sender.send(JobMessage::Progress(progress, started.elapsed()));
                 wake();
                 if cancelled.load(Ordering::Relaxed) {
                     ControlFlow::Break(())
@@ -216,8 +222,9 @@ impl<T: Send + 'static> Job<T> {
         thread::Builder::new().name(name.to_owned()).spawn(move || on_threads(Box::new(run)))?;
         Ok(Self {
             name: name.to_owned(),
-            started: Instant::now(),
+            started,
             progress: Progress::default(),
+            time_left: TimeLeft::default(),
             cancel,
             receiver,
             ended: false,
@@ -263,7 +270,8 @@ impl<T: Send + 'static> Job<T> {
 
     fn take_in(&mut self, message: JobMessage<T>) -> Update<T> {
         match message {
-            JobMessage::Progress(progress) => {
+            JobMessage::Progress(progress, at) => {
+                self.time_left.take(at, &progress);
                 self.progress = progress;
                 Update::Running
             }
@@ -289,6 +297,11 @@ impl<T> Job<T> {
     /// Time since the start of the job.
     pub fn elapsed(&self) -> Duration {
         self.started.elapsed()
+    }
+
+    /// The estimated time left ([`TimeLeft`]).
+    pub fn time_left(&self) -> Option<Duration> {
+        self.time_left.at(self.started.elapsed())
     }
 
     /// Asks the computation to stop at its next report. The job still ends with the value that the

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use egui::{Color32, Context, Pos2, RawInput, Rect, Ui, Vec2};
+use egui::epaint::ClippedShape;
+use egui::{Color32, Context, FullOutput, Pos2, RawInput, Rect, Ui, Vec2};
 use image::RgbaImage;
 
 use crate::{SoftwareRenderer, picture_ui, theme};
@@ -41,6 +42,12 @@ impl Canvas {
         shares[0].min(shares[1]).max(1.0)
     }
 
+    /// Width and height, points.
+    pub(crate) fn size_points(&self) -> Vec2 {
+        let [width, height] = self.size_px;
+        Vec2::new(width as f32, height as f32) / self.scale
+    }
+
     /// Checks the size, before anything is allocated for it.
     ///
     /// # Errors
@@ -69,17 +76,40 @@ pub enum RenderError {
 ///
 /// # Errors
 /// [`RenderError::Size`] for a size that [`Canvas::check`] refuses.
-pub fn draw_offscreen(
+pub fn draw_offscreen(canvas: Canvas, ui: impl FnMut(&mut Ui)) -> Result<RgbaImage, RenderError> {
+    let mut renderer = SoftwareRenderer::default();
+    let (context, output) =
+        settled(canvas, ui, |output| renderer.update_textures(&mut output.textures_delta))?;
+    let primitives = context.tessellate(output.shapes, output.pixels_per_point);
+    let ground = if canvas.dark { Color32::from_gray(27) } else { Color32::WHITE };
+    Ok(renderer.draw(&primitives, canvas.size_px, output.pixels_per_point, ground))
+}
+
+/// The shapes of a user interface before they become pixels, in points.
+///
+/// # Errors
+/// [`RenderError::Size`] for a size that [`Canvas::check`] refuses.
+pub(crate) fn shapes_offscreen(
+    canvas: Canvas,
+    ui: impl FnMut(&mut Ui),
+) -> Result<Vec<ClippedShape>, RenderError> {
+    let textures_left_out = |output: &mut FullOutput| output.textures_delta.clear();
+    settled(canvas, ui, textures_left_out).map(|(_, output)| output.shapes)
+}
+
+/// Runs a user interface until its layout no longer changes.
+///
+/// - `each`: sees the output of every pass, the last one included.
+fn settled(
     canvas: Canvas,
     mut ui: impl FnMut(&mut Ui),
-) -> Result<RgbaImage, RenderError> {
+    mut each: impl FnMut(&mut FullOutput),
+) -> Result<(Context, FullOutput), RenderError> {
     canvas.check()?;
-    let [width, height] = canvas.size_px;
     let context = Context::default();
     context.set_visuals(theme::visuals(canvas.dark));
-    let mut renderer = SoftwareRenderer::default();
-    let size = Vec2::new(width as f32, height as f32) / canvas.scale;
-    let mut image = RgbaImage::default();
+    let size = canvas.size_points();
+    let mut last = FullOutput::default();
     for pass in 0..SETTLING_PASSES {
         let mut input = RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
@@ -89,15 +119,10 @@ pub fn draw_offscreen(
         if let Some(viewport) = input.viewports.get_mut(&input.viewport_id) {
             viewport.native_pixels_per_point = Some(canvas.scale);
         }
-        let mut output = context.run_ui(input, &mut ui);
-        renderer.update_textures(&mut output.textures_delta);
-        if pass + 1 == SETTLING_PASSES {
-            let primitives = context.tessellate(output.shapes, output.pixels_per_point);
-            let ground = if canvas.dark { Color32::from_gray(27) } else { Color32::WHITE };
-            image = renderer.draw(&primitives, canvas.size_px, output.pixels_per_point, ground);
-        }
+        last = context.run_ui(input, &mut ui);
+        each(&mut last);
     }
-    Ok(image)
+    Ok((context, last))
 }
 
 /// Draws a figure below its title and above what restricts it ([`picture_ui`]).

@@ -1,14 +1,15 @@
 //! Draws a figure with egui_plot.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{Color32, ColorImage, Id, Pos2, Stroke, TextureHandle, TextureOptions, Ui, Vec2, Vec2b};
 use egui_plot::{
-    Arrows, FilledArea, Legend, Line, LineStyle as PlotLineStyle, Plot, PlotBounds, PlotImage,
-    PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
+    Arrows, FilledArea, Line, LineStyle as PlotLineStyle, Plot, PlotBounds, PlotImage, PlotPoint,
+    PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
-use crate::legend::{emptiest_corner, has_no_place, legend_row_ui, named};
+use crate::legend::legend_ui;
 use crate::theme;
 use crate::thin::thinned;
 use crate::ticks::{
@@ -31,9 +32,6 @@ const LEAST_HEIGHT: f32 = 2.0 * X_AXIS_HEIGHT;
 /// Logarithm of the zoom for each point that the wheel scrolls.
 const ZOOM_PER_POINT: f32 = 0.004;
 
-/// Number of names in a legend above which it is written in small type.
-const LONG_LEGEND: usize = 8;
-
 /// Options for the placement of a figure.
 #[derive(Debug, Clone)]
 pub struct FigureOptions {
@@ -44,7 +42,7 @@ pub struct FigureOptions {
     /// Position of the cursor along x, in the unit of the axis; not drawn beyond the curves, whose axis it
     /// would stretch.
     pub cursor_x: Option<f64>,
-    /// Two cursors along x, in the unit of the axis.
+    /// Two cursors along x, in the unit of the axis; likewise.
     pub span: Option<[f64; 2]>,
     /// Height of the plot, points; `None` for all the space that is available.
     pub height: Option<f32>,
@@ -76,6 +74,13 @@ impl Default for FigureOptions {
     }
 }
 
+impl FigureOptions {
+    /// What distinguishes the plot of a figure from the others in a window.
+    fn plot_name<'a>(&'a self, figure: &'a Figure) -> &'a str {
+        if self.id.is_empty() { &figure.title } else { &self.id }
+    }
+}
+
 /// Interaction of the user with a figure.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct FigureResponse {
@@ -98,22 +103,11 @@ pub struct FigureResponse {
 /// Draws a figure into the space that is available. Hovering shows values in the units of the axes.
 pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> FigureResponse {
     let all = options.height.unwrap_or_else(|| ui.available_height());
-    let is_row = options.legend && has_no_place(figure, all);
     let top = ui.cursor().top();
-    if is_row {
-        legend_row_ui(ui, figure);
-    }
+    let hidden = if options.legend { hidden_ui(ui, figure, options) } else { BTreeSet::new() };
     let height = (all - (ui.cursor().top() - top)).max(LEAST_HEIGHT);
     let y_label = label_that_fits(ui, &figure.y, height - X_AXIS_HEIGHT);
     let mut plot = plot_with_axes(figure, options, y_label);
-    if options.legend && !is_row {
-        let legend = Legend::default().position(emptiest_corner(figure));
-        let legend = match named(figure).len() {
-            ..=LONG_LEGEND => legend,
-            _ => legend.text_style(egui::TextStyle::Small),
-        };
-        plot = plot.legend(legend.follow_insertion_order(true).background_alpha(0.6));
-    }
     if figure.equal_aspect {
         plot = plot.data_aspect(1.0);
     }
@@ -141,14 +135,14 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         if let Some([low, high]) = options.view {
             plot_ui.set_plot_bounds(PlotBounds::from_min_max(low, high));
         }
-        for element in &figure.elements {
+        for element in figure.elements.iter().filter(|of| !hidden.contains(of.name())) {
             draw_element(plot_ui, dark, element, figure.log_y);
         }
         if let Some(x) = options.cursor_x.filter(|x| reaches(figure, *x)) {
             let stroke = Stroke::new(theme::LINE_WIDTH, theme::cursor_color(dark));
             plot_ui.vline(VLine::new("", x).stroke(stroke).allow_hover(false));
         }
-        for x in options.span.into_iter().flatten() {
+        for x in options.span.into_iter().flatten().filter(|x| reaches(figure, *x)) {
             let stroke = Stroke::new(theme::THIN_LINE_WIDTH, theme::cursor_color(dark));
             let line = VLine::new("", x).stroke(stroke).style(PlotLineStyle::dashed_loose());
             plot_ui.vline(line.allow_hover(false));
@@ -180,6 +174,15 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
     }
 }
 
+/// Draws the legend and returns the names that it hides.
+fn hidden_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> BTreeSet<String> {
+    let id = Id::unique(("hidden in", options.plot_name(figure)));
+    let mut hidden: BTreeSet<String> = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    legend_ui(ui, figure, &mut hidden);
+    ui.data_mut(|data| data.insert_temp(id, hidden.clone()));
+    hidden
+}
+
 /// Zooms about the pointer as the wheel is turned, which then scrolls nothing else.
 fn zoom_by_wheel(plot: &mut PlotUi<'_>) {
     if !plot.response().contains_pointer() {
@@ -200,7 +203,6 @@ fn zoom_by_wheel(plot: &mut PlotUi<'_>) {
 
 /// A plot with the labels and ticks of the axes and the text shown on hovering.
 fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions, y_label: String) -> Plot<'a> {
-    let id = if options.id.is_empty() { &figure.title } else { &options.id };
     let (x, y, log_y) = (figure.x.clone(), figure.y.clone(), figure.log_y);
     let readout = move |name: &str, at: PlotPoint| {
         let head = if name.is_empty() { String::new() } else { format!("{name}\n") };
@@ -215,7 +217,7 @@ fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions, y_label: String)
     let names = figure.y.names.clone();
     let n_names = names.len();
     let longest = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
-    Plot::new(id.as_str())
+    Plot::new(options.plot_name(figure))
         .x_axis_label(figure.x.text())
         .y_axis_label(y_label)
         .y_axis_min_width(f32::max(LEAST_Y_AXIS_WIDTH, longest as f32 * CHARACTER_WIDTH))
@@ -298,9 +300,6 @@ fn heat_map(plot: &mut PlotUi<'_>, map: &HeatMap, color: Color32) {
     let at = PlotPoint::new(centre(0), centre(1));
     let size = [side(0) as f32, side(1) as f32];
     plot.image(PlotImage::new("", picture.texture.id(), at, size).allow_hover(false));
-    // The legend shows colours of lines only, and a line needs at least one point.
-    let point = PlotPoints::from(vec![[at.x, at.y]]);
-    plot.line(Line::new(&map.name, point).stroke(Stroke::new(0.0, color)).allow_hover(false));
 }
 
 /// Draws an element with the colours of the dark or the light theme; on a logarithmic axis y is

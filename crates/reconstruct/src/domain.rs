@@ -4,7 +4,7 @@ use crate::evidence::{Damage, Evidence, Measured};
 use crate::{Car, Cars};
 use impactlab_core::collision::{Footprint, OffOutline, Side};
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
-use impactlab_core::units::{STANDARD_GRAVITY_M_S2, significant};
+use impactlab_core::units::{Phrase, PhraseValue, Quantity, STANDARD_GRAVITY_M_S2};
 use impactlab_core::vehicle::{FrictionZone, VehicleParameters};
 
 /// A quantity of a vehicle with the range over which the rules of the data sheet were fitted and the
@@ -89,13 +89,19 @@ fn car_caveats<'a>(which: &'a str, car: &'a Car) -> impl Iterator<Item = Caveat>
     KNOWN.iter().filter_map(move |Known { name, unit, quantity, range }| {
         let value = quantity(&car.parameters);
         let [low, high] = *range;
-        let text = format!(
-            "{which}: {name} is {} {unit}; what is estimated of a vehicle, how it moves and what is \
-             assumed beforehand is known of cars and vans of {} to {} {unit}",
-            significant(value),
-            significant(low),
-            significant(high)
-        );
+        let quantity = Quantity::from_si_symbol(unit).unwrap_or(Quantity::Ratio);
+        let number = |value| PhraseValue::significant(quantity, value);
+        let text = Phrase::new(
+            "{0}: {1} is {2}; what is estimated of a vehicle, how it moves and what is \
+             assumed beforehand is known of cars and vans of {3} to {4}",
+            "{0}: {1} beträgt {2}. Schätzregeln, Bewegungsmodell und Vorannahmen gelten für Pkw und \
+             Transporter von {3} bis {4}",
+        )
+        .with(PhraseValue::Term(which.to_owned()))
+        .with(PhraseValue::Term((*name).to_owned()))
+        .with(number(value))
+        .with(number(low).bare())
+        .with(number(high));
         let caveat = Caveat::new(CaveatKind::OutsideDomain, text)
             .with_value(format!("{name} of the {which} [{unit}]"), value)
             .with_range(*range);
@@ -108,10 +114,14 @@ fn road_caveat(friction: Option<Measured>) -> Option<Caveat> {
     let Measured { value, sigma } = friction?;
     let [low, high] = ROAD_FRICTION;
     let reach = FRICTION_REACH * sigma;
-    let text = format!(
-        "friction of the road is {}; how a car moves is known of roads of {low} to {high}",
-        significant(value)
-    );
+    let text = Phrase::new(
+        "friction of the road is {0}; how a car moves is known of roads of {1} to {2}",
+        "Der Reibbeiwert der Fahrbahn beträgt {0}. Das Bewegungsmodell ist auf Fahrbahnen mit {1} bis {2} \
+         erprobt",
+    )
+    .with(PhraseValue::significant(Quantity::Ratio, value))
+    .with(PhraseValue::given(Quantity::Ratio, low))
+    .with(PhraseValue::given(Quantity::Ratio, high));
     let caveat = Caveat::new(CaveatKind::OutsideDomain, text)
         .with_value("friction of the road", value)
         .with_range(ROAD_FRICTION);
@@ -123,10 +133,15 @@ fn zone_caveats(zones: &[FrictionZone]) -> impl Iterator<Item = Caveat> {
     let [low, high] = ROAD_FRICTION;
     let outside = zones.iter().filter(move |zone| !(low..=high).contains(&zone.friction));
     outside.map(move |zone| {
-        let text = format!(
-            "friction of the zone {:?} is {}; how a car moves is known of roads of {low} to {high}",
-            zone.name, zone.friction
-        );
+        let text = Phrase::new(
+            "friction of the zone {0} is {1}; how a car moves is known of roads of {2} to {3}",
+            "Der Reibbeiwert des Bereichs {0} beträgt {1}. Das Bewegungsmodell ist auf Fahrbahnen mit \
+             {2} bis {3} erprobt",
+        )
+        .with(PhraseValue::Name(format!("{:?}", zone.name)))
+        .with(PhraseValue::given(Quantity::Ratio, zone.friction))
+        .with(PhraseValue::given(Quantity::Ratio, low))
+        .with(PhraseValue::given(Quantity::Ratio, high));
         Caveat::new(CaveatKind::OutsideDomain, text)
             .with_value(format!("friction of the zone {:?}", zone.name), zone.friction)
             .with_range(ROAD_FRICTION)

@@ -80,6 +80,7 @@ pub use questions::predict::motion::{
     COARSE_DRAWS, DEFAULT_DRAWS, ForceSource, PredictMotionAnswer, PredictMotionReport,
     PredictMotionRequest, StrikingReport,
 };
+pub use questions::predict::recorded_impulse::RecordedImpulse;
 pub use questions::reconstruct::later_contacts::LaterContactsReport;
 pub use questions::reconstruct::paths::{NamedPath, ReconstructedPaths};
 pub use questions::reconstruct::request::{

@@ -66,7 +66,7 @@ pub fn case_bar_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) 
     });
 }
 
-/// Draws the fields for the name of the variant and for the notes of the case.
+/// Draws the fields for the name of the variant, and for the notes of it and of the case.
 fn rename_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     let name = ui.label("Name of the variant");
     let shown = state.case.file.shown.clone();
@@ -82,6 +82,11 @@ fn rename_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
         ui.data_mut(|data| data.insert_temp(id, typed));
     }
     ui.separator();
+    let shown = state.case.file.shown.clone();
+    if let Some(variant) = state.case.file.variant_mut(&shown) {
+        let notes = ui.label("Notes of the variant");
+        ui.text_edit_multiline(&mut variant.notes).labelled_by(notes.id);
+    }
     let notes = ui.label("Notes of the case");
     ui.text_edit_multiline(&mut state.case.file.notes).labelled_by(notes.id);
     ui.separator();

@@ -34,6 +34,13 @@ pub enum VariantCommand {
     Duplicate,
     /// Give the variant that is shown another name.
     Rename(String),
+    /// Write notes about a variant.
+    Note {
+        /// The variant.
+        name: String,
+        /// All that is to be known about it.
+        notes: String,
+    },
     /// Remove the variant that is shown.
     Remove,
 }
@@ -47,6 +54,8 @@ pub enum Leaving {
     New,
     /// A new case with a PIT, ready to play.
     Pit,
+    /// A new case, to be reconstructed from what was found.
+    Reconstruction,
     /// The finished example case that comes with the program.
     Example,
     /// Another case.

@@ -14,7 +14,9 @@ impl Leaving {
     fn label(&self) -> &'static str {
         match self {
             Self::Quit => "Quit",
-            Self::New | Self::Pit | Self::Example | Self::Open(_) => "Go on without saving",
+            Self::New | Self::Pit | Self::Reconstruction | Self::Example | Self::Open(_) => {
+                "Go on without saving"
+            }
         }
     }
 }
@@ -50,6 +52,7 @@ impl State {
             }
             Leaving::New => self.new_case(),
             Leaving::Pit => self.open_pit(),
+            Leaving::Reconstruction => self.begin_reconstruction(),
             Leaving::Example => self.open_example(),
             Leaving::Open(path) => self.open_case(&path),
         }
@@ -147,7 +150,11 @@ impl State {
 pub fn leaving_ui(ui: &mut Ui, to: &Leaving, state: &State, commands: &mut Vec<Command>) {
     ui.heading(match to {
         Leaving::Quit => "Quit impactlab?",
-        Leaving::New | Leaving::Pit | Leaving::Example | Leaving::Open(_) => "Leave this case?",
+        Leaving::New
+        | Leaving::Pit
+        | Leaving::Reconstruction
+        | Leaving::Example
+        | Leaving::Open(_) => "Leave this case?",
     });
     for reason in state.reasons_to_stay(to) {
         ui.label(reason);

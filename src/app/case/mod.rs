@@ -70,7 +70,7 @@ impl OpenCase {
             let is_same = in_file.to_variant(&name).questions == now.questions;
             let before = std::mem::take(variant);
             let questions = if is_same { before.questions } else { now.questions };
-            *variant = Variant { questions, forms: before.forms, ..now };
+            *variant = Variant { questions, notes: before.notes, forms: before.forms, ..now };
         }
         file
     }
@@ -106,7 +106,8 @@ impl OpenCase {
         let is_new = name == UNTITLED
             && notes.is_empty()
             && *expert == Expert::default()
-            && variants.len() == 1;
+            && variants.len() == 1
+            && variants.iter().all(|variant| variant.notes.is_empty());
         !(is_new && is_blank(&blank.to_variant(&self.file.shown)))
     }
 }

@@ -76,7 +76,7 @@ impl State {
     }
 
     /// The project as it is asked: its questions in step, and no force predicted that cannot be.
-    fn project_of_questions(&self) -> Project {
+    pub(in crate::app) fn project_of_questions(&self) -> Project {
         let mut project = self.project.clone();
         project.predict_motion.force = self.driving_force();
         project.keep_in_step();
@@ -155,6 +155,7 @@ impl State {
         }
         self.drop_answers();
         self.session.offered = None;
+        self.session.said_of_files.clear();
         self.session.force.forecast.drop_answer();
         for SeriesFile { path, map } in self.project.sources() {
             let is_open = self.session.sources.iter().any(|source| source.path == path);
@@ -208,6 +209,12 @@ impl State {
                 file.shown = name;
                 return;
             }
+            VariantCommand::Note { name, notes } => {
+                if let Some(variant) = file.variant_mut(&name) {
+                    variant.notes = notes;
+                }
+                return;
+            }
             VariantCommand::Remove => {
                 if file.variants.len() < 2 {
                     return self.say(Severity::Warning, "a case has at least one variant");
@@ -250,6 +257,12 @@ impl State {
     pub(in crate::app) fn open_pit(&mut self) {
         self.new_case();
         self.view.workspaces.show_pane(Pane::Scene);
+    }
+
+    /// Begins a case with a reconstruction, and shows where its evidence comes from.
+    pub(in crate::app) fn begin_reconstruction(&mut self) {
+        self.new_case();
+        self.view.workspaces.show_pane(Pane::Evidence);
     }
 
     /// Opens the finished example case, which has no file of its own yet.

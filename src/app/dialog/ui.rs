@@ -46,10 +46,7 @@ impl Dialog {
 
 fn dialog_ui(ui: &mut Ui, dialog: &mut Dialog, state: &mut State, commands: &mut Vec<Command>) {
     match dialog {
-        Dialog::Import(dialog) => {
-            let project = &mut state.project;
-            dialog.ui(ui, project, commands);
-        }
+        Dialog::Import(dialog) => dialog.ui(ui, commands),
         Dialog::Licences => licences_ui(ui, commands),
         Dialog::Messages => messages_ui(ui, state, commands),
         Dialog::Replace(output, path) => replace_ui(ui, (output, path), commands),

@@ -10,13 +10,13 @@ use crate::app::tasks::TaskKey;
 use impactlab_core::data::{Existing, Outcome, Severity};
 use impactlab_core::error_chain;
 use impactlab_draw::film::{Film, write_film};
-use impactlab_draw::scene::ScenePicture;
+use impactlab_draw::scene::{CameraKey, ScenePicture};
 
 /// An action on the film of a scene.
 #[derive(Debug, Clone)]
 pub enum FilmCommand {
-    /// Ask how a film is to be made.
-    Ask(Box<ScenePicture>),
+    /// Ask how a film is to be made of a scene as it is seen, with the keys of its camera.
+    Ask(Box<ScenePicture>, Vec<CameraKey>),
     /// Cancel the film that is being made.
     Cancel,
     /// Say how the film for a file has ended.
@@ -28,8 +28,8 @@ impl State {
     pub(in crate::app) fn film(&mut self, command: FilmCommand) {
         let Session { dialogs, tasks, .. } = &mut self.session;
         match command {
-            FilmCommand::Ask(picture) => {
-                let form = FilmForm::new(*picture, self.view.dark);
+            FilmCommand::Ask(picture, keys) => {
+                let form = FilmForm::new(*picture, keys, self.view.dark);
                 dialogs.open(Dialog::Film(Box::new(form)));
             }
             FilmCommand::Cancel => {

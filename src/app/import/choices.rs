@@ -151,6 +151,15 @@ impl Choices {
         choices
     }
 
+    /// Takes the SI unit for every column that is used.
+    pub fn take_si_units(&mut self) {
+        for column in &mut self.columns {
+            if let Some(channel) = column.channel() {
+                column.unit = Some(channel.quantity().si_unit());
+            }
+        }
+    }
+
     fn column_mut(&mut self, number: usize) -> Option<&mut ColumnChoice> {
         self.columns.iter_mut().find(|column| column.proposal.number == number)
     }

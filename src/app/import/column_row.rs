@@ -8,7 +8,7 @@ use impactlab_core::units::Quantity;
 use impactlab_draw::theme;
 
 /// What can be assigned to a column, in the order of the dialog's lists, with what it is.
-const CHOICES: [(Held, &str); 22] = [
+const CHOICES: [(Held, &str); 23] = [
     (Held::Channel(Channel::Time), "Time"),
     (Held::Channel(Channel::Fx), "F_x, force along the road"),
     (Held::Channel(Channel::Fy), "F_y, force to the left of the road"),
@@ -20,6 +20,7 @@ const CHOICES: [(Held, &str); 22] = [
     (Held::Channel(Channel::Yaw), "Yaw ψ, heading"),
     (Held::Channel(Channel::Vx), "v_x, velocity"),
     (Held::Channel(Channel::Vy), "v_y, velocity"),
+    (Held::Channel(Channel::Speed), "Speed along the path"),
     (Held::Channel(Channel::YawRate), "Yaw rate r"),
     (Held::Channel(Channel::Roll), "Roll φ"),
     (Held::Channel(Channel::RollRate), "Roll rate"),

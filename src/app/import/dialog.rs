@@ -8,9 +8,11 @@ use crate::app::found::Found;
 use crate::app::import::answer::{ImportAnswer, ReadPreview};
 use crate::app::import::choices::Choices;
 use crate::app::import::preview::{Preview, Refusal};
+use crate::app::import::said::SaidOfFile;
 use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::data::{
-    ColumnMap, Correction, ReadSettings, Table, VelocityAxes, VelocityFit, proposals,
+    ColumnMap, ColumnProposal, Correction, ReadSettings, Table, VelocityAxes, VelocityFit,
+    proposals,
 };
 use impactlab_core::error_chain;
 use impactlab_core::units::UnitSystem;
@@ -37,13 +39,17 @@ pub struct ImportDialog {
     pub(super) says_velocities: bool,
     /// System of units of the curve.
     pub(super) units: UnitSystem,
+    /// What is said of the vehicle of the file, with what it was before; `None` for a file about which the
+    /// variant asks, where the variant says it.
+    pub(super) said: Option<[SaidOfFile; 2]>,
 }
 
 impl ImportDialog {
     /// Opens the dialog for a file, which is read in the background.
     ///
-    /// - `map`: the choices with which it was opened before.
-    pub fn open(path: PathBuf, map: Option<ColumnMap>) -> Self {
+    /// - `map`: the choices with which it was opened before;
+    /// - `said`: what the variant says of its vehicle; `None` if the variant asks about the file.
+    pub fn open(path: PathBuf, map: Option<ColumnMap>, said: Option<SaidOfFile>) -> Self {
         let settings = map.as_ref().map(|map| (*map.settings).clone()).unwrap_or_default();
         Self {
             path,
@@ -58,7 +64,13 @@ impl ImportDialog {
             corrected: Vec::new(),
             is_reading: false,
             units: UnitSystem::default(),
+            said: said.map(|said| [said.clone(), said]),
         }
+    }
+
+    /// What the user has said of the vehicle of the file; `None` if it is what the variant says.
+    pub fn said(&self) -> Option<&SaidOfFile> {
+        self.said.as_ref().filter(|[said, before]| said != before).map(|[said, _]| said)
     }
 
     /// The file.
@@ -79,7 +91,8 @@ impl ImportDialog {
     /// Reads the file anew, with the choices that the dialog began with.
     pub(super) fn reset(&mut self) {
         let units = self.units;
-        *self = Self::open(self.path.clone(), self.first_map.take());
+        let before = self.said.take().map(|[_, before]| before);
+        *self = Self::open(self.path.clone(), self.first_map.take(), before);
         self.units = units;
     }
 
@@ -150,9 +163,10 @@ impl ImportDialog {
         tasks.start(TaskKey::Import, |_| Ok(Found::new(read())), take);
     }
 
-    /// Whether the table was read with another sheet, header or row of units.
+    /// Whether the table was read with another sheet, header or row of units, or with other signs.
     fn is_table_stale(&self) -> bool {
-        let place = |of: &ReadSettings| (of.sheet.clone(), of.header, of.units_line);
+        let signs = |of: &ReadSettings| (of.separator, of.decimal_comma, of.thousands);
+        let place = |of: &ReadSettings| (signs(of), of.sheet.clone(), of.header, of.units_line);
         let read = self.table.as_ref().map(|(settings, _)| place(settings));
         read != Some(place(&self.settings))
     }
@@ -163,6 +177,22 @@ impl ImportDialog {
         is_read && self.choices.open_questions().is_empty() && shown != Some(&self.map())
     }
 
+    /// Takes the columns of a table. What was chosen stays for columns of the same names.
+    fn take_columns(&mut self, found: Vec<ColumnProposal>) {
+        let before = self.choices.columns.iter().map(|column| &column.proposal.name);
+        let is_same = before.eq(found.iter().map(|proposal| &proposal.name));
+        let first = self.first_map.as_ref().filter(|_| self.is_untouched);
+        self.choices = match first {
+            Some(map) => Choices::from_map(found, map),
+            None if is_same => Choices::from_map(found, &self.map()),
+            None => Choices::suggested(found),
+        };
+        self.is_untouched = false;
+        if !is_same {
+            self.corrected.clear();
+        }
+    }
+
     /// Takes what was read, or why the reading broke off.
     pub fn receive(&mut self, answer: Result<ImportAnswer, String>) {
         self.is_reading = false;
@@ -170,14 +200,7 @@ impl ImportDialog {
             Err(why) => self.table = Some((self.settings.clone(), Err(why))),
             Ok(ImportAnswer::Table(settings, table)) => {
                 if let Ok(table) = &table {
-                    let found = proposals(table);
-                    let map = self.first_map.as_ref().filter(|_| self.is_untouched);
-                    self.choices = match map {
-                        Some(map) => Choices::from_map(found, map),
-                        None => Choices::suggested(found),
-                    };
-                    self.is_untouched = false;
-                    self.corrected.clear();
+                    self.take_columns(proposals(table));
                     self.beginning = table.beginning().to_vec();
                 }
                 self.table = Some((settings, table));

@@ -11,7 +11,6 @@ use crate::app::import::dialog::ImportDialog;
 use crate::app::looks;
 use crate::app::model::file_name;
 use crate::app::panels::{file_vehicle_ui, start_fields};
-use crate::app::project::Project;
 use impactlab_core::data::{
     Channel, ColumnMap, FileKind, HeaderLine, ReadSettings, Severity, Sheet, SheetRef,
     VelocityAxes, VelocityFit,
@@ -33,12 +32,13 @@ const LINES_HEIGHT: f32 = 110.0;
 
 const COLUMNS_HEIGHT: f32 = 220.0;
 
+/// What is said of a force that points out of the vehicle at its contact point.
+const PULLS: &str = "• the force pulls at the contact point instead of pushing into the vehicle; change the \
+                     sign of its components or the contact point";
+
 impl ImportDialog {
     /// Draws the dialog and adds a command when the user confirms or cancels.
-    ///
-    /// - `asked`: what a file does not say: how the struck vehicle moves and where the force acts, and
-    ///   which vehicle it is.
-    pub fn ui(&mut self, ui: &mut Ui, project: &mut Project, commands: &mut Vec<Command>) {
+    pub fn ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let window = ui.ctx().content_rect().size();
         let width = WIDTH.min(window.x - WINDOW_MARGIN);
         ui.set_width(width);
@@ -61,7 +61,7 @@ impl ImportDialog {
                 ui.add_space(GAP);
                 ui.vertical(|ui| {
                     self.preview_ui(ui);
-                    self.left_open_ui(ui, project, commands);
+                    self.left_open_ui(ui);
                 });
             });
         });
@@ -97,6 +97,8 @@ impl ImportDialog {
             self.header_ui(ui, header);
             self.units_line_ui(ui, units);
         });
+        let is_sheet = table.as_ref().is_some_and(|table| table.sheet().is_some());
+        self.signs_ui(ui, table.as_ref().map(|table| table.dialect()), is_sheet);
         let lines = ScrollArea::both().id_salt("lines").max_height(LINES_HEIGHT);
         lines.auto_shrink([false, true]).show(ui, |ui| {
             for (number, text) in &self.beginning {
@@ -181,6 +183,11 @@ impl ImportDialog {
                 }
             });
         });
+        let si =
+            ui.small_button("All SI").on_hover_text("The SI unit for every column: s, m, rad, N");
+        if si.clicked() {
+            self.choices.take_si_units();
+        }
         if let Some(channel) = self.choices.missing_force() {
             let label = format!("{} is zero throughout", channel.label());
             ui.checkbox(&mut self.choices.other_force_is_zero, label);
@@ -202,11 +209,14 @@ impl ImportDialog {
         Grid::new("settings").num_columns(2).show(ui, |ui| {
             let name = ui.label("Add to the time");
             let mut shift_ms = self.settings.time_shift_s.unwrap_or(0.0) * 1e3;
-            let field = egui::DragValue::new(&mut shift_ms).speed(0.1).suffix(" ms");
-            let field = ui.add(field).labelled_by(name.id);
-            if field.on_hover_text("So that the contact begins at 0").changed() {
-                self.settings.time_shift_s = (shift_ms != 0.0).then_some(shift_ms / 1e3);
-            }
+            ui.horizontal(|ui| {
+                let field = egui::DragValue::new(&mut shift_ms).speed(0.1).suffix(" ms");
+                let field = ui.add(field).labelled_by(name.id);
+                if field.on_hover_text("So that the contact begins at 0").changed() {
+                    self.settings.time_shift_s = (shift_ms != 0.0).then_some(shift_ms / 1e3);
+                }
+                self.zero_ui(ui);
+            });
             ui.end_row();
             let name = ui.label("y points to the");
             let text = |right| if right { "right (SAE J670)" } else { "left (ISO 8855)" };
@@ -222,6 +232,17 @@ impl ImportDialog {
             self.headings_ui(ui);
             self.velocities_ui(ui);
         });
+    }
+
+    /// Draws the button with which the time begins at 0, where it does not.
+    fn zero_ui(&mut self, ui: &mut Ui) {
+        let Some((map, Ok(preview))) = &self.preview else { return };
+        let shift_s = map.settings.time_shift_s.unwrap_or(0.0) - preview.first_s;
+        let button = egui::Button::new("First row at 0").small();
+        let button = ui.add_enabled(preview.first_s != 0.0, button);
+        if button.on_hover_text(format!("Adds {shift_s} s to the time")).clicked() {
+            self.settings.time_shift_s = (shift_s != 0.0).then_some(shift_s);
+        }
     }
 
     fn headings_ui(&mut self, ui: &mut Ui) {
@@ -277,8 +298,9 @@ impl ImportDialog {
         ui.end_row();
     }
 
-    /// Draws what a force or a motion does not say about the struck vehicle.
-    fn left_open_ui(&self, ui: &mut Ui, project: &mut Project, commands: &mut Vec<Command>) {
+    /// Draws what a force or a motion does not say about the struck vehicle. The variant gets it with the
+    /// file.
+    fn left_open_ui(&mut self, ui: &mut Ui) {
         let Some((_, Ok(preview))) = &self.preview else { return };
         let title = match preview.kind {
             FileKind::Force => "What a force does not say about the struck vehicle",
@@ -287,12 +309,20 @@ impl ImportDialog {
         };
         ui.separator();
         ui.strong(title);
+        let Some([said, _]) = &mut self.said else {
+            ui.weak("As the variant says that asks about this file");
+            return;
+        };
         Grid::new("import start").num_columns(2).show(ui, |ui| {
-            file_vehicle_ui(ui, &project.simulate.vehicle, self.units, commands);
+            file_vehicle_ui(ui, &mut said.vehicle, self.units);
             if preview.kind == FileKind::Force {
-                start_fields(ui, project.start_mut(), self.units);
+                start_fields(ui, &mut said.start, self.units);
             }
         });
+        if preview.impulse_n_s.is_some_and(|impulse_n_s| said.pulls(impulse_n_s)) {
+            let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+            ui.colored_label(color, PULLS);
+        }
     }
 
     fn buttons_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {

@@ -9,8 +9,11 @@ mod dialog_ui;
 mod preview;
 mod preview_ui;
 mod remembered;
+mod said;
+mod signs_ui;
 
 pub use answer::ImportAnswer;
 pub use dialog::ImportDialog;
 pub use remembered::ColumnMaps;
 pub(in crate::app) use remembered::fingerprint;
+pub use said::SaidOfFile;

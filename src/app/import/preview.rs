@@ -27,6 +27,10 @@ pub struct Preview {
     pub remarks: Vec<Remark>,
     /// The axes in which the velocities fit the path, as they stand in the file.
     pub fit: Option<VelocityFit>,
+    /// The first instant, with the shift of the map, s.
+    pub first_s: f64,
+    /// The impulse of a force that has no yaw moment of its own, along the heading at the start, N s.
+    pub impulse_n_s: Option<[f64; 2]>,
 }
 
 /// A remark on what was read.
@@ -41,13 +45,13 @@ pub struct Remark {
 /// Why a table cannot be read with a map.
 pub struct Refusal {
     pub text: String,
-    /// The change of the map that answers what is open.
-    pub correction: Option<Correction>,
+    /// Changes of the map of which each answers what is open.
+    pub corrections: Vec<Correction>,
 }
 
 impl Refusal {
     pub fn new(error: &DataError, map: &ColumnMap) -> Self {
-        Self { text: error_chain(error), correction: error.correction(Some(map)) }
+        Self { text: error_chain(error), corrections: error.corrections(Some(map)) }
     }
 }
 
@@ -80,8 +84,16 @@ impl Preview {
             numbers: numbers(&loaded, units),
             remarks: flags.chain(notes).collect(),
             fit,
+            first_s: loaded.series.time_s().first().copied().unwrap_or(0.0),
+            impulse_n_s: impulse_n_s(&loaded),
         })
     }
+}
+
+/// The impulse of a file of a force, whose vehicle heads along x at the start.
+fn impulse_n_s(loaded: &Loaded) -> Option<[f64; 2]> {
+    let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling()).ok()?;
+    (loaded.kind == FileKind::Force && force.mz_n_m.is_none()).then(|| force.impulse_n_s())
 }
 
 fn figure(loaded: &Loaded, units: UnitSystem) -> Figure {

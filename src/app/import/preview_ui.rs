@@ -27,7 +27,7 @@ impl ImportDialog {
                 None => drop(ui.weak("the curve as it will be read")),
                 Some((_, Err(refusal))) => {
                     ui.colored_label(error, &refusal.text);
-                    chosen = buttons_ui(ui, refusal.correction.as_slice());
+                    chosen = buttons_ui(ui, &refusal.corrections);
                 }
                 Some((_, Ok(_))) => chosen = self.curve_ui(ui, warning),
             }

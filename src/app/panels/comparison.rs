@@ -56,8 +56,8 @@ fn case_ui(
     commands: &mut Vec<Command>,
 ) {
     ui.strong(format!("{} with {}", report.name, report.vehicle));
-    caveats_ui(ui, &report.caveats, commands);
-    for note in report.caveats.notes() {
+    caveats_ui(ui, &report.caveats, units, commands);
+    for note in report.caveats.in_units(units).notes() {
         ui.weak(note);
     }
     if let Some(rival) = &report.rival {
@@ -111,7 +111,7 @@ fn dataset_ui(
 ) {
     let violations: usize = report.cases.iter().filter_map(|case| case.violations).sum();
     ui.strong(format!("All {} cases, average position error", report.cases.len()));
-    caveats_ui(ui, &report.caveats, commands);
+    caveats_ui(ui, &report.caveats, units, commands);
     let unit = Quantity::Length.display_unit(units);
     Grid::new("dataset error").striped(true).show(ui, |ui| {
         for title in ["", "n", "mean", "std", "median", "p90"] {

@@ -1,4 +1,4 @@
-//! The three ways to begin: a question of one's own, a finished case, and one's own data.
+//! The three ways to begin: what happens if, what has happened, and one's own data.
 
 use std::path::PathBuf;
 
@@ -39,10 +39,10 @@ const DOORS: [Door; 3] = [
     Door {
         icon: Icon::History,
         title: "What happened?",
-        text: "A finished example case with three variants side by side: the car coasts, its driver \
-               brakes, a lighter car.",
-        button: "Look at the example",
-        commands: || vec![Command::Case(CaseCommand::Leave(Leaving::Example))],
+        text: "From what was found after a collision (places of rest, tire marks, damage, recorders) \
+               back to the speeds before it: type it in, open a file, or look at an example.",
+        button: "Reconstruct a collision",
+        commands: || vec![Command::Case(CaseCommand::Leave(Leaving::Reconstruction))],
     },
     Door {
         icon: Icon::FolderOpen,
@@ -84,6 +84,12 @@ pub fn doors_ui(ui: &mut Ui, recent: &[PathBuf], commands: &mut Vec<Command>) {
             }
         }
         ui.add_space(GAP);
+        let example = ui.link("Look at the example case");
+        let hint =
+            "Finished, with three variants: the car coasts, its driver brakes, a lighter car";
+        if example.on_hover_text(hint).clicked() {
+            commands.push(Command::Case(CaseCommand::Leave(Leaving::Example)));
+        }
         if ui.link("Look through the shipped data").clicked() {
             commands.push(Command::ShowWorkspace(Workspace::Data));
         }

@@ -1,13 +1,16 @@
 //! The “Force evaluation” pane: the errors and the calibration of the force network on a force data
 //! set, beside those of the baselines.
 
-use egui::{ProgressBar, ScrollArea, Ui};
+use std::path::Path;
+
+use egui::{ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::cost::CostPlace;
 use crate::app::force::{ForceSession, Statistic};
 use crate::app::model::file_name;
 use crate::app::panels::evaluation_plots::plots_ui;
+use crate::app::panels::training_parts::run_progress_ui;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{
@@ -26,7 +29,9 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let force = &session.force;
-        start_ui(ui, &mut project.networks.evaluate_force, force, &session.sources, commands);
+        let in_use = view.listed.as_deref();
+        let form = &mut project.networks.evaluate_force;
+        start_ui(ui, form, force, (&session.sources, in_use), commands);
         if force.model.current.is_some() && !force.evaluation.is_running() {
             cost_ui(ui, &mut session.costs, CostPlace::ForceEvaluation, "Evaluation");
         }
@@ -60,11 +65,13 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 /// Draws the choice of the data set and of its cases, the button that starts the evaluation, and
 /// the progress while it runs.
+///
+/// - `in_use`: path of the data set whose cases are listed.
 fn start_ui(
     ui: &mut Ui,
     form: &mut EvaluateForceRequest,
     force: &ForceSession,
-    sources: &[Source],
+    (sources, in_use): (&[Source], Option<&Path>),
     commands: &mut Vec<Command>,
 ) {
     let datasets = open_datasets(sources, &[DatasetKind::Force]);
@@ -73,14 +80,15 @@ fn start_ui(
         return;
     };
     if datasets.is_empty() {
-        no_dataset_ui(ui, DatasetKind::Force);
+        no_dataset_ui(ui, DatasetKind::Force, commands);
         return;
     }
     ui.horizontal_wrapped(|ui| {
         ui.strong("Model");
         ui.label(&current.name);
         let name = ui.label("on");
-        dataset_choice(ui, "evaluated data", &datasets, &mut form.data).labelled_by(name.id);
+        dataset_choice(ui, "evaluated data", &datasets, in_use, &mut form.data)
+            .labelled_by(name.id);
         let cases = &mut form.split;
         ui.radio_value(cases, EvaluatedCases::Test, "cases it has not seen")
             .on_hover_text("By content: a training case under another name is recognised");
@@ -98,14 +106,9 @@ fn start_ui(
                 commands.push(Command::CancelEvaluation);
             }
             let progress = job.progress();
-            match progress.fraction() {
-                Some(fraction) => {
-                    drop(ui.add(
-                        ProgressBar::new(fraction).desired_width(420.0).text(&*progress.message),
-                    ))
-                }
-                None => drop((ui.spinner(), ui.label("reading the cases"))),
-            }
+            let is_reading = progress.fraction().is_none();
+            let what = if is_reading { "reading the cases" } else { &*progress.message };
+            run_progress_ui(ui, what, progress.fraction(), job.time_left());
         });
     }
 }
@@ -135,7 +138,7 @@ fn heading_ui(
         }
     });
     let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-    restrictions_ui(ui, caveats);
+    restrictions_ui(ui, caveats, units);
     for problem in &evaluation.problems {
         ui.colored_label(color, problem);
     }

@@ -26,13 +26,15 @@ pub fn film_ui(ui: &mut Ui, form: &mut FilmForm, is_busy: bool, commands: &mut V
     ui.heading("Save a film");
     let film = &mut form.film;
     let view = film.picture.camera.kind.phrase();
-    ui.weak(format!("{}, {view}, as it is seen now", film.picture.scene.title));
+    let camera = if film.keys.is_empty() { ", as it is seen now" } else { "" };
+    ui.weak(format!("{}, {view}{camera}", film.picture.scene.title));
     Grid::new("film").num_columns(2).show(ui, |ui| {
         size_row(ui, film);
         timing_rows(ui, film);
     });
     film.canvas.scale = Canvas::scene_scale(film.canvas.size_px);
     sections_ui(ui, form);
+    keys_ui(ui, form);
     ui.separator();
     let is_possible = summary_ui(ui, &form.film);
     ui.horizontal(|ui| {
@@ -106,6 +108,20 @@ fn sections_ui(ui: &mut Ui, form: &mut FilmForm) {
     let hint = "A part of the motion at a speed of its own; the time stamp says it";
     if ui.button("Add slow motion").on_hover_text(hint).clicked() {
         form.add_section();
+    }
+}
+
+/// Draws the choice whether the camera moves between its keys, if it has any.
+fn keys_ui(ui: &mut Ui, form: &mut FilmForm) {
+    if form.keys().is_empty() {
+        return;
+    }
+    let mut moves = !form.film.keys.is_empty();
+    if ui.checkbox(&mut moves, "Move the camera from key to key").changed() {
+        form.move_camera(moves);
+    }
+    for (idx, key) in form.keys().iter().enumerate() {
+        ui.weak(format!("Key {} of the camera at {:.3} s", idx + 1, key.time_s));
     }
 }
 

@@ -31,40 +31,46 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ui.label("This file holds no contact force.");
         return;
     };
-    settings_ui(ui, project);
-    readouts_ui(ui, numbers, view.units);
-    let pulses = if project.beside.show_pulses { pulses(force) } else { Vec::new() };
-    let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
-    let class = project.beside.channel_class;
-    let figure = analysis_force_figure(analysis, &caveats, class, &pulses, view.units);
-    let height = (ui.available_height() - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
-    let mut figure = match figure {
-        Ok(Some(figure)) => figure,
-        Ok(None) => return,
-        Err(error) => {
-            ui.label(format!("{error}. Choose another filter, or none."));
-            return;
+    let drawn = ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        settings_ui(ui, project);
+        readouts_ui(ui, numbers, view.units);
+        let pulses = if project.beside.show_pulses { pulses(force) } else { Vec::new() };
+        let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
+        let class = project.beside.channel_class;
+        let figure = analysis_force_figure(analysis, &caveats, class, &pulses, view.units);
+        let height = (ui.available_height() - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
+        let mut figure = match figure {
+            Ok(Some(figure)) => figure,
+            Ok(None) => return None,
+            Err(error) => {
+                ui.label(format!("{error}. Choose another filter, or none."));
+                return None;
+            }
+        };
+        for (i, (name, other)) in other_simulations(variants).enumerate() {
+            if let Ok(Some(other)) = analysis_force_figure(
+                &other.analysis,
+                &other.report.caveats,
+                class,
+                &[],
+                view.units,
+            ) {
+                figure.overlay(name, i, &other);
+            }
         }
-    };
-    for (i, (name, other)) in other_simulations(variants).enumerate() {
-        if let Ok(Some(other)) =
-            analysis_force_figure(&other.analysis, &other.report.caveats, class, &[], view.units)
-        {
-            figure.overlay(name, i, &other);
-        }
-    }
-    let options = FigureOptions {
-        id: "force".to_owned(),
-        link: Some(Id::unique("force")),
-        cursor_x: Some(figure.x.unit.from_si(session.playback.time_s)),
-        height: Some(height),
-        reset: session.fit_plots,
-        ..FigureOptions::default()
-    };
-    let drawn = ScrollArea::vertical()
-        .show(ui, |ui| time_figure(ui, &figure.title, &figure, options, between, commands));
-    if let Some(x) = drawn.inner.picked_x {
-        commands.push(Command::Playback(PlaybackCommand::SetTime(figure.x.unit.to_si(x).max(0.0))));
+        let options = FigureOptions {
+            id: "force".to_owned(),
+            link: Some(Id::unique("force")),
+            cursor_x: Some(figure.x.unit.from_si(session.playback.time_s)),
+            height: Some(height),
+            reset: session.fit_plots,
+            ..FigureOptions::default()
+        };
+        let response = time_figure(ui, &figure.title, &figure, options, between, commands);
+        response.picked_x.map(|x| figure.x.unit.to_si(x).max(0.0))
+    });
+    if let Some(picked_s) = drawn.inner {
+        commands.push(Command::Playback(PlaybackCommand::SetTime(picked_s)));
     }
 }
 

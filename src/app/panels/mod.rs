@@ -31,6 +31,7 @@ mod report;
 mod scenario;
 mod scenario_plan;
 mod scene;
+mod scene_camera;
 mod scene_ground;
 mod training;
 mod training_force;

@@ -1,7 +1,9 @@
 //! The “Compare models” pane: the response network beside the other motion models on trajectories
 //! that none of them was trained on, or an evaluation of the current model alone.
 
-use egui::{DragValue, Grid, ProgressBar, ScrollArea, Ui};
+use std::path::Path;
+
+use egui::{DragValue, Grid, ScrollArea, Ui};
 
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::cost::CostPlace;
@@ -9,12 +11,13 @@ use crate::app::dialog::Purpose;
 use crate::app::network::NetworkQuestions;
 use crate::app::output::Output;
 use crate::app::panels::model_comparison_plots::{browser_ui, overview_ui};
+use crate::app::panels::training_parts::run_progress_ui;
 use crate::app::panes::PaneContext;
 use crate::app::response::ComparisonStatus;
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{
-    bad_cases_ui, caveats_ui, config_field, cost_ui, count_field, dataset_choice, duration_text,
-    no_dataset_ui, written_field,
+    bad_cases_ui, caveats_ui, config_field, cost_ui, count_field, dataset_choice, no_dataset_ui,
+    written_field,
 };
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::ranges::CHOICES;
@@ -30,7 +33,9 @@ use impactlab_study::{Answer, CompareReport, EvaluatedCases};
 pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        let [can_compare, has_data] = form_ui(ui, &mut project.networks, &session.sources);
+        let in_use = view.listed.as_deref();
+        let [can_compare, has_data] =
+            form_ui(ui, &mut project.networks, &session.sources, in_use, commands);
         let response = &mut session.response;
         let can_start = [can_compare, has_data && response.model.current.is_some()];
         buttons_ui(ui, &mut response.comparison, can_start, commands);
@@ -55,7 +60,7 @@ pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             Some(Ok(answer)) => {
                 let report = &answer.report;
                 ui.separator();
-                heading_ui(ui, report, commands);
+                heading_ui(ui, report, view.units, commands);
                 overview_ui(ui, report, view.units, session.fit_plots, commands);
                 ui.separator();
                 browser_ui(ui, report, view, session.fit_plots, commands);
@@ -68,15 +73,23 @@ pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 /// Draws the settings of a comparison. Returns whether it can be asked for as it stands in the form, and
 /// whether a trajectory data set is open.
-fn form_ui(ui: &mut Ui, questions: &mut NetworkQuestions, sources: &[Source]) -> [bool; 2] {
+///
+/// - `in_use`: path of the data set whose cases are listed.
+fn form_ui(
+    ui: &mut Ui,
+    questions: &mut NetworkQuestions,
+    sources: &[Source],
+    in_use: Option<&Path>,
+    commands: &mut Vec<Command>,
+) -> [bool; 2] {
     let NetworkQuestions { compare: form, response_cases: cases, .. } = questions;
     let datasets = open_datasets(sources, &[DatasetKind::Trajectory]);
     if datasets.is_empty() {
-        no_dataset_ui(ui, DatasetKind::Trajectory);
+        no_dataset_ui(ui, DatasetKind::Trajectory, commands);
     }
     let is_read = ui.horizontal_wrapped(|ui| {
         let name = ui.label("On");
-        dataset_choice(ui, "compared data", &datasets, &mut form.data).labelled_by(name.id);
+        dataset_choice(ui, "compared data", &datasets, in_use, &mut form.data).labelled_by(name.id);
         let name = ui.label("trajectories");
         let write = |numbers: &Vec<usize>| {
             numbers.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
@@ -162,26 +175,24 @@ fn buttons_ui(
             }
         });
     });
-    let Some((what, progress, elapsed)) = status.progress() else { return };
+    let Some((what, progress, left)) = status.progress() else { return };
     ui.horizontal(|ui| {
         if ui.button("Cancel").clicked() {
             commands.push(Command::Compare(ComparisonCommand::Cancel));
         }
-        let left = progress.time_left(elapsed);
-        let left = left.map_or(String::new(), |t| format!(", {} left", duration_text(t)));
-        match progress.fraction() {
-            Some(fraction) => {
-                let text = format!("{}{left}", progress.message);
-                ui.add(ProgressBar::new(fraction).desired_width(520.0).text(text));
-            }
-            None => drop((ui.spinner(), ui.label(what))),
-        }
+        let what = if progress.fraction().is_none() { what } else { &*progress.message };
+        run_progress_ui(ui, what, progress.fraction(), left);
     });
 }
 
 /// Draws the title, what was assumed, the cases that were left out, and the errors that the paper
 /// prints for the models that it has.
-fn heading_ui(ui: &mut Ui, report: &Answer<CompareReport>, commands: &mut Vec<Command>) {
+fn heading_ui(
+    ui: &mut Ui,
+    report: &Answer<CompareReport>,
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
     let comparison = &report.comparison;
     ui.horizontal_wrapped(|ui| {
         let n_test = comparison.test.len();
@@ -197,7 +208,7 @@ fn heading_ui(ui: &mut Ui, report: &Answer<CompareReport>, commands: &mut Vec<Co
             ui.ctx().copy_text(report.caveats.appended_to(text));
         }
     });
-    caveats_ui(ui, &report.caveats, commands);
+    caveats_ui(ui, &report.caveats, units, commands);
     let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
     for why in &report.left_out {
         ui.colored_label(color, format!("Left out: {why}"));

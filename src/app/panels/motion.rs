@@ -21,6 +21,9 @@ use impactlab_draw::FigureOptions;
 use impactlab_study::SimulateAnswer;
 use impactlab_study::analysis::Analysis;
 
+/// Width from which on two plots stand side by side, points.
+const TWO_COLUMNS_WIDTH: f32 = 480.0;
+
 /// What is said where nothing acts on the wheels.
 const NOBODY_ACTS: &str = "Nobody steers, brakes or accelerates: there are no inputs to be shown.";
 
@@ -37,7 +40,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         return;
     };
     let SimulateAnswer { report, analysis } = answer;
-    caveats_ui(ui, &report.caveats, commands);
+    caveats_ui(ui, &report.caveats, view.units, commands);
     let to_controls = ui.horizontal_wrapped(|ui| {
         curves_menu_ui(ui, analysis, &mut view.motion_channels);
         recording_menu_ui(ui, &mut project.beside.recording, &session.sources);
@@ -59,7 +62,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let channels: Vec<Plot> =
         channels.map(|channel| shown.channel_plot(*channel, first == Some(channel))).collect();
     let controls = shown.control_plots();
-    let n_columns = if ui.available_width() > 560.0 { 2 } else { 1 };
+    let n_columns = if ui.available_width() > TWO_COLUMNS_WIDTH { 2 } else { 1 };
     let n_rows = MOTION_CHANNELS.len() / n_columns + usize::from(!controls.is_empty());
     let height = (ui.available_height() / n_rows as f32 - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
     let mut plot_ui = |ui: &mut Ui, plot: &Plot| {

@@ -24,7 +24,7 @@ use crate::app::response::{
 use crate::app::state::{Session, View};
 use crate::app::variants::{AnsweredVariant, are_others_awaited, other_forecasts};
 use crate::app::widgets::{
-    MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame,
+    MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame, sentences_ui,
 };
 use impactlab_core::data::{Severity, TimeSeries};
 use impactlab_core::ranges::DRAWS;
@@ -37,9 +37,11 @@ use impactlab_draw::{FigureOptions, theme};
 use impactlab_study::analysis::Analysis;
 use impactlab_study::{ForceSource, PredictMotionAnswer};
 
-/// What stands above a coarse forecast.
+/// What stands above the plots over time of a coarse forecast, and of a full one.
 const COARSE: &str =
     "Of few draws, so that regions and bands are rough: the full forecast is being computed";
+const ABOUT_BANDS: &str =
+    "Bands hold 50 and 90 %. Numbers at the cursor: central path, and from where to where 90 %.";
 
 /// Width of the form before the user resizes it, points.
 const FORM_WIDTH: f32 = 330.0;
@@ -77,8 +79,10 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 let answer = shown.answer;
                 super::faded(ui, shown.is_late, |ui| {
                     let report = &answer.answer.report;
-                    caveats_ui(ui, &report.caveats, commands);
-                    facts_ui(ui, &report.scenario, &report.facts(), view.units);
+                    sentences_ui(ui, &report.answer_card(), view.units);
+                    ui.separator();
+                    caveats_ui(ui, &report.caveats, view.units, commands);
+                    facts_ui(ui, &report.scenario, &report.detail_tables(), view.units);
                 });
             }
         });
@@ -91,12 +95,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             }
             if let Some(shown) = shown_forecast(session) {
                 return super::faded(ui, shown.is_late, |ui| {
-                    if shown.is_coarse {
-                        let color =
-                            theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-                        ui.colored_label(color, COARSE);
-                    }
-                    figures_ui(ui, shown.answer, session, variants, view, commands);
+                    figures_ui(ui, &shown, session, variants, view, commands);
                 });
             }
             match &session.response.forecast.answer {
@@ -251,10 +250,21 @@ fn shown_ui(ui: &mut Ui, view: &mut ResponseView, session: &Session, commands: &
     });
 }
 
+/// Draws what the bands mean, or that they are those of a first, rough forecast, in one line.
+fn bands_line_ui(ui: &mut Ui, is_coarse: bool, input: &MotionForecastFigure<'_>) {
+    if is_coarse {
+        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        ui.colored_label(color, COARSE);
+    } else {
+        let cut = input.cut().map(|cut| format!(" Curves over time run {cut}."));
+        ui.weak(format!("{ABOUT_BANDS}{}", cut.unwrap_or_default()));
+    }
+}
+
 /// Draws the clock, the plan view with the density, and the bands of each quantity over time.
 fn figures_ui(
     ui: &mut Ui,
-    answer: &Arc<MotionAnswer>,
+    &ShownForecast { answer, is_coarse, .. }: &ShownForecast<'_>,
     session: &Session,
     variants: &[AnsweredVariant],
     view: &mut View,
@@ -305,7 +315,7 @@ fn figures_ui(
         ..FigureOptions::default()
     };
     figure_frame(ui, &scene.title, &scene, &options, commands);
-    ui.weak("Bands hold 50 and 90 %. Numbers at the cursor: central path, and from where to where 90 %.");
+    bands_line_ui(ui, is_coarse, &input);
     let n_columns = ((ui.available_width() / MIN_PLOT_WIDTH) as usize).clamp(1, MAX_COLUMNS);
     let n_rows = FORECAST_CHANNELS.len().div_ceil(n_columns) as f32;
     let height = (ui.available_height() / n_rows - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);

@@ -43,7 +43,7 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 let is_late = session.force.forecast.is_late();
                 super::faded(ui, is_late, |ui| {
                     let report = &answer.report;
-                    caveats_ui(ui, &report.caveats, commands);
+                    caveats_ui(ui, &report.caveats, view.units, commands);
                     facts_ui(ui, &report.scenario, &report.facts(), view.units);
                 });
             }

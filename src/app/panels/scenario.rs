@@ -1,6 +1,6 @@
 //! The “Scenario” pane: the form of a collision of two vehicles, with its momentum solution.
 
-use egui::{ComboBox, Grid, ScrollArea, Ui};
+use egui::{ComboBox, Grid, RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
@@ -54,10 +54,11 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         if let Some(scenario) = project.scenario_mut() {
             scenario_plan_ui(ui, scenario, solved, view.units, session.fit_plots, commands);
         }
-        if let Some(Err(problem)) = answer {
-            let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-            ui.colored_label(color, problem);
-        }
+        // The line is always there, so that the fields do not move while numbers are entered.
+        let problem = answer.and_then(|answer| answer.as_ref().err());
+        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+        let text = RichText::new(problem.map_or("", String::as_str)).color(color);
+        ui.add(egui::Label::new(text).truncate());
         let mut pulse = *project.pulse_mut();
         let Project { impact, beside, .. } = &mut **project;
         if let Some(scenario) = impact.scenario.inline_mut() {
@@ -70,7 +71,7 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             Some(Ok(answer)) => {
                 let report = &answer.report;
                 facts_ui(ui, &report.name, &report.facts(), view.units);
-                caveats_ui(ui, &report.caveats, commands);
+                caveats_ui(ui, &report.caveats, view.units, commands);
             }
             Some(Err(_)) => {}
             None => drop(ui.spinner()),
@@ -173,8 +174,8 @@ fn reset_ui(ui: &mut Ui, value: &mut f64, other: &SharedNumber, range: &Range, u
 
 /// Draws the fields of restitution and friction.
 fn surface_form(ui: &mut Ui, contact: &mut ScenarioContact, units: UnitSystem) {
-    let hint =
-        format!("empty: by the speed at which they close, {}", default_restitution_in_words());
+    let by_default = default_restitution_in_words().say(&NumberFormat::english(units));
+    let hint = format!("empty: by the speed at which they close, {by_default}");
     stated_field(ui, "Restitution e", &hint, &mut contact.restitution, &RESTITUTION, units);
     let name = ui.label("Restitution acts");
     ComboBox::from_id_salt("restitution form")

@@ -14,6 +14,7 @@ use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::measure::Measuring;
 use crate::app::output::Output;
 use crate::app::panels::analysis_or_hint;
+use crate::app::panels::scene_camera::camera_menu_ui;
 use crate::app::panels::scene_ground::{
     ground_menu_ui, measure_bar_ui, measure_menu_ui, measured_ui,
 };
@@ -28,7 +29,7 @@ use impactlab_core::data::Severity;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_document::figure::{Figure, analysis_scene_figure, recording_path};
 use impactlab_document::scene::{FilmTiming, Scene};
-use impactlab_draw::scene::{Follow, ScenePicture, ViewKind, scene_view_ui};
+use impactlab_draw::scene::{CameraKey, Follow, ScenePicture, ViewKind, scene_view_ui};
 use impactlab_draw::theme;
 use impactlab_study::RestState;
 
@@ -58,7 +59,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let end_s = series.time_s().last().copied().unwrap_or(0.0);
     let span = (end_s, &*analysis.contacts_s(end_s));
     clock_ui(ui, &session.playback, span, &mut view.playback_speed, commands);
-    restrictions_ui(ui, &report.caveats);
+    restrictions_ui(ui, &report.caveats, view.units);
     rest_ui(ui, report.rest.as_ref(), view.units);
     let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
     let recorded = overlaid(project.beside.recording.as_ref(), &session.sources);
@@ -77,7 +78,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         caveats: caveats.clone(),
         units: view.units,
     };
-    forecast_choice_ui(ui, &mut view.scene.shows_forecast, session);
+    choices_ui(ui, &mut project.beside.camera_keys, &mut view.scene, session, commands);
     let scene = session.scene.scene(source, &session.sources);
     let time_s = session.playback.time_s;
     let numbers = || {
@@ -95,7 +96,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ui,
         &scene,
         time_s,
-        &mut view.scene,
+        (&mut view.scene, &project.beside.camera_keys),
         Some((&session.ground, &mut session.scene.measuring)),
         |settings| {
             let picture = ScenePicture {
@@ -116,6 +117,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     }
     measure_bar_ui(ui, &mut session.scene.measuring, view.units, commands);
     session.scene.view.takes_clicks = session.scene.measuring.measure.is_some();
+    session.scene.place_by_keys(&project.beside.camera_keys, &mut view.scene, (&scene, time_s));
     let SceneSettings { camera, follow, .. } = &mut view.scene;
     let height = ui.available_height();
     let response =
@@ -130,6 +132,23 @@ fn rest_ui(ui: &mut Ui, rest: Option<&RestState>, units: UnitSystem) {
     let distance = Quantity::Length.shown(rest.distance_m, units);
     let position = Quantity::Length.shown_vector([rest.x_m, rest.y_m], units);
     ui.label(format!("At rest after {:.2} s and {distance}, at {position}", rest.time_s));
+}
+
+/// Draws the choice whether the forecast is shown, and the menu of the keys of the camera.
+fn choices_ui(
+    ui: &mut Ui,
+    keys: &mut Vec<CameraKey>,
+    settings: &mut SceneSettings,
+    session: &mut Session,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal(|ui| {
+        forecast_choice_ui(ui, &mut settings.shows_forecast, session);
+        let seen = (session.scene.view.camera(), session.playback.time_s);
+        if let Some(camera) = camera_menu_ui(ui, keys, settings, seen, commands) {
+            session.scene.view.place_at(camera);
+        }
+    });
 }
 
 /// Draws the choice whether the forecast is shown.
@@ -150,13 +169,14 @@ fn forecast_choice_ui(ui: &mut Ui, shows_forecast: &mut bool, session: &Session)
 /// Draws what the scene shows, the choice of the view and of the car that is followed, and the menu that
 /// exports it.
 ///
+/// - `keys`: between which the camera moves in a film;
 /// - `on_ground`: the ground and what is measured on it, where both can be changed;
 /// - `exported`: picture and numbers, which are made only when they are wanted.
 pub fn scene_heading_ui(
     ui: &mut Ui,
     scene: &Scene,
     time_s: f64,
-    settings: &mut SceneSettings,
+    (settings, keys): (&mut SceneSettings, &[CameraKey]),
     on_ground: Option<(&GroundSession, &mut Measuring)>,
     exported: impl Fn(&SceneSettings) -> (ScenePicture, Figure),
     commands: &mut Vec<Command>,
@@ -165,7 +185,7 @@ pub fn scene_heading_ui(
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add_enabled_ui(!scene.caveats.is_outdated(), |ui| {
                 ui.menu_button((icon(Icon::Download), "Export"), |ui| {
-                    export_menu_ui(ui, || exported(settings), commands);
+                    export_menu_ui(ui, || exported(settings), keys, commands);
                 })
                 .response
                 .on_hover_text("Save or copy this scene")
@@ -213,13 +233,15 @@ fn view_ui(ui: &mut Ui, scene: &Scene, settings: &mut SceneSettings) {
 fn export_menu_ui(
     ui: &mut Ui,
     exported: impl Fn() -> (ScenePicture, Figure),
+    keys: &[CameraKey],
     commands: &mut Vec<Command>,
 ) {
     if ui.add(icon_button(Icon::Image, "Save picture (PNG)…")).clicked() {
         commands.push(Command::Ask(Purpose::Save(Output::ScenePicture(Box::new(exported().0)))));
     }
     if ui.add(icon_button(Icon::Film, "Save film (MP4)…")).clicked() {
-        commands.push(Command::Film(FilmCommand::Ask(Box::new(exported().0))));
+        let picture = Box::new(exported().0);
+        commands.push(Command::Film(FilmCommand::Ask(picture, keys.to_vec())));
     }
     for (format, icon, label) in [
         (SceneFormat::Dxf, Icon::PencilRuler, "Save drawing (DXF)…"),

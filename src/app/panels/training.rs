@@ -30,31 +30,30 @@ pub fn training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 fn force_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
-    let has_data = force_form_ui(ui, &mut project.networks, &session.sources);
+    let has_data =
+        force_form_ui(ui, &mut project.networks, &session.sources, view.listed.as_deref());
     if !has_data {
-        no_dataset_ui(ui, DatasetKind::Force);
-    }
-    if has_data && !session.force.training.run.is_running() {
-        cost_ui(ui, &mut session.costs, CostPlace::ForceTraining, "Training");
+        no_dataset_ui(ui, DatasetKind::Force, commands);
     }
     let reset = session.fit_plots;
     let view =
         LossView { terms: &mut view.force.loss_terms, log: &mut view.force.log_losses, reset };
-    let force = &mut session.force;
-    network_training_ui(ui, has_data, &force.training, &mut force.model, view, commands);
+    let (force, costs) = (&mut session.force, &mut session.costs);
+    let cost = |ui: &mut Ui| cost_ui(ui, costs, CostPlace::ForceTraining, "Training");
+    network_training_ui(ui, has_data, &force.training, &mut force.model, cost, view, commands);
 }
 
 fn response_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
-    let has_data = response_form_ui(ui, &mut project.networks, &session.sources);
+    let has_data =
+        response_form_ui(ui, &mut project.networks, &session.sources, view.listed.as_deref());
     if !has_data {
-        no_dataset_ui(ui, DatasetKind::Trajectory);
-    }
-    if has_data && !session.response.training.run.is_running() {
-        cost_ui(ui, &mut session.costs, CostPlace::ResponseTraining, "Training");
+        no_dataset_ui(ui, DatasetKind::Trajectory, commands);
     }
     let (reset, view) = (session.fit_plots, &mut view.response);
     let view = LossView { terms: &mut view.loss_terms, log: &mut view.log_losses, reset };
-    let response = &mut session.response;
-    network_training_ui(ui, has_data, &response.training, &mut response.model, view, commands);
+    let (response, costs) = (&mut session.response, &mut session.costs);
+    let (training, model) = (&response.training, &mut response.model);
+    let cost = |ui: &mut Ui| cost_ui(ui, costs, CostPlace::ResponseTraining, "Training");
+    network_training_ui(ui, has_data, training, model, cost, view, commands);
 }

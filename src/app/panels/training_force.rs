@@ -1,5 +1,7 @@
 //! The form with the data and the settings of a training of the force network.
 
+use std::path::Path;
+
 use egui::{Grid, Ui};
 
 use crate::app::network::NetworkQuestions;
@@ -10,13 +12,20 @@ use impactlab_core::data::DatasetKind;
 use impactlab_core::ranges::EPOCHS;
 
 /// Draws the form and returns whether a force data set is open to train on.
-pub fn force_form_ui(ui: &mut Ui, questions: &mut NetworkQuestions, sources: &[Source]) -> bool {
+///
+/// - `in_use`: path of the data set whose cases are listed.
+pub fn force_form_ui(
+    ui: &mut Ui,
+    questions: &mut NetworkQuestions,
+    sources: &[Source],
+    in_use: Option<&Path>,
+) -> bool {
     let NetworkQuestions { train_force: form, use_others, .. } = questions;
     let datasets = open_datasets(sources, &[DatasetKind::Force]);
     Grid::new("training form").num_columns(2).show(ui, |ui| {
         let hint = "Some of its cases are kept for the test, chosen by the seed";
         let name = ui.label("Force data set").on_hover_text(hint);
-        dataset_choice(ui, "training data", &datasets, &mut form.data)
+        dataset_choice(ui, "training data", &datasets, in_use, &mut form.data)
             .labelled_by(name.id)
             .on_hover_text(hint);
         ui.end_row();

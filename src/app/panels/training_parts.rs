@@ -15,26 +15,32 @@ use crate::app::training_status::TrainingStatus;
 use crate::app::widgets::{assumptions_ui, bad_cases_ui, config_field, duration_text};
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::Range;
+use impactlab_core::units::UnitSystem;
 use impactlab_draw::theme;
 use impactlab_study::TrainingOptions;
 
 /// Draws the buttons and the progress of a training, the current model, and the losses. The losses
-/// are those of the latest training of this session, or, if there is none, those of the training
-/// from which the current model came.
+/// are those of the latest training of this session, while it runs of nothing else; or, if there is
+/// none, those of the training from which the current model came.
 ///
-/// - `can_start`: whether there are data to train on.
+/// - `can_start`: whether there are data to train on;
+/// - `cost`: draws how long a training takes.
 pub fn network_training_ui<M: TrainedModel>(
     ui: &mut Ui,
     can_start: bool,
     status: &TrainingStatus<M>,
     model: &mut ModelStatus<M>,
+    cost: impl FnOnce(&mut Ui),
     view: LossView<'_>,
     commands: &mut Vec<Command>,
 ) {
     run_buttons_ui(ui, can_start, status, commands);
+    // One row below the buttons, which keep their place when a training begins or ends.
     if status.run.is_running() {
         let (fraction, left) = status.progress();
         run_progress_ui(ui, &status.doing(), fraction, left);
+    } else if can_start {
+        cost(ui);
     }
     let notes = status.report.as_ref().map(M::notes);
     run_record_ui(ui, status.problem.as_deref(), notes, commands);
@@ -44,6 +50,9 @@ pub fn network_training_ui<M: TrainedModel>(
         _ if !status.history.is_empty() => {
             let title = format!("Losses while training on {}", status.data);
             losses_ui(ui, M::NETWORK, &title, &status.history, status.best_epoch, view, commands);
+        }
+        _ if status.run.is_running() => {
+            drop(ui.weak("The losses of this training are drawn here from its first epoch on."));
         }
         Some(current) => {
             let (of, data) = (&current.model, current.model.data());
@@ -155,5 +164,5 @@ fn run_record_ui(
         let color = theme::severity_color(Severity::Warning, dark);
         ui.colored_label(color, format!("Left out: {why}"));
     }
-    assumptions_ui(ui, caveats, commands);
+    assumptions_ui(ui, caveats, UnitSystem::default(), commands);
 }

@@ -1,5 +1,7 @@
 //! The form with the data and the settings of a training of the response network.
 
+use std::path::Path;
+
 use egui::{ComboBox, DragValue, Grid, Ui};
 
 use crate::app::network::{NetworkQuestions, TrainingMode};
@@ -11,7 +13,14 @@ use impactlab_core::data::FileKind;
 use impactlab_core::ranges::TRAJECTORIES;
 
 /// Draws the form and returns whether a data set or a log that suits the training mode is open.
-pub fn response_form_ui(ui: &mut Ui, form: &mut NetworkQuestions, sources: &[Source]) -> bool {
+///
+/// - `in_use`: path of the data set whose cases are listed.
+pub fn response_form_ui(
+    ui: &mut Ui,
+    form: &mut NetworkQuestions,
+    sources: &[Source],
+    in_use: Option<&Path>,
+) -> bool {
     let datasets = open_datasets(sources, form.mode.data_kinds());
     Grid::new("response training form")
         .num_columns(2)
@@ -35,7 +44,7 @@ pub fn response_form_ui(ui: &mut Ui, form: &mut NetworkQuestions, sources: &[Sou
             let name = ui.label("Data set").on_hover_text(hint);
             ui.add_enabled_ui(!is_of_log, |ui| {
                 let mut data = form.fine_tune.data.first().cloned().unwrap_or_default();
-                let list = dataset_choice(ui, "trajectories", &datasets, &mut data);
+                let list = dataset_choice(ui, "trajectories", &datasets, in_use, &mut data);
                 if list.labelled_by(name.id).on_hover_text(hint).changed() {
                     form.fine_tune.data = vec![data];
                 }

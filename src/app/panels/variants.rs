@@ -1,6 +1,6 @@
 //! The “Variants” pane: the answers of all variants of the case in one table.
 
-use egui::{Grid, RichText, ScrollArea, Ui};
+use egui::{Grid, Id, Label, RichText, ScrollArea, TextEdit, Ui};
 
 use crate::app::case::VariantCommand;
 use crate::app::command::Command;
@@ -10,10 +10,14 @@ use impactlab_core::data::Severity;
 use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem};
 use impactlab_draw::theme;
 use impactlab_study::analysis::MotionOutcome;
+use impactlab_study::facts::{FactWriter, Term};
 
 /// The columns of the table.
-const COLUMNS: [&str; 8] = [
+const COLUMNS: [&str; 11] = [
     "Variant",
+    "What differs",
+    "Notes",
+    "Turn beyond 90°",
     "Δv with tires",
     "4DOF: X, Y at the end",
     "4DOF: at rest after",
@@ -23,11 +27,16 @@ const COLUMNS: [&str; 8] = [
     "Warnings",
 ];
 /// What the columns are, as the hint of their headings.
-const MEANING: &str = "Δv: of the 4DOF model over the contact, with what the tires add (the momentum \
+const MEANING: &str = "What differs: from the first variant. Turn beyond 90°: how probable it is at the end of \
+    the forecast. Δv: of the 4DOF model over the contact, with what the tires add (the momentum \
     solution alone stands in the Scenario panel). 4DOF: without an interval. Forecast: median and \
     interval of 90 % where the car is at the end.";
 /// What stands where a variant has no such figure.
 const NONE: &str = "–";
+/// Differences that are named; the others are told on hover.
+const MOST_NAMED: usize = 4;
+/// Width of texts in the table, points.
+const TEXT_WIDTH: f32 = 210.0;
 
 /// Draws the table, in which a click on the name of a variant shows it.
 pub fn variants_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -36,7 +45,7 @@ pub fn variants_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ui.checkbox(&mut view.shows_all_variants, "Show all variants in plots and tables");
         let rows: Vec<_> = variants.iter().map(|variant| cells(variant, view.units)).collect();
         if ui.button("Copy table").on_hover_text("Tab-separated, for a spreadsheet").clicked() {
-            let line = |row: &[String; 8]| row.join("\t");
+            let line = |row: &[String; 11]| row.join("\t").replace('\n', " ");
             let lines: Vec<_> = rows.iter().map(line).collect();
             ui.ctx().copy_text(format!("{}\n{}\n", COLUMNS.join("\t"), lines.join("\n")));
         }
@@ -46,21 +55,45 @@ pub fn variants_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     }
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         Grid::new("variants").num_columns(COLUMNS.len()).striped(true).show(ui, |ui| {
-            for column in COLUMNS {
-                ui.strong(column).on_hover_text(MEANING);
-            }
+            let titles = COLUMNS.map(|column| ui.strong(column).on_hover_text(MEANING).id);
             ui.end_row();
+            let [_, _, notes, ..] = titles;
             for variant in variants.iter() {
-                row_ui(ui, variant, view.units, commands);
+                row_ui(ui, variant, view.units, notes, commands);
             }
         });
     });
 }
 
-fn row_ui(ui: &mut Ui, variant: &AnsweredVariant, units: UnitSystem, commands: &mut Vec<Command>) {
+/// Draws a variant.
+///
+/// - `title`: of the column of notes.
+fn row_ui(
+    ui: &mut Ui,
+    variant: &AnsweredVariant,
+    units: UnitSystem,
+    title: Id,
+    commands: &mut Vec<Command>,
+) {
     let name = ui.selectable_label(variant.is_shown, &variant.name);
     if name.on_hover_text("Show it in the forms").clicked() && !variant.is_shown {
         commands.push(Command::Variant(VariantCommand::Show(variant.name.clone())));
+    }
+    let [_, differs, _, figures @ .., warnings] = cells(variant, units);
+    ui.vertical(|ui| {
+        ui.set_max_width(TEXT_WIDTH);
+        let all = variant.differs.as_deref().unwrap_or_default();
+        let text = ui.add(Label::new(differs).wrap());
+        if all.len() > MOST_NAMED {
+            text.on_hover_text(all.join("\n"));
+        }
+    });
+    let mut notes = variant.notes.clone();
+    let field = TextEdit::multiline(&mut notes).id_salt(("variant notes", &variant.name));
+    let field = field.desired_rows(1).desired_width(TEXT_WIDTH);
+    if ui.add(field).labelled_by(title).changed() {
+        let name = variant.name.clone();
+        commands.push(Command::Variant(VariantCommand::Note { name, notes }));
     }
     if let Some(problem) = &variant.problem {
         let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
@@ -68,12 +101,11 @@ fn row_ui(ui: &mut Ui, variant: &AnsweredVariant, units: UnitSystem, commands: &
         ui.end_row();
         return;
     }
-    let [_, figures @ .., warnings] = cells(variant, units);
     for cell in figures {
         let text = RichText::new(cell).monospace();
         ui.label(if variant.is_waiting { text.weak() } else { text });
     }
-    let texts = warning_texts(variant);
+    let texts = warning_texts(variant, units);
     let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
     match texts.is_empty() {
         true => ui.label(warnings),
@@ -82,8 +114,20 @@ fn row_ui(ui: &mut Ui, variant: &AnsweredVariant, units: UnitSystem, commands: &
     ui.end_row();
 }
 
-/// The figures of a variant, as the table shows them.
-fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 8] {
+/// What a variant asks otherwise than the first one.
+fn differs(variant: &AnsweredVariant) -> String {
+    let Some(all) = &variant.differs else { return "the first one".to_owned() };
+    match all.len() {
+        0 => "nothing".to_owned(),
+        n if n > MOST_NAMED => {
+            format!("{}; and {} more", all[..MOST_NAMED].join("; "), n - MOST_NAMED)
+        }
+        _ => all.join("; "),
+    }
+}
+
+/// What the table shows of a variant.
+fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 11] {
     let report = variant.simulation.as_ref().map(|answer| &answer.report);
     let forecast = variant.forecast.as_ref().map(|answer| &answer.answer.report);
     let of = |text: Option<String>| match text {
@@ -98,15 +142,21 @@ fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 8] {
     let spread = |quantity: Quantity, of: fn(&MotionOutcome) -> &Estimate| {
         forecast.map(|report| format.estimate_in_words(quantity, of(&report.outcome)))
     };
+    let turn = forecast.and_then(|report| {
+        report.answer_table().value_text(Term::QuarterTurn, &FactWriter::english(units))
+    });
     [
         variant.name.clone(),
+        differs(variant),
+        variant.notes.clone(),
+        of(turn),
         of(delta_v.map(|m_s| Quantity::Speed.shown(m_s, units))),
         of(end.map(|end| Quantity::Length.shown_vector([end.x_m, end.y_m], units))),
         of(rest.map(|rest| Quantity::Time.shown(rest.time_s, units))),
         of(spread(Quantity::Length, |outcome| &outcome.x_m)),
         of(spread(Quantity::Length, |outcome| &outcome.y_m)),
         of(spread(Quantity::Angle, |outcome| &outcome.heading_change_rad)),
-        match warning_texts(variant).len() {
+        match warning_texts(variant, units).len() {
             0 => NONE.to_owned(),
             n => n.to_string(),
         },
@@ -114,12 +164,12 @@ fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 8] {
 }
 
 /// What restricts the answers of a variant, a sentence each.
-fn warning_texts(variant: &AnsweredVariant) -> Vec<String> {
+fn warning_texts(variant: &AnsweredVariant, units: UnitSystem) -> Vec<String> {
     let simulated = variant.simulation.iter().flat_map(|answer| &answer.report.caveats);
     let forecast = variant.forecast.iter().flat_map(|answer| &answer.answer.report.caveats);
     let mut texts: Vec<String> = Vec::new();
     for caveat in simulated.chain(forecast).filter(|caveat| caveat.is_warning()) {
-        let text = format!("{}: {}", caveat.kind.label(), caveat.text);
+        let text = format!("{}: {}", caveat.kind.label(), caveat.in_units(units).text);
         if !texts.contains(&text) {
             texts.push(text);
         }

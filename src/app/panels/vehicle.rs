@@ -158,21 +158,13 @@ fn vehicle_choice_ui(
 }
 
 /// Draws a row of a two-column grid with the vehicle that a file is about, which it does not say.
-pub(in crate::app) fn file_vehicle_ui(
-    ui: &mut Ui,
-    choice: &VehicleChoice,
-    units: UnitSystem,
-    commands: &mut Vec<Command>,
-) {
+pub(in crate::app) fn file_vehicle_ui(ui: &mut Ui, choice: &mut VehicleChoice, units: UnitSystem) {
     let name = ui.label("Struck vehicle");
     let open = format!("{} (assumed)", vehicle_name(DEFAULT_VEHICLE.id()));
     let hint = "Its mass, inertia and tires: the file does not say them";
     let salt = "vehicle of the file";
     let picker = VehiclePicker { salt, name: &name, hint, open: &open, own: &[], units };
-    let mut choice = choice.clone();
-    if picker.show(ui, &mut choice) {
-        commands.push(Command::ChooseVehicle(Role::Struck, Box::new(choice)));
-    }
+    picker.show(ui, choice);
     ui.end_row();
 }
 

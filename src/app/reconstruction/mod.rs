@@ -9,7 +9,7 @@ mod settings;
 mod stored_runs;
 mod update;
 
-pub use cars::{CarsSource, ReconstructedCars, ShownPaths};
+pub use cars::{BuiltCars, CarsSource, ReconstructedCars, ShownPaths};
 pub use live::LiveParticles;
 pub use preview::EvidencePreview;
 pub use question::{PreparedReconstruction, ReconstructionQuestion};
@@ -22,7 +22,7 @@ use std::sync::mpsc::Receiver;
 use crate::app::question_job::QuestionJob;
 use impactlab_core::vehicle::{Path, TireMark};
 use impactlab_reconstruct::evidence::Evidence;
-use impactlab_study::{NamedPath, ReconstructRequest};
+use impactlab_study::{NamedPath, ReconstructRequest, ReconstructedPaths};
 
 /// A path that is followed in the scene.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -129,6 +129,14 @@ impl ReconstructionSession {
         answer.map_or(&[], |answer| answer.paths_of(self.mode).others.as_slice())
     }
 
+    /// The courses of events that can stand side by side: all of them, if none is shown alone and no draw
+    /// is followed.
+    pub fn courses(&self) -> Vec<(String, &ReconstructedPaths)> {
+        let is_of_all = self.mode.is_none() && self.followed == FollowedParticle::Median;
+        let answer = self.answer().filter(|_| is_of_all);
+        answer.map_or_else(Vec::new, PreparedReconstruction::courses)
+    }
+
     /// The marks that tires leave along the path that is followed, where they are known.
     pub fn followed_marks(&self) -> Option<&[TireMark]> {
         let is_median = self.followed == FollowedParticle::Median;
@@ -136,9 +144,12 @@ impl ReconstructionSession {
         Some(&paths.marks)
     }
 
-    /// Duration of the path that is followed, s; 0 without one.
+    /// When the last car on the path that is followed, or on that of another course of events, stops, s; 0
+    /// without any.
     pub fn end_time_s(&self) -> f64 {
-        let last = self.followed_path().and_then(|(_, path)| path.points.last());
-        last.map_or(0.0, |point| point.time_s)
+        let followed = self.followed_path().map(|(_, path)| path);
+        let paths = followed.into_iter().chain(self.other_paths().iter().map(|of| &of.path));
+        let ends_s = paths.filter_map(|path| path.points.last()).map(|point| point.time_s);
+        ends_s.fold(0.0, f64::max)
     }
 }

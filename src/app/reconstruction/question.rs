@@ -62,6 +62,14 @@ impl PreparedReconstruction {
         mode.and_then(|idx| self.mode_paths.get(idx)).unwrap_or(&self.paths)
     }
 
+    /// The courses of events that the evidence leaves possible, each with its title and its paths; none if
+    /// there is one only.
+    pub fn courses(&self) -> Vec<(String, &ReconstructedPaths)> {
+        let modes = &self.answer.report.modes;
+        let several = modes.iter().filter(|_| modes.len() > 1);
+        several.map(ReconstructedPaths::course_title).zip(&self.mode_paths).collect()
+    }
+
     /// Values of a quantity before the evidence: draws, of which those of a number belong together.
     pub fn prior_of(&self, quantity: ReconstructedQuantity) -> &[f64] {
         let idx = ReconstructedQuantity::ALL.iter().position(|of| *of == quantity);

@@ -17,6 +17,8 @@ pub struct ReconstructionView {
     pub shows_cars: bool,
     /// From where these cars are seen.
     pub scene: SceneSettings,
+    /// Whether several courses of events stand side by side instead of in one scene.
+    pub courses_side_by_side: bool,
 }
 
 impl Default for ReconstructionView {
@@ -26,6 +28,7 @@ impl Default for ReconstructionView {
             against: ReconstructedQuantity::RoadFriction,
             shows_cars: false,
             scene: SceneSettings::default(),
+            courses_side_by_side: true,
         }
     }
 }

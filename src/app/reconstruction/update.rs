@@ -134,6 +134,7 @@ impl State {
         *session = ReconstructionSession {
             file: session.file.take(),
             stored_runs: session.stored_runs.take(),
+            cars: std::mem::take(&mut session.cars).emptied(),
             ..ReconstructionSession::default()
         };
     }

@@ -78,12 +78,12 @@ impl ComparisonStatus {
         self.compare.is_running() || self.evaluate.is_running() || self.is_opening
     }
 
-    /// Returns a description of the running comparison or evaluation, its progress and the time
-    /// since its start.
-    pub fn progress(&self) -> Option<(&'static str, &Progress, Duration)> {
-        let compare = self.compare.job().map(|job| ("Comparing", job.progress(), job.elapsed()));
+    /// Returns a description of the running comparison or evaluation, its progress and the
+    /// estimated time left.
+    pub fn progress(&self) -> Option<(&'static str, &Progress, Option<Duration>)> {
+        let compare = self.compare.job().map(|job| ("Comparing", job.progress(), job.time_left()));
         let evaluate = self.evaluate.job();
-        compare.or_else(|| evaluate.map(|job| ("Evaluating", job.progress(), job.elapsed())))
+        compare.or_else(|| evaluate.map(|job| ("Evaluating", job.progress(), job.time_left())))
     }
 
     /// Starts to read a `comparison.json` file.

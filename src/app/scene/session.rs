@@ -6,6 +6,7 @@ use crate::app::latest::Latest;
 use crate::app::measure::Measuring;
 use crate::app::recording::{OverlaidRecording, overlaid};
 use crate::app::response::{DensityAnswer, DensityQuestion, MotionAnswer};
+use crate::app::scene::{KeyedCamera, SceneSettings};
 use crate::app::source::Source;
 use crate::app::variants::AnsweredVariant;
 use impactlab_core::uncertainty::Caveats;
@@ -14,7 +15,7 @@ use impactlab_document::scene::{
     ForecastScene, OtherMotion, Scene, SceneGround, SceneRole, SimulationScene, add_forecast,
     simulation_scene,
 };
-use impactlab_draw::scene::SceneView;
+use impactlab_draw::scene::{CameraKey, SceneView};
 use impactlab_study::{PredictMotionAnswer, SimulateAnswer};
 
 /// Draws of the forecast that are shown as ghosts.
@@ -29,6 +30,7 @@ pub struct SceneSession {
     pub end_density: Latest<DensityQuestion>,
     /// What is measured on the ground.
     pub measuring: Measuring,
+    keyed: KeyedCamera,
     built: Option<(SceneSource, Arc<Scene>)>,
 }
 
@@ -148,6 +150,18 @@ impl SceneSession {
     /// Smallest and largest `[X, Y]` of the scene that was shown last, m.
     pub(in crate::app) fn extent_m(&self) -> Option<[[f64; 2]; 2]> {
         self.built.as_ref().map(|(_, scene)| scene.extent_m())
+    }
+
+    /// Places the camera where its keys have it at a time, if that is to be shown.
+    pub fn place_by_keys(
+        &mut self,
+        keys: &[CameraKey],
+        settings: &mut SceneSettings,
+        at: (&Scene, f64),
+    ) {
+        if let Some(camera) = self.keyed.at(keys, settings, at) {
+            self.view.place_at(camera);
+        }
     }
 
     /// The scene of a source. Another subject is seen from the start: the camera is fitted to it.

@@ -14,4 +14,6 @@ pub struct SceneSettings {
     pub follow: Follow,
     /// Whether the forecast is shown: draws of it as ghosts, and where it ends.
     pub shows_forecast: bool,
+    /// Whether the camera moves with the time between its keys.
+    pub shows_keyed_camera: bool,
 }

@@ -1,5 +1,6 @@
 //! The part of the state that is not saved: what is loaded, computed and under way.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -10,6 +11,7 @@ use crate::app::dialog::Dialogs;
 use crate::app::force::ForceSession;
 use crate::app::frame_times::FrameTimes;
 use crate::app::ground::GroundSession;
+use crate::app::import::SaidOfFile;
 use crate::app::latest::Latest;
 use crate::app::playback::Playback;
 use crate::app::reconstruction::ReconstructionSession;
@@ -21,7 +23,7 @@ use crate::app::source::Source;
 use crate::app::state::Subject;
 use crate::app::tasks::Tasks;
 use crate::app::unfinished::UnfinishedTrainings;
-use crate::app::variants::OtherVariants;
+use crate::app::variants::{OtherVariants, VariantDifferences};
 use crate::app::vehicles::ChosenVehicles;
 use crate::app::widgets::BetweenCursors;
 use impactlab_core::data::Severity;
@@ -43,6 +45,8 @@ pub struct Session {
     pub impact: Latest<ImpactRequest>,
     /// The answers of the variants that are not in the forms.
     pub other_variants: OtherVariants,
+    /// What the variants ask otherwise than the first one.
+    pub variant_differences: VariantDifferences,
     /// The simulations of whole data sets.
     pub replays: Replays,
     /// Model, forecast, training and evaluation of the force network.
@@ -85,6 +89,8 @@ pub struct Session {
     pub shows_doors: bool,
     /// What was opened while the variant asks about something else.
     pub offered: Option<Subject>,
+    /// What was said in the import dialog of the vehicles of files that the variant has not taken.
+    pub said_of_files: BTreeMap<PathBuf, SaidOfFile>,
     /// The path that the user opened last. Its first case or file is offered to the variant once it is loaded.
     pub select_when_loaded: Option<PathBuf>,
     /// The path in the text field of the data pane, as the user has typed it so far.

@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use crate::app::latest::Latest;
 use crate::app::response::{MotionAnswer, MotionQuestion};
+use crate::app::variants::differences::VariantDifferences;
+use impactlab_study::case_file::Variant;
 use impactlab_study::{SimulateAnswer, SimulateRequest};
 
 /// The answers of one variant.
@@ -26,6 +28,10 @@ type Answers<'a> = (&'a Latest<SimulateRequest>, &'a Latest<MotionQuestion>);
 pub struct AnsweredVariant {
     /// What it is called.
     pub name: String,
+    /// What the analyst wrote about it.
+    pub notes: String,
+    /// What it asks otherwise than the first variant; `None` for that itself.
+    pub differs: Option<Vec<String>>,
     /// Whether it is the one in the forms.
     pub is_shown: bool,
     /// The simulation of its subject.
@@ -46,7 +52,8 @@ impl VariantAnswers {
 
 impl AnsweredVariant {
     pub(super) fn new(
-        name: String,
+        variant: &Variant,
+        differences: &VariantDifferences,
         is_shown: bool,
         answers: Option<Answers<'_>>,
         is_waiting: bool,
@@ -55,7 +62,9 @@ impl AnsweredVariant {
             simulation.problem().or(forecast.problem()).map(str::to_owned)
         });
         Self {
-            name,
+            name: variant.name.clone(),
+            notes: variant.notes.clone(),
+            differs: differences.get(&variant.name).map(<[String]>::to_vec),
             is_shown,
             simulation: answers.and_then(|(simulation, _)| simulation.ok().cloned()),
             forecast: answers.and_then(|(_, forecast)| forecast.ok().cloned()),

@@ -14,6 +14,7 @@ impl State {
     /// are asked one after the other, and after those of the variant in the forms, which they would
     /// make wait.
     pub(in crate::app) fn update_variants(&mut self, context: &Context) {
+        self.find_differences();
         let is_busy = self.session.is_waiting();
         let (file, session) = (&self.case.file, &mut self.session);
         let is_other = |variant: &&Variant| variant.name != file.shown;
@@ -44,25 +45,34 @@ impl State {
         }
     }
 
+    /// Finds what the variants ask otherwise than the first one; of one alone there is nothing to find.
+    fn find_differences(&mut self) {
+        let variants = match self.case.file.variants.len() {
+            0 | 1 => Vec::new(),
+            _ => self.case.with_shown(&self.project_of_questions()).variants,
+        };
+        self.session.variant_differences.update(variants, self.view.units);
+    }
+
     /// Every variant of the case with its answers, in the order of the case. Those of another variant
     /// than the one in the forms are there if all variants are to be shown.
     pub fn answered_variants(&self) -> Vec<AnsweredVariant> {
         let session = &self.session;
         let shown = &self.case.file.shown;
+        let differences = &session.variant_differences;
         let answered = |variant: &Variant| {
-            let name = variant.name.clone();
-            if name == *shown {
+            if variant.name == *shown {
                 let is_waiting = session.is_simulation_late() || session.is_motion_late();
                 let answers = (&session.analysis, &session.response.forecast);
-                return AnsweredVariant::new(name, true, Some(answers), is_waiting);
+                return AnsweredVariant::new(variant, differences, true, Some(answers), is_waiting);
             }
-            let answers = session.other_variants.get(&name);
+            let answers = session.other_variants.get(&variant.name);
             let is_waiting = match answers {
                 Some(answers) => answers.is_waiting(),
                 None => self.view.shows_all_variants,
             };
             let answers = answers.map(|of| (&of.simulation, &of.forecast));
-            AnsweredVariant::new(name, false, answers, is_waiting)
+            AnsweredVariant::new(variant, differences, false, answers, is_waiting)
         };
         self.case.file.variants.iter().map(answered).collect()
     }

@@ -2,6 +2,7 @@
 
 use egui::{CollapsingHeader, Label, RichText, Sense, Ui};
 use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
+use impactlab_core::units::UnitSystem;
 
 use crate::app::command::Command;
 use crate::app::looks;
@@ -12,14 +13,24 @@ const MAX_OPEN: usize = 6;
 
 /// Lists the assumptions, one beside the other. Hovering over one shows the reason; a click shows
 /// the panel in which the user can set the value. An empty list draws nothing; a long one only their number, until it is opened.
-pub fn assumptions_ui(ui: &mut Ui, caveats: &Caveats, commands: &mut Vec<Command>) {
-    assumptions_at_ui(ui, caveats, place, commands);
+pub fn assumptions_ui(
+    ui: &mut Ui,
+    caveats: &Caveats,
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
+    assumptions_at_ui(ui, (caveats, units), place, commands);
 }
 
 /// The same for a reconstruction, whose evidence says all of them.
-pub fn evidence_assumptions_ui(ui: &mut Ui, caveats: &Caveats, commands: &mut Vec<Command>) {
+pub fn evidence_assumptions_ui(
+    ui: &mut Ui,
+    caveats: &Caveats,
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
     let place = |_| Some(("Click to say it in the Evidence pane", Pane::Evidence));
-    assumptions_at_ui(ui, caveats, place, commands);
+    assumptions_at_ui(ui, (caveats, units), place, commands);
 }
 
 /// Where a subject is set, as [`place`] says it.
@@ -27,7 +38,7 @@ type Place = Option<(&'static str, Pane)>;
 
 fn assumptions_at_ui(
     ui: &mut Ui,
-    caveats: &Caveats,
+    (caveats, units): (&Caveats, UnitSystem),
     place: fn(CaveatSubject) -> Place,
     commands: &mut Vec<Command>,
 ) {
@@ -36,7 +47,8 @@ fn assumptions_at_ui(
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = looks::PART * 2.0;
             for assumption in &assumptions {
-                assumption_ui(ui, assumption, assumption.subject.and_then(place), commands);
+                let place = assumption.subject.and_then(place);
+                assumption_ui(ui, &assumption.in_units(units), place, commands);
             }
         });
     };

@@ -5,8 +5,8 @@ use egui::{Color32, Frame, Label, Margin, RichText, Sense, TextStyle, Ui};
 use crate::app::command::Command;
 use crate::app::looks::{self, Icon};
 use crate::app::widgets::assumptions_ui;
-use impactlab_core::uncertainty::{Caveat, Caveats};
-use impactlab_core::units::significant;
+use impactlab_core::uncertainty::{Caveat, CaveatQuantity, Caveats};
+use impactlab_core::units::{NumberFormat, UnitSystem, significant};
 use impactlab_draw::theme;
 
 /// Opacity of the fill of a chip, 0 to 1.
@@ -15,14 +15,14 @@ const FILL: f32 = 0.16;
 const MARGIN: Margin = Margin::symmetric(8, 2);
 
 /// Draws what restricts an answer as chips, and lists what it rests on.
-pub fn caveats_ui(ui: &mut Ui, caveats: &Caveats, commands: &mut Vec<Command>) {
-    restrictions_ui(ui, caveats);
-    assumptions_ui(ui, caveats, commands);
+pub fn caveats_ui(ui: &mut Ui, caveats: &Caveats, units: UnitSystem, commands: &mut Vec<Command>) {
+    restrictions_ui(ui, caveats, units);
+    assumptions_ui(ui, caveats, units, commands);
 }
 
 /// Draws what restricts an answer as chips; hovering over one shows what it says in full. Where
 /// nothing restricts it, this draws nothing.
-pub fn restrictions_ui(ui: &mut Ui, caveats: &Caveats) {
+pub fn restrictions_ui(ui: &mut Ui, caveats: &Caveats, units: UnitSystem) {
     let shown = caveats.restrictions();
     if shown.is_empty() {
         return;
@@ -30,23 +30,23 @@ pub fn restrictions_ui(ui: &mut Ui, caveats: &Caveats) {
     ui.horizontal_wrapped(|ui| {
         for (i, caveat) in shown.into_iter().enumerate() {
             // A chip that does not fit beside the others begins a row, instead of breaking its words.
-            if i > 0 && chip_width(ui, caveat) > ui.available_size_before_wrap().x {
+            if i > 0 && chip_width(ui, caveat, units) > ui.available_size_before_wrap().x {
                 ui.end_row();
             }
-            chip_ui(ui, caveat);
+            chip_ui(ui, caveat, units);
         }
     });
 }
 
 /// Width of a chip on a row of its own, points.
-fn chip_width(ui: &Ui, caveat: &Caveat) -> f32 {
+fn chip_width(ui: &Ui, caveat: &Caveat, units: UnitSystem) -> f32 {
     let font = TextStyle::Body.resolve(ui.style());
-    let text = ui.painter().layout_no_wrap(chip_text(caveat), font, Color32::PLACEHOLDER);
+    let text = ui.painter().layout_no_wrap(chip_text(caveat, units), font, Color32::PLACEHOLDER);
     let icon = looks::icon_size(ui) + looks::GRID;
     icon + text.size().x + 2.0 * f32::from(MARGIN.left) + 2.0
 }
 
-fn chip_ui(ui: &mut Ui, caveat: &Caveat) {
+fn chip_ui(ui: &mut Ui, caveat: &Caveat, units: UnitSystem) {
     let (severity, icon) = match caveat.is_warning() {
         true => (caveat.severity, Icon::TriangleAlert),
         false => (caveat.severity, Icon::Info),
@@ -62,18 +62,21 @@ fn chip_ui(ui: &mut Ui, caveat: &Caveat) {
         ui.horizontal(|ui| {
             looks::icon_ui(ui, icon, color);
             // Not selectable, so that the pointer over the text is over the chip.
-            ui.add(Label::new(RichText::new(chip_text(caveat)).color(color)).selectable(false));
+            let text = RichText::new(chip_text(caveat, units)).color(color);
+            ui.add(Label::new(text).selectable(false));
         });
     });
-    chip.response.interact(Sense::hover()).on_hover_text(&caveat.text);
+    chip.response.interact(Sense::hover()).on_hover_text(caveat.in_units(units).text);
 }
 
 /// What a chip says: kind, quantity and value.
-fn chip_text(caveat: &Caveat) -> String {
+fn chip_text(caveat: &Caveat, units: UnitSystem) -> String {
     let label = caveat.kind.label();
-    match (&caveat.quantity, caveat.value) {
-        (Some(quantity), Some(value)) => format!("{label}: {quantity} {}", significant(value)),
-        _ => label.to_owned(),
+    match caveat.quantity_in(&NumberFormat::english(units)) {
+        Some(CaveatQuantity { name, unit, value, .. }) => {
+            format!("{label}: {name}{unit} {}", significant(value))
+        }
+        None => label.to_owned(),
     }
 }
 
@@ -83,6 +86,15 @@ mod tests {
 
     use super::*;
     use impactlab_core::uncertainty::CaveatKind;
+
+    #[test]
+    fn a_chip_has_the_units_of_the_case() {
+        let caveat =
+            Caveat::new(CaveatKind::NotAtRest, "").with_value("speed at the end [m/s]", 10.0);
+        let text = |units| chip_text(&caveat, units);
+        assert_eq!(text(UnitSystem::Si), "not at rest: speed at the end [m/s] 10.00");
+        assert_eq!(text(UnitSystem::Us), "not at rest: speed at the end [mph] 22.37");
+    }
 
     #[test]
     fn a_chip_that_does_not_fit_begins_a_row() {
@@ -95,7 +107,8 @@ mod tests {
         let mut height = 0.0;
         let _ = Context::default().run_ui(RawInput::default(), |ui| {
             ui.set_max_width(340.0);
-            height = ui.scope(|ui| restrictions_ui(ui, &caveats)).response.rect.height();
+            height =
+                ui.scope(|ui| restrictions_ui(ui, &caveats, UnitSystem::Si)).response.rect.height();
         });
         // Two rows, and not one letter of the second chip in each.
         assert!((30.0..80.0).contains(&height), "{height}");

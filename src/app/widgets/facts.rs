@@ -37,6 +37,15 @@ pub fn facts_ui(ui: &mut Ui, name: &str, tables: &[FactTable], units: UnitSystem
     }
 }
 
+/// Draws a table of questions and their answers in sentences, each answer below its question.
+pub fn sentences_ui(ui: &mut Ui, table: &FactTable, units: UnitSystem) {
+    for row in table.to_text(&FactWriter::english(units)).rows {
+        let mut cells = row.cells.into_iter();
+        cells.next().map(|question| ui.strong(question));
+        cells.next().map(|sentence| ui.add(Label::new(sentence).wrap()));
+    }
+}
+
 /// Tables of facts as text, separated by tabs.
 ///
 /// - `name`: what they belong to, in the first cell.

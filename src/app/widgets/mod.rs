@@ -18,7 +18,7 @@ pub use bad_cases::bad_cases_ui;
 pub use caveats::{caveats_ui, restrictions_ui};
 pub use cost::cost_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
-pub use facts::{facts_text, facts_ui};
+pub use facts::{facts_text, facts_ui, sentences_ui};
 pub use figure_frame::{MIN_PLOT_HEIGHT, OUTDATED, TITLE_HEIGHT, figure_frame};
 pub use quantity::{
     EmptyField, SliderRange, count_field, duration_text, optional_quantity, quantity_field,

@@ -1,25 +1,29 @@
 //! The list in which a vehicle is chosen: with a search, and the outline of each.
 
 use egui::{
-    ComboBox, PopupCloseBehavior, Rect, Response, ScrollArea, Sense, Stroke, TextEdit, Ui, vec2,
+    ComboBox, Grid, PopupCloseBehavior, Rect, Response, ScrollArea, Sense, Stroke, TextEdit,
+    Ui, vec2,
 };
 
 use crate::app::model::file_name;
 use crate::app::widgets::within_view;
 use impactlab_core::units::{Quantity, UnitSystem};
-use impactlab_core::vehicle::{BuiltInVehicle, GeometryParameters};
+use impactlab_core::vehicle::{BuiltInVehicle, GeometryParameters, VehicleClass};
 use impactlab_study::VehicleChoice;
 
 /// Largest width of the closed list, points.
 const WIDTH: f32 = 240.0;
 /// Size of the open list, points.
-const OPEN_WIDTH: f32 = 380.0;
+const OPEN_WIDTH: f32 = 500.0;
 const OPEN_HEIGHT: f32 = 420.0;
 /// Height of the field for the search in it, points.
 const SEARCH_HEIGHT: f32 = 40.0;
 /// Size of the picture of an outline, points, and its scale.
 const PICTURE: egui::Vec2 = vec2(54.0, 22.0);
 const POINTS_PER_METRE: f32 = 8.6;
+
+/// The columns of the list.
+const COLUMNS: [&str; 6] = ["", "Vehicle", "Class", "Year", "Mass", "Length"];
 
 /// The choice of a vehicle.
 pub struct VehiclePicker<'a> {
@@ -81,16 +85,22 @@ impl VehiclePicker<'_> {
                     chosen = Some(offered.clone());
                 }
             }
-            for vehicle in BuiltInVehicle::all() {
-                if !matches(&search, &searched(vehicle)) {
-                    continue;
+            let found = BuiltInVehicle::all().iter().filter(|of| matches(&search, &searched(of)));
+            Grid::new("vehicles").num_columns(COLUMNS.len()).show(ui, |ui| {
+                for (idx, vehicle) in found.enumerate() {
+                    if idx == 0 {
+                        for title in COLUMNS {
+                            ui.strong(title);
+                        }
+                        ui.end_row();
+                    }
+                    first.get_or_insert(vehicle.id);
+                    let is_chosen = *choice == VehicleChoice::Preset(vehicle.id.to_owned());
+                    if vehicle_row(ui, vehicle, is_chosen, self.units).clicked() {
+                        chosen = Some(VehicleChoice::Preset(vehicle.id.to_owned()));
+                    }
                 }
-                first.get_or_insert(vehicle.id);
-                let is_chosen = *choice == VehicleChoice::Preset(vehicle.id.to_owned());
-                if vehicle_row(ui, vehicle, is_chosen, self.units).clicked() {
-                    chosen = Some(VehicleChoice::Preset(vehicle.id.to_owned()));
-                }
-            }
+            });
             match first {
                 Some(id) if is_entered && !search.is_empty() => {
                     chosen = Some(VehicleChoice::Preset(id.to_owned()));
@@ -133,33 +143,31 @@ fn vehicle_row(
     is_chosen: bool,
     units: UnitSystem,
 ) -> Response {
-    ui.horizontal(|ui| {
-        outline_ui(ui, &vehicle.parameters.geometry);
-        let row = ui.selectable_label(is_chosen, &vehicle.parameters.name);
-        ui.weak(told(vehicle, units));
-        row.on_hover_text(format!("{}\n{}", vehicle.id, vehicle.parameters.source))
-    })
-    .inner
-}
-
-/// Class, mass and length, which tell a vehicle from others.
-fn told(vehicle: &BuiltInVehicle, units: UnitSystem) -> String {
+    outline_ui(ui, &vehicle.parameters.geometry);
+    let row = ui.selectable_label(is_chosen, &vehicle.parameters.name);
     let of = &vehicle.parameters;
     let mass = Quantity::Mass.shown(of.mass.mass_kg, units);
     let length = Quantity::Length.shown(of.geometry.outer_length_m, units);
-    format!("{}, {mass}, {length}", class(vehicle))
+    for cell in [class(vehicle).to_owned(), year(vehicle), mass, length] {
+        ui.weak(cell);
+    }
+    ui.end_row();
+    row.on_hover_text(format!("{}\n{}", vehicle.id, vehicle.parameters.source))
 }
 
 fn class(vehicle: &BuiltInVehicle) -> &'static str {
-    match &vehicle.parameters.sheet {
-        Some(sheet) if vehicle.is_of_library => sheet.class.word(),
-        _ => "of the data sets",
-    }
+    vehicle.class().map_or("of the data sets", VehicleClass::word)
+}
+
+/// The model year; nothing of a vehicle that has none.
+fn year(vehicle: &BuiltInVehicle) -> String {
+    vehicle.model_year().map(|year| year.to_string()).unwrap_or_default()
 }
 
 /// What a search looks at.
 fn searched(vehicle: &BuiltInVehicle) -> String {
-    format!("{} {} {}", vehicle.parameters.name, vehicle.id, class(vehicle))
+    let (name, id) = (&vehicle.parameters.name, vehicle.id);
+    format!("{name} {id} {} {}", class(vehicle), year(vehicle))
 }
 
 /// Whether every word that was searched stands in a text.
@@ -203,6 +211,7 @@ mod tests {
         };
         assert_eq!(found("corolla"), ["toyota-corolla-2020"]);
         assert_eq!(found("2020 toyota"), ["toyota-corolla-2020"]);
+        assert_eq!(found("car 2020"), ["toyota-corolla-2020"]);
         assert!(found("pickup").contains(&"ford-f-150-2004"), "{:?}", found("pickup"));
         assert_eq!(found("").len(), BuiltInVehicle::all().len());
         assert_eq!(found("trabant"), [""; 0]);

@@ -62,7 +62,7 @@ case was saved.";
 /// Say what is in a case, and whether its files are what they were
 #[derive(Debug, Args)]
 #[command(after_help = "\
-JSON: name, notes, shown, variants [{name, questions [..]}], files [{path, bytes, sha256}], models
+JSON: name, notes, shown, variants [{name, notes, questions [..]}], files [{path, bytes, sha256}], models
   [{network, name, sha256}], log [{time, event}], sha256 (of the file itself), is_as_saved (whether nobody
   has edited it since; null without a seal), changes [{kind, path}], reach {reads [..], writes [..],
   trains}
@@ -205,6 +205,9 @@ fn check_case(args: &CheckArgs, console: &mut Console<'_>) -> Result<Verdict, Cl
         for variant in &case.variants {
             let mark = if variant.name == case.shown { " (shown)" } else { "" };
             writeln!(out, "variant {}{mark}: {} questions", variant.name, variant.questions.len())?;
+            for line in variant.notes.lines() {
+                writeln!(out, "  {}", within_line(line))?;
+            }
         }
         for UsedFile { path, bytes, sha256 } in &case.files {
             writeln!(out, "file {}, {bytes} bytes, SHA-256 {sha256}", shown_path(path))?;

@@ -20,7 +20,8 @@ use impactlab_study::{
 pub(super) type Noted = (Figure, Vec<String>);
 
 /// Notes, restrictions and assumptions as lines.
-pub(super) fn noted(caveats: &Caveats) -> Vec<String> {
+pub(super) fn noted(caveats: &Caveats, units: UnitSystem) -> Vec<String> {
+    let caveats = caveats.in_units(units);
     let restrictions = caveats.restrictions().into_iter();
     let restrictions = restrictions.map(|of| format!("{}: {}", of.kind.label(), of.text));
     let assumed = caveats.assumptions().map(ToString::to_string);
@@ -53,7 +54,7 @@ pub(super) fn force(
         units,
         caveats: &recorded.caveats,
     });
-    Ok((figure, noted(&recorded.caveats)))
+    Ok((figure, noted(&recorded.caveats, units)))
 }
 
 /// One channel of the motion of a case or a file.
@@ -69,7 +70,7 @@ pub(super) fn motion(
         let (name, channel) = (request.source.name(), channel.header());
         return Err(CliError::NothingToShow { name, channel });
     }
-    Ok((figure, noted(&report.caveats)))
+    Ok((figure, noted(&report.caveats, units)))
 }
 
 /// What acts on the wheels of both vehicles of a case, a file or a scenario.
@@ -82,7 +83,7 @@ pub(super) fn controls(
     let SimulateAnswer { report, analysis } = console.answer(request)?;
     let figure = control_figure(&analysis, input, &report.caveats, units)
         .ok_or_else(|| CliError::NoInput { name: request.source.name(), input: input.label() })?;
-    Ok((figure, noted(&report.caveats)))
+    Ok((figure, noted(&report.caveats, units)))
 }
 
 /// The impact of a scenario.
@@ -95,5 +96,5 @@ pub(super) fn impact(
     let name = answer.report.name.clone();
     let figure = impact_figure(&answer.scenario, &answer.solution, &answer.report.caveats, units)
         .map_err(|source| StudyError::Scenario { name, source })?;
-    Ok((figure, noted(&answer.report.caveats)))
+    Ok((figure, noted(&answer.report.caveats, units)))
 }

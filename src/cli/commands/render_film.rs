@@ -10,11 +10,13 @@ use crate::cli::commands::render_reconstruction::cars_scene;
 use crate::cli::commands::render_scene::{BuiltScene, CaseArgs, SeenArgs, ShownScene, build};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{
-    OverwriteArg, UnitsArg, VehicleArg, count, film_section, number, size_px,
+    CameraKeyArg, OverwriteArg, UnitsArg, VehicleArg, camera_key, count, film_section, number,
+    size_px,
 };
 use impactlab_core::ranges::{FILM_RATE, FILM_SPEED, INSTANT, PICTURE_SCALE};
 use impactlab_document::scene::{FilmSection, FilmTiming, Scene};
-use impactlab_draw::scene::SceneCourse;
+use impactlab_draw::film::Film;
+use impactlab_draw::scene::{CameraKey, SceneCourse};
 use impactlab_study::{EvidenceChoice, InputKind, ReconstructRequest};
 
 /// What is filmed, and how.
@@ -39,6 +41,12 @@ pub(super) struct FilmArgs {
     /// A part of the motion at a speed of its own, such as 0.2..0.6=0.1; several times for several parts
     #[arg(long, value_name = "FROM..TO=FACTOR", value_parser = film_section)]
     slow: Vec<FilmSection>,
+    /// The camera at a time, such as t=0.5,distance=20,azimuth=30deg,elevation=60deg,follow=struck; several
+    /// times, in the order of time, for a camera that moves smoothly from one to the next. Names: t, x and y
+    /// (what it looks at), distance, azimuth, elevation, follow (none, struck, striking). What a key leaves out
+    /// is as in the key before it, and in the first one as it were without keys
+    #[arg(long, value_name = "t=TIME,…", value_parser = camera_key)]
+    key: Vec<CameraKeyArg>,
     /// The film: a file that ends in .mp4; a name without an ending is a folder of numbered PNG files
     #[arg(long, value_name = "FILE.mp4|DIR")]
     out: PathBuf,
@@ -186,6 +194,17 @@ fn timing(args: &FilmArgs, scene: &Scene, notes: &mut Vec<String>) -> FilmTiming
     timing
 }
 
+/// The keys of the camera; what the first one leaves open is as in the film without keys.
+fn camera_keys(given: &[CameraKeyArg], film: &Film) -> Vec<CameraKey> {
+    let Film { picture, timing, .. } = film;
+    let mut key = CameraKey::new(timing.from_s, &film.standing_camera(), picture.follow);
+    let next = |of: &CameraKeyArg| {
+        key = of.after(&key);
+        key
+    };
+    given.iter().map(next).collect()
+}
+
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum FilmKind {
@@ -213,13 +232,14 @@ fn make(
     use crate::cli::console::under_bar;
     use impactlab_core::data::Outcome;
     use impactlab_draw::Canvas;
-    use impactlab_draw::film::{Film, write_film, write_frames};
+    use impactlab_draw::film::{write_film, write_frames};
     use impactlab_study::Event;
 
     let FilmArgs { size, scale, dark, .. } = *args;
     let scale = scale.map_or_else(|| Canvas::scene_scale(size), |scale| scale as f32);
     let canvas = Canvas { size_px: size, scale, dark };
-    let film = Film { picture: shown.picture(), timing, canvas };
+    let mut film = Film { picture: shown.picture(), timing, canvas, keys: Vec::new() };
+    film.keys = camera_keys(&args.key, &film);
     let existing = args.overwrite.into();
     let made = match kind {
         FilmKind::Mp4 => under_bar(|observer| {

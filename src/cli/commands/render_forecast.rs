@@ -94,5 +94,5 @@ pub(super) fn figure(
         Some(channel) => forecast_channel_figure(&input, channel),
         None => forecast_scene_figure(&input),
     };
-    Ok((figure, noted(caveats)))
+    Ok((figure, noted(caveats, units)))
 }

@@ -10,7 +10,7 @@ use crate::cli::commands::render_figure::{Noted, noted};
 use crate::cli::commands::render_scene::{ShownScene, ViewArg};
 use crate::cli::console::Console;
 use crate::cli::options::EvidenceArgs;
-use impactlab_core::units::{UnitSystem, percent};
+use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::{
     ReconstructionScene, budget_figure, marginal_figure, prior_values, reconstruction_scene_figure,
 };
@@ -80,7 +80,7 @@ pub(super) fn figure(
     let of = Reconstructed::new(&args.evidence.request(), console)?;
     let answer = &of.answer;
     let caveats = &answer.report.caveats;
-    let (mut cars, mut notes) = (None, of.notes());
+    let (mut cars, mut notes) = (None, of.notes(units));
     let figure = match (args.plot.quantity(), args.plot) {
         (Some(quantity), _) => {
             let prior = prior_values(&answer.target, quantity);
@@ -118,11 +118,11 @@ pub(super) fn cars_scene(
     let modes = &of.answer.report.modes;
     let course = |mode: &Mode| {
         let paths = ReconstructedPaths::from_mode(&of.answer, mode);
-        let name = format!("{}: {}", percent(mode.probability), mode.name);
+        let name = ReconstructedPaths::course_title(mode);
         SceneCourse { name, scene: Arc::new(of.cars(&paths, units)) }
     };
     let courses = if modes.len() > 1 { modes.iter().map(course).collect() } else { Vec::new() };
-    let notes = of.notes().into_iter().chain(of.far_notes(&scene)).collect();
+    let notes = of.notes(units).into_iter().chain(of.far_notes(&scene)).collect();
     Ok((scene, courses, notes))
 }
 
@@ -144,7 +144,7 @@ pub(super) fn exported(
     let of = Reconstructed::new(request, console)?;
     let paths = ReconstructedPaths::from_answer(&of.answer);
     let scene = of.cars(&paths, UnitSystem::Si);
-    let notes = of.notes().into_iter().chain(of.far_notes(&scene)).collect();
+    let notes = of.notes(UnitSystem::default()).into_iter().chain(of.far_notes(&scene)).collect();
     let paths = paths.median.into_iter().chain(paths.others).collect();
     Ok(ExportedReconstruction { scene, paths, notes })
 }
@@ -164,8 +164,8 @@ impl Reconstructed {
         Ok(Self { answer, ground })
     }
 
-    fn notes(&self) -> Vec<String> {
-        let mut notes = noted(&self.answer.report.caveats);
+    fn notes(&self, units: UnitSystem) -> Vec<String> {
+        let mut notes = noted(&self.answer.report.caveats, units);
         notes.extend(self.ground.iter().flat_map(|ground| ground.notes.iter().cloned()));
         notes
     }

@@ -217,7 +217,7 @@ pub(super) fn build(
         check_time(&analysis, ("--time", time_s))?;
     }
     let mut caveats = report.caveats.clone();
-    let mut notes = noted(&report.caveats);
+    let mut notes = noted(&report.caveats, units);
     let mut scene = simulation_scene(&SimulationScene {
         analysis: &analysis,
         others: &[],
@@ -299,7 +299,7 @@ fn add_ghosts(
     );
     let report = &answer.report;
     caveats.add_variant("forecast", &report.caveats);
-    Ok(noted(&report.caveats))
+    Ok(noted(&report.caveats, scene.units))
 }
 
 /// The paths that were drawn from a forecast, in the units of a figure.

@@ -170,4 +170,4 @@ impl ReportArgs {
 }
 
 /// Draws the pictures.
-const DRAWING: Option<&Drawing<'static>> = Some(&impactlab_draw::report_picture);
+const DRAWING: Option<&Drawing<'static>> = Some(&impactlab_draw::report_drawing);

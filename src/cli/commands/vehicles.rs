@@ -6,7 +6,9 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, print_table};
 use impactlab_core::vehicle::sheet::Estimate;
-use impactlab_core::vehicle::{BuiltInVehicle, LibraryVehicle, Preset, VehicleParameters};
+use impactlab_core::vehicle::{
+    BuiltInVehicle, LibraryVehicle, Preset, VehicleClass, VehicleParameters,
+};
 use impactlab_study::StudyError;
 
 /// List the vehicles that come with the program, or print one as a file to save and edit
@@ -31,7 +33,7 @@ Examples:
   impactlab vehicles reference-2000 > my-car.toml
   impactlab vehicles ford-explorer-2004 --estimates
 
-JSON: {\"vehicles\": [{id, kind, name, source, mass_kg, n_estimates}]}; with ID all parameters, and
+JSON: {\"vehicles\": [{id, kind, name, class, model_year, source, mass_kg, n_estimates}]}; with ID all parameters, and
   data_sheet_estimates [{quantity, unit, median, intervals, rule, source}]";
 
 #[derive(Debug, Serialize)]
@@ -40,6 +42,8 @@ struct Listed {
     /// `preset` or `library`.
     kind: &'static str,
     name: String,
+    class: Option<&'static str>,
+    model_year: Option<u32>,
     source: String,
     mass_kg: f64,
     n_estimates: usize,
@@ -112,6 +116,8 @@ fn print_list(console: &mut Console<'_>) -> Result<(), CliError> {
         mass_kg: of.parameters.mass.mass_kg,
         n_estimates: of.parameters.estimates.len(),
         name: of.parameters.name.clone(),
+        class: of.class().map(VehicleClass::word),
+        model_year: of.model_year(),
         source: of.parameters.source.clone(),
     };
     let vehicles: Vec<Listed> = BuiltInVehicle::all().iter().map(listed).collect();
@@ -122,12 +128,18 @@ fn print_list(console: &mut Console<'_>) -> Result<(), CliError> {
         vec![
             vehicle.id.to_owned(),
             vehicle.kind.to_owned(),
+            vehicle.class.unwrap_or_default().to_owned(),
+            vehicle.model_year.map(|year| year.to_string()).unwrap_or_default(),
             format!("{:.0}", vehicle.mass_kg),
             vehicle.n_estimates.to_string(),
             vehicle.name.clone(),
         ]
     };
     let rows: Vec<_> = vehicles.iter().map(row).collect();
-    print_table(console.out, &["id", "kind", "mass [kg]", "estimates", "name"], &rows)?;
+    print_table(
+        console.out,
+        &["id", "kind", "class", "year", "mass [kg]", "estimates", "name"],
+        &rows,
+    )?;
     Ok(())
 }

@@ -11,6 +11,7 @@ use impactlab_core::data::Existing;
 use impactlab_core::data::write::OutputFolder;
 use impactlab_core::site::Site;
 use impactlab_core::uncertainty::Caveats;
+use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::LoadedGround;
 use impactlab_study::{Library, Provenance, Question, Request, SimulateRequest};
 
@@ -201,8 +202,16 @@ impl Console<'_> {
     }
 }
 
-/// Prints what restricts an answer and what it rests on, one line each.
-pub(in crate::cli) fn print_caveats(out: &mut dyn Write, caveats: &Caveats) -> io::Result<()> {
+/// Prints notes, what restricts an answer and what it rests on, one line each.
+pub(in crate::cli) fn print_caveats(
+    out: &mut dyn Write,
+    caveats: &Caveats,
+    units: UnitSystem,
+) -> io::Result<()> {
+    let caveats = caveats.in_units(units);
+    for note in caveats.notes() {
+        writeln!(out, "note: {}", within_line(note))?;
+    }
     for caveat in caveats.restrictions() {
         writeln!(out, "{}", within_line(&caveat.to_string()))?;
     }

@@ -16,17 +16,18 @@ const TEMPLATE: &str = "{msg} {wide_bar} {pos}/{len} {eta}";
 const EPOCHS_PER_LINE: usize = 10;
 
 /// Does the work under a progress bar, which is gone afterwards. Without a terminal, a training
-/// prints a line every ten epochs and other work prints nothing.
+/// prints a line at the start of each fit and every ten epochs, and other work prints nothing.
 pub(in crate::cli) fn under_bar<T>(work: impl FnOnce(&mut Observer<'_>) -> T) -> T {
     let is_seen = stderr().is_terminal();
     let bar = if is_seen { ProgressBar::new(0) } else { ProgressBar::hidden() };
     if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
         bar.set_style(style);
     }
+    let mut fits = None;
     let result = work(&mut |event| {
         let (progress, line) = match event {
             Event::Progress(progress) => (progress, None),
-            Event::Training(report) => training(report),
+            Event::Training(report) => training(report, &mut fits),
             Event::Sampling(_) => return ControlFlow::Continue(()),
         };
         if let (false, Some(line)) = (is_seen, line) {
@@ -43,7 +44,12 @@ pub(in crate::cli) fn under_bar<T>(work: impl FnOnce(&mut Observer<'_>) -> T) ->
 }
 
 /// How far a training is, and the line that is due, if any.
-fn training(report: &TrainingReport) -> (Progress, Option<String>) {
+///
+/// - `fits`: fits before the first epoch that are done, and all of them, as of the report before.
+fn training(
+    report: &TrainingReport,
+    fits: &mut Option<(usize, usize)>,
+) -> (Progress, Option<String>) {
     let (done, total, message) = match report {
         TrainingReport::Fit { what, done, n_fits } => (*done, *n_fits, what.clone()),
         TrainingReport::Epoch(epoch) => {
@@ -52,7 +58,10 @@ fn training(report: &TrainingReport) -> (Progress, Option<String>) {
         }
     };
     let line = match report {
-        TrainingReport::Fit { .. } => None,
+        TrainingReport::Fit { what, done, n_fits } => {
+            let is_due = fits.replace((*done, *n_fits)) != Some((*done, *n_fits));
+            is_due.then(|| format!("before the epochs: {what}"))
+        }
         TrainingReport::Epoch(report) => {
             let (epoch, n, seconds) =
                 (report.summary.epoch, report.n_epochs, report.summary.seconds);
@@ -62,4 +71,23 @@ fn training(report: &TrainingReport) -> (Progress, Option<String>) {
         }
     };
     (Progress::new(done as u64, total as u64, message), line)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_fit_before_the_epochs_is_told_once() {
+        let mut fits = None;
+        let mut line = |what: &str, done, n_fits| {
+            training(&TrainingReport::Fit { what: what.to_owned(), done, n_fits }, &mut fits)
+        };
+        let (progress, first) = line("fitting crush law 1 of 2, cost 9", 0, 2);
+        assert_eq!((progress.done, progress.total), (0, 2));
+        assert_eq!(first.as_deref(), Some("before the epochs: fitting crush law 1 of 2, cost 9"));
+        assert_eq!(line("fitting crush law 1 of 2, cost 8", 0, 2).1, None);
+        assert!(line("fitting crush law 2 of 2, cost 9", 1, 2).1.is_some());
+        assert!(line("fitting regression 1 of 4", 0, 4).1.is_some());
+    }
 }

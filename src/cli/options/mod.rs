@@ -1,5 +1,6 @@
 //! What several commands take as options.
 
+mod camera_key;
 mod choices;
 mod ending;
 mod evidence;
@@ -10,6 +11,7 @@ mod source;
 mod training;
 mod trust;
 
+pub(super) use camera_key::{CameraKeyArg, camera_key};
 pub(super) use choices::{
     BadCasesArg, EQUATIONS, INTEGRATORS, SAMPLINGS, SPLITS, UnitsArg, VehicleArg, Words, one_of,
 };

@@ -88,9 +88,6 @@ pub(in crate::cli) fn print_answer<'a>(
         print_table(out, &titles, &rows)?;
     }
     writeln!(out)?;
-    for note in answer.caveats.notes() {
-        writeln!(out, "note: {}", within_line(note))?;
-    }
-    print_caveats(out, answer.caveats)?;
+    print_caveats(out, answer.caveats, units)?;
     answer.written.map_or(Ok(()), |path| writeln!(out, "written: {}", shown_path(path)))
 }

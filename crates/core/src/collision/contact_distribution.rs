@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::collision::ImpliedContact;
+use crate::units::{Phrase, PhraseValue, Quantity};
 
 /// Coefficient of restitution of slow contacts that is used if none is given. Together with
 /// [`DEFAULT_FRICTION_LIMIT`] it gives the smallest mean error of the impulse vector over the
@@ -45,12 +46,17 @@ pub fn restitution_bounds(closing_m_s: f64) -> [f64; 2] {
 }
 
 /// What [`default_restitution`] is, in words.
-pub fn default_restitution_in_words() -> String {
-    let [slow, fast] = RESTITUTION_SPEEDS_M_S;
-    format!(
-        "{DEFAULT_RESTITUTION} up to {slow} m/s, fitted to finite-element runs, and {HARD_RESTITUTION} from \
-         {fast} m/s on, as in staged crashes"
+pub fn default_restitution_in_words() -> Phrase {
+    let speeds = RESTITUTION_SPEEDS_M_S.map(|m_s| PhraseValue::given(Quantity::Speed, m_s));
+    let [slow, fast] = speeds;
+    Phrase::new(
+        "{0} up to {1}, fitted to finite-element runs, and {2} from {3} on, as in staged crashes",
+        "{0} bis {1}, angepasst an Finite-Elemente-Rechnungen, und {2} ab {3}, wie in Crashversuchen",
     )
+    .with(PhraseValue::given(Quantity::Ratio, DEFAULT_RESTITUTION))
+    .with(slow)
+    .with(PhraseValue::given(Quantity::Ratio, HARD_RESTITUTION))
+    .with(fast)
 }
 
 fn over_closing_speed([slow, fast]: [f64; 2], closing_m_s: f64) -> f64 {

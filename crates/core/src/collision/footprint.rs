@@ -10,6 +10,12 @@ use crate::vehicle::{GeometryParameters, VehicleParameters};
 /// Smallest area that an outline and a lane share, m².
 const LEAST_SHARED_M2: f64 = 1e-6;
 
+/// Share of the width by which another side may be farther from a contact point than the nearest one and be
+/// touched as well, as at a corner.
+const CORNER_SHARE: f64 = 0.15;
+/// Least share of a force that points out of a side, so that it pulls: 10° off the direction of the side.
+const LEAST_PULL: f64 = 0.17;
+
 /// Position and heading of a vehicle in world axes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
@@ -257,6 +263,29 @@ impl Footprint {
         Err(OffOutline { x_body_m, y_body_m, distance_m, allowed_m })
     }
 
+    /// The side out of which a force pulls at a contact point; `None` if it pushes, as contacts do, or
+    /// acts along the side. At a corner it pushes if it does so at one of the two sides.
+    ///
+    /// - `[x_m, y_m]`: the point in body axes, m.
+    /// - `[fx, fy]`: the force or its impulse in body axes, in any unit.
+    pub fn pulled_side(&self, [x_m, y_m]: [f64; 2], [fx, fy]: [f64; 2]) -> Option<Side> {
+        let depth_m = |side: Side| match side {
+            Side::Front => self.cg_from_front_m - x_m,
+            Side::Left => self.width_m / 2.0 - y_m,
+            Side::Rear => x_m - self.cg_from_front_m + self.length_m,
+            Side::Right => self.width_m / 2.0 + y_m,
+        };
+        let outward = |side: Side| {
+            let (sin, cos) = side.outward_angle_rad().sin_cos();
+            fx * cos + fy * sin
+        };
+        let by_depth = |a: &Side, b: &Side| depth_m(*a).total_cmp(&depth_m(*b));
+        let nearest = Side::ALL.into_iter().min_by(by_depth)?;
+        let reach_m = depth_m(nearest) + CORNER_SHARE * self.width_m;
+        let mut touched = Side::ALL.into_iter().filter(|side| depth_m(*side) <= reach_m);
+        touched.all(|side| outward(side) > LEAST_PULL * fx.hypot(fy)).then_some(nearest)
+    }
+
     /// Midpoint of a side in body axes, m.
     pub fn side_middle_m(&self, side: Side) -> [f64; 2] {
         let middle = self.cg_from_front_m - self.length_m / 2.0;
@@ -306,6 +335,27 @@ mod tests {
         let line = [[-50.0, 2.0], [50.0, 2.0], [50.0, -9.0]];
         assert!(outline.crosses(&at(0.0, 1.5, 0.0), &line));
         assert!(!outline.crosses(&at(0.0, 0.5, 0.0), &line));
+    }
+
+    #[test]
+    fn a_force_pulls_where_it_points_out_of_the_side_that_is_touched() {
+        use crate::collision::Side;
+        for (point, force, side) in [
+            ([-1.5, -0.9], [0.0, 40.0], None),
+            ([-1.5, -0.9], [0.0, -40.0], Some(Side::Right)),
+            // Friction along the side, larger than what presses.
+            ([-1.5, -0.9], [-60.0, 40.0], None),
+            ([-1.5, -0.9], [40.0, -5.0], None),
+            ([2.2, 0.1], [30.0, 0.0], Some(Side::Front)),
+            // At the rear left corner a force to the front pushes, whatever it does to the side.
+            ([-2.5, 0.85], [20.0, 20.0], None),
+            ([-2.5, 0.85], [-20.0, 20.0], Some(Side::Left)),
+            // In the middle there is always a side that is pushed.
+            ([0.0, 0.0], [0.0, 20.0], None),
+            ([-1.5, -0.9], [0.0, 0.0], None),
+        ] {
+            assert_eq!(CAR.pulled_side(point, force), side, "{point:?} {force:?}");
+        }
     }
 
     #[test]

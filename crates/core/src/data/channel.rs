@@ -82,6 +82,8 @@ channels! {
     Vx: "vx_m_s", Speed, "v_x", ["vx", "vxbody", "velx", "velocityx", "longitudinalvelocity", "speedx", "geschwindigkeitx", "längsgeschwindigkeit"];
     /// Leftward velocity of the centre of gravity, body axes.
     Vy: "vy_m_s", Speed, "v_y", ["vy", "vybody", "vely", "velocityy", "lateralvelocity", "speedy", "geschwindigkeity", "quergeschwindigkeit"];
+    /// Speed along the path, in whatever direction. It is compared with the path and used for nothing else.
+    Speed: "speed_m_s", Speed, "Speed", ["speed", "velocity", "geschwindigkeit", "vitesse", "velocidad", "groundspeed", "speedoverground", "gpsspeed"];
     /// Yaw rate r.
     YawRate: "yaw_rate_rad_s", AngularVelocity, "Yaw rate r", ["yawrate", "r", "psidot", "wz", "omegaz", "gyroz", "gierrate", "giergeschwindigkeit", "gierwinkelgeschwindigkeit"];
     /// Roll rate about the forward axis.

@@ -248,9 +248,14 @@ pub(super) fn controls_shift_s(
     (offered_shift_s(series).is_some() || is_held()).then_some(0.0 - first_s)
 }
 
+/// Whether an instant is one of a clock that counts the seconds since 1970.
+pub(super) fn is_since_1970(at_s: f64) -> bool {
+    UNIX_S.contains(&at_s)
+}
+
 /// What says that a record begins elsewhere than at 0.
 pub(super) fn shift_text(first_s: f64) -> String {
-    let clock = if UNIX_S.contains(&first_s) { ", on a clock that counts since 1970" } else { "" };
+    let clock = if is_since_1970(first_s) { ", on a clock that counts since 1970" } else { "" };
     let shift = shift_to_zero(first_s);
     format!("the record begins at {first_s} s{clock}; it begins at 0 with the map {shift}")
 }

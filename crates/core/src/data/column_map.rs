@@ -322,7 +322,10 @@ impl From<ColumnMap> for String {
 
 fn short_names() -> String {
     let names: Vec<_> = Channel::ALL.iter().map(|channel| channel.short_name()).collect();
-    format!("{}; or sheet, header, units, shift, y_axis, velocities", names.join(", "))
+    format!(
+        "{}; or separator, decimal, thousands, sheet, header, units, shift, y_axis, headings, velocities",
+        names.join(", ")
+    )
 }
 
 #[cfg(test)]
@@ -358,6 +361,8 @@ mod tests {
             "sheet=Messung 2,fx=Kraft-X",
             "time=5:s+6:µs,x=east(2 3),y=north(2 3),yaw=quaternion(7 8 9 10)",
             "fx=2:N s,fy=-3:kN s",
+            "separator=space,decimal=comma,thousands=point,header=2,fx=2",
+            "separator=tab,decimal=point,thousands=apostrophe,sheet=2",
         ] {
             assert_eq!(text.parse::<ColumnMap>().unwrap().to_string(), text);
         }
@@ -377,6 +382,10 @@ mod tests {
                 r#"header="x" is not understood, expected the number of a line or none, e.g. header=5"#,
             ),
             ("shift=1:kN", r#"shift="1:kN" is not understood, expected a time, e.g. shift=-12:ms"#),
+            (
+                "thousands=dot",
+                r#"thousands="dot" is not understood, expected point, comma, apostrophe or space"#,
+            ),
             ("units=6,units=7", "units is given twice"),
             ("fx=2+0", "fx is taken from column 0, but columns are counted from 1"),
         ] {

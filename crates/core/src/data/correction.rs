@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use crate::data::{Channel, ColumnMap, ColumnSource, VelocityAxes};
+use crate::data::{Channel, ColumnMap, ColumnSource, Thousands, VelocityAxes};
 
 /// A change of a map that corrects how a file is read, with what it does in words.
 ///
@@ -35,6 +35,10 @@ pub(super) enum Change {
     Velocities(VelocityAxes),
     /// What is added to every instant, s.
     TimeShift(f64),
+    /// Whether the decimal sign is a comma.
+    DecimalComma(bool),
+    /// What stands between thousands.
+    Thousands(Thousands),
 }
 
 impl Correction {
@@ -55,6 +59,9 @@ impl Correction {
     ///
     /// - returns `None` if it says nothing else.
     pub(super) fn from_answer(given: Option<&ColumnMap>, answer: &ColumnMap) -> Option<Self> {
+        if let Some(signs) = Self::from_signs(given, answer) {
+            return Some(signs);
+        }
         let is_new = |(channel, source): &(Channel, &ColumnSource)| {
             given.and_then(|map| map.get(*channel)) != Some(*source)
         };
@@ -78,6 +85,22 @@ impl Correction {
         })
     }
 
+    /// What a map says of decimal sign and thousands, in addition to the map that was given.
+    fn from_signs(given: Option<&ColumnMap>, answer: &ColumnMap) -> Option<Self> {
+        let (given, answer) = (given.map(|map| &map.settings), &answer.settings);
+        let is_comma = answer
+            .decimal_comma
+            .filter(|is_comma| given.and_then(|given| given.decimal_comma) != Some(*is_comma));
+        if let Some(is_comma) = is_comma {
+            let label = if is_comma { "Decimal commas" } else { "Decimal points" };
+            return Some(Self::new(label.to_owned(), vec![Change::DecimalComma(is_comma)]));
+        }
+        let thousands = answer.thousands;
+        let mark = thousands.filter(|_| given.and_then(|given| given.thousands) != thousands)?;
+        let label = format!("{} between thousands", mark.label());
+        Some(Self::new(label, vec![Change::Thousands(mark)]))
+    }
+
     /// What it does, in words: the text of a button.
     pub fn label(&self) -> &str {
         &self.label
@@ -91,6 +114,8 @@ impl Correction {
                 Change::CompassHeadings(is_compass) => map.settings.compass_headings = *is_compass,
                 Change::Velocities(axes) => map.settings.velocities = Some(*axes),
                 Change::TimeShift(shift_s) => map.settings.time_shift_s = Some(*shift_s),
+                Change::DecimalComma(is_comma) => map.settings.decimal_comma = Some(*is_comma),
+                Change::Thousands(mark) => map.settings.thousands = Some(*mark),
             }
         }
     }
@@ -106,6 +131,8 @@ impl Correction {
                 Change::CompassHeadings(_) => settings.compass_headings = earlier.compass_headings,
                 Change::Velocities(_) => settings.velocities = earlier.velocities,
                 Change::TimeShift(_) => settings.time_shift_s = earlier.time_shift_s,
+                Change::DecimalComma(_) => settings.decimal_comma = earlier.decimal_comma,
+                Change::Thousands(_) => settings.thousands = earlier.thousands,
             }
         }
         for change in &self.changes {
@@ -140,6 +167,9 @@ impl fmt::Display for Correction {
                 Change::Velocities(VelocityAxes::Body) => f.write_str("velocities=body"),
                 Change::Velocities(VelocityAxes::World) => f.write_str("velocities=world"),
                 Change::TimeShift(shift_s) => write!(f, "shift={shift_s}:s"),
+                Change::DecimalComma(true) => f.write_str("decimal=comma"),
+                Change::DecimalComma(false) => f.write_str("decimal=point"),
+                Change::Thousands(mark) => write!(f, "thousands={}", mark.name()),
             }?;
         }
         Ok(())
@@ -182,5 +212,17 @@ mod tests {
             assert_eq!(map.to_string(), "header=2,time=1,fx=2,fy=3");
         }
         assert_eq!(Correction::from_answer(Some(&given), &given), None);
+        for (answer, label) in
+            [("decimal=point", "Decimal points"), ("thousands=point", "Points between thousands")]
+        {
+            let answer: ColumnMap = answer.parse().unwrap();
+            let correction = Correction::from_answer(None, &answer).unwrap();
+            assert_eq!((correction.label(), correction.to_string()), (label, answer.to_string()));
+            let mut map = ColumnMap::default();
+            correction.apply(&mut map);
+            assert_eq!(map, answer);
+            correction.undo(&mut map, &ColumnMap::default());
+            assert_eq!(map, ColumnMap::default());
+        }
     }
 }

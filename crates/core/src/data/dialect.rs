@@ -6,6 +6,9 @@ use std::borrow::Cow;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use serde::{Deserialize, Serialize};
 
+use crate::data::ReadSettings;
+use crate::data::marks::{Marks, Signs, Thousands, has_groups};
+
 /// The separator between two fields of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Separator {
@@ -26,11 +29,23 @@ pub struct Dialect {
     pub separator: Separator,
     /// Whether the decimal sign is a comma, as in `0,5`, instead of a point.
     pub decimal_comma: bool,
+    /// What stands between the thousands of its numbers; `None` if nothing does.
+    pub thousands: Option<Thousands>,
 }
 
 impl Separator {
     /// All separators, in the order of preference if several fit equally well.
-    const ALL: [Self; 4] = [Self::Tab, Self::Semicolon, Self::Blanks, Self::Comma];
+    pub const ALL: [Self; 4] = [Self::Tab, Self::Semicolon, Self::Blanks, Self::Comma];
+
+    /// Its name in the text of a map.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tab => "tab",
+            Self::Semicolon => "semicolon",
+            Self::Blanks => "space",
+            Self::Comma => "comma",
+        }
+    }
 
     pub(crate) fn byte(self) -> u8 {
         match self {
@@ -81,15 +96,21 @@ impl Dialect {
     /// Determines separator and decimal sign from the first lines of a table.
     ///
     /// The separator is the one with which most fields are numbers. At equality, in particular if
-    /// there are no numbers, it is the one with most fields in the first line. The decimal sign is
-    /// a comma if numbers with a comma occur and numbers with a point do not; where the comma is the
-    /// separator too, they stand in quotation marks.
+    /// there are no numbers, it is the one with most fields in the first line. The signs within
+    /// numbers follow from [`Marks`].
     ///
-    /// - `known`: the separator, if it is known.
-    pub(crate) fn sniff(lines: &[&str], known: Option<Separator>) -> Self {
+    /// - `converted`: the separator of lines that were written by this program, from another format;
+    /// - `settings`: what the user has said.
+    pub(crate) fn sniff(
+        lines: &[&str],
+        converted: Option<Separator>,
+        settings: &ReadSettings,
+    ) -> Self {
+        let is_number =
+            |field: &Cow<'_, str>| parse_number(field, true).is_some() || has_groups(field);
         let score = |separator: &Separator| {
             let fields = lines.iter().flat_map(|line| split(line, *separator));
-            let numbers = fields.filter(|field| parse_number(field, true).is_some());
+            let numbers = fields.filter(is_number);
             let first = lines.first().map_or(0, |line| split(line, *separator).len());
             // Words contain blanks between them, so that a second field by blanks is weak evidence:
             // blanks score less than another separator that gives two fields.
@@ -99,22 +120,40 @@ impl Dialect {
         // `max_by_key` returns the last of several maxima, therefore the order is reversed.
         let last_to_first = Separator::ALL.into_iter().rev();
         let found = || last_to_first.max_by_key(score).unwrap_or(Separator::Comma);
-        let separator = known.unwrap_or_else(found);
-        let fields = || lines.iter().flat_map(|line| split(line, separator));
-        let written_with = |sign: char| {
-            fields()
-                .any(|field| field.contains(sign) && parse_number(&field, sign == ',').is_some())
-        };
-        // Where commas divide the fields, those in a quoted number may divide its thousands.
-        let may_be_decimal =
-            || separator != Separator::Comma || fields().any(|field| is_decimal(&field));
-        let decimal_comma = written_with(',') && !written_with('.') && may_be_decimal();
-        Self { separator, decimal_comma }
+        let separator = converted.or(settings.separator).unwrap_or_else(found);
+        let mut marks = Marks::default();
+        for field in lines.iter().flat_map(|line| split(line, separator)) {
+            marks.add(&field);
+        }
+        Self::with_marks(separator, marks, converted.is_some(), settings).0
+    }
+
+    /// A separator with the signs that follow from the marks within numbers, and whether a number may mean
+    /// two things.
+    ///
+    /// - `is_converted`: whether the lines were written by this program, with decimal points.
+    pub(super) fn with_marks(
+        separator: Separator,
+        marks: Marks,
+        is_converted: bool,
+        settings: &ReadSettings,
+    ) -> (Self, bool) {
+        let marks = if is_converted { marks.with_decimal_points() } else { marks };
+        let signs = marks.signs(separator, settings.decimal_comma, settings.thousands);
+        let Signs { decimal_comma, thousands, is_open } = signs;
+        (Self { separator, decimal_comma, thousands }, is_open)
     }
 
     /// The number in a cell; `None` if the cell does not hold a finite number.
     pub(crate) fn number(self, cell: &str) -> Option<f64> {
-        parse_number(cell.trim(), self.decimal_comma)
+        let cell = cell.trim();
+        match self.thousands {
+            None => parse_number(cell, self.decimal_comma),
+            Some(mark) => {
+                let plain = mark.removed(cell, self.decimal_comma)?;
+                parse_number(&plain, self.decimal_comma)
+            }
+        }
     }
 }
 
@@ -126,13 +165,6 @@ pub(crate) fn comment(line: &str) -> Option<&str> {
         .iter()
         .find_map(|sign| line.strip_prefix(sign))
         .map(|rest| rest.trim_start_matches(['#', '%', '!', '$', '/']).trim())
-}
-
-/// Whether the comma of a number with one is that of its decimals and not of its thousands.
-fn is_decimal(field: &str) -> bool {
-    let Some((whole, fraction)) = field.split_once(',') else { return false };
-    let whole = whole.trim_start_matches(['+', '-']);
-    parse_number(field, true).is_some() && (whole.starts_with('0') || fraction.len() != 3)
 }
 
 /// A number whose exponent of three digits has no letter before it, as Fortran writes `1.0-103`, with the
@@ -230,8 +262,25 @@ mod tests {
             ("case;side\na;left\n", Separator::Semicolon, false),
         ] {
             let lines: Vec<&str> = text.lines().collect();
-            let expected = Dialect { separator, decimal_comma };
-            assert_eq!(Dialect::sniff(&lines, None), expected, "{text:?}");
+            let expected = Dialect { separator, decimal_comma, thousands: None };
+            let found = Dialect::sniff(&lines, None, &ReadSettings::default());
+            assert_eq!(found, expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_with_thousands_are_read_by_the_signs_of_the_table() {
+        let lines = ["t;fx", "0,001;1.860,5", "0,002;2.340,75"];
+        let dialect = Dialect::sniff(&lines, None, &ReadSettings::default());
+        assert_eq!(dialect.separator, Separator::Semicolon);
+        assert_eq!(dialect.thousands, Some(Thousands::Point));
+        for (cell, number) in [
+            ("1.860", Some(1860.0)),
+            ("-1.860,5", Some(-1860.5)),
+            ("0.5", None),
+            ("0,5", Some(0.5)),
+        ] {
+            assert_eq!(dialect.number(cell), number, "{cell}");
         }
     }
 }

@@ -247,6 +247,23 @@ pub enum DataError {
         /// A mapping that answers it.
         map: Box<ColumnMap>,
     },
+    /// A number may mean two things, since its mark may be a decimal sign or stand between thousands.
+    #[error("{}:{line}:{column}: {} is {}, with a decimal sign or with thousands, and nothing in the file says which; --map \"{}\" or --map \"{}\", or in the mapping dialog",
+        path.display(), quoted(name), quoted(text), maps[0], maps[1])]
+    AmbiguousNumber {
+        /// The file that was read.
+        path: PathBuf,
+        /// Line of the number.
+        line: u64,
+        /// Number of its column.
+        column: usize,
+        /// Header of the column.
+        name: String,
+        /// The number, as written in the file.
+        text: String,
+        /// Mappings that read a decimal sign, and thousands.
+        maps: Box<[ColumnMap; 2]>,
+    },
     /// The unit of a column does not measure the channel that the column holds.
     #[error("{}:{line}:{column}: {name} is in {unit}, expected a unit of {} ({}); correct the header or map the column with its unit, e.g. --map {}={column}:{}",
         path.display(), spelling::quantity_name(*quantity), spelling::symbols(*quantity), channel.short_name(), quantity.si_unit().symbol, name = quoted(name), unit = quoted(unit))]
@@ -482,15 +499,23 @@ impl DataError {
         match self {
             Self::InSheet { error, .. } | Self::OfOption { error, .. } => error.answer(),
             Self::Open { map, .. } => Some(map),
+            Self::AmbiguousNumber { maps, .. } => Some(&maps[0]),
             _ => None,
         }
     }
 
-    /// The change of a map that answers what is open about a file.
+    /// The changes of a map of which each answers what is open about a file.
     ///
     /// - `map`: the map with which it was read.
-    pub fn correction(&self, map: Option<&ColumnMap>) -> Option<Correction> {
-        Correction::from_answer(map, self.answer()?)
+    pub fn corrections(&self, map: Option<&ColumnMap>) -> Vec<Correction> {
+        let answers: Vec<&ColumnMap> = match self {
+            Self::InSheet { error, .. } | Self::OfOption { error, .. } => {
+                return error.corrections(map);
+            }
+            Self::AmbiguousNumber { maps, .. } => maps.iter().collect(),
+            _ => self.answer().into_iter().collect(),
+        };
+        answers.into_iter().filter_map(|answer| Correction::from_answer(map, answer)).collect()
     }
 
     /// Whether a mapping of columns to channels and units by the user may solve the problem.
@@ -504,6 +529,7 @@ impl DataError {
                 | Self::MissingColumn { .. }
                 | Self::AmbiguousColumn { .. }
                 | Self::Open { .. }
+                | Self::AmbiguousNumber { .. }
                 | Self::UnknownUnit { .. }
                 | Self::ImplausibleValue { .. }
                 | Self::NoSuchLine { .. }

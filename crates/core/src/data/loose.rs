@@ -8,7 +8,8 @@ use crate::data::si_values::{instants_s, si_values};
 use crate::data::velocity_fit::in_body_axes;
 use crate::data::{
     Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, ReadSettings, Sampling,
-    SeriesError, Table, TimeSeries, VelocityAxes, clock, computed, corrections, degrees, impulse,
+    SeriesError, Table, Thousands, TimeSeries, VelocityAxes, clock, computed, corrections, degrees,
+    impulse, path_speed,
 };
 use crate::ranges::TIME_STEP;
 
@@ -273,6 +274,7 @@ fn load_columns(
         let (expected, got) = (MIN_ROWS, table.n_rows());
         return Err(DataError::TooFewRows { path: path(), line, expected, got });
     }
+    check_numbers(table, &columns, map)?;
     let settings = map.map(|map| (*map.settings).clone()).unwrap_or_default();
     if let Some(time) = columns.by_channel.get(&Channel::Time) {
         clock::check_unit(table, time, map)?;
@@ -320,6 +322,7 @@ fn load_columns(
     notes.extend(begins_s.map(|shift_s| Note::Begins { first_s: 0.0 - shift_s }));
     notes.extend(computed::note(table, &by_channel));
     notes.extend(found);
+    notes.extend(path_speed::note(table, &by_channel, &series));
     let columns = by_channel.into_values().collect();
     Ok(Loaded {
         kind,
@@ -339,6 +342,33 @@ fn insert(
 ) -> Result<(), DataError> {
     let path = || table.path().to_owned();
     series.insert(channel, values).map_err(|source| DataError::Series { path: path(), source })
+}
+
+/// Asks for the marks within the numbers that are read, if one of them may mean two things.
+///
+/// # Errors
+/// [`DataError::AmbiguousNumber`].
+fn check_numbers(
+    table: &Table,
+    columns: &Columns,
+    map: Option<&ColumnMap>,
+) -> Result<(), DataError> {
+    let terms = columns.by_channel.values().flat_map(|column| &column.terms);
+    let read: Vec<usize> = terms.filter_map(|term| term.number.checked_sub(1)).collect();
+    let Some((row_idx, column_idx)) = table.ambiguous_number(&read) else { return Ok(()) };
+    let text = table.cell(row_idx, column_idx).into_owned();
+    let mark = if text.contains(',') { Thousands::Comma } else { Thousands::Point };
+    let mut maps = [map.cloned().unwrap_or_default(), map.cloned().unwrap_or_default()];
+    maps[0].settings.decimal_comma = Some(mark == Thousands::Comma);
+    maps[1].settings.thousands = Some(mark);
+    Err(DataError::AmbiguousNumber {
+        path: table.path().to_owned(),
+        line: table.line(row_idx),
+        column: column_idx + 1,
+        name: table.header().get(column_idx).cloned().unwrap_or_default(),
+        text,
+        maps: Box::new(maps),
+    })
 }
 
 /// Checks the time between the samples.

@@ -39,10 +39,13 @@ mod json;
 mod letters;
 mod loose;
 mod mapped_column;
+mod marks;
 mod note;
 mod open;
+mod path_speed;
 mod proposals;
 mod quality;
+mod quality_phrase;
 mod read_settings;
 mod rows;
 mod series;
@@ -90,8 +93,10 @@ pub use loose::{
     FileKind, Loaded, read_any_series, read_force_file, read_motion_log, read_series,
     read_steer_file, read_trajectory_file, read_wheels_file, series_of_table,
 };
+pub use marks::Thousands;
 pub use note::Note;
 pub use open::{Opened, open};
+pub use path_speed::{PathSpeed, path_speed};
 pub use proposals::{ColumnProposal, map_from_proposals, proposals, propose_columns};
 pub use quality::{Flag, FlagKind, Severity, check_case, check_file, check_series};
 pub use read_settings::{HeaderLine, ReadSettings, SheetRef, VelocityAxes};

@@ -1,10 +1,13 @@
 //! Remarks on a file that was read.
 
 use std::fmt;
+use std::path::PathBuf;
 
 use crate::data::correction::one_of;
+use crate::data::error::quoted;
 use crate::data::{
-    Channel, ColumnUse, Contradiction, Correction, VelocityAxes, VelocityFit, clock, spelling,
+    Channel, ColumnUse, Contradiction, Correction, PathSpeed, VelocityAxes, VelocityFit, clock,
+    spelling,
 };
 
 /// Number of columns without a channel that a remark names.
@@ -68,6 +71,21 @@ pub enum Note {
         /// Changes of the map of which each removes it.
         corrections: Vec<Correction>,
     },
+    /// The speed that a file records is not that at which its path goes on.
+    Speed {
+        /// The file.
+        path: PathBuf,
+        /// Line of the row where they differ most, counted from 1.
+        line: u64,
+        /// The column of the speed, or that of v_x if the file gives components; counted from 1.
+        column: usize,
+        /// The header of this column.
+        name: String,
+        /// How they differ.
+        found: PathSpeed,
+        /// Changes of the map of which each removes the difference.
+        corrections: Vec<Correction>,
+    },
     /// The file is of a format of its own.
     Format {
         /// What it is and how it is read, in words.
@@ -95,7 +113,11 @@ pub enum Note {
 impl Note {
     /// Whether numbers that were read may be wrong, so that the user should be asked.
     pub fn is_doubt(&self) -> bool {
-        matches!(self, Self::UnitAssumed(_) | Self::MixedUnits { .. }) || self.is_contradiction()
+        match self {
+            Self::UnitAssumed(_) | Self::MixedUnits { .. } | Self::Speed { .. } => true,
+            Self::Begins { first_s } => clock::is_since_1970(*first_s),
+            _ => self.is_contradiction(),
+        }
     }
 
     /// Whether numbers that were read contradict each other, so that nothing can be made of them.
@@ -106,9 +128,9 @@ impl Note {
     /// Changes of the map of which each corrects what the remark says; the likeliest comes first.
     pub fn corrections(&self) -> Vec<Correction> {
         match self {
-            Self::Velocities { corrections, .. } | Self::Contradiction { corrections, .. } => {
-                corrections.clone()
-            }
+            Self::Velocities { corrections, .. }
+            | Self::Contradiction { corrections, .. }
+            | Self::Speed { corrections, .. } => corrections.clone(),
             Self::Begins { first_s } => vec![clock::shift_to_zero(*first_s)],
             _ => Vec::new(),
         }
@@ -154,6 +176,10 @@ impl fmt::Display for Note {
             Self::Contradiction { found, corrections } => {
                 found.fmt(f)?;
                 write_remedy(f, corrections, found.advice())
+            }
+            Self::Speed { path, line, column, name, found, corrections } => {
+                write!(f, "{}:{line}:{column}: {} {found}", path.display(), quoted(name))?;
+                write_remedy(f, corrections, "check its unit and the clock")
             }
             Self::Format { text } => f.write_str(text),
             Self::Places { origin_deg: [latitude, longitude] } => write!(

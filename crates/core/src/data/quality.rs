@@ -6,8 +6,6 @@
 //! of the peak, spikes of 0.24 of the peak, and time steps that differ by 0.4 % because times are
 //! rounded.
 
-use std::fmt;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +14,6 @@ use crate::data::{
     contact_interval, cut_at_s,
 };
 use crate::numerics::quantile_of_sorted;
-use crate::units::significant;
 
 /// Momentum residual above which a warning is raised, as a share of the impulse.
 const MOMENTUM_RESIDUAL: f64 = 0.01;
@@ -230,67 +227,6 @@ impl Flag {
 /// A flag for a property that holds or does not hold, without a limit.
 fn stated(kind: FlagKind, severity: Severity) -> Flag {
     Flag { kind, severity, value: 1.0, limit: 0.0, time_s: None }
-}
-
-impl fmt::Display for Flag {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (value, limit) = (self.value, self.limit);
-        let (percent, limit_percent) = (100.0 * value, 100.0 * limit);
-        match self.kind {
-            FlagKind::MomentumResidual => write!(
-                f,
-                "impulse and momentum differ by {percent:.2} %, limit {limit_percent} %; \
-                 check mass, force unit and axes"
-            ),
-            FlagKind::SamplingGap => write!(
-                f,
-                "a step {value:.1} times the median step, limit {limit}; samples are missing"
-            ),
-            FlagKind::NonUniformSampling => {
-                write!(f, "steps differ by {percent:.1} %, limit {limit_percent} %")
-            }
-            FlagKind::Spike => write!(
-                f,
-                "one sample stands out by {percent:.0} % of the peak, limit {limit_percent} %"
-            ),
-            FlagKind::Drift => write!(
-                f,
-                "force before contact is {percent:.1} % of the peak, limit {limit_percent} %; \
-                 remove the offset"
-            ),
-            FlagKind::ImplausibleForce => write!(
-                f,
-                "peak force {:.2} MN, limit {} MN; check the unit",
-                value / 1e6,
-                limit / 1e6
-            ),
-            FlagKind::SmallForce => write!(
-                f,
-                "peak force {} N, less than cars have that touch at walking speed ({limit} N); \
-                 is the column in kN?",
-                significant(value)
-            ),
-            FlagKind::ImplausibleImpulse => write!(
-                f,
-                "impulse {} N s, {} {limit} N s of any collision of cars; check the units \
-                 of force and time",
-                significant(value),
-                if value < limit { "below the" } else { "above the" }
-            ),
-            FlagKind::LongContact => {
-                write!(f, "contact takes {value:.1} s, limit {limit} s; check the unit of time")
-            }
-            FlagKind::NoForce => write!(f, "the force is zero throughout"),
-            FlagKind::NotSeparated => {
-                write!(f, "still in contact at the end: the impulse is not complete")
-            }
-            FlagKind::Hooked => write!(f, "the striking vehicle's corner stays caught"),
-        }?;
-        match self.time_s {
-            Some(time_s) => write!(f, " (at {time_s:.4} s)"),
-            None => Ok(()),
-        }
-    }
 }
 
 fn check_sampling(time_s: &[f64]) -> Vec<Flag> {

@@ -4,7 +4,7 @@
 
 use std::fmt;
 
-use crate::data::{MapError, spelling};
+use crate::data::{MapError, Separator, Thousands, spelling};
 use crate::ranges::INSTANT;
 use crate::units::Quantity;
 
@@ -38,6 +38,12 @@ pub enum VelocityAxes {
 /// How a file is read, apart from its columns. What is `None` is found in the file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ReadSettings {
+    /// What divides the fields of a line, `separator=semicolon`; a sheet has none.
+    pub separator: Option<Separator>,
+    /// Whether the decimal sign is a comma, `decimal=comma`, or a point, `decimal=point`.
+    pub decimal_comma: Option<bool>,
+    /// What stands between thousands, `thousands=point`.
+    pub thousands: Option<Thousands>,
     /// The sheet of a workbook, `sheet=2` or `sheet=NAME`; `None` is the first one.
     pub sheet: Option<SheetRef>,
     /// The line of the header, `header=5` or `header=none`.
@@ -66,13 +72,10 @@ impl ReadSettings {
     /// [`MapError::Setting`] if the value is none of the setting, [`MapError::SettingTwice`] if the
     /// setting was given before.
     pub(super) fn take(&mut self, name: &str, value: &str) -> Result<bool, MapError> {
-        let wrong = |expected: &'static str| MapError::Setting {
-            name: name.to_owned(),
-            text: value.to_owned(),
-            expected,
-        };
+        let wrong = |expected: &'static str| wrong(name, value, expected);
         let line = || value.parse().ok().filter(|line| *line > 0);
         let is_first = match name {
+            "separator" | "decimal" | "thousands" => self.take_sign(name, value)?,
             "sheet" => self.sheet.replace(sheet(value)).is_none(),
             "header" => {
                 let expected = "the number of a line or none, e.g. header=5";
@@ -121,6 +124,38 @@ impl ReadSettings {
             false => Err(MapError::SettingTwice { name: name.to_owned() }),
         }
     }
+
+    /// Takes what divides fields and what stands within numbers.
+    ///
+    /// - returns whether it was not given before.
+    fn take_sign(&mut self, name: &str, value: &str) -> Result<bool, MapError> {
+        Ok(match name {
+            "separator" => {
+                let expected = "comma, semicolon, tab or space";
+                let separator = Separator::ALL.into_iter().find(|of| of.name() == value);
+                let separator = separator.ok_or_else(|| wrong(name, value, expected))?;
+                self.separator.replace(separator).is_none()
+            }
+            "decimal" => {
+                let is_comma = match value {
+                    "comma" => true,
+                    "point" => false,
+                    _ => return Err(wrong(name, value, "point or comma")),
+                };
+                self.decimal_comma.replace(is_comma).is_none()
+            }
+            _ => {
+                let expected = "point, comma, apostrophe or space";
+                let mark = Thousands::ALL.into_iter().find(|of| of.name() == value);
+                let mark = mark.ok_or_else(|| wrong(name, value, expected))?;
+                self.thousands.replace(mark).is_none()
+            }
+        })
+    }
+}
+
+fn wrong(name: &str, value: &str, expected: &'static str) -> MapError {
+    MapError::Setting { name: name.to_owned(), text: value.to_owned(), expected }
 }
 
 fn sheet(value: &str) -> SheetRef {
@@ -157,7 +192,14 @@ impl fmt::Display for ReadSettings {
             VelocityAxes::Body => "body".to_owned(),
             VelocityAxes::World => "world".to_owned(),
         });
+        let decimal = |is_comma| match is_comma {
+            true => "comma".to_owned(),
+            false => "point".to_owned(),
+        };
         let parts = [
+            ("separator", self.separator.map(|of| of.name().to_owned())),
+            ("decimal", self.decimal_comma.map(decimal)),
+            ("thousands", self.thousands.map(|of| of.name().to_owned())),
             ("sheet", self.sheet.as_ref().map(SheetRef::to_string)),
             ("header", header),
             ("units", self.units_line.map(|line| line.to_string())),

@@ -10,6 +10,7 @@ use csv::{Reader, ReaderBuilder, StringRecord};
 use crate::data::DataError;
 use crate::data::dialect::{Dialect, Separator, comment};
 use crate::data::header::check_cells;
+use crate::data::marks::{Marks, Thousands};
 
 /// The rows of a table.
 #[derive(Debug, Clone)]
@@ -109,6 +110,31 @@ impl Rows {
         })
     }
 
+    /// What the numbers of all rows say of their marks.
+    pub(super) fn marks(&self) -> Marks {
+        let mut marks = Marks::default();
+        let text = self.starts.first().map_or("", |start| self.from(*start));
+        let is_quoted = || text.contains('"');
+        let has_comma = text.contains(',') && (self.separator != Separator::Comma || is_quoted());
+        let has_point = text.contains('.');
+        let has_other = text.contains(['\'', '\u{2019}', '\u{a0}', '\u{202f}'])
+            || (self.separator != Separator::Blanks && has_inner_space(text));
+        // Where all numbers have the same mark, one of them is enough.
+        let only = match (has_point, has_comma, has_other) {
+            (false, false, false) => return marks,
+            (true, false, false) => Some(Thousands::Point),
+            (false, true, false) => Some(Thousands::Comma),
+            _ => None,
+        };
+        for (_, cells) in self.iter() {
+            cells.iter().for_each(|cell| marks.add(cell));
+            if only.is_some_and(|mark| marks.is_decimal(mark)) {
+                break;
+            }
+        }
+        marks
+    }
+
     /// The cells of the row at an offset, as many as the table has columns; `None` if its first line
     /// contains quotation marks.
     fn plain_cells(&self, start: u32) -> Option<impl Iterator<Item = &str>> {
@@ -136,6 +162,15 @@ impl Rows {
     fn from(&self, start: u32) -> &str {
         self.text.get(start as usize..).unwrap_or_default()
     }
+}
+
+/// Whether a space stands between two digits.
+fn has_inner_space(text: &str) -> bool {
+    let is_inner = |bytes: &[u8]| match *bytes {
+        [before, b' ', after] => before.is_ascii_digit() && after.is_ascii_digit(),
+        _ => false,
+    };
+    text.as_bytes().windows(3).any(is_inner)
 }
 
 fn reader(separator: Separator, source: &str) -> Reader<&[u8]> {

@@ -15,7 +15,7 @@ use crate::data::spelling;
 use crate::data::text::{Text, read_text};
 use crate::data::vbo;
 use crate::data::workbook::{Sheet, is_archive, read_sheet};
-use crate::data::{DataError, ReadSettings};
+use crate::data::{DataError, ReadSettings, marks};
 
 /// The column that holds the names in a table of cases; a header with it is recognised by this
 /// name.
@@ -33,6 +33,8 @@ pub struct Table {
     path: PathBuf,
     encoding: &'static str,
     dialect: Dialect,
+    /// Whether one of its numbers may mean two things, such as `1.860`.
+    is_ambiguous: bool,
     header: Header,
     rows: Rows,
     /// The numbers and the beginnings of the first lines.
@@ -94,7 +96,7 @@ impl Table {
     fn parse(
         path: &Path,
         Text { mut text, encoding }: Text,
-        separator: Option<Separator>,
+        converted: Option<Separator>,
         settings: &ReadSettings,
     ) -> Result<Self, DataError> {
         check_line_lengths(path, &text)?;
@@ -106,7 +108,7 @@ impl Table {
                 let path = path.to_owned();
                 return Err(DataError::Empty { path });
             }
-            Dialect::sniff(&texts, separator)
+            Dialect::sniff(&texts, converted, settings)
         };
         if dialect.separator == Separator::Blanks && text.contains('\t') {
             text = text.replace('\t', " ");
@@ -117,8 +119,13 @@ impl Table {
         let (body, first_line) = body.map_or((text.len(), 0), |body| (body.start, body.number));
         let beginning = lines.iter().take(SHOWN_LINES).map(|line| shown_line(line)).collect();
         let rows = Rows::read(path, text, body, first_line, dialect, header.names.len())?;
+        let (separator, is_converted) = (dialect.separator, converted.is_some());
+        let (dialect, is_ambiguous) =
+            Dialect::with_marks(separator, rows.marks(), is_converted, settings);
         let (path, sheet, format) = (path.to_owned(), None, None);
-        Ok(Self { path, encoding, dialect, header, rows, beginning, sheet, format })
+        let table =
+            Self { path, encoding, dialect, is_ambiguous, header, rows, beginning, sheet, format };
+        Ok(table)
     }
 
     /// Path of the file.
@@ -237,6 +244,19 @@ impl Table {
     /// The number in a cell; `None` if the cell does not hold a finite number.
     pub fn number(&self, row_idx: usize, column_idx: usize) -> Option<f64> {
         self.dialect.number(&self.cell(row_idx, column_idx))
+    }
+
+    /// Row and column of the first number that may mean two things, where nothing in the table says which.
+    ///
+    /// - `columns`: indices of the columns that are read.
+    pub(super) fn ambiguous_number(&self, columns: &[usize]) -> Option<(usize, usize)> {
+        let is_open = |(row_idx, column_idx): &(usize, usize)| {
+            marks::is_open(&self.cell(*row_idx, *column_idx))
+        };
+        let n_rows = if self.is_ambiguous { self.n_rows() } else { 0 };
+        (0..n_rows)
+            .flat_map(|row_idx| columns.iter().map(move |column_idx| (row_idx, *column_idx)))
+            .find(is_open)
     }
 
     /// The numbers in all rows of a column.

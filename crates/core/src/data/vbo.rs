@@ -55,7 +55,8 @@ pub(super) fn as_table(text: &str) -> Option<String> {
         table.push('\n');
         let mut cells = Vec::new();
         for (idx, cell) in line.split_whitespace().enumerate() {
-            let plain = Dialect { separator: Separator::Blanks, decimal_comma: false };
+            let (separator, decimal_comma, thousands) = (Separator::Blanks, false, None);
+            let plain = Dialect { separator, decimal_comma, thousands };
             let number = plain.number(cell);
             let converted = match (columns.get(idx).map(|(column, _)| column), number) {
                 (Some(Column::Time), Some(clock)) => seconds(clock).map(|time_s| {

@@ -23,11 +23,11 @@ const UNDECIDED: f64 = 2.0;
 const BOTH_SMALL: f64 = 0.05;
 
 /// What velocities in other units give, read in m/s, over the length of the path.
-const UNITS: [(f64, &str); 4] =
+pub(super) const UNITS: [(f64, &str); 4] =
     [(3.6, "km/h"), (2.236_94, "mph"), (3.280_84, "ft/s"), (1000.0, "mm/s")];
 
 /// Length of the path below which nothing is compared, m.
-const SHORTEST_PATH_M: f64 = 1.0;
+pub(super) const SHORTEST_PATH_M: f64 = 1.0;
 
 /// The axes in which the velocities of a motion fit its path.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,100 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::Severity;
-
-/// What a caveat is about.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum CaveatKind {
-    /// The answer is not to what is asked any more.
-    Outdated,
-    /// The question lies outside what a trained network has learned from: the answer goes over to
-    /// the bare physics, and its bands to the measured errors of the physics. Or a vehicle of a
-    /// reconstruction is none of those that rules and priors are known of.
-    OutsideDomain,
-    /// No contact of two bodies brings the predicted impulse about.
-    ImplausibleContact,
-    /// The bare physics says something else than the network, beyond the bands of the network.
-    Disagreement,
-    /// The collision gives a vehicle that was chosen by name another mass or size than the vehicle has.
-    OtherVehicle,
-    /// The outlines of the vehicles overlap where they should touch.
-    Overlap,
-    /// The vehicles meet again; the motion after that is not theirs.
-    SecondContact,
-    /// The record of a force ends while the vehicles are still in contact: its impulse is not
-    /// complete.
-    ContactNotEnded,
-    /// A check of a file that the answer used found that something is wrong with it.
-    DoubtfulData,
-    /// A computed motion gains energy without a force.
-    EnergyGain,
-    /// A wheel lifts off.
-    WheelLift,
-    /// The vehicle rolls further than the model of its motion is valid.
-    RollLimit,
-    /// The motion ends before the vehicle is at rest.
-    NotAtRest,
-    /// Nothing in the answer explains an item of the evidence.
-    EvidenceUnexplained,
-    /// The particles are too few, or not of the posterior.
-    FewParticles,
-    /// The draws are so few that their intervals are uncertain themselves.
-    FewDraws,
-    /// The evidence leaves several courses of events possible: what holds over all of them may be true of
-    /// none.
-    SeveralCourses,
-    /// How often the intervals hold the truth has hardly been tried.
-    HardlyValidated,
-    /// Cases or draws could not be used and are left out.
-    LeftOut,
-    /// A network is judged by cases that it has learned from.
-    TrainedOn,
-    /// A value that the question leaves open and the program chose.
-    Assumed,
-    /// A value that the question gives and the answer does not depend on.
-    NotUsed,
-    /// What a person should know about how the answer was made.
-    Note,
-}
-
-/// What of a question a caveat concerns, so that a person finds where to change it.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum CaveatSubject {
-    /// The struck vehicle.
-    Vehicle,
-    /// The striking vehicle.
-    #[serde(rename = "bullet")]
-    Striking,
-    /// A parameter of the struck vehicle that its data sheet does not state.
-    VehicleParameter,
-    /// Parameters of the striking vehicle that its data sheet does not state.
-    #[serde(rename = "bullet_parameter")]
-    StrikingParameter,
-    /// Peak friction of the road, or of zones of the ground.
-    RoadFriction,
-    /// Speed of the struck vehicle before the impact.
-    Speed,
-    /// Where the force acts on the struck vehicle.
-    ContactPoint,
-    /// How high above the ground the force acts.
-    ContactHeight,
-    /// Shape and duration of a pulse that carries a known impulse.
-    Pulse,
-    /// Yaw rate, roll angle or roll rate at the start of a recorded motion.
-    StartOfRecord,
-    /// Road-wheel angle before or after its recording.
-    Steer,
-    /// Where vehicles first touched whose outlines overlap.
-    FirstTouch,
-    /// Restitution and friction between the vehicles.
-    Restitution,
-}
+use crate::uncertainty::{CaveatKind, CaveatSubject};
+use crate::units::{Language, NumberFormat, Phrase, PhraseValue, Quantity, UnitSystem, named_unit};
 
 /// Something for which the numbers of an answer are less reliable than they look, or on which they
 /// rest.
@@ -121,82 +29,76 @@ pub struct Caveat {
     pub range: Option<[Option<f64>; 2]>,
     /// Of an assumption: why this value, and how another one is given.
     pub reason: Option<String>,
+    /// The text in every language and in all units, where the program has it so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub text_phrase: Option<Phrase>,
+    /// The same of the reason.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason_phrase: Option<Phrase>,
 }
 
-impl CaveatKind {
-    /// A few words for a person.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Outdated => "outdated",
-            Self::OutsideDomain => "outside the domain",
-            Self::ImplausibleContact => "implausible contact",
-            Self::Disagreement => "disagreement",
-            Self::OtherVehicle => "other than the vehicle",
-            Self::Overlap => "overlap",
-            Self::SecondContact => "second contact",
-            Self::ContactNotEnded => "contact not ended",
-            Self::DoubtfulData => "doubtful data",
-            Self::EnergyGain => "energy gain",
-            Self::WheelLift => "wheel lift",
-            Self::RollLimit => "roll limit",
-            Self::NotAtRest => "not at rest",
-            Self::EvidenceUnexplained => "evidence unexplained",
-            Self::FewParticles => "few particles",
-            Self::FewDraws => "few draws",
-            Self::SeveralCourses => "several courses of events",
-            Self::HardlyValidated => "hardly validated",
-            Self::LeftOut => "left out",
-            Self::TrainedOn => "trained on",
-            Self::Assumed => "assumed",
-            Self::NotUsed => "not used",
-            Self::Note => "note",
-        }
-    }
+/// A text of a caveat: in English with SI units, or a [`Phrase`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaveatText {
+    text: String,
+    phrase: Option<Phrase>,
+}
 
-    /// A value that was assumed or is not used.
-    pub fn is_assumption(self) -> bool {
-        matches!(self, Self::Assumed | Self::NotUsed)
-    }
+/// The quantity that a caveat is about, in the units of a reader.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaveatQuantity<'a> {
+    /// What it is called, in English and without its unit.
+    pub name: &'a str,
+    /// The symbol of its unit in brackets, with a space before them; empty if it has none.
+    pub unit: String,
+    /// Its value.
+    pub value: f64,
+    /// Smallest and largest value that raise no caveat.
+    pub range: Option<[Option<f64>; 2]>,
+}
 
-    /// A warning where the numbers may be wrong, rather than rest on something that the user can
-    /// supply.
-    fn severity(self) -> Severity {
-        match self {
-            Self::Assumed | Self::NotUsed | Self::Note | Self::NotAtRest | Self::LeftOut => {
-                Severity::Info
-            }
-            _ => Severity::Warning,
-        }
+impl From<&str> for CaveatText {
+    fn from(text: &str) -> Self {
+        Self { text: text.to_owned(), phrase: None }
     }
 }
 
-impl CaveatSubject {
-    /// For a person.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Vehicle => "struck vehicle",
-            Self::Striking => "striking vehicle",
-            Self::VehicleParameter => "parameter of the vehicle",
-            Self::StrikingParameter => "parameters of the striking vehicle",
-            Self::RoadFriction => "road friction",
-            Self::Speed => "speed before the impact",
-            Self::ContactPoint => "contact point",
-            Self::ContactHeight => "height of the contact",
-            Self::Pulse => "force over time",
-            Self::StartOfRecord => "start of the recorded motion",
-            Self::Steer => "steer angle",
-            Self::FirstTouch => "first contact",
-            Self::Restitution => "restitution and friction",
-        }
+impl From<&String> for CaveatText {
+    fn from(text: &String) -> Self {
+        Self::from(text.as_str())
+    }
+}
+
+impl From<String> for CaveatText {
+    fn from(text: String) -> Self {
+        Self { text, phrase: None }
+    }
+}
+
+impl From<Phrase> for CaveatText {
+    /// A phrase with a number that is not finite is its English text alone.
+    fn from(phrase: Phrase) -> Self {
+        let text = phrase.say(&NumberFormat::default());
+        Self { text, phrase: Some(phrase).filter(Phrase::is_finite) }
     }
 }
 
 impl Caveat {
     /// A caveat that concerns no single quantity.
-    pub fn new(kind: CaveatKind, text: impl Into<String>) -> Self {
-        let (severity, text) = (kind.severity(), text.into());
-        let (subject, quantity, value, range, reason) = (None, None, None, None, None);
-        Self { kind, severity, subject, text, quantity, value, range, reason }
+    pub fn new(kind: CaveatKind, text: impl Into<CaveatText>) -> Self {
+        let (severity, CaveatText { text, phrase }) = (kind.severity(), text.into());
+        Self {
+            kind,
+            severity,
+            subject: None,
+            text,
+            quantity: None,
+            value: None,
+            range: None,
+            reason: None,
+            text_phrase: phrase,
+            reason_phrase: None,
+        }
     }
 
     /// A value that the question leaves open.
@@ -205,16 +107,26 @@ impl Caveat {
     /// - `reason`: why this one, and how another one is given.
     pub fn assumed(
         subject: CaveatSubject,
-        value: impl Into<String>,
-        reason: impl Into<String>,
+        value: impl Into<CaveatText>,
+        reason: impl Into<CaveatText>,
     ) -> Self {
-        let (subject, reason) = (Some(subject), Some(reason.into()));
-        Self { subject, reason, ..Self::new(CaveatKind::Assumed, value) }
+        Self { subject: Some(subject), ..Self::new(CaveatKind::Assumed, value).because(reason) }
     }
 
     /// Something that the question gives and the answer does not depend on.
-    pub fn not_used(what: impl Into<String>, reason: impl Into<String>) -> Self {
-        Self { reason: Some(reason.into()), ..Self::new(CaveatKind::NotUsed, what) }
+    pub fn not_used(what: impl Into<CaveatText>, reason: impl Into<CaveatText>) -> Self {
+        Self::new(CaveatKind::NotUsed, what).because(reason)
+    }
+
+    fn because(self, reason: impl Into<CaveatText>) -> Self {
+        let CaveatText { text, phrase } = reason.into();
+        Self { reason: Some(text), reason_phrase: phrase, ..self }
+    }
+
+    /// The text as a phrase.
+    pub(super) fn phrase(&self) -> Phrase {
+        let english = || Phrase::of(PhraseValue::English(self.text.clone()));
+        self.text_phrase.clone().unwrap_or_else(english)
     }
 
     /// The same caveat about the value of a quantity. A value that is not finite is left out.
@@ -239,6 +151,49 @@ impl Caveat {
         self.severity > Severity::Info
     }
 
+    /// The text in a language and in units; `None` if the program has it in English alone and that is
+    /// not the language.
+    ///
+    /// - `term`: a label of the program in the language.
+    pub fn text_in(&self, format: &NumberFormat, term: &dyn Fn(&str) -> String) -> Option<String> {
+        text_in((&self.text, self.text_phrase.as_ref()), format, term)
+    }
+
+    /// The reason, as [`Self::text_in`] has the text; empty if there is none.
+    pub fn reason_in(
+        &self,
+        format: &NumberFormat,
+        term: &dyn Fn(&str) -> String,
+    ) -> Option<String> {
+        let reason = self.reason.as_deref().unwrap_or_default();
+        text_in((reason, self.reason_phrase.as_ref()), format, term)
+    }
+
+    /// The same caveat with its texts in English in the units of a reader.
+    #[must_use]
+    pub fn in_units(&self, units: UnitSystem) -> Self {
+        let format = NumberFormat::english(units);
+        let own = str::to_owned;
+        let text = self.text_in(&format, &own).unwrap_or_else(|| self.text.clone());
+        let reason = self.reason.as_ref().and_then(|_| self.reason_in(&format, &own));
+        Self { text, reason, ..self.clone() }
+    }
+
+    /// The quantity that it is about, in the units of a reader; `None` if there is none, or no value.
+    pub fn quantity_in(&self, format: &NumberFormat) -> Option<CaveatQuantity<'_>> {
+        let (quantity, value) = (self.quantity.as_deref()?, self.value?);
+        let Some((name, symbol)) = named_unit(quantity) else {
+            let (name, unit, range) = (quantity, String::new(), self.range);
+            return Some(CaveatQuantity { name, unit, value, range });
+        };
+        let shown = Quantity::from_si_symbol(symbol).filter(|_| *format != NumberFormat::default());
+        let unit = shown.map(|quantity| quantity.display_unit(format.units));
+        let in_unit = |si: f64| unit.map_or(si, |unit| unit.from_si(si));
+        let range = self.range.map(|range| range.map(|end| end.map(in_unit)));
+        let symbol = format.symbol(unit.map_or(symbol, |unit| unit.symbol));
+        Some(CaveatQuantity { name, unit: format!(" [{symbol}]"), value: in_unit(value), range })
+    }
+
     /// What stands behind the label of its kind: the sentence, and for an assumption what was assumed
     /// with its value. Many sentences begin with the label, which is left out.
     pub fn statement(&self) -> String {
@@ -247,6 +202,17 @@ impl Caveat {
             Some(subject) => format!("{}: {}", subject.label(), self.text),
             None => self.text.strip_prefix(&begin).unwrap_or(&self.text).to_owned(),
         }
+    }
+}
+
+fn text_in(
+    (text, phrase): (&str, Option<&Phrase>),
+    format: &NumberFormat,
+    term: &dyn Fn(&str) -> String,
+) -> Option<String> {
+    match phrase {
+        Some(phrase) if *format != NumberFormat::default() => Some(phrase.say_with(format, term)),
+        _ => (format.language == Language::En || text.is_empty()).then(|| text.to_owned()),
     }
 }
 
@@ -262,5 +228,68 @@ impl fmt::Display for Caveat {
             _ if self.is_warning() => write!(f, "warning: {label}: {text}"),
             _ => write!(f, "note: {label}: {text}"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const US: NumberFormat = NumberFormat { units: UnitSystem::Us, language: Language::En };
+    const DE: NumberFormat = NumberFormat { units: UnitSystem::Si, language: Language::De };
+
+    fn moving() -> Caveat {
+        let phrase = Phrase::new("not at rest: at {0}", "Das Fahrzeug fährt noch {0}")
+            .with(PhraseValue::fixed(Quantity::Speed, 5.0, 1));
+        Caveat::new(CaveatKind::NotAtRest, phrase)
+            .with_value("speed at the end [m/s]", 5.0)
+            .with_range([f64::NEG_INFINITY, 0.05])
+    }
+
+    #[test]
+    fn a_caveat_is_read_in_the_language_and_the_units_of_a_reader() {
+        let (caveat, own) = (moving(), str::to_owned);
+        assert_eq!(caveat.text, "not at rest: at 5.0 m/s");
+        let german = caveat.text_in(&DE, &own).unwrap();
+        assert_eq!(german, "Das Fahrzeug fährt noch 18,0 km/h");
+        let us = caveat.in_units(UnitSystem::Us);
+        assert_eq!(us.text, "not at rest: at 11.2 mph");
+        assert_eq!(us.statement(), "at 11.2 mph");
+        assert_eq!(caveat.in_units(UnitSystem::Si), caveat);
+        let english = Caveat::new(CaveatKind::Note, "sampled at 1 kHz");
+        assert_eq!(english.text_in(&DE, &own), None);
+        assert_eq!(english.text_in(&US, &own).unwrap(), "sampled at 1 kHz");
+        let assumed = Caveat::assumed(CaveatSubject::Speed, Phrase::new("a", "b"), "why");
+        assert_eq!(assumed.text_in(&DE, &own).unwrap(), "b");
+        assert_eq!(assumed.reason_in(&DE, &own), None);
+        assert_eq!(assumed.in_units(UnitSystem::Us).reason.unwrap(), "why");
+    }
+
+    #[test]
+    fn the_quantity_of_a_caveat_has_the_units_of_a_reader() {
+        let caveat = moving();
+        let si = caveat.quantity_in(&NumberFormat::default()).unwrap();
+        assert_eq!((si.name, &*si.unit, si.value), ("speed at the end", " [m/s]", 5.0));
+        let us = caveat.quantity_in(&US).unwrap();
+        assert_eq!(us.unit, " [mph]");
+        assert!((us.value - 11.185).abs() < 1e-3, "{us:?}");
+        assert!(matches!(us.range, Some([None, Some(high)]) if (high - 0.1118).abs() < 1e-3));
+        let odd = Caveat::new(CaveatKind::OutsideDomain, "x").with_value("roll [rad/g]", 0.1);
+        assert_eq!(odd.quantity_in(&US).unwrap().unit, " [rad/g]");
+        assert_eq!(Caveat::new(CaveatKind::Note, "").quantity_in(&US), None);
+    }
+
+    #[test]
+    fn the_texts_of_earlier_versions_are_read_and_a_phrase_comes_back() {
+        let mut written = serde_json::to_value(moving()).unwrap();
+        assert_eq!(serde_json::from_value::<Caveat>(written.clone()).unwrap(), moving());
+        written.as_object_mut().unwrap().remove("text_phrase");
+        let read: Caveat = serde_json::from_value(written).unwrap();
+        assert_eq!((read.text, read.text_phrase), (moving().text, None));
+        let plain = serde_json::to_value(Caveat::new(CaveatKind::Note, "x")).unwrap();
+        assert_eq!((plain.get("text_phrase"), plain.get("reason_phrase")), (None, None));
+        let unknown = Phrase::of(PhraseValue::Share(f64::NAN));
+        let caveat = Caveat::new(CaveatKind::FewDraws, unknown);
+        assert_eq!((&*caveat.text, caveat.text_phrase), ("NaN %", None));
     }
 }

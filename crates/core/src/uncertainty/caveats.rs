@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::uncertainty::{Caveat, CaveatKind, CaveatSubject};
+use crate::units::{Phrase, PhraseValue, UnitSystem};
 
 /// What restricts an answer and what it rests on. It stands beside the answer wherever that goes.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,14 +29,20 @@ impl Caveats {
     /// One caveat for all that was assumed, each subject once, and one for all that is not used.
     pub fn summaries(&self) -> Vec<Caveat> {
         let summary = |kind| {
-            let mut all: Vec<&str> = Vec::new();
+            let mut all: Vec<(&str, Phrase)> = Vec::new();
             for caveat in self.0.iter().filter(|caveat| caveat.kind == kind) {
-                let what = caveat.subject.map_or(caveat.text.as_str(), |subject| subject.label());
-                if !all.contains(&what) {
+                let what = match caveat.subject {
+                    Some(subject) => (subject.label(), subject.phrase()),
+                    None => (caveat.text.as_str(), caveat.phrase()),
+                };
+                if all.iter().all(|(text, _)| *text != what.0) {
                     all.push(what);
                 }
             }
-            (!all.is_empty()).then(|| Caveat::new(kind, all.join("; ")))
+            let (texts, phrases): (Vec<&str>, Vec<Phrase>) = all.into_iter().unzip();
+            let text_phrase = Some(Phrase::joined(phrases, "; "));
+            let summary = || Caveat { text_phrase, ..Caveat::new(kind, texts.join("; ")) };
+            (!texts.is_empty()).then(summary)
         };
         [CaveatKind::Assumed, CaveatKind::NotUsed].into_iter().filter_map(summary).collect()
     }
@@ -44,6 +51,12 @@ impl Caveats {
     pub fn notes(&self) -> impl Iterator<Item = &str> {
         let notes = self.0.iter().filter(|caveat| caveat.kind == CaveatKind::Note);
         notes.map(|note| note.text.as_str())
+    }
+
+    /// The same with their texts in English in the units of a reader.
+    #[must_use]
+    pub fn in_units(&self, units: UnitSystem) -> Self {
+        self.0.iter().map(|caveat| caveat.in_units(units)).collect()
     }
 
     /// All of them, in the order in which they were found.
@@ -65,7 +78,10 @@ impl Caveats {
     #[must_use]
     pub fn outdated_if(mut self, is_outdated: bool) -> Self {
         if is_outdated && !self.is_outdated() {
-            let text = "this is not the answer to what is asked now";
+            let text = Phrase::new(
+                "this is not the answer to what is asked now",
+                "Dies ist nicht die Antwort auf die jetzige Frage",
+            );
             self.0.insert(0, Caveat::new(CaveatKind::Outdated, text));
         }
         self
@@ -82,12 +98,18 @@ impl Caveats {
             if self.0.contains(caveat) {
                 continue;
             }
-            let text = match caveat.kind {
-                CaveatKind::Outdated => caveat.text.clone(),
-                kind if kind.is_assumption() => format!("{} ({name})", caveat.text),
-                _ => format!("{name}: {}", caveat.text),
+            let (text, template) = match caveat.kind {
+                CaveatKind::Outdated => (caveat.text.clone(), "{0}"),
+                kind if kind.is_assumption() => (format!("{} ({name})", caveat.text), "{0} ({1})"),
+                _ => (format!("{name}: {}", caveat.text), "{1}: {0}"),
             };
-            self.0.push(Caveat { text, ..caveat.clone() });
+            let of_variant = |phrase: &Phrase| {
+                Phrase::new(template, template)
+                    .with(PhraseValue::phrase(phrase.clone()))
+                    .with(PhraseValue::Name(name.to_owned()))
+            };
+            let text_phrase = caveat.text_phrase.as_ref().map(of_variant);
+            self.0.push(Caveat { text, text_phrase, ..caveat.clone() });
         }
     }
 
@@ -251,6 +273,7 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
+    use crate::units::{Language, NumberFormat, Quantity};
 
     fn caveats() -> Caveats {
         let unused = "no effect";
@@ -291,6 +314,23 @@ mod tests {
         all.add_variant("fast", &Caveats::from(vec![met("at 0.3 s"), met("at 0.2 s")]));
         let texts: Vec<&str> = all.iter().map(|caveat| caveat.text.as_str()).collect();
         assert_eq!(texts, ["at 0.3 s", "fast: at 0.2 s"]);
+    }
+
+    #[test]
+    fn the_caveats_of_a_variant_and_summaries_keep_their_languages() {
+        let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
+        let said = |caveat: &Caveat| caveat.text_in(&german, &str::to_owned).unwrap();
+        let at =
+            Phrase::new("at {0}", "bei {0}").with(PhraseValue::fixed(Quantity::Length, 1.5, 1));
+        let mut all = Caveats::default();
+        all.add_variant("fast", &Caveats::from(vec![Caveat::new(CaveatKind::Overlap, at)]));
+        let overlap = all.iter().next().unwrap();
+        assert_eq!((&*overlap.text, &*said(overlap)), ("fast: at 1.5 m", "fast: bei 1,5 m"));
+        assert_eq!(all.in_units(UnitSystem::Us).iter().next().unwrap().text, "fast: at 4.9 ft");
+        let summaries = caveats().summaries();
+        let texts: Vec<String> = summaries.iter().map(said).collect();
+        let assumed = "Parameter des Fahrzeugs; Geschwindigkeit vor dem Anstoß";
+        assert_eq!(texts, [assumed, "„restitution, 0.3“"]);
     }
 
     #[test]

@@ -26,6 +26,7 @@
 mod error;
 
 mod caveat;
+mod caveat_kind;
 mod caveats;
 
 mod curve;
@@ -47,7 +48,8 @@ mod planar_grid;
 mod unscented;
 
 pub use bands::{CurveBand, CurveBands};
-pub use caveat::{Caveat, CaveatKind, CaveatSubject};
+pub use caveat::{Caveat, CaveatQuantity, CaveatText};
+pub use caveat_kind::{CaveatKind, CaveatSubject};
 pub use caveats::Caveats;
 pub use curve::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 pub use error::MixtureError;

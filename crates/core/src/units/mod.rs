@@ -4,6 +4,8 @@
 
 mod estimate;
 mod format;
+mod phrase;
+mod phrase_value;
 mod quantity;
 mod typed;
 
@@ -11,6 +13,8 @@ pub use estimate::{Estimate, Interval};
 pub use format::{
     EstimateText, IntervalText, Language, NumberFormat, percent, significant, trimmed,
 };
+pub use phrase::Phrase;
+pub use phrase_value::{PhraseNumber, PhraseValue, named_unit, three_digits};
 pub use quantity::{
     KILOMETRE_PER_HOUR_M_S, MILE_PER_HOUR_M_S, Quantity, STANDARD_GRAVITY_M_S2, US_SURVEY_FOOT,
     Unit, UnitSystem,

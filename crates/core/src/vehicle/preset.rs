@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use crate::vehicle::{LibraryVehicle, VehicleParameters};
+use crate::vehicle::{LibraryVehicle, VehicleClass, VehicleParameters};
 
 macro_rules! presets {
     ($($(#[$doc:meta])* $variant:ident: $file:literal;)+) => {
@@ -92,6 +92,19 @@ impl BuiltInVehicle {
         &ALL
     }
 
+    /// Kind of vehicle; `None` for one of the data sets.
+    pub fn class(&self) -> Option<VehicleClass> {
+        let sheet = self.parameters.sheet.as_ref().filter(|_| self.is_of_library);
+        sheet.map(|sheet| sheet.class)
+    }
+
+    /// Model year, with which the id of a car of the library ends; `None` for one that stands for its class, and
+    /// for one of the data sets.
+    pub fn model_year(&self) -> Option<u32> {
+        let (_, last) = self.id.rsplit_once('-').filter(|_| self.is_of_library)?;
+        last.parse().ok().filter(|_| last.len() == 4)
+    }
+
     /// The vehicle with an id; `None` if there is none.
     pub fn from_id(id: &str) -> Option<&'static Self> {
         Self::all().iter().find(|vehicle| vehicle.id == id)
@@ -106,6 +119,25 @@ pub fn built_in_vehicle(id: &str) -> Option<VehicleParameters> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The masses at the end of the presets' ids are no years.
+    #[test]
+    fn cars_of_the_library_have_a_class_and_a_year() {
+        let of = |id| {
+            let vehicle = BuiltInVehicle::from_id(id).unwrap();
+            (vehicle.class(), vehicle.model_year())
+        };
+        assert_eq!(of("toyota-corolla-2020"), (Some(VehicleClass::Car), Some(2020)));
+        assert_eq!(of("generic-car"), (Some(VehicleClass::Car), None));
+        assert_eq!(of("reference-2000"), (None, None));
+        for vehicle in BuiltInVehicle::all().iter().filter(|of| of.is_of_library) {
+            let is_generic = vehicle.id.starts_with("generic");
+            assert!(vehicle.class().is_some(), "{}", vehicle.id);
+            assert_eq!(vehicle.model_year().is_none(), is_generic, "{}", vehicle.id);
+            let year = vehicle.model_year().map(|year| year.to_string()).unwrap_or_default();
+            assert!(vehicle.parameters.name.contains(&year), "{}", vehicle.id);
+        }
+    }
 
     #[test]
     fn every_preset_loads_and_every_estimate_names_a_key() {

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::{ForceHistory, SeriesError, TimeSeries};
 use crate::ranges::OutOfRange;
+use crate::units::{NumberFormat, Phrase, PhraseValue, Quantity};
 use crate::vehicle::controls::Controls;
 use crate::vehicle::energy::MAX_ENERGY_GAIN;
 use crate::vehicle::run::{Inputs, Run};
@@ -122,24 +123,39 @@ pub enum MotionFlag {
     },
 }
 
+impl MotionFlag {
+    /// What it says of the motion.
+    pub fn phrase(&self) -> Phrase {
+        let at = |time_s: f64| PhraseValue::fixed(Quantity::Time, time_s, 2);
+        match *self {
+            Self::WheelLift { wheel, time_s } => Phrase::new(
+                "wheel lift: {0} carries no load at {1}",
+                "Das Rad {0} ist bei {1} ohne Last",
+            )
+            .with(PhraseValue::Term(wheel.label().to_owned()))
+            .with(at(time_s)),
+            Self::RollLimit { time_s, roll_rad } => Phrase::new(
+                "roll of {0} at {1} is beyond the model; a rollover is not excluded",
+                "Ein Wankwinkel von {0} bei {1} liegt außerhalb des Modells; ein Überschlag ist nicht \
+                 auszuschließen",
+            )
+            .with(PhraseValue::fixed(Quantity::Angle, roll_rad, 1).in_unit("deg"))
+            .with(at(time_s)),
+            Self::EnergyGain { time_s } => Phrase::new(
+                "energy: at {0} the vehicle has gained more than {1} of its energy although nothing \
+                 pushes it",
+                "Bei {0} hat das Fahrzeug mehr als {1} seiner Energie hinzugewonnen, obwohl keine Kraft \
+                 es antreibt",
+            )
+            .with(at(time_s))
+            .with(PhraseValue::fixed(Quantity::Ratio, MAX_ENERGY_GAIN, 0).in_unit("%")),
+        }
+    }
+}
+
 impl fmt::Display for MotionFlag {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::WheelLift { wheel, time_s } => {
-                write!(f, "wheel lift: {} carries no load at {time_s:.2} s", wheel.label())
-            }
-            Self::RollLimit { time_s, roll_rad } => write!(
-                f,
-                "roll of {:.1} deg at {time_s:.2} s is beyond the model; a rollover is not excluded",
-                roll_rad.to_degrees()
-            ),
-            Self::EnergyGain { time_s } => write!(
-                f,
-                "energy: at {time_s:.2} s the vehicle has gained more than {:.0} % of its energy \
-                 although nothing pushes it",
-                100.0 * MAX_ENERGY_GAIN
-            ),
-        }
+        f.write_str(&self.phrase().say(&NumberFormat::default()))
     }
 }
 

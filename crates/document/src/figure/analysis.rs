@@ -52,7 +52,8 @@ pub fn analysis_motion_figure(
     channel: Channel,
     units: UnitSystem,
 ) -> Figure {
-    motion_figure(&analysis.name, channel, motions(analysis), units).with_caveats(caveats)
+    motion_figure(&analysis.name, channel, motions(analysis), units)
+        .with_caveats(&caveats.in_units(units))
 }
 
 /// One line of text with the values of a channel in the simulated and in the recorded motion.
@@ -109,7 +110,7 @@ pub fn analysis_scene_figure(
     let title = format!("{}: scene from above at {time_s:.2} s{after}", analysis.name);
     let mut figure =
         scene_figure(&SceneFigure { title: &title, vehicles: &vehicles, time_s, units })
-            .with_caveats(caveats);
+            .with_caveats(&caveats.in_units(units));
     if let Some(second) = second {
         figure.elements.extend(second_contact_mark(second.point_m, figure.x.unit));
     }

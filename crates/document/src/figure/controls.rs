@@ -102,7 +102,8 @@ pub fn control_figure(
     let curves = input.curves(&vehicles(analysis));
     let y = Axis::shown(input.label(), input.quantity(), units);
     let axes = [Axis::shown("Time", Quantity::Time, units), y];
-    (!curves.is_empty()).then(|| curves_figure(analysis, axes, &curves).with_caveats(caveats))
+    let caveats = caveats.in_units(units);
+    (!curves.is_empty()).then(|| curves_figure(analysis, axes, &curves).with_caveats(&caveats))
 }
 
 /// The curve of each vehicle that has one.

@@ -68,7 +68,7 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
         }
     }
     let title = format!("{}: contact force on the struck vehicle, {axes}", input.name);
-    Figure::new(title, [x, y], elements).with_caveats(input.caveats)
+    Figure::new(title, [x, y], elements).with_caveats(&input.caveats.in_units(input.units))
 }
 
 /// The unit millisecond.

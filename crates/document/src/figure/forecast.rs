@@ -170,7 +170,7 @@ pub fn forecast_figure(component: ForceComponent, input: &ForecastFigure<'_>) ->
         elements.push(FigureElement::line(name, Role::Reference, points));
     }
     let title = format!("{}: predicted {} on the struck vehicle", input.name, component.label());
-    Figure::new(title, [x, y], elements).with_caveats(input.caveats)
+    Figure::new(title, [x, y], elements).with_caveats(&input.caveats.in_units(input.units))
 }
 
 /// Line style of a pulse shape.

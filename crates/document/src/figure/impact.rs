@@ -59,5 +59,5 @@ pub fn impact_figure(
     let impulse = scaled([px, py], px.hypot(py));
     elements.push(arrow("impulse on the struck vehicle", Role::Resultant, contact, impulse));
     let title = format!("{}: impulse and Δv at first contact", scenario.name);
-    Ok(Figure::new(title, [x, y], elements).plan().with_caveats(caveats))
+    Ok(Figure::new(title, [x, y], elements).plan().with_caveats(&caveats.in_units(units)))
 }

@@ -14,7 +14,7 @@ use impactlab_core::vehicle::VehicleState;
 use impactlab_networks::response::{MotionDistribution, STEP_S};
 use impactlab_study::PredictMotionAnswer;
 use impactlab_study::analysis::{
-    Analysis, DensityMap, MOTION_BAND_LEVELS, MotionBand, MotionBands,
+    Analysis, DensityMap, MOTION_BAND_LEVELS, MotionBand, MotionBands, RestOutcome,
 };
 
 /// Opacity of the band at each of [`MOTION_BAND_LEVELS`].
@@ -52,6 +52,9 @@ pub struct MotionForecastFigure<'a> {
     pub time_s: f64,
     /// Time of a second contact, which is not computed, s: no probability is shown after it.
     pub until_s: f64,
+    /// Time after which 95 % of the draws are at rest, s, where they are followed to rest: figures over
+    /// time end there.
+    pub at_rest_s: Option<f64>,
     /// System of units of the axes.
     pub units: UnitSystem,
     /// What restricts the forecast.
@@ -81,6 +84,7 @@ impl<'a> MotionForecastFigure<'a> {
             footprint: analysis.footprint,
             time_s,
             until_s: answer.report.known_until_s(),
+            at_rest_s: forecast.rest.as_ref().and_then(RestOutcome::nearly_all_at_rest_s),
             units,
             caveats,
         }
@@ -95,6 +99,17 @@ impl<'a> MotionForecastFigure<'a> {
     fn known_bands(&self) -> impl Iterator<Item = (&'a f64, &'a MotionBand)> + use<'a> {
         let (bands, until_s) = (self.bands, self.until_s);
         bands.time_s.iter().zip(&bands.intervals).filter(move |(time_s, _)| **time_s <= until_s)
+    }
+
+    /// Number of instants that figures over time show.
+    fn n_shown(&self) -> usize {
+        let all = self.central.len();
+        self.at_rest_s.map_or(all, |at_s| all.min((at_s / STEP_S).ceil() as usize + 1))
+    }
+
+    /// Why the figures over time end before the forecast; `None` where they do not.
+    pub fn cut(&self) -> Option<&'static str> {
+        (self.n_shown() < self.central.len()).then_some("until 95 % of the draws are at rest")
     }
 
     /// The same with the recorded and the simulated motion beside the forecast, as far as there are any.
@@ -198,7 +213,7 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         elements.extend(vehicle_outline("recorded", role, style, footprint, &pose, x.unit));
     }
     let title = format!("{}: position after {:.2} s", input.title, at as f64 * STEP_S);
-    Figure::new(title, [x, y], elements).plan().with_caveats(input.caveats)
+    Figure::new(title, [x, y], elements).plan().with_caveats(&input.caveats.in_units(input.units))
 }
 
 /// The striking vehicle of a forecast of both.
@@ -271,7 +286,7 @@ fn heat_map(map: &DensityMap, shown: &dyn Fn([f64; 2]) -> [f64; 2]) -> HeatMap {
 }
 
 /// A quantity over time: central path, bands at [`MOTION_BAND_LEVELS`], recorded motion and 4DOF
-/// simulation.
+/// simulation. A forecast to rest is shown until nearly all draws are at rest, which the title says.
 pub fn forecast_channel_figure(
     input: &MotionForecastFigure<'_>,
     channel: ForecastChannel,
@@ -279,17 +294,20 @@ pub fn forecast_channel_figure(
     let ForecastChannel { channel, axis } = channel;
     let x = Axis::shown("Time", Quantity::Time, input.units);
     let y = Axis::shown(channel.label(), channel.quantity(), input.units);
+    let n_shown = input.n_shown();
+    let shown_s = n_shown as f64 * STEP_S;
+    let bands = || input.known_bands().filter(move |(time_s, _)| **time_s < shown_s);
     let mut elements = Vec::new();
     for (rank, (level, opacity)) in MOTION_BAND_LEVELS.into_iter().zip(BAND_OPACITIES).enumerate() {
         let edge = |end: usize| -> Vec<f64> {
-            let ends = input.known_bands().map(|(_, instant)| instant[axis][rank][end]);
+            let ends = bands().map(|(_, instant)| instant[axis][rank][end]);
             ends.map(|value| y.unit.from_si(value)).collect()
         };
         elements.push(FigureElement::Band(Band {
             name: format!("{:.0} % band", 100.0 * level),
             role: Role::Model,
             opacity,
-            x: input.known_bands().map(|(time_s, _)| x.unit.from_si(*time_s)).collect(),
+            x: bands().map(|(time_s, _)| x.unit.from_si(*time_s)).collect(),
             low: edge(0),
             high: edge(1),
         }));
@@ -306,11 +324,59 @@ pub fn forecast_channel_figure(
     for (name, role, style, series) in others {
         elements.extend(series.and_then(|series| line(name, role, style, series)));
     }
-    let central = input.central.iter().enumerate();
+    let central = input.central.iter().take(n_shown).enumerate();
     let central = central.map(|(i, state)| {
         [x.unit.from_si(i as f64 * STEP_S), y.unit.from_si(state.planar()[axis])]
     });
     elements.push(FigureElement::line("central path", Role::Target, central.collect()));
-    let title = format!("{}: {} over time", input.title, channel.label());
-    Figure::new(title, [x, y], elements).with_caveats(input.caveats)
+    let cut = input.cut().map_or(String::new(), |cut| format!(", {cut}"));
+    let title = format!("{}: {} over time{cut}", input.title, channel.label());
+    Figure::new(title, [x, y], elements).with_caveats(&input.caveats.in_units(input.units))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_forecast_to_rest_is_shown_until_nearly_all_draws_are_at_rest() {
+        let n_instants = 1001;
+        let central = vec![VehicleState::default(); n_instants];
+        let bands = MotionBands {
+            time_s: (0..n_instants).step_by(5).map(|at| at as f64 * STEP_S).collect(),
+            intervals: vec![[[[0.0, 1.0]; 2]; 6]; n_instants.div_ceil(5)],
+        };
+        let (distribution, caveats) = (MotionDistribution::new(Vec::new()), Caveats::default());
+        let input = MotionForecastFigure {
+            title: "case",
+            distribution: &distribution,
+            central: &central,
+            bands: &bands,
+            density: None,
+            components: false,
+            reference: None,
+            simulation: None,
+            striking: None,
+            footprint: Footprint { length_m: 4.5, width_m: 1.8, cg_from_front_m: 2.2 },
+            time_s: 0.0,
+            until_s: f64::INFINITY,
+            at_rest_s: Some(4.2),
+            units: UnitSystem::Si,
+            caveats: &caveats,
+        };
+        let last_s = |input: &MotionForecastFigure<'_>| {
+            let figure = forecast_channel_figure(input, FORECAST_CHANNELS[3]);
+            let ends = figure.elements.iter().filter_map(|element| match element {
+                FigureElement::Line(series) => Some(series.points.last()?[0]),
+                FigureElement::Band(band) => band.x.last().copied(),
+                _ => None,
+            });
+            (ends.fold(0.0, f64::max), figure.title)
+        };
+        let (end_s, title) = last_s(&input);
+        assert!((end_s - 4.2).abs() < 1.5 * STEP_S, "{end_s}");
+        assert!(title.ends_with("over time, until 95 % of the draws are at rest"), "{title}");
+        let (end_s, title) = last_s(&MotionForecastFigure { at_rest_s: None, ..input });
+        assert!((end_s - 10.0).abs() < 1e-9 && title.ends_with("over time"), "{end_s} {title}");
+    }
 }

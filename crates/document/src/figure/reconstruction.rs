@@ -73,7 +73,7 @@ pub fn marginal_figure(
         }
     }
     let title = format!("{}: {label}", answer.report.case);
-    Figure::new(title, [x, y], elements).with_caveats(caveats)
+    Figure::new(title, [x, y], elements).with_caveats(&caveats.in_units(units))
 }
 
 /// Ends of the axis: all of the posterior, and of the prior what lies within three of its widths.
@@ -165,7 +165,7 @@ pub fn pair_figure(
     ];
     let [first, second] = quantities.map(ReconstructedQuantity::label);
     let title = format!("{}: {second} over {first}", answer.report.case);
-    Figure::new(title, axes, elements).with_caveats(caveats)
+    Figure::new(title, axes, elements).with_caveats(&caveats.in_units(units))
 }
 
 /// How much narrower the speed of the struck car would be with each further measurement: a bar for half
@@ -189,5 +189,5 @@ pub fn budget_figure(answer: &ReconstructAnswer, caveats: &Caveats, units: UnitS
         elements.push(FigureElement::VerticalLine { name, role, x: x.unit.from_si(item.now_m_s) });
     }
     let title = format!("{}: what further evidence would bring", answer.report.case);
-    Figure::new(title, [x, y], elements).with_caveats(caveats)
+    Figure::new(title, [x, y], elements).with_caveats(&caveats.in_units(units))
 }

@@ -107,7 +107,7 @@ pub fn reconstruction_scene_figure(
         }
     }
     let title = format!("{}: where the struck car went", scene.evidence.case);
-    Figure::new(title, [x, y], elements).plan().with_caveats(caveats)
+    Figure::new(title, [x, y], elements).plan().with_caveats(&caveats.in_units(units))
 }
 
 /// Where a car is on a path at a time; beyond its ends, at the end. `None` for a path without points.

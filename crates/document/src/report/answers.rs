@@ -63,8 +63,8 @@ pub(super) fn answer_blocks(
 
 /// A restriction with its sentence.
 pub(super) fn warning(caveat: &Caveat, wording: &Wording) -> String {
-    let (warning, label) = (wording.words.warning, wording.term(caveat.kind.label()));
-    format!("{warning}: {label}: {}", wording.quoted(&caveat.text))
+    let (warning, label) = (wording.words.warning, caveat.kind.label_in(wording.language));
+    format!("{warning}: {label}: {}", wording.caveat_text(caveat))
 }
 
 /// The questions in the order in which they are first asked. Two of one variant that have the same

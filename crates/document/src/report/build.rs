@@ -8,10 +8,10 @@ use crate::report::answer::{Context, part_of};
 use crate::report::answers::{answer_blocks, warning};
 use crate::report::document::{Picture, Section, SectionKind};
 use crate::report::holders::AnswerNames;
-use crate::report::input_table::input_table;
+use crate::report::input_table::{input_table, left_as_they_are};
 use crate::report::method::{Method, method_blocks};
 use crate::report::numbers::{Wording, fill};
-use crate::report::opinion::{Asked, opinion_blocks};
+use crate::report::opinion::{Asked, considered_methods, opinion_blocks};
 use crate::report::parts::{InputRow, Part, PartPicture, PartProvenance};
 use crate::report::paths::ShownPaths;
 use crate::report::provenance::{change_notice, log_blocks, provenance_blocks};
@@ -28,6 +28,8 @@ use impactlab_study::{Library, Observer};
 pub(super) struct VariantParts {
     /// What it is called.
     pub name: String,
+    /// What the analyst wrote about it.
+    pub notes: String,
     /// Question by question: what it contributes, or why it has no answer.
     pub answers: Vec<Result<Part, String>>,
 }
@@ -58,7 +60,11 @@ pub fn report_case(
         };
         match parts.last_mut() {
             Some(last) if last.name == variant.name => last.answers.push(part),
-            _ => parts.push(VariantParts { name: variant.name.clone(), answers: vec![part] }),
+            _ => parts.push(VariantParts {
+                name: variant.name.clone(),
+                notes: variant.notes.clone(),
+                answers: vec![part],
+            }),
         }
     })?;
     let Outcome::Complete(mut report) = outcome else { return Ok(Outcome::Cancelled) };
@@ -166,24 +172,28 @@ impl Builder<'_> {
         let mut drawn: Vec<&PartPicture> = Vec::new();
         let mut blocks = Vec::new();
         for variant in variants {
-            let mut of_variant = Vec::new();
+            let mut of_variant: Vec<&PartPicture> = Vec::new();
             for picture in parts_of(variant).flat_map(|part| &part.pictures) {
-                if drawn.iter().any(|other| other.content == picture.content) {
-                    continue;
+                let mut known = drawn.iter().chain(&of_variant);
+                if !known.any(|other| other.content == picture.content) {
+                    of_variant.push(picture);
                 }
+            }
+            if variants.len() > 1 && !of_variant.is_empty() {
+                blocks.push(Block::heading(2, fill(words.variant, &[("name", &variant.name)])));
+            }
+            // What takes half of the width stands beside each other.
+            of_variant.sort_by_key(|picture| picture.content.is_half_wide());
+            for picture in of_variant {
                 drawn.push(picture);
                 let number = drawn.len();
-                of_variant.push(Block::Picture(Box::new(Picture {
+                blocks.push(Block::Picture(Box::new(Picture {
                     number,
                     caption: format!("{} {number}: {}", words.figure, picture.caption),
                     alt: alt_text(picture, self.wording),
                     content: picture.content.clone(),
                 })));
             }
-            if variants.len() > 1 && !of_variant.is_empty() {
-                blocks.push(Block::heading(2, fill(words.variant, &[("name", &variant.name)])));
-            }
-            blocks.append(&mut of_variant);
         }
         or(blocks, words.no_pictures)
     }
@@ -210,10 +220,14 @@ impl Builder<'_> {
         blocks
     }
 
-    /// A table for each group, in the order in which the groups are first named.
+    /// A table for each group, in the order in which the groups are first named, and a sentence of what was
+    /// left as the program has it.
     fn input_tables(&self, variant: &str, rows: &[&InputRow]) -> Vec<Block> {
+        let is_left = |row: &&InputRow| row.source == self.wording.words.source_program;
+        let (left, rows): (Vec<&InputRow>, Vec<&InputRow>) =
+            rows.iter().copied().partition(is_left);
         let mut groups: Vec<&str> = Vec::new();
-        for row in rows {
+        for row in &rows {
             if !groups.contains(&row.group.as_str()) {
                 groups.push(&row.group);
             }
@@ -224,14 +238,20 @@ impl Builder<'_> {
             let caption = fill(self.wording.words.inputs_caption, &values);
             input_table(&caption, &of_group.collect::<Vec<_>>(), self.wording)
         };
-        groups.iter().flat_map(table).collect()
+        let left = (!left.is_empty()).then(|| left_as_they_are(&left, self.wording));
+        groups.iter().flat_map(table).chain(left).collect()
     }
 
     fn validation(&self, variants: &[VariantParts]) -> Vec<Block> {
         let words = self.wording.words;
-        let methods = methods(variants);
-        let tables = methods.iter().flat_map(|method| validation_blocks(*method, self.wording));
-        let blocks: Vec<Block> = tables.collect();
+        let (methods, opinion) = (methods(variants), considered_methods(variants));
+        let mut blocks: Vec<Block> = Vec::new();
+        // Those without tables stand together at the end.
+        for is_asked in [true, false] {
+            let some = methods.iter().filter(|method| opinion.contains(*method) == is_asked);
+            blocks
+                .extend(some.flat_map(|method| validation_blocks(*method, &opinion, self.wording)));
+        }
         if blocks.is_empty() {
             return vec![Block::paragraph(words.no_methods)];
         }

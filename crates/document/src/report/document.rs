@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::figure::Figure;
 use crate::report::{Language, Paper};
-use crate::scene::SceneStill;
+use crate::scene::{SceneStill, ViewKind};
 use impactlab_core::units::UnitSystem;
 
 /// A report.
@@ -164,6 +164,22 @@ pub enum InputClass {
     Estimated,
     /// The program assumed it: nobody said it.
     Assumed,
+}
+
+impl PictureContent {
+    /// Whether it is drawn as curves over axes.
+    pub fn is_plot(&self) -> bool {
+        matches!(self, Self::Figure(_))
+    }
+
+    /// Whether two of its kind stand beside each other on a page: plots, and cars in perspective, which
+    /// are seen from near. A scene from above has the width of the page.
+    pub fn is_half_wide(&self) -> bool {
+        match self {
+            Self::Figure(_) => true,
+            Self::Scene(still) => still.view == ViewKind::Perspective,
+        }
+    }
 }
 
 impl Block {

@@ -6,13 +6,10 @@ use crate::report::keys::{is_silent, quantity_of_key};
 use crate::report::language::phrase_of;
 use crate::report::numbers::Wording;
 use crate::report::paths::ShownPaths;
-use impactlab_core::units::{Quantity, significant, trimmed};
+use impactlab_core::units::{significant, trimmed};
 
 /// Numbers of a list that are written; more are counted.
 const MAX_LISTED: usize = 12;
-
-/// Digits of a number that was given; more are those of a conversion.
-const MAX_GIVEN_DIGITS: usize = 6;
 
 /// A value with the names that lead to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,18 +105,6 @@ fn walk(
     }
 }
 
-/// A number that was given, with its digits; one that does not end within six is the result of a
-/// conversion and has those that are shown of a result.
-fn given(quantity: Quantity, value_si: f64, wording: &Wording) -> String {
-    let text = wording.given(quantity, value_si);
-    let significant = text.trim_start_matches(|c: char| !('1'..='9').contains(&c));
-    let digits = significant.chars().take_while(|c| c.is_ascii_digit() || matches!(c, '.' | ','));
-    match digits.filter(char::is_ascii_digit).count() > MAX_GIVEN_DIGITS {
-        true => wording.rounded(quantity, value_si),
-        false => text,
-    }
-}
-
 /// A number with the unit that its name says, a word, or a path.
 fn plain(key: &str, value: &Value, writing: Writing<'_>) -> String {
     let Writing { wording, paths, rounds } = writing;
@@ -127,6 +112,9 @@ fn plain(key: &str, value: &Value, writing: Writing<'_>) -> String {
         Value::Bool(true) => wording.words.yes.to_owned(),
         Value::Bool(false) => wording.words.no.to_owned(),
         Value::String(text) => {
+            if let Some(choice) = wording.choice(key, text) {
+                return choice;
+            }
             let shown = paths.shown(text);
             phrase_of(wording.language, &shown).unwrap_or(shown)
         }
@@ -134,7 +122,7 @@ fn plain(key: &str, value: &Value, writing: Writing<'_>) -> String {
             let number = number.as_f64().unwrap_or(f64::NAN);
             match quantity_of_key(key) {
                 Some(Ok(quantity)) if rounds => wording.rounded(quantity, number),
-                Some(Ok(quantity)) => given(quantity, number, wording),
+                Some(Ok(quantity)) => wording.given(quantity, number),
                 Some(Err(symbol)) => wording.with_unit(&trimmed(significant(number)), symbol),
                 None if rounds => wording.local(&trimmed(significant(number))),
                 None => wording.given_number(number),
@@ -142,22 +130,5 @@ fn plain(key: &str, value: &Value, writing: Writing<'_>) -> String {
         }
         Value::Number(number) => number.to_string(),
         _ => String::new(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use impactlab_core::units::UnitSystem;
-
-    /// 62 km/h at 18° were told as 58.965504 km/h.
-    #[test]
-    fn a_given_number_has_its_digits_and_not_those_of_a_conversion() {
-        let wording = Wording::english(UnitSystem::Si);
-        let shown = |quantity, si| given(quantity, si, &wording);
-        assert_eq!(shown(Quantity::Speed, 16.379_306_669_527_644), "58.97 km/h");
-        assert_eq!(shown(Quantity::Speed, 15.0), "54 km/h");
-        assert_eq!(shown(Quantity::Mass, 123_456.0), "123456 kg");
-        assert_eq!(shown(Quantity::Length, 0.000_021), "0.000021 m");
     }
 }

@@ -4,63 +4,101 @@ use crate::report::numbers::{Wording, fill};
 use crate::report::parts::InputRow;
 use crate::report::{Block, InputClass, Table};
 
-/// Rows with one source from which on it is said once, below the table.
+/// Rows with one source from which on it is said once, in the caption.
 const MANY: usize = 4;
 
-/// Characters of a source that does not fit into one line of its cell.
-const LONG: usize = 60;
+/// Characters of a value that stands beside another one.
+const SHORT: usize = 24;
 
-/// A table of inputs. Where the question says all of them, two stand in a row; a source that many of them
-/// have is told once.
+/// A table of inputs. Short values that many rows have from one source stand two in a row, and the source
+/// in the caption.
 pub(super) fn input_table(caption: &str, rows: &[&InputRow], wording: &Wording) -> Vec<Block> {
-    let words = wording.words;
-    let is_asked =
-        |row: &&InputRow| row.class == InputClass::Given && row.source == words.source_question;
-    if rows.len() >= MANY && rows.iter().all(is_asked) {
-        let caption = fill(words.inputs_said, &[("caption", caption)]);
-        let [quantity, value] = [words.quantity, words.value];
-        let pair = |pair: &[&InputRow]| {
-            let cells = |row: &&InputRow| [row.label.clone(), row.value.clone()];
-            let [first, second] = [pair.first().map(cells), pair.get(1).map(cells)];
-            let [label, value] = first.unwrap_or_default();
-            let [other_label, other_value] = second.unwrap_or_default();
-            [label, value, other_label, other_value]
-        };
-        let rows = rows.chunks(2).map(pair).collect();
-        return vec![Block::Table(Table::new(caption, [quantity, value, quantity, value], rows))];
+    let mut rest = rows.to_vec();
+    let mut blocks = Vec::new();
+    for (class, source) in sources_of_many(rows) {
+        let is_of = |row: &&InputRow| (row.class, &*row.source) == (class, source) && is_short(row);
+        let (of_source, others): (Vec<&InputRow>, Vec<&InputRow>) =
+            rest.into_iter().partition(is_of);
+        rest = others;
+        blocks.push(pairs(&caption_of(caption, class, source, wording), &of_source, wording));
     }
-    let common = common_source(rows);
-    let cells = rows.iter().map(|row| {
-        let source = match common {
-            Some(common) if common == row.source => "*".to_owned(),
-            _ => row.source.clone(),
+    if !rest.is_empty() {
+        let cells = |row: &&InputRow| {
+            let class = class_name(row.class, wording);
+            [row.label.clone(), row.value.clone(), class.to_owned(), row.source.clone()]
         };
-        [row.label.clone(), row.value.clone(), class_name(row.class, wording), source]
-    });
-    let columns = [words.quantity, words.value, words.class, words.source];
-    let table = Block::Table(Table::new(caption, columns, cells.collect()));
-    let below =
-        common.map(|source| Block::paragraph(fill(words.common_source, &[("source", source)])));
-    std::iter::once(table).chain(below).collect()
+        let words = wording.words;
+        let columns = [words.quantity, words.value, words.class, words.source];
+        let cells = rest.iter().map(cells).collect();
+        blocks.push(Block::Table(Table::new(caption, columns, cells)));
+    }
+    blocks
 }
 
-/// A long source that many rows have.
-fn common_source<'a>(rows: &[&'a InputRow]) -> Option<&'a str> {
-    let n_of = |source: &str| rows.iter().filter(|row| row.source == source).count();
-    let sources = rows.iter().map(|row| row.source.as_str());
-    let sources = sources.filter(|source| source.chars().count() > LONG);
-    sources.max_by_key(|source| n_of(source)).filter(|source| n_of(source) >= MANY)
+/// The values that nobody changed, in a sentence.
+pub(super) fn left_as_they_are(rows: &[&InputRow], wording: &Wording) -> Block {
+    let mut groups: Vec<(&str, Vec<String>)> = Vec::new();
+    for row in rows {
+        let text = format!("{} {}", row.label, row.value);
+        match groups.iter_mut().find(|(group, _)| *group == row.group) {
+            Some((_, texts)) => texts.push(text),
+            None => groups.push((&row.group, vec![text])),
+        }
+    }
+    let groups = groups.into_iter().map(|(group, texts)| format!("{group}: {}", texts.join(", ")));
+    let values = groups.collect::<Vec<_>>().join("; ");
+    Block::paragraph(fill(wording.words.inputs_left, &[("values", &values)]))
 }
 
-fn class_name(class: InputClass, wording: &Wording) -> String {
+/// Class and source of many short rows, in the order of the rows.
+fn sources_of_many<'a>(rows: &[&'a InputRow]) -> Vec<(InputClass, &'a str)> {
+    let mut sources: Vec<(InputClass, &str, usize)> = Vec::new();
+    for row in rows.iter().filter(|row| is_short(row)) {
+        let is_same =
+            |of: &&mut (InputClass, &str, usize)| (of.0, of.1) == (row.class, &*row.source);
+        match sources.iter_mut().find(is_same) {
+            Some((_, _, n)) => *n += 1,
+            None => sources.push((row.class, &row.source, 1)),
+        }
+    }
+    let many = sources.into_iter().filter(|(_, _, n)| *n >= MANY);
+    many.map(|(class, source, _)| (class, source)).collect()
+}
+
+/// Whether two such rows stand beside each other.
+fn is_short(row: &InputRow) -> bool {
+    row.value.chars().count() <= SHORT && row.label.chars().count() <= 2 * SHORT
+}
+
+fn caption_of(caption: &str, class: InputClass, source: &str, wording: &Wording) -> String {
+    match source == wording.words.source_question {
+        true => fill(wording.words.inputs_said, &[("caption", caption)]),
+        false => format!("{caption}; {}: {source}", class_name(class, wording)),
+    }
+}
+
+/// Names and values, two in a row.
+fn pairs(caption: &str, rows: &[&InputRow], wording: &Wording) -> Block {
+    let pair = |pair: &[&InputRow]| {
+        let cells = |row: &&InputRow| [row.label.clone(), row.value.clone()];
+        let [first, second] = [pair.first().map(cells), pair.get(1).map(cells)];
+        let [label, value] = first.unwrap_or_default();
+        let [other_label, other_value] = second.unwrap_or_default();
+        [label, value, other_label, other_value]
+    };
+    let rows = rows.chunks(2).map(pair).collect();
+    let [quantity, value] = [wording.words.quantity, wording.words.value];
+    Block::Table(Table::new(caption, [quantity, value, quantity, value], rows))
+}
+
+fn class_name(class: InputClass, wording: &Wording) -> &'static str {
     let words = wording.words;
-    let name = match class {
+    match class {
         InputClass::Given => words.class_given,
         InputClass::Measured => words.class_measured,
         InputClass::Estimated => words.class_estimated,
         InputClass::Assumed => words.class_assumed,
-    };
-    name.to_owned()
+    }
 }
 
 #[cfg(test)]
@@ -89,12 +127,23 @@ mod tests {
         let sheet = "the data sheet of the maker, edition of 2020, of which tables 3 and 4";
         let mut rows: Vec<InputRow> = ["a", "b", "c", "d"].map(|label| row(label, sheet)).into();
         rows.push(row("e", "weighed on a scale"));
+        let long = "normal, 1500 ± 45 kg, cut off at 1200 and 1800 kg";
+        rows.push(InputRow { value: long.to_owned(), ..row("f", sheet) });
         let blocks = input_table("Car", &rows.iter().collect::<Vec<_>>(), &wording);
-        let table = table(&blocks);
-        assert_eq!(table.rows.len(), 5);
-        assert_eq!(table.rows[0], ["a", "a kg", "given", "*"]);
-        assert_eq!(table.rows[4][3], "weighed on a scale");
-        assert_eq!(blocks[1], Block::paragraph(format!("* {sheet}")));
+        let [Block::Table(pairs), Block::Table(rest)] = &blocks[..] else { panic!("{blocks:?}") };
+        assert_eq!(pairs.caption, format!("Car; given: {sheet}"));
+        assert_eq!(pairs.rows, [["a", "a kg", "b", "b kg"], ["c", "c kg", "d", "d kg"]]);
+        assert_eq!(rest.rows[0], ["e", "e kg", "given", "weighed on a scale"]);
+        assert_eq!(rest.rows[1], ["f", long, "given", sheet]);
+    }
+
+    #[test]
+    fn what_nobody_changed_is_one_sentence() {
+        let wording = Wording::english(UnitSystem::Si);
+        let rows = ["a", "b"].map(|label| row(label, wording.words.source_program));
+        let block = left_as_they_are(&rows.iter().collect::<Vec<_>>(), &wording);
+        let Block::Paragraph { text } = &block else { panic!("{block:?}") };
+        assert!(text.contains("car: a a kg, b b kg"), "{text}");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Names in JSON and in files: what they mean and in which unit their numbers are.
 
 use crate::report::Language;
+use crate::report::labels::{choice_label, name_label};
 use crate::report::language::phrase_of;
 use crate::report::numbers::Wording;
 use impactlab_core::units::Quantity;
@@ -54,7 +55,7 @@ pub(super) fn quantity_of_key(key: &str) -> Option<Result<Quantity, &'static str
 }
 
 /// A name without the unit at its end, in words.
-fn bare(key: &str) -> String {
+pub(super) fn bare(key: &str) -> String {
     let endings = PLAIN_ENDINGS.iter().map(|(ending, _)| *ending);
     let endings = endings.chain(ENDINGS.iter().map(|(ending, _)| *ending));
     let longest = endings.filter(|ending| key.ends_with(ending)).max_by_key(|ending| ending.len());
@@ -63,11 +64,12 @@ fn bare(key: &str) -> String {
 }
 
 /// The words of a name with the two vehicles called struck and striking, where files call them
-/// target and bullet.
+/// target and bullet, and with the capitals of CG.
 fn in_words_of_the_field(words: &str) -> String {
     let word = |word| match word {
         "target" => "struck vehicle",
         "bullet" => "striking vehicle",
+        "cg" => "CG",
         other => other,
     };
     words.split(' ').map(word).collect::<Vec<_>>().join(" ")
@@ -79,11 +81,18 @@ impl Wording {
     pub fn key(&self, key: &str) -> String {
         let words = bare(key);
         match self.language {
-            Language::En => in_words_of_the_field(&words),
+            Language::En => {
+                name_label(key).map_or_else(|| in_words_of_the_field(&words), str::to_owned)
+            }
             Language::De => {
                 phrase_of(self.language, &words).unwrap_or_else(|| format!("„{words}“"))
             }
         }
+    }
+
+    /// What a choice is called that stands at a name; `None` if the word is none of its choices.
+    pub fn choice(&self, key: &str, word: &str) -> Option<String> {
+        choice_label(key, word).map(|label| self.term(label))
     }
 }
 

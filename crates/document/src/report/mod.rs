@@ -8,7 +8,8 @@
 //!
 //! - [`report_case`] asks the questions and makes the [`ReportDocument`], which is plain data.
 //! - [`ReportDocument::to_json`], [`ReportDocument::to_markdown`] and [`pdf`] write it. Pictures are
-//!   drawn by a function that the caller passes on, since drawing is the work of a crate above.
+//!   drawn by a function that the caller passes on, since drawing is the work of a crate above: plots as
+//!   lines and texts for the PDF, all else as pixels.
 //! - Numbers are formatted by [`units`](impactlab_core::units), as those in the window.
 //! - The same case, files, settings and date give the same bytes: nothing reads a clock.
 
@@ -21,6 +22,8 @@ mod language;
 mod numbers;
 
 mod keys;
+
+mod labels;
 
 mod flatten;
 
@@ -60,7 +63,9 @@ pub use document::{
     Block, Column, InputClass, Picture, PictureContent, ReportDocument, Section, SectionKind, Table,
 };
 pub use impactlab_core::units::Language;
+pub use opinion::variant_differences;
 pub use settings::{DateError, Paper, ReportDate, ReportSettings};
 pub use write::{
-    Drawing, FormatError, PdfError, Pixels, ReportFormat, WriteError, column_widths, pdf,
+    Drawing, Drawn, FormatError, Medium, PdfError, Pixels, ReportFormat, VectorMark, VectorPicture,
+    VectorShape, WriteError, column_widths, pdf,
 };

@@ -4,7 +4,11 @@ use std::ops::Deref;
 
 use crate::report::language::{Words, phrase_of, words_of};
 use crate::report::{Language, ReportSettings};
-use impactlab_core::units::{NumberFormat, UnitSystem};
+use impactlab_core::uncertainty::Caveat;
+use impactlab_core::units::{NumberFormat, Quantity, UnitSystem, significant, trimmed};
+
+/// Digits of a number that was given; more are those of a conversion of its unit.
+const MAX_GIVEN_DIGITS: usize = 6;
 
 /// Writes numbers and texts in the language and the units of a report. Numbers are written by the
 /// format of the whole program.
@@ -36,6 +40,45 @@ impl Wording {
         Self { format: NumberFormat::english(units), words: words_of(Language::En) }
     }
 
+    /// A number that was given, with its digits and its unit; one that does not end within six is the
+    /// result of a conversion and has those that are shown of a result.
+    pub fn given(&self, quantity: Quantity, value_si: f64) -> String {
+        let unit = quantity.display_unit(self.units);
+        self.with_unit(&self.digits_given(unit.from_si(value_si)), unit.symbol)
+    }
+
+    /// The same of a pure number.
+    pub fn given_number(&self, value: f64) -> String {
+        self.digits_given(value)
+    }
+
+    /// From one number that was given to another. Where digits are cut off, the range gets wider.
+    pub fn given_range(&self, quantity: Quantity, [low, high]: [f64; 2]) -> String {
+        let unit = quantity.display_unit(self.units);
+        let [low, high] = [low, high].map(|si| unit.from_si(si));
+        let low = self.with_unit(&self.digits_outwards(low, f64::floor), unit.symbol);
+        let high = self.with_unit(&self.digits_outwards(high, f64::ceil), unit.symbol);
+        format!("{low} {} {high}", self.words.to)
+    }
+
+    fn digits_given(&self, value: f64) -> String {
+        let text = self.format.given_number(value);
+        match n_digits(&text) > MAX_GIVEN_DIGITS {
+            true => self.local(&trimmed(significant(value))),
+            false => text,
+        }
+    }
+
+    /// - `outwards`: to the whole number beyond, away from the middle of the range.
+    fn digits_outwards(&self, value: f64, outwards: fn(f64) -> f64) -> String {
+        let text = self.format.given_number(value);
+        if n_digits(&text) <= MAX_GIVEN_DIGITS || value == 0.0 || !value.is_finite() {
+            return text;
+        }
+        let step = 10.0_f64.powi(value.abs().log10().floor() as i32 - 3);
+        self.local(&trimmed(significant(outwards(value / step) * step)))
+    }
+
     /// A text that the program has in English only: in quotation marks in a report in another language.
     pub fn quoted(&self, text: &str) -> String {
         match (self.language, text.is_empty()) {
@@ -49,12 +92,37 @@ impl Wording {
         phrase_of(self.language, text).unwrap_or_else(|| self.quoted(text))
     }
 
+    /// What a caveat says, in the units of the report; as [`Wording::quoted`] if in English alone.
+    pub fn caveat_text(&self, caveat: &Caveat) -> String {
+        let text = caveat.text_in(&self.format, &|label| self.label(label));
+        text.unwrap_or_else(|| self.quoted(&caveat.text))
+    }
+
+    /// The same of why something was assumed or is not used.
+    pub fn caveat_reason(&self, caveat: &Caveat) -> String {
+        let reason = caveat.reason_in(&self.format, &|label| self.label(label));
+        let english = || self.quoted(caveat.reason.as_deref().unwrap_or_default());
+        reason.unwrap_or_else(english)
+    }
+
+    /// A label, whole or of parts that are joined by commas.
+    pub fn label(&self, text: &str) -> String {
+        phrase_of(self.language, text).unwrap_or_else(|| self.phrase(text))
+    }
+
     /// The same of parts that are joined by commas.
     pub fn phrase(&self, text: &str) -> String {
         let parts: Option<Vec<String>> =
             text.split(", ").map(|part| phrase_of(self.language, part)).collect();
         parts.map_or_else(|| self.quoted(text), |parts| self.local(&parts.join(", ")))
     }
+}
+
+/// Digits of a number from the first that is not zero.
+fn n_digits(number: &str) -> usize {
+    let significant = number.trim_start_matches(|c: char| !('1'..='9').contains(&c));
+    let digits = significant.chars().take_while(|c| c.is_ascii_digit() || matches!(c, '.' | ','));
+    digits.filter(char::is_ascii_digit).count()
 }
 
 /// A template with `{name}` replaced by values.
@@ -81,6 +149,46 @@ pub(super) fn fill(template: &str, values: &[(&str, &str)]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impactlab_core::uncertainty::CaveatKind;
+    use impactlab_core::units::{Phrase, PhraseValue};
+
+    /// 62 km/h at 18° were told as 58.965504 km/h, and 1 m/s as 2.2369363 mph.
+    #[test]
+    fn a_given_number_has_its_digits_and_not_those_of_a_conversion() {
+        let [si, us] = [UnitSystem::Si, UnitSystem::Us].map(Wording::english);
+        assert_eq!(si.given(Quantity::Speed, 16.379_306_669_527_644), "58.97 km/h");
+        assert_eq!(si.given(Quantity::Speed, 15.0), "54 km/h");
+        assert_eq!(si.given(Quantity::Mass, 123_456.0), "123456 kg");
+        assert_eq!(si.given(Quantity::Length, 0.000_021), "0.000021 m");
+        assert_eq!(us.given(Quantity::Speed, 1.0), "2.237 mph");
+        assert_eq!(si.given_number(1.0 / 3.0), "0.3333");
+    }
+
+    #[test]
+    fn a_range_whose_digits_are_cut_off_gets_wider() {
+        let [si, us] = [UnitSystem::Si, UnitSystem::Us].map(Wording::english);
+        assert_eq!(us.given_range(Quantity::Speed, [1.0, 2.0]), "2.236 mph to 4.474 mph");
+        assert_eq!(us.given_range(Quantity::Speed, [-1.0, 0.0]), "-2.237 mph to 0 mph");
+        assert_eq!(si.given_range(Quantity::Speed, [1.0, 2.0]), "3.6 km/h to 7.2 km/h");
+    }
+
+    #[test]
+    fn a_caveat_is_told_in_the_language_and_the_units_of_the_report() {
+        let format = NumberFormat { units: UnitSystem::Us, language: Language::De };
+        let german = Wording { format, words: words_of(Language::De) };
+        let name = "mass of the struck vehicle [kg]";
+        let text = Phrase::new("{0} is {1}", "{0} beträgt {1}")
+            .with(PhraseValue::Heading(name.to_owned()))
+            .with(PhraseValue::of_named(name, 1000.0));
+        let caveat = Caveat::new(CaveatKind::OutsideDomain, text);
+        let expected = "Masse des gestoßenen Fahrzeugs [lb] beträgt 2205";
+        assert_eq!(german.caveat_text(&caveat), expected);
+        let english = Wording::english(UnitSystem::Us);
+        assert_eq!(english.caveat_text(&caveat), "mass of the struck vehicle [lb] is 2205");
+        let unknown = Caveat::not_used("what", "why");
+        let told = [german.caveat_text(&unknown), german.caveat_reason(&unknown)];
+        assert_eq!(told, ["„what“", "„why“"]);
+    }
 
     #[test]
     fn a_value_with_braces_is_not_filled_in() {

@@ -1,15 +1,26 @@
 //! What the models of a report were compared with, and how far they were off.
 //!
 //! The tables are those of `assets/validation.toml`, header and rows as they stand in
-//! `docs/VALIDATION.md` too; a test looks each of their lines up there.
+//! `docs/VALIDATION.md` too, but those of methods that answer nothing; a test looks each of their lines up
+//! there.
+
+use std::collections::BTreeSet;
 
 use crate::report::method::Method;
 use crate::report::numbers::Wording;
 use crate::report::{Block, Column, Table};
 use impactlab_study::{Measured, Measurement, ValidationTable};
 
-/// What a method was compared with: a paragraph, and tables with their captions.
-pub(super) fn validation_blocks(method: Method, wording: &Wording) -> Vec<Block> {
+/// Beginnings of lines about methods that answer nothing.
+const OTHER_METHODS: [&str; 2] = ["| classic pulse |", "| Gaussian processes |"];
+
+/// What a method was compared with: a paragraph, and tables with their captions. Of a method that the opinion
+/// does not rest on the paragraph alone.
+pub(super) fn validation_blocks(
+    method: Method,
+    opinion: &BTreeSet<Method>,
+    wording: &Wording,
+) -> Vec<Block> {
     let words = wording.words;
     let text = match method {
         Method::Impact => words.validation_impact,
@@ -36,6 +47,9 @@ pub(super) fn validation_blocks(method: Method, wording: &Wording) -> Vec<Block>
         ],
         Method::DataSheet => &[],
     };
+    if !opinion.is_empty() && !opinion.contains(&method) {
+        return vec![Block::paragraph(format!("{}: {text}", method.name(wording)))];
+    }
     let heading = Block::heading(2, method.name(wording));
     let tables = captions.iter().enumerate().filter_map(|(idx, (subject, caption))| {
         let earlier = captions[..idx].iter().filter(|(other, _)| other == subject).count();
@@ -53,7 +67,8 @@ fn table(caption: &str, published: &ValidationTable, wording: &Wording) -> Table
         let inner = line.trim().trim_start_matches('|').trim_end_matches('|');
         inner.split('|').map(|cell| wording.validation_cell(cell.trim())).collect()
     };
-    let mut lines = published.lines.iter().map(|line| cells(line));
+    let is_shown = |line: &&String| !OTHER_METHODS.iter().any(|other| line.starts_with(other));
+    let mut lines = published.lines.iter().filter(is_shown).map(|line| cells(line));
     let header = lines.next().unwrap_or_default();
     let n = header.len();
     let column = |title| Column { title, is_numeric: false };

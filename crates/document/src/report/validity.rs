@@ -9,7 +9,7 @@ use crate::report::numbers::{Wording, fill};
 use crate::report::opinion::considered_methods;
 use crate::report::parts::Part;
 use crate::report::{Block, Table};
-use impactlab_core::uncertainty::{Caveat, CaveatKind};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatQuantity};
 use impactlab_core::units::significant;
 
 /// The limits of each method, how far networks apply, and every restriction once.
@@ -96,7 +96,7 @@ fn caveat_rows(variants: &[VariantParts], wording: &Wording) -> Vec<[String; 4]>
     found.sort_by_key(|(caveat, _)| !caveat.is_warning());
     let row = |(caveat, holders): (Caveat, Vec<AnswerNames<'_>>)| {
         let severity = if caveat.is_warning() { words.warning } else { words.note };
-        let label = format!("{severity}: {}", wording.term(caveat.kind.label()));
+        let label = format!("{severity}: {}", caveat.kind.label_in(wording.language));
         [
             label,
             sentence(&caveat, wording),
@@ -110,17 +110,17 @@ fn caveat_rows(variants: &[VariantParts], wording: &Wording) -> Vec<[String; 4]>
 /// What a caveat says, with the value that is concerned and those that would raise none.
 fn sentence(caveat: &Caveat, wording: &Wording) -> String {
     let words = wording.words;
-    let mut text = wording.quoted(&caveat.text);
+    let mut text = wording.caveat_text(caveat);
     // A whole number of the text, so that 0 is not said by 10.
     let is_number = |c: char| c.is_ascii_digit() || c == '.' || c == '-';
     let is_in_text = |value: f64| {
         let (number_text, mut numbers) = (significant(value), caveat.text.split(|c| !is_number(c)));
         numbers.any(|number| number.trim_end_matches('.') == number_text)
     };
-    if let (Some(quantity), Some(value)) = (&caveat.quantity, caveat.value)
-        && !is_in_text(value)
+    if let Some(CaveatQuantity { name, unit, value, range }) = caveat.quantity_in(wording)
+        && !caveat.value.is_some_and(is_in_text)
     {
-        let range = match caveat.range {
+        let range = match range {
             Some([Some(low), Some(high)]) => {
                 format!("{} {} {}", wording.number(low), words.to, wording.number(high))
             }
@@ -128,7 +128,7 @@ fn sentence(caveat: &Caveat, wording: &Wording) -> String {
             Some([None, Some(high)]) => fill(words.at_most, &[("high", &wording.number(high))]),
             _ => return text,
         };
-        let quantity = wording.quoted(quantity);
+        let quantity = format!("{}{unit}", wording.label(name));
         let values =
             [("quantity", &*quantity), ("value", &*wording.number(value)), ("range", &*range)];
         text = format!("{text}. {}.", fill(words.allowed_range, &values));
@@ -158,6 +158,7 @@ fn remedy(kind: CaveatKind, wording: &Wording) -> &'static str {
         CaveatKind::FewParticles => words.remedy_few_particles,
         CaveatKind::FewDraws => words.remedy_few_draws,
         CaveatKind::SeveralCourses => words.remedy_several_courses,
+        CaveatKind::DriverOpen => words.remedy_driver_open,
         CaveatKind::HardlyValidated => words.remedy_hardly_validated,
         CaveatKind::LeftOut => words.remedy_left_out,
         CaveatKind::TrainedOn => words.remedy_trained_on,

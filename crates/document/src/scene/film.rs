@@ -14,7 +14,8 @@ use crate::scene::Scene;
 use impactlab_core::ranges::{FILM_FRAMES, FILM_RATE, FILM_SPEED, OutOfRange};
 
 /// An end of a film that is later than the motion by no more than this, s, or by the time of a frame, is
-/// taken for the end of the motion: nobody types the instant at which a car comes to rest.
+/// taken for the end of the motion: nobody types the instant at which a car comes to rest. An instant that
+/// misses the film by no more than this belongs to it, too.
 const END_TOLERANCE_S: f64 = 0.05;
 
 /// A part of the scene that is played at a speed of its own.
@@ -134,6 +135,11 @@ impl FilmTiming {
             self.to_s = end_s;
         }
         (self, is_moved.then_some(wanted_s))
+    }
+
+    /// Whether an instant belongs to the film, or misses it by no more than 0.05 s.
+    pub fn shows(&self, time_s: f64) -> bool {
+        (self.from_s - END_TOLERANCE_S..=self.to_s + END_TOLERANCE_S).contains(&time_s)
     }
 
     /// Duration of the film, s of its own time.

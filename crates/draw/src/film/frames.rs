@@ -1,26 +1,17 @@
 //! The frames of a film: pictures of a scene, one after the other.
 
-use egui::text::LayoutJob;
-use egui::{
-    Align2, Color32, ColorImage, Context, FontId, Pos2, RawInput, Rect, TexturesDelta, Ui,
-    UiBuilder, Vec2, vec2,
-};
+use egui::{Color32, ColorImage, Context, Pos2, RawInput, Rect, TexturesDelta, UiBuilder, Vec2};
 
 use crate::film::strip::Strip;
-use crate::scene::{Camera, ScenePicture, SceneView, scene_picture_ui};
+use crate::scene::{
+    Camera, CameraKey, ScenePicture, SceneView, camera_in_scene, for_all_courses, name_ui,
+    scene_picture_ui, side_by_side,
+};
 use crate::{Canvas, SoftwareRenderer, theme};
 use impactlab_core::ranges::OutOfRange;
 
 /// Passes after which fonts and layout of the first frame no longer change.
 const SETTLING_PASSES: usize = 4;
-/// Most courses of events in a row, and room between them, points.
-const MOST_COLUMNS: usize = 3;
-const BETWEEN: f32 = 2.0;
-/// Size of the name of a course of events, and its distance from the edge, points.
-const NAME_SIZE: f32 = 12.0;
-const NAME_EDGE: f32 = 8.0;
-/// Most rows of it.
-const NAME_ROWS: usize = 3;
 
 /// Draws pictures of scenes off screen, each below its title and above its legend and what restricts it.
 /// What does not change from one picture to the next is kept: fonts, layout, and the ground of the scene.
@@ -30,6 +21,8 @@ pub struct FrameRenderer {
     renderer: SoftwareRenderer,
     /// One for each course of events.
     views: Vec<SceneView>,
+    /// Between which the camera moves; none if it stands.
+    keys: Vec<CameraKey>,
     n_passes: usize,
     image: ColorImage,
 }
@@ -49,12 +42,20 @@ impl FrameRenderer {
             context,
             renderer: SoftwareRenderer::default(),
             views: Vec::new(),
+            keys: Vec::new(),
             n_passes: 0,
             image: ColorImage::filled(size, ground_color(canvas.dark)),
         })
     }
 
-    /// Draws a picture. The camera is placed for the first one and stays, but for what it follows.
+    /// The renderer with a camera that moves between keys, in place of that of the pictures.
+    #[must_use]
+    pub fn with_keys(self, keys: Vec<CameraKey>) -> Self {
+        Self { keys, ..self }
+    }
+
+    /// Draws a picture. The camera is placed for the first one and stays, but for what it follows and for
+    /// its keys.
     ///
     /// - `speed`: seconds of the scene that are played in a second, for the time stamp.
     pub fn draw(&mut self, picture: &ScenePicture, speed: f64) -> &ColorImage {
@@ -78,7 +79,7 @@ impl FrameRenderer {
         speed: f64,
         places_camera: bool,
     ) -> egui::FullOutput {
-        let Self { canvas, context, renderer, views, n_passes, .. } = self;
+        let Self { canvas, context, renderer, views, keys, n_passes, .. } = self;
         views.resize_with(picture.drawn().len(), SceneView::in_frame);
         let size = Vec2::from(canvas.size_px.map(|side| side as f32)) / canvas.scale;
         let mut input = RawInput {
@@ -99,9 +100,14 @@ impl FrameRenderer {
                 if let Some(placed) = &placed {
                     view.place(placed);
                 }
-                let (mut camera, at) = (picture.camera, (scene, picture.time_s));
+                let (mut camera, mut follow) = (picture.camera, picture.follow);
+                if let Some(key) = camera_in_scene(keys, scene, picture.time_s) {
+                    (camera, follow) = (key.camera(camera.kind), key.follow);
+                    view.place_at(camera);
+                }
+                let at = (scene, picture.time_s);
                 ui.scope_builder(UiBuilder::new().max_rect(*rect), |ui| {
-                    scene_picture_ui(ui, at, view, &mut camera, picture.follow, rect.size());
+                    scene_picture_ui(ui, at, view, &mut camera, follow, rect.size());
                 });
             }
             for (course, rect) in picture.courses.iter().zip(&rects) {
@@ -116,47 +122,11 @@ impl FrameRenderer {
     }
 }
 
-/// The rectangles of courses of events, in rows from the left top.
-fn side_by_side(rect: Rect, n: usize) -> Vec<Rect> {
-    let n_rows = n.div_ceil(MOST_COLUMNS).max(1);
-    let n_columns = n.div_ceil(n_rows).max(1);
-    let grid = vec2(n_columns as f32, n_rows as f32);
-    let size = (rect.size() - BETWEEN * (grid - Vec2::splat(1.0))) / grid;
-    let place = |idx: usize| vec2((idx % n_columns) as f32, (idx / n_columns) as f32);
-    let rects = (0..n).map(|idx| rect.min + place(idx) * (size + Vec2::splat(BETWEEN)));
-    rects.map(|min| Rect::from_min_size(min, size)).collect()
-}
-
-/// The picture with a camera that sees the places of all of its courses of events, so that each is as
-/// large as the others; as it is if its camera is placed or it has one scene.
-///
-/// - `rect`: of one of them.
-fn for_all_courses(picture: &ScenePicture, rect: Rect) -> ScenePicture {
-    if picture.is_placed || picture.courses.is_empty() {
-        return picture.clone();
-    }
-    let size = [rect.width(), rect.height()].map(f64::from);
-    let fitted = picture.camera.fitted(&picture.scene.places_m(), size);
-    let distance_m = picture.distance_m.unwrap_or(fitted.distance_m);
-    let camera = Camera { distance_m, ..fitted };
-    ScenePicture { camera, is_placed: true, ..picture.clone() }
-}
-
-/// Draws the name of a course of events at its left top.
-fn name_ui(ui: &Ui, name: &str, rect: Rect) {
-    let visuals = ui.visuals();
-    let color = visuals.strong_text_color();
-    let font = FontId::proportional(NAME_SIZE);
-    // The axes stand at the right.
-    let widest = (rect.width() - 100.0).max(rect.width() / 2.0);
-    let mut job = LayoutJob::simple(name.to_owned(), font, color, widest);
-    job.wrap.max_rows = NAME_ROWS;
-    let galley = ui.painter().layout_job(job);
-    let at = rect.left_top() + Vec2::splat(NAME_EDGE);
-    let place = Align2::LEFT_TOP.anchor_size(at, galley.size());
-    let plate = ground_color(visuals.dark_mode).gamma_multiply(0.8);
-    ui.painter().rect_filled(place.expand2(vec2(4.0, 2.0)), 2.0, plate);
-    ui.painter().galley(place.min, galley, color);
+/// The camera of a film without keys, about as it is in the frames.
+pub(super) fn standing_camera(picture: &ScenePicture, size_px: [u32; 2]) -> Camera {
+    let size = Vec2::from(size_px.map(|side| side as f32));
+    let of_each = side_by_side(Rect::from_min_size(Pos2::ZERO, size), picture.drawn().len());
+    picture.fitted_camera(of_each.first().map_or(size, Rect::size))
 }
 
 /// Colour behind everything.

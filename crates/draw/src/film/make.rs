@@ -7,8 +7,9 @@ use egui::ColorImage;
 
 use crate::film::FrameRenderer;
 use crate::film::encoder::FrameEncoder;
+use crate::film::frames::standing_camera;
 use crate::film::mp4::Mp4Film;
-use crate::scene::ScenePicture;
+use crate::scene::{Camera, CameraKey, CameraKeyError, ScenePicture, check_keys};
 use crate::{Canvas, RenderError};
 use impactlab_core::data::{DataError, Existing, Outcome, check_target, write_atomically};
 use impactlab_core::jobs::{Progress, ProgressCallback};
@@ -22,6 +23,8 @@ pub struct Film {
     pub picture: ScenePicture,
     /// Which instants, and how fast.
     pub timing: FilmTiming,
+    /// Between which the camera moves, in the order of time; none leaves it as the picture has it.
+    pub keys: Vec<CameraKey>,
     /// Size, scale and theme of the frames. Of an MP4 file both sides are even and in [`FILM_SIDE`].
     pub canvas: Canvas,
 }
@@ -32,6 +35,9 @@ pub enum FilmError {
     /// The instants of the film are wrong.
     #[error(transparent)]
     Timing(#[from] FilmTimingError),
+    /// The keys of the camera are wrong.
+    #[error(transparent)]
+    Keys(#[from] CameraKeyError),
     /// The size of the film is outside the permitted range.
     #[error(transparent)]
     Size(#[from] OutOfRange),
@@ -84,7 +90,7 @@ impl Film {
     /// The frames of the film, after a check of everything that does not depend on the scene's content.
     ///
     /// # Errors
-    /// [`FilmError::Size`], [`FilmError::OddSize`] and [`FilmError::Timing`].
+    /// [`FilmError::Size`], [`FilmError::OddSize`], [`FilmError::Timing`] and [`FilmError::Keys`].
     pub fn instants(&self) -> Result<Vec<FilmInstant>, FilmError> {
         let [width, height] = self.canvas.size_px;
         for side in [width, height] {
@@ -95,7 +101,19 @@ impl Film {
         if !(width.is_multiple_of(2) && height.is_multiple_of(2)) {
             return Err(FilmError::OddSize { width, height });
         }
-        Ok(self.timing.instants(&self.picture.scene)?)
+        self.timed()
+    }
+
+    /// The camera of the film where it has no keys, fitted to its scene if it is not placed.
+    pub fn standing_camera(&self) -> Camera {
+        standing_camera(&self.picture, self.canvas.size_px)
+    }
+
+    /// The frames, after a check of times and keys.
+    fn timed(&self) -> Result<Vec<FilmInstant>, FilmError> {
+        let instants = self.timing.instants(&self.picture.scene)?;
+        check_keys(&self.keys, &self.timing)?;
+        Ok(instants)
     }
 
     /// The picture of an instant.
@@ -111,7 +129,8 @@ impl Film {
 /// - `report`: told after every frame; cancels the work.
 ///
 /// # Errors
-/// [`FilmError`], before any work for a wrong size, wrong times or a path that cannot be written.
+/// [`FilmError`], before any work for a wrong size, wrong times, wrong keys or a path that cannot be
+/// written.
 pub fn write_film(
     film: &Film,
     path: &Path,
@@ -139,13 +158,13 @@ pub fn write_film(
 /// - `report`: told after every frame; cancels the work.
 ///
 /// # Errors
-/// [`FilmError`], before any work for a wrong size or wrong times.
+/// [`FilmError`], before any work for a wrong size, wrong times or wrong keys.
 pub fn write_frames(
     film: &Film,
     folder: &Path,
     report: &mut ProgressCallback<'_>,
 ) -> Result<Outcome<()>, FilmError> {
-    let instants = film.timing.instants(&film.picture.scene)?;
+    let instants = film.timed()?;
     each_frame(film, &instants, report, |idx, image| {
         let path = folder.join(format!("frame-{:05}.png", idx + 1));
         let [width, height] = film.canvas.size_px;
@@ -164,7 +183,7 @@ fn each_frame(
     report: &mut ProgressCallback<'_>,
     mut take: impl FnMut(usize, &ColorImage) -> Result<(), FilmError> + Send,
 ) -> Result<Outcome<()>, FilmError> {
-    let mut renderer = FrameRenderer::new(film.canvas)?;
+    let mut renderer = FrameRenderer::new(film.canvas)?.with_keys(film.keys.clone());
     let mut before: Option<(usize, ColorImage)> = None;
     let total = instants.len() as u64;
     for (idx, instant) in instants.iter().enumerate() {

@@ -35,7 +35,8 @@ impl Strip {
         // Courses of events have the same names.
         let scene = picture.drawn().first().map_or(&picture.scene, |first| *first);
         let legend = LegendRows::new(ui, scene, width, n_rows.clamp(1, MOST_ROWS));
-        Self { size, legend, restriction: RestrictionLine::new(&picture.scene.caveats) }
+        let caveats = picture.scene.caveats.in_units(picture.scene.units);
+        Self { size, legend, restriction: RestrictionLine::new(&caveats) }
     }
 
     /// Where the scene is, points.

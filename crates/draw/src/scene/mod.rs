@@ -2,8 +2,10 @@
 //! driver. Text and symbols over the scene are painted by egui in both.
 
 mod camera;
+mod camera_keys;
 mod canvas;
 mod cars;
+mod courses;
 mod frame;
 pub mod gpu;
 mod grid;
@@ -25,7 +27,10 @@ mod underlay_tests;
 mod view;
 
 pub use camera::{Camera, Projection};
+pub use camera_keys::{CameraKey, CameraKeyError, camera_in_scene, check_keys, set_key};
 pub use canvas::{SceneCanvas, SceneLook};
+pub use courses::{CoursesView, courses_have_room, courses_view_ui};
+pub(crate) use courses::{for_all_courses, name_ui, side_by_side};
 pub use impactlab_document::scene::ViewKind;
 pub(crate) use legend::LegendRows;
 pub use measures::{draw_measure, draw_measure_text, measure_text_place};

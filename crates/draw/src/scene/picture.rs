@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use egui::Vec2;
 use image::RgbaImage;
 
 use crate::film::FrameRenderer;
@@ -45,6 +46,18 @@ impl ScenePicture {
             [] => vec![&self.scene],
             courses => courses.iter().map(|course| &course.scene).collect(),
         }
+    }
+
+    /// The camera, from which all places of the scene are seen; as it is if it is placed.
+    ///
+    /// - `size`: of the picture, or of one of its courses of events, in any unit.
+    pub(crate) fn fitted_camera(&self, size: Vec2) -> Camera {
+        if self.is_placed {
+            return self.camera;
+        }
+        let size = [size.x, size.y].map(f64::from);
+        let fitted = self.camera.fitted(&self.scene.places_m(), size);
+        Camera { distance_m: self.distance_m.unwrap_or(fitted.distance_m), ..fitted }
     }
 
     /// What the picture shows.

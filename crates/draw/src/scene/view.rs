@@ -46,7 +46,7 @@ pub enum Follow {
 
 impl Follow {
     /// Where the followed car is at a time, m.
-    fn target_m(self, scene: &Scene, time_s: f64) -> Option<[f64; 2]> {
+    pub(crate) fn target_m(self, scene: &Scene, time_s: f64) -> Option<[f64; 2]> {
         let car = match self {
             Self::Nothing => None,
             Self::Struck => scene.struck(),
@@ -54,6 +54,18 @@ impl Follow {
         };
         car.map(|car| car.at(time_s).pose).map(|pose| [pose.x_m, pose.y_m])
     }
+}
+
+/// What a picture of a scene is part of.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum PartOf {
+    /// A pane, where the time stands over it.
+    #[default]
+    Pane,
+    /// Courses of events in the window, above which the time stands.
+    Courses,
+    /// A frame of a film: it is not painted but copied below the text, and the time stands beside it.
+    Frame,
 }
 
 /// Drawing of a scene in a part of the window: the picture and the camera.
@@ -73,9 +85,8 @@ pub struct SceneView {
     seen: Option<(Rect, Projection, f32)>,
     /// Whether clicks are taken by somebody else, so that a double click does not fit the camera.
     pub takes_clicks: bool,
-    /// Whether the picture is part of a frame of a film: it is not painted but copied below the text, and
-    /// the time stands beside it.
-    is_in_frame: bool,
+    /// What the picture is part of.
+    part_of: PartOf,
     /// Left, top, width and height of the last picture on the screen, pixels.
     area_px: [usize; 4],
 }
@@ -84,7 +95,12 @@ impl SceneView {
     /// A view whose picture is copied below the text and not painted, which takes far less time where
     /// egui's triangles are drawn on the CPU.
     pub(crate) fn in_frame() -> Self {
-        Self { is_in_frame: true, ..Self::default() }
+        Self { part_of: PartOf::Frame, ..Self::default() }
+    }
+
+    /// A view of one of several courses of events in the window.
+    pub(crate) fn among_courses() -> Self {
+        Self { part_of: PartOf::Courses, ..Self::default() }
     }
 
     /// Draws on the graphics processor of the window from now on.
@@ -116,6 +132,11 @@ impl SceneView {
     /// Fits the camera to the scene when it is drawn next.
     pub fn fit(&mut self) {
         self.camera = None;
+    }
+
+    /// Places the camera.
+    pub fn place_at(&mut self, camera: Camera) {
+        self.camera = Some(camera);
     }
 
     /// Places the camera as a picture wants it.
@@ -194,7 +215,7 @@ pub(crate) fn scene_picture_ui(
     let rect =
         Rect::from_min_size(pos2(left / points, top / points), Vec2::new(width, height) / points);
     let size = size_px.map(|side| side as f64);
-    let is_stamped = !view.is_in_frame;
+    let is_stamped = view.part_of == PartOf::Pane;
     let mut camera = match view.camera {
         Some(camera) if camera.kind == usual.kind => camera,
         _ => fitted_clear(*usual, (scene, is_stamped), rect, points),
@@ -212,9 +233,9 @@ pub(crate) fn scene_picture_ui(
     let look = SceneLook { size_px, camera, dark, pixels_per_point: points };
     let [left, top] = [left, top].map(|at| at.max(0.0) as usize);
     view.area_px = [left, top, size_px[0], size_px[1]];
-    match view.is_in_frame {
-        true => drop(view.canvas.draw(scene, &look, time_s)),
-        false => paint(ui, rect, view, scene, time_s, &look),
+    match view.part_of {
+        PartOf::Frame => drop(view.canvas.draw(scene, &look, time_s)),
+        PartOf::Pane | PartOf::Courses => paint(ui, rect, view, scene, time_s, &look),
     }
     let projection = look.projection();
     let labels = Labels { rect, projection: &projection, points, dark, is_stamped };

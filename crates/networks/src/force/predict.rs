@@ -10,7 +10,7 @@ use crate::force::{ForceError, ForceScenario};
 use impactlab_core::uncertainty::{
     CURVE_N_INSTANTS, Caveat, CaveatKind, CurveComponent, CurveMixture, ForceCurve,
 };
-use impactlab_core::units::percent;
+use impactlab_core::units::{Phrase, PhraseValue};
 
 /// Name of the applicability of a force network in a caveat.
 pub const SHARE_OF_NETWORK: &str = "applicability of the force network";
@@ -245,10 +245,14 @@ impl ForceModel {
             return None;
         }
         let known = known.join(", ");
-        let text = format!(
-            "the body of the striking vehicle, {name:?}, is none of those that the network knows \
-             ({known}): it is left open"
-        );
+        let text = Phrase::new(
+            "the body of the striking vehicle, {0}, is none of those that the network knows \
+             ({1}): it is left open",
+            "Der Aufbau des stoßenden Fahrzeugs, {0}, gehört nicht zu denen, die das Netz kennt ({1}): \
+             Er bleibt offen",
+        )
+        .with(PhraseValue::Name(format!("{name:?}")))
+        .with(PhraseValue::Name(known));
         Some(Caveat::new(CaveatKind::OutsideDomain, text))
     }
 
@@ -298,13 +302,17 @@ fn caveats(applicability: f64, outside: &[OutsideTraining], bare: Option<bool>) 
     let mut caveats: Vec<Caveat> = outside.iter().map(OutsideTraining::caveat).collect();
     if applicability < 1.0 {
         let text = match applicability > 0.0 {
-            true => format!(
-                "{} of the force is that of the physics alone, with its measured errors",
-                percent(1.0 - applicability)
+            true => Phrase::new(
+                "{0} of the force is that of the physics alone, with its measured errors",
+                "Die Kraft ist zu {0} die der Physik allein, mit deren gemessenen Fehlern",
+            )
+            .with(PhraseValue::Share(1.0 - applicability)),
+            false => Phrase::new(
+                "the force is that of the physics alone, the momentum solution as a pulse \
+                 with its measured errors; the network says nothing here",
+                "Die Kraft ist die der Physik allein: die Impulslösung als Kraftverlauf mit ihren \
+                 gemessenen Fehlern. Das Netz macht hierzu keine Aussage",
             ),
-            false => "the force is that of the physics alone, the momentum solution as a pulse \
-                      with its measured errors; the network says nothing here"
-                .to_owned(),
         };
         let caveat = Caveat::new(CaveatKind::OutsideDomain, text)
             .with_value(SHARE_OF_NETWORK, applicability)
@@ -312,7 +320,10 @@ fn caveats(applicability: f64, outside: &[OutsideTraining], bare: Option<bool>) 
         caveats.push(caveat);
     }
     if bare == Some(false) {
-        let text = "the vehicles do not approach each other at the contact: no force";
+        let text = Phrase::new(
+            "the vehicles do not approach each other at the contact: no force",
+            "Die Fahrzeuge nähern sich am Kontakt nicht: Es wirkt keine Kraft",
+        );
         caveats.push(Caveat::new(CaveatKind::ImplausibleContact, text));
     }
     caveats

@@ -131,7 +131,7 @@ pub struct MotionOutcome {
     pub heading_change_rad: Estimate,
     /// Speed of the CG, m/s: mean over the central paths under each force.
     pub speed_m_s: f64,
-    /// Size of the yaw rate, rad/s: mean over the central paths under each force.
+    /// Yaw rate, rad/s, positive to the left: mean over the central paths under each force.
     pub yaw_rate_rad_s: f64,
     /// Area of the smallest region that holds the position with a probability of 90 %, m²; none after a
     /// second contact, which is not computed.
@@ -462,7 +462,7 @@ fn outcome(
     seed: u64,
 ) -> Option<MotionOutcome> {
     let at = rest.unwrap_or(central.len().checked_sub(1)?);
-    let (pace, start) = (pace.get(at)?, central.first()?);
+    let (pace, start, end) = (pace.get(at)?, central.first()?, central.get(at)?);
     let position: PlanarMixture = distribution.position(at);
     let draws = position.sample(N_END_DRAWS, seed);
     let along = |axis: usize| Estimate::from_draws(draws.iter().map(|point| point[axis]).collect());
@@ -474,7 +474,7 @@ fn outcome(
         y_m: along(1),
         heading_change_rad: heading.estimate().mapped(|yaw_rad| yaw_rad - start.yaw_rad),
         speed_m_s: pace.speed_m_s,
-        yaw_rate_rad_s: pace.yaw_rate_rad_s,
+        yaw_rate_rad_s: end.yaw_rate_rad_s,
         region_90_m2: Some(position.region_m2(0.9)),
         p_quarter_turn: heading.p_outside(start.yaw_rad - FRAC_PI_2, start.yaw_rad + FRAC_PI_2),
         p_half_turn: heading.p_outside(start.yaw_rad - PI, start.yaw_rad + PI),

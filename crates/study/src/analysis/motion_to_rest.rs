@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
-use crate::analysis::rest_outcome::poses;
+use crate::analysis::rest_outcome::{SHARE_AT_REST, poses};
 use crate::analysis::{MonteCarloError, MotionEnd, MotionOutcome, RestOutcome, StruckVehicle};
 use impactlab_core::data::ForceHistory;
 use impactlab_core::uncertainty::pose_groups;
@@ -22,8 +22,6 @@ use impactlab_networks::response::{
 
 /// Draws of the motion: the end of a 90 % interval is then uncertain by 1.4 % of probability.
 const N_DRAWS: usize = 240;
-/// Share of the draws at rest with which the vehicle is said to be at rest.
-const SHARE_AT_REST: f64 = 0.95;
 
 /// What a motion is forecast from.
 pub(super) struct ToRest<'a> {
@@ -222,8 +220,31 @@ fn outcome(
         p_half_turn: share_of(PI),
         heading_change_rad: Estimate::from_draws(turned),
         speed_m_s: mean(|end| end.speed_m_s),
-        yaw_rate_rad_s: mean(|end| end.yaw_rate_rad_s.abs()),
+        yaw_rate_rad_s: mean(|end| end.yaw_rate_rad_s),
         region_90_m2: rest.region_90_m2,
         monte_carlo: MonteCarloError::from_ends(ends, rest.limit_s),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_yaw_rate_at_the_end_has_its_sign() {
+        let end = |i: i32| MotionEnd {
+            is_at_rest: false,
+            time_s: 4.0,
+            distance_m: f64::from(i),
+            x_m: f64::from(i),
+            y_m: 0.1 * f64::from(i),
+            yaw_rad: -2.0,
+            speed_m_s: 8.0,
+            yaw_rate_rad_s: -0.001 * f64::from(i),
+        };
+        let ends: Vec<MotionEnd> = (1..=100).map(end).collect();
+        let rest = RestOutcome::from_ends(&ends, 4.0).unwrap();
+        let yaw_rate_rad_s = outcome(&ends, &rest, 101, 0.0).yaw_rate_rad_s;
+        assert!((yaw_rate_rad_s + 0.0505).abs() < 1e-9, "{yaw_rate_rad_s}");
     }
 }

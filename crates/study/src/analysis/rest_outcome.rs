@@ -6,6 +6,10 @@ use serde::Serialize;
 use impactlab_core::uncertainty::PlanarMixture;
 use impactlab_core::units::Estimate;
 
+/// Share of the draws at rest with which the vehicle is said to be at rest: the upper end of an interval
+/// of 90 %.
+pub(super) const SHARE_AT_REST: f64 = 0.95;
+
 /// Where one draw of a motion ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionEnd {
@@ -71,6 +75,12 @@ impl RestOutcome {
         Self { x_m, y_m, yaw_rad, time_s, distance_m, region_50_m2, region_90_m2, ..*self }
     }
 
+    /// Time after which 95 % of the draws are at rest, s; `None` where fewer come to rest.
+    pub fn nearly_all_at_rest_s(&self) -> Option<f64> {
+        let [_, late_s] = self.time_s.interval(0.9)?;
+        (self.share_at_rest >= SHARE_AT_REST).then_some(late_s)
+    }
+
     /// The outcome over draws; `None` without any.
     pub fn from_ends(ends: &[MotionEnd], limit_s: f64) -> Option<Self> {
         if ends.is_empty() {
@@ -127,7 +137,11 @@ mod tests {
         assert_eq!(rest.moving_speed_m_s, Some(1.0));
         assert!((rest.distance_m.median - 50.5).abs() < 1e-9, "{rest:?}");
         assert!(rest.distance_m.ninety()[1] > 94.0, "{rest:?}");
-        assert!(RestOutcome::from_ends(&ends[..60], 50.0).unwrap().moving_speed_m_s.is_none());
+        assert_eq!(rest.nearly_all_at_rest_s(), None);
+        let settled = RestOutcome::from_ends(&ends[..60], 50.0).unwrap();
+        assert!(settled.moving_speed_m_s.is_none());
+        let late_s = settled.nearly_all_at_rest_s().unwrap();
+        assert!((28.0..29.0).contains(&late_s), "{late_s}");
         assert_eq!(RestOutcome::from_ends(&[], 50.0), None);
     }
 }

@@ -46,6 +46,9 @@ const OWN: [&str; 3] = ["question", "vehicle_draws", "seed"];
 pub(super) struct VariantText {
     /// What it is called.
     name: String,
+    /// What the analyst wrote about it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    notes: String,
     /// What several questions have in common.
     #[serde(default, skip_serializing_if = "Map::is_empty")]
     common: Map<String, Value>,
@@ -82,7 +85,7 @@ impl VariantText {
     /// # Errors
     /// The name of a file is not Unicode, which JSON cannot hold.
     fn from_variant(variant: &Variant) -> Result<Self, serde_json::Error> {
-        let Variant { name, questions, unasked, view, forms } = variant.clone();
+        let Variant { name, notes, questions, unasked, view, forms } = variant.clone();
         let n_questions = questions.len();
         let questions = questions.iter().chain(&unasked).map(serde_json::to_value::<&Request>);
         let mut questions = questions.collect::<Result<Vec<Value>, _>>()?;
@@ -90,7 +93,7 @@ impl VariantText {
         let mut questions: Vec<QuestionText> =
             questions.into_iter().map(QuestionText::from_value).collect();
         let unasked = questions.split_off(n_questions);
-        Ok(Self { name, common, questions, unasked, view, forms })
+        Ok(Self { name, notes, common, questions, unasked, view, forms })
     }
 }
 
@@ -98,7 +101,7 @@ impl TryFrom<VariantText> for Variant {
     type Error = String;
 
     fn try_from(text: VariantText) -> Result<Self, String> {
-        let VariantText { name, common, questions, unasked, view, forms } = text;
+        let VariantText { name, notes, common, questions, unasked, view, forms } = text;
         let whole = |questions: Vec<QuestionText>, list: &str| -> Result<Vec<Request>, String> {
             let number = |(i, question): (usize, QuestionText)| {
                 let request = serde_json::from_value(question.with_common(&common));
@@ -107,7 +110,7 @@ impl TryFrom<VariantText> for Variant {
             questions.into_iter().enumerate().map(number).collect()
         };
         let (questions, unasked) = (whole(questions, "questions")?, whole(unasked, "unasked")?);
-        Ok(Self { name, questions, unasked, view, forms })
+        Ok(Self { name, notes, questions, unasked, view, forms })
     }
 }
 
@@ -244,6 +247,18 @@ mod tests {
         let edited: Variant = serde_json::from_str(&edited).unwrap();
         let whole = serde_json::to_string(&edited.questions).unwrap();
         assert_eq!(whole.matches("\"restitution\":0.35").count(), 3, "{whole}");
+    }
+
+    /// A file that was written before variants had notes has none, and one without notes says nothing.
+    #[test]
+    fn notes_stand_in_the_file_where_there_are_any() {
+        let without = variant([4.0, 4.0]);
+        let file = serde_json::to_value(&without).unwrap();
+        assert_eq!(file.get("notes"), None);
+        assert_eq!(serde_json::from_value::<Variant>(file).unwrap().notes, "");
+        let with = Variant { notes: "wet\nroad".to_owned(), ..without };
+        let text = serde_json::to_string(&with).unwrap();
+        assert_eq!(serde_json::from_str::<Variant>(&text).unwrap(), with);
     }
 
     #[test]

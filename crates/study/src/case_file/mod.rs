@@ -115,6 +115,8 @@ impl Expert {
 pub struct Variant {
     /// What it is called.
     pub name: String,
+    /// What the analyst wrote about it.
+    pub notes: String,
     /// What is asked of it.
     pub questions: Vec<Request>,
     /// Questions that are filled in and not asked, such as those about a scenario while a recorded case is

@@ -4,7 +4,8 @@ use impactlab_core::collision::{
     Impact, Scenario, ScenarioGeometry, TOUCH_TOLERANCE_M, default_restitution_in_words,
 };
 use impactlab_core::numerics::NORMAL_QUANTILE_95;
-use impactlab_core::uncertainty::{Caveat, CaveatSubject};
+use impactlab_core::uncertainty::{Caveat, CaveatSubject, CaveatText};
+use impactlab_core::units::{Phrase, PhraseValue, Quantity, three_digits};
 use impactlab_core::vehicle::sheet::{Estimate, SheetQuantity};
 use impactlab_core::vehicle::{ContactPoint, ROAD_FRICTION_SPREAD, RoadDraws, VehicleParameters};
 
@@ -19,10 +20,17 @@ pub(crate) fn estimates(vehicle: &VehicleParameters) -> Vec<Caveat> {
 
 fn estimate(estimate: &Estimate) -> Caveat {
     let Estimate { quantity, unit, value, rule, source } = estimate;
-    let (median, [low, high]) = (value.median, value.ninety());
-    let [median, low, high] = [median, low, high].map(three_digits);
-    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-    let value = format!("{} {median}{unit}, 90 %: {low} to {high}", quantity.label());
+    let [low, high] = value.ninety();
+    let number = |value: f64| match Quantity::from_si_symbol(unit) {
+        Some(quantity) => PhraseValue::three_digits(quantity, value),
+        None if unit.is_empty() => PhraseValue::three_digits(Quantity::Ratio, value),
+        None => PhraseValue::Name(format!("{} {unit}", three_digits(value))),
+    };
+    let bare = |value: f64| match Quantity::from_si_symbol(unit) {
+        Some(quantity) => PhraseValue::three_digits(quantity, value).bare(),
+        None => PhraseValue::three_digits(Quantity::Ratio, value),
+    };
+    let value = with_ninety(*quantity, number(value.median), [bare(low), bare(high)]);
     Caveat::assumed(subject_of(*quantity), value, format!("{rule}; {source}"))
 }
 
@@ -39,15 +47,35 @@ pub(crate) fn road(question: &SimulateRequest, vehicle: &VehicleParameters) -> O
     let friction = vehicle.tires.friction;
     let [median, low, high] =
         [friction, friction - NORMAL_QUANTILE_95 * sigma, friction + NORMAL_QUANTILE_95 * sigma]
-            .map(three_digits);
-    let value = format!("{} {median}, 90 %: {low} to {high}", SheetQuantity::Friction.label());
+            .map(|value| PhraseValue::three_digits(Quantity::Ratio, value));
+    let value = with_ninety(SheetQuantity::Friction, median, [low, high]);
     let whose = match question.friction {
-        Some(_) => "how well it is known was not said",
-        None => "that of the vehicle's file, as the road was not said; another one: --friction",
+        Some(_) => Phrase::new(
+            "how well it is known was not said",
+            "seine Unsicherheit ist nicht angegeben",
+        ),
+        None => Phrase::new(
+            "that of the vehicle's file, as the road was not said; another one: --friction",
+            "der Wert aus der Fahrzeugdatei, da zur Fahrbahn nichts angegeben ist; anderer Wert: --friction",
+        ),
     };
-    let percent = 100.0 * ROAD_FRICTION_SPREAD;
-    let reason = format!("{whose}; σ {percent} % of it, as of dry asphalt: --friction-sigma");
+    let reason = Phrase::new(
+        "{0}; σ {1} of it, as of dry asphalt: --friction-sigma",
+        "{0}; σ {1} davon, wie bei trockenem Asphalt: --friction-sigma",
+    )
+    .with(PhraseValue::phrase(whose))
+    .with(PhraseValue::given(Quantity::Ratio, ROAD_FRICTION_SPREAD).in_unit("%"));
     Some(Caveat::assumed(CaveatSubject::RoadFriction, value, reason))
+}
+
+/// A quantity of a data sheet with its interval of 90 %.
+fn with_ninety(quantity: SheetQuantity, median: PhraseValue, ends: [PhraseValue; 2]) -> Phrase {
+    let [low, high] = ends;
+    Phrase::new("{0} {1}, 90 %: {2} to {3}", "{0} {1}, 90 %: {2} bis {3}")
+        .with(PhraseValue::Term(quantity.label().to_owned()))
+        .with(median)
+        .with(low)
+        .with(high)
 }
 
 /// Where a person finds what a data sheet leaves open: the friction is that of the road.
@@ -61,19 +89,28 @@ fn subject_of(quantity: SheetQuantity) -> CaveatSubject {
 /// That the parameters of a vehicle are estimates of which only the medians are used.
 pub(crate) fn medians(subject: CaveatSubject, vehicle: &VehicleParameters) -> Option<Caveat> {
     let n = vehicle.sheet.as_ref()?.estimated().count();
-    let value = format!("{n} of {}, at their medians", vehicle.name);
-    let reason = "its data sheet does not state them; impactlab vehicles lists the rules";
+    let value = Phrase::new("{0} of {1}, at their medians", "{0} von {1}, mit ihren Medianen")
+        .with(PhraseValue::Name(n.to_string()))
+        .with(PhraseValue::Name(vehicle.name.clone()));
+    let reason = Phrase::new(
+        "its data sheet does not state them; impactlab vehicles lists the rules",
+        "im Datenblatt nicht angegeben; die Schätzregeln nennt impactlab vehicles",
+    );
     (n > 0).then(|| Caveat::assumed(subject, value, reason))
 }
 
 /// What stands for the contact of vehicles whose outlines overlap.
 pub(crate) fn first_touch(geometry: &ScenarioGeometry) -> Option<Caveat> {
     let (surface, overlap_m) = geometry.surface.zip(geometry.overlap_m)?;
-    let reason = format!(
-        "the outlines overlap by {overlap_m:.2} m; they first touched there at their velocities, \
-         and the middle of the overlap is the contact point"
-    );
-    let value = format!("normal {surface}");
+    let reason = Phrase::new(
+        "the outlines overlap by {0}; they first touched there at their velocities, \
+         and the middle of the overlap is the contact point",
+        "die Umrisse überdecken sich um {0}; dort berührten sie sich bei ihren Geschwindigkeiten zuerst, \
+         und die Mitte der Überdeckung ist der Kontaktpunkt",
+    )
+    .with(PhraseValue::fixed(Quantity::Length, overlap_m, 2));
+    let value =
+        Phrase::new("normal {0}", "Normale {0}").with(PhraseValue::Term(surface.to_string()));
     let is_deep = overlap_m > TOUCH_TOLERANCE_M;
     is_deep.then(|| Caveat::assumed(CaveatSubject::FirstTouch, value, reason))
 }
@@ -85,60 +122,52 @@ pub(crate) fn contact_default(scenario: &Scenario, impact: &Impact) -> Option<Ca
     let has_restitution = contact.restitution.is_some();
     let has_friction = contact.friction_limit.or(contact.friction_of_critical).is_some();
     let closing_m_s = impact.closing_speed_m_s();
-    let at_this_speed = format!(
-        "the default at {closing_m_s:.1} m/s, the speed at which the contact points close in all \
-         directions: {}",
-        default_restitution_in_words()
+    let at_this_speed = Phrase::new(
+        "the default at {0}, the speed at which the contact points close in all directions: {1}",
+        "Vorgabe bei {0}, der Annäherungsgeschwindigkeit der Kontaktpunkte in allen Richtungen: {1}",
+    )
+    .with(PhraseValue::fixed(Quantity::Speed, closing_m_s, 1))
+    .with(PhraseValue::phrase(default_restitution_in_words()));
+    let e = Phrase::new("e = {0}", "e = {0}")
+        .with(PhraseValue::three_digits(Quantity::Ratio, surface.restitution));
+    let mu = Phrase::new("μ_c = {0}", "μ_c = {0}")
+        .with(PhraseValue::given(Quantity::Ratio, surface.friction_limit));
+    let by_runs = Phrase::new(
+        "the default, fitted to finite-element runs of slow pushes",
+        "Vorgabe, angepasst an Finite-Elemente-Rechnungen langsamer Schübe",
     );
-    let e = format!("e = {}", three_digits(surface.restitution));
-    let mu = format!("μ_c = {}", surface.friction_limit);
-    let by_runs = "the default, fitted to finite-element runs of slow pushes";
     let (values, reason) = match (has_restitution, has_friction) {
         (true, true) => return None,
         (false, true) => (e, at_this_speed),
-        (true, false) => (mu, by_runs.to_owned()),
-        (false, false) => (format!("{e}, {mu}"), format!("e: {at_this_speed}; μ_c: {by_runs}")),
+        (true, false) => (mu, by_runs),
+        (false, false) => {
+            let reason = Phrase::new("e: {0}; μ_c: {1}", "e: {0}; μ_c: {1}")
+                .with(PhraseValue::phrase(at_this_speed))
+                .with(PhraseValue::phrase(by_runs));
+            (Phrase::joined([e, mu], ", "), reason)
+        }
     };
     Some(Caveat::assumed(CaveatSubject::Restitution, values, reason))
 }
 
 /// The contact point that stands for an unknown one.
-pub(crate) fn contact_point(contact: ContactPoint, reason: &str) -> Caveat {
+pub(crate) fn contact_point(contact: ContactPoint, reason: impl Into<CaveatText>) -> Caveat {
     let ContactPoint { x_body_m, y_body_m, height_m } = contact;
-    let [x, y, z] = [x_body_m, y_body_m, height_m].map(three_digits);
-    let value = format!("x {x} m, y {y} m from the CG (x forward, y left), {z} m high");
+    let [x, y, z] = [x_body_m, y_body_m, height_m]
+        .map(|value_m| PhraseValue::three_digits(Quantity::Length, value_m));
+    let value = Phrase::new(
+        "x {0}, y {1} from the CG (x forward, y left), {2} high",
+        "x {0}, y {1} vom Schwerpunkt (x nach vorn, y nach links), {2} hoch",
+    )
+    .with(x)
+    .with(y)
+    .with(z);
     Caveat::assumed(CaveatSubject::ContactPoint, value, reason)
-}
-
-/// A number with three digits.
-pub(crate) fn three_digits(value: f64) -> String {
-    let size = value.abs();
-    let decimals = if size < 1e-9 { 0 } else { (2 - size.log10().floor() as i32).clamp(0, 6) };
-    let rounded = format!("{value:.*}", decimals as usize);
-    match decimals {
-        0 => format!("{:.0}", value),
-        _ => rounded.trim_end_matches('0').trim_end_matches('.').to_owned(),
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn estimates_have_three_digits() {
-        for (value, expected) in [
-            (2451.7, "2452"),
-            (0.6049, "0.605"),
-            (0.0110, "0.011"),
-            (0.0, "0"),
-            (-74.25, "-74.2"),
-            (5.7, "5.7"),
-            (12.34, "12.3"),
-        ] {
-            assert_eq!(three_digits(value), expected);
-        }
-    }
 
     #[test]
     fn the_friction_of_a_data_sheet_is_that_of_the_road() {

@@ -2,6 +2,7 @@
 
 use crate::{MotionSource, SimulateRequest, StudyError};
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
+use impactlab_core::units::Phrase;
 
 /// That a motion is followed to rest although nobody has said what the driver does: whether the vehicle
 /// brakes decides by far the most where it stops.
@@ -19,10 +20,15 @@ pub(crate) fn open_driver(question: &SimulateRequest) -> Result<Option<Caveat>, 
     };
     let is_open = question.until_rest && !is_said;
     Ok(is_open.then(|| {
-        let text = "nobody has said what the driver does: the vehicle rolls to rest unbraked, over \
-                    distances that were compared with no record; say that it brakes (--brake 0.8), or that \
-                    it rolls (--coast)";
-        Caveat::new(CaveatKind::HardlyValidated, text)
+        let text = Phrase::new(
+            "nobody has said what the driver does: the vehicle rolls to rest unbraked, over \
+             distances that were compared with no record; say that it brakes (--brake 0.8), or that \
+             it rolls (--coast)",
+            "Zum Verhalten des Fahrers liegt keine Angabe vor: Das Fahrzeug rollt ungebremst aus, über \
+             Strecken, die an keiner Aufzeichnung geprüft sind. Anzugeben ist, ob es bremst \
+             (--brake 0.8) oder rollt (--coast)",
+        );
+        Caveat::new(CaveatKind::DriverOpen, text)
     }))
 }
 

@@ -2,10 +2,10 @@
 
 use impactlab_core::collision::{Role, Scenario, SharedNumber};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
+use impactlab_core::units::{NumberFormat, Phrase, PhraseValue};
 use impactlab_core::vehicle::VehicleParameters;
 
 use crate::VehicleChoice;
-use crate::caveats::assumed::three_digits;
 
 /// Relative difference beyond which a value is another one: of a mass, a passenger; of a yaw inertia,
 /// more than the mass explains; of an outline, more than a bumper is worth.
@@ -49,7 +49,12 @@ fn other_than(scenario: &Scenario, role: Role, vehicle: &VehicleParameters) -> O
         return None;
     }
     let said = others.iter().map(|number| instead(number, number.in_scenario, number.in_vehicle));
-    let text = format!("{} as the collision has it: {}", vehicle.name, listed(said));
+    let text = Phrase::new(
+        "{0} as the collision has it: {1}",
+        "{0} weicht in der Kollision vom Datenblatt ab: {1}",
+    )
+    .with(PhraseValue::Name(vehicle.name.clone()))
+    .with(PhraseValue::phrase(Phrase::joined(said, ", ")));
     let subject = match role {
         Role::Struck => CaveatSubject::Vehicle,
         Role::Striking => CaveatSubject::Striking,
@@ -71,24 +76,22 @@ pub(crate) fn taken_over(
         (now_is != before_was).then(|| instead(&now, now_is, before_was))
     };
     let numbers = now.beside(vehicle).into_iter().zip(before.beside(vehicle));
-    let said = listed(numbers.filter_map(told));
+    let said = Phrase::joined(numbers.filter_map(told), ", ").say(&NumberFormat::default());
     (!said.is_empty())
         .then(|| format!("{}: {} as {} has it: {said}", scenario.name, role.label(), vehicle.name))
 }
 
-fn instead(number: &SharedNumber, value: f64, before: f64) -> String {
-    let [value, before] = [value, before].map(three_digits);
-    let unit = number.quantity.si_unit().symbol;
-    format!("{} {value} {unit} instead of {before}", number.name)
-}
-
-fn listed(said: impl Iterator<Item = String>) -> String {
-    said.collect::<Vec<String>>().join(", ")
+fn instead(number: &SharedNumber, value: f64, before: f64) -> Phrase {
+    Phrase::new("{0} {1} instead of {2}", "{0} {1} statt {2}")
+        .with(PhraseValue::Term(number.name.to_owned()))
+        .with(PhraseValue::three_digits(number.quantity, value))
+        .with(PhraseValue::three_digits(number.quantity, before).bare())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impactlab_core::units::{Language, UnitSystem, three_digits};
     use impactlab_core::vehicle::built_in_vehicle;
 
     #[test]
@@ -101,6 +104,11 @@ mod tests {
         assert!(caveat.is_warning());
         let mass = three_digits(vehicle.mass.mass_kg);
         assert!(caveat.text.contains(&format!("mass 2000 kg instead of {mass}")), "{caveat}");
+        let us = caveat.in_units(UnitSystem::Us);
+        assert!(us.text.contains("mass 4409 lb instead of "), "{us}");
+        let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
+        let german = caveat.text_in(&german, &str::to_owned).unwrap();
+        assert!(german.contains(&format!("mass 2000 kg statt {mass}")), "{german}");
         scenario.struck.take(&vehicle);
         scenario.struck.mass_kg += 30.0;
         assert_eq!(other(&scenario), None);

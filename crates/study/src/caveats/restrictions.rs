@@ -1,19 +1,21 @@
 //! What restricts an answer: findings that a report has in a form of its own, as caveats.
 
 use crate::analysis::{MonteCarloError, RestOutcome, Rival, RivalForce};
-use crate::questions::predict::implied_contact::{LEAST_P_RIGID, MOST_P_ENERGY_GAIN};
+use crate::questions::predict::implied_contact::{
+    LEAST_P_RIGID, MOST_P_ENERGY_GAIN, warning_phrase,
+};
 use crate::{
     ImpliedContactReport, PredictForceReport, PredictMotionReport, ReplayedCaseReport,
     SimulateReport,
 };
-use impactlab_core::collision::{ScenarioGeometry, TOUCH_TOLERANCE_M};
+use impactlab_core::collision::{Footprint, ScenarioGeometry, TOUCH_TOLERANCE_M};
 use impactlab_core::data::{
-    CONTACT_SHARE_OF_PEAK, Case, Flag, FlagKind, ForceHistory, Loaded, Severity, check_case,
-    check_file, cut_at_s,
+    CONTACT_SHARE_OF_PEAK, Case, Flag, FlagKind, ForceAxes, ForceHistory, Loaded, Severity,
+    check_case, check_file, cut_at_s,
 };
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
-use impactlab_core::units::{percent, significant};
-use impactlab_core::vehicle::REST_SPEED_M_S;
+use impactlab_core::units::{Phrase, PhraseValue, Quantity};
+use impactlab_core::vehicle::{ContactPoint, REST_SPEED_M_S, VehicleParameters};
 use impactlab_networks::response::{OutsideDomain, STEP_S};
 
 /// Largest standard error of the end of an interval by the number of draws, as a share of the width.
@@ -22,9 +24,11 @@ const MOST_CHANCE: f64 = 0.1;
 /// Outlines that overlap by more than the tolerance within which they touch.
 pub(crate) fn overlap_caveat(geometry: &ScenarioGeometry) -> Option<Caveat> {
     let overlap_m = geometry.overlap_m.filter(|overlap_m| *overlap_m > TOUCH_TOLERANCE_M)?;
-    let text = format!(
-        "the outlines overlap by {overlap_m:.2} m; the contact is that at which they first touched"
-    );
+    let text = Phrase::new(
+        "the outlines overlap by {0}; the contact is that at which they first touched",
+        "Die Umrisse der Fahrzeuge überdecken sich um {0}; als Kontakt gilt ihre erste Berührung",
+    )
+    .with(PhraseValue::fixed(Quantity::Length, overlap_m, 2));
     let caveat = Caveat::new(CaveatKind::Overlap, text)
         .with_value("overlap of the outlines [m]", overlap_m)
         .with_range([f64::NEG_INFINITY, TOUCH_TOLERANCE_M]);
@@ -36,8 +40,12 @@ pub(crate) fn energy_gain_caveat(dissipated_j: f64) -> Option<Caveat> {
     // Rounding is far below.
     let is_gain = dissipated_j < -1.0;
     is_gain.then(|| {
-        let text = "the contact gives kinetic energy to the vehicles, which no contact does: the friction \
-                    of this model pushes them instead of holding them back; do not rely on it";
+        let text = Phrase::new(
+            "the contact gives kinetic energy to the vehicles, which no contact does: the friction \
+             of this model pushes them instead of holding them back; do not rely on it",
+            "Der Kontakt führt den Fahrzeugen Bewegungsenergie zu, was kein Anstoß vermag: Die Reibung \
+             dieses Modells treibt sie an, statt sie zu bremsen. Das Ergebnis ist nicht verwertbar",
+        );
         Caveat::new(CaveatKind::EnergyGain, text)
             .with_value("energy lost in the contact [J]", dissipated_j)
             .with_range([0.0, f64::INFINITY])
@@ -50,11 +58,14 @@ pub(crate) fn cut_record_caveat(force: &ForceHistory) -> Option<Caveat> {
     let (peak_n, _) = force.peak()?;
     let (x, y) = force.fx_n.last().zip(force.fy_n.last())?;
     let share = x.hypot(*y) / peak_n;
-    let text = format!(
-        "the record ends after {at_s:.3} s at {} of the peak, with the vehicles in contact: its \
+    let text = Phrase::new(
+        "the record ends after {0} at {1} of the peak, with the vehicles in contact: its \
          impulse is not complete, nor the motion that follows from it",
-        percent(share)
-    );
+        "Die Aufzeichnung endet nach {0} bei {1} des Höchstwerts, noch während des Kontakts: Der \
+         Stoßantrieb ist unvollständig, und damit auch die Auslaufbewegung, die aus ihm folgt",
+    )
+    .with(PhraseValue::fixed(Quantity::Time, at_s, 3))
+    .with(PhraseValue::Share(share));
     let caveat = Caveat::new(CaveatKind::ContactNotEnded, text)
         .with_value("force at the end as a share of the peak", share)
         .with_range([0.0, CONTACT_SHARE_OF_PEAK]);
@@ -69,6 +80,34 @@ pub(crate) fn doubtful_data_caveats(name: &str, loaded: &Loaded) -> Vec<Caveat> 
     doubts(name, check_file(loaded))
 }
 
+/// A force that pulls at the point where it acts, as no contact does.
+///
+/// - `yaw_rad`: heading of the vehicle at the start, rad.
+pub(crate) fn pulling_caveat(
+    force: &ForceHistory,
+    contact: ContactPoint,
+    vehicle: &VehicleParameters,
+    yaw_rad: f64,
+) -> Option<Caveat> {
+    let [x, y] = force.impulse_n_s();
+    let (sin, cos) = match force.axes {
+        ForceAxes::World => yaw_rad.sin_cos(),
+        ForceAxes::Body => (0.0, 1.0),
+    };
+    let impulse_body_n_s = [x * cos + y * sin, y * cos - x * sin];
+    let point_m = [contact.x_body_m, contact.y_body_m];
+    Footprint::from(&vehicle.geometry).pulled_side(point_m, impulse_body_n_s)?;
+    let text = Phrase::new(
+        "the force pulls at its contact point ({0} ahead, {1} left of the CG) instead of pushing into the \
+         vehicle; check the signs of its components, its axes and the contact point",
+        "Die Kraft zieht an ihrem Kontaktpunkt ({0} vor und {1} links vom Schwerpunkt), statt in das Fahrzeug \
+         zu drücken; zu prüfen sind die Vorzeichen der Komponenten, die Achsen und der Kontaktpunkt",
+    )
+    .with(PhraseValue::three_digits(Quantity::Length, contact.x_body_m))
+    .with(PhraseValue::three_digits(Quantity::Length, contact.y_body_m));
+    Some(Caveat::new(CaveatKind::DoubtfulData, text))
+}
+
 /// The same for a case of a data set.
 pub(crate) fn doubtful_case_caveats(case: &Case) -> Vec<Caveat> {
     doubts(&case.name, check_case(case))
@@ -77,7 +116,12 @@ pub(crate) fn doubtful_case_caveats(case: &Case) -> Vec<Caveat> {
 fn doubts(name: &str, flags: Vec<Flag>) -> Vec<Caveat> {
     let is_doubt =
         |flag: &Flag| flag.severity > Severity::Info && flag.kind != FlagKind::NotSeparated;
-    let caveat = |flag: Flag| Caveat::new(CaveatKind::DoubtfulData, format!("{name}: {flag}"));
+    let caveat = |flag: Flag| {
+        let text = Phrase::new("{0}: {1}", "{0}: {1}")
+            .with(PhraseValue::Name(name.to_owned()))
+            .with(PhraseValue::phrase(flag.phrase()));
+        Caveat::new(CaveatKind::DoubtfulData, text)
+    };
     flags.into_iter().filter(is_doubt).map(caveat).collect()
 }
 
@@ -99,11 +143,13 @@ pub(crate) fn simulation_caveats(report: &SimulateReport, until_rest: bool) -> V
 fn few_draws_caveat(error: &MonteCarloError) -> Option<Caveat> {
     let share = error.interval_share;
     let text = || {
-        format!(
-            "an end of a 90 % interval is uncertain by {} of the interval's width, because so few \
+        Phrase::new(
+            "an end of a 90 % interval is uncertain by {0} of the interval's width, because so few \
              draws were made",
-            percent(share)
+            "Ein Ende eines 90-%-Intervalls ist um {0} der Intervallbreite unsicher, weil so wenige \
+             Ziehungen gemacht wurden",
         )
+        .with(PhraseValue::Share(share))
     };
     let is_much = share > MOST_CHANCE || share.is_nan();
     is_much.then(|| {
@@ -123,7 +169,9 @@ pub(crate) fn flagged_cases_caveats(cases: &[ReplayedCaseReport]) -> Vec<Caveat>
         let is_flagged =
             |case: &&ReplayedCaseReport| case.flags.iter().any(|flag| flag.caveat.kind == kind);
         let n = cases.iter().filter(is_flagged).count();
-        let text = format!("in {n} of {} cases", cases.len());
+        let text = Phrase::new("in {0} of {1} cases", "in {0} von {1} Fällen")
+            .with(PhraseValue::Name(n.to_string()))
+            .with(PhraseValue::Name(cases.len().to_string()));
         Caveat::new(kind, text).with_value("cases", n as f64).with_range([0.0, 0.0])
     };
     kinds.into_iter().map(of_kind).collect()
@@ -133,10 +181,13 @@ pub(crate) fn flagged_cases_caveats(cases: &[ReplayedCaseReport]) -> Vec<Caveat>
 ///
 /// - `speed_m_s`: speed at the end.
 pub(crate) fn motion_caveat(speed_m_s: f64, after_s: f64) -> Caveat {
-    let text = format!(
-        "the vehicle still moves at {speed_m_s:.1} m/s after {after_s:.2} s: its end is not where it \
-         comes to rest"
-    );
+    let text = Phrase::new(
+        "the vehicle still moves at {0} after {1}: its end is not where it comes to rest",
+        "Das Fahrzeug bewegt sich nach {1} noch mit {0}: Der Endpunkt der Bewegung ist nicht seine \
+         Endlage",
+    )
+    .with(PhraseValue::fixed(Quantity::Speed, speed_m_s, 1))
+    .with(PhraseValue::fixed(Quantity::Time, after_s, 2));
     Caveat::new(CaveatKind::NotAtRest, text)
         .with_value("speed at the end [m/s]", speed_m_s)
         .with_range([0.0, REST_SPEED_M_S])
@@ -145,13 +196,16 @@ pub(crate) fn motion_caveat(speed_m_s: f64, after_s: f64) -> Caveat {
 /// Draws of a motion that is followed to rest and still move at the limit of time.
 pub(crate) fn rest_caveat(rest: &RestOutcome) -> Option<Caveat> {
     let speed_m_s = rest.moving_speed_m_s?;
-    let text = format!(
-        "in {} of {} draws the vehicle still moves after {:.2} s, at {speed_m_s:.1} m/s in the median: \
+    let text = Phrase::new(
+        "in {0} of {1} draws the vehicle still moves after {2}, at {3} in the median: \
          times and distances to rest are longer than said",
-        percent(1.0 - rest.share_at_rest),
-        rest.n_draws,
-        rest.limit_s,
-    );
+        "In {0} von {1} Ziehungen bewegt sich das Fahrzeug nach {2} noch, im Median mit {3}: \
+         Auslaufzeit und Auslaufstrecke sind länger als angegeben",
+    )
+    .with(PhraseValue::Share(1.0 - rest.share_at_rest))
+    .with(PhraseValue::Name(rest.n_draws.to_string()))
+    .with(PhraseValue::fixed(Quantity::Time, rest.limit_s, 2))
+    .with(PhraseValue::fixed(Quantity::Speed, speed_m_s, 1));
     let caveat = Caveat::new(CaveatKind::NotAtRest, text)
         .with_value("share of the draws at rest", rest.share_at_rest)
         .with_range([1.0, 1.0]);
@@ -169,10 +223,14 @@ fn duration_caveat(report: &PredictMotionReport) -> Option<Caveat> {
     if end_s <= learned_s + 1.5 * STEP_S {
         return None;
     }
-    let text = format!(
-        "the motion lasts {end_s:.2} s, the response network has learned from motions of up to \
-         {learned_s:.2} s: from there on this is the 4DOF model with the strengths that it knows"
-    );
+    let text = Phrase::new(
+        "the motion lasts {0}, the response network has learned from motions of up to \
+         {1}: from there on this is the 4DOF model with the strengths that it knows",
+        "Die Bewegung dauert {0}; das Bewegungsnetz hat an Bewegungen von bis zu {1} gelernt. Danach \
+         gilt das 4DOF-Modell mit den gelernten Beiwerten",
+    )
+    .with(PhraseValue::fixed(Quantity::Time, end_s, 2))
+    .with(PhraseValue::fixed(Quantity::Time, learned_s, 2));
     let caveat = Caveat::new(CaveatKind::OutsideDomain, text)
         .with_value("duration of the motion [s]", end_s)
         .with_range([0.0, learned_s]);
@@ -182,11 +240,15 @@ fn duration_caveat(report: &PredictMotionReport) -> Option<Caveat> {
 /// A quantity of a motion that lies outside what a response network has learned from.
 fn outside_domain_caveat(outside: &OutsideDomain) -> Caveat {
     let OutsideDomain { quantity, value, range } = outside;
-    let [low, high] = range.map(significant);
-    let text = format!(
-        "{quantity} is {}, the response network has learned from {low} to {high}",
-        significant(*value)
-    );
+    let [low, high] = *range;
+    let text = Phrase::new(
+        "{0} is {1}, the response network has learned from {2} to {3}",
+        "{0} beträgt {1}; das Bewegungsnetz hat an Werten von {2} bis {3} gelernt",
+    )
+    .with(PhraseValue::Heading((*quantity).to_owned()))
+    .with(PhraseValue::of_named(quantity, *value))
+    .with(PhraseValue::of_named(quantity, low))
+    .with(PhraseValue::of_named(quantity, high));
     Caveat::new(CaveatKind::OutsideDomain, text).with_value(*quantity, *value).with_range(*range)
 }
 
@@ -225,7 +287,9 @@ pub(crate) fn predicted_motion_caveats(
 
 /// A predicted impulse that no contact brings about.
 pub(crate) fn contact_caveat(implied: &ImpliedContactReport) -> Option<Caveat> {
-    let caveat = Caveat::new(CaveatKind::ImplausibleContact, implied.warning.as_ref()?);
+    implied.warning.as_ref()?;
+    let text = warning_phrase(implied.p_rigid, implied.p_energy_gain);
+    let caveat = Caveat::new(CaveatKind::ImplausibleContact, text);
     Some(if implied.p_rigid < LEAST_P_RIGID {
         let quantity = "share of the impulse with a restitution between 0 and 1";
         caveat.with_value(quantity, implied.p_rigid).with_range([LEAST_P_RIGID, 1.0])
@@ -242,13 +306,21 @@ fn disagreement_caveat(rival: &Rival) -> Option<Caveat> {
         return None;
     }
     let force = match rival.force {
-        RivalForce::Same => "under the same force",
-        RivalForce::Momentum => "under the impulse of the momentum solution",
+        RivalForce::Same => Phrase::new("under the same force", "unter derselben Kraft"),
+        RivalForce::Momentum => Phrase::new(
+            "under the impulse of the momentum solution",
+            "unter dem Stoßantrieb der Impulslösung",
+        ),
     };
-    let text = format!(
-        "the 4DOF model {force} is {apart_m:.1} m away after {time_s:.2} s, outside the 90 % region and more \
-         than it is known to err: network and physics do not say the same"
-    );
+    let text = Phrase::new(
+        "the 4DOF model {0} is {1} away after {2}, outside the 90 % region and more \
+         than it is known to err: network and physics do not say the same",
+        "Das 4DOF-Modell {0} liegt nach {2} um {1} entfernt, außerhalb des 90-%-Bereichs und weiter, als \
+         sein bekannter Fehler reicht: Netz und Physik widersprechen sich",
+    )
+    .with(PhraseValue::phrase(force))
+    .with(PhraseValue::fixed(Quantity::Length, apart_m, 1))
+    .with(PhraseValue::fixed(Quantity::Time, time_s, 2));
     let caveat = Caveat::new(CaveatKind::Disagreement, text)
         .with_value("distance to the 4DOF model [m]", apart_m)
         .with_range([0.0, known_error_m]);
@@ -260,7 +332,9 @@ fn disagreement_caveat(rival: &Rival) -> Option<Caveat> {
 /// - `what`: what they are, in the plural.
 pub(crate) fn left_out_caveat(n: usize, what: &str) -> Option<Caveat> {
     let caveat = || {
-        let text = format!("{n} {what} could not be used");
+        let text = Phrase::new("{0} {1} could not be used", "Nicht verwendbar: {0} {1}")
+            .with(PhraseValue::Name(n.to_string()))
+            .with(PhraseValue::Term(what.to_owned()));
         Caveat::new(CaveatKind::LeftOut, text).with_value(what, n as f64).with_range([0.0, 0.0])
     };
     (n > 0).then(caveat)
@@ -269,10 +343,45 @@ pub(crate) fn left_out_caveat(n: usize, what: &str) -> Option<Caveat> {
 /// Cases that the network which they judge has learned from.
 pub(crate) fn trained_on_caveat(n_known: usize, n_test: usize) -> Option<Caveat> {
     let caveat = || {
-        let text = format!("the model was trained on {n_known} of these {n_test} cases");
+        let text = Phrase::new(
+            "the model was trained on {0} of these {1} cases",
+            "Das Modell wurde mit {0} dieser {1} Fälle trainiert",
+        )
+        .with(PhraseValue::Name(n_known.to_string()))
+        .with(PhraseValue::Name(n_test.to_string()));
         Caveat::new(CaveatKind::TrainedOn, text)
             .with_value("cases that it was trained on", n_known as f64)
             .with_range([0.0, 0.0])
     };
     (n_known > 0).then(caveat)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::units::{Language, NumberFormat, UnitSystem};
+
+    #[test]
+    fn restrictions_are_told_in_the_units_and_the_language_of_the_reader() {
+        let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
+        let told = |caveat: &Caveat| {
+            let german = caveat.text_in(&german, &str::to_owned).unwrap();
+            [caveat.text.clone(), caveat.in_units(UnitSystem::Us).text, german]
+        };
+        let expected = [
+            "the vehicle still moves at 10.0 m/s after 4.00 s: its end is not where it comes to rest",
+            "the vehicle still moves at 22.4 mph after 4.00 s: its end is not where it comes to rest",
+            "Das Fahrzeug bewegt sich nach 4,00 s noch mit 36,0 km/h: Der Endpunkt der Bewegung ist nicht \
+             seine Endlage",
+        ];
+        assert_eq!(told(&motion_caveat(10.0, 4.0)), expected);
+        let (quantity, range) = ("mass [kg]", [800.0, 2500.0]);
+        let heavy = outside_domain_caveat(&OutsideDomain { quantity, value: 3000.0, range });
+        let expected = [
+            "mass [kg] is 3000, the response network has learned from 800.0 to 2500",
+            "mass [lb] is 6614, the response network has learned from 1764 to 5512",
+            "mass [kg] beträgt 3000; das Bewegungsnetz hat an Werten von 800,0 bis 2500 gelernt",
+        ];
+        assert_eq!(told(&heavy), expected);
+    }
 }

@@ -13,7 +13,7 @@ use impactlab_core::collision::{
 };
 use impactlab_core::site::Site;
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
-use impactlab_core::units::percent;
+use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::{ClosedLoop, Integrator, Preset, VehicleParameters};
 
 /// Relative difference of a length from that of the training cases beyond which it is listed.
@@ -24,9 +24,14 @@ pub(crate) fn zones_by_network(struck: &StruckVehicle) -> Option<Caveat> {
     let names: Vec<&str> = struck.friction_zones.iter().map(|zone| zone.name.as_str()).collect();
     (!names.is_empty()).then(|| {
         Caveat::not_used(
-            format!("friction zones: {}", names.join(", ")),
-            "the response network has learned motions on one ground: the forecast has the friction of \
-             the vehicle's tires everywhere",
+            Phrase::new("friction zones: {0}", "Bereiche mit eigenem Reibbeiwert: {0}")
+                .with(PhraseValue::Name(names.join(", "))),
+            Phrase::new(
+                "the response network has learned motions on one ground: the forecast has the friction of \
+                 the vehicle's tires everywhere",
+                "das Bewegungsnetz hat Bewegungen auf einheitlichem Grund gelernt: die Vorhersage hat \
+                 überall den Reibbeiwert der Reifen des Fahrzeugs",
+            ),
         )
     })
 }
@@ -36,9 +41,13 @@ pub(crate) fn lanes_by_network(site: &Site) -> Option<Caveat> {
     let has_places = !site.lanes.is_empty() || !site.kerbs.is_empty();
     has_places.then(|| {
         Caveat::not_used(
-            "lanes and kerbs of the site",
-            "how likely a vehicle comes to them is counted in whole motions: those of both vehicles through \
-             all contacts, of a scenario",
+            Phrase::new("lanes and kerbs of the site", "Fahrstreifen und Bordsteine des Geländes"),
+            Phrase::new(
+                "how likely a vehicle comes to them is counted in whole motions: those of both vehicles \
+                 through all contacts, of a scenario",
+                "wie wahrscheinlich ein Fahrzeug sie erreicht, wird an ganzen Bewegungen gezählt: an denen \
+                 beider Fahrzeuge eines Szenarios durch alle Kontakte",
+            ),
         )
     })
 }
@@ -48,8 +57,12 @@ pub(crate) fn drivers_by_network(struck: &StruckVehicle) -> Option<Caveat> {
     struck.controls.closed_loop.as_ref().map(|_| {
         Caveat::new(
             CaveatKind::Note,
-            "stability control and anti-lock system act in the forecast as in the motion of the 4DOF \
-             model under the same force; they do not react to what the network adds to it",
+            Phrase::new(
+                "stability control and anti-lock system act in the forecast as in the motion of the 4DOF \
+                 model under the same force; they do not react to what the network adds to it",
+                "Stabilitätsregelung und Blockierverhinderer wirken in der Vorhersage wie in der Bewegung \
+                 des 4DOF-Modells unter derselben Kraft; auf das, was das Netz hinzufügt, reagieren sie nicht",
+            ),
         )
     })
 }
@@ -72,17 +85,25 @@ pub(crate) fn drawn_drivers(vehicles: [&StruckVehicle; 2]) -> Vec<Caveat> {
 pub(crate) fn integrator_of_pair(integrator: Integrator) -> Option<Caveat> {
     (integrator != Integrator::default()).then(|| {
         Caveat::not_used(
-            "method of integration",
-            "two vehicles in contact are integrated by the leapfrog method, and by Runge–Kutta while they \
-             are apart",
+            Phrase::new("method of integration", "Integrationsverfahren"),
+            Phrase::new(
+                "two vehicles in contact are integrated by the leapfrog method, and by Runge–Kutta while \
+                 they are apart",
+                "zwei Fahrzeuge in Kontakt werden nach dem Leapfrog-Verfahren integriert, getrennte nach \
+                 Runge–Kutta",
+            ),
         )
     })
 }
 
 /// A single motion through all contacts: what it takes at its median.
 pub(crate) fn contact_at_medians() -> Caveat {
-    let text = "stiffness, friction and recovery of the contact are at their medians; predict draws them, \
-                and small causes decide whether a car that is pushed comes free or spins";
+    let text = Phrase::new(
+        "stiffness, friction and recovery of the contact are at their medians; predict draws them, \
+         and small causes decide whether a car that is pushed comes free or spins",
+        "Steifigkeit, Reibung und Rückfederung des Kontakts haben ihre Medianwerte; eine Vorhersage zieht \
+         sie. Kleine Ursachen entscheiden, ob ein geschobenes Fahrzeug freikommt oder schleudert",
+    );
     Caveat::new(CaveatKind::Note, text)
 }
 
@@ -103,12 +124,16 @@ pub(crate) fn by_force_network(
     for (name, vehicle, of_training) in vehicles {
         if has_other_size(vehicle, &of_training.parameters()) {
             unused.push(Caveat::not_used(
-                format!(
-                    "size of the {name} vehicle, {} m × {} m",
-                    vehicle.length_m, vehicle.width_m
+                Phrase::new("size of the {0}, {1} × {2}", "Größe: {0}, {1} × {2}")
+                    .with(PhraseValue::Term(format!("{name} vehicle")))
+                    .with(PhraseValue::given(Quantity::Length, vehicle.length_m))
+                    .with(PhraseValue::given(Quantity::Length, vehicle.width_m)),
+                Phrase::new(
+                    "the outlines say where the vehicles touch; how far a body reaches and crushes is that \
+                     of the cases that the force network has learned from",
+                    "die Umrisse sagen, wo sich die Fahrzeuge berühren; wie weit ein Aufbau reicht und sich \
+                     verformt, ist durch die Fälle bestimmt, an denen das Kraftnetz gelernt hat",
                 ),
-                "the outlines say where the vehicles touch; how far a body reaches and crushes is that \
-                 of the cases that the force network has learned from",
             ));
         }
     }
@@ -124,35 +149,54 @@ pub(crate) fn contact_by_force_network(
     applicability: f64,
 ) -> Vec<Caveat> {
     let mut stated = Vec::new();
-    stated.extend(contact.restitution.map(|e| format!("restitution, {e}")));
+    let number = |number: f64| PhraseValue::given(Quantity::Ratio, number);
+    let restitution = |e| Phrase::new("restitution, {0}", "Stoßziffer, {0}").with(number(e));
+    stated.extend(contact.restitution.map(restitution));
     if contact.restitution_form != RestitutionForm::default() {
-        stated.push(format!("form of the restitution, {}", contact.restitution_form.label()));
+        let form = PhraseValue::Term(contact.restitution_form.label().to_owned());
+        stated.push(
+            Phrase::new("form of the restitution, {0}", "Bezug der Stoßziffer: {0}").with(form),
+        );
     }
     match (contact.friction_of_critical, contact.friction_limit) {
         (Some(share), _) => {
-            stated.push(format!("friction, {} of the critical ratio", percent(share)));
+            let text = Phrase::new(
+                "friction, {0} of the critical ratio",
+                "Reibbeiwert, {0} des kritischen Impulsverhältnisses",
+            );
+            stated.push(text.with(PhraseValue::Share(share)));
         }
-        (None, limit) => stated.extend(limit.map(|limit| format!("friction limit, {limit}"))),
+        (None, limit) => stated.extend(limit.map(|limit| {
+            Phrase::new("friction limit, {0}", "Reibbeiwert im Kontakt, {0}").with(number(limit))
+        })),
     }
     let reason = if applicability >= 1.0 {
-        "the momentum solution alone depends on it; the force network has learned the course of the \
-         contact"
-            .to_owned()
-    } else {
-        format!(
-            "{} of the answer are those of the force network, which has learned the course of the \
-             contact and does not depend on it; the rest uses it",
-            percent(applicability)
+        Phrase::new(
+            "the momentum solution alone depends on it; the force network has learned the course of the \
+             contact",
+            "nur die Impulslösung hängt davon ab; das Kraftnetz hat den Verlauf des Kontakts gelernt",
         )
+    } else {
+        Phrase::new(
+            "{0} of the answer are those of the force network, which has learned the course of the \
+             contact and does not depend on it; the rest uses it",
+            "{0} der Antwort stammen vom Kraftnetz, das den Verlauf des Kontakts gelernt hat und nicht \
+             davon abhängt; der Rest verwendet den Wert",
+        )
+        .with(PhraseValue::Share(applicability))
     };
     if applicability <= 0.0 {
         stated.clear();
     }
     let mut unused: Vec<Caveat> =
-        stated.into_iter().map(|stated| Caveat::not_used(stated, reason.as_str())).collect();
+        stated.into_iter().map(|stated| Caveat::not_used(stated, reason.clone())).collect();
     if contact.friction_model != FrictionModel::Limit {
-        let reason = "a predicted force has friction up to the limit";
-        unused.push(Caveat::not_used("friction model of the contact", reason));
+        let what = Phrase::new("friction model of the contact", "Reibungsmodell des Kontakts");
+        let reason = Phrase::new(
+            "a predicted force has friction up to the limit",
+            "eine vorhergesagte Kraft hat Reibung bis zur Grenze",
+        );
+        unused.push(Caveat::not_used(what, reason));
     }
     unused
 }
@@ -174,15 +218,21 @@ pub(crate) fn by_simulation(request: &SimulateRequest, is_recorded: bool) -> Vec
             && !is_recorded;
     if !has_striking && request.striking != VehicleChoice::Automatic {
         unused.push(Caveat::not_used(
-            "striking vehicle",
-            "only the struck vehicle is simulated here",
+            Phrase::new("striking vehicle", "stoßendes Fahrzeug"),
+            Phrase::new(
+                "only the struck vehicle is simulated here",
+                "hier wird nur das gestoßene Fahrzeug simuliert",
+            ),
         ));
     }
     if let MotionSource::Drive(drive) = &request.source
         && drive.force.is_none()
         && (drive.contact.is_some() || drive.sampling.is_some())
     {
-        unused.push(Caveat::not_used("contact point and sampling", "no force is given"));
+        unused.push(Caveat::not_used(
+            Phrase::new("contact point and sampling", "Kontaktpunkt und Abtastung"),
+            Phrase::new("no force is given", "keine Kraft ist vorgegeben"),
+        ));
     }
     unused
 }
@@ -195,8 +245,12 @@ fn by_record(request: &SimulateRequest) -> Vec<Caveat> {
     let mut unused = Vec::new();
     if request.duration_s != DEFAULT_DURATION_S {
         unused.push(Caveat::not_used(
-            format!("duration, {} s", request.duration_s),
-            "a recorded motion has its own duration",
+            Phrase::new("duration, {0}", "Dauer, {0}")
+                .with(PhraseValue::given(Quantity::Time, request.duration_s)),
+            Phrase::new(
+                "a recorded motion has its own duration",
+                "eine aufgezeichnete Bewegung hat ihre eigene Dauer",
+            ),
         ));
     }
     if matches!(request.source, MotionSource::Case { .. }) {
@@ -229,8 +283,12 @@ pub(crate) fn by_forecast(request: &PredictMotionRequest) -> Vec<Caveat> {
     let is_predicted = matches!(request.force, ForceSource::Predicted(_));
     if !is_predicted && !request.is_of_both() && request.draws != DEFAULT_DRAWS {
         unused.push(Caveat::not_used(
-            format!("number of drawn forces, {}", request.draws),
-            "the force is given, so that none is drawn",
+            Phrase::new("number of drawn forces, {0}", "Zahl gezogener Kräfte, {0}")
+                .with(PhraseValue::Name(request.draws.to_string())),
+            Phrase::new(
+                "the force is given, so that none is drawn",
+                "die Kraft ist vorgegeben, so dass keine gezogen wird",
+            ),
         ));
     }
     if let MotionSource::Scenario { pulse, .. } = &request.motion.source {
@@ -238,8 +296,8 @@ pub(crate) fn by_forecast(request: &PredictMotionRequest) -> Vec<Caveat> {
             PulseSetup { contact_height_m: pulse.contact_height_m, ..PulseSetup::default() };
         if request.force != ForceSource::Given && *pulse != plain {
             unused.push(Caveat::not_used(
-                "shape and duration of the pulse",
-                "another force is taken",
+                Phrase::new("shape and duration of the pulse", "Form und Dauer des Kraftverlaufs"),
+                Phrase::new("another force is taken", "eine andere Kraft ist zugrunde gelegt"),
             ));
         }
     }

@@ -1,5 +1,5 @@
-//! The answer to a forecast in one table: does it spin, where does it stop, does it come into another
-//! lane, do the methods agree, and what does it hinge on?
+//! The numbers of the answer to a forecast in one table: does it spin, where does it stop, does it come into
+//! another lane, do the methods agree, and what does it hinge on?
 
 use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
@@ -13,7 +13,7 @@ use crate::{ImpulseRival, PredictMotionReport};
 const NAMED_SHARE: f64 = 0.1;
 
 /// Share of draws at rest from which on the ends of 90 % intervals are those of places at rest.
-const ENOUGH_AT_REST: f64 = 0.95;
+pub(super) const ENOUGH_AT_REST: f64 = 0.95;
 
 /// Lanes, kerbs and zones that are named of each vehicle.
 const N_PLACES: usize = 3;
@@ -30,20 +30,21 @@ impl PredictMotionReport {
         facts.extend(self.impulses.iter().flat_map(|impulses| self.impulse_facts(impulses)));
         let verdict = self.rival.as_ref().map(|rival| self.ends_verdict(rival));
         facts.extend(verdict.map(|term| Fact::new(Term::EndsVerdict, Value::Term(term))));
-        facts.extend(self.hinge_fact());
-        FactTable::new(Term::TheAnswer, facts).with_levels(PREDICTED)
+        facts.extend(self.hinges().map(|value| Fact::new(Term::HingesOn, value)));
+        FactTable::new(Term::AnswerNumbers, facts).with_levels(PREDICTED)
+    }
+
+    /// The same without what its card says in full.
+    pub(super) fn number_table(&self) -> FactTable {
+        let table = self.answer_table();
+        let in_card = [Term::EndsVerdict, Term::ImpulsesVerdict, Term::HingesOn].map(Value::Term);
+        let facts = table.facts.into_iter().filter(|fact| !in_card.contains(&fact.name)).collect();
+        FactTable { facts, ..table }
     }
 
     /// Where it stops, or where it is and how fast.
     fn end_facts(&self) -> Vec<Fact> {
         let outcome = &self.outcome;
-        let place = |x: &Estimate, y: &Estimate| {
-            let of = |axis: &str, estimate: &Estimate| {
-                let estimate = Value::Estimate(Quantity::Length, estimate.clone());
-                Value::Joined(vec![Value::Text(axis.to_owned()), estimate], " ")
-            };
-            Value::Joined(vec![of("X", x), of("Y", y)], ", ")
-        };
         match &self.rest {
             Some(rest) => {
                 // Draws that still move count with where they are then.
@@ -52,7 +53,7 @@ impl PredictMotionReport {
                     false => Term::WhereAtRest,
                 };
                 let share = Value::ShareOfDraws(rest.share_at_rest, rest.n_draws);
-                let place = place(&rest.x_m, &rest.y_m);
+                let place = place_at(&rest.x_m, &rest.y_m);
                 vec![Fact::new(Term::ShareAtRest, share), Fact::new(term, place)]
             }
             None => {
@@ -60,7 +61,7 @@ impl PredictMotionReport {
                     true => Term::WhereAtRest,
                     false => Term::WhereAtEnd,
                 };
-                let place = place(&outcome.x_m, &outcome.y_m);
+                let place = place_at(&outcome.x_m, &outcome.y_m);
                 let after = Value::Given(Quantity::Time, outcome.time_s);
                 let text = vec![place, after];
                 vec![Fact::new(term, Value::Joined(text, "; t = "))]
@@ -68,11 +69,15 @@ impl PredictMotionReport {
         }
     }
 
-    /// The likeliest lanes, kerbs and zones that each vehicle comes over and was not on.
-    fn place_facts(&self) -> Vec<Fact> {
+    /// Probability over the draws of both vehicles.
+    pub(super) fn place_chance(&self, share: f64) -> Value {
         let n_draws = self.contacts.as_ref().map_or(0, |contacts| contacts.n_draws);
-        let chance =
-            |share: f64| Value::Chance(share, Some(share_standard_error(share, n_draws as f64)));
+        Value::Chance(share, Some(share_standard_error(share, n_draws as f64)))
+    }
+
+    /// The likeliest lanes, kerbs and zones that the struck and the striking vehicle come over and were not
+    /// on.
+    pub(super) fn entered_places(&self) -> [Vec<&PlaceChance>; 2] {
         let likeliest = |starts: fn(&PlaceChance) -> bool, enters: fn(&PlaceChance) -> f64| {
             let entered = |place: &&PlaceChance| !starts(place) && enters(place) > 0.0;
             let mut places: Vec<&PlaceChance> = self.places.iter().filter(entered).collect();
@@ -80,18 +85,24 @@ impl PredictMotionReport {
             places.truncate(N_PLACES);
             places
         };
+        [
+            likeliest(|it| it.struck_starts, |it| it.struck_enters),
+            likeliest(|it| it.striking_starts, |it| it.striking_enters),
+        ]
+    }
+
+    fn place_facts(&self) -> Vec<Fact> {
         let named = |term: Term, place: &PlaceChance, share: f64| {
             let name = vec![Value::Term(term), Value::Text(place.name.clone())];
-            Fact::row(Value::Joined(name, " "), vec![chance(share)])
+            Fact::row(Value::Joined(name, " "), vec![self.place_chance(share)])
         };
-        let struck = likeliest(|it| it.struck_starts, |it| it.struck_enters);
+        let [struck, striking] = self.entered_places();
         let struck = struck.into_iter().flat_map(|place| {
             [
                 named(Term::StruckComesOver, place, place.struck_enters),
                 named(Term::StruckEndsOver, place, place.struck_ends),
             ]
         });
-        let striking = likeliest(|it| it.striking_starts, |it| it.striking_enters);
         let striking = striking.into_iter().flat_map(|place| {
             [
                 named(Term::StrikingComesOver, place, place.striking_enters),
@@ -101,23 +112,29 @@ impl PredictMotionReport {
         struck.chain(striking).collect()
     }
 
-    /// The impulse of the first contact by both methods, the one that moves the vehicle first.
+    /// The impulse of the first contact by both methods and as recorded, the one that moves the vehicle first.
     fn impulse_facts(&self, impulses: &ImpulseRival) -> Vec<Fact> {
         let network = (Term::NetworkImpulse, &impulses.network_impulse_n_s);
         let momentum = (Term::MomentumImpulse, &impulses.momentum_impulse_n_s);
-        let (moved_by, both) = match &self.force_model {
-            Some(_) => (Some(Term::ForceNetwork), [network, momentum]),
-            None if self.force.is_none() => (Some(Term::MomentumSolution), [momentum, network]),
-            None => (None, [momentum, network]),
+        let (moved_by, both) = match (&self.force_model, &self.recorded) {
+            (Some(_), _) => (Term::ForceNetwork, [network, momentum]),
+            (None, None) => (Term::MomentumSolution, [momentum, network]),
+            (None, Some(_)) => (Term::Record, [momentum, network]),
         };
         let estimate = |(term, of): (Term, &Estimate)| Fact::estimate(term, Quantity::Impulse, of);
-        let moved_by = moved_by.map(|term| Fact::new(Term::MovedFirstBy, Value::Term(term)));
+        let record = self.recorded.as_ref().map(|it| {
+            Fact::number(Term::RecordImpulse, Quantity::Impulse, it.impulse_magnitude_n_s)
+        });
+        let mut sizes: Vec<Fact> = both.into_iter().map(estimate).collect();
+        let place = if moved_by == Term::Record { 0 } else { sizes.len() };
+        sizes.splice(place..place, record);
         let verdict = Fact::new(Term::ImpulsesVerdict, Value::Term(impulses.verdict()));
-        moved_by.into_iter().chain(both.map(estimate)).chain([verdict]).collect()
+        let moved_by = Fact::new(Term::MovedFirstBy, Value::Term(moved_by));
+        [moved_by].into_iter().chain(sizes).chain([verdict]).collect()
     }
 
     /// Estimates of vehicle and road that the end depends on; none where no vehicles were drawn.
-    fn hinge_fact(&self) -> Option<Fact> {
+    pub(super) fn hinges(&self) -> Option<Value> {
         let named = |share: &&Sensitivity| {
             share.is_clear() && share.position_share.max(share.heading_share) >= NAMED_SHARE
         };
@@ -136,12 +153,21 @@ impl PredictMotionReport {
             true => Value::Term(Term::HingesOnNone),
             false => Value::Joined(all, "; "),
         };
-        (self.n_vehicles > 0).then(|| Fact::new(Term::HingesOn, value))
+        (self.n_vehicles > 0).then_some(value)
     }
 }
 
+/// A place with its intervals.
+pub(super) fn place_at(x_m: &Estimate, y_m: &Estimate) -> Value {
+    let of = |axis: &str, estimate: &Estimate| {
+        let estimate = Value::Estimate(Quantity::Length, estimate.clone());
+        Value::Joined(vec![Value::Text(axis.to_owned()), estimate], " ")
+    };
+    Value::Joined(vec![of("X", x_m), of("Y", y_m)], ", ")
+}
+
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::ops::ControlFlow;
 
     use super::*;
@@ -153,7 +179,7 @@ mod tests {
     use impactlab_core::collision::Scenario;
     use impactlab_core::units::UnitSystem;
 
-    fn forecast(force: Option<ForceSource>) -> PredictMotionReport {
+    pub fn forecast(force: Option<ForceSource>) -> PredictMotionReport {
         let scenario = ScenarioChoice::Inline(Box::new(Scenario::example()));
         let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
         let force = force.unwrap_or_else(|| ForceSource::usual(&source));

@@ -27,6 +27,13 @@ impl Measurement {
     }
 }
 
+/// How often intervals of answers by a model held, quantity by quantity; none for a model that is not the
+/// shipped one.
+pub(super) fn held_of(subject: Measured, model: &str) -> Option<&'static [HeldIntervals]> {
+    let shipped = crate::ModelChoice::default().to_string();
+    (model == shipped).then(|| Some(&*Measurement::shipped(subject)?.held)).flatten()
+}
+
 /// How often intervals of answers by a model held; none for a model that is not the shipped one.
 pub(crate) fn held_intervals(subject: Measured, model: &str) -> Option<FactTable> {
     let shipped = crate::ModelChoice::default().to_string();

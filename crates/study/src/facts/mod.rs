@@ -9,6 +9,7 @@ mod table;
 mod term;
 
 mod answer;
+mod answer_card;
 mod both_vehicles;
 mod check;
 mod compare;
@@ -16,6 +17,7 @@ mod contact;
 mod evaluate_force;
 mod evaluate_pairs;
 mod evaluate_reconstruction;
+mod force_beside;
 mod held;
 mod impact;
 mod impulse_rival;

@@ -70,7 +70,9 @@ impl PredictForceReport {
             Fact::row(Value::Chance(mode.weight, None), values)
         };
         let rows = self.modes.iter().map(row).collect();
-        let table = FactTable::new(Term::ForceModes, rows).with_columns(&columns);
+        let table = FactTable::new(Term::ForceModes, rows)
+            .with_rows(Term::Probability)
+            .with_columns(&columns);
         (self.modes.len() > 1).then_some(table)
     }
 }

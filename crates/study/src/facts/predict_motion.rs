@@ -15,9 +15,15 @@ use crate::measured::Measured;
 use crate::{FlagReport, PredictMotionReport, StrikingReport};
 
 impl PredictMotionReport {
-    /// What the answer says: how the motion ends, and what that depends on.
+    /// What the answer says: the five sentences of its card, and what they rest on.
     pub fn facts(&self) -> Vec<FactTable> {
-        let first = [self.course_table(), Some(self.answer_table()), Some(self.motion_table())];
+        [self.answer_card()].into_iter().chain(self.detail_tables()).collect()
+    }
+
+    /// What stands below the card: how the motion ends, and what that depends on.
+    pub fn detail_tables(&self) -> Vec<FactTable> {
+        let numbers = Some(self.number_table());
+        let first = [self.course_table(), numbers, self.force_table(), Some(self.motion_table())];
         let held = self.held_table();
         let last = [self.places_table(), self.rival_table(), self.sensitivity_table(), held];
         let tables = first.into_iter().flatten().chain(self.both_vehicles_tables());
@@ -29,8 +35,13 @@ impl PredictMotionReport {
         match self.contacts {
             Some(_) => held_intervals(Measured::Pairs, &self.response_model),
             None => held_intervals(Measured::ResponseNetwork, &self.response_model)
-                .filter(|_| self.is_end_known() && self.applicability >= 1.0),
+                .filter(|_| self.is_measured()),
         }
+    }
+
+    /// Whether it is a forecast of the kind of which it was counted how often intervals held.
+    pub(super) fn is_measured(&self) -> bool {
+        self.contacts.is_some() || (self.is_end_known() && self.applicability >= 1.0)
     }
 
     /// What becomes of the struck vehicle; none where it was followed by itself.

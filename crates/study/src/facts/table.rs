@@ -293,6 +293,13 @@ impl FactTable {
         self.facts.iter().filter_map(interval).collect()
     }
 
+    /// The value of a fact as text, with its interval of 90 % in brackets if it has one; none if the
+    /// table has no such fact.
+    pub fn value_text(&self, term: Term, writer: &FactWriter<'_>) -> Option<String> {
+        let fact = self.facts.iter().find(|fact| fact.name == Value::Term(term))?;
+        fact.values.first().map(|value| writer.value(value))
+    }
+
     /// Median and intervals at the levels of the table.
     fn estimate_cells(
         &self,

@@ -44,6 +44,47 @@ terms! {
     StrikingVehicle: "striking vehicle", "stoßendes Fahrzeug";
     // The answer to a forecast.
     TheAnswer: "The answer", "Die Antwort";
+    WillItSpin: "Will it spin?", "Schleudert es herum?";
+    TurnedQuarter: "turned by 90° or more at the end with", "am Ende um 90° oder mehr gedreht mit";
+    TurnedHalf: "by 180° or more with", "um 180° oder mehr mit";
+    WhereDoesItStop: "Where does it stop?", "Wo kommt es zum Stillstand?";
+    RestsIn: "it comes to rest in", "es kommt zum Stillstand in";
+    RestsAfter: "it is at rest after", "es steht nach";
+    MovesAfter: "not within the forecast: it still moves after",
+        "nicht innerhalb der Vorhersage: es bewegt sich noch nach";
+    At: "at", "bei";
+    AfterPath: "after a path of", "nach einem Weg von";
+    WithSpeed: "at a speed of", "mit einer Geschwindigkeit von";
+    OthersStillMove: "the others counted with where they are when they are followed no further",
+        "die übrigen gezählt mit dem Ort, bis zu dem sie verfolgt werden";
+    AfterSecondContact: "without a probability, since a second contact comes before and is not computed",
+        "ohne Wahrscheinlichkeit, da ein zweiter Kontakt vorausgeht, der nicht berechnet ist";
+    IntoNextLane: "Does it cross into the next lane?", "Gerät es auf den nächsten Fahrstreifen?";
+    WithChance: "with", "mit";
+    NoOtherLane: "in no draw does a vehicle come over a part of the site on which it was not",
+        "in keiner Ziehung gerät ein Fahrzeug auf einen Teil des Geländes, auf dem es nicht war";
+    LanesNotCounted: "not counted: that takes a site with lanes, and both vehicles followed",
+        "nicht gezählt: dazu braucht es ein Gelände mit Fahrstreifen und beide Fahrzeuge";
+    HowSure: "How sure is that?", "Wie sicher ist das?";
+    HeldAtWorst: "in tests, intervals of 90 % held at worst in",
+        "bei der Erprobung trafen Bereiche von 90 % im ungünstigsten Fall zu in";
+    ComputedMotions: "computed motions", "berechneten Bewegungen";
+    HeldNotCounted: "it was not counted how often intervals of such forecasts hold",
+        "wie oft Bereiche solcher Vorhersagen zutreffen, wurde nicht gezählt";
+    WhatWouldChangeIt: "What would change it?", "Was würde es ändern?";
+    NothingDrawn: "not computed: no vehicles and roads were drawn",
+        "nicht berechnet: Fahrzeuge und Fahrbahnen wurden nicht gezogen";
+    AnswerNumbers: "The answer in numbers", "Die Antwort in Zahlen";
+    // The force of the first contact by each method.
+    ForceByMethod: "Force of the first contact by each method; in brackets the intervals of 90 %",
+        "Kraft des ersten Kontakts nach jedem Verfahren; in Klammern die Bereiche von 90 %";
+    ByNetwork: "force network", "Kraftnetz";
+    ByMomentum: "momentum solution", "Impulslösung",
+        "Its intervals are the errors that it was measured to have on 200 finite-element runs; it has no course of the force";
+    ByRecord: "record", "Aufzeichnung";
+    StruckDeltaV: "Δv of the struck vehicle", "Δv des gestoßenen Fahrzeugs", "Impulse over mass";
+    RecordImpulse: "size of the impulse, record", "Betrag des Impulses, Aufzeichnung";
+    Record: "the record", "der Aufzeichnung";
     WhereAtRest: "where it comes to rest", "wo es zum Stillstand kommt", "Of the CG, from the place of the first contact";
     WhereAtRestOrLimit: "where it is at rest, or when it is followed no further", "wo es stillsteht oder nicht weiter verfolgt wird", "Of the CG, from the place of the first contact";
     WhereAtEnd: "where it is when the forecast ends", "wo es am Ende der Vorhersage ist", "Of the CG, from the place of the first contact";
@@ -307,8 +348,8 @@ terms! {
         "Since the impact, to the left; goes on beyond a turn";
     SpeedAtEnd: "speed at the end, mean of the central paths",
         "Geschwindigkeit am Ende, Mittel der mittleren Bahnen";
-    YawRateAtEnd: "size of the yaw rate at the end, mean of the central paths",
-        "Betrag der Gierrate am Ende, Mittel der mittleren Bahnen";
+    YawRateAtEnd: "yaw rate at the end, mean of the central paths",
+        "Gierrate am Ende, Mittel der mittleren Bahnen", "Positive to the left";
     QuarterTurn: "probability of a quarter turn or more",
         "Wahrscheinlichkeit einer Vierteldrehung oder mehr";
     HalfTurn: "probability of a half turn or more", "Wahrscheinlichkeit einer halben Drehung oder mehr";

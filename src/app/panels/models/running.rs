@@ -23,17 +23,17 @@ pub fn running_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             ui,
             what,
             job.progress(),
-            job.elapsed(),
+            job.time_left(),
             Command::CancelEvaluation,
             Pane::Evaluation,
             commands,
         );
     }
-    if let Some((what, progress, elapsed)) = session.response.comparison.progress() {
+    if let Some((what, progress, left)) = session.response.comparison.progress() {
         is_idle = false;
         let what = format!("{what} response models");
         let cancel = Command::Compare(ComparisonCommand::Cancel);
-        work_ui(ui, &what, progress, elapsed, cancel, Pane::ModelComparison, commands);
+        work_ui(ui, &what, progress, left, cancel, Pane::ModelComparison, commands);
     }
     if is_idle {
         ui.horizontal_wrapped(|ui| {
@@ -89,7 +89,7 @@ fn work_ui(
     ui: &mut Ui,
     what: &str,
     progress: &Progress,
-    elapsed: Duration,
+    left: Option<Duration>,
     cancel: Command,
     pane: Pane,
     commands: &mut Vec<Command>,
@@ -104,5 +104,5 @@ fn work_ui(
         }
     });
     let message = if progress.message.is_empty() { "preparing" } else { &progress.message };
-    run_progress_ui(ui, message, progress.fraction(), progress.time_left(elapsed));
+    run_progress_ui(ui, message, progress.fraction(), left);
 }

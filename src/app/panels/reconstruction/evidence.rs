@@ -171,8 +171,7 @@ fn run_ui(
                 command(ReconstructionCommand::Cancel);
             }
             let progress = job.progress();
-            let left =
-                progress.time_left(job.elapsed()).map(duration_text).filter(|_| !is_cancelled);
+            let left = job.time_left().map(duration_text).filter(|_| !is_cancelled);
             let left = left.map_or(String::new(), |left| format!(", about {left} left"));
             let text = match is_cancelled {
                 true => "keeping what was sampled".to_owned(),

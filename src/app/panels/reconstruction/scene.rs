@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use egui::{ComboBox, Ui};
+use egui::{Checkbox, ComboBox, Ui, vec2};
 use impactlab_core::uncertainty::Caveats;
 
 use crate::app::command::Command;
@@ -11,23 +11,31 @@ use crate::app::looks::{Icon, icon_button};
 use crate::app::panels::reconstruction::scene_edit::SceneEdit;
 use crate::app::panels::reconstruction::{OUTDATED, notice_ui};
 use crate::app::panels::scene::{clock_ui, scene_heading_ui};
+use crate::app::panels::scene_camera::camera_menu_ui;
 use crate::app::panes::PaneContext;
 use crate::app::reconstruction::{
-    CarsSource, EvidencePreview, FollowedParticle, LiveParticles, MarkKey, PreparedReconstruction,
-    ReconstructedCars, ReconstructionCommand, ShownPaths,
+    BuiltCars, CarsSource, EvidencePreview, FollowedParticle, LiveParticles, MarkKey,
+    PreparedReconstruction, ReconstructedCars, ReconstructionCommand, ReconstructionSession,
+    ReconstructionView, ShownPaths,
 };
 use crate::app::scene::SceneSettings;
 use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, figure_frame, restrictions_ui};
 use impactlab_core::data::Severity;
 use impactlab_core::units::{Quantity, UnitSystem, percent};
+use impactlab_core::vehicle::{Path, TireMark};
 use impactlab_document::figure::{
     Figure, FollowedPath, ReconstructionScene, reconstruction_scene_figure,
 };
-use impactlab_document::scene::{ReconstructionParts, Scene};
+use impactlab_document::scene::ReconstructionParts;
 use impactlab_draw::FigureOptions;
-use impactlab_draw::scene::{ScenePicture, SceneView, scene_view_ui};
+use impactlab_draw::scene::{
+    CameraKey, ScenePicture, courses_have_room, courses_view_ui, scene_view_ui,
+};
 use impactlab_reconstruct::evidence::Evidence;
-use impactlab_study::EvidenceChoice;
+use impactlab_study::{EvidenceChoice, NamedPath, ReconstructRequest, ReconstructedPaths};
+
+/// Height of what stands above the scenes of courses of events, points.
+const ABOVE_SCENES: f32 = 155.0;
 
 /// Draws the choice of what is followed, the time slider, and the plan or the cars.
 pub fn reconstructed_scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -43,33 +51,23 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         ui.weak("What was found and the paths that go with it, from above.");
         return;
     };
-    kind_ui(ui, &mut view.reconstruction.shows_cars);
-    let is_outdated = of.is_outdated(project.reconstruct.as_ref());
-    // Paths that go with other evidence are not drawn over this.
-    let (live, answer) = (of.live.as_ref(), of.answer().filter(|_| !is_outdated));
+    let shown = Shown::new(of, project.reconstruct.as_ref());
+    let Shown { live, answer, drawn, others, marks, ref caveats, .. } = shown;
+    let room = ui.available_size() - vec2(0.0, ABOVE_SCENES);
+    let n_courses = shown.courses.len();
+    let has_room = (n_courses > 0).then(|| courses_have_room(room, n_courses));
+    kind_ui(ui, &mut view.reconstruction, has_room);
     if let Some(live) = live {
         live_ui(ui, live, view.units);
     } else if let Some(answer) = answer {
         play_ui(ui, answer, of.mode, of.followed, commands);
         clock_ui(ui, &session.playback, (of.end_time_s(), &[]), &mut view.playback_speed, commands);
-        restrictions_ui(ui, &answer.answer.report.caveats);
-    } else if is_outdated {
+        restrictions_ui(ui, &answer.answer.report.caveats, view.units);
+    } else if shown.is_outdated {
         notice_ui(ui, Severity::Warning, OUTDATED);
     }
-    let caveats = match answer.filter(|_| live.is_none()) {
-        Some(answer) => answer.answer.report.caveats.clone(),
-        None => Caveats::default().outdated_if(live.is_some()),
-    };
-    let followed = of.followed_path().filter(|_| live.is_none() && !is_outdated);
-    let drawn = match (live, answer) {
-        (Some(live), _) => live.paths.drawn.as_slice(),
-        (None, Some(answer)) => answer.paths_of(of.mode).drawn.as_slice(),
-        (None, None) => &[],
-    };
-    let others = if followed.is_some() { of.other_paths() } else { &[] };
-    let marks = of.followed_marks().filter(|_| followed.is_some()).unwrap_or_default();
+    let followed = shown.followed.as_ref();
     let figure = {
-        let followed = followed.as_ref();
         let followed = followed.map(|(name, path)| FollowedPath {
             name,
             path,
@@ -77,7 +75,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         });
         let (evidence, cars) = (&preview.evidence, &preview.cars);
         let scene = ReconstructionScene { evidence, cars, drawn, followed, others, marks };
-        reconstruction_scene_figure(&scene, &caveats, view.units)
+        reconstruction_scene_figure(&scene, caveats, view.units)
     };
     if !view.reconstruction.shows_cars {
         let moved = plan_ui(ui, preview, of.adds_to, session.fit_plots, figure, commands);
@@ -86,14 +84,13 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         }
         return;
     }
+    let is_beside = has_room == Some(true) && view.reconstruction.courses_side_by_side;
+    let courses = shown.course_parts(is_beside, view.units);
     let source = CarsSource {
         evidence: preview.evidence.clone(),
-        paths: match (live, answer) {
-            (Some(live), _) => ShownPaths::Live(live.temperature, live.speeds_m_s),
-            (None, Some(_)) => ShownPaths::Answer(of.n_answers, of.mode),
-            (None, None) => ShownPaths::None,
-        },
+        paths: shown.paths(of),
         followed: followed.is_some().then_some(of.followed),
+        has_courses: !courses.is_empty(),
         units: view.units,
         caveats: caveats.clone(),
     };
@@ -101,29 +98,107 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         evidence: &preview.evidence,
         cars: &preview.cars,
         drawn,
-        followed: followed.as_ref().map(|(name, path)| (name.as_str(), *path)),
+        followed: followed.map(|(name, path)| (name.as_str(), *path)),
         others,
         marks,
         units: view.units,
-        caveats: &caveats,
+        caveats,
     };
     let ground = session.ground.shown().map(|loaded| &loaded.ground);
-    let scene = cars.scene(source, &parts, ground);
+    let built = cars.scene(source, &parts, &courses, ground);
     if session.fit_plots {
-        cars.view.fit();
+        cars.fit();
     }
-    let settings = &mut view.reconstruction.scene;
-    cars_ui(ui, &scene, session.playback.time_s, figure, &mut cars.view, settings, commands);
+    let keys = &mut project.beside.reconstruction_camera_keys;
+    let seen = (&mut view.reconstruction.scene, keys);
+    cars_ui(ui, &built, session.playback.time_s, figure, cars, seen, commands);
 }
 
-/// Draws the choice between the plan and the cars.
-fn kind_ui(ui: &mut Ui, shows_cars: &mut bool) {
+/// What is shown of a reconstruction. Paths that go with other evidence are not.
+struct Shown<'a> {
+    is_outdated: bool,
+    live: Option<&'a LiveParticles>,
+    answer: Option<&'a PreparedReconstruction>,
+    /// Courses of events that can stand side by side.
+    courses: Vec<(String, &'a ReconstructedPaths)>,
+    followed: Option<(String, &'a Path)>,
+    drawn: &'a [Path],
+    others: &'a [NamedPath],
+    marks: &'a [TireMark],
+    caveats: Caveats,
+}
+
+impl<'a> Shown<'a> {
+    fn new(of: &'a ReconstructionSession, request: Option<&ReconstructRequest>) -> Self {
+        let is_outdated = of.is_outdated(request);
+        let live = of.live.as_ref();
+        let answer = of.answer().filter(|_| !is_outdated);
+        let finished = answer.filter(|_| live.is_none());
+        let followed = finished.and_then(|_| of.followed_path());
+        let is_followed = followed.is_some();
+        Self {
+            is_outdated,
+            live,
+            answer,
+            courses: finished.map_or_else(Vec::new, |_| of.courses()),
+            drawn: match (live, answer) {
+                (Some(live), _) => live.paths.drawn.as_slice(),
+                (None, Some(answer)) => answer.paths_of(of.mode).drawn.as_slice(),
+                (None, None) => &[],
+            },
+            others: if is_followed { of.other_paths() } else { &[] },
+            marks: of.followed_marks().filter(|_| is_followed).unwrap_or_default(),
+            caveats: match finished {
+                Some(answer) => answer.answer.report.caveats.clone(),
+                None => Caveats::default().outdated_if(live.is_some()),
+            },
+            followed,
+        }
+    }
+
+    /// The paths that are drawn, told apart from others.
+    fn paths(&self, of: &ReconstructionSession) -> ShownPaths {
+        match (self.live, self.answer) {
+            (Some(live), _) => ShownPaths::Live(live.temperature, live.speeds_m_s),
+            (None, Some(_)) => ShownPaths::Answer(of.n_answers, of.mode),
+            (None, None) => ShownPaths::None,
+        }
+    }
+
+    /// What the scene of each course of events shows, with its title; none if they share one scene.
+    fn course_parts(
+        &self,
+        is_beside: bool,
+        units: UnitSystem,
+    ) -> Vec<(String, ReconstructionParts<'_>)> {
+        let Some(answer) = self.answer.filter(|_| is_beside) else { return Vec::new() };
+        let parts = |(title, paths): &(String, &'a ReconstructedPaths)| {
+            let parts = ReconstructionParts::new(&answer.answer, paths, units, &self.caveats);
+            (title.clone(), parts)
+        };
+        self.courses.iter().map(parts).collect()
+    }
+}
+
+/// Draws the choice between the plan and the cars, and whether courses of events stand side by side.
+///
+/// - `has_room`: whether there is room for that; `None` if there is one scene only.
+fn kind_ui(ui: &mut Ui, shown: &mut ReconstructionView, has_room: Option<bool>) {
     ui.horizontal(|ui| {
         for (kind, name, hint) in [
             (false, "Plan", "Evidence is placed here: drag a place of rest, click along a mark"),
             (true, "Cars", "The cars as bodies, from above or in perspective"),
         ] {
-            ui.selectable_value(shows_cars, kind, name).on_hover_text(hint);
+            ui.selectable_value(&mut shown.shows_cars, kind, name).on_hover_text(hint);
+        }
+        if let Some(has_room) = has_room.filter(|_| shown.shows_cars) {
+            let choice = Checkbox::new(&mut shown.courses_side_by_side, "Courses side by side");
+            ui.add_enabled(has_room, choice)
+                .on_hover_text(
+                    "Each course of events in a scene of its own, with its probability and its \
+                     standard error, under one camera and one clock",
+                )
+                .on_disabled_hover_text("The pane is too small for so many scenes");
         }
     });
 }
@@ -156,35 +231,55 @@ fn plan_ui(
     (evidence != preview.evidence).then_some(evidence)
 }
 
-/// Draws the cars at a time.
+/// Draws the cars at a time: in one scene, or each course of events in its own.
+///
+/// - `keys`: between which the camera moves.
 fn cars_ui(
     ui: &mut Ui,
-    scene: &Arc<Scene>,
+    BuiltCars { scene, courses }: &BuiltCars,
     time_s: f64,
     figure: Figure,
-    shown: &mut SceneView,
-    settings: &mut SceneSettings,
+    cars: &mut ReconstructedCars,
+    (settings, keys): (&mut SceneSettings, &mut Vec<CameraKey>),
     commands: &mut Vec<Command>,
 ) {
-    // The motion ends where the car is at rest.
+    // The motion ends where the cars are at rest.
     let time_s = time_s.min(scene.end_s);
-    let placed = shown.camera();
-    let exported = |settings: &SceneSettings| {
-        let picture = ScenePicture {
-            scene: Arc::clone(scene),
-            courses: Vec::new(),
-            time_s,
-            camera: placed.unwrap_or(settings.camera),
-            is_placed: placed.is_some(),
-            distance_m: None,
-            follow: settings.follow,
-        };
-        (picture, figure.clone())
+    let seen = match courses.as_slice() {
+        [] => cars.view.camera(),
+        _ => cars.courses_view.camera(),
     };
-    scene_heading_ui(ui, scene, time_s, settings, None, exported, commands);
+    let wanted = camera_menu_ui(ui, keys, settings, (seen, time_s), commands);
+    let keyed = cars.keyed.at(keys, settings, (scene, time_s));
+    match (wanted.or(keyed), courses.as_slice()) {
+        (Some(camera), []) => cars.view.place_at(camera),
+        (Some(camera), _) => cars.courses_view.place_at(camera),
+        (None, _) => {}
+    }
+    let placed = match courses.as_slice() {
+        [] => cars.view.camera(),
+        _ => cars.courses_view.moved_camera(),
+    };
+    let pictured = |settings: &SceneSettings| ScenePicture {
+        scene: Arc::clone(scene),
+        courses: courses.clone(),
+        time_s,
+        camera: placed.unwrap_or(settings.camera),
+        is_placed: placed.is_some(),
+        distance_m: None,
+        follow: settings.follow,
+    };
+    let exported = |settings: &SceneSettings| (pictured(settings), figure.clone());
+    let filmed = (&mut *settings, keys.as_slice());
+    scene_heading_ui(ui, scene, time_s, filmed, None, exported, commands);
+    let picture = pictured(settings);
     let SceneSettings { camera, follow, .. } = settings;
     let height = ui.available_height();
-    scene_view_ui(ui, scene, time_s, shown, camera, *follow, height);
+    if courses.is_empty() {
+        scene_view_ui(ui, scene, time_s, &mut cars.view, camera, *follow, height);
+    } else {
+        courses_view_ui(ui, &picture, &mut cars.courses_view, camera, height);
+    }
 }
 
 /// Says that the particles are not the answer yet, and how far they are.

@@ -47,7 +47,7 @@ pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let report = &answer.answer.report;
         let caveats = report.caveats.clone().outdated_if(is_outdated || of.run.is_running());
         faded_if(ui, is_outdated, |ui| {
-            restrictions_ui(ui, &report.caveats);
+            restrictions_ui(ui, &report.caveats, view.units);
             if report.modes.len() > 1 {
                 modes_ui(ui, report, of.mode, view.units, commands);
             }
@@ -92,7 +92,7 @@ fn numbers_ui(
     let tables = [report.hinge_table(), Some(report.speed_table()), report.hand_table()];
     let tables: Vec<FactTable> = tables.into_iter().flatten().collect();
     facts_ui(ui, &report.case, &tables, units);
-    evidence_assumptions_ui(ui, &report.caveats, commands);
+    evidence_assumptions_ui(ui, &report.caveats, units, commands);
 }
 
 /// Draws the distribution of one quantity, and of two against each other.

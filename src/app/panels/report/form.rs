@@ -77,8 +77,7 @@ fn choice_ui<T: Copy + PartialEq>(ui: &mut Ui, id: &str, chosen: &mut T, all: &[
 /// Draws the button that makes the report, or its progress.
 fn run_ui(ui: &mut Ui, session: &Session, view: &ReportView, commands: &mut Vec<Command>) {
     let report = &session.report;
-    if let Some((progress, elapsed)) = session.tasks.progress(&TaskKey::Report) {
-        let left = progress.time_left(elapsed);
+    if let Some((progress, left)) = session.tasks.progress(&TaskKey::Report) {
         let left = left.map_or(String::new(), |time| format!(", {} left", duration_text(time)));
         match progress.fraction() {
             Some(fraction) => drop(ui.add(ProgressBar::new(fraction).show_percentage())),

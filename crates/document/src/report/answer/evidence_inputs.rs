@@ -82,9 +82,8 @@ impl Rows<'_> {
         self.push(label, value, InputClass::Measured, source);
     }
 
-    fn range(&self, field: &Field, [low, high]: [f64; 2]) -> String {
-        let [low, high] = [low, high].map(|end| self.wording.given(field.range.quantity, end));
-        format!("{low} {} {high}", self.wording.words.to)
+    fn range(&self, field: &Field, ends: [f64; 2]) -> String {
+        self.wording.given_range(field.range.quantity, ends)
     }
 }
 

@@ -4,19 +4,61 @@ use serde_json::Value;
 
 use crate::report::InputClass;
 use crate::report::answer::Context;
-use crate::report::flatten::flatten;
+use crate::report::flatten::{FlatRow, flatten};
+use crate::report::numbers::Wording;
 use crate::report::parts::{InputRow, Part};
-use impactlab_core::uncertainty::CaveatSubject;
-use impactlab_study::Request;
+use crate::report::paths::ShownPaths;
+use impactlab_core::uncertainty::Caveat;
+use impactlab_study::{
+    ImpactRequest, PredictForceRequest, PredictMotionRequest, ReconstructRequest, Request,
+    SimulateRequest,
+};
+
+/// What a question is about; everything else in it is a setting.
+const SUBJECTS: [&str; 5] = ["scenario", "source", "collision", "force", "evidence"];
 
 /// What a value is in; what stands in the question itself belongs to that.
 fn group_or(group: String, kind: &str) -> String {
     if group.is_empty() { kind.to_owned() } else { group }
 }
 
-/// Adds what the question says, in front of what the answer found out.
-pub(super) fn with_request(mut part: Part, request: &Request, context: Context<'_>) -> Part {
-    let Context { wording, paths, .. } = context;
+/// The settings of a question about the same where nobody changed one; null for a question that asks for
+/// no answer of a report.
+fn default_settings(request: &Request) -> Value {
+    let settings = match request {
+        Request::Impact(asked) => serde_json::to_value(ImpactRequest::new(asked.scenario.clone())),
+        Request::Simulate(asked) => {
+            serde_json::to_value(SimulateRequest::new(asked.source.clone()))
+        }
+        Request::PredictForce(asked) => {
+            serde_json::to_value(PredictForceRequest::new(asked.collision.clone()))
+        }
+        Request::PredictMotion(asked) => {
+            let (source, force) = (asked.motion.source.clone(), asked.force.clone());
+            serde_json::to_value(PredictMotionRequest::new(source, force))
+        }
+        Request::Reconstruct(asked) => {
+            serde_json::to_value(ReconstructRequest::new(asked.evidence.clone()))
+        }
+        _ => return Value::Null,
+    };
+    settings.unwrap_or_default()
+}
+
+/// Whether a row says what the question is about.
+fn is_subject(row: &FlatRow) -> bool {
+    row.path.iter().chain([&row.key]).any(|name| SUBJECTS.contains(&name.as_str()))
+}
+
+/// What a question says, and the settings that it leaves as the program has them.
+///
+/// - `kind`: what kind of question it is.
+pub(in crate::report) fn given_rows(
+    request: &Request,
+    kind: &str,
+    wording: &Wording,
+    paths: &ShownPaths,
+) -> Vec<InputRow> {
     let words = wording.words;
     let mut question = serde_json::to_value(request).unwrap_or_default();
     if let Value::Object(fields) = &mut question {
@@ -26,26 +68,41 @@ pub(super) fn with_request(mut part: Part, request: &Request, context: Context<'
             evidence.remove("inline");
         }
     }
-    let given = flatten(&question, wording, paths).into_iter().map(|row| {
+    let defaults = flatten(&default_settings(request), wording, paths);
+    let given = |row: FlatRow| {
         let is_file = row.key == "file" || row.key == "path" || row.key == "dataset";
-        let source = if is_file { words.source_file } else { words.source_question };
+        let (class, source) = match !is_subject(&row) && defaults.contains(&row) {
+            true => (InputClass::Assumed, words.source_program),
+            false if is_file => (InputClass::Given, words.source_file),
+            false => (InputClass::Given, words.source_question),
+        };
         InputRow {
-            group: group_or(row.group(wording), &part.kind),
+            group: group_or(row.group(wording), kind),
             label: wording.key(&row.key),
             value: row.value,
-            class: InputClass::Given,
+            class,
             source: source.to_owned(),
         }
-    });
+    };
+    flatten(&question, wording, paths).into_iter().map(given).collect()
+}
+
+/// Adds what the question says, in front of what the answer found out.
+pub(super) fn with_request(mut part: Part, request: &Request, context: Context<'_>) -> Part {
+    let Context { wording, paths, .. } = context;
+    let label = |assumption: &Caveat| match assumption.subject {
+        Some(subject) => subject.label_in(wording.language),
+        None => assumption.kind.label_in(wording.language),
+    };
     let assumed = part.caveats.assumptions().map(|assumption| InputRow {
-        group: part.kind.clone(),
-        label: wording
-            .term(assumption.subject.map_or(assumption.kind.label(), CaveatSubject::label)),
-        value: wording.quoted(&assumption.text),
+        // What several answers assume alike is listed once.
+        group: wording.words.inputs_assumed.to_owned(),
+        label: label(assumption).to_owned(),
+        value: wording.caveat_text(assumption),
         class: InputClass::Assumed,
-        source: wording.quoted(assumption.reason.as_deref().unwrap_or_default()),
+        source: wording.caveat_reason(assumption),
     });
-    let mut rows: Vec<InputRow> = given.collect();
+    let mut rows = given_rows(request, &part.kind, wording, paths);
     rows.append(&mut part.inputs);
     rows.extend(assumed);
     Part { inputs: rows, ..part }

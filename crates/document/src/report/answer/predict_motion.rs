@@ -34,6 +34,7 @@ pub(super) fn part(
     let mut blocks = vec![Block::paragraph(question.clone())];
     blocks.extend(report.course_table().iter().map(|table| facts_table(table, context)));
     blocks.push(facts_table(&report.answer_table(), context));
+    blocks.extend(report.force_table().iter().map(|table| facts_table(table, context)));
     let is_one = report.n_forces <= 1 && report.n_vehicles == 0;
     let meaning = if is_one { words.meaning_motion_one } else { words.meaning_motion };
     match report.is_end_known() {

@@ -55,11 +55,12 @@ pub(super) fn part(
     blocks.extend(report.hand_table().map(|table| facts_table(&table, context)));
     let is_doubt = |kind| DOUBTS.contains(&kind) && report.has_intervals();
     let doubts = report.caveats.iter().filter(|caveat| is_doubt(caveat.kind));
-    let mut doubts: Vec<String> = doubts.map(|caveat| wording.term(caveat.kind.label())).collect();
+    let mut doubts: Vec<&str> =
+        doubts.map(|caveat| caveat.kind.label_in(wording.language)).collect();
     doubts.dedup();
     let mut opinion = opinion_of_reconstruction(report, &question, context);
     for badge in doubts {
-        let doubt = fill(words.meaning_doubtful, &[("badge", &badge)]);
+        let doubt = fill(words.meaning_doubtful, &[("badge", badge)]);
         opinion.answer = format!("{} {doubt}", opinion.answer);
         blocks.push(Block::paragraph(doubt));
     }

@@ -15,6 +15,7 @@ use crate::report::numbers::fill;
 use crate::report::opinion::opinion_of_simulation;
 use crate::report::parts::{Part, PartPicture};
 use impactlab_core::data::Channel;
+use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_study::{SimulateAnswer, SimulateRequest};
 
 /// What a simulation contributes.
@@ -42,8 +43,9 @@ pub(super) fn part(
         sensitivity.extend(shares.map(|table| facts_table(&table, context)));
         draws.push((words.vehicles_drawn, uncertainty.n_draws.to_string()));
     }
-    let noted = |note: &str| fill(words.noted, &[("note", &wording.quoted(note))]);
-    blocks.extend(report.caveats.notes().map(|note| Block::paragraph(noted(note))));
+    let noted = |note: &Caveat| fill(words.noted, &[("note", &wording.caveat_text(note))]);
+    let notes = report.caveats.iter().filter(|caveat| caveat.kind == CaveatKind::Note);
+    blocks.extend(notes.map(|note| Block::paragraph(noted(note))));
     let scenario = report.momentum.as_ref().map(|_| Method::Impact);
     let contact = (!report.contacts.is_empty()).then_some(Method::ContactLaw);
     let network = beside.map(|_| Method::ForceNetwork);

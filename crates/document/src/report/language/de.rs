@@ -16,8 +16,8 @@ pub(super) const WORDS: Words = Words {
         wurde aus dem Fall und den Dateien berechnet, die er nennt.",
     units_si: "Einheiten: m, km/h, Grad, kN, kJ, kg. Winkel und Gierraten sind nach links positiv.",
     units_us: "Einheiten: ft, mph, Grad, lbf, ft lbf, lb. Winkel und Gierraten sind nach links positiv.",
-    language_note: "Texte in Anführungszeichen gibt das Programm nur auf Englisch aus: Annahmen mit ihren Gründen, \
-        Einschränkungen, Schätzregeln, Hinweise und Fehlermeldungen. Auch die Literaturangaben und die \
+    language_note: "Texte in Anführungszeichen gibt das Programm nur auf Englisch aus: Schätzregeln, \
+        einzelne Annahmen mit ihren Gründen, einzelne Hinweise und Fehlermeldungen. Auch die Literaturangaben und die \
         Beschriftungen in den Bildern sind englisch.",
     notes: "Bemerkungen des Bearbeiters",
     changed_notice: "Seit dem Speichern des Falls hat sich etwas geändert: {what}. Die Antworten gelten für \
@@ -174,7 +174,8 @@ pub(super) const WORDS: Words = Words {
         Regel mit bekannter Streuung; „angenommen“ ist, was niemand gesagt hat.",
     inputs_caption: "{name}: {group}",
     inputs_said: "{caption}; laut Frage",
-    common_source: "* {source}",
+    inputs_assumed: "was niemand angegeben hat",
+    inputs_left: "Wie vom Programm vorgegeben: {values}.",
     validity_text: "Was die Modelle des Gutachtens vernachlässigen, steht dort. Es folgt jede Einschränkung, \
         die das Programm gefunden hat, mit Begründung und Abhilfe.",
     validity_models: "Die übrigen Modelle vernachlässigen:",
@@ -209,6 +210,7 @@ pub(super) const WORDS: Words = Words {
     remedy_few_particles: "Mit mehr Partikeln erneut fragen.",
     remedy_few_draws: "Mit mehr Ziehungen erneut fragen.",
     remedy_several_courses: "Die Werte jedes Ablaufs für sich verwenden; Spuren suchen, die zwischen ihnen entscheiden.",
+    remedy_driver_open: "Angeben, ob der Fahrer bremst, lenkt oder rollen lässt, oder die Antwort für jeden dieser Fälle zeigen.",
     remedy_hardly_validated: "Das Intervall nur mit diesem Vorbehalt angeben.",
     remedy_left_out: "Die fehlenden Fälle oder Ziehungen ansehen.",
     remedy_trained_on: "Das Netz an Fällen beurteilen, die es nicht kennt.",

@@ -172,7 +172,8 @@ pub(super) const WORDS: Words = Words {
         “assumed” is what nobody said.",
     inputs_caption: "{name}: {group}",
     inputs_said: "{caption}; said by the question",
-    common_source: "* {source}",
+    inputs_assumed: "what nobody said",
+    inputs_left: "Left as the program has them: {values}.",
     validity_text: "What the models of the opinion leave out is said there. Each restriction that the \
         program found follows, with its sentence and a remedy.",
     validity_models: "The other models leave out:",
@@ -206,6 +207,7 @@ pub(super) const WORDS: Words = Words {
     remedy_few_particles: "Ask again with more particles.",
     remedy_few_draws: "Ask again with more draws.",
     remedy_several_courses: "Use the figures of each course of events; look for evidence that decides between them.",
+    remedy_driver_open: "Say whether the driver brakes, steers or lets the vehicle roll, or show the answer for each.",
     remedy_hardly_validated: "Report the interval with this reservation.",
     remedy_left_out: "Look at the cases or draws that are left out.",
     remedy_trained_on: "Judge the network by cases that it has not seen.",

@@ -3,6 +3,7 @@
 use crate::report::Language;
 use crate::report::language::words::Words;
 use crate::report::language::{de, de_terms, en};
+use impactlab_core::uncertainty::{CaveatKind, CaveatSubject};
 
 /// The texts of the report itself.
 pub(in crate::report) fn words_of(language: Language) -> &'static Words {
@@ -20,12 +21,23 @@ pub(in crate::report) fn phrase_of(language: Language, text: &str) -> Option<Str
     if let Some((_, term)) = de_terms::TERMS.iter().find(|(english, _)| *english == text) {
         return Some((*term).to_owned());
     }
+    if let Some(label) = caveat_label(language, text) {
+        return Some(label.to_owned());
+    }
     let beginnings = de_terms::BEGINNINGS.iter();
     let mut found = beginnings.filter_map(|(english, german)| {
         let rest = text.strip_prefix(english)?;
-        Some(german.replace("{}", &rest.replace("deg", "°")))
+        let rest = phrase_of(language, rest).unwrap_or_else(|| rest.replace("deg", "°"));
+        Some(german.replace("{}", &rest))
     });
     found.next()
+}
+
+/// What caveats are called.
+fn caveat_label(language: Language, text: &str) -> Option<&'static str> {
+    let kinds = CaveatKind::ALL.iter().map(|kind| (kind.label(), kind.label_in(language)));
+    let subjects = CaveatSubject::ALL.iter().map(|it| (it.label(), it.label_in(language)));
+    kinds.chain(subjects).find(|(english, _)| *english == text).map(|(_, label)| label)
 }
 
 #[cfg(test)]

@@ -15,6 +15,9 @@ use crate::report::paths::ShownPaths;
 use crate::report::provenance::own_file;
 use impactlab_study::case_file::{CaseFile, CaseOnDisk, UsedFile};
 
+/// What stands where a variant has nothing.
+const NONE: &str = "–";
+
 /// What the opinion is made of.
 #[derive(Clone, Copy)]
 pub(in crate::report) struct Asked<'a> {
@@ -33,6 +36,7 @@ pub(in crate::report) struct Asked<'a> {
 /// A variant with the answers that speak for it.
 struct Spoken<'a> {
     name: &'a str,
+    notes: &'a str,
     parts: Vec<&'a Part>,
 }
 
@@ -78,7 +82,11 @@ fn spoken(variants: &[VariantParts]) -> Vec<Spoken<'_>> {
         let highest = of_variant(variant)?;
         let is_highest =
             |part: &&Part| part.opinion.as_ref().is_some_and(|opinion| opinion.rank == highest);
-        Some(Spoken { name: &variant.name, parts: parts_of(variant).filter(is_highest).collect() })
+        Some(Spoken {
+            name: &variant.name,
+            notes: variant.notes.trim(),
+            parts: parts_of(variant).filter(is_highest).collect(),
+        })
     });
     each.collect()
 }
@@ -137,20 +145,24 @@ fn courses(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     blocks
 }
 
-/// The figures of the variants beside each other, with what differs between them.
+/// The figures of the variants beside each other, with what differs between them and what was written about
+/// them.
 fn figures(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     let words = opinion_words(wording.language);
+    let has_notes = spoken.iter().any(|it| !it.notes.is_empty());
     let column = |(idx, it): (usize, &Spoken<'_>)| {
         let differs = match (idx, spoken.first()) {
             (0, _) | (_, None) => words.first_variant.to_owned(),
             (_, Some(first)) => differences(&first.parts, &it.parts, wording),
         };
         let differs = (spoken.len() > 1).then(|| [words.differs.to_owned(), differs]);
+        let notes = if it.notes.is_empty() { NONE } else { it.notes };
+        let notes = has_notes.then(|| [words.notes.to_owned(), notes.to_owned()]);
         let figures = it.opinions().flat_map(|of| of.figures.clone());
-        (it.name.to_owned(), differs.into_iter().chain(figures).collect())
+        (it.name.to_owned(), differs.into_iter().chain(notes).chain(figures).collect())
     };
     let columns: Vec<(String, NamedRows)> = spoken.iter().enumerate().map(column).collect();
-    beside(words.figures, [wording.words.quantity, wording.words.value], &columns, "–")
+    beside(words.figures, [wording.words.quantity, wording.words.value], &columns, NONE)
 }
 
 /// How often such intervals held, each table once, and what the known error is.
@@ -190,13 +202,13 @@ fn hinges(spoken: &[Spoken<'_>]) -> Block {
 /// The warnings of all answers by name, each with the variants that have it.
 fn warnings(variants: &[VariantParts], wording: &Wording) -> Vec<Block> {
     let words = opinion_words(wording.language);
-    let mut found: Vec<(String, Vec<&str>)> = Vec::new();
+    let mut found: Vec<(&str, Vec<&str>)> = Vec::new();
     for variant in variants {
         for caveat in parts_of(variant).flat_map(|part| part.caveats.iter()) {
             if !caveat.is_warning() {
                 continue;
             }
-            let label = wording.term(caveat.kind.label());
+            let label = caveat.kind.label_in(wording.language);
             match found.iter_mut().find(|(known, _)| *known == label) {
                 Some((_, of)) if of.contains(&&*variant.name) => {}
                 Some((_, of)) => of.push(&variant.name),
@@ -207,8 +219,8 @@ fn warnings(variants: &[VariantParts], wording: &Wording) -> Vec<Block> {
     if found.is_empty() {
         return vec![Block::paragraph(words.no_warnings)];
     }
-    let item = |(label, of): (String, Vec<&str>)| match variants.len() {
-        1 => label,
+    let item = |(label, of): (&str, Vec<&str>)| match variants.len() {
+        1 => label.to_owned(),
         _ => format!("{label} ({})", of.join(", ")),
     };
     let all: Vec<String> = found.into_iter().map(item).collect();

@@ -1,9 +1,13 @@
 //! What a variant says otherwise than the first one.
 
 use crate::report::InputClass;
+use crate::report::answer::given_rows;
 use crate::report::numbers::Wording;
-use crate::report::opinion::words::opinion_words;
+use crate::report::opinion::words::{OpinionWords, opinion_words};
 use crate::report::parts::{InputRow, Part};
+use crate::report::paths::ShownPaths;
+use impactlab_core::units::UnitSystem;
+use impactlab_study::case_file::Variant;
 
 /// Differences that are named; more are counted.
 const MOST_NAMED: usize = 5;
@@ -12,7 +16,31 @@ const MOST_NAMED: usize = 5;
 /// more, and values that are missing.
 pub(super) fn differences(first: &[&Part], other: &[&Part], wording: &Wording) -> String {
     let words = opinion_words(wording.language);
-    let [before, now] = [asked(first, wording), asked(other, wording)];
+    let mut named = named_differences(&asked(first, wording), &asked(other, wording), words);
+    let n_more = named.len().saturating_sub(MOST_NAMED);
+    named.truncate(MOST_NAMED);
+    let mut text = named.join("; ");
+    if n_more > 0 {
+        text.push_str(&words.more.replace("{n}", &n_more.to_string()));
+    }
+    if text.is_empty() { words.asked_alike.to_owned() } else { text }
+}
+
+/// What a variant asks otherwise than the first one, each difference in words with its units; nothing where
+/// they ask the same.
+pub fn variant_differences(first: &Variant, other: &Variant, units: UnitSystem) -> Vec<String> {
+    let (wording, paths) = (Wording::english(units), ShownPaths::default());
+    let rows = |variant: &Variant| -> Vec<InputRow> {
+        let rows = |request| given_rows(request, "", &wording, &paths);
+        variant.questions.iter().flat_map(rows).collect()
+    };
+    let [before, now] = [rows(first), rows(other)];
+    let [before, now] = [&before, &now].map(|rows| rows.iter().collect::<Vec<_>>());
+    named_differences(&before, &now, opinion_words(wording.language))
+}
+
+/// Values that are other or more, and values that are missing, each once.
+fn named_differences(before: &[&InputRow], now: &[&InputRow], words: &OpinionWords) -> Vec<String> {
     let mut named: Vec<String> = Vec::new();
     let mut add = |text: String| {
         if !named.contains(&text) {
@@ -26,20 +54,17 @@ pub(super) fn differences(first: &[&Part], other: &[&Part], wording: &Wording) -
     for row in before.iter().filter(is_gone) {
         add(format!("{} {}", words.without, name(row)));
     }
-    let n_more = named.len().saturating_sub(MOST_NAMED);
-    named.truncate(MOST_NAMED);
-    let mut text = named.join("; ");
-    if n_more > 0 {
-        text.push_str(&words.more.replace("{n}", &n_more.to_string()));
-    }
-    if text.is_empty() { words.asked_alike.to_owned() } else { text }
+    named
 }
 
 /// What the questions say; what follows from it by rule is not.
 fn asked<'a>(parts: &[&'a Part], wording: &Wording) -> Vec<&'a InputRow> {
     let sources = [wording.words.source_question, wording.words.source_file];
-    let is_asked =
-        |row: &&InputRow| row.class == InputClass::Given && sources.contains(&row.source.as_str());
+    let is_asked = |row: &&InputRow| match row.class {
+        InputClass::Given => sources.contains(&row.source.as_str()),
+        // A setting that another variant may have changed.
+        _ => row.source == wording.words.source_program,
+    };
     parts.iter().flat_map(|part| &part.inputs).filter(is_asked).collect()
 }
 
@@ -56,7 +81,8 @@ fn name(row: &InputRow) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impactlab_core::units::UnitSystem;
+    use impactlab_core::collision::Scenario;
+    use impactlab_study::{ImpactRequest, ScenarioChoice};
 
     fn part(rows: &[[&str; 2]]) -> Part {
         let wording = Wording::english(UnitSystem::Si);
@@ -78,5 +104,29 @@ mod tests {
         let text = differences(&[&first], &[&other], &wording);
         assert_eq!(text, "brake, mass: 1500 kg; brake, share: 0.8; without brake, side");
         assert_eq!(differences(&[&first], &[&first], &wording), "asked as the first variant");
+    }
+
+    /// A question about the same collision says nothing new; units are those that are asked for.
+    #[test]
+    fn variants_differ_in_what_their_questions_say() {
+        let variant = |mass_kg: f64, restitution| {
+            let mut scenario = Scenario::example();
+            scenario.struck.mass_kg = mass_kg;
+            scenario.contact.restitution = restitution;
+            let asked = ImpactRequest::new(ScenarioChoice::Inline(Box::new(scenario)));
+            let questions = vec![asked.clone().into(), asked.into()];
+            Variant { questions, ..Variant::default() }
+        };
+        let first = variant(2000.0, Some(0.15));
+        let of = |other: &Variant, units| variant_differences(&first, other, units);
+        assert_eq!(of(&first, UnitSystem::Si), [""; 0]);
+        let heavy = variant(2500.0, Some(0.15));
+        let in_kilograms = of(&heavy, UnitSystem::Si);
+        assert!(in_kilograms.len() == 1, "{in_kilograms:?}");
+        assert!(in_kilograms[0].starts_with("struck vehicle, mass: 2500"), "{in_kilograms:?}");
+        let in_pounds = of(&heavy, UnitSystem::Us);
+        assert!(in_pounds.len() == 1 && in_pounds[0].ends_with(" lb"), "{in_pounds:?}");
+        let open = of(&variant(2000.0, None), UnitSystem::Si);
+        assert!(open.len() == 1 && open[0].starts_with("without "), "{open:?}");
     }
 }

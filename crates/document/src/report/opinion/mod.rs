@@ -12,6 +12,8 @@ mod blocks;
 
 mod words;
 
+pub use differences::variant_differences;
+
 pub(super) use blocks::{Asked, considered_methods, opinion_blocks};
 pub(super) use of_answer::{
     opinion_of_force, opinion_of_forecast, opinion_of_impact, opinion_of_reconstruction,

@@ -8,7 +8,7 @@ use image::{ExtendedColorType, ImageEncoder, ImageError};
 use rayon::prelude::*;
 
 use crate::report::language::words_of;
-use crate::report::write::pictures::{Drawing, Pixels, drawn_pictures};
+use crate::report::write::pictures::{Drawing, Drawn, Medium, Pixels, drawn_pictures};
 use crate::report::{Block, PdfError, Picture, ReportDocument, Table};
 
 /// Characters that mean something in Markdown or in HTML.
@@ -25,8 +25,12 @@ impl ReportDocument {
     /// # Errors
     /// [`PdfError::Picture`] if a picture cannot be drawn.
     pub fn to_markdown_with_pictures(&self, drawing: &Drawing<'_>) -> Result<String, PdfError> {
-        let pictures = drawn_pictures(self, Some(drawing))?;
-        let encoded = pictures.into_par_iter().map(|(number, Pixels { size_px, rgba })| {
+        let pictures = drawn_pictures(self, Some(drawing), Medium::Screen)?;
+        let pixels = pictures.into_par_iter().filter_map(|(number, drawn)| match drawn {
+            Drawn::Pixels(pixels) => Some((number, pixels)),
+            Drawn::Vectors(_) => None,
+        });
+        let encoded = pixels.map(|(number, Pixels { size_px, rgba })| {
             let [width, height] = size_px;
             let mut png = Vec::new();
             // The usual compression is for speed; here each byte is a third larger in the text.

@@ -8,6 +8,8 @@ mod pdf;
 
 mod pictures;
 
+mod vectors;
+
 mod columns;
 
 mod format;
@@ -15,4 +17,5 @@ mod format;
 pub use columns::column_widths;
 pub use format::{FormatError, ReportFormat, WriteError};
 pub use pdf::{PdfError, pdf};
-pub use pictures::{Drawing, Pixels};
+pub use pictures::{Drawing, Drawn, Medium, Pixels};
+pub use vectors::{VectorMark, VectorPicture, VectorShape};

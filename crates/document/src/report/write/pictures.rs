@@ -1,15 +1,33 @@
-//! Pictures of a report as pixels.
+//! Pictures of a report as they are drawn.
 
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use crate::report::{PdfError, PictureContent, ReportDocument};
+use crate::report::{PdfError, PictureContent, ReportDocument, VectorPicture};
 
-/// Draws a picture into pixels: width, height, RGBA row by row. An error says why it cannot.
-pub type Drawing<'a> = dyn Fn(&PictureContent) -> Result<Pixels, String> + Sync + 'a;
+/// Draws a picture for a medium. An error says why it cannot.
+pub type Drawing<'a> = dyn Fn(&PictureContent, Medium) -> Result<Drawn, String> + Sync + 'a;
 
-/// A picture.
+/// What a picture is drawn for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Medium {
+    /// Whatever shows pixels.
+    Screen,
+    /// The page of a PDF, which holds lines and letters too. Two plots stand beside each other on it.
+    Page,
+}
+
+/// A picture as it is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Drawn {
+    /// As pixels.
+    Pixels(Pixels),
+    /// As lines, areas and texts; for a page alone.
+    Vectors(VectorPicture),
+}
+
+/// A picture as pixels: width, height, RGBA row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pixels {
     /// Width and height.
@@ -22,19 +40,29 @@ pub struct Pixels {
 pub(super) fn drawn_pictures(
     document: &ReportDocument,
     drawing: Option<&Drawing<'_>>,
-) -> Result<BTreeMap<usize, Pixels>, PdfError> {
+    medium: Medium,
+) -> Result<BTreeMap<usize, Drawn>, PdfError> {
     let Some(drawing) = drawing else { return Ok(BTreeMap::new()) };
     let all: Vec<_> = document.pictures().collect();
     let drawn = all.into_par_iter().map(|picture| {
         let number = picture.number;
         let failed = |why| PdfError::Picture { number, why };
-        let pixels = drawing(&picture.content).map_err(failed)?;
-        let [width, height] = pixels.size_px;
-        let bytes = u64::from(width) * u64::from(height) * 4;
-        if bytes == 0 || bytes != pixels.rgba.len() as u64 {
-            return Err(failed("its pixels are not as many as its size says".to_owned()));
-        }
-        Ok((number, pixels))
+        let drawn = drawing(&picture.content, medium).map_err(failed)?;
+        check(&drawn, medium).map_err(|why| failed(why.to_owned()))?;
+        Ok((number, drawn))
     });
     drawn.collect()
+}
+
+/// Checks that a drawing is whole and fits its medium.
+fn check(drawn: &Drawn, medium: Medium) -> Result<(), &'static str> {
+    match drawn {
+        Drawn::Vectors(_) if medium == Medium::Screen => Err("it is not drawn as pixels"),
+        Drawn::Vectors(_) => Ok(()),
+        Drawn::Pixels(Pixels { size_px: [width, height], rgba }) => {
+            let bytes = u64::from(*width) * u64::from(*height) * 4;
+            let is_whole = bytes > 0 && bytes == rgba.len() as u64;
+            is_whole.then_some(()).ok_or("its pixels are not as many as its size says")
+        }
+    }
 }

@@ -7,7 +7,7 @@ use crate::force::physics::CentreCurve;
 use crate::force::{ForceCase, ForceScenario};
 use crate::nn::{Expected, NnError, check_length, check_number, check_numbers};
 use impactlab_core::uncertainty::{CURVE_N_INSTANTS, Caveat, CaveatKind};
-use impactlab_core::units::significant;
+use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 
 /// Names of the scenario's features as shown to the user, with units.
 pub(super) const SCENARIO_NAMES: [&str; N_SCENARIO + N_TURNING] = [
@@ -68,13 +68,17 @@ pub struct OutsideTraining {
 impl OutsideTraining {
     /// The caveat that names the feature.
     pub(crate) fn caveat(&self) -> Caveat {
-        let [low, high] = self.range.map(significant);
-        let text = format!(
-            "{} is {}, trained on {low} to {high}: {} standard deviations outside",
-            self.feature,
-            significant(self.value),
-            significant(self.deviations)
-        );
+        let [low, high] = self.range;
+        let text = Phrase::new(
+            "{0} is {1}, trained on {2} to {3}: {4} standard deviations outside",
+            "{0} beträgt {1}; das Kraftnetz wurde mit {2} bis {3} trainiert: {4} Standardabweichungen \
+             außerhalb",
+        )
+        .with(PhraseValue::Heading(self.feature.to_owned()))
+        .with(PhraseValue::of_named(self.feature, self.value))
+        .with(PhraseValue::of_named(self.feature, low))
+        .with(PhraseValue::of_named(self.feature, high))
+        .with(PhraseValue::significant(Quantity::Ratio, self.deviations));
         Caveat::new(CaveatKind::OutsideDomain, text)
             .with_value(self.feature, self.value)
             .with_range(self.range)

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{InputKind, StudyError};
+use impactlab_core::units::{Phrase, PhraseValue};
 use impactlab_core::vehicle::{
     BuiltInVehicle, DataSheet, Preset, VehicleParameters, built_in_vehicle,
 };
@@ -88,15 +89,25 @@ pub(crate) fn struck_vehicle(
         return built_in_vehicle(name).ok_or_else(|| StudyError::unknown_vehicle(name));
     }
     let reason = match open {
-        OpenVehicle::OfDataset(_) => "the data set has no vehicle.toml",
-        OpenVehicle::OfScenario(_) | OpenVehicle::Unknown => "no vehicle was named",
+        OpenVehicle::OfDataset(_) => {
+            Phrase::new("the data set has no vehicle.toml", "der Datensatz hat keine vehicle.toml")
+        }
+        OpenVehicle::OfScenario(_) | OpenVehicle::Unknown => {
+            Phrase::new("no vehicle was named", "kein Fahrzeug ist benannt")
+        }
     };
-    let reason = format!(
-        "{reason}; this is the car that the shipped response network has learned; \
-         another one: --vehicle"
-    );
-    caveats.push(Caveat::assumed(CaveatSubject::Vehicle, DEFAULT_VEHICLE.id(), reason));
+    let reason = Phrase::new(
+        "{0}; this is the car that the shipped response network has learned; another one: --vehicle",
+        "{0}; dies ist das Fahrzeug, das das mitgelieferte Bewegungsnetz gelernt hat; ein anderes: --vehicle",
+    )
+    .with(PhraseValue::phrase(reason));
+    caveats.push(Caveat::assumed(CaveatSubject::Vehicle, name_of(DEFAULT_VEHICLE.id()), reason));
     Ok(DEFAULT_VEHICLE.parameters())
+}
+
+/// The name of a vehicle, the same in every language.
+fn name_of(name: &str) -> Phrase {
+    Phrase::of(PhraseValue::Name(name.to_owned()))
 }
 
 /// The striking vehicle; one that nobody named is added to the caveats.
@@ -113,8 +124,12 @@ pub(crate) fn striking_vehicle(
     if let Some(name) = named {
         return built_in_vehicle(name).ok_or_else(|| StudyError::unknown_vehicle(name));
     }
-    let reason = "no striking vehicle was named; its mass, inertia and outline are those of the \
-                  case; another one: --bullet";
-    caveats.push(Caveat::assumed(CaveatSubject::Striking, DEFAULT_STRIKING.id(), reason));
+    let reason = Phrase::new(
+        "no striking vehicle was named; its mass, inertia and outline are those of the \
+         case; another one: --bullet",
+        "kein stoßendes Fahrzeug ist benannt; Masse, Trägheit und Umriss sind die des Falls; ein anderes: \
+         --bullet",
+    );
+    caveats.push(Caveat::assumed(CaveatSubject::Striking, name_of(DEFAULT_STRIKING.id()), reason));
     Ok(DEFAULT_STRIKING.parameters())
 }

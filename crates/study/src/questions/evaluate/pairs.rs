@@ -16,6 +16,7 @@ use impactlab_core::jobs::{Progress, ProgressCallback};
 use impactlab_core::numerics::sha256_hex;
 use impactlab_core::ranges::DRAWS;
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
+use impactlab_core::units::{Phrase, PhraseValue};
 use impactlab_core::vehicle::Manoeuvre;
 use impactlab_networks::pair::{
     ByControl, EvaluatedPair, EvaluatedTwins, PairForecast, PairSettings, PairSummary, TwinOutcome,
@@ -363,7 +364,12 @@ fn groups(cases: &[EvaluatedPair]) -> Vec<PairGroup> {
 fn left_out_caveat(n_answers: usize, n_expected: usize) -> Option<Caveat> {
     let n_missing = n_expected.saturating_sub(n_answers);
     (n_missing > 0).then(|| {
-        let text = format!("{n_missing} of {n_expected} cases have no forecast");
+        let text = Phrase::new(
+            "{0} of {1} cases have no forecast",
+            "{0} von {1} Fällen haben keine Vorhersage",
+        )
+        .with(PhraseValue::Name(n_missing.to_string()))
+        .with(PhraseValue::Name(n_expected.to_string()));
         Caveat::new(CaveatKind::LeftOut, text)
             .with_value("cases without a forecast", n_missing as f64)
             .with_range([0.0, 0.0])

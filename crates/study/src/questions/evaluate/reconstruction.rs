@@ -19,6 +19,7 @@ use impactlab_core::error_chain;
 use impactlab_core::jobs::Progress;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
+use impactlab_core::units::{Phrase, PhraseValue};
 use impactlab_reconstruct::evaluate::{
     CaseScore, KnownEvidence, MethodSummary, ReconstructionMethod, StagedCollisions, StagedSplit,
     TrueQuantities,
@@ -261,7 +262,12 @@ impl Question for EvaluateReconstructionRequest {
 fn of_missing(n_answers: usize, n_expected: usize) -> Option<Caveat> {
     let n_missing = n_expected.saturating_sub(n_answers);
     let caveat = || {
-        let text = format!("{n_missing} of {n_expected} reconstructions have no answer");
+        let text = Phrase::new(
+            "{0} of {1} reconstructions have no answer",
+            "{0} von {1} Rekonstruktionen haben kein Ergebnis",
+        )
+        .with(PhraseValue::Name(n_missing.to_string()))
+        .with(PhraseValue::Name(n_expected.to_string()));
         let quantity = "reconstructions without an answer";
         Caveat::new(CaveatKind::LeftOut, text)
             .with_value(quantity, n_missing as f64)

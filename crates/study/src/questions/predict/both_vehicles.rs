@@ -15,7 +15,7 @@ use impactlab_core::data::{ForceHistory, Outcome};
 use impactlab_core::jobs::Progress;
 use impactlab_core::numerics::random_stream;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CurveMixture};
-use impactlab_core::units::percent;
+use impactlab_core::units::{Phrase, PhraseValue};
 use impactlab_networks::force::{ForcePrediction, SHARE_OF_NETWORK};
 use impactlab_networks::response::ResponseModel;
 
@@ -77,18 +77,24 @@ impl<'a> Both<'a> {
         let uncorrected = self.is_corrected(response).into_iter().zip(["struck", "striking"]);
         let uncorrected = uncorrected.filter(|(is_corrected, _)| !is_corrected).map(|(_, role)| {
             Caveat::not_used(
-                format!("response network for the {role} vehicle"),
-                "it has learned from vehicles that coast; the equations of motion stand alone",
+                Phrase::new("response network for the {0}", "Bewegungsnetz, {0}")
+                    .with(PhraseValue::Term(format!("{role} vehicle"))),
+                Phrase::new(
+                    "it has learned from vehicles that coast; the equations of motion stand alone",
+                    "es hat an rollenden Fahrzeugen gelernt; die Bewegungsgleichungen gelten allein",
+                ),
             )
         });
         let contacts = forecast.both.as_ref().map(|both| &both.contacts);
         let clamped = contacts.filter(|contacts| contacts.clamped_share > MOST_CLAMPED);
         let clamped = clamped.map(|contacts| {
-            let text = format!(
-                "in {} of the draws the scale of the faces' stiffness was outside of 0.3 to 3 and is cut \
+            let text = Phrase::new(
+                "in {0} of the draws the scale of the faces' stiffness was outside of 0.3 to 3 and is cut \
                  off there: force and contact law do not go together",
-                percent(contacts.clamped_share)
-            );
+                "In {0} der Ziehungen lag der Maßstab der Steifigkeit außerhalb von 0,3 bis 3 und ist dort \
+                 abgeschnitten: Kraft und Kontaktgesetz passen nicht zusammen",
+            )
+            .with(PhraseValue::Share(contacts.clamped_share));
             Caveat::new(CaveatKind::Note, text)
         });
         uncorrected.chain(drawn_drivers(self.vehicles)).chain(clamped).collect()
@@ -197,7 +203,10 @@ pub(super) fn with_contact_law(caveats: &[Caveat]) -> Vec<Caveat> {
     let restated = |caveat: &Caveat| {
         let is_share = caveat.quantity.as_deref() == Some(SHARE_OF_NETWORK);
         match caveat.value.filter(|_| is_share) {
-            Some(share) => Caveat { text: law_text(share), ..caveat.clone() },
+            Some(share) => {
+                let Caveat { text, text_phrase, .. } = Caveat::new(caveat.kind, law_text(share));
+                Caveat { text, text_phrase, ..caveat.clone() }
+            }
             None => caveat.clone(),
         }
     };
@@ -205,15 +214,20 @@ pub(super) fn with_contact_law(caveats: &[Caveat]) -> Vec<Caveat> {
     caveats.iter().filter(no_force).map(restated).collect()
 }
 
-fn law_text(share: f64) -> String {
+fn law_text(share: f64) -> Phrase {
     match share > 0.0 {
-        true => format!(
-            "in {} of the draws the first contact follows from the contact law, since the force \
+        true => Phrase::new(
+            "in {0} of the draws the first contact follows from the contact law, since the force \
              network has not learned from such collisions",
-            percent(1.0 - share)
+            "In {0} der Ziehungen folgt der erste Kontakt aus dem Kontaktgesetz, da das Kraftnetz an \
+             solchen Kollisionen nicht gelernt hat",
+        )
+        .with(PhraseValue::Share(1.0 - share)),
+        false => Phrase::new(
+            "the first contact follows from the contact law, since the force network has not \
+             learned from such collisions",
+            "Der erste Kontakt folgt aus dem Kontaktgesetz, da das Kraftnetz an solchen Kollisionen nicht \
+             gelernt hat",
         ),
-        false => "the first contact follows from the contact law, since the force network has not \
-                  learned from such collisions"
-            .to_owned(),
     }
 }

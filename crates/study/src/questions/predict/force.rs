@@ -17,7 +17,7 @@ use impactlab_core::collision::{Impact, PrincipalDirectionOfForce, ScenarioConta
 use impactlab_core::data::{DatasetKind, Outcome};
 use impactlab_core::ranges::SAMPLES;
 use impactlab_core::uncertainty::Caveat;
-use impactlab_core::units::Estimate;
+use impactlab_core::units::{Estimate, Phrase, PhraseValue};
 use impactlab_networks::force::{ForceError, ForcePrediction, ForceScenario, OutsideTraining};
 
 /// Asks which force a collision brings about, and how sure that is.
@@ -249,11 +249,16 @@ impl Question for PredictForceRequest {
         if let Some(body) = &self.body {
             collision.striking_body = Some(body.clone());
             if model.bodies().len() == 1 {
-                let reason = "the cases that the force network has learned from have one kind";
-                unused.push(Caveat::not_used(
-                    format!("body of the striking vehicle, {body}"),
-                    reason,
-                ));
+                let what = Phrase::new(
+                    "body of the striking vehicle, {0}",
+                    "Aufbau des stoßenden Fahrzeugs, {0}",
+                );
+                let reason = Phrase::new(
+                    "the cases that the force network has learned from have one kind",
+                    "die Fälle, an denen das Kraftnetz gelernt hat, haben nur eine Art",
+                );
+                let what = what.with(PhraseValue::Name(body.clone()));
+                unused.push(Caveat::not_used(what, reason));
             }
         }
         if self.open_contact {

@@ -6,8 +6,7 @@ use serde::Serialize;
 use crate::analysis::bands_of_draws;
 use impactlab_core::collision::{Impact, ImpliedContact, ImpliedContacts, Regime, RestitutionForm};
 use impactlab_core::numerics::random_stream;
-use impactlab_core::units::Estimate;
-use impactlab_core::units::percent;
+use impactlab_core::units::{Estimate, NumberFormat, Phrase, PhraseValue};
 use impactlab_networks::force::ForcePrediction;
 
 /// Whole curves drawn from a predicted force, whose impulses imply restitution and impulse ratio.
@@ -116,14 +115,19 @@ impl ImpliedContactReport {
 /// Names what the drawn impulses have against them, if they have.
 fn warning(p_rigid: f64, p_energy_gain: f64) -> Option<String> {
     let is_wrong = p_rigid < LEAST_P_RIGID || p_energy_gain > MOST_P_ENERGY_GAIN;
-    is_wrong.then(|| {
-        format!(
-            "the predicted impulse is not that of a contact: {} of it have a restitution between 0 \
-             and 1, {} would add kinetic energy; do not rely on it",
-            percent(p_rigid),
-            percent(p_energy_gain)
-        )
-    })
+    is_wrong.then(|| warning_phrase(p_rigid, p_energy_gain).say(&NumberFormat::default()))
+}
+
+/// What the drawn impulses have against them.
+pub(crate) fn warning_phrase(p_rigid: f64, p_energy_gain: f64) -> Phrase {
+    Phrase::new(
+        "the predicted impulse is not that of a contact: {0} of it have a restitution between 0 \
+         and 1, {1} would add kinetic energy; do not rely on it",
+        "Der vorhergesagte Stoßantrieb ist nicht der eines Kontakts: {0} davon haben eine Stoßziffer \
+         zwischen 0 und 1, {1} führten Bewegungsenergie zu. Er ist nicht verwertbar",
+    )
+    .with(PhraseValue::Share(p_rigid))
+    .with(PhraseValue::Share(p_energy_gain))
 }
 
 fn turned([x, y]: [f64; 2], angle_rad: f64) -> [f64; 2] {

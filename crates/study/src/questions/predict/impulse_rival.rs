@@ -21,7 +21,7 @@ use impactlab_core::data::write::ModelDigest;
 use impactlab_core::error_chain;
 use impactlab_core::numerics::{normal_quantile, wrap_angle_rad};
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
-use impactlab_core::units::Estimate;
+use impactlab_core::units::{Estimate, Phrase, PhraseValue, Quantity};
 use impactlab_networks::force::{MOMENTUM_DIRECTION_STD_RAD, MOMENTUM_IMPULSE_LOG_STD};
 
 /// The impulse on the struck vehicle by the momentum solution and by the force network, SI units.
@@ -43,6 +43,10 @@ pub struct ImpulseRival {
     pub momentum_delta_v_m_s: Estimate,
     /// Change of velocity of the struck vehicle by the impulse of the force network, m/s.
     pub network_delta_v_m_s: Estimate,
+    /// Largest size of the force by the force network, N; the momentum solution has no course of the force.
+    pub network_peak_n: Estimate,
+    /// From first touch to last separation by the force network, s; likewise.
+    pub network_duration_s: Estimate,
     /// Direction of the force by the momentum solution, degrees.
     pub momentum_pdof_deg: Estimate,
     /// Direction of the force by the force network, degrees.
@@ -90,24 +94,71 @@ impl Beside {
             return Ok(Outcome::Complete(Self::default()));
         };
         let digest = library.force_model_digest(&model)?;
-        let collision = ForceQuestion::Scenario(choice.clone());
-        let request = PredictForceRequest { model, seed, ..PredictForceRequest::new(collision) };
         let alone = |why: &str| {
-            let text = format!("no other method stands beside the momentum solution: {why}");
+            let text = Phrase::new(
+                "no other method stands beside the momentum solution: {0}",
+                "Neben der Impulslösung steht kein anderes Verfahren: {0}",
+            )
+            .with(PhraseValue::Term(why.to_owned()));
             let caveat = Some(Caveat::new(CaveatKind::Note, text));
             Ok(Outcome::Complete(Self { caveat, ..Self::default() }))
         };
-        let predicted = match request.answer(library, observer) {
-            Ok(Outcome::Complete(predicted)) => predicted.report.report,
-            Ok(Outcome::Cancelled) => return Ok(Outcome::Cancelled),
-            Err(error) => return alone(&error_chain(&error)),
+        let collision = ForceQuestion::Scenario(choice.clone());
+        let predicted = match ask_network(collision, (model, seed), library, observer) {
+            Outcome::Complete(Ok(predicted)) => predicted,
+            Outcome::Complete(Err(why)) => return alone(&why),
+            Outcome::Cancelled => return Ok(Outcome::Cancelled),
         };
-        if predicted.applicability <= 0.0 {
-            return alone("the force network has learned from no collision like this one");
-        }
         let rival = ImpulseRival::new(impulse_n_s, pdof, scenario.struck.mass_kg, &predicted);
         let caveat = rival.caveat();
         Ok(Outcome::Complete(Self { rival: Some(rival), caveat, model: Some(digest) }))
+    }
+
+    /// The same of a case of a force data set, whose momentum solution is the one beside the network. Where
+    /// that has nothing to say, nothing stands beside the record.
+    ///
+    /// - `mass_kg`: of the struck vehicle.
+    ///
+    /// # Errors
+    /// [`StudyError`] if the network cannot be read.
+    pub fn ask_case(
+        collision: ForceQuestion,
+        mass_kg: f64,
+        (model, seed): (ModelChoice, u64),
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<Self>, StudyError> {
+        let digest = library.force_model_digest(&model)?;
+        let predicted = match ask_network(collision, (model, seed), library, observer) {
+            Outcome::Complete(Ok(predicted)) => predicted,
+            Outcome::Complete(Err(_)) => return Ok(Outcome::Complete(Self::default())),
+            Outcome::Cancelled => return Ok(Outcome::Cancelled),
+        };
+        let impulse_n_s = predicted.momentum_impulse_n_s;
+        let pdof = PrincipalDirectionOfForce::from_impulse(impulse_n_s, 0.0);
+        let rival = pdof.map(|pdof| ImpulseRival::new(impulse_n_s, pdof, mass_kg, &predicted));
+        let caveat = rival.as_ref().and_then(ImpulseRival::caveat);
+        let model = rival.as_ref().map(|_| digest);
+        Ok(Outcome::Complete(Self { rival, caveat, model }))
+    }
+}
+
+/// What a force network says of a collision, or why it says nothing.
+fn ask_network(
+    collision: ForceQuestion,
+    (model, seed): (ModelChoice, u64),
+    library: &Library,
+    observer: &mut Observer<'_>,
+) -> Outcome<Result<PredictForceReport, String>> {
+    let request = PredictForceRequest { model, seed, ..PredictForceRequest::new(collision) };
+    match request.answer(library, observer) {
+        Ok(Outcome::Complete(predicted)) if predicted.report.applicability <= 0.0 => {
+            let why = "the force network has learned from no collision like this one";
+            Outcome::Complete(Err(why.to_owned()))
+        }
+        Ok(Outcome::Complete(predicted)) => Outcome::Complete(Ok(predicted.report.report)),
+        Ok(Outcome::Cancelled) => Outcome::Cancelled,
+        Err(error) => Outcome::Complete(Err(error_chain(&error))),
     }
 }
 
@@ -149,6 +200,8 @@ impl ImpulseRival {
             is_in_momentum_intervals: holds(momentum[0], momentum[1], network),
             momentum_delta_v_m_s: momentum_impulse_n_s.scaled(1.0 / mass_kg),
             network_delta_v_m_s: network_impulse_n_s.scaled(1.0 / mass_kg),
+            network_peak_n: predicted.peak_n.clone(),
+            network_duration_s: predicted.duration_s.clone(),
             momentum_impulse_n_s,
             network_impulse_n_s,
             momentum_pdof_deg,
@@ -163,12 +216,17 @@ impl ImpulseRival {
         }
         let ratio = self.network_impulse_n_s.median / self.momentum_impulse_n_s.median;
         let turned_deg = self.network_pdof_deg.median - self.momentum_pdof_deg.median;
-        let turned_deg = wrap_angle_rad(turned_deg.to_radians()).to_degrees();
-        let text = format!(
-            "the impulse of the force network is {ratio:.2} times that of the momentum solution, turned by \
-             {turned_deg:.0} deg, each outside of the 90 % intervals of the other: network and physics do \
-             not say the same"
-        );
+        let turned_rad = wrap_angle_rad(turned_deg.to_radians());
+        let text = Phrase::new(
+            "the impulse of the force network is {0} times that of the momentum solution, turned by \
+             {1}, each outside of the 90 % intervals of the other: network and physics do \
+             not say the same",
+            "Der Stoßantrieb des Kraftnetzes beträgt das {0}-Fache dessen der Impulslösung und ist um {1} \
+             gedreht; jeder liegt außerhalb der 90-%-Intervalle des anderen: Netz und Physik widersprechen \
+             sich",
+        )
+        .with(PhraseValue::fixed(Quantity::Ratio, ratio, 2))
+        .with(PhraseValue::fixed(Quantity::Angle, turned_rad, 0).in_unit("deg"));
         let high = (MOMENTUM_IMPULSE_LOG_STD * normal_quantile(0.95)).exp();
         let caveat = Caveat::new(CaveatKind::Disagreement, text)
             .with_value("impulse of the force network over that of the momentum solution", ratio)

@@ -6,3 +6,4 @@ pub(crate) mod implied_contact;
 pub(crate) mod impulse_rival;
 pub(crate) mod motion;
 mod one_vehicle;
+pub(crate) mod recorded_impulse;

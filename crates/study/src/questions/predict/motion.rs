@@ -17,11 +17,12 @@ use crate::caveats::restrictions;
 use crate::caveats::unused::{by_forecast, contact_by_force_network, lanes_by_network};
 use crate::questions::predict::both_vehicles::{Both, with_contact_law};
 use crate::questions::predict::impulse_rival::Beside;
+use crate::questions::predict::recorded_impulse::RecordedImpulse;
 use crate::questions::simulate::dataset::take_case;
 use crate::{
-    Answer, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, ImpulseRival, InputKind, Library,
-    ModelChoice, MotionSource, Observer, Provenance, Question, SimulateAnswer, SimulateRequest,
-    StudyError,
+    Answer, DEFAULT_DURATION_S, FlagReport, ForceQuestion, ImpliedContactReport, ImpulseRival,
+    InputKind, Library, ModelChoice, MotionSource, Observer, Provenance, Question, SimulateAnswer,
+    SimulateRequest, StudyError,
 };
 use impactlab_core::data::write::ModelDigest;
 use impactlab_core::data::{ColumnMap, DatasetKind, Outcome};
@@ -137,9 +138,12 @@ pub struct PredictMotionReport {
     pub places: Vec<PlaceChance>,
     /// Probability that the striking vehicle's corner stays caught, of a predicted force.
     pub hooking_probability: Option<f64>,
-    /// The impulse of the first contact of a scenario by momentum solution and force network; none where
-    /// the network has nothing of its own to say.
+    /// The impulse of the first contact of a scenario, or of a case of a force data set, by momentum solution
+    /// and force network; none where the network has nothing of its own to say.
     pub impulses: Option<ImpulseRival>,
+    /// The force that was recorded, beside these; none where nothing was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recorded: Option<RecordedImpulse>,
     /// A second contact of the vehicles in the 4DOF simulation of the same collision; the forecast
     /// does not know of it.
     pub flags: Vec<FlagReport>,
@@ -321,7 +325,7 @@ impl Question for PredictMotionRequest {
         if forecast.n_vehicles > 0 {
             caveats.extend(assumed::road(&self.motion, &struck.vehicle));
         }
-        let Outcome::Complete(beside) = self.impulses(library, observer)? else {
+        let Outcome::Complete(beside) = self.impulses(struck, library, observer)? else {
             return Ok(Outcome::Cancelled);
         };
         let provenance = self.provenance(beside.model, library)?;
@@ -337,6 +341,7 @@ impl Question for PredictMotionRequest {
             implied_contact: self.implied_contact(&forecast)?,
             flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
             impulses: beside.rival,
+            recorded: self.recorded(&analysis, struck, &forecast),
             rival: Rival::from_simulation(&forecast, &analysis, self.rival_force()),
             places: self.places(&forecast, &analysis, &mut caveats)?,
             ..self.report(&analysis, struck, &forecast)
@@ -366,24 +371,40 @@ impl PredictMotionRequest {
         Ok(place_chances(&site, forecast, [analysis.footprint, striking.footprint]))
     }
 
-    /// The impulse of a scenario by the momentum solution and by the force network that moves the vehicle,
-    /// or the shipped one; nothing for a motion of another source.
+    /// The impulse of a scenario, or of a case of a force data set, by the momentum solution and by the force
+    /// network that moves the vehicle, or the shipped one; nothing for a motion of another source.
     fn impulses(
         &self,
+        struck: &StruckVehicle,
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<Beside>, StudyError> {
         let nothing = Ok(Outcome::Complete(Beside::default()));
-        let MotionSource::Scenario { scenario: choice, .. } = &self.motion.source else {
-            return nothing;
-        };
-        let scenario = choice.load()?;
-        let Ok(solution) = scenario.solve() else { return nothing };
         let model = match &self.force {
             ForceSource::Predicted(model) => model.clone(),
             ForceSource::Given | ForceSource::File(_) => ModelChoice::default(),
         };
-        Beside::ask((choice, &scenario), &solution, (model, self.seed), library, observer)
+        match &self.motion.source {
+            MotionSource::Scenario { scenario: choice, .. } => {
+                let scenario = choice.load()?;
+                let Ok(solution) = scenario.solve() else { return nothing };
+                let asked = (model, self.seed);
+                Beside::ask((choice, &scenario), &solution, asked, library, observer)
+            }
+            MotionSource::Case { dataset, case }
+                if DatasetKind::from_folder(dataset) == Some(DatasetKind::Force) =>
+            {
+                let (dataset, case) = (dataset.clone(), case.clone());
+                let collision = ForceQuestion::Case { dataset, case };
+                let (asked, mass_kg) = ((model, self.seed), struck.vehicle.mass.mass_kg);
+                let beside = Beside::ask_case(collision, mass_kg, asked, library, observer)?;
+                // A record needs neither of them.
+                let is_predicted = matches!(self.force, ForceSource::Predicted(_));
+                let caveat = |of: Option<Caveat>| of.filter(|_| is_predicted);
+                Ok(beside.map(|of| Beside { caveat: caveat(of.caveat), ..of }))
+            }
+            _ => nothing,
+        }
     }
 
     /// What the predicted force of a scenario implies of the contact.
@@ -523,6 +544,7 @@ impl PredictMotionRequest {
             flags: Vec::new(),
             rival: None,
             impulses: None,
+            recorded: None,
             implied_contact: None,
             force_applicability: predicted.map(|force| force.applicability),
             outside_training: predicted.map_or_else(Vec::new, |force| force.outside.clone()),

@@ -2,7 +2,7 @@
 //! with the key that states it.
 
 use impactlab_core::uncertainty::{Caveat, CaveatSubject};
-use impactlab_core::units::{Quantity, significant};
+use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_reconstruct::evidence::{After, DriverBraked, Evidence};
 use impactlab_reconstruct::{
     BLOCKED_PROBABILITY, BRAKE_PROBABILITY, ForwardModel, Latent, PUSH_PROBABILITY, Prior,
@@ -16,7 +16,8 @@ const Z_95: f64 = 1.645;
 struct Group {
     subject: CaveatSubject,
     latents: &'static [Latent],
-    reason: &'static str,
+    /// Why, in English and in German.
+    reason: [&'static str; 2],
 }
 
 /// What is assumed of everything that nobody stated. A quantity stands in one group only.
@@ -24,43 +25,68 @@ const GROUPS: &[Group] = &[
     Group {
         subject: CaveatSubject::Speed,
         latents: &[Latent::StruckSpeed, Latent::StrikingSpeed],
-        reason: "each value equally likely; otherwise: [prior] target_speed_m_s, bullet_speed_m_s",
+        reason: [
+            "each value equally likely; otherwise: [prior] target_speed_m_s, bullet_speed_m_s",
+            "jeder Wert gleich wahrscheinlich; sonst: [prior] target_speed_m_s, \
+             bullet_speed_m_s",
+        ],
     },
     Group {
         subject: CaveatSubject::Speed,
         latents: &[Latent::SpeedDifference],
-        reason: "it hit a flank behind the CG, as in a PIT manoeuvre; otherwise: [prior] \
-                 bullet_speed_m_s",
+        reason: [
+            "it hit a flank behind the CG, as in a PIT manoeuvre; otherwise: [prior] \
+             bullet_speed_m_s",
+            "Anstoß an die Flanke hinter dem Schwerpunkt, wie bei einem PIT-Manöver; sonst: \
+             [prior] bullet_speed_m_s",
+        ],
     },
     Group {
         subject: CaveatSubject::ContactPoint,
         latents: &[Latent::HeadingTowards],
-        reason: "by the struck side; otherwise: [damage] angle_deg or [prior] heading_difference_deg",
+        reason: [
+            "by the struck side; otherwise: [damage] angle_deg or [prior] \
+             heading_difference_deg",
+            "nach der gestoßenen Seite; sonst: [damage] angle_deg oder [prior] \
+             heading_difference_deg",
+        ],
     },
     Group {
         subject: CaveatSubject::ContactPoint,
         latents: &[Latent::SideslipTowards, Latent::NormalTilt],
-        reason: "a car that turns in; otherwise: [prior] bullet_sideslip_deg",
+        reason: [
+            "a car that turns in; otherwise: [prior] bullet_sideslip_deg",
+            "ein einlenkendes Fahrzeug; sonst: [prior] bullet_sideslip_deg",
+        ],
     },
     Group {
         subject: CaveatSubject::Restitution,
         latents: &[Latent::ContactFriction],
-        reason: "finite-element runs; otherwise: [prior] contact_friction",
+        reason: [
+            "finite-element runs; otherwise: [prior] contact_friction",
+            "Finite-Elemente-Rechnungen; sonst: [prior] contact_friction",
+        ],
     },
     Group {
         subject: CaveatSubject::Pulse,
         latents: &[Latent::PulseDuration],
-        reason: "finite-element runs",
+        reason: ["finite-element runs", "Finite-Elemente-Rechnungen"],
     },
     Group {
         subject: CaveatSubject::StrikingParameter,
         latents: &[Latent::ContactStiffnessFactor],
-        reason: "barrier tests of other cars; their scatter for a side",
+        reason: [
+            "barrier tests of other cars; their scatter for a side",
+            "Barrierenversuche anderer Fahrzeuge; deren Streuung für eine Seite",
+        ],
     },
     Group {
         subject: CaveatSubject::RoadFriction,
         latents: &[Latent::RoadFriction],
-        reason: "dry and wet asphalt together; otherwise: [road] friction or drag_factor",
+        reason: [
+            "dry and wet asphalt together; otherwise: [road] friction or drag_factor",
+            "trockener und nasser Asphalt zusammen; sonst: [road] friction oder drag_factor",
+        ],
     },
     Group {
         subject: CaveatSubject::RoadFriction,
@@ -69,13 +95,22 @@ const GROUPS: &[Group] = &[
             Latent::StrikingTireFrictionFactor,
             Latent::LongitudinalFrictionRatio,
         ],
-        reason: "tires differ from those of a friction test; otherwise: [road] drag_factor, of this car \
-                 with locked wheels",
+        reason: [
+            "tires differ from those of a friction test; otherwise: [road] drag_factor, of this \
+             car with locked wheels",
+            "die Reifen sind nicht die der Reibwertmessung; sonst: [road] drag_factor, dieses \
+             Fahrzeugs mit blockierten Rädern",
+        ],
     },
     Group {
         subject: CaveatSubject::RoadFriction,
         latents: &[Latent::ZoneFrictionFactor],
-        reason: "nothing says how well the zones of the site are known; all are better or worse together",
+        reason: [
+            "nothing says how well the zones of the site are known; all are better or worse \
+             together",
+            "nichts sagt, wie genau die Bereiche des Geländes bekannt sind; alle sind gemeinsam \
+             griffiger oder glatter",
+        ],
     },
     Group {
         subject: CaveatSubject::Vehicle,
@@ -86,18 +121,30 @@ const GROUPS: &[Group] = &[
             Latent::BrakeRise,
             Latent::FrontBrakeShift,
         ],
-        reason: "nobody says what the driver did; otherwise: [after] driver_braked, [prior] \
-                 brake_start_s, brake_share",
+        reason: [
+            "nobody says what the driver did; otherwise: [after] driver_braked, [prior] \
+             brake_start_s, brake_share",
+            "zum Verhalten des Fahrers liegt keine Angabe vor; sonst: [after] driver_braked, \
+             [prior] brake_start_s, brake_share",
+        ],
     },
     Group {
         subject: CaveatSubject::Vehicle,
         latents: &[Latent::EngineBraking, Latent::SteerAngle],
-        reason: "neutral to third gear where the driver does not brake; toe, play and a hand on the wheel",
+        reason: [
+            "neutral to third gear where the driver does not brake; toe, play and a hand on the \
+             wheel",
+            "Leerlauf bis dritter Gang, wo der Fahrer nicht bremst; Spur, Spiel und eine Hand \
+             am Lenkrad",
+        ],
     },
     Group {
         subject: CaveatSubject::Vehicle,
         latents: &[Latent::BlockedWheel, Latent::BlockedDrag],
-        reason: "nobody looked; otherwise: [after] blocked_wheels, dragging_wheels",
+        reason: [
+            "nobody looked; otherwise: [after] blocked_wheels, dragging_wheels",
+            "nicht untersucht; sonst: [after] blocked_wheels, dragging_wheels",
+        ],
     },
     Group {
         subject: CaveatSubject::Striking,
@@ -106,8 +153,12 @@ const GROUPS: &[Group] = &[
             Latent::StrikingBrakeStart,
             Latent::StrikingBrakeShare,
         ],
-        reason: "nobody says what its driver did; otherwise: [striking_after] driver_braked, [prior] \
-                 bullet_brake_start_s, bullet_brake_share",
+        reason: [
+            "nobody says what its driver did; otherwise: [striking_after] driver_braked, \
+             [prior] bullet_brake_start_s, bullet_brake_share",
+            "zum Verhalten seines Fahrers liegt keine Angabe vor; sonst: [striking_after] \
+             driver_braked, [prior] bullet_brake_start_s, bullet_brake_share",
+        ],
     },
     Group {
         subject: CaveatSubject::Striking,
@@ -117,13 +168,20 @@ const GROUPS: &[Group] = &[
             Latent::PushDuration,
             Latent::StrikingYawRate,
         ],
-        reason: "it hit a flank behind the CG, as in a PIT manoeuvre; otherwise: [prior] \
-                 bullet_steering_wheel_deg, 0 to 5 if its driver did not push on",
+        reason: [
+            "it hit a flank behind the CG, as in a PIT manoeuvre; otherwise: [prior] \
+             bullet_steering_wheel_deg, 0 to 5 if its driver did not push on",
+            "Anstoß an die Flanke hinter dem Schwerpunkt, wie bei einem PIT-Manöver; sonst: \
+             [prior] bullet_steering_wheel_deg, 0 bis 5, wenn sein Fahrer nicht weiterschob",
+        ],
     },
     Group {
         subject: CaveatSubject::Striking,
         latents: &[Latent::StrikingBlockedWheel, Latent::StrikingBlockedDrag],
-        reason: "nobody looked; otherwise: [striking_after] blocked_wheels, dragging_wheels",
+        reason: [
+            "nobody looked; otherwise: [striking_after] blocked_wheels, dragging_wheels",
+            "nicht untersucht; sonst: [striking_after] blocked_wheels, dragging_wheels",
+        ],
     },
 ];
 
@@ -131,29 +189,54 @@ const GROUPS: &[Group] = &[
 pub(super) fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Caveat> {
     let (cars, prior) = (model.cars(), model.prior());
     let mut all: Vec<Caveat> = GROUPS.iter().filter_map(|group| group.caveat(prior)).collect();
-    let mut add = |subject, value: &str, reason: &str| {
-        all.push(Caveat::assumed(subject, value, reason));
+    let mut add = |subject, value: Phrase, [en, de]: [&str; 2]| {
+        all.push(Caveat::assumed(subject, value, Phrase::new(en, de)));
     };
     if evidence.prior.restitution.is_none() {
-        let reason = "finite-element runs; otherwise: [prior] restitution";
-        add(CaveatSubject::Restitution, "0.24 to 0.66 up to 5 m/s, less beyond", reason);
+        let reason = [
+            "finite-element runs; otherwise: [prior] restitution",
+            "Finite-Elemente-Rechnungen; sonst: [prior] restitution",
+        ];
+        let value = Phrase::new(
+            "0.24 to 0.66 up to {0}, less beyond",
+            "0,24 bis 0,66 bis zu {0}, darüber weniger",
+        )
+        .with(PhraseValue::given(Quantity::Speed, 5.0));
+        add(CaveatSubject::Restitution, value, reason);
     }
     if evidence.road_friction().is_some() && evidence.drag_factor().is_none() {
-        let value = "the stated friction is the peak; locked wheels drag with less";
-        let reason = "a drag factor of locked wheels, which is what it is: [road] drag_factor";
+        let value = Phrase::new(
+            "the stated friction is the peak; locked wheels drag with less",
+            "der angegebene Reibbeiwert ist der größte; blockierte Räder verzögern weniger",
+        );
+        let reason = [
+            "a drag factor of locked wheels, which is what it is: [road] drag_factor",
+            "ein Verzögerungsfaktor blockierter Räder gilt, wie er ist: [road] drag_factor",
+        ];
         add(CaveatSubject::RoadFriction, value, reason);
     }
     let estimated = cars.struck.estimated().count();
     if estimated > 0 {
-        let value = format!("{estimated} estimated from the rest");
-        let reason = "the evidence does not say them; a data sheet: --vehicle";
-        add(CaveatSubject::VehicleParameter, &value, reason);
+        let value = Phrase::new("{0} estimated from the rest", "{0} aus den übrigen geschätzt")
+            .with(PhraseValue::Name(estimated.to_string()));
+        let reason = [
+            "the evidence does not say them; a data sheet: --vehicle",
+            "unter den Anknüpfungstatsachen nicht enthalten; ein Datenblatt: --vehicle",
+        ];
+        add(CaveatSubject::VehicleParameter, value, reason);
     }
     let estimated = cars.striking.estimated().count();
     if estimated > 0 {
-        let value = format!("{estimated} estimated from the rest, at their medians");
-        let reason = "the evidence does not say them; a data sheet: --striking";
-        add(CaveatSubject::StrikingParameter, &value, reason);
+        let value = Phrase::new(
+            "{0} estimated from the rest, at their medians",
+            "{0} aus den übrigen geschätzt, mit ihren Medianen",
+        )
+        .with(PhraseValue::Name(estimated.to_string()));
+        let reason = [
+            "the evidence does not say them; a data sheet: --striking",
+            "unter den Anknüpfungstatsachen nicht enthalten; ein Datenblatt: --striking",
+        ];
+        add(CaveatSubject::StrikingParameter, value, reason);
     }
     all
 }
@@ -167,9 +250,16 @@ pub(super) fn unused(evidence: &Evidence, are_followed: bool) -> Vec<Caveat> {
     let is_striking_stated = *striking_after != After::default() || striking_brakes.is_some();
     if !evidence.follows_striking_car() && is_striking_stated && !are_followed {
         return vec![Caveat::not_used(
-            "wheels and driver of the striking car after the impact",
-            "nothing of its way is among the evidence ([striking_rest], [[striking_mark]], \
-             [striking_edr]), so that it is not followed",
+            Phrase::new(
+                "wheels and driver of the striking car after the impact",
+                "Räder und Fahrer des stoßenden Fahrzeugs nach dem Anstoß",
+            ),
+            Phrase::new(
+                "nothing of its way is among the evidence ([striking_rest], [[striking_mark]], \
+                 [striking_edr]), so that it is not followed",
+                "zu seinem Weg fehlen Anknüpfungstatsachen ([striking_rest], [[striking_mark]], \
+                 [striking_edr]), so dass er nicht verfolgt wird",
+            ),
         )];
     }
     let both = [
@@ -180,8 +270,12 @@ pub(super) fn unused(evidence: &Evidence, are_followed: bool) -> Vec<Caveat> {
         let is_idle = after.driver_braked == DriverBraked::No && range.is_some();
         is_idle.then(|| {
             Caveat::not_used(
-                format!("ranges of the braking of the {car} car"),
-                "its driver is said not to have braked",
+                Phrase::new("ranges of the braking of the {0}", "Bereiche der Bremsung, {0}")
+                    .with(PhraseValue::Term(format!("{car} car"))),
+                Phrase::new(
+                    "its driver is said not to have braked",
+                    "sein Fahrer bremste nach der Angabe nicht",
+                ),
             )
         })
     });
@@ -194,48 +288,66 @@ impl Group {
         let is_assumed = |component: &&PriorComponent| {
             component.source == PriorSource::Assumed && self.latents.contains(&component.latent)
         };
-        let texts: Vec<String> = prior.components().iter().filter(is_assumed).map(text).collect();
-        (!texts.is_empty()).then(|| Caveat::assumed(self.subject, texts.join("; "), self.reason))
+        let texts: Vec<Phrase> = prior.components().iter().filter(is_assumed).map(text).collect();
+        let [en, de] = self.reason;
+        let caveat =
+            |texts| Caveat::assumed(self.subject, Phrase::joined(texts, "; "), Phrase::new(en, de));
+        Some(texts).filter(|texts| !texts.is_empty()).map(caveat)
     }
 }
 
 /// The quantity with the interval that holds 90 % of it, or what becomes of it with which probability.
-fn text(PriorComponent { latent, distribution, .. }: &PriorComponent) -> String {
-    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+fn text(PriorComponent { latent, distribution, .. }: &PriorComponent) -> Phrase {
+    let percent = |share: f64| PhraseValue::fixed(Quantity::Ratio, share, 0).in_unit("%");
     let [low, high] = distribution.support();
     let share_below = |threshold: f64| ((threshold - low) / (high - low)).clamp(0.0, 1.0);
     match latent {
         Latent::BrakeDecision => {
-            format!("the driver brakes with {}", percent(share_below(BRAKE_PROBABILITY)))
+            Phrase::new("the driver brakes with {0}", "der Fahrer bremst mit {0}")
+                .with(percent(share_below(BRAKE_PROBABILITY)))
         }
-        Latent::BlockedWheel | Latent::StrikingBlockedWheel => {
-            format!(
-                "each of two wheels near the damage is blocked with {}",
-                percent(BLOCKED_PROBABILITY)
-            )
-        }
+        Latent::BlockedWheel | Latent::StrikingBlockedWheel => Phrase::new(
+            "each of two wheels near the damage is blocked with {0}",
+            "jedes von zwei Rädern nahe dem Schaden ist mit {0} blockiert",
+        )
+        .with(percent(BLOCKED_PROBABILITY)),
         Latent::StrikingBrakeDecision => {
             let before = share_below(STRIKING_BRAKES_BEFORE);
             let later = share_below(STRIKING_BRAKES) - before;
-            let [before, later] = [before, later].map(percent);
-            format!("the driver brakes from the first contact on with {before}, later with {later}")
+            Phrase::new(
+                "the driver brakes from the first contact on with {0}, later with {1}",
+                "der Fahrer bremst mit {0} vom ersten Kontakt an, mit {1} später",
+            )
+            .with(percent(before))
+            .with(percent(later))
         }
-        Latent::PushDecision => {
-            let share = percent(share_below(PUSH_PROBABILITY));
-            format!("its driver steers in and pushes on with {share}")
-        }
+        Latent::PushDecision => Phrase::new(
+            "its driver steers in and pushes on with {0}",
+            "sein Fahrer lenkt mit {0} ein und schiebt weiter",
+        )
+        .with(percent(share_below(PUSH_PROBABILITY))),
         Latent::ZoneFrictionFactor => {
-            let [low, high] = [-Z_95, Z_95].map(|z| significant(distribution.at(z)));
-            format!("zones of the site, all with {low} to {high} times the friction that it says")
+            let [low, high] = [-Z_95, Z_95]
+                .map(|z| PhraseValue::significant(Quantity::Ratio, distribution.at(z)));
+            Phrase::new(
+                "zones of the site, all with {0} to {1} times the friction that it says",
+                "Bereiche des Geländes, alle mit dem {0}- bis {1}-Fachen des angegebenen Reibbeiwerts",
+            )
+            .with(low)
+            .with(high)
         }
         _ => {
-            let (scale, unit) = match (latent.quantity(), latent.unit()) {
-                (Quantity::Angle, _) => (1.0_f64.to_degrees(), "°".to_owned()),
-                (_, "") => (1.0, String::new()),
-                (_, unit) => (1.0, format!(" {unit}")),
+            let quantity = latent.quantity();
+            let [low, high] =
+                [-Z_95, Z_95].map(|z| PhraseValue::significant(quantity, distribution.at(z)));
+            let (range, [low, high]) = match quantity {
+                Quantity::Angle => {
+                    let range = Phrase::new("{0} {1} to {2}°", "{0} {1}° bis {2}°");
+                    (range, [low, high].map(|end| end.in_unit("deg").bare()))
+                }
+                _ => (Phrase::new("{0} {1} to {2}", "{0} {1} bis {2}"), [low.bare(), high]),
             };
-            let [low, high] = [-Z_95, Z_95].map(|z| significant(scale * distribution.at(z)));
-            format!("{} {low} to {high}{unit}", latent.label())
+            range.with(PhraseValue::Term(latent.label().to_owned())).with(low).with(high)
         }
     }
 }
@@ -244,6 +356,7 @@ fn text(PriorComponent { latent, distribution, .. }: &PriorComponent) -> String 
 mod tests {
     use super::*;
     use crate::examples::spin;
+    use impactlab_core::units::{Language, NumberFormat, UnitSystem};
     use impactlab_reconstruct::Cars;
     use impactlab_reconstruct::evidence::RestPose;
 
@@ -265,10 +378,15 @@ mod tests {
             if component.source == PriorSource::Assumed
                 && component.latent != Latent::RestitutionShare
             {
-                let text = text(component);
+                let text = text(component).say(&NumberFormat::default());
                 let stands = found.iter().any(|caveat| caveat.text.contains(&text));
                 assert!(stands, "{text} is assumed and not told");
             }
+        }
+        let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
+        for caveat in &found {
+            assert!(caveat.text_in(&german, &str::to_owned).is_some(), "{caveat}");
+            assert!(caveat.reason_in(&german, &str::to_owned).is_some(), "{caveat}");
         }
         let striking = found.iter().find(|caveat| caveat.to_string().contains("[striking_after]"));
         let text = striking.expect("the driver of the striking car").to_string();

@@ -2,7 +2,7 @@
 //! nothing explains.
 
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
-use impactlab_core::units::{NumberFormat, Quantity};
+use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::FrictionZone;
 use impactlab_reconstruct::sampler::Particles;
 use impactlab_reconstruct::{EvidenceFit, LEAST_ESS_FOR_INTERVALS, LeftOut, Mode};
@@ -12,19 +12,21 @@ const LEAST_ESS: f64 = 400.0;
 
 /// That the evidence leaves more than one course of events possible.
 pub(super) fn several_courses(modes: &[Mode]) -> Option<Caveat> {
-    let format = NumberFormat::default();
     let course = |mode: &Mode| {
-        let chance = format.chance(mode.probability, Some(mode.standard_error));
-        format!("{} with {chance}", mode.name)
+        let (share, error) = (mode.probability, Some(mode.standard_error));
+        Phrase::new("{0} with {1}", "{0} mit {1}")
+            .with(PhraseValue::Term(mode.name.clone()))
+            .with(PhraseValue::Chance { share, error })
     };
-    let courses: Vec<String> = modes.iter().map(course).collect();
     (modes.len() > 1).then(|| {
-        let text = format!(
-            "{} courses of events are possible ({}): a median or an interval over all of them may be true of \
+        let text = Phrase::new(
+            "{0} courses of events are possible ({1}): a median or an interval over all of them may be true of \
              none; use those of each course",
-            modes.len(),
-            courses.join("; ")
-        );
+            "{0} Abläufe sind möglich ({1}): Ein Median oder ein Intervall über alle Abläufe trifft unter \
+             Umständen auf keinen zu. Maßgeblich sind die Werte jedes einzelnen Ablaufs",
+        )
+        .with(PhraseValue::Name(modes.len().to_string()))
+        .with(PhraseValue::phrase(Phrase::joined(modes.iter().map(course), "; ")));
         Caveat::new(CaveatKind::SeveralCourses, text)
             .with_value("courses of events", modes.len() as f64)
             .with_range([1.0, 1.0])
@@ -34,22 +36,36 @@ pub(super) fn several_courses(modes: &[Mode]) -> Option<Caveat> {
 /// Whether there are enough particles, and whether they are of the posterior.
 pub(super) fn of_particles(particles: &Particles) -> Vec<Caveat> {
     let stopped = (!particles.is_posterior()).then(|| {
-        let text = "sampling was stopped before all of the evidence was used: these particles are \
-                    not of the posterior, and no intervals are given; let the run end";
+        let text = Phrase::new(
+            "sampling was stopped before all of the evidence was used: these particles are \
+             not of the posterior, and no intervals are given; let the run end",
+            "Die Rechnung wurde abgebrochen, bevor alle Anknüpfungstatsachen berücksichtigt waren. Es \
+             werden keine Intervalle angegeben; die Rechnung ist bis zum Ende zu führen",
+        );
         Caveat::new(CaveatKind::FewParticles, text)
             .with_value("temperature", particles.temperature)
             .with_range([1.0, f64::INFINITY])
     });
     let few = (particles.ess < LEAST_ESS).then(|| {
         let consequence = match particles.ess < LEAST_ESS_FOR_INTERVALS {
-            true => "no intervals are given, which would rest on single draws",
-            false => "intervals may be too narrow",
+            true => Phrase::new(
+                "no intervals are given, which would rest on single draws",
+                "Es werden keine Intervalle angegeben, da sie auf einzelnen Ziehungen beruhten",
+            ),
+            false => Phrase::new(
+                "intervals may be too narrow",
+                "Die Intervalle können zu eng sein",
+            ),
         };
-        let text = format!(
-            "the sample is equivalent to {:.0} independent draws, expected {LEAST_ESS}: {consequence}; more \
+        let text = Phrase::new(
+            "the sample is equivalent to {0} independent draws, expected {1}: {2}; more \
              particles: --particles",
-            particles.ess
-        );
+            "Die Stichprobe entspricht {0} unabhängigen Ziehungen, verlangt sind {1}. {2}. Mehr Partikel: \
+             --particles",
+        )
+        .with(PhraseValue::fixed(Quantity::Ratio, particles.ess, 0))
+        .with(PhraseValue::given(Quantity::Ratio, LEAST_ESS))
+        .with(PhraseValue::phrase(consequence));
         Caveat::new(CaveatKind::FewParticles, text)
             .with_value("effective sample size", particles.ess)
             .with_range([LEAST_ESS, f64::INFINITY])
@@ -60,35 +76,55 @@ pub(super) fn of_particles(particles: &Particles) -> Vec<Caveat> {
 /// What the intervals have been tried on, as long as that is not enough.
 pub(super) fn of_validation(zones: &[FrictionZone]) -> Caveat {
     let on_zones = match zones.is_empty() {
-        true => "",
-        false => ", all of which stood on one friction",
+        true => Phrase::new("", ""),
+        false => Phrase::new(
+            ", all of which stood on one friction",
+            ", sämtlich auf einheitlichem Reibbeiwert,",
+        ),
     };
-    let text = format!(
-        "intervals were tried on 40 simulated collisions of one make of car{on_zones} and on no real \
-         one; how often they held is in docs/guide/limits.md"
-    );
+    let text = Phrase::new(
+        "intervals were tried on 40 simulated collisions of one make of car{0} and on no real \
+         one; how often they held is in docs/guide/limits.md",
+        "Die Intervalle wurden an 40 simulierten Kollisionen eines Fahrzeugmodells{0} geprüft und an \
+         keiner realen. Wie oft sie zutrafen, steht in docs/guide/limits.md",
+    )
+    .with(PhraseValue::phrase(on_zones));
     Caveat::new(CaveatKind::HardlyValidated, text)
 }
 
 /// Parts of the evidence that the others contradict, though the answer follows them.
 pub(super) fn of_left_out(left_out: &[LeftOut]) -> Vec<Caveat> {
-    let format = NumberFormat::default();
     let contradicted = left_out.iter().filter(|part| part.is_contradicted);
     contradicted
         .filter_map(|part| Some((part, part.p?)))
         .map(|(part, p)| {
-            let without = part.struck_speed.as_ref().map_or_else(String::new, |speed| {
-                let speed = format.estimate_in_words(Quantity::Speed, &speed.estimate);
-                format!("; without it the struck car had {speed}")
+            let without = part.struck_speed.as_ref().map(|speed| {
+                Phrase::new(
+                    "; without it the struck car had {0}",
+                    ". Ohne sie fuhr das gestoßene Fahrzeug {0}",
+                )
+                .with(PhraseValue::estimate(Quantity::Speed, &speed.estimate))
             });
-            let text = format!(
-                "{} does not go with the rest of the evidence: one of them is wrong or misread{without}",
-                part.evidence
-            );
+            let text = Phrase::new(
+                "{0} does not go with the rest of the evidence: one of them is wrong or misread{1}",
+                "{0} ist mit den übrigen Anknüpfungstatsachen nicht vereinbar: Eine von ihnen ist falsch \
+                 oder falsch gelesen{1}",
+            )
+            .with(PhraseValue::Term(part.evidence.clone()))
+            .with(PhraseValue::phrase(without.unwrap_or_else(|| Phrase::new("", ""))));
             Caveat::new(CaveatKind::EvidenceUnexplained, text)
                 .with_value(format!("p of {} by the others", part.evidence), p)
         })
         .collect()
+}
+
+/// A value of the evidence in its SI unit.
+fn of_evidence(value: f64, unit: &str) -> PhraseValue {
+    match Quantity::from_si_symbol(unit) {
+        Some(quantity) => PhraseValue::fixed(quantity, value, 3),
+        None if unit.is_empty() => PhraseValue::fixed(Quantity::Ratio, value, 3),
+        None => PhraseValue::Name(format!("{value:.3} {unit}")),
+    }
 }
 
 /// Evidence that no particle explains.
@@ -96,14 +132,15 @@ pub(super) fn of_fit(fit: &[EvidenceFit]) -> Vec<Caveat> {
     let unexplained = fit.iter().filter(|item| item.is_unexplained());
     unexplained
         .map(|item| {
-            let shown = |value: f64| format!("{value:.3} {}", item.unit).trim_end().to_owned();
-            let text = format!(
-                "{}: found {}, expected {}: items of the evidence contradict each other, or the course \
+            let text = Phrase::new(
+                "{0}: found {1}, expected {2}: items of the evidence contradict each other, or the course \
                  of events is another one; do not rely on the intervals",
-                item.evidence,
-                shown(item.found),
-                shown(item.expected),
-            );
+                "{0}: gefunden {1}, erwartet {2}. Anknüpfungstatsachen widersprechen einander, oder der \
+                 Ablauf war ein anderer; die Intervalle sind nicht verwertbar",
+            )
+            .with(PhraseValue::Term(item.evidence.clone()))
+            .with(of_evidence(item.found, item.unit))
+            .with(of_evidence(item.expected, item.unit));
             Caveat::new(CaveatKind::EvidenceUnexplained, text)
                 .with_value(format!("p of {}", item.evidence), item.p)
                 .with_range([EvidenceFit::UNEXPLAINED_BELOW, 1.0])

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
-use impactlab_core::units::NumberFormat;
+use impactlab_core::units::{Phrase, PhraseValue};
 use impactlab_reconstruct::ForwardModel;
 use impactlab_reconstruct::evidence::Evidence;
 
@@ -80,36 +80,58 @@ impl LaterContactsReport {
         if !self.is_told() {
             return None;
         }
-        let share = NumberFormat::default().chance(self.meet_again_share, None);
-        let meet =
-            format!("after the first contact alone the cars meet again in {share} of the motions");
+        let share = PhraseValue::Chance { share: self.meet_again_share, error: None };
         Some(match self.why_not {
             None => {
-                let text = format!(
-                    "{meet}: both were followed through all contacts, the first one by momentum, later ones \
-                     by the crush of their outlines; how often such intervals hold the truth was not tried"
-                );
+                let text = Phrase::new(
+                    "after the first contact alone the cars meet again in {0} of the motions: both were \
+                     followed through all contacts, the first one by momentum, later ones by the crush of \
+                     their outlines; how often such intervals hold the truth was not tried",
+                    "Nach dem ersten Kontakt allein treffen sich die Fahrzeuge in {0} der Bewegungen \
+                     wieder. Beide wurden durch alle Kontakte verfolgt, der erste nach dem Impulssatz, \
+                     spätere nach der Eindrückung ihrer Umrisse. Wie oft solche Intervalle zutreffen, ist \
+                     nicht geprüft",
+                )
+                .with(share);
                 Caveat::new(CaveatKind::Note, text)
             }
             Some(WhyNot::NoEvidence) => {
-                let text = format!(
-                    "{meet} if the striking car coasts; later contacts are not followed, since nothing of \
-                     its way is among the evidence ([striking_rest], [[striking_mark]], [striking_edr])"
-                );
+                let text = Phrase::new(
+                    "after the first contact alone the cars meet again in {0} of the motions if the \
+                     striking car coasts; later contacts are not followed, since nothing of its way is \
+                     among the evidence ([striking_rest], [[striking_mark]], [striking_edr])",
+                    "Nach dem ersten Kontakt allein treffen sich die Fahrzeuge in {0} der Bewegungen \
+                     wieder, wenn das stoßende Fahrzeug rollt. Spätere Kontakte sind nicht verfolgt, da \
+                     Anknüpfungstatsachen zu seinem Weg fehlen ([striking_rest], [[striking_mark]], \
+                     [striking_edr])",
+                )
+                .with(share);
                 Caveat::new(CaveatKind::Note, text)
             }
             Some(why @ (WhyNot::Asked | WhyNot::DriverUnknown | WhyNot::Stopped)) => {
                 let instead = match why {
-                    WhyNot::Stopped => "let the run end",
-                    WhyNot::DriverUnknown => {
-                        "to have them followed, say what its driver did: [striking_after] driver_braked"
+                    WhyNot::Stopped => {
+                        Phrase::new("let the run end", "Die Rechnung ist bis zum Ende zu führen")
                     }
-                    _ => "leave out --one-contact",
+                    WhyNot::DriverUnknown => Phrase::new(
+                        "to have them followed, say what its driver did: [striking_after] driver_braked",
+                        "Sie werden verfolgt, sobald feststeht, was der Fahrer des stoßenden Fahrzeugs \
+                         tat: [striking_after] driver_braked",
+                    ),
+                    _ => Phrase::new(
+                        "leave out --one-contact",
+                        "Ohne --one-contact werden sie verfolgt",
+                    ),
                 };
-                let text = format!(
-                    "{meet}, which is left out here: the speeds are those of motions that end otherwise; \
-                     {instead}"
-                );
+                let text = Phrase::new(
+                    "after the first contact alone the cars meet again in {0} of the motions, which is \
+                     left out here: the speeds are those of motions that end otherwise; {1}",
+                    "Nach dem ersten Kontakt allein treffen sich die Fahrzeuge in {0} der Bewegungen \
+                     wieder, was hier außer Betracht bleibt: Die Geschwindigkeiten gehören zu Bewegungen, \
+                     die anders enden. {1}",
+                )
+                .with(share)
+                .with(PhraseValue::phrase(instead));
                 let told = "share of the motions in which the cars meet again";
                 Caveat::new(CaveatKind::SecondContact, text)
                     .with_value(told, self.meet_again_share)
@@ -121,8 +143,12 @@ impl LaterContactsReport {
 
 /// What a person should know where nobody can tell whether the cars meet again.
 pub(super) fn not_looked_for() -> Option<Caveat> {
-    let text = "whether the cars meet again after the impact was not looked for: the outer dimensions of one of \
-                them make no outline";
+    let text = Phrase::new(
+        "whether the cars meet again after the impact was not looked for: the outer dimensions of one of \
+         them make no outline",
+        "Ob sich die Fahrzeuge nach dem Anstoß wieder treffen, wurde nicht geprüft: Die Außenmaße eines \
+         von ihnen ergeben keinen Umriss",
+    );
     Some(Caveat::new(CaveatKind::SecondContact, text))
 }
 

@@ -57,6 +57,13 @@ impl ReconstructedPaths {
         }
     }
 
+    /// What stands above one of several courses of events: its probability with its standard error, and its
+    /// name.
+    pub fn course_title(mode: &Mode) -> String {
+        let chance = NumberFormat::default().chance(mode.probability, Some(mode.standard_error));
+        format!("{chance}: {}", mode.name)
+    }
+
     /// Simulates paths of the particles of one course of events.
     pub fn from_mode(answer: &ReconstructAnswer, mode: &Mode) -> Self {
         let followed = followed(answer, Self::MEDIAN, &mode.members, &mode.quantities);

@@ -14,6 +14,7 @@ use impactlab_core::data::{
     read_steer_file, read_wheels_file,
 };
 use impactlab_core::ranges::{SPEED, STEER_ANGLE, STEERING_RATIO, YAW_RATE};
+use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::{
     BRAKE_TORQUES, ContactPoint, DRIVE_TORQUES, Ending, SteerHistory, USUAL_STEERING_RATIO,
     VehicleParameters, VehicleState, Wheel, WheelEffort, WheelHistory, angle_at_third_g_rad,
@@ -75,8 +76,11 @@ impl Drive {
         caveats: &mut Caveats,
     ) -> Result<DriveSetup, StudyError> {
         let speed_m_s = self.speed_m_s.unwrap_or_else(|| {
-            let reason = "the speed before the impact is not known; another one: --speed";
-            let value = format!("{ASSUMED_SPEED_M_S} m/s");
+            let reason = Phrase::new(
+                "the speed before the impact is not known; another one: --speed",
+                "die Geschwindigkeit vor dem Anstoß ist nicht bekannt; eine andere: --speed",
+            );
+            let value = Phrase::of(PhraseValue::given(Quantity::Speed, ASSUMED_SPEED_M_S));
             caveats.push(Caveat::assumed(CaveatSubject::Speed, value, reason));
             ASSUMED_SPEED_M_S
         });
@@ -88,7 +92,7 @@ impl Drive {
                 notes.extend(loaded.notes.iter().map(ToString::to_string));
                 caveats.extend(doubtful_data_caveats(&file.title(), &loaded));
                 let force = force_of(&loaded, self.sampling, file)?;
-                Some(acting_force(force, self.contact, &settings.struck, caveats))
+                Some(acting_force(force, self.contact, &settings.struck, 0.0, caveats))
             }
             None => None,
         };
@@ -151,9 +155,13 @@ impl Drive {
         }
         let angle_rad = angle_at_third_g_rad(vehicle);
         let ratio = self.steering_ratio.unwrap_or_else(|| {
-            let reason = "the fishhook turns the steering wheel at 720 deg/s; another ratio: \
-                          --steering-ratio";
-            let value = format!("ratio {USUAL_STEERING_RATIO}");
+            let reason = Phrase::new(
+                "the fishhook turns the steering wheel at 720 deg/s; another ratio: --steering-ratio",
+                "das Fishhook-Manöver dreht das Lenkrad mit 720 °/s; eine andere Übersetzung: \
+                 --steering-ratio",
+            );
+            let value = Phrase::new("ratio {0}", "Übersetzung {0}")
+                .with(PhraseValue::given(Quantity::Ratio, USUAL_STEERING_RATIO));
             caveats.push(Caveat::assumed(CaveatSubject::Steer, value, reason));
             USUAL_STEERING_RATIO
         });
@@ -218,12 +226,17 @@ fn covered(
         return Err(StudyError::ControlsOutside { path, start_s, end_s, duration_s, shift_s });
     }
     let mut caveats = doubtful_data_caveats(&file.title(), loaded);
-    let reason = format!("the motion begins at 0 s and ends after {duration_s} s");
-    for (is_lost, when) in
-        [(acts_before, "before 0 s".to_owned()), (acts_after, format!("after {duration_s} s"))]
-    {
-        let what = || format!("{}, what acts {when}", file.title());
-        caveats.extend(is_lost.then(|| Caveat::not_used(what(), reason.as_str())));
+    let end = || PhraseValue::given(Quantity::Time, duration_s);
+    let reason = Phrase::new(
+        "the motion begins at 0 s and ends after {0}",
+        "die Bewegung beginnt bei 0 s und endet nach {0}",
+    )
+    .with(end());
+    let before = Phrase::new("{0}, what acts before 0 s", "{0}, was vor 0 s wirkt");
+    let after = Phrase::new("{0}, what acts after {1}", "{0}, was nach {1} wirkt");
+    for (is_lost, what) in [(acts_before, before), (acts_after, after)] {
+        let what = what.with(PhraseValue::Name(file.title())).with(end());
+        caveats.extend(is_lost.then(|| Caveat::not_used(what, reason.clone())));
     }
     Ok(caveats)
 }
@@ -232,16 +245,24 @@ fn covered(
 fn held_steer(steer: &SteerHistory, duration_s: f64) -> Option<Caveat> {
     let (&start_s, &end_s) = (steer.time_s.first()?, steer.time_s.last()?);
     let (&first_rad, &last_rad) = (steer.steer_rad.first()?, steer.steer_rad.last()?);
+    let part = |angle_rad: f64, time_s: f64, [en, de]: [&str; 2]| {
+        Phrase::new(format!("{{0}} {en} {{1}}"), format!("{{0}} {de} {{1}}"))
+            .with(PhraseValue::given(Quantity::Angle, angle_rad))
+            .with(PhraseValue::given(Quantity::Time, time_s))
+    };
     let mut held = Vec::new();
     if start_s > TIME_TOLERANCE_S && first_rad != 0.0 {
-        held.push(format!("{first_rad} rad before {start_s} s"));
+        held.push(part(first_rad, start_s, ["before", "vor"]));
     }
     if end_s < duration_s - TIME_TOLERANCE_S && last_rad != 0.0 {
-        held.push(format!("{last_rad} rad after {end_s} s"));
+        held.push(part(last_rad, end_s, ["after", "nach"]));
     }
-    let reason = "the recording of the steer angle does not reach further; its ends are held";
+    let reason = Phrase::new(
+        "the recording of the steer angle does not reach further; its ends are held",
+        "die Aufzeichnung des Lenkwinkels reicht nicht weiter; ihre Enden werden gehalten",
+    );
     let is_held = !held.is_empty();
-    is_held.then(|| Caveat::assumed(CaveatSubject::Steer, held.join(", "), reason))
+    is_held.then(|| Caveat::assumed(CaveatSubject::Steer, Phrase::joined(held, ", "), reason))
 }
 
 /// The road-wheel angle of a file: that of the front axle, the mean of its wheels, or that of the

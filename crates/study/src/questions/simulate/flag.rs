@@ -7,8 +7,8 @@ use serde::Serialize;
 use crate::analysis::SecondContacts;
 use crate::word;
 use impactlab_core::collision::SecondContact;
-use impactlab_core::uncertainty::{Caveat, CaveatKind};
-use impactlab_core::units::percent;
+use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatText};
+use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::{MotionFlag, ROLL_LIMIT_RAD};
 
 /// A [`MotionFlag`] or a [`SecondContact`]: the caveat that it is, and its numbers.
@@ -78,7 +78,7 @@ impl From<FlagReport> for FlagJson {
 
 impl FlagReport {
     /// A flag about which no more is known than when it is raised.
-    fn new(kind: CaveatKind, time_s: f64, message: String) -> Self {
+    fn new(kind: CaveatKind, time_s: f64, message: impl Into<CaveatText>) -> Self {
         let caveat = Caveat::new(kind, message).with_value("time [s]", time_s);
         Self { caveat, time_s, wheel: None, contact: None }
     }
@@ -98,8 +98,22 @@ pub(crate) fn is_no_rare_contact(share: Option<f64>) -> bool {
 }
 
 /// What a person should know of a second contact.
-const NOT_COMPUTED: &str = "a second contact, which is not computed; the motions after it are not \
-                            those of the vehicles, and no position after it has a probability";
+fn not_computed() -> PhraseValue {
+    PhraseValue::phrase(Phrase::new(
+        "a second contact, which is not computed; the motions after it are not those of the vehicles, \
+         and no position after it has a probability",
+        "Dieser zweite Kontakt ist nicht gerechnet. Die Bewegungen danach sind nicht die der Fahrzeuge, \
+         und keine Lage danach hat eine Wahrscheinlichkeit",
+    ))
+}
+
+/// What the vehicles do in a second contact.
+fn meeting(was_apart: bool) -> PhraseValue {
+    PhraseValue::phrase(match was_apart {
+        true => Phrase::new("meet again", "treffen sich wieder"),
+        false => Phrase::new("go deeper into each other", "dringen tiefer ineinander"),
+    })
+}
 
 /// Share of the draws with a second contact from which on positions after it have no probability: half of
 /// what an interval of 90 % leaves out.
@@ -108,7 +122,7 @@ const MOST_SECOND_CONTACTS: f64 = 0.05;
 impl From<&SecondContact> for FlagReport {
     fn from(second: &SecondContact) -> Self {
         let ([x, y], speed) = (second.point_m, second.closing_speed_m_s);
-        let how = if second.was_apart { "meet again" } else { "go deeper into each other" };
+        let how = meeting(second.was_apart);
         let message = second_contact_text(how, second.time_s, [x, y], speed);
         let contact = FlaggedContact {
             position_m: second.point_m,
@@ -122,31 +136,53 @@ impl From<&SecondContact> for FlagReport {
 }
 
 /// A second contact of a single motion, for a person.
-fn second_contact_text(how: &str, time_s: f64, [x, y]: [f64; 2], speed_m_s: f64) -> String {
-    format!(
-        "the vehicles {how} at {time_s:.2} s, near x {x:.1} m, y {y:.1} m, closing at \
-         {speed_m_s:.1} m/s: {NOT_COMPUTED}"
+fn second_contact_text(how: PhraseValue, time_s: f64, [x, y]: [f64; 2], speed_m_s: f64) -> Phrase {
+    Phrase::new(
+        "the vehicles {0} at {1}, near x {2}, y {3}, closing at {4}: {5}",
+        "Die Fahrzeuge {0} bei {1}, nahe x {2}, y {3}, mit {4} Annäherungsgeschwindigkeit. {5}",
     )
+    .with(how)
+    .with(PhraseValue::fixed(Quantity::Time, time_s, 2))
+    .with(PhraseValue::fixed(Quantity::Length, x, 1))
+    .with(PhraseValue::fixed(Quantity::Length, y, 1))
+    .with(PhraseValue::fixed(Quantity::Speed, speed_m_s, 1))
+    .with(not_computed())
+}
+
+/// The second contacts of draws, for a person.
+fn second_contacts_text(met: &SecondContacts) -> Phrase {
+    let time = |s: f64| PhraseValue::fixed(Quantity::Time, s, 2);
+    let speed = |m_s: f64| PhraseValue::fixed(Quantity::Speed, m_s, 1);
+    let length = |m: f64| PhraseValue::fixed(Quantity::Length, m, 1);
+    let ([from_s, to_s], [slow, fast]) = (met.time_s.ninety(), met.closing_speed_m_s.ninety());
+    Phrase::new(
+        "the vehicles {0} in {1} of {2} draws, at {3} (90 %: {4} to {5}), near x {6}, y {7}, \
+         closing at {8} (90 %: {9} to {10}): {11}",
+        "Die Fahrzeuge {0} in {1} von {2} Ziehungen, bei {3} (90 %: {4} bis {5}), nahe x {6}, y {7}, \
+         mit {8} Annäherungsgeschwindigkeit (90 %: {9} bis {10}). {11}",
+    )
+    .with(meeting(2.0 * met.apart_share > 1.0))
+    .with(PhraseValue::Share(met.probability))
+    .with(PhraseValue::Name(met.n_draws.to_string()))
+    .with(time(met.time_s.median))
+    .with(time(from_s).bare())
+    .with(time(to_s).bare())
+    .with(length(met.x_m.median))
+    .with(length(met.y_m.median))
+    .with(speed(met.closing_speed_m_s.median))
+    .with(speed(slow).bare())
+    .with(speed(fast).bare())
+    .with(not_computed())
 }
 
 impl From<&SecondContacts> for FlagReport {
     fn from(met: &SecondContacts) -> Self {
         let (x, y, speed) = (met.x_m.median, met.y_m.median, met.closing_speed_m_s.median);
-        let how = match 2.0 * met.apart_share > 1.0 {
-            true => "meet again",
-            false => "go deeper into each other",
-        };
-        let time_s = met.time_s.median;
-        let ([from_s, to_s], [slow, fast]) = (met.time_s.ninety(), met.closing_speed_m_s.ninety());
+        let (time_s, [from_s, _]) = (met.time_s.median, met.time_s.ninety());
         let message = match met.n_draws {
             // One known force on one known vehicle: nothing is drawn.
-            1 => second_contact_text(how, time_s, [x, y], speed),
-            n_draws => format!(
-                "the vehicles {how} in {} of {n_draws} draws, at {time_s:.2} s (90 %: {from_s:.2} to \
-                 {to_s:.2}), near x {x:.1} m, y {y:.1} m, closing at {speed:.1} m/s (90 %: \
-                 {slow:.1} to {fast:.1}): {NOT_COMPUTED}",
-                percent(met.probability),
-            ),
+            1 => second_contact_text(meeting(2.0 * met.apart_share > 1.0), time_s, [x, y], speed),
+            _ => second_contacts_text(met),
         };
         let contact = FlaggedContact {
             position_m: [x, y],
@@ -161,13 +197,13 @@ impl From<&SecondContacts> for FlagReport {
 
 impl From<&MotionFlag> for FlagReport {
     fn from(flag: &MotionFlag) -> Self {
-        let flagged = |kind, time_s: f64| Self::new(kind, time_s, flag.to_string());
+        let flagged = |kind, time_s: f64| Self::new(kind, time_s, flag.phrase());
         match flag {
             MotionFlag::WheelLift { wheel, time_s } => {
                 Self { wheel: Some(word(wheel)), ..flagged(CaveatKind::WheelLift, *time_s) }
             }
             MotionFlag::RollLimit { time_s, roll_rad } => {
-                let caveat = Caveat::new(CaveatKind::RollLimit, flag.to_string())
+                let caveat = Caveat::new(CaveatKind::RollLimit, flag.phrase())
                     .with_value("roll angle [rad]", *roll_rad)
                     .with_range([-ROLL_LIMIT_RAD, ROLL_LIMIT_RAD]);
                 Self { caveat, ..flagged(CaveatKind::RollLimit, *time_s) }
@@ -182,6 +218,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+    use impactlab_core::units::{Language, NumberFormat, UnitSystem};
     use impactlab_core::vehicle::Wheel;
 
     #[test]
@@ -218,5 +255,20 @@ mod tests {
         assert_eq!(json[0], form(&roll, "roll_limit", None, Some(0.6)));
         assert_eq!(json[1], form(&lift, "wheel_lift", Some("front_left"), None));
         assert_eq!(lift.caveat.value, Some(0.3));
+        let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
+        let german = |flag: &FlagReport| flag.caveat.text_in(&german, &str::to_owned).unwrap();
+        assert!(german(&roll).starts_with("Ein Wankwinkel von 34,4° bei 0,40 s"), "{roll:?}");
+        assert!(german(&lift).contains("front left"), "{lift:?}");
+    }
+
+    #[test]
+    fn a_second_contact_is_told_in_the_units_of_the_reader() {
+        let second = second_contact_text(meeting(true), 0.4, [3.0, -1.0], 5.0);
+        let [si, us] =
+            [UnitSystem::Si, UnitSystem::Us].map(|units| second.say(&NumberFormat::english(units)));
+        let expected =
+            "the vehicles meet again at 0.40 s, near x 3.0 m, y -1.0 m, closing at 5.0 m/s: ";
+        assert!(si.starts_with(expected), "{si}");
+        assert!(us.contains("near x 9.8 ft, y -3.3 ft, closing at 11.2 mph: "), "{us}");
     }
 }

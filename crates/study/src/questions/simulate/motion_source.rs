@@ -1,7 +1,8 @@
 //! What drives the motion of a struck vehicle: a case, a recorded motion, a start with files of force
 //! and controls, or a scenario.
 
-use crate::caveats::assumed::{self, three_digits};
+use crate::caveats::assumed;
+use crate::caveats::restrictions::pulling_caveat;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -14,6 +15,7 @@ use crate::ask::checks::{check, check_contact};
 use crate::{Drive, Library, ScenarioChoice, SeriesFile, StudyError, word};
 use impactlab_core::data::{Case, Channel, FileKind, ForceAttributes, ForceHistory, Loaded};
 use impactlab_core::ranges::{CONTACT_HEIGHT, PULSE_DURATION};
+use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::{ContactPoint, VehicleParameters};
 
 /// Where a force acts where nothing says it: the right rear quarter of a car, where a PIT begins.
@@ -144,24 +146,33 @@ pub(crate) fn recorded_force(
 ///
 /// A given contact point overrules a recorded yaw moment; a recorded yaw moment acts about the CG;
 /// without either, the contact point is assumed.
+///
+/// - `yaw_rad`: heading of the vehicle at the start, rad.
 pub(crate) fn acting_force(
     mut force: ForceHistory,
     contact: Option<ContactPoint>,
     vehicle: &VehicleParameters,
+    yaw_rad: f64,
     caveats: &mut Caveats,
 ) -> (ForceHistory, ContactPoint) {
+    let pulls = |force: &ForceHistory, contact| pulling_caveat(force, contact, vehicle, yaw_rad);
     if let Some(contact) = contact {
         force.mz_n_m = None;
+        caveats.extend(pulls(&force, contact));
         return (force, contact);
     }
     if force.mz_n_m.is_some() {
         let height_m = vehicle.geometry.cg_height_m;
         return (force, ContactPoint { x_body_m: 0.0, y_body_m: 0.0, height_m });
     }
-    let reason = "the force has no yaw moment (mz) and nothing says where it acts; another point: \
-                  --contact";
+    let reason = Phrase::new(
+        "the force has no yaw moment (mz) and nothing says where it acts; another point: --contact",
+        "die Kraft hat kein Giermoment (mz), und ihr Angriffspunkt ist nicht angegeben; anderer Punkt: \
+         --contact",
+    );
     let contact = assumed_contact(vehicle);
     caveats.push(assumed::contact_point(contact, reason));
+    caveats.extend(pulls(&force, contact));
     (force, contact)
 }
 
@@ -183,7 +194,8 @@ pub(crate) fn start_of_record(loaded: &Loaded) -> Option<Caveat> {
         missing.filter(is_missing).map(|channel| format!("{} = 0", channel.header())).collect();
     let is_assumed = !zeros.is_empty();
     is_assumed.then(|| {
-        let reason = "the file does not record them";
+        let reason =
+            Phrase::new("the file does not record them", "die Datei zeichnet sie nicht auf");
         Caveat::assumed(CaveatSubject::StartOfRecord, zeros.join(", "), reason)
     })
 }
@@ -192,8 +204,12 @@ pub(crate) fn start_of_record(loaded: &Loaded) -> Option<Caveat> {
 pub(crate) fn contact_height_assumption(case: &Case) -> Result<Option<Caveat>, StudyError> {
     let is_known = ForceAttributes::read(&case.attributes)?.contact_height_m.is_some();
     Ok((!is_known).then(|| {
-        let reason = "the case does not say how high the vehicles touch";
-        Caveat::assumed(CaveatSubject::ContactHeight, "that of the CG", reason)
+        let reason = Phrase::new(
+            "the case does not say how high the vehicles touch",
+            "der Fall sagt nicht, in welcher Höhe sich die Fahrzeuge berühren",
+        );
+        let height = Phrase::new("that of the CG", "die des Schwerpunkts");
+        Caveat::assumed(CaveatSubject::ContactHeight, height, reason)
     }))
 }
 
@@ -205,18 +221,31 @@ pub(crate) fn pulse_assumptions(pulse: &PulseSetup, height_m: f64) -> Vec<Caveat
     let shape = || {
         Caveat::assumed(
             CaveatSubject::Pulse,
-            format!("{} of {:.0} ms", pulse.shape.label(), pulse.duration_s * 1e3),
-            "the momentum solution gives the impulse, not the force over time",
+            Phrase::new("{0} of {1}", "{0} von {1}")
+                .with(PhraseValue::Term(pulse.shape.label().to_owned()))
+                .with(PhraseValue::fixed(Quantity::Time, pulse.duration_s, 0).in_unit("ms")),
+            Phrase::new(
+                "the momentum solution gives the impulse, not the force over time",
+                "die Impulslösung liefert den Stoßantrieb, nicht den Kraftverlauf",
+            ),
         )
     };
     let height = || {
-        let mut reason = "a scenario does not say how high the vehicles touch".to_owned();
+        let mut reason = Phrase::new(
+            "a scenario does not say how high the vehicles touch",
+            "ein Szenario sagt nicht, in welcher Höhe sich die Fahrzeuge berühren",
+        );
         if height_m < pulse.contact_height_m {
             let scale = pulse.contact_height_m / height_m;
-            reason += &format!("; that of cars, {} m, at 1:{scale:.1}", pulse.contact_height_m);
+            let of_cars =
+                Phrase::new("that of cars, {0}, at 1:{1}", "die von Pkw, {0}, im Maßstab 1:{1}")
+                    .with(PhraseValue::given(Quantity::Length, pulse.contact_height_m))
+                    .with(PhraseValue::fixed(Quantity::Ratio, scale, 1));
+            reason = Phrase::joined([reason, of_cars], "; ");
         }
-        let height = format!("{} m above the ground", three_digits(height_m));
-        Caveat::assumed(CaveatSubject::ContactHeight, height, &*reason)
+        let height = Phrase::new("{0} above the ground", "{0} über der Fahrbahn")
+            .with(PhraseValue::three_digits(Quantity::Length, height_m));
+        Caveat::assumed(CaveatSubject::ContactHeight, height, reason)
     };
     let is_usual = (pulse.shape, pulse.duration_s) == (usual.shape, usual.duration_s);
     let assumed = [is_usual.then(shape), pulse.is_height_open().then(height)];

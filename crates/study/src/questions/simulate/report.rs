@@ -5,14 +5,16 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::analysis::{Analysis, ContactPhaseReport, MotionEnd, told};
+use crate::analysis::{Analysis, ContactPhaseReport, MotionEnd, StruckVehicle, told};
 use crate::{
     FlagReport, ImpulseRival, MomentumReport, SimulateRequest, TireMarkReport, VehicleUncertainty,
     word,
 };
 use impactlab_core::collision::PrincipalDirectionOfForce;
 use impactlab_core::compare::{MotionError, largest_yaw_change_rad};
-use impactlab_core::data::{Channel, ForceAxes, SeriesError, TimeSeries, contact_interval};
+use impactlab_core::data::{
+    Channel, ForceAxes, ForceHistory, SeriesError, TimeSeries, contact_interval,
+};
 use impactlab_core::numerics::interpolate;
 use impactlab_core::vehicle::frames::world_from_body;
 use impactlab_core::vehicle::{FrictionZone, Motion};
@@ -203,17 +205,29 @@ impl SimulateReport {
 
 impl ForceReport {
     fn from_analysis(request: &SimulateRequest, analysis: &Analysis) -> Option<Self> {
-        let force = analysis.force.as_ref()?;
+        let (force, path) = (analysis.force.as_ref()?, request.source.force_file());
+        Self::from_history(force, path, analysis.struck.as_ref())
+    }
+
+    /// `None` for a force without samples.
+    ///
+    /// - `path`: its file, where it is one;
+    /// - `struck`: the vehicle on which it acts.
+    pub(crate) fn from_history(
+        force: &ForceHistory,
+        path: Option<&PathBuf>,
+        struck: Option<&StruckVehicle>,
+    ) -> Option<Self> {
         let interval = contact_interval(force);
         let (peak_n, peak_time_s) = force.peak()?;
         // Heading axes turn with the vehicle already, so that its heading is zero in them.
-        let heading_rad = match (force.axes, &analysis.struck) {
+        let heading_rad = match (force.axes, struck) {
             (ForceAxes::World, Some(struck)) => struck.initial.yaw_rad,
             (ForceAxes::World, None) | (ForceAxes::Body, _) => 0.0,
         };
         let pdof = PrincipalDirectionOfForce::from_impulse(force.impulse_n_s(), heading_rad);
         Some(Self {
-            path: request.source.force_file().cloned(),
+            path: path.cloned(),
             sampling: word(&force.sampling),
             axes: word(&force.axes),
             impulse_n_s: force.impulse_n_s(),

@@ -32,7 +32,7 @@ use crate::{
 use impactlab_core::collision::Scenario;
 use impactlab_core::compare::{PairCase, PairRecords};
 use impactlab_core::data::write::ModelDigest;
-use impactlab_core::data::{ContactOutside, DatasetKind, Outcome};
+use impactlab_core::data::{Channel, ContactOutside, DatasetKind, Outcome};
 use impactlab_core::ranges::{
     ROAD_FRICTION, ROAD_FRICTION_SIGMA, SIMULATED_DURATION, VEHICLE_DRAWS,
 };
@@ -393,8 +393,9 @@ impl Question for SimulateRequest {
                     caveats.extend(start_of_record(&loaded));
                 }
                 let load = force.map(|force| {
-                    let vehicle = &settings.struck;
-                    acting_force(force, *contact, vehicle, &mut caveats)
+                    let yaw_rad = loaded.series.get(Channel::Yaw).and_then(|yaw| yaw.first());
+                    let yaw_rad = yaw_rad.copied().unwrap_or(0.0);
+                    acting_force(force, *contact, &settings.struck, yaw_rad, &mut caveats)
                 });
                 let title = file.title();
                 let analyse = move |settings: &Settings| {

@@ -141,7 +141,8 @@ impl MotionLogs {
         if self.contact.is_none() && force.mz_n_m.is_none() {
             return Err(StudyError::NoYawMoment { path: path.to_owned() });
         }
-        let (force, contact) = acting_force(force, self.contact, vehicle, &mut Caveats::default());
+        let (force, contact) =
+            acting_force(force, self.contact, vehicle, 0.0, &mut Caveats::default());
         Ok(ContactLoad { recorded_moment: force.mz_n_m.is_some(), force, contact })
     }
 }

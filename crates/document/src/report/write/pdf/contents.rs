@@ -6,7 +6,7 @@ use crate::report::write::pdf::page::{Ink, Item, Owner};
 use crate::report::{ReportDocument, SectionKind};
 
 /// Size of the lines, points.
-const LINE_PT: f32 = 10.5;
+const LINE_PT: f32 = 11.0;
 
 /// Lines of the contents that wait for the numbers of their pages.
 pub(super) struct Contents {

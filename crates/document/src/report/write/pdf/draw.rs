@@ -20,17 +20,18 @@ use krilla::tagging::{
 };
 use krilla::text::{GlyphId, KrillaGlyph};
 
-use crate::report::ReportDocument;
 use crate::report::language::words_of;
 use crate::report::numbers::fill;
 use crate::report::write::pdf::PdfError;
 use crate::report::write::pdf::flow::{Flow, MARGIN_PT, Part, Role};
 use crate::report::write::pdf::fonts::{Fonts, REPLACEMENT};
 use crate::report::write::pdf::page::{Ink, Item, OutlineEntry, Owner, PageItems};
-use crate::report::write::pictures::{Drawing, Pixels, drawn_pictures};
+use crate::report::write::pdf::vectors::draw_vectors;
+use crate::report::write::pictures::{Drawing, Drawn, Medium, Pixels, drawn_pictures};
+use crate::report::{ReportDocument, VectorPicture};
 
 /// Size of header and footer, points.
-const SMALL_PT: f32 = 7.5;
+const SMALL_PT: f32 = 8.5;
 /// Width of the stroke around bold letters over their size.
 const BOLD: f32 = 0.028;
 
@@ -46,7 +47,7 @@ pub fn pdf(document: &ReportDocument, drawing: Option<&Drawing<'_>>) -> Result<V
     let flow = Flow::from_document(document, &fonts)?;
     let [width_pt, height_pt] = flow.size_pt;
     let mut pdf = krilla::Document::new_with(settings()?);
-    let mut drawn = Drawn { flow: &flow, document, pictures, contents: BTreeMap::new() };
+    let mut drawn = Pages { flow: &flow, document, pictures, contents: BTreeMap::new() };
     for (idx, page) in flow.pages.iter().enumerate() {
         let settings = PageSettings::from_wh(width_pt, height_pt)
             .ok_or(PdfError::Page { width_pt, height_pt })?;
@@ -70,16 +71,25 @@ fn settings() -> Result<SerializeSettings, PdfError> {
     Ok(SerializeSettings { configuration, ..SerializeSettings::default() })
 }
 
-/// The pictures by their numbers, as the file holds them.
+/// A picture as the file holds it.
+enum Held {
+    Image(Image),
+    Vectors(VectorPicture),
+}
+
+/// The pictures by their numbers.
 fn pictures(
     document: &ReportDocument,
     drawing: Option<&Drawing<'_>>,
-) -> Result<BTreeMap<usize, Image>, PdfError> {
-    let image = |(number, pixels): (usize, Pixels)| {
-        let [width, height] = pixels.size_px;
-        (number, Image::from_rgba8(pixels.rgba, width, height))
+) -> Result<BTreeMap<usize, Held>, PdfError> {
+    let held = |drawn: Drawn| match drawn {
+        Drawn::Pixels(Pixels { size_px: [width, height], rgba }) => {
+            Held::Image(Image::from_rgba8(rgba, width, height))
+        }
+        Drawn::Vectors(picture) => Held::Vectors(picture),
     };
-    Ok(drawn_pictures(document, drawing)?.into_iter().map(image).collect())
+    let drawn = drawn_pictures(document, drawing, Medium::Page)?;
+    Ok(drawn.into_iter().map(|(number, drawn)| (number, held(drawn))).collect())
 }
 
 fn metadata(document: &ReportDocument) -> Metadata {
@@ -113,15 +123,15 @@ fn outline(entries: &[OutlineEntry]) -> Outline {
     outline
 }
 
-struct Drawn<'a> {
+struct Pages<'a> {
     flow: &'a Flow<'a>,
     document: &'a ReportDocument,
-    pictures: BTreeMap<usize, Image>,
+    pictures: BTreeMap<usize, Held>,
     /// What was drawn of each part.
     contents: BTreeMap<usize, Vec<Identifier>>,
 }
 
-impl Drawn<'_> {
+impl Pages<'_> {
     fn page(&mut self, surface: &mut Surface<'_>, page: &PageItems) {
         for item in &page.items {
             match item {
@@ -161,12 +171,12 @@ impl Drawn<'_> {
         }
     }
 
-    /// Draws a line of text, each stretch of letters of one font by itself.
+    /// Draws a line of text.
     fn text(
         &self,
         surface: &mut Surface<'_>,
         text: &str,
-        [mut x_pt, y_pt]: [f32; 2],
+        at_pt: [f32; 2],
         size_pt: f32,
         ink: Ink,
         is_bold: bool,
@@ -175,29 +185,7 @@ impl Drawn<'_> {
         surface.set_fill(Some(Fill { paint: color.into(), ..Fill::default() }));
         let stroke = Stroke { paint: color.into(), width: BOLD * size_pt, ..Stroke::default() };
         surface.set_stroke(is_bold.then_some(stroke));
-        let text: String = text.chars().map(readable).collect();
-        let mut rest = text.as_str();
-        while let Some(first) = rest.chars().next() {
-            let face = self.flow.fonts.letter(first).face;
-            let is_other = |c: char| self.flow.fonts.letter(c).face != face;
-            let end = rest.find(is_other).unwrap_or(rest.len());
-            let (run, behind) = rest.split_at(end);
-            rest = behind;
-            let mut glyphs = Vec::new();
-            let mut width_pt = 0.0;
-            for (at, c) in run.char_indices() {
-                let letter = self.flow.fonts.letter(c);
-                let range = at..at + c.len_utf8();
-                let glyph = GlyphId::new(letter.glyph);
-                glyphs.push(KrillaGlyph::new(glyph, letter.advance, 0.0, 0.0, 0.0, range, None));
-                width_pt += letter.advance * size_pt;
-            }
-            if let Some(font) = self.flow.fonts.font(face) {
-                let start = Point::from_xy(x_pt, y_pt);
-                surface.draw_glyphs(start, &glyphs, font.clone(), run, size_pt, false);
-            }
-            x_pt += width_pt;
-        }
+        Lettering { fonts: self.flow.fonts, size_pt }.draw(surface, text, at_pt);
         surface.set_stroke(None);
     }
 
@@ -205,7 +193,10 @@ impl Drawn<'_> {
     fn picture(&self, surface: &mut Surface<'_>, rect_pt: [f32; 4], number: usize) {
         let [left, top, width, height] = rect_pt;
         match (self.pictures.get(&number), Size::from_wh(width, height)) {
-            (Some(image), Some(size)) => {
+            (Some(Held::Vectors(picture)), _) => {
+                draw_vectors(surface, rect_pt, picture, self.flow.fonts);
+            }
+            (Some(Held::Image(image)), Some(size)) => {
                 surface.push_transform(&Transform::from_translate(left, top));
                 surface.draw_image(image.clone(), size);
                 surface.pop();
@@ -291,6 +282,42 @@ impl Drawn<'_> {
             group.push(self.group(*child, children));
         }
         group
+    }
+}
+
+/// Letters as they are set: their fonts and their size.
+pub(super) struct Lettering<'a> {
+    pub fonts: &'a Fonts,
+    pub size_pt: f32,
+}
+
+impl Lettering<'_> {
+    /// Draws a text in the colours that are set, each stretch of letters of one font by itself.
+    pub fn draw(&self, surface: &mut Surface<'_>, text: &str, [mut x_pt, y_pt]: [f32; 2]) {
+        let Self { fonts, size_pt } = *self;
+        let text: String = text.chars().map(readable).collect();
+        let mut rest = text.as_str();
+        while let Some(first) = rest.chars().next() {
+            let face = fonts.letter(first).face;
+            let is_other = |c: char| fonts.letter(c).face != face;
+            let end = rest.find(is_other).unwrap_or(rest.len());
+            let (run, behind) = rest.split_at(end);
+            rest = behind;
+            let mut glyphs = Vec::new();
+            let mut width_pt = 0.0;
+            for (at, c) in run.char_indices() {
+                let letter = fonts.letter(c);
+                let range = at..at + c.len_utf8();
+                let glyph = GlyphId::new(letter.glyph);
+                glyphs.push(KrillaGlyph::new(glyph, letter.advance, 0.0, 0.0, 0.0, range, None));
+                width_pt += letter.advance * size_pt;
+            }
+            if let Some(font) = fonts.font(face) {
+                let start = Point::from_xy(x_pt, y_pt);
+                surface.draw_glyphs(start, &glyphs, font.clone(), run, size_pt, false);
+            }
+            x_pt += width_pt;
+        }
     }
 }
 

@@ -5,23 +5,21 @@ use crate::report::write::pdf::contents::Contents;
 use crate::report::write::pdf::fonts::Fonts;
 use crate::report::write::pdf::lines::lines;
 use crate::report::write::pdf::page::{Ink, Item, OutlineEntry, Owner, PageItems};
-use crate::report::write::pdf::table::flow_table;
-use crate::report::{Block, Picture, ReportDocument, SectionKind};
+use crate::report::write::pdf::table::{beginning_pt, flow_table};
+use crate::report::{Block, ReportDocument, SectionKind};
 
 /// Distance of the text from the edges of the page, points.
-pub(super) const MARGIN_PT: f32 = 54.0;
+pub(super) const MARGIN_PT: f32 = 48.0;
 /// The same from top and bottom, which hold header and footer.
-const HIGH_MARGIN_PT: f32 = 62.0;
+const HIGH_MARGIN_PT: f32 = 56.0;
 /// Distance between base lines over the size of the font.
-pub(super) const LEADING: f32 = 1.36;
+pub(super) const LEADING: f32 = 1.24;
 /// Size of running text, points.
-const BODY_PT: f32 = 9.5;
+const BODY_PT: f32 = 11.0;
 /// Size of captions, points.
-const CAPTION_PT: f32 = 8.5;
+pub(super) const CAPTION_PT: f32 = 9.5;
 /// Room below a heading that keeps it from the foot of a page, points.
 const BELOW_HEADING_PT: f32 = 72.0;
-/// Height of a picture over its width: three of them fit onto a page.
-pub(super) const PICTURE_ASPECT: f32 = 0.42;
 
 /// What a part of the document is, for readers that cannot see the page.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,9 +76,10 @@ impl<'a> Flow<'a> {
         let mut contents = None;
         for section in &document.sections {
             flow.space(10.0);
-            flow.heading(1, 14.0, &section.title, &section.blocks);
-            for (idx, block) in section.blocks.iter().enumerate() {
-                flow.block(block, section.blocks.get(idx + 1..).unwrap_or_default());
+            flow.heading(1, 15.0, &section.title, &section.blocks);
+            let mut blocks = section.blocks.as_slice();
+            while !blocks.is_empty() {
+                blocks = flow.first_of(blocks);
             }
             if section.kind == SectionKind::Opinion {
                 flow.new_page();
@@ -182,23 +181,21 @@ impl<'a> Flow<'a> {
     fn below_heading_pt(&self, blocks: &[Block]) -> f32 {
         match blocks {
             [Block::Heading { .. }, behind @ ..] => 24.0 + self.below_heading_pt(behind),
-            [Block::Picture(picture), ..] => self.picture_pt(picture) + 8.0,
+            [Block::Picture(picture), ..] if picture.content.is_half_wide() => {
+                self.pair_pt(&[picture.as_ref()]) + 8.0
+            }
+            [Block::Picture(picture), ..] => self.scene_pt(picture) + 8.0,
+            [Block::Table(table), ..] => beginning_pt(self, table) + 8.0,
             _ => BELOW_HEADING_PT,
         }
     }
 
-    fn picture_pt(&self, picture: &Picture) -> f32 {
-        let width_pt = self.width_pt();
-        let n = lines(&picture.caption, self.fonts, CAPTION_PT, width_pt).len();
-        width_pt * PICTURE_ASPECT + 4.0 + n as f32 * CAPTION_PT * LEADING
-    }
-
-    fn block(&mut self, block: &Block, behind: &[Block]) {
+    pub(super) fn block(&mut self, block: &Block, behind: &[Block]) {
         let body = Style { size_pt: BODY_PT, ink: Ink::Text, is_bold: false, left_pt: MARGIN_PT };
         match block {
             Block::Heading { level, text } => {
                 self.space(6.0);
-                let size_pt = if *level <= 2 { 11.5 } else { 10.0 };
+                let size_pt = if *level <= 2 { 12.5 } else { 11.5 };
                 self.heading(*level, size_pt, text, behind);
             }
             Block::Paragraph { text } => {
@@ -213,7 +210,7 @@ impl<'a> Flow<'a> {
                 flow_table(self, table);
                 self.space(8.0);
             }
-            Block::Picture(picture) => self.picture(picture),
+            Block::Picture(picture) => self.scene(picture),
         }
     }
 
@@ -251,20 +248,6 @@ impl<'a> Flow<'a> {
         }
         self.space(4.0);
     }
-
-    fn picture(&mut self, picture: &Picture) {
-        let width_pt = self.width_pt();
-        let height_pt = width_pt * PICTURE_ASPECT;
-        self.need(self.picture_pt(picture));
-        let alt = picture.alt.clone();
-        let owner = self.part(Role::Figure { alt }, None);
-        let rect_pt = [MARGIN_PT, self.y_pt, width_pt, height_pt];
-        self.push(Item::Picture { rect_pt, number: picture.number, owner });
-        self.y_pt += height_pt + 3.0;
-        let owner = self.part(Role::Paragraph, None);
-        self.text(&picture.caption, caption_style(), owner);
-        self.space(9.0);
-    }
 }
 
 /// How captions are set.
@@ -275,8 +258,9 @@ pub(super) fn caption_style() -> Style {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{Language, Paper, Section, Table};
-    use impactlab_core::units::UnitSystem;
+    use crate::figure::{Axis, Figure};
+    use crate::report::{Language, Paper, Picture, PictureContent, Section, Table};
+    use impactlab_core::units::{Quantity, UnitSystem};
 
     fn document(blocks: Vec<Block>) -> ReportDocument {
         ReportDocument {
@@ -329,5 +313,55 @@ mod tests {
             assert!(top >= 50.0 && bottom <= height_pt - HIGH_MARGIN_PT + 1.0, "{item:?}");
         }
         assert!(headers > 10, "the header of the table is repeated {headers} times");
+    }
+
+    #[test]
+    fn no_table_goes_on_after_fewer_than_four_rows() {
+        let fonts = Fonts::load().unwrap();
+        for n_lines in 30..60 {
+            let mut blocks = vec![Block::paragraph("above"); n_lines];
+            let rows = (0..9).map(|n| [format!("row {n}"), "a value".to_owned()]).collect();
+            blocks.push(Block::Table(Table::new("A table", ["name", "value"], rows)));
+            let document = document(blocks);
+            let flow = Flow::from_document(&document, &fonts).unwrap();
+            let n_rows = |page: &PageItems| {
+                let is_row = |item: &&Item| matches!(item, Item::Text { text, .. } if text.starts_with("row "));
+                page.items.iter().filter(is_row).count()
+            };
+            let first = flow.pages.iter().map(n_rows).find(|n| *n > 0);
+            assert!(first.is_some_and(|n| n >= 4), "{n_lines} lines above: {first:?} rows");
+        }
+    }
+
+    #[test]
+    fn six_plots_fit_onto_a_page_two_beside_each_other() {
+        let fonts = Fonts::load().unwrap();
+        let axis = Axis::shown("x", Quantity::Time, UnitSystem::Si);
+        let figure = Figure::new("plot", [axis.clone(), axis], Vec::new());
+        let plot = |number: usize| {
+            Block::Picture(Box::new(Picture {
+                number,
+                caption: format!("Figure {number}: a caption"),
+                alt: "a plot".to_owned(),
+                content: PictureContent::Figure(Box::new(figure.clone())),
+            }))
+        };
+        let mut document = document((0..7).map(plot).collect());
+        document.title = "short".to_owned();
+        let flow = Flow::from_document(&document, &fonts).unwrap();
+        let places = |page: &PageItems| -> Vec<[f32; 4]> {
+            let place = |item: &Item| match item {
+                Item::Picture { rect_pt, .. } => Some(*rect_pt),
+                _ => None,
+            };
+            page.items.iter().filter_map(place).collect()
+        };
+        let first = places(&flow.pages[0]);
+        assert_eq!((first.len(), places(&flow.pages[1]).len()), (6, 1));
+        for pair in first.chunks(2) {
+            let [left, right] = [pair[0], pair[1]];
+            assert_eq!(left[1], right[1]);
+            assert!(left[0] + left[2] < right[0], "{left:?} {right:?}");
+        }
     }
 }

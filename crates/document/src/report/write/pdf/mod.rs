@@ -13,9 +13,13 @@ mod flow;
 
 mod contents;
 
+mod figures;
+
 mod table;
 
 mod draw;
+
+mod vectors;
 
 mod error;
 

@@ -9,11 +9,15 @@ use crate::report::write::pdf::lines::{lines, widest_word_pt};
 use crate::report::write::pdf::page::{Ink, Item, Owner};
 
 /// Size of the text in a table, points.
-const CELL_PT: f32 = 8.3;
+const CELL_PT: f32 = 9.5;
+/// Distance between its base lines, points.
+const STEP_PT: f32 = 1.2 * CELL_PT;
 /// Distance of the text from the sides of its cell, points.
 const PADDING_PT: f32 = 3.5;
 /// The same above and below.
-const HIGH_PADDING_PT: f32 = 1.8;
+const HIGH_PADDING_PT: f32 = 1.3;
+/// Rows that a table has at the least before it goes on on the next page.
+const KEPT_ROWS: usize = 4;
 /// The widest that a column is for the sake of its longest word, as a share of the table.
 const WIDEST_WORD: f32 = 0.34;
 
@@ -28,6 +32,12 @@ struct Setting<'a> {
 /// Lines of the cells of a row.
 type Cells = Vec<Vec<String>>;
 
+/// Height of what of a table stands on one page: caption, header and the first rows.
+pub(super) fn beginning_pt(flow: &Flow<'_>, table: &Table) -> f32 {
+    let columns = columns(table, flow.fonts, flow.width_pt());
+    Setting { table, columns, owner: None }.beginning_pt(flow)
+}
+
 /// Sets a table.
 pub(super) fn flow_table(flow: &mut Flow<'_>, table: &Table) {
     if table.columns.is_empty() {
@@ -35,12 +45,9 @@ pub(super) fn flow_table(flow: &mut Flow<'_>, table: &Table) {
     }
     let columns = columns(table, flow.fonts, flow.width_pt());
     let setting = Setting { table, columns, owner: None };
-    let titles: Vec<String> = table.columns.iter().map(|column| column.title.clone()).collect();
-    let header = setting.cells(&titles, flow.fonts);
-    let first = table.rows.first().map(|row| setting.cells(row, flow.fonts));
-    let first_pt = first.map_or(0.0, |cells| height_pt(&cells).min(60.0));
-    let caption_pt = if table.caption.is_empty() { 0.0 } else { 2.0 * 8.5 * LEADING };
-    flow.need(caption_pt + height_pt(&header) + first_pt);
+    let header = setting.header_cells(flow.fonts);
+    let together_pt = setting.beginning_pt(flow);
+    flow.need(together_pt);
     let summary = table.caption.clone();
     let owner = flow.part(Role::Table { summary }, None);
     let setting = Setting { owner, ..setting };
@@ -61,6 +68,22 @@ impl Setting<'_> {
         cells
             .map(|(cell, [_, width])| lines(cell, fonts, CELL_PT, width - 2.0 * PADDING_PT))
             .collect()
+    }
+
+    fn header_cells(&self, fonts: &Fonts) -> Cells {
+        let titles: Vec<String> = self.table.columns.iter().map(|it| it.title.clone()).collect();
+        self.cells(&titles, fonts)
+    }
+
+    fn beginning_pt(&self, flow: &Flow<'_>) -> f32 {
+        let rows = self.table.rows.iter().take(KEPT_ROWS);
+        let rows_pt: f32 = rows.map(|row| height_pt(&self.cells(row, flow.fonts))).sum();
+        let caption_pt = match self.table.caption.is_empty() {
+            true => 0.0,
+            false => 2.0 * caption_style().size_pt * LEADING,
+        };
+        let header_pt = height_pt(&self.header_cells(flow.fonts));
+        caption_pt + header_pt + rows_pt.min(0.5 * flow.page_pt())
     }
 
     /// The titles of the columns; told to readers once.
@@ -85,18 +108,17 @@ impl Setting<'_> {
         let role =
             |idx: usize| if idx == 0 && cells.len() > 1 { Role::RowHeaderCell } else { Role::Cell };
         let owners: Vec<Owner> = (0..cells.len()).map(|idx| flow.part(role(idx), owner)).collect();
-        let step_pt = CELL_PT * LEADING;
         let mut done = 0;
         while done < n {
-            let room = (flow.room_pt() - 2.0 * HIGH_PADDING_PT) / step_pt;
+            let room = (flow.room_pt() - 2.0 * HIGH_PADDING_PT) / STEP_PT;
             let fits = room.max(0.0) as usize;
             let left = n - done;
             // A row that fits onto a page is not divided.
-            let is_small = left as f32 * step_pt < 0.4 * flow.page_pt();
+            let is_small = left as f32 * STEP_PT < 0.4 * flow.page_pt();
             if fits < left && (is_small || fits < 3) {
                 flow.new_page();
                 self.header(flow, header, false);
-                let room = (flow.room_pt() - 2.0 * HIGH_PADDING_PT) / step_pt;
+                let room = (flow.room_pt() - 2.0 * HIGH_PADDING_PT) / STEP_PT;
                 if room < 1.0 {
                     return; // A page that does not hold a line holds no table.
                 }
@@ -129,7 +151,7 @@ impl Setting<'_> {
                 let indent_pt = if is_numeric { free_pt } else { 0.0 };
                 // A cell without text would be missing in its row.
                 let line = if line.is_empty() { " " } else { line };
-                flow.y_pt = top_pt + HIGH_PADDING_PT + row as f32 * CELL_PT * LEADING;
+                flow.y_pt = top_pt + HIGH_PADDING_PT + row as f32 * STEP_PT;
                 let style = Style {
                     size_pt: CELL_PT,
                     ink,
@@ -139,7 +161,7 @@ impl Setting<'_> {
                 flow.line(line, style, owner);
             }
         }
-        flow.y_pt = top_pt + n as f32 * CELL_PT * LEADING + 2.0 * HIGH_PADDING_PT;
+        flow.y_pt = top_pt + n as f32 * STEP_PT + 2.0 * HIGH_PADDING_PT;
         let rect_pt = [MARGIN_PT, flow.y_pt - 0.5, flow.width_pt(), 0.5];
         flow.push(Item::Fill { rect_pt, ink: Ink::Rule });
     }
@@ -147,7 +169,7 @@ impl Setting<'_> {
 
 fn height_pt(cells: &Cells) -> f32 {
     let n = cells.iter().map(Vec::len).max().unwrap_or(0);
-    n as f32 * CELL_PT * LEADING + 2.0 * HIGH_PADDING_PT
+    n as f32 * STEP_PT + 2.0 * HIGH_PADDING_PT
 }
 
 /// Left edges and widths: what each column would like, as far as all of them fit; else the longest

@@ -1,0 +1,277 @@
+//! Compares the speed that a motion records with the speed at which its path goes on, to find a unit or a
+//! clock that is wrong.
+//!
+//! ```text
+//! s = ∫ v dt  against  the distance of the places at both ends, over windows of half a second
+//! ```
+//!
+//! Half a second smooths the noise of positions and hardly cuts a bend. What a noisy path leaves goes to
+//! both sides from window to window; a wrong unit or clock goes to one side over a whole part of the path.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use crate::data::correction::Change;
+use crate::data::velocity_fit::{FITTING, SHORTEST_PATH_M, UNITS, is_other_length};
+use crate::data::{
+    Channel, ColumnUse, Contradiction, Correction, Note, Table, TimeSeries, contradictions,
+};
+use crate::units::{Unit, significant};
+
+/// Duration of a window, s, and the number of windows of a motion that has fewer of that duration.
+const WINDOW_S: f64 = 0.5;
+const LEAST_WINDOWS: usize = 12;
+/// Share of the path over which the speed has to be off to one side.
+const SHARE_OF_PATH: f64 = 0.25;
+
+/// A recorded speed that is not that of the path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathSpeed {
+    /// The way that the speed gives over the way along the path, where they differ.
+    pub ratio: f64,
+    /// Whether the whole path is meant and not a part of it.
+    pub is_whole: bool,
+    /// Index of the row where they differ most.
+    pub sample_idx: usize,
+    /// Time of this row, s.
+    pub time_s: f64,
+    /// What is recorded there, m/s.
+    pub recorded_m_s: f64,
+    /// At what speed the path goes on there, m/s.
+    pub path_m_s: f64,
+}
+
+/// A part of a motion.
+#[derive(Clone, Copy)]
+struct Window {
+    from: usize,
+    duration_s: f64,
+    recorded_m: f64,
+    path_m: f64,
+}
+
+impl Window {
+    /// By how much the recorded speed is off, m/s.
+    fn off_m_s(&self) -> f64 {
+        (self.recorded_m - self.path_m).abs() / self.duration_s
+    }
+}
+
+/// Compares the speed of a motion with its path: the column of the speed, or the size of v_x and v_y where
+/// the motion has no such column and its yaw angle, by which
+/// [`velocity_fit`](crate::data::velocity_fit()) would compare them, is missing.
+///
+/// - returns `None` if they agree, if there is nothing to compare or if the path is too short.
+pub fn path_speed(series: &TimeSeries) -> Option<PathSpeed> {
+    let windows = windows(series, &recorded_m_s(series)?)?;
+    let all_m = way_m(&windows);
+    if all_m < SHORTEST_PATH_M {
+        return None;
+    }
+    let is_whole = is_other_length(ratio(&windows));
+    let off = if is_whole { windows.as_slice() } else { longest_off(&windows) };
+    if way_m(off) < SHARE_OF_PATH * all_m || has_held_positions(series) {
+        return None;
+    }
+    let worst = off.iter().max_by(|a, b| a.off_m_s().total_cmp(&b.off_m_s()))?;
+    Some(PathSpeed {
+        ratio: ratio(off),
+        is_whole,
+        sample_idx: worst.from,
+        time_s: series.time_s().get(worst.from).copied()?,
+        recorded_m_s: worst.recorded_m / worst.duration_s,
+        path_m_s: worst.path_m / worst.duration_s,
+    })
+}
+
+/// The size of the recorded speed.
+fn recorded_m_s(series: &TimeSeries) -> Option<Vec<f64>> {
+    if let Some(speed) = series.get(Channel::Speed) {
+        return Some(speed.iter().map(|v| v.abs()).collect());
+    }
+    let is_compared = series.get(Channel::Yaw).is_some();
+    let (vx, vy) = (series.get(Channel::Vx)?, series.get(Channel::Vy)?);
+    (!is_compared).then(|| vx.iter().zip(vy).map(|(x, y)| x.hypot(*y)).collect())
+}
+
+/// Positions that are held between fixes go on by steps, which is another fault.
+fn has_held_positions(series: &TimeSeries) -> bool {
+    contradictions(series).iter().any(|found| matches!(found, Contradiction::Held { .. }))
+}
+
+fn windows(series: &TimeSeries, speed_m_s: &[f64]) -> Option<Vec<Window>> {
+    let time_s = series.time_s();
+    let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
+    let duration_s = time_s.last()? - time_s.first()?;
+    let window_s = WINDOW_S.min(duration_s / LEAST_WINDOWS as f64);
+    let mut windows = Vec::new();
+    let (mut from, mut recorded_m) = (0, 0.0);
+    for to in 1..time_s.len() {
+        recorded_m += (time_s[to] - time_s[to - 1]) * (speed_m_s[to - 1] + speed_m_s[to]) / 2.0;
+        let duration_s = time_s[to] - time_s[from];
+        if duration_s >= window_s * (1.0 - 1e-9) {
+            let path_m = (x[to] - x[from]).hypot(y[to] - y[from]);
+            windows.push(Window { from, duration_s, recorded_m, path_m });
+            (from, recorded_m) = (to, 0.0);
+        }
+    }
+    (windows.len() >= LEAST_WINDOWS / 2).then_some(windows)
+}
+
+fn way_m(windows: &[Window]) -> f64 {
+    windows.iter().map(|window| window.path_m).sum()
+}
+
+fn ratio(windows: &[Window]) -> f64 {
+    let recorded_m: f64 = windows.iter().map(|window| window.recorded_m).sum();
+    recorded_m / way_m(windows)
+}
+
+/// The longest way over which the speed is off to the same side in every window.
+fn longest_off(windows: &[Window]) -> &[Window] {
+    let side = |window: &Window| {
+        let ratio = window.recorded_m / window.path_m;
+        is_other_length(ratio).then_some(ratio > 1.0)
+    };
+    let runs = windows.chunk_by(|a, b| side(a) == side(b));
+    let off = runs.filter(|run| run.first().is_some_and(|window| side(window).is_some()));
+    off.max_by(|a, b| way_m(a).total_cmp(&way_m(b))).unwrap_or_default()
+}
+
+/// The remark on a speed that is not that of the path.
+pub(super) fn note(
+    table: &Table,
+    columns: &BTreeMap<Channel, ColumnUse>,
+    series: &TimeSeries,
+) -> Option<Note> {
+    let found = path_speed(series)?;
+    let column = columns.get(&Channel::Speed).or_else(|| columns.get(&Channel::Vx))?;
+    Some(Note::Speed {
+        path: table.path().to_owned(),
+        line: table.line(found.sample_idx),
+        column: column.number,
+        name: column.name.clone(),
+        found,
+        corrections: corrections(&found, columns),
+    })
+}
+
+/// Units of the speed, of the path or of the time with which they agree.
+fn corrections(found: &PathSpeed, columns: &BTreeMap<Channel, ColumnUse>) -> Vec<Correction> {
+    use Channel::{Speed, Time, Vx, Vy, X, Y};
+    if !found.is_whole {
+        return Vec::new();
+    }
+    let (speed, name) = match columns.contains_key(&Speed) {
+        true => (&[Speed][..], "The speed is"),
+        false => (&[Vx, Vy][..], "v_x and v_y are"),
+    };
+    let tries = [
+        (speed, name, 1.0 / found.ratio),
+        (&[X, Y][..], "x and y are", found.ratio),
+        (&[Time][..], "The time is", 1.0 / found.ratio),
+    ];
+    let in_unit = |(channels, name, wanted)| in_other_unit(columns, channels, name, wanted);
+    tries.into_iter().filter_map(in_unit).collect()
+}
+
+/// Other units of columns, whose size is near to a multiple of those in which they were read.
+fn in_other_unit(
+    columns: &BTreeMap<Channel, ColumnUse>,
+    channels: &[Channel],
+    name: &str,
+    wanted: f64,
+) -> Option<Correction> {
+    let quantity = channels.first()?.quantity();
+    let used: Vec<&ColumnUse> =
+        channels.iter().map(|channel| columns.get(channel)).collect::<Option<_>>()?;
+    let is_plain = |column: &&ColumnUse| column.formula.is_none() && column.terms.len() == 1;
+    let before = used.first()?.unit.si_per_unit;
+    let off = |unit: &Unit| (unit.si_per_unit / before / wanted - 1.0).abs();
+    let near = quantity.units().iter().filter(|unit| off(unit) < FITTING / 2.0);
+    let unit = near.min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    if !used.iter().all(is_plain) {
+        return None;
+    }
+    let change = |column: &&ColumnUse| {
+        let mut column = (*column).clone();
+        (column.unit, column.unit_is_stated) = (*unit, true);
+        column.terms.iter_mut().for_each(|term| term.unit = *unit);
+        Change::Column(column.channel, column.source())
+    };
+    let changes = used.iter().map(change).collect();
+    Some(Correction::new(format!("{name} in {}", unit.symbol), changes))
+}
+
+impl fmt::Display for PathSpeed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let &Self { ratio, is_whole, time_s, recorded_m_s, path_m_s, .. } = self;
+        let [recorded, path, factor] = [recorded_m_s, path_m_s, ratio].map(significant);
+        let part = if is_whole { "the whole" } else { "a part of the" };
+        write!(
+            f,
+            "says {recorded} m/s at {time_s} s, where the path goes on at {path} m/s: {factor} times as fast \
+             over {part} path"
+        )?;
+        match UNITS.iter().find(|(factor, _)| (ratio / factor - 1.0).abs() < FITTING / 2.0) {
+            Some((_, unit)) if is_whole => write!(f, ", as if {unit} were read as m/s"),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bend of 50 m radius at 15 m/s with noise of a few centimetres, and a speed that was changed.
+    fn bend(speed: impl Fn(f64) -> f64) -> TimeSeries {
+        let time_s: Vec<f64> = (0..400).map(|i| f64::from(i) * 0.02).collect();
+        let noise_m = |i: usize, k: f64| 0.03 * (k * i as f64 * i as f64).sin();
+        let column = |f: &dyn Fn(usize, f64) -> f64| {
+            time_s.iter().enumerate().map(|(i, t)| f(i, *t)).collect::<Vec<f64>>()
+        };
+        let mut series = TimeSeries::new(time_s.clone()).unwrap();
+        for (channel, values) in [
+            (Channel::X, column(&|i, t| 50.0 * (0.3 * t).sin() + noise_m(i, 1.3))),
+            (Channel::Y, column(&|i, t| 50.0 * (1.0 - (0.3 * t).cos()) + noise_m(i, 0.7))),
+            (Channel::Speed, column(&|_, t| speed(t))),
+        ] {
+            series.insert(channel, values).unwrap();
+        }
+        series
+    }
+
+    #[test]
+    fn a_speed_with_noise_is_that_of_its_path() {
+        assert_eq!(path_speed(&bend(|t| 15.0 + (40.0 * t).sin())), None);
+        assert_eq!(path_speed(&bend(|_| -15.0)), None);
+    }
+
+    #[test]
+    fn another_unit_and_a_part_that_is_off_are_found_with_their_place() {
+        let found = path_speed(&bend(|_| 54.0)).unwrap();
+        assert!((found.ratio - 3.6).abs() < 0.02 && found.is_whole, "{found:?}");
+        assert!(found.to_string().ends_with("over the whole path, as if km/h were read as m/s"));
+        // A wheel that locks for 2.4 s: its speed is not that of the car.
+        let found =
+            path_speed(&bend(|t| if (3.0..5.4).contains(&t) { 9.0 } else { 15.0 })).unwrap();
+        assert!(!found.is_whole && (3.0..5.4).contains(&found.time_s), "{found:?}");
+        assert!((found.recorded_m_s - 9.0).abs() < 0.1, "{found:?}");
+    }
+
+    #[test]
+    fn components_are_compared_where_no_heading_is_known() {
+        let mut series = bend(|_| 15.0);
+        let n = series.n_samples();
+        series.insert(Channel::Speed, vec![15.0; n]).unwrap();
+        assert_eq!(path_speed(&series), None);
+        let mut components = TimeSeries::new(series.time_s().to_vec()).unwrap();
+        for channel in [Channel::X, Channel::Y] {
+            components.insert(channel, series.get(channel).unwrap().to_vec()).unwrap();
+        }
+        components.insert(Channel::Vx, vec![9.0 * 3.6; n]).unwrap();
+        components.insert(Channel::Vy, vec![12.0 * 3.6; n]).unwrap();
+        assert!(path_speed(&components).unwrap().is_whole);
+    }
+}

@@ -1,0 +1,195 @@
+//! The five questions that a forecast answers, each in a sentence: will it spin, where does it stop, does it
+//! cross into the next lane, how sure is that, and what would change it?
+
+use impactlab_core::units::Quantity;
+
+use crate::PredictMotionReport;
+use crate::analysis::PlaceChance;
+use crate::facts::answer::{ENOUGH_AT_REST, place_at};
+use crate::facts::held::held_of;
+use crate::facts::{Fact, FactTable, Term, Value};
+use crate::measured::{HeldIntervals, Measured};
+
+/// Lanes, kerbs and zones that are named of each vehicle.
+const N_PLACES: usize = 2;
+
+/// Values with a space between them.
+fn words(values: Vec<Value>) -> Value {
+    Value::Joined(values, " ")
+}
+
+impl PredictMotionReport {
+    /// The answer in five sentences.
+    pub fn answer_card(&self) -> FactTable {
+        let facts = vec![
+            Fact::new(Term::WillItSpin, self.spin_sentence()),
+            Fact::new(Term::WhereDoesItStop, self.stop_sentence()),
+            Fact::new(Term::IntoNextLane, self.lane_sentence()),
+            Fact::new(Term::HowSure, self.sureness_sentence()),
+            Fact::new(Term::WhatWouldChangeIt, self.change_sentence()),
+        ];
+        FactTable::new(Term::TheAnswer, facts)
+    }
+
+    fn spin_sentence(&self) -> Value {
+        let part = |term: Term, share| words(vec![term.into(), self.chance(share)]);
+        let [quarter, half] = [self.outcome.p_quarter_turn, self.outcome.p_half_turn];
+        let parts = vec![part(Term::TurnedQuarter, quarter), part(Term::TurnedHalf, half)];
+        Value::Joined(parts, ", ")
+    }
+
+    fn stop_sentence(&self) -> Value {
+        let outcome = &self.outcome;
+        let mut parts = match &self.rest {
+            Some(rest) => {
+                let share = Value::ShareOfDraws(rest.share_at_rest, rest.n_draws);
+                let distance = Value::Estimate(Quantity::Length, rest.distance_m.clone());
+                let mut parts = vec![
+                    words(vec![Term::RestsIn.into(), share]),
+                    words(vec![Term::At.into(), place_at(&rest.x_m, &rest.y_m)]),
+                    words(vec![Term::AfterPath.into(), distance]),
+                ];
+                if rest.share_at_rest < ENOUGH_AT_REST {
+                    parts.push(Term::OthersStillMove.into());
+                }
+                parts
+            }
+            None => {
+                let is_at_rest = outcome.is_at_rest;
+                let term = if is_at_rest { Term::RestsAfter } else { Term::MovesAfter };
+                let time = Value::Given(Quantity::Time, outcome.time_s);
+                let place = place_at(&outcome.x_m, &outcome.y_m);
+                let speed = Value::Decimals(Quantity::Speed, outcome.speed_m_s, 0);
+                let speed = words(vec![Term::WithSpeed.into(), speed]);
+                let parts = [words(vec![term.into(), time]), words(vec![Term::At.into(), place])];
+                parts.into_iter().chain((!is_at_rest).then_some(speed)).collect()
+            }
+        };
+        if !self.is_end_known() {
+            parts.push(Term::AfterSecondContact.into());
+        }
+        Value::Joined(parts, ", ")
+    }
+
+    fn lane_sentence(&self) -> Value {
+        if self.places.is_empty() {
+            return Term::LanesNotCounted.into();
+        }
+        let named = |term: Term, place: &PlaceChance, share: f64| {
+            let name = Value::Text(place.name.clone());
+            words(vec![term.into(), name, Term::WithChance.into(), self.place_chance(share)])
+        };
+        let [struck, striking] = self.entered_places();
+        let struck = struck
+            .into_iter()
+            .take(N_PLACES)
+            .map(|it| named(Term::StruckComesOver, it, it.struck_enters));
+        let striking = striking
+            .into_iter()
+            .take(N_PLACES)
+            .map(|it| named(Term::StrikingComesOver, it, it.striking_enters));
+        let all: Vec<Value> = struck.chain(striking).collect();
+        match all.is_empty() {
+            true => Term::NoOtherLane.into(),
+            false => Value::Joined(all, "; "),
+        }
+    }
+
+    /// Whether the methods agree, and how often such intervals held.
+    fn sureness_sentence(&self) -> Value {
+        let verdict = |subject: Term, verdict: Term| words(vec![subject.into(), verdict.into()]);
+        let ends = self.rival.as_ref().map(|it| verdict(Term::EndsVerdict, self.ends_verdict(it)));
+        let impulses = self.impulses.as_ref();
+        let impulses = impulses.map(|it| verdict(Term::ImpulsesVerdict, it.verdict()));
+        let held = match self.worst_held() {
+            Some(held) => {
+                let count = Value::CountOf(held.in_90, held.n);
+                words(vec![Term::HeldAtWorst.into(), count, Term::ComputedMotions.into()])
+            }
+            None => Term::HeldNotCounted.into(),
+        };
+        let parts = ends.into_iter().chain(impulses).chain([held]).collect();
+        Value::Joined(parts, "; ")
+    }
+
+    /// The quantity whose intervals of 90 % held least often; none where that was not counted.
+    fn worst_held(&self) -> Option<&'static HeldIntervals> {
+        let subject = match self.contacts {
+            Some(_) => Measured::Pairs,
+            None => Measured::ResponseNetwork,
+        };
+        let share = |of: &HeldIntervals| of.in_90 as f64 / of.n.max(1) as f64;
+        let held = held_of(subject, &self.response_model).filter(|_| self.is_measured());
+        held?.iter().min_by(|a, b| share(a).total_cmp(&share(b)))
+    }
+
+    fn change_sentence(&self) -> Value {
+        self.hinges().unwrap_or(Term::NothingDrawn.into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::facts::FactWriter;
+    use crate::facts::answer::tests::forecast;
+    use impactlab_core::units::{Language, NumberFormat, UnitSystem};
+
+    fn sentences(report: &PredictMotionReport, language: Language) -> Vec<[String; 2]> {
+        let english = FactWriter::english(UnitSystem::Si);
+        let format = NumberFormat { language, ..english.format };
+        let text = report.answer_card().to_text(&FactWriter { format, ..english });
+        let cells = text.rows.into_iter().map(|row| row.cells);
+        cells.map(|cells| <[String; 2]>::try_from(cells).expect("question and answer")).collect()
+    }
+
+    /// The five questions in their order, each with numbers of the answer, whatever is not known.
+    #[test]
+    fn five_questions_are_answered_first() {
+        let report = forecast(None);
+        let table = &report.facts()[0];
+        assert_eq!(*table, report.answer_card());
+        let rows = sentences(&report, Language::En);
+        let questions: Vec<&str> = rows.iter().map(|[question, _]| question.as_str()).collect();
+        assert_eq!(
+            questions,
+            [
+                "Will it spin?",
+                "Where does it stop?",
+                "Does it cross into the next lane?",
+                "How sure is that?",
+                "What would change it?"
+            ]
+        );
+        let quarter = format!("{:.1} %", 100.0 * report.outcome.p_quarter_turn);
+        assert!(rows[0][1].contains(&quarter), "{rows:?}");
+        assert!(rows[1][1].starts_with("not within the forecast") && rows[1][1].contains("km/h"));
+        assert!(rows[2][1].contains("site"), "{rows:?}");
+        assert!(rows[3][1].contains("of 90 % held") && rows[3][1].contains("4DOF"), "{rows:?}");
+        for [question, answer] in sentences(&report, Language::De) {
+            assert!(question.ends_with('?') && answer.len() > 10, "{question} {answer}");
+        }
+    }
+
+    #[test]
+    fn lanes_are_named_with_their_chance_and_that_none_is_entered_is_said() {
+        let place = |struck_starts| PlaceChance {
+            name: "left lane".to_owned(),
+            struck_starts,
+            struck_enters: 1.0,
+            struck_ends: 0.5,
+            striking_starts: true,
+            striking_enters: 1.0,
+            striking_ends: 1.0,
+        };
+        let report = forecast(None);
+        let lane = |struck_starts| {
+            let places = vec![place(struck_starts)];
+            let report = PredictMotionReport { places, ..report.clone() };
+            sentences(&report, Language::En)[2][1].clone()
+        };
+        let entered = lane(false);
+        assert!(entered.starts_with("the struck vehicle comes over left lane with"), "{entered}");
+        assert!(lane(true).starts_with("in no draw"), "{}", lane(true));
+    }
+}
