@@ -108,6 +108,19 @@ fn a_car_that_is_chosen_is_the_car_of_the_scenario() {
     );
 }
 
+/// The list took the focus back before it asked whether its search was entered.
+#[test]
+fn a_car_is_chosen_by_the_keyboard_alone() {
+    let mut harness = open(&[SCENARIO]);
+    apply(&mut harness, Command::Show(Pane::Vehicle));
+    harness.run_steps(4);
+    harness.get_by_role_and_label(Role::ComboBox, "Struck vehicle").click();
+    harness.run_steps(4);
+    typed(&mut harness, "corolla");
+    let vehicle = &state(&harness).project.simulate.vehicle;
+    assert_eq!(*vehicle, VehicleChoice::Preset("toyota-corolla-2020".to_owned()));
+}
+
 #[test]
 fn the_scenario_follows_a_vehicle_that_is_edited() {
     let mut harness = with_forms();

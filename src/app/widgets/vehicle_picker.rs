@@ -1,7 +1,7 @@
 //! The list in which a vehicle is chosen: with a search, and the outline of each.
 
 use egui::{
-    ComboBox, Grid, PopupCloseBehavior, Rect, Response, ScrollArea, Sense, Stroke, TextEdit,
+    ComboBox, Grid, Key, PopupCloseBehavior, Rect, Response, ScrollArea, Sense, Stroke, TextEdit,
     Ui, vec2,
 };
 
@@ -68,11 +68,11 @@ impl VehiclePicker<'_> {
         let mut search = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
         let field = TextEdit::singleline(&mut search).hint_text("Search: make, class, year");
         let field = ui.add(field.desired_width(f32::INFINITY));
+        // Asked before the field takes the focus back.
+        let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         if ui.memory(|memory| memory.focused().is_none()) {
             field.request_focus();
         }
-        let is_entered =
-            field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         ui.data_mut(|data| data.insert_temp(id, search.clone()));
         let mut chosen = None;
         ScrollArea::vertical().max_height(OPEN_HEIGHT - SEARCH_HEIGHT).show(ui, |ui| {
