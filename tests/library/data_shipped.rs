@@ -1,5 +1,6 @@
 //! The shipped data sets load without a problem.
 
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -66,5 +67,33 @@ fn clean_cases_raise_no_warning_and_the_others_say_why() {
         assert_eq!(count(FlagKind::Hooked), n_hooked, "{name}");
         assert_eq!(count(FlagKind::NotSeparated), n_not_separated, "{name}");
         assert_eq!(flags.len(), n_hooked + n_not_separated, "{name}: {flags:?}");
+    }
+}
+
+/// The cars of a sample: each is a data set of its own, and none stands in both parts.
+#[test]
+fn sampled_cars_load_without_a_problem_and_those_held_out_are_others() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets");
+    let mut go_on = |_| ControlFlow::Continue(());
+    let mut names = BTreeSet::new();
+    for (part, n_cars) in [("trajectories-cars", 33), ("trajectories-cars-held-out", 11)] {
+        let mut n_found = 0;
+        for entry in std::fs::read_dir(root.join(part)).unwrap() {
+            let folder = entry.unwrap().path();
+            if !folder.is_dir() {
+                continue;
+            }
+            n_found += 1;
+            let dataset = Dataset::load(&folder, &mut go_on).unwrap().complete().unwrap();
+            assert!(dataset.problems.is_empty(), "{:?}", dataset.problems);
+            assert_eq!(dataset.cases.len(), 12, "{}", folder.display());
+            for case in &dataset.cases {
+                assert!(TrajectoryAttributes::read(&case.attributes).is_ok(), "{}", case.name);
+                assert!(case.force_history().is_ok(), "{}", case.name);
+                assert_eq!(contradictions(&case.series), [], "{}", case.name);
+            }
+            assert!(names.insert(dataset.root.file_name().unwrap().to_owned()));
+        }
+        assert_eq!(n_found, n_cars, "{part}");
     }
 }
