@@ -4,7 +4,7 @@
 //! and in the numbers of the picture; the picture has the first of it and how much more there is.
 
 use egui::text::{LayoutJob, TextFormat, TextWrapping};
-use egui::{FontId, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
+use egui::{FontId, Rect, RichText, Sense, TextStyle, Ui, Vec2, pos2, vec2};
 
 use crate::{FigureOptions, figure_ui, theme};
 use impactlab_core::data::Severity;
@@ -21,10 +21,16 @@ const BETWEEN: f32 = 8.0;
 /// Narrowest line, as a number of letters, that stands beside the number of the others in words.
 const LEAST_LETTERS: f32 = 30.0;
 
+/// Size of the names in the legend of a picture, points: in a window there is less room for them.
+const LEGEND_SIZE: f32 = 11.5;
+
 /// Draws a figure below its title and above the line of what restricts it.
 pub fn picture_ui(ui: &mut Ui, figure: &Figure) {
     let width = ui.available_width();
     ui.label(RichText::new(&figure.title).strong().size(TITLE_SIZE));
+    if let Some(small) = ui.style_mut().text_styles.get_mut(&TextStyle::Small) {
+        small.size = LEGEND_SIZE;
+    }
     let line = RestrictionLine::new(&figure.caveats);
     let height = line.as_ref().map(|_| ui.available_height() - LINE_HEIGHT);
     figure_ui(ui, figure, &FigureOptions { height, ..FigureOptions::default() });

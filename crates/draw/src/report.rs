@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Frame, TextStyle, Ui};
+use egui::{Frame, Ui};
 
 use crate::offscreen::shapes_offscreen;
 use crate::report_vectors::vector_picture;
@@ -21,9 +21,8 @@ const SCALE: f32 = 2.25;
 /// A picture that takes half of the width of a page, with the sides of its place; its letters are as large
 /// as those of the captions.
 const HALF: Canvas = Canvas { size_px: [1040, 780], scale: 3.0, dark: false };
-/// Room around a plot, and the size of the names in its legend, points.
+/// Room around a plot, points.
 const PLOT_MARGIN: f32 = 4.0;
-const LEGEND_SIZE: f32 = 11.0;
 
 /// Draws a picture of a report for a medium. On a page a plot consists of lines and letters.
 ///
@@ -39,9 +38,6 @@ pub fn report_drawing(content: &PictureContent, medium: Medium) -> Result<Drawn,
 /// A plot as lines and letters; as pixels if it holds an image.
 fn plot_on_page(figure: &Figure) -> Result<Drawn, String> {
     let ui = |ui: &mut Ui| {
-        if let Some(small) = ui.style_mut().text_styles.get_mut(&TextStyle::Small) {
-            small.size = LEGEND_SIZE;
-        }
         Frame::new().inner_margin(PLOT_MARGIN).show(ui, |ui| picture_ui(ui, figure));
     };
     let shapes = shapes_offscreen(HALF, ui).map_err(|error| error_chain(&error))?;
