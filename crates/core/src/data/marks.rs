@@ -214,7 +214,9 @@ impl Marks {
         let is_comma = decimal_comma.or(by_thousands).unwrap_or_else(by_numbers);
         let is_known = decimal(Point) || decimal(Comma) || Thousands::ALL.into_iter().any(grouped);
         let is_said = decimal_comma.is_some() || thousands.is_some();
-        let is_open = !is_known && !is_said && (open(Point) || open(Comma));
+        // Who divides fields by commas writes decimals with points.
+        let is_point_open = open(Point) && separator != Separator::Comma;
+        let is_open = !is_known && !is_said && (is_point_open || open(Comma));
         let other = if is_comma { Point } else { Comma };
         let found = || match () {
             () if grouped(Apostrophe) => Some(Apostrophe),
@@ -293,6 +295,9 @@ mod tests {
         }
         let mut marks = Marks::default();
         marks.add("1.860");
+        let between_commas = marks.signs(Separator::Comma, None, None);
+        let points = Signs { decimal_comma: false, thousands: None, is_open: false };
+        assert_eq!(between_commas, points);
         let said =
             |decimal_comma, thousands| marks.signs(Separator::Semicolon, decimal_comma, thousands);
         let read = |decimal_comma, thousands| Signs { decimal_comma, thousands, is_open: false };
