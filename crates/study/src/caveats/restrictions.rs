@@ -356,6 +356,17 @@ pub(crate) fn trained_on_caveat(n_known: usize, n_test: usize) -> Option<Caveat>
     (n_known > 0).then(caveat)
 }
 
+/// That a network tells of a case from which it has learned.
+pub(crate) fn learned_case_caveat(kind: CaveatKind) -> Caveat {
+    let text = Phrase::new(
+        "the force network has learned from this case: that it is near the record says nothing of other \
+         collisions",
+        "Das Kraftnetz hat an diesem Fall gelernt: Dass es nahe an der Aufzeichnung liegt, besagt nichts über \
+         andere Kollisionen",
+    );
+    Caveat::new(kind, text)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

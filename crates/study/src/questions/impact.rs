@@ -166,7 +166,7 @@ impl Question for ImpactRequest {
                 Beside::ask(asked, &solution, network, library, observer)?
             }
         };
-        let Outcome::Complete(Beside { rival, caveat, model }) = beside else {
+        let Outcome::Complete(Beside { rival, caveats: beside, model }) = beside else {
             return Ok(Outcome::Cancelled);
         };
         let caveats: Caveats = assumed::first_touch(&geometry)
@@ -174,7 +174,7 @@ impl Question for ImpactRequest {
             .chain(assumed::contact_default(&scenario, &impact))
             .chain(restrictions::overlap_caveat(&geometry))
             .chain(restrictions::energy_gain_caveat(solution.dissipated_energy_j))
-            .chain(caveat)
+            .chain(beside)
             .collect();
         let report = ImpactReport {
             name: scenario.name.clone(),

@@ -2,19 +2,20 @@
 
 use crate::analysis::{
     Analysis, BothVehiclesQuestion, ContactPair, FirstForces, MotionForecast,
-    MotionForecastSettings, StruckVehicle, forecast_both, in_world,
+    MotionForecastSettings, PlaceChance, StruckVehicle, forecast_both, in_world, place_chances,
 };
-use crate::caveats::unused::{by_force_network, drawn_drivers};
+use crate::caveats::unused::{by_force_network, drawn_drivers, lanes_by_network};
 use crate::questions::predict::motion::Noted;
 use crate::questions::predict::one_vehicle::given_force;
 use crate::{
-    Event, ForceSource, Library, MotionSource, Observer, PredictMotionRequest, SeriesFile,
-    StudyError,
+    Event, ForceSource, InputKind, Library, MotionSource, Observer, PredictMotionRequest,
+    SeriesFile, StudyError,
 };
 use impactlab_core::data::{ForceHistory, Outcome};
 use impactlab_core::jobs::Progress;
 use impactlab_core::numerics::random_stream;
-use impactlab_core::uncertainty::{Caveat, CaveatKind, CurveMixture};
+use impactlab_core::site::Site;
+use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats, CurveMixture};
 use impactlab_core::units::{Phrase, PhraseValue};
 use impactlab_networks::force::{ForcePrediction, SHARE_OF_NETWORK};
 use impactlab_networks::response::ResponseModel;
@@ -102,6 +103,22 @@ impl<'a> Both<'a> {
 }
 
 impl PredictMotionRequest {
+    /// How likely the vehicles come to the lanes and kerbs of the site.
+    pub(super) fn places(
+        &self,
+        forecast: &MotionForecast,
+        analysis: &Analysis,
+        caveats: &mut Caveats,
+    ) -> Result<Vec<PlaceChance>, StudyError> {
+        let Some(path) = &self.motion.site else { return Ok(Vec::new()) };
+        let site = InputKind::Site.explain(path, Site::load(path))?;
+        let (Some(_), Some(striking)) = (&forecast.both, &analysis.striking) else {
+            caveats.extend(lanes_by_network(&site));
+            return Ok(Vec::new());
+        };
+        Ok(place_chances(&site, forecast, [analysis.footprint, striking.footprint]))
+    }
+
     /// The forecast of both vehicles.
     pub(super) fn of_both_vehicles(
         &self,

@@ -16,9 +16,11 @@ use crate::{
 use impactlab_core::collision::{Impact, PrincipalDirectionOfForce, ScenarioContact};
 use impactlab_core::data::{DatasetKind, Outcome};
 use impactlab_core::ranges::SAMPLES;
-use impactlab_core::uncertainty::Caveat;
+use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{Estimate, Phrase, PhraseValue};
-use impactlab_networks::force::{ForceError, ForcePrediction, ForceScenario, OutsideTraining};
+use impactlab_networks::force::{
+    ForceCase, ForceError, ForcePrediction, ForceScenario, OutsideTraining,
+};
 
 /// Asks which force a collision brings about, and how sure that is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -148,6 +150,8 @@ struct CollisionInput {
     unused: Vec<Caveat>,
     /// That its outlines overlap.
     overlap: Option<Caveat>,
+    /// The case of a data set, by which a network knows whether it has learned from it.
+    case: Option<ForceCase>,
 }
 
 impl PredictForceRequest {
@@ -172,7 +176,7 @@ impl ForceQuestion {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<CollisionInput>, StudyError> {
         let (mut unused, mut overlap) = (Vec::new(), None);
-        let (mut contact, mut default) = (None, None);
+        let (mut contact, mut default, mut known) = (None, None, None);
         let across = |numbers: &ForceScenario| Some((numbers.likely_impact()?, 0.0));
         let (name, numbers, impact) = match self {
             Self::Scenario(choice) => {
@@ -195,7 +199,10 @@ impl ForceQuestion {
                 if dataset.kind != DatasetKind::Force {
                     return Err(StudyError::NoCollision { name: case.clone() });
                 }
-                let numbers = ForceScenario::from_case(take_case(&dataset, case)?)?;
+                let taken = take_case(&dataset, case)?;
+                let numbers = ForceScenario::from_case(taken)?;
+                // What cannot be learned from is none that was.
+                known = ForceCase::from_case(taken).ok();
                 let impact = across(&numbers);
                 (case.clone(), numbers, impact)
             }
@@ -211,6 +218,7 @@ impl ForceQuestion {
             default,
             unused,
             overlap,
+            case: known,
         }))
     }
 }
@@ -243,8 +251,11 @@ impl Question for PredictForceRequest {
         let Outcome::Complete(collision) = numbers else {
             return Ok(Outcome::Cancelled);
         };
-        let CollisionInput { name, numbers, mut impact, contact, default, mut unused, overlap } =
-            collision;
+        let learned = collision.case.as_ref().filter(|case| model.is_trained_on(case));
+        let learned = learned.map(|_| restrictions::learned_case_caveat(CaveatKind::TrainedOn));
+        let CollisionInput {
+            name, numbers, mut impact, contact, default, mut unused, overlap, ..
+        } = collision;
         let mut collision = numbers;
         if let Some(body) = &self.body {
             collision.striking_body = Some(body.clone());
@@ -282,7 +293,8 @@ impl Question for PredictForceRequest {
             report.momentum_impulse_n_s = implied.momentum.impulse_n_s;
         }
         let restrictions = restrictions::predicted_force_caveats(&report, &prediction.caveats);
-        let caveats = restrictions.into_iter().chain(unused).chain(overlap).collect();
+        let caveats =
+            restrictions.into_iter().chain(learned).chain(unused).chain(overlap).collect();
         let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(PredictForceAnswer { report, collision, forecast, prediction }))
     }

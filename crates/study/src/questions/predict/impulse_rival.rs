@@ -11,13 +11,16 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::analysis::StruckVehicle;
+use crate::caveats::restrictions::learned_case_caveat;
 use crate::{
-    ForceQuestion, Library, ModelChoice, Observer, PredictForceReport, PredictForceRequest,
-    Question, ScenarioChoice, StudyError,
+    Answer, ForceQuestion, ForceSource, Library, ModelChoice, MotionSource, Observer,
+    PredictForceReport, PredictForceRequest, PredictMotionRequest, Question, ScenarioChoice,
+    StudyError,
 };
 use impactlab_core::collision::{ImpactSolution, PrincipalDirectionOfForce, Regime, Scenario};
-use impactlab_core::data::Outcome;
 use impactlab_core::data::write::ModelDigest;
+use impactlab_core::data::{DatasetKind, Outcome};
 use impactlab_core::error_chain;
 use impactlab_core::numerics::{normal_quantile, wrap_angle_rad};
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
@@ -64,8 +67,8 @@ pub struct ImpulseRival {
 pub(crate) struct Beside {
     /// The force network; `None` where it has nothing of its own to say.
     pub rival: Option<ImpulseRival>,
-    /// Why it has not, or that the two do not agree.
-    pub caveat: Option<Caveat>,
+    /// Why it has not, or that the two do not agree, or that it has learned from the case.
+    pub caveats: Vec<Caveat>,
     /// The force network that was asked.
     pub model: Option<ModelDigest>,
 }
@@ -100,30 +103,32 @@ impl Beside {
                 "Neben der Impulslösung steht kein anderes Verfahren: {0}",
             )
             .with(PhraseValue::Term(why.to_owned()));
-            let caveat = Some(Caveat::new(CaveatKind::Note, text));
-            Ok(Outcome::Complete(Self { caveat, ..Self::default() }))
+            let caveats = vec![Caveat::new(CaveatKind::Note, text)];
+            Ok(Outcome::Complete(Self { caveats, ..Self::default() }))
         };
         let collision = ForceQuestion::Scenario(choice.clone());
         let predicted = match ask_network(collision, (model, seed), library, observer) {
-            Outcome::Complete(Ok(predicted)) => predicted,
+            Outcome::Complete(Ok(predicted)) => predicted.report,
             Outcome::Complete(Err(why)) => return alone(&why),
             Outcome::Cancelled => return Ok(Outcome::Cancelled),
         };
         let rival = ImpulseRival::new(impulse_n_s, pdof, scenario.struck.mass_kg, &predicted);
-        let caveat = rival.caveat();
-        Ok(Outcome::Complete(Self { rival: Some(rival), caveat, model: Some(digest) }))
+        let caveats = rival.caveat().into_iter().collect();
+        Ok(Outcome::Complete(Self { rival: Some(rival), caveats, model: Some(digest) }))
     }
 
     /// The same of a case of a force data set, whose momentum solution is the one beside the network. Where
-    /// that has nothing to say, nothing stands beside the record.
+    /// that has nothing to say, nothing stands beside the record. A motion by the record needs neither of
+    /// them, and it is no restriction of it that they disagree or are known.
     ///
-    /// - `mass_kg`: of the struck vehicle.
+    /// - `mass_kg`: of the struck vehicle;
+    /// - `is_driving`: whether the network moves the vehicle.
     ///
     /// # Errors
     /// [`StudyError`] if the network cannot be read.
     pub fn ask_case(
         collision: ForceQuestion,
-        mass_kg: f64,
+        (mass_kg, is_driving): (f64, bool),
         (model, seed): (ModelChoice, u64),
         library: &Library,
         observer: &mut Observer<'_>,
@@ -134,12 +139,52 @@ impl Beside {
             Outcome::Complete(Err(_)) => return Ok(Outcome::Complete(Self::default())),
             Outcome::Cancelled => return Ok(Outcome::Cancelled),
         };
+        let kind = if is_driving { CaveatKind::TrainedOn } else { CaveatKind::Note };
+        let learned = predicted.caveats.has(CaveatKind::TrainedOn);
+        let learned = learned.then(|| learned_case_caveat(kind));
+        let predicted = predicted.report;
         let impulse_n_s = predicted.momentum_impulse_n_s;
         let pdof = PrincipalDirectionOfForce::from_impulse(impulse_n_s, 0.0);
         let rival = pdof.map(|pdof| ImpulseRival::new(impulse_n_s, pdof, mass_kg, &predicted));
-        let caveat = rival.as_ref().and_then(ImpulseRival::caveat);
-        let model = rival.as_ref().map(|_| digest);
-        Ok(Outcome::Complete(Self { rival, caveat, model }))
+        let Some(rival) = rival else { return Ok(Outcome::Complete(Self::default())) };
+        let disagreement = rival.caveat().filter(|_| is_driving);
+        let caveats = disagreement.into_iter().chain(learned).collect();
+        Ok(Outcome::Complete(Self { rival: Some(rival), caveats, model: Some(digest) }))
+    }
+}
+
+impl PredictMotionRequest {
+    /// The impulse of a scenario, or of a case of a force data set, by the momentum solution and by the force
+    /// network that moves the vehicle, or the shipped one; nothing for a motion of another source.
+    pub(super) fn impulses(
+        &self,
+        struck: &StruckVehicle,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<Beside>, StudyError> {
+        let nothing = Ok(Outcome::Complete(Beside::default()));
+        let model = match &self.force {
+            ForceSource::Predicted(model) => model.clone(),
+            ForceSource::Given | ForceSource::File(_) => ModelChoice::default(),
+        };
+        match &self.motion.source {
+            MotionSource::Scenario { scenario: choice, .. } => {
+                let scenario = choice.load()?;
+                let Ok(solution) = scenario.solve() else { return nothing };
+                let asked = (model, self.seed);
+                Beside::ask((choice, &scenario), &solution, asked, library, observer)
+            }
+            MotionSource::Case { dataset, case }
+                if DatasetKind::from_folder(dataset) == Some(DatasetKind::Force) =>
+            {
+                let (dataset, case) = (dataset.clone(), case.clone());
+                let collision = ForceQuestion::Case { dataset, case };
+                let is_driving = matches!(self.force, ForceSource::Predicted(_));
+                let struck = (struck.vehicle.mass.mass_kg, is_driving);
+                Beside::ask_case(collision, struck, (model, self.seed), library, observer)
+            }
+            _ => nothing,
+        }
     }
 }
 
@@ -149,14 +194,14 @@ fn ask_network(
     (model, seed): (ModelChoice, u64),
     library: &Library,
     observer: &mut Observer<'_>,
-) -> Outcome<Result<PredictForceReport, String>> {
+) -> Outcome<Result<Answer<PredictForceReport>, String>> {
     let request = PredictForceRequest { model, seed, ..PredictForceRequest::new(collision) };
     match request.answer(library, observer) {
         Ok(Outcome::Complete(predicted)) if predicted.report.applicability <= 0.0 => {
             let why = "the force network has learned from no collision like this one";
             Outcome::Complete(Err(why.to_owned()))
         }
-        Ok(Outcome::Complete(predicted)) => Outcome::Complete(Ok(predicted.report.report)),
+        Ok(Outcome::Complete(predicted)) => Outcome::Complete(Ok(predicted.report)),
         Ok(Outcome::Cancelled) => Outcome::Cancelled,
         Err(error) => Outcome::Complete(Err(error_chain(&error))),
     }
@@ -298,13 +343,13 @@ mod tests {
     #[test]
     fn that_neither_allows_the_other_is_a_warning() {
         let (mut scenario, same) = (Scenario::example(), asked(&Scenario::example()));
-        assert!(same.caveat.is_none(), "{:?}", same.caveat);
+        assert!(same.caveats.is_empty(), "{:?}", same.caveats);
         scenario.contact.restitution = Some(1.0);
         scenario.contact.friction_limit = Some(2.0);
         let beside = asked(&scenario);
         let rival = beside.rival.unwrap();
         assert!(!rival.is_in_network_intervals && !rival.is_in_momentum_intervals, "{rival:?}");
-        assert_eq!(beside.caveat.unwrap().kind, CaveatKind::Disagreement);
+        assert_eq!(beside.caveats[0].kind, CaveatKind::Disagreement);
     }
 
     /// At 60 m/s across nothing is left of the network: nothing stands beside the momentum solution, and
@@ -315,10 +360,10 @@ mod tests {
         scenario.striking.vy_world_m_s = 60.0;
         let beside = asked(&scenario);
         assert!(beside.rival.is_none());
-        let note = beside.caveat.unwrap();
+        let note = &beside.caveats[0];
         assert!(note.kind == CaveatKind::Note && note.text.contains("like this one"), "{note:?}");
         scenario.striking.vy_world_m_s = -5.0;
         let beside = asked(&scenario);
-        assert!(beside.rival.is_none() && beside.caveat.is_none());
+        assert!(beside.rival.is_none() && beside.caveats.is_empty());
     }
 }

@@ -8,26 +8,24 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
     Analysis, ContactsOutcome, MotionForecast, MotionForecastSettings, MotionOutcome, PlaceChance,
-    RestOutcome, Rival, RivalForce, SecondContacts, Sensitivity, StruckVehicle, place_chances,
+    RestOutcome, Rival, RivalForce, SecondContacts, Sensitivity, StruckVehicle,
 };
 use crate::ask::checks::{check, check_count};
 use crate::caveats::assumed::{self, contact_default};
 use crate::caveats::driver::open_driver;
 use crate::caveats::restrictions;
-use crate::caveats::unused::{by_forecast, contact_by_force_network, lanes_by_network};
+use crate::caveats::unused::{by_forecast, contact_by_force_network};
 use crate::questions::predict::both_vehicles::{Both, with_contact_law};
-use crate::questions::predict::impulse_rival::Beside;
 use crate::questions::predict::recorded_impulse::RecordedImpulse;
 use crate::questions::simulate::dataset::take_case;
 use crate::{
-    Answer, DEFAULT_DURATION_S, FlagReport, ForceQuestion, ImpliedContactReport, ImpulseRival,
-    InputKind, Library, ModelChoice, MotionSource, Observer, Provenance, Question, SimulateAnswer,
-    SimulateRequest, StudyError,
+    Answer, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, ImpulseRival, Library,
+    ModelChoice, MotionSource, Observer, Provenance, Question, SimulateAnswer, SimulateRequest,
+    StudyError,
 };
 use impactlab_core::data::write::ModelDigest;
 use impactlab_core::data::{ColumnMap, DatasetKind, Outcome};
 use impactlab_core::ranges::{DRAWS, FORECAST_DURATION, REST_LIMIT};
-use impactlab_core::site::Site;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
 use impactlab_networks::force::{ForceModel, ForceScenario, OutsideTraining};
 use impactlab_networks::pair::CourseShare;
@@ -329,7 +327,7 @@ impl Question for PredictMotionRequest {
             return Ok(Outcome::Cancelled);
         };
         let provenance = self.provenance(beside.model, library)?;
-        caveats.extend(beside.caveat);
+        caveats.extend(beside.caveats);
         caveats.extend(open_driver(&self.motion)?);
         caveats.extend(self.contact_caveats(&forecast)?);
         let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.caveats);
@@ -355,58 +353,6 @@ impl Question for PredictMotionRequest {
 }
 
 impl PredictMotionRequest {
-    /// How likely the vehicles come to the lanes and kerbs of the site.
-    fn places(
-        &self,
-        forecast: &MotionForecast,
-        analysis: &Analysis,
-        caveats: &mut Caveats,
-    ) -> Result<Vec<PlaceChance>, StudyError> {
-        let Some(path) = &self.motion.site else { return Ok(Vec::new()) };
-        let site = InputKind::Site.explain(path, Site::load(path))?;
-        let (Some(_), Some(striking)) = (&forecast.both, &analysis.striking) else {
-            caveats.extend(lanes_by_network(&site));
-            return Ok(Vec::new());
-        };
-        Ok(place_chances(&site, forecast, [analysis.footprint, striking.footprint]))
-    }
-
-    /// The impulse of a scenario, or of a case of a force data set, by the momentum solution and by the force
-    /// network that moves the vehicle, or the shipped one; nothing for a motion of another source.
-    fn impulses(
-        &self,
-        struck: &StruckVehicle,
-        library: &Library,
-        observer: &mut Observer<'_>,
-    ) -> Result<Outcome<Beside>, StudyError> {
-        let nothing = Ok(Outcome::Complete(Beside::default()));
-        let model = match &self.force {
-            ForceSource::Predicted(model) => model.clone(),
-            ForceSource::Given | ForceSource::File(_) => ModelChoice::default(),
-        };
-        match &self.motion.source {
-            MotionSource::Scenario { scenario: choice, .. } => {
-                let scenario = choice.load()?;
-                let Ok(solution) = scenario.solve() else { return nothing };
-                let asked = (model, self.seed);
-                Beside::ask((choice, &scenario), &solution, asked, library, observer)
-            }
-            MotionSource::Case { dataset, case }
-                if DatasetKind::from_folder(dataset) == Some(DatasetKind::Force) =>
-            {
-                let (dataset, case) = (dataset.clone(), case.clone());
-                let collision = ForceQuestion::Case { dataset, case };
-                let (asked, mass_kg) = ((model, self.seed), struck.vehicle.mass.mass_kg);
-                let beside = Beside::ask_case(collision, mass_kg, asked, library, observer)?;
-                // A record needs neither of them.
-                let is_predicted = matches!(self.force, ForceSource::Predicted(_));
-                let caveat = |of: Option<Caveat>| of.filter(|_| is_predicted);
-                Ok(beside.map(|of| Beside { caveat: caveat(of.caveat), ..of }))
-            }
-            _ => nothing,
-        }
-    }
-
     /// What the predicted force of a scenario implies of the contact.
     fn implied_contact(
         &self,

@@ -63,18 +63,19 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::{Library, MotionSource, PredictMotionReport, Question};
-    use impactlab_core::data::Dataset;
+    use crate::{Answer, Library, MotionSource, PredictMotionReport, Question};
+    use impactlab_core::data::{Case, Dataset};
+    use impactlab_core::uncertainty::{Caveat, CaveatKind};
+    use impactlab_networks::force::ForceCase;
 
-    fn of_case(force: ForceSource) -> PredictMotionReport {
-        let dataset = fea();
-        let source = MotionSource::Case { dataset, case: "c001".to_owned() };
+    fn of_case(case: &str, force: ForceSource) -> Answer<PredictMotionReport> {
+        let source = MotionSource::Case { dataset: fea(), case: case.to_owned() };
         let mut request =
             PredictMotionRequest { draws: 4, ..PredictMotionRequest::new(source, force) };
         request.motion.vehicle_draws = Some(0);
         let mut go_on = |_: crate::Event<'_>| ControlFlow::Continue(());
         let answer = request.answer(&Library::default(), &mut go_on).unwrap();
-        answer.complete().unwrap().report.report
+        answer.complete().unwrap().report
     }
 
     fn fea() -> PathBuf {
@@ -91,7 +92,7 @@ mod tests {
     fn a_case_has_its_record_beside_network_and_momentum_solution() {
         let [px, py] = record().impulse_n_s();
         for force in [ForceSource::Given, ForceSource::Predicted(Default::default())] {
-            let report = of_case(force);
+            let report = of_case("c001", force).report;
             let record = report.recorded.as_ref().unwrap();
             assert!((record.impulse_magnitude_n_s - px.hypot(py)).abs() < 1e-9, "{record:?}");
             let mass_kg = record.impulse_magnitude_n_s / record.delta_v_m_s;
@@ -101,6 +102,29 @@ mod tests {
             let ratio = beside.network_impulse_n_s.median / record.impulse_magnitude_n_s;
             assert!((0.5..2.0).contains(&ratio), "{beside:?}");
             assert!(beside.momentum_impulse_n_s.median > 0.0);
+        }
+    }
+
+    /// A network that has learned from a case is near its record whatever it is worth.
+    #[test]
+    fn that_the_network_has_learned_from_the_case_is_said() {
+        let model = Library::default().force_model(&Default::default()).unwrap();
+        let loaded = Dataset::load(&fea(), &mut |_| ControlFlow::Continue(())).unwrap();
+        let cases = loaded.complete().unwrap().cases;
+        for is_known in [true, false] {
+            let is_like = |case: &&Case| {
+                model.is_trained_on(&ForceCase::from_case(case).unwrap()) == is_known
+            };
+            let name = &cases.iter().find(is_like).unwrap().name;
+            for (force, kind) in [
+                (ForceSource::Given, CaveatKind::Note),
+                (ForceSource::Predicted(Default::default()), CaveatKind::TrainedOn),
+            ] {
+                let caveats = of_case(name, force).caveats;
+                let is_said =
+                    |of: &Caveat| of.kind == kind && of.text.contains("learned from this case");
+                assert_eq!(caveats.iter().any(is_said), is_known, "{name}: {caveats:?}");
+            }
         }
     }
 }

@@ -438,7 +438,7 @@ impl Question for SimulateRequest {
         let provenance = self.provenance(&report, beside.model);
         // That of the simulation beside a forecast is said with the forecast.
         caveats.extend((!self.alone).then(|| open_driver(self)).transpose()?.flatten());
-        caveats.extend(self.restrictions(&report, &analysis, overlap).chain(beside.caveat));
+        caveats.extend(self.restrictions(&report, &analysis, overlap).chain(beside.caveats));
         let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
     }
