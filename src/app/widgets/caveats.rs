@@ -92,7 +92,7 @@ mod tests {
         let caveat =
             Caveat::new(CaveatKind::NotAtRest, "").with_value("speed at the end [m/s]", 10.0);
         let text = |units| chip_text(&caveat, units);
-        assert_eq!(text(UnitSystem::Si), "not at rest: speed at the end [m/s] 10.00");
+        assert_eq!(text(UnitSystem::Si), "not at rest: speed at the end [km/h] 36.00");
         assert_eq!(text(UnitSystem::Us), "not at rest: speed at the end [mph] 22.37");
     }
 

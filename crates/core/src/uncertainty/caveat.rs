@@ -186,7 +186,7 @@ impl Caveat {
             let (name, unit, range) = (quantity, String::new(), self.range);
             return Some(CaveatQuantity { name, unit, value, range });
         };
-        let shown = Quantity::from_si_symbol(symbol).filter(|_| *format != NumberFormat::default());
+        let shown = Quantity::from_si_symbol(symbol);
         let unit = shown.map(|quantity| quantity.display_unit(format.units));
         let in_unit = |si: f64| unit.map_or(si, |unit| unit.from_si(si));
         let range = self.range.map(|range| range.map(|end| end.map(in_unit)));
@@ -269,7 +269,7 @@ mod tests {
     fn the_quantity_of_a_caveat_has_the_units_of_a_reader() {
         let caveat = moving();
         let si = caveat.quantity_in(&NumberFormat::default()).unwrap();
-        assert_eq!((si.name, &*si.unit, si.value), ("speed at the end", " [m/s]", 5.0));
+        assert_eq!((si.name, &*si.unit, si.value), ("speed at the end", " [km/h]", 18.0));
         let us = caveat.quantity_in(&US).unwrap();
         assert_eq!(us.unit, " [mph]");
         assert!((us.value - 11.185).abs() < 1e-3, "{us:?}");
