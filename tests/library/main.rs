@@ -26,6 +26,7 @@ mod model_budgets;
 mod ranges;
 mod report;
 mod report_opinion;
+mod report_pictures;
 mod report_stills;
 mod report_tables;
 mod response_model;

@@ -189,6 +189,20 @@ pub(super) mod tests {
         answer.complete().unwrap().report.report
     }
 
+    /// A place that the struck vehicle comes over in every draw and ends on in half of them, and on which
+    /// the striking one stays.
+    pub fn place(name: &str, struck_starts: bool) -> PlaceChance {
+        PlaceChance {
+            name: name.to_owned(),
+            struck_starts,
+            struck_enters: 1.0,
+            struck_ends: 0.5,
+            striking_starts: true,
+            striking_enters: 1.0,
+            striking_ends: 1.0,
+        }
+    }
+
     fn names(report: &PredictMotionReport) -> Vec<String> {
         let text = report.answer_table().to_text(&FactWriter::english(UnitSystem::Si));
         text.rows.into_iter().map(|row| row.cells[0].clone()).collect()
@@ -211,15 +225,6 @@ pub(super) mod tests {
     /// A lane that every draw comes into is told; one on which the vehicle was is not.
     #[test]
     fn a_place_that_the_vehicle_was_on_is_not_told() {
-        let place = |name: &str, struck_starts| PlaceChance {
-            name: name.to_owned(),
-            struck_starts,
-            struck_enters: 1.0,
-            struck_ends: 0.5,
-            striking_starts: true,
-            striking_enters: 1.0,
-            striking_ends: 1.0,
-        };
         let places = vec![place("own lane", true), place("other lane", false)];
         let names = names(&PredictMotionReport { places, ..forecast(None) });
         assert!(

@@ -132,7 +132,7 @@ impl PredictMotionReport {
 mod tests {
     use super::*;
     use crate::facts::FactWriter;
-    use crate::facts::answer::tests::forecast;
+    use crate::facts::answer::tests::{forecast, place};
     use impactlab_core::units::{Language, NumberFormat, UnitSystem};
 
     fn sentences(report: &PredictMotionReport, language: Language) -> Vec<[String; 2]> {
@@ -173,18 +173,9 @@ mod tests {
 
     #[test]
     fn lanes_are_named_with_their_chance_and_that_none_is_entered_is_said() {
-        let place = |struck_starts| PlaceChance {
-            name: "left lane".to_owned(),
-            struck_starts,
-            struck_enters: 1.0,
-            struck_ends: 0.5,
-            striking_starts: true,
-            striking_enters: 1.0,
-            striking_ends: 1.0,
-        };
         let report = forecast(None);
         let lane = |struck_starts| {
-            let places = vec![place(struck_starts)];
+            let places = vec![place("left lane", struck_starts)];
             let report = PredictMotionReport { places, ..report.clone() };
             sentences(&report, Language::En)[2][1].clone()
         };

@@ -1,4 +1,4 @@
-//! The German labels of what the program calls in English elsewhere.
+//! The German labels of what the program calls in English elsewhere. One table, and as long as there are labels.
 
 /// Labels of the program, and names in its files, with their German ones.
 pub(super) const TERMS: &[(&str, &str)] = &[
