@@ -59,7 +59,8 @@ pub struct Posterior {
     pub impacts: Vec<ImpactState>,
     /// Yaw rate of the struck car of each particle at the end of the contact, rad/s.
     pub yaw_rates_after_rad_s: Vec<f64>,
-    /// Independent particles that all of them are worth; none if they are not of the posterior.
+    /// Independent particles that all of them are worth; none if the run was stopped before it had some
+    /// of the posterior.
     pub ess: f64,
 }
 
@@ -72,7 +73,8 @@ const FIT_PARTICLES: usize = 300;
 impl Posterior {
     /// What follows from particles.
     pub fn new(struck: &ReconstructionTarget, particles: &Particles) -> Self {
-        let ess = if particles.is_posterior() { particles.ess } else { 0.0 };
+        let is_told = particles.is_posterior() || particles.is_weakened();
+        let ess = if is_told { particles.ess } else { 0.0 };
         Self { ess, ..Self::from_points(struck.model(), &particles.z) }
     }
 

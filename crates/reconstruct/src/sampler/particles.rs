@@ -20,6 +20,10 @@ pub struct Particles {
     /// Power β of the likelihood, 0 to 1: at 0 the particles are of the prior, at 1 of the
     /// posterior.
     pub temperature: f64,
+    /// Whether somebody stopped the run before its end.
+    pub is_stopped: bool,
+    /// Effective sample size of all draws at temperature 1.
+    pub posterior_ess: f64,
     /// Estimate of `ln ∫ N(z; 0, I) L(z)^β dz`, at temperature 1 the log evidence.
     pub log_evidence: f64,
     /// Effective sample size `1 / Σ w²` of all draws by their weights. It may exceed the number of
@@ -53,6 +57,22 @@ impl Particles {
     /// Whether the particles are of the posterior; those of a cancelled run may not be.
     pub fn is_posterior(&self) -> bool {
         self.temperature >= 1.0
+    }
+
+    /// Whether a finished run has particles of a weakened posterior, since too few were drawn where the
+    /// posterior lies. To the power β a normal likelihood is that of a standard deviation σ / √β, so that
+    /// their intervals are those of less certain evidence.
+    pub fn is_weakened(&self) -> bool {
+        !self.is_stopped && (Self::LEAST_WEAKENED..1.0).contains(&self.temperature)
+    }
+
+    /// Smallest temperature of a weakened posterior: standard deviations of the evidence four times as
+    /// large.
+    pub const LEAST_WEAKENED: f64 = 0.0625;
+
+    /// How many times as large as stated the standard deviations of the evidence count, `1 / √β`.
+    pub fn sigma_factor(&self) -> f64 {
+        1.0 / self.temperature.sqrt()
     }
 
     /// Effective number of draws that these particles are copies of: `1 / Σ w²` by the share of each.
@@ -108,6 +128,8 @@ mod tests {
             log_likelihood: vec![0.0; n],
             draw,
             temperature: 1.0,
+            is_stopped: false,
+            posterior_ess: 1.0,
             log_evidence: 0.0,
             ess: 1.0,
             n_evaluations: n,

@@ -10,6 +10,7 @@ use super::{
     LeftOutParticles, Likelihood, Particles, SamplerCheckpoint, SamplerError, SamplerReport,
     SamplerSettings, SamplerStage, SamplerStart, Target,
 };
+use crate::LEAST_ESS_FOR_INTERVALS;
 use impactlab_core::numerics::random_stream;
 
 /// Draws from the prior for each particle of the answer.
@@ -58,7 +59,10 @@ const BATCHES: usize = 8;
 /// Effective sample size from which particles are said to be of the posterior.
 const MIN_POSTERIOR_ESS: f64 = 20.0;
 
-/// How many times the largest number of evaluations may be exceeded until that is reached.
+/// Effective sample size of a weakened posterior.
+const WEAKENED_ESS: f64 = 200.0;
+
+/// How many times the largest number of evaluations may be exceeded until one of the two is reached.
 const MAX_EXCESS: usize = 4;
 
 /// Particles without a part of the evidence at the most.
@@ -72,7 +76,8 @@ const SAVED_GROWTH: f64 = 1.3;
 /// - `checkpoint`: where the run is saved every now and then, and resumed from.
 /// - `report`: called after each batch of evaluations. If it breaks, the sampler stops: what it
 ///   returns then are particles of the temperature that was reached
-///   ([`Particles::is_posterior`] tells whether that was 1).
+///   ([`Particles::is_posterior`] tells whether that was 1). A run that has spent its evaluations on a
+///   posterior of which it has hardly a draw returns a weakened one ([`Particles::is_weakened`]).
 ///
 /// # Errors
 /// [`SamplerError`] if a setting is outside its range, if the evidence is impossible everywhere, or
@@ -129,7 +134,7 @@ pub fn sample_from(
             n_saved = n_draws;
         }
     }
-    Ok(run.answer())
+    Ok(run.answer(flow.is_break()))
 }
 
 struct Run<'a, T: ?Sized> {
@@ -282,18 +287,38 @@ impl<T: Target + ?Sized> Run<'_, T> {
             return false;
         }
         let ess = self.posterior_ess();
-        let largest = match ess < MIN_POSTERIOR_ESS.min(self.settings.least_ess) {
+        let is_out_of_sight = ess < MIN_POSTERIOR_ESS.min(self.settings.least_ess)
+            && self.weakened_temperature().is_none();
+        let largest = match is_out_of_sight {
             true => MAX_EXCESS.saturating_mul(self.settings.max_evaluations),
             false => self.settings.max_evaluations,
         };
         ess >= self.settings.least_ess || n_draws >= largest
     }
 
-    fn answer(&self) -> Particles {
-        let population = &self.population;
+    /// Temperature of a weakened posterior, where too few draws are of the posterior itself.
+    fn weakened_temperature(&self) -> Option<f64> {
+        let least = self.settings.least_ess;
+        if self.posterior_ess() >= LEAST_ESS_FOR_INTERVALS.min(least) {
+            return None;
+        }
+        let temperature = self.population.temperature_of(WEAKENED_ESS.min(least));
+        (temperature >= Particles::LEAST_WEAKENED).then_some(temperature)
+    }
+
+    /// Temperature of the answer.
+    fn temperature(&self, is_stopped: bool) -> f64 {
+        if self.population.n_rounds() == 0 {
+            return 0.0;
+        }
         let least = MIN_POSTERIOR_ESS.min(self.settings.least_ess);
-        let is_drawn = population.n_rounds() > 0;
-        let temperature = if is_drawn { population.temperature_of(least) } else { 0.0 };
+        let weakened = self.weakened_temperature().filter(|_| !is_stopped);
+        weakened.unwrap_or_else(|| self.population.temperature_of(least))
+    }
+
+    fn answer(&self, is_stopped: bool) -> Particles {
+        let population = &self.population;
+        let temperature = self.temperature(is_stopped);
         let weights = population.weights(temperature);
         let u = random_stream(self.settings.seed, "reconstruct answer", 0).random();
         let draw = weights.resample(self.settings.n_particles, u);
@@ -314,6 +339,8 @@ impl<T: Target + ?Sized> Run<'_, T> {
             log_likelihood: draw.iter().map(|idx| particle(idx).1).collect(),
             draw,
             temperature,
+            is_stopped,
+            posterior_ess: self.posterior_ess(),
             log_evidence: weights.log_evidence,
             ess: weights.effective().max(1.0),
             n_evaluations: population.n_draws(),

@@ -45,6 +45,12 @@ impl LinearGaussian {
         }
     }
 
+    /// The same measurements with noise that is so many times as large.
+    pub fn with_noise_times(mut self, factor: f64) -> Self {
+        self.noise *= factor;
+        self
+    }
+
     /// Mean, covariance and log evidence in closed form:
     ///
     /// ```text

@@ -193,6 +193,27 @@ fn what_was_sampled_until_a_cancellation_is_kept_and_said_to_be_no_posterior() {
 }
 
 #[test]
+fn a_posterior_of_which_there_is_hardly_a_draw_is_answered_as_that_of_noisier_measurements() {
+    let settings = SamplerSettings { n_particles: 400, max_evaluations: 4500, ..seed(3) };
+    let particles = run(&LinearGaussian::narrow(), settings);
+    assert!(
+        particles.is_weakened() && particles.posterior_ess < 100.0,
+        "{}",
+        particles.temperature
+    );
+    assert!((particles.ess - 200.0).abs() < 1.0, "{}", particles.ess);
+    let noisier = LinearGaussian::narrow().with_noise_times(particles.sigma_factor());
+    let (means, covariance, _) = noisier.closed_form();
+    for j in 0..20 {
+        let std = covariance[(j, j)].sqrt();
+        let by_particles = mean(&particles, |z| z[j]);
+        assert!((by_particles - means[j]).abs() < 0.35 * std, "{j}: {by_particles} {}", means[j]);
+        let variance = mean(&particles, |z| (z[j] - by_particles).powi(2));
+        assert!((0.6..1.5).contains(&(variance.sqrt() / std)), "{j}: {}", variance.sqrt() / std);
+    }
+}
+
+#[test]
 fn a_run_that_is_stopped_anywhere_goes_on_to_the_same_particles() {
     let folder = tempfile::tempdir().unwrap();
     let target = discontinuous();

@@ -35,18 +35,57 @@ pub(super) fn several_courses(modes: &[Mode]) -> Option<Caveat> {
 
 /// Whether there are enough particles, and whether they are of the posterior.
 pub(super) fn of_particles(particles: &Particles) -> Vec<Caveat> {
-    let stopped = (!particles.is_posterior()).then(|| {
-        let text = Phrase::new(
+    match (particles.is_weakened(), particles.is_posterior()) {
+        (true, _) => vec![weakened(particles)],
+        (_, true) => few(particles).into_iter().collect(),
+        (false, false) => {
+            let out_of_sight = out_of_sight(particles);
+            std::iter::once(out_of_sight).chain(few(particles)).collect()
+        }
+    }
+}
+
+/// That the particles are those of evidence with larger standard deviations.
+fn weakened(particles: &Particles) -> Caveat {
+    let text = Phrase::new(
+        "with the evidence as stated the sample is equivalent to {0} independent draws only: intervals are \
+         those of evidence whose standard deviations are {1} times as large as stated, and wider than they \
+         need be",
+        "Mit den Anknüpfungstatsachen wie angegeben entspricht die Stichprobe nur {0} unabhängigen \
+         Ziehungen: Die Intervalle sind die von Anknüpfungstatsachen mit dem {1}-Fachen der angegebenen \
+         Standardabweichungen und weiter als nötig",
+    )
+    .with(PhraseValue::fixed(Quantity::Ratio, particles.posterior_ess, 0))
+    .with(PhraseValue::fixed(Quantity::Ratio, particles.sigma_factor(), 2));
+    Caveat::new(CaveatKind::FewParticles, text)
+        .with_value("effective sample size", particles.posterior_ess)
+        .with_range([LEAST_ESS, f64::INFINITY])
+}
+
+/// That the particles are not of the posterior.
+fn out_of_sight(particles: &Particles) -> Caveat {
+    let text = match particles.is_stopped {
+        true => Phrase::new(
             "sampling was stopped before all of the evidence was used: these particles are \
              not of the posterior, and no intervals are given; let the run end",
             "Die Rechnung wurde abgebrochen, bevor alle Anknüpfungstatsachen berücksichtigt waren. Es \
              werden keine Intervalle angegeben; die Rechnung ist bis zum Ende zu führen",
-        );
-        Caveat::new(CaveatKind::FewParticles, text)
-            .with_value("temperature", particles.temperature)
-            .with_range([1.0, f64::INFINITY])
-    });
-    let few = (particles.ess < LEAST_ESS).then(|| {
+        ),
+        false => Phrase::new(
+            "hardly a motion goes with all of the evidence: these particles are not of the posterior, and \
+             no intervals are given",
+            "Kaum eine Bewegung ist mit allen Anknüpfungstatsachen vereinbar. Es werden keine Intervalle \
+             angegeben",
+        ),
+    };
+    Caveat::new(CaveatKind::FewParticles, text)
+        .with_value("temperature", particles.temperature)
+        .with_range([1.0, f64::INFINITY])
+}
+
+/// That intervals rest on few particles.
+fn few(particles: &Particles) -> Option<Caveat> {
+    (particles.ess < LEAST_ESS).then(|| {
         let consequence = match particles.ess < LEAST_ESS_FOR_INTERVALS {
             true => Phrase::new(
                 "no intervals are given, which would rest on single draws",
@@ -69,8 +108,7 @@ pub(super) fn of_particles(particles: &Particles) -> Vec<Caveat> {
         Caveat::new(CaveatKind::FewParticles, text)
             .with_value("effective sample size", particles.ess)
             .with_range([LEAST_ESS, f64::INFINITY])
-    });
-    stopped.into_iter().chain(few).collect()
+    })
 }
 
 /// What the intervals have been tried on, as long as that is not enough.

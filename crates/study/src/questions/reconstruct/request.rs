@@ -39,6 +39,9 @@ use impactlab_reconstruct::{
 /// Evaluations of the forward model that each particle is worth at the most.
 const EVALUATIONS_PER_PARTICLE: usize = 150;
 
+/// The same of motions through later contacts, which take fifty times as long.
+const FOLLOWED_PER_PARTICLE: usize = 20;
+
 /// Asks how fast both cars were.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReconstructRequest {
@@ -108,6 +111,9 @@ pub struct ReconstructReport {
     pub budget: Vec<BudgetItem>,
     /// Effective sample size.
     pub ess: f64,
+    /// How many times as large as stated the standard deviations of the evidence count, 1 or more: larger
+    /// where hardly a draw is of the posterior.
+    pub sigma_factor: f64,
     /// Motions that were simulated.
     pub n_simulations: usize,
     /// Number of particles.
@@ -220,8 +226,9 @@ impl ReconstructRequest {
     /// [`StudyError`], if evidence, vehicles or site cannot be read.
     pub fn run_digest(&self) -> Result<String, StudyError> {
         let evidence = self.evidence.load()?;
-        let likelihood = likelihood_of(&evidence, &self.model(&evidence)?);
-        let settings = format!("{:?} {}", self.settings(), self.one_contact);
+        let model = self.model(&evidence)?;
+        let likelihood = likelihood_of(&evidence, &model);
+        let settings = format!("{:?} {}", self.settings(&model), self.one_contact);
         Ok(sha256_hex([program::version(), &likelihood, &settings].map(str::as_bytes)))
     }
 
@@ -237,7 +244,7 @@ impl ReconstructRequest {
     ) -> Result<(ReconstructionTarget, Particles, ControlFlow<()>), StudyError> {
         let checkpoint = self.checkpoint(evidence, &model)?;
         let target = ReconstructionTarget::new(evidence.clone(), model, Discrepancy::default());
-        let settings = self.settings();
+        let settings = self.settings(target.model());
         let (mut before, mut flow) = (None, ControlFlow::Continue(()));
         let mut watch = |report: SamplerReport<'_>| {
             let (temperature, z) = (report.temperature, report.z);
@@ -275,12 +282,16 @@ impl ReconstructRequest {
         LeftOut::each(target, particles, is_doubtful, self.seed, &mut watch)
     }
 
-    fn settings(&self) -> SamplerSettings {
+    fn settings(&self, model: &ForwardModel) -> SamplerSettings {
+        let per_particle = match model.follows_later_contacts() {
+            true => FOLLOWED_PER_PARTICLE,
+            false => EVALUATIONS_PER_PARTICLE,
+        };
         SamplerSettings {
             n_particles: self.particles,
             seed: self.seed,
             least_ess: self.particles as f64,
-            max_evaluations: self.particles * EVALUATIONS_PER_PARTICLE,
+            max_evaluations: self.particles * per_particle,
         }
     }
 }
@@ -394,6 +405,7 @@ impl Question for ReconstructRequest {
             left_out,
             budget: posterior.budget(self.seed),
             ess: particles.ess,
+            sigma_factor: particles.sigma_factor(),
             n_simulations: particles.n_evaluations + particles.z.len() + alone,
             n_particles: particles.z.len(),
             log_evidence: particles.log_evidence,
