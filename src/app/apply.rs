@@ -64,6 +64,8 @@ impl State {
             Command::Ground(command) => self.change_ground(command),
             Command::Reconstruct(command) => self.reconstruct(command, context),
             Command::Report(command) => self.report(command),
+            Command::Atlas(command) => self.change_atlas(command),
+            Command::Sweep(command) => self.sweep(command),
             Command::Opened(path, result) => self.take_opened(&path, result),
             Command::Written(result) => self.say_of_file(result),
             Command::ImportRead(path, result) => {
@@ -83,7 +85,10 @@ impl State {
                 self.view.workspaces.show_pane(Pane::Training);
             }
             Command::ShowDoors => self.session.shows_doors = true,
-            Command::Show(pane) => self.view.workspaces.show_pane(pane),
+            Command::Show(pane) => {
+                self.session.shows_doors = false;
+                self.view.workspaces.show_pane(pane);
+            }
             Command::ResetLayout => self.view.workspaces.reset_shown(),
             Command::ShowWorkspace(workspace) => self.show_workspace(workspace),
             Command::Say(severity, text) => self.say(severity, text),

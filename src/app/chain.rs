@@ -10,14 +10,13 @@ use crate::app::panes::Pane;
 use crate::app::response::MotionAnswer;
 use crate::app::state::{State, Subject};
 use impactlab_core::data::Severity;
-use impactlab_core::numerics::quantile_of_sorted;
 use impactlab_core::uncertainty::{Caveat, Caveats};
-use impactlab_core::units::{Estimate, Interval, NumberFormat, Quantity, UnitSystem, percent};
+use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem, percent};
 use impactlab_draw::theme;
 use impactlab_study::{Answer, SimulateReport};
 
-/// Ends of the interval that is shown with a figure, as probabilities.
-const ENDS: [f64; 2] = [0.05, 0.95];
+/// What the chain says while nothing is asked.
+const NO_CASE: &str = "No case chosen";
 
 /// A link of the chain.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,15 +88,15 @@ impl State {
                 let name = self.project.impact.scenario.name();
                 (Some(name), "as entered".to_owned(), Pane::Scenario)
             }
-            Some(Subject::Case { dataset, case }) => {
-                (Some(case.clone()), format!("case of {}", file_name(dataset)), Pane::Cases)
+            Some(subject @ Subject::Case { dataset, .. }) => {
+                (Some(self.name_of(subject)), dataset.display().to_string(), Pane::Cases)
             }
             Some(Subject::File(path)) => (Some(file_name(path)), "file".to_owned(), Pane::Data),
             Some(Subject::Manoeuvre) => {
                 let name = self.project.simulate.source.name();
                 (Some(name), "as entered".to_owned(), Pane::Vehicle)
             }
-            None => (None, "nothing selected".to_owned(), Pane::Data),
+            None => (None, NO_CASE.to_owned(), Pane::Data),
         };
         Link { title: "Scenario", figure, source, warnings: Vec::new(), is_late: false, pane }
     }
@@ -112,22 +111,9 @@ fn force_link(
     let shown = |n_s: f64| Quantity::Impulse.shown(n_s, units);
     let predicted = motion.filter(|motion| motion.answer.report.force_model.is_some());
     let (figure, source, pane) = if let Some(motion) = predicted {
-        let forces = &motion.answer.forecast.forces;
-        let mut sizes: Vec<f64> = forces
-            .iter()
-            .map(|force| {
-                let [x, y] = force.impulse_n_s();
-                x.hypot(y)
-            })
-            .collect();
-        sizes.sort_by(f64::total_cmp);
-        let at = |share| quantile_of_sorted(&sizes, share);
-        let [low, median, high] = [ENDS[0], 0.5, ENDS[1]].map(at);
-        let intervals = low.zip(high).map(|(low, high)| vec![Interval { level: 0.9, low, high }]);
-        let estimate = median.zip(intervals);
-        let estimate = estimate.map(|(median, intervals)| Estimate { median, intervals });
         let format = NumberFormat::english(units);
-        let figure = estimate.map(|of| format.estimate_in_words(Quantity::Impulse, &of));
+        let impulse = motion.impulse_n_s.as_ref();
+        let figure = impulse.map(|of| format.estimate_in_words(Quantity::Impulse, of));
         let model = motion.answer.report.force_model.clone().unwrap_or_default();
         (figure, format!("force network {model}, 90 % of its draws"), Pane::ForcePrediction)
     } else {
@@ -193,18 +179,48 @@ fn warnings(caveats: Option<&Caveats>, units: UnitSystem) -> Vec<String> {
     warnings.map(told).collect()
 }
 
-/// Draws the chain; a click on a link shows its panel.
+/// Draws the chain; a click on a link shows its panel. While a figure is awaited the chain keeps its height, so
+/// that nothing below it moves.
 pub fn chain_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let links = match state.project.subject() {
+        Some(_) => state.chain(),
+        None => Vec::new(),
+    };
+    let is_late = links.iter().any(|link| link.is_late);
     Panel::top("chain").show(ui, |ui| {
-        ui.horizontal_wrapped(|ui| {
-            for (i, link) in state.chain().into_iter().enumerate() {
+        let id = ui.scope_id().with("height");
+        if let Some(height) = ui.data(|data| data.get_temp::<f32>(id)).filter(|_| is_late) {
+            ui.set_min_height(height);
+        }
+        let drawn = ui.horizontal_wrapped(|ui| {
+            if links.is_empty() {
+                no_case_ui(ui, state.session.shows_doors, commands);
+            }
+            for (i, link) in links.iter().enumerate() {
                 if i > 0 {
                     ui.weak("›");
                 }
-                link_ui(ui, &link, commands);
+                link_ui(ui, link, commands);
             }
         });
+        if !is_late {
+            let height = drawn.response.rect.height();
+            ui.data_mut(|data| data.insert_temp(id, height));
+        }
     });
+}
+
+/// Draws in the place of the chain what to do while nothing is asked.
+fn no_case_ui(ui: &mut Ui, shows_doors: bool, commands: &mut Vec<Command>) {
+    ui.strong(NO_CASE);
+    if shows_doors {
+        ui.label("Begin with one of the three ways below");
+    } else {
+        ui.label("Choose a case of the data that are open, or");
+        if ui.small_button("see the ways to begin").clicked() {
+            commands.push(Command::ShowDoors);
+        }
+    }
 }
 
 fn link_ui(ui: &mut Ui, link: &Link, commands: &mut Vec<Command>) {

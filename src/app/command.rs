@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use egui::Context;
 
 use crate::app::archive::{ArchiveEntry, ArchiveEvent, ModelsDialog, Removal};
+use crate::app::atlas::AtlasCommand;
 use crate::app::case::{CaseCommand, VariantCommand};
 use crate::app::cost::CostPlace;
 use crate::app::dialog::Purpose;
@@ -25,6 +26,7 @@ use crate::app::reconstruction::ReconstructionCommand;
 use crate::app::report::ReportCommand;
 use crate::app::source::OpenedPath;
 use crate::app::state::Subject;
+use crate::app::sweep::SweepCommand;
 use crate::app::workspaces::Workspace;
 use impactlab_core::collision::Role;
 use impactlab_core::data::{ColumnMap, Outcome, Severity};
@@ -107,6 +109,10 @@ pub enum Command {
     Reconstruct(ReconstructionCommand),
     /// Make the report of the case, or show a part of it.
     Report(ReportCommand),
+    /// Act on the atlas.
+    Atlas(AtlasCommand),
+    /// Act on the sweep.
+    Sweep(SweepCommand),
     /// Bring a pane to the front.
     Show(Pane),
     /// Bring the training pane to the front and show this network in it.

@@ -169,7 +169,7 @@ impl State {
             Some(Subject::Manoeuvre) => {
                 ("Manoeuvre", self.project.simulate.source.name(), Pane::Vehicle)
             }
-            None => ("nothing selected", String::new(), Pane::Scenario),
+            None => ("no case chosen", String::new(), Pane::Scenario),
         };
         let missing = match (&subject, self.session.analysis.problem()) {
             (None, _) => {

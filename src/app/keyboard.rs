@@ -46,7 +46,7 @@ pub const SHIFT_KEYS: [(Key, &str); 2] =
 
 /// The keys that show a workspace with Ctrl, in the order of [`Workspace::ALL`].
 const WORKSPACE_KEYS: [Key; Workspace::ALL.len()] =
-    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5];
+    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6];
 
 /// Number of steps of an arrow key in a millisecond.
 const STEPS_PER_MS: f64 = 1e-3 / TIME_STEP_S;

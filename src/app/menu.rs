@@ -17,6 +17,7 @@ use crate::app::panes::Pane;
 use crate::app::reconstruction::ReconstructionCommand;
 use crate::app::report::ReportCommand;
 use crate::app::state::State;
+use crate::app::sweep::SweepCommand;
 use crate::app::tasks::TaskKey;
 use crate::app::training_status::TrainingStatus;
 use crate::app::widgets::duration_text;
@@ -146,6 +147,8 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         ("Save response model…", has_response, Purpose::Save(Output::Model(Network::Response))),
         ("Open comparison…", true, Purpose::OpenComparison),
         ("Save comparison…", has_comparison, Purpose::Save(Output::Comparison)),
+        ("Open atlas…", true, Purpose::OpenAtlas),
+        ("Open sweep…", true, Purpose::OpenPlan),
     ] {
         if ui.add_enabled(enabled, Button::new(label)).clicked() {
             commands.push(Command::Ask(purpose));
@@ -203,7 +206,7 @@ fn help_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
             ui.label(what);
             ui.end_row();
         }
-        ui.monospace("Ctrl+1, 2, 3, 4, 5");
+        ui.monospace("Ctrl+1, 2, 3, 4, 5, 6");
         ui.label("workspaces");
         ui.end_row();
     });
@@ -286,6 +289,12 @@ fn jobs_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     {
         let cancel = Command::Report(ReportCommand::Cancel);
         progress_ui(ui, "Making the report", progress, left, cancel, commands);
+    }
+    for (key, what) in [(TaskKey::Sweep, "Sweep"), (TaskKey::MergeSweep, "Merging the sweep")] {
+        if let Some((progress, left)) = tasks.progress(&key) {
+            let cancel = Command::Sweep(SweepCommand::Cancel);
+            progress_ui(ui, what, progress, left, cancel, commands);
+        }
     }
     if let Some(path) = tasks.film()
         && let Some((progress, left)) = tasks.progress(&TaskKey::Film(path.to_owned()))
@@ -416,6 +425,6 @@ pub fn drop_hint_ui(ui: &Ui) {
         .layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop hint")));
     painter.rect_filled(area, 0.0, egui::Color32::from_black_alpha(160));
     let font = egui::TextStyle::Heading.resolve(ui.style());
-    let text = "Drop to open: a case, a data set folder, a force or trajectory file, a scenario, a model, a comparison";
+    let text = "Drop to open: a case, a data set folder, a force or trajectory file, a scenario, a model, a comparison, an atlas, a plan";
     painter.text(area.center(), egui::Align2::CENTER_CENTER, text, font, egui::Color32::WHITE);
 }

@@ -5,6 +5,7 @@
 
 mod apply;
 mod archive;
+mod atlas;
 mod case;
 mod case_filter;
 mod case_row;
@@ -28,6 +29,7 @@ mod looks;
 mod measure;
 mod menu;
 mod model;
+mod motion_plots;
 mod network;
 mod offer;
 mod open;
@@ -53,6 +55,7 @@ mod state;
 #[cfg(test)]
 mod state_tests;
 mod store;
+mod sweep;
 mod tasks;
 mod training;
 mod training_status;
@@ -73,6 +76,7 @@ use egui::{Context, Ui, ViewportCommand};
 use egui_tiles::Tree;
 
 use crate::app::reading::ReadingRecord;
+use crate::app::state::StateText;
 use crate::app::store::{OpenedState, Store, open_state};
 use impactlab_core::data::Severity;
 use impactlab_core::error_chain;
@@ -80,6 +84,7 @@ use impactlab_draw::scene::gpu::WindowDevice;
 use impactlab_draw::{DensityGpu, theme};
 
 pub use archive::{ArchiveEntry, ArchiveKind, ArchiveStatus, ModelsDialog, Removal};
+pub use atlas::{AtlasCommand, AtlasSession, AtlasView, MapChoice, ShownMap};
 pub use case::{CaseCommand, Leaving, OpenCase, TrustedCase, VariantCommand};
 pub use chain::Link;
 pub use command::{Command, ComparisonCommand, ModelsCommand, TrainingCommand};
@@ -106,6 +111,7 @@ pub use response::{DensityChoice, MotionAnswer, ResponseSession};
 pub use scene::{SceneSession, SceneSettings, SceneSource};
 pub use source::{Content, Source};
 pub use state::{RestoreError, State, Subject, View};
+pub use sweep::{SweepCommand, SweepSession, SweepView};
 pub use tasks::{TaskKey, Tasks};
 pub use unfinished::{Unfinished, UnfinishedTrainings};
 pub use variants::AnsweredVariant;
@@ -131,6 +137,8 @@ pub struct App {
     state: State,
     undoer: Undoer<Project>,
     store: Option<Store>,
+    /// The state as it is stored.
+    state_text: StateText,
     /// Whether the state could be written as JSON when it was last to be stored.
     is_storable: bool,
 }
@@ -211,12 +219,20 @@ impl App {
         state.apply(Command::Open(to_open), &cc.egui_ctx);
         if !has_paths {
             state.view.workspaces.shown = shown;
-            state.session.shows_doors = !is_restored;
+            let asks_nothing =
+                state.project.subject().is_none() && state.project.reconstruct.is_none();
+            state.session.shows_doors = !is_restored || (asks_nothing && shown == Workspace::Case);
         }
-        if state.project.subject().is_some() {
-            state.session.select_when_loaded = None; // The subject of the last run stays.
+        if !has_paths {
+            let opened = state.session.sources.iter().map(|source| source.opened.clone());
+            state.session.opened_at_start = opened.collect();
         }
-        Self { state, undoer: Undoer::default(), store, is_storable: true }
+        if !has_paths || state.project.subject().is_some() {
+            // What the last run asked stays, and the shipped data lie beside.
+            state.session.select_when_loaded = None;
+        }
+        let (undoer, state_text) = (Undoer::default(), StateText::default());
+        Self { state, undoer, store, state_text, is_storable: true }
     }
 
     /// Returns the state of the application.
@@ -310,18 +326,18 @@ impl eframe::App for App {
 impl App {
     /// Stores the state for the next start, and says once if it cannot be stored.
     fn keep_state(&mut self, context: &Context) {
-        let Some(store) = &mut self.store else { return };
-        let saved = self.state.save();
-        let was_storable = std::mem::replace(&mut self.is_storable, saved.is_ok());
+        let Self { state, store: Some(store), state_text, is_storable, .. } = self else { return };
+        let saved = state_text.update(state);
+        let was_storable = std::mem::replace(is_storable, saved.is_ok());
         match saved {
             Ok(text) => {
                 if let Some(failure) = store.keep(text, context) {
-                    self.state.say(Severity::Error, failure);
+                    state.say(Severity::Error, failure);
                 }
             }
             Err(error) if was_storable => {
                 let text = format!("what is changed in this window will not be kept ({error})");
-                self.state.say(Severity::Warning, text);
+                state.say(Severity::Warning, text);
             }
             Err(_) => {}
         }

@@ -66,7 +66,7 @@ pub fn offer_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 
 impl State {
     /// What a subject is called.
-    fn name_of(&self, subject: &Subject) -> String {
+    pub(super) fn name_of(&self, subject: &Subject) -> String {
         match subject {
             Subject::Case { dataset, case } => format!("{case} of {}", file_name(dataset)),
             Subject::File(path) => file_name(path),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use egui::Context;
 
+use crate::app::atlas::AtlasCommand;
 use crate::app::case::Leaving;
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::dialog::Dialog;
@@ -12,19 +13,23 @@ use crate::app::found::Found;
 use crate::app::import::ImportDialog;
 use crate::app::network::Network;
 use crate::app::panes::Pane;
+use crate::app::response::MotionQuestion;
 use crate::app::source::{Content, Source, read_source};
 use crate::app::state::{Session, State, Subject};
+use crate::app::sweep::SweepCommand;
 use crate::app::tasks::TaskKey;
 use crate::app::workspaces::Workspace;
 use impactlab_core::collision::Role;
 use impactlab_core::data::{ColumnMap, Existing, Severity};
 use impactlab_networks::learning::ModelFile;
 use impactlab_networks::response::ResponseModel;
-use impactlab_study::{InputFile, InputKind, ModelChoice, ScenarioChoice, VehicleChoice};
+use impactlab_study::{
+    InputFile, InputKind, ModelChoice, Request, ScenarioChoice, SimulateRequest, VehicleChoice,
+};
 
 impl State {
     /// Opens paths as what they hold: a case, a ground, evidence, a vehicle, a scenario, a model, a
-    /// comparison or data. A folder is shown in the Data workspace, where its cases are chosen.
+    /// comparison, an atlas, the plan of a sweep or data. A folder is shown in the Data workspace, where its cases are chosen.
     pub(super) fn open(&mut self, paths: Vec<PathBuf>, context: &Context) {
         for path in paths {
             // So that it leads there from every folder that the program is started in.
@@ -36,6 +41,8 @@ impl State {
                     self.compare(ComparisonCommand::Open(path), context);
                     self.view.workspaces.show_pane(Pane::ModelComparison);
                 }
+                InputKind::Atlas => self.change_atlas(AtlasCommand::Show(Some(path))),
+                InputKind::Plan => self.sweep(SweepCommand::OpenPlan(path)),
                 kind @ (InputKind::Evidence
                 | InputKind::Vehicle
                 | InputKind::Scenario
@@ -179,6 +186,32 @@ impl State {
         session.force.forecast.ask_again();
         session.response.forecast.ask_again();
         session.other_variants.clear();
+    }
+
+    /// Allows those questions to be asked again that name one of these paths or what lies in them, because that
+    /// has been read anew. The answers to all others stand.
+    pub(super) fn ask_again_about(&mut self, paths: &[PathBuf]) {
+        let is_read = |named: &PathBuf| paths.iter().any(|path| named.starts_with(path));
+        let names = |request: Request| request.named_paths().iter().any(is_read);
+        let is_of = |question: &Option<SimulateRequest>| {
+            question.clone().is_some_and(|question| names(question.into()))
+        };
+        let is_of_motion = |question: &Option<MotionQuestion>| {
+            question.clone().is_some_and(|question| names(question.request.into()))
+        };
+        let Session { analysis, force, response, other_variants, .. } = &mut self.session;
+        if is_of(&analysis.question) {
+            analysis.ask_again();
+        }
+        if force.forecast.question.clone().is_some_and(|question| names(question.into())) {
+            force.forecast.ask_again();
+        }
+        if is_of_motion(&response.forecast.question) {
+            response.forecast.ask_again();
+        }
+        other_variants.retain(|_, answers| {
+            !is_of(&answers.simulation.question) && !is_of_motion(&answers.forecast.question)
+        });
     }
 
     /// Drops the answers about the subject that was selected, so that none of them is shown for another.

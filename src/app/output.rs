@@ -47,6 +47,10 @@ pub enum Output {
     PackedCase,
     /// A report, in the format of the ending.
     Report(Arc<ReportDocument>),
+    /// The plan of the shipped atlas, as a start for one's own.
+    ExamplePlan,
+    /// The chunks of the sweep in one table.
+    SweepRows,
 }
 
 impl Output {
@@ -66,6 +70,8 @@ impl Output {
             Self::Case => ["Save the case", "case"],
             Self::PackedCase => ["Pack the case and its files", "package"],
             Self::Report(_) => ["Save the report (.pdf, .md or .json)", "report"],
+            Self::ExamplePlan => ["Save the example plan", "plan"],
+            Self::SweepRows => ["Merge the chunks of the sweep", "table"],
         }
     }
 
@@ -76,12 +82,17 @@ impl Output {
             Self::Numbers(_) => vec!["csv"],
             Self::Exchange(of) => vec![of.format.ending()],
             Self::Film(_) => vec!["mp4"],
-            Self::Scenario | Self::Vehicle(_) | Self::Evidence(_) | Self::Site => vec!["toml"],
+            Self::Scenario
+            | Self::Vehicle(_)
+            | Self::Evidence(_)
+            | Self::Site
+            | Self::ExamplePlan => vec!["toml"],
             Self::Model(_) | Self::Archived(..) => vec![MODEL_ENDING],
             Self::Comparison => Vec::new(),
             Self::Case => vec![CASE_ENDING],
             Self::PackedCase => vec!["zip"],
             Self::Report(_) => vec!["pdf", "md", "json"],
+            Self::SweepRows => vec!["parquet"],
         }
     }
 
@@ -100,6 +111,8 @@ impl Output {
             Self::Comparison => "comparison".to_owned(),
             Self::Case | Self::PackedCase => "case".to_owned(),
             Self::Report(document) => file_stem(&document.title),
+            Self::ExamplePlan => "plan".to_owned(),
+            Self::SweepRows => "rows".to_owned(),
         };
         let ending = self.endings().first().map(|ending| format!(".{ending}"));
         stem + &ending.unwrap_or_default()

@@ -47,6 +47,14 @@ pub enum Pane {
     Report,
     /// The report as it will be written.
     ReportPages,
+    /// Which outcome the map of an atlas shows over what, and where its other inputs stand.
+    AtlasChoices,
+    /// The map of an atlas.
+    AtlasMap,
+    /// Which input of an atlas moves the outcome most.
+    Sensitivity,
+    /// A sweep: one question many times.
+    Sweep,
 }
 
 impl Pane {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use egui::Ui;
 
+use crate::app::atlas::SHIPPED_PLAN;
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::export;
@@ -76,6 +77,8 @@ impl State {
                     .map_err(|error| error_chain(&error))
             }),
             Output::Comparison => self.save_comparison(path, existing),
+            Output::ExamplePlan => self.write_text(SHIPPED_PLAN, &path, existing),
+            Output::SweepRows => self.merge_sweep(path, existing),
         }
     }
 

@@ -193,6 +193,11 @@ impl OpenedPath {
         Self { check, contents, failure, map: None, is_doubtful }
     }
 
+    /// The paths of the data sets and files that were found.
+    pub fn paths(&self) -> impl Iterator<Item = &PathBuf> {
+        self.contents.iter().map(|(path, _)| path)
+    }
+
     /// Whether the user, or a map that he chose before, has to say how the file is read.
     fn needs_map(&self) -> bool {
         self.is_doubtful || self.failure.as_ref().is_some_and(Self::is_about_columns)

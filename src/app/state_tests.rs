@@ -114,3 +114,37 @@ fn a_file_that_cannot_be_opened_is_told_as_what_it_was_taken_for() {
         assert!(message.text.contains(place) && message.text.contains(kind), "{}", message.text);
     }
 }
+
+#[test]
+fn the_text_of_a_state_follows_every_change_of_it() {
+    let (mut state, mut text) = (State::default(), StateText::default());
+    let first = text.update(&state).unwrap().to_owned();
+    assert_eq!(text.update(&state).unwrap(), first, "nothing has changed");
+    state.view.playback_speed = 0.25;
+    state.project.simulate.duration_s = 2.5;
+    state.project.keep_in_step();
+    state.case.file.notes = "seen".to_owned();
+    state.session.sources.push(Source::failed(PathBuf::from("a.csv"), "gone".to_owned()));
+    let (restored, sources) = State::restore(text.update(&state).unwrap()).unwrap();
+    assert_eq!((&restored.view, &restored.project), (&state.view, &state.project));
+    assert_eq!((restored.case.file.notes.as_str(), sources), ("seen", vec!["a.csv".into()]));
+}
+
+#[test]
+fn what_is_known_of_the_case_follows_every_change_of_it() {
+    let mut state = State::default();
+    state.select(Subject::Scenario);
+    let mut is_changed = |change: fn(&mut State)| {
+        change(&mut state);
+        state.update_known_case();
+        let known = state.session.known_case.is_changed;
+        assert_eq!(known, state.is_case_changed());
+        known
+    };
+    is_changed(|_| {});
+    assert!(is_changed(|state| state.project.simulate.duration_s = 2.5));
+    is_changed(|state| {
+        state.project.simulate.duration_s = State::default().project.simulate.duration_s;
+    });
+    assert!(is_changed(|state| state.case.file.notes = "seen".to_owned()));
+}

@@ -27,9 +27,8 @@ pub struct Store {
     _lock: WriterLock,
     /// The text that was written last, or the text of the file if nothing has been written yet.
     written: String,
-    /// A newer state that has not been written, and the time of the first change that has not, in seconds
-    /// of the window's clock.
-    pending: Option<(String, f64)>,
+    /// Time of the first change that has not been written, in seconds of the window's clock.
+    pending_since: Option<f64>,
     job: Option<Job<Result<(), DataError>>>,
 }
 
@@ -75,7 +74,7 @@ impl Store {
             let _ = std::fs::create_dir_all(folder);
         }
         let lock = WriterLock::lock_file(&path)?;
-        Ok(Self { path, _lock: lock, written: String::new(), pending: None, job: None })
+        Ok(Self { path, _lock: lock, written: String::new(), pending_since: None, job: None })
     }
 
     /// Restores the state that is in the file.
@@ -143,22 +142,21 @@ impl Store {
     ///
     /// - `text`: the state as text;
     /// - returns a message for the user if an earlier write has failed.
-    pub fn keep(&mut self, text: String, context: &Context) -> Option<String> {
+    pub fn keep(&mut self, text: &str, context: &Context) -> Option<String> {
         let failure = self.poll();
         if text == self.written {
-            self.pending = None;
+            self.pending_since = None;
             return failure;
         }
         let now = context.input(|input| input.time);
-        let since = self.pending.as_ref().map_or(now, |(_, since)| *since);
+        let since = *self.pending_since.get_or_insert(now);
         if now - since < WRITING_TIME.as_secs_f64() || self.job.is_some() {
-            self.pending = Some((text, since));
             context.request_repaint_after(WRITING_TIME);
             return failure;
         }
-        self.pending = None;
-        self.written = text.clone();
-        let path = self.path.clone();
+        self.pending_since = None;
+        text.clone_into(&mut self.written);
+        let (path, text) = (self.path.clone(), text.to_owned());
         self.job = Job::spawn("save", || {}, move |_| write(&path, &text)).ok();
         failure
     }

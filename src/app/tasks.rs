@@ -61,6 +61,16 @@ pub enum TaskKey {
     OpenComparison,
     /// What a form will cost is measured.
     Cost,
+    /// An atlas is read.
+    ReadAtlas,
+    /// The plan of a sweep is read, and what its folder holds.
+    ReadSweep,
+    /// Some rows of a sweep are timed.
+    TimeSweep,
+    /// A sweep is computed.
+    Sweep,
+    /// The chunks of a sweep are put together.
+    MergeSweep,
 }
 
 /// What a task makes of its result.
@@ -264,6 +274,11 @@ impl TaskKey {
             Self::OpenArchived => "open result",
             Self::OpenComparison => "open comparison",
             Self::Cost => "measure",
+            Self::ReadAtlas => "read atlas",
+            Self::ReadSweep => "read sweep",
+            Self::TimeSweep => "time sweep",
+            Self::Sweep => "sweep",
+            Self::MergeSweep => "merge sweep",
         }
     }
 }

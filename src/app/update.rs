@@ -40,8 +40,11 @@ impl State {
         self.update_response(context);
         self.update_scene(context);
         self.update_reconstruction(context);
+        self.update_known_case();
         self.update_variants(context);
         self.update_report();
+        self.update_atlas();
+        self.update_sweep();
         self.take_archived_names();
         self.update_costs(context);
         self.advance_time(context);
@@ -60,7 +63,11 @@ impl State {
         let is_it = |source: &Source| source.opened == path && !source.is_settled();
         let Some(idx) = self.session.sources.iter().position(is_it) else { return };
         let source = self.session.sources.remove(idx);
-        self.ask_again();
+        let mut read = vec![path.to_owned()];
+        if let Ok(Outcome::Complete(opened)) = &result {
+            read.extend(opened.paths().cloned());
+        }
+        self.ask_again_about(&read);
         let (found, without_map) = match result {
             Ok(Outcome::Cancelled) => return,
             Ok(Outcome::Complete(opened)) => {
@@ -117,10 +124,9 @@ impl State {
         }
     }
 
-    /// Offers the first case or file of what the user opened last to the variant, once everything is loaded.
-    /// If nothing is selected after that, the first case or file of all sources is selected, so that
-    /// the window shows something at the first start. If no open data set is listed, the first one
-    /// is.
+    /// Offers the first case or file of what the user opened last to the variant, once everything is loaded;
+    /// if there is none, that of all sources. Data that the program opened by itself lie beside: which case
+    /// is looked at is the user's choice. If no open data set is listed, the first one is.
     fn select_something(&mut self) {
         let sources = &self.session.sources;
         if !sources.iter().all(Source::is_settled) {
@@ -133,9 +139,11 @@ impl State {
             self.offer(subject);
         }
         // Data of another case are not taken into one that was opened.
+        let Session { sources, opened_at_start, .. } = &self.session;
+        let is_users = |source: &&Source| !opened_at_start.contains(&source.opened);
         if self.project.subject().is_none()
             && self.case.path.is_none()
-            && let Some(subject) = first_subject(self.session.sources.iter())
+            && let Some(subject) = first_subject(sources.iter().filter(is_users))
         {
             self.select(subject);
         }

@@ -26,12 +26,14 @@ pub enum Workspace {
     Models,
     /// Make the report of the case.
     Report,
+    /// Look outcomes up on a map of many runs, and make many runs.
+    Atlas,
 }
 
 impl Workspace {
     /// Every workspace, in the order in which they are offered.
-    pub const ALL: [Self; 5] =
-        [Self::Case, Self::Reconstruct, Self::Data, Self::Models, Self::Report];
+    pub const ALL: [Self; 6] =
+        [Self::Case, Self::Reconstruct, Self::Data, Self::Models, Self::Report, Self::Atlas];
 
     /// The name that is shown.
     pub fn title(self) -> &'static str {
@@ -46,6 +48,7 @@ impl Workspace {
             Self::Data => Icon::Database,
             Self::Models => Icon::BrainCircuit,
             Self::Report => Icon::FileText,
+            Self::Atlas => Icon::Grid3x3,
         }
     }
 
@@ -57,6 +60,7 @@ impl Workspace {
             Self::Data => "Look through data sets and recordings, and compare them with the model",
             Self::Models => "Train, evaluate and compare the networks",
             Self::Report => "Make the report of the case, as PDF, Markdown or JSON",
+            Self::Atlas => "See on a map how often a PIT spins a car, and compute many runs",
         }
     }
 
@@ -68,6 +72,7 @@ impl Workspace {
             Self::Data => data_layout(),
             Self::Models => models_layout(),
             Self::Report => report_layout(),
+            Self::Atlas => atlas_layout(),
         }
     }
 }
@@ -83,13 +88,14 @@ pub struct Workspaces {
     data: Layout,
     models: Layout,
     report: Layout,
+    atlas: Layout,
 }
 
 impl Default for Workspaces {
     fn default() -> Self {
-        let [case, reconstruct, data, models, report] =
+        let [case, reconstruct, data, models, report, atlas] =
             Workspace::ALL.map(Workspace::default_layout);
-        Self { shown: Workspace::default(), case, reconstruct, data, models, report }
+        Self { shown: Workspace::default(), case, reconstruct, data, models, report, atlas }
     }
 }
 
@@ -102,6 +108,7 @@ impl Workspaces {
             Workspace::Data => &self.data,
             Workspace::Models => &self.models,
             Workspace::Report => &self.report,
+            Workspace::Atlas => &self.atlas,
         }
     }
 
@@ -113,6 +120,7 @@ impl Workspaces {
             Workspace::Data => &mut self.data,
             Workspace::Models => &mut self.models,
             Workspace::Report => &mut self.report,
+            Workspace::Atlas => &mut self.atlas,
         }
     }
 
@@ -242,6 +250,18 @@ fn report_layout() -> Layout {
     let pages = build.tabs(&[Pane::ReportPages]);
     let root = build.linear(LinearDir::Horizontal, &[(settings, 0.24), (pages, 0.76)]);
     build.layout("report panes", root)
+}
+
+/// What the map shows at the left, the map above what moves the outcome; sweeps in tabs with them.
+fn atlas_layout() -> Layout {
+    let mut build = Builder(Tiles::default());
+    let choices = build.tabs(&[Pane::AtlasChoices]);
+    let map = build.tabs(&[Pane::AtlasMap]);
+    let sensitivity = build.tabs(&[Pane::Sensitivity]);
+    let shown = build.linear(LinearDir::Vertical, &[(map, 0.72), (sensitivity, 0.28)]);
+    let work = build.beside(shown, &[Pane::Sweep]);
+    let root = build.linear(LinearDir::Horizontal, &[(choices, 0.24), (work, 0.76)]);
+    build.layout("atlas panes", root)
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use impactlab_core::collision::contact::FaceLawError;
 use impactlab_core::data::{DataError, SeriesError};
 use impactlab_core::ranges::OutOfRange;
 use impactlab_core::site::SiteError;
+use impactlab_core::units::TypedError;
 use impactlab_document::exchange::ExchangeError;
 use impactlab_document::report::{FormatError, WriteError};
 use impactlab_document::scene::FilmTimingError;
@@ -15,6 +16,8 @@ use impactlab_networks::force::ForceError;
 use impactlab_networks::learning::LearningError;
 use impactlab_study::StudyError;
 use impactlab_study::case_file::{CaseError, Reach};
+use impactlab_sweep::SweepError;
+use impactlab_sweep::atlas::AtlasError;
 
 /// A command that could not do its work.
 #[derive(Debug, thiserror::Error)]
@@ -38,6 +41,9 @@ pub enum CliError {
     /// A question has no answer.
     #[error(transparent)]
     Study(Box<StudyError>),
+    /// A sweep cannot be planned, run or merged.
+    #[error(transparent)]
+    Sweep(Box<SweepError>),
     /// The ground of a scene cannot be read.
     #[error(transparent)]
     Site(#[from] SiteError),
@@ -50,6 +56,14 @@ pub enum CliError {
     /// The scenario is not said.
     #[error("nothing to predict: say which scenario with --scenario FILE")]
     NothingToPredict,
+    /// Nothing of a file can be used.
+    #[error("{}: nothing of it can be used: {why}", path.display())]
+    NothingImported {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        why: String,
+    },
     /// A test against a barrier that says nothing of a face.
     #[error("no stiffness follows from this test")]
     Stiffness(#[from] FaceLawError),
@@ -176,7 +190,7 @@ pub enum CliError {
     },
     /// What is exported is of an unknown kind.
     #[error(
-        "{}: cannot be made; expected a name that ends in .dxf, .glb or .csv, or --format",
+        "{}: cannot be made; expected a name that ends in .dxf, .glb, .csv or .parquet, or --format",
         path.display()
     )]
     ExportKind {
@@ -195,6 +209,62 @@ pub enum CliError {
         /// As given.
         path: PathBuf,
     },
+    /// An atlas cannot be read, made or written.
+    #[error(transparent)]
+    Atlas(Box<AtlasError>),
+    /// No atlas is shipped, and no other one is named.
+    #[error(
+        "no atlas comes with this program; --atlas FILE reads one, and `impactlab atlas make` makes it \
+         of the rows of a sweep"
+    )]
+    NoAtlas,
+    /// The atlas has no axis of a name.
+    #[error("the atlas has no axis {name:?}, expected one of {known}")]
+    NoAxis {
+        /// As given.
+        name: String,
+        /// Those that there are.
+        known: String,
+    },
+    /// One axis is given for both sides of a map.
+    #[error("--x and --y both name the axis {name:?}")]
+    AxisTwice {
+        /// The axis.
+        name: String,
+    },
+    /// A value of an axis cannot be read.
+    #[error("--set {name}: {text:?} cannot be read")]
+    AxisValue {
+        /// The axis.
+        name: String,
+        /// As given.
+        text: String,
+        /// Why.
+        source: TypedError,
+    },
+    /// A value lies outside of an axis.
+    #[error("--set {name}: {text:?} lies outside of the atlas, which has {expected}")]
+    OutsideAtlas {
+        /// The axis.
+        name: String,
+        /// As given.
+        text: String,
+        /// What the axis has.
+        expected: String,
+    },
+    /// The atlas has no outcome of a name.
+    #[error("the atlas has no outcome {name:?}, expected one of {known}")]
+    NoOutcome {
+        /// As given.
+        name: String,
+        /// Those that there are.
+        known: String,
+    },
+    /// The atlas has no Sobol indices.
+    #[error(
+        "this atlas has no Sobol indices; `impactlab atlas make` takes them of --saltelli ROWS"
+    )]
+    NoIndices,
     /// A film shows instants that the motion does not have.
     #[error(transparent)]
     FilmTiming(#[from] FilmTimingError),
@@ -256,6 +326,18 @@ impl From<CaseError> for CliError {
 impl From<StudyError> for CliError {
     fn from(error: StudyError) -> Self {
         Self::Study(Box::new(error))
+    }
+}
+
+impl From<SweepError> for CliError {
+    fn from(error: SweepError) -> Self {
+        Self::Sweep(Box::new(error))
+    }
+}
+
+impl From<AtlasError> for CliError {
+    fn from(error: AtlasError) -> Self {
+        Self::Atlas(Box::new(error))
     }
 }
 

@@ -9,8 +9,9 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::cli::CliError;
 use crate::cli::commands::{
-    app, ask, case, check, compare, condition, evaluate, export, fine_tune, impact, licences,
-    predict, ranges, reconstruct, render, report, schema, simulate, stiffness, train, vehicles,
+    app, ask, atlas, case, check, compare, condition, evaluate, export, fine_tune, impact, import,
+    licences, predict, ranges, reconstruct, render, report, schema, simulate, stiffness, sweep,
+    train, vehicles,
 };
 use crate::cli::console::{Console, Escaped, Targets, Verdict, within_line};
 use impactlab_core::error_chain;
@@ -59,9 +60,12 @@ enum CliCommand {
     Reconstruct(reconstruct::ReconstructArgs),
     Render(render::RenderArgs),
     Export(export::ExportArgs),
+    Import(Box<import::ImportArgs>),
     Report(report::ReportArgs),
     Vehicles(vehicles::VehiclesArgs),
     Stiffness(stiffness::StiffnessArgs),
+    Sweep(sweep::SweepArgs),
+    Atlas(atlas::AtlasArgs),
     #[command(alias = "licenses")]
     Licences(licences::LicencesArgs),
     Ranges(ranges::RangesArgs),
@@ -114,8 +118,11 @@ impl Cli {
                 CliCommand::App(_)
                 | CliCommand::Render(_)
                 | CliCommand::Export(_)
+                | CliCommand::Import(_)
                 | CliCommand::Vehicles(_)
                 | CliCommand::Stiffness(_)
+                | CliCommand::Sweep(_)
+                | CliCommand::Atlas(_)
                 | CliCommand::Licences(_)
                 | CliCommand::Ranges(_)
                 | CliCommand::Schema(_),
@@ -176,9 +183,12 @@ fn dispatch(command: Option<CliCommand>, console: &mut Console<'_>) -> Result<Ve
         Some(CliCommand::Reconstruct(args)) => reconstruct::run(&args, console),
         Some(CliCommand::Render(args)) => render::run(&args, console),
         Some(CliCommand::Export(args)) => export::run(&args, console),
+        Some(CliCommand::Import(args)) => import::run(&args, console),
         Some(CliCommand::Report(args)) => report::run(&args, console),
         Some(CliCommand::Vehicles(args)) => vehicles::run(&args, console),
         Some(CliCommand::Stiffness(args)) => stiffness::run(&args, console),
+        Some(CliCommand::Sweep(args)) => sweep::run(&args, console),
+        Some(CliCommand::Atlas(args)) => atlas::run(&args, console),
         Some(CliCommand::Licences(_)) => licences::run(console),
         Some(CliCommand::Ranges(args)) => ranges::run(&args, console),
         Some(CliCommand::Schema(args)) => schema::run(&args, console),

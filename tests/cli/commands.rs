@@ -77,6 +77,13 @@ fn every_help_shows_an_example() {
         &["render", "impact"],
         &["vehicles"],
         &["stiffness"],
+        &["sweep"],
+        &["atlas"],
+        &["atlas", "cell"],
+        &["atlas", "slice"],
+        &["atlas", "sensitivity"],
+        &["atlas", "make"],
+        &["import"],
         &["ranges"],
         &["schema"],
     ] {

@@ -3,6 +3,7 @@
 //! All tests are in one program, because each test program would link all libraries again.
 
 mod answers;
+mod atlas;
 mod badges;
 mod both_vehicles;
 mod budgets;
@@ -19,6 +20,7 @@ mod force;
 mod ground;
 mod guide;
 mod help;
+mod import;
 mod inputs;
 mod kinds;
 mod log;
@@ -35,6 +37,7 @@ mod report;
 mod response;
 mod restrictions;
 mod staged;
+mod sweep;
 mod trust;
 mod writes;
 mod writes_killed;

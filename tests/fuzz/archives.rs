@@ -1,5 +1,5 @@
-//! Archives: workbooks and packages of cases, of which parts are changed; and the checkpoints of
-//! reconstructions, with a checksum that fits.
+//! Archives: workbooks, packages of cases and atlases, of which parts are changed; and the checkpoints
+//! of reconstructions, with a checksum that fits.
 
 use std::io::{Cursor, Read, Write};
 use std::path::Path;
@@ -9,6 +9,8 @@ use impactlab_core::numerics::sha256_hex;
 use impactlab_reconstruct::sampler::{SamplerCheckpoint, SamplerSettings, Target, sample};
 use impactlab_study::case_file::{CaseFile, Variant, pack, unpack};
 use impactlab_study::{CheckRequest, Request};
+use impactlab_sweep::atlas::{Atlas, Axis, Measure};
+use impactlab_sweep::{Column, Outcome, Rows, RowsMeta};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
@@ -165,6 +167,54 @@ fn packages() {
         file_name: "package/a.zip",
         names_file: false,
         seeds,
+        mutate: changed,
+        load: &load,
+    });
+}
+
+/// An atlas of one axis.
+fn atlas() -> Vec<u8> {
+    let alternating: Vec<f64> = (0..60).map(|i| f64::from(i % 2)).collect();
+    let column = |name: &str| Column {
+        name: name.to_owned(),
+        unit: "1".to_owned(),
+        values: alternating.clone(),
+    };
+    let rows = Rows {
+        inputs: vec![column("esc")],
+        outcomes: Outcome::ALL.iter().map(|outcome| column(outcome.name())).collect(),
+        index: (0..60).collect(),
+        reasons: vec![String::new(); 60],
+        meta: RowsMeta::default(),
+    };
+    let axis = Axis {
+        name: "esc".to_owned(),
+        word: "esc".to_owned(),
+        label: "Stability control".to_owned(),
+        unit: "1".to_owned(),
+        edges: Vec::new(),
+        labels: vec!["without".to_owned(), "with".to_owned()],
+    };
+    let atlas = Atlas::from_rows(&rows, vec![axis]).expect("an atlas");
+    atlas.to_bytes().expect("an archive in memory")
+}
+
+#[test]
+fn atlases() {
+    let load = |path: &Path| match Atlas::read(path) {
+        Ok(atlas) => {
+            let cell = atlas.cell(&vec![None; atlas.axes.len()]);
+            let means = Measure::all().filter_map(|measure| cell.measure(measure).mean);
+            Answer::accepted(&means.collect::<Vec<f64>>())
+        }
+        Err(error) => Answer::refused(&error),
+    };
+    run(&Format {
+        name: "atlas",
+        n_inputs: 2_000,
+        file_name: "a.atlas",
+        names_file: true,
+        seeds: vec![atlas()],
         mutate: changed,
         load: &load,
     });

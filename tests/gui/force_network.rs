@@ -331,6 +331,7 @@ fn a_model_is_evaluated_beside_the_baselines() {
 #[test]
 fn the_collision_follows_the_scenario_until_it_is_edited() {
     let mut harness = open(&[]);
+    apply(&mut harness, Command::Select(Subject::Scenario));
     step_until(&mut harness, "the scenario", is_idle);
     apply(&mut harness, Command::PredictScenario);
     harness.run_steps(2);

@@ -86,6 +86,8 @@ fn every_view_is_readable(name: &str, size: ([f32; 2], f32)) {
         (Workspace::Data, Pane::Motion),
         (Workspace::Models, Pane::Models),
         (Workspace::Models, Pane::Training),
+        (Workspace::Atlas, Pane::AtlasMap),
+        (Workspace::Atlas, Pane::Sweep),
     ];
     apply(&mut harness, Command::Show(Pane::MotionForecast));
     step_until(&mut harness, "forecast", is_answered);

@@ -1,6 +1,7 @@
 //! Tests of the app, which is driven without a display and drawn on the CPU.
 
 mod arrangement;
+mod atlas;
 mod both_faces;
 mod case;
 mod caveats;
@@ -27,5 +28,6 @@ mod scene_gpu;
 mod settings;
 mod snapshots;
 mod stored;
+mod sweep;
 mod vehicle_form;
 mod workflow;

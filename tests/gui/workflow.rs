@@ -141,7 +141,9 @@ fn a_bad_file_says_where_and_offers_the_mapping() {
         report.caveats.assumptions().map(|of| of.subject.unwrap().label()).collect();
     assert_eq!(assumed, ["struck vehicle", "speed before the impact", "contact point"]);
     harness.run_steps(2);
-    assert!(harness.query_all_by_label_contains("assumed: contact point: x -1.5 m").count() > 0);
+    harness.query_all_by_label("assumed: contact point").next().expect("what was assumed");
+    assert!(harness.query_all_by_label_contains("x -1.5 m").count() > 0, "and its value");
+    assert!(harness.query_all_by_label("Change").count() > 0);
     // The user enters both in the vehicle pane instead.
     apply(&mut harness, Command::Show(impactlab::app::Pane::Vehicle));
     harness.run_steps(2);
@@ -274,4 +276,61 @@ fn closing_everything_leaves_an_empty_window_that_says_what_to_do() {
     assert!(
         state(&harness).session.messages.iter().all(|message| message.severity != Severity::Error)
     );
+}
+
+#[test]
+fn data_that_are_opened_leave_the_answers_to_other_questions_as_they_are() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut harness = open(&["assets/scenarios/pit_right_rear.toml"]);
+    let is_forecast = |state: &State| {
+        is_idle(state)
+            && state.session.response.forecast.ok().is_some()
+            && !state.session.is_waiting()
+    };
+    step_until(&mut harness, "the forecast", is_forecast);
+    let answer = |harness: &Harness<'_, App>| {
+        Arc::clone(state(harness).session.analysis.ok().expect("an answer"))
+    };
+    let before = answer(&harness);
+    apply(&mut harness, Command::Open(vec![root.join("datasets/fea")]));
+    step_until(&mut harness, "the data", |state| {
+        assert!(!state.session.is_waiting(), "the same question is not asked again");
+        state.session.offered.is_some()
+    });
+    assert!(Arc::ptr_eq(&before, &answer(&harness)));
+
+    // What was read from the data themselves is asked again when they are read again.
+    harness.get_by_label("Use in this variant").click();
+    step_until(&mut harness, "the first case", shows("c001"));
+    let before = answer(&harness);
+    apply(&mut harness, Command::Open(vec![root.join("datasets/fea")]));
+    step_until(&mut harness, "the data again", |state| {
+        let is_read = state.session.sources.iter().all(impactlab::app::Source::is_settled);
+        is_read && is_idle(state) && state.session.analysis.ok().is_some()
+    });
+    assert!(!Arc::ptr_eq(&before, &answer(&harness)));
+}
+
+#[test]
+fn at_the_first_start_no_case_is_chosen_and_the_window_says_what_to_do() {
+    let mut harness = open(&[]);
+    step_until(&mut harness, "the shipped data", |state| {
+        !state.session.sources.is_empty()
+            && state.session.sources.iter().all(impactlab::app::Source::is_settled)
+    });
+    assert_eq!(state(&harness).project.subject(), None);
+    harness.get_by_label("No case chosen");
+    harness.get_by_label("Begin with one of the three ways below");
+    harness.get_by_label_contains("New here? Set up a collision");
+    harness.get_by_label("Look through the shipped data").click();
+    harness.run_steps(4);
+    assert_eq!(state(&harness).project.subject(), None, "data are looked at, not taken");
+    harness.get_by_label_contains("click one to see it");
+    harness.get_by_label("see the ways to begin").click();
+    harness.run_steps(4);
+    harness.get_by_label("Set up a collision").click();
+    harness.run_steps(4);
+    step_until(&mut harness, "the scenario", is_idle);
+    let figure = state(&harness).chain().into_iter().next().and_then(|link| link.figure);
+    assert_eq!(figure.as_deref(), Some("PIT, right rear quarter"));
 }

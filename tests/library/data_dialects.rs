@@ -191,7 +191,7 @@ fn files_of_tests_scenes_and_drawings_are_called_by_their_names() {
     let scene = "is a scene of bodies (glTF); a motion has to be given as numbers, as CSV";
     let drawing =
         "is a drawing (DXF); name it in a site file as the ground of a scene, [dxf] file = \"…\"";
-    let mme = "is a file of ISO-MME (ISO/TS 13499); export the channels over time as CSV";
+    let mme = "is a test in ISO-MME without channels over time; put its channels";
     let folder = tempfile::tempdir().unwrap();
     for (name, content, message) in [
         ("car.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"scenes\": []}\n", scene),

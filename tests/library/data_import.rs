@@ -279,18 +279,15 @@ fn what_a_workbook_says_of_its_size_takes_no_memory() {
 
 #[test]
 fn what_is_recognised_but_not_read_is_said_by_its_name() {
-    let rcforc = "  legend\n     1 bumper to door\n  end of legend\n\n slave         1  time  0.00000E+00   x  1.0000E+00   y  2.0000E+00   z  0.0000E+00   mass  0.0000E+00\n master        1  time  0.00000E+00   x -1.0000E+00   y -2.0000E+00   z  0.0000E+00   mass  0.0000E+00\n";
-    let nodout = " n o d a l   p r i n t   o u t   f o r   t i m e  s t e p       1   ( at time 0.0000000E+00 )\n\n nodal point  x-disp     y-disp      z-disp\n 17  0.0  0.0  0.0\n";
     let folder = tempfile::tempdir().unwrap();
     for (name, content, message) in [
         (
-            "rcforc",
-            rcforc.as_bytes(),
-            "is an LS-DYNA rcforc file; export the force over time as CSV",
+            "nodfor",
+            &b" n o d a l   f o r c e   g r o u p    o u t p u t\n"[..],
+            "is an LS-DYNA nodfor file; export the force over time as CSV",
         ),
-        ("nodout", nodout.as_bytes(), "is an LS-DYNA nodout file; export the motion of a node"),
         ("in.k", b"*KEYWORD\n*TITLE\nrun\n", "is an LS-DYNA input deck; run it"),
-        ("binout0000", b"\x08\x08\x08\x01\x01\0\0\0rest", "is LS-DYNA results (binout); export"),
+        ("d3plot", b"a run\0\0", "is LS-DYNA results (d3plot); export"),
         (
             "a.mat",
             b"MATLAB 5.0 MAT-file, Platform: GLNXA64\0\0",

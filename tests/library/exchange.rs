@@ -7,7 +7,8 @@ use dxf::Drawing;
 use dxf::entities::EntityType;
 use gltf::animation::util::ReadOutputs;
 use impactlab_core::site::SiteOrigin;
-use impactlab_core::units::UnitSystem;
+use impactlab_core::uncertainty::{Caveat, CaveatKind};
+use impactlab_core::units::{Phrase, PhraseValue, Quantity, UnitSystem};
 use impactlab_core::vehicle::Wheel;
 use impactlab_document::exchange::{DxfOptions, GltfFrame, dxf, glb, hve_motion, hve_pulse};
 use impactlab_document::scene::{
@@ -178,6 +179,29 @@ fn a_clock_from_1970_and_survey_coordinates_keep_their_precision() {
     let cells: Vec<f64> = first.split('\t').map_while(|cell| cell.parse().ok()).take(3).collect();
     assert_eq!(cells[0], 1.7e9);
     assert!((cells[2] * 0.3048 + 5_423_456.37).abs() < 1e-3, "{cells:?}");
+}
+
+#[test]
+fn restrictions_are_in_the_units_of_the_reader_and_coordinates_in_metres() {
+    let (_, mut scene) = case();
+    let speed = PhraseValue::three_digits(Quantity::Speed, 44.704);
+    let text = Phrase::new("learned up to {0}", "gelernt bis {0}").with(speed);
+    scene.caveats = [Caveat::new(CaveatKind::OutsideDomain, text)].into_iter().collect();
+    let written = |units: UnitSystem| {
+        let scene = Scene { units, ..scene.clone() };
+        let [mut drawing, mut animation] = [Vec::new(), Vec::new()];
+        dxf(&scene, &DxfOptions::default(), &mut drawing).expect("a drawing");
+        glb(&scene, &mut animation).expect("an animation");
+        [drawing, animation].map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
+    };
+    for (units, said) in
+        [(UnitSystem::Us, "learned up to 100 mph"), (UnitSystem::Si, "learned up to 44.7 m/s")]
+    {
+        let [drawing, animation] = written(units);
+        assert!(drawing.contains(said), "{units:?}: {said}");
+        assert!(animation.contains(said), "{units:?}: {said}");
+        assert!(drawing.contains("metres, X along the road"), "{units:?}");
+    }
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod data_import;
 mod data_maps;
 mod data_quality;
 mod data_shipped;
+mod data_solvers;
 mod data_writes;
 mod dependencies;
 mod endings;

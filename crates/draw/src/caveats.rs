@@ -9,6 +9,7 @@ use egui::{FontId, Rect, RichText, Sense, TextStyle, Ui, Vec2, pos2, vec2};
 use crate::{FigureOptions, figure_ui, theme};
 use impactlab_core::data::Severity;
 use impactlab_core::uncertainty::Caveats;
+use impactlab_core::units::{Language, NumberFormat};
 use impactlab_document::figure::Figure;
 
 /// Size of the line, and height of the room that it takes, points.
@@ -24,14 +25,17 @@ const LEAST_LETTERS: f32 = 30.0;
 /// Size of the names in the legend of a picture, points: in a window there is less room for them.
 const LEGEND_SIZE: f32 = 11.5;
 
-/// Draws a figure below its title and above the line of what restricts it.
+/// Draws a figure below its title, if it has one, and above the line of what restricts it.
 pub fn picture_ui(ui: &mut Ui, figure: &Figure) {
     let width = ui.available_width();
-    ui.label(RichText::new(&figure.title).strong().size(TITLE_SIZE));
+    if !figure.title.is_empty() {
+        ui.label(RichText::new(&figure.title).strong().size(TITLE_SIZE));
+    }
     if let Some(small) = ui.style_mut().text_styles.get_mut(&TextStyle::Small) {
         small.size = LEGEND_SIZE;
     }
-    let line = RestrictionLine::new(&figure.caveats);
+    let format = NumberFormat { language: figure.language, ..NumberFormat::default() };
+    let line = RestrictionLine::new(&figure.caveats, &format);
     let height = line.as_ref().map(|_| ui.available_height() - LINE_HEIGHT);
     figure_ui(ui, figure, &FigureOptions { height, ..FigureOptions::default() });
     if let Some(line) = line {
@@ -50,28 +54,37 @@ pub(crate) struct RestrictionLine {
     text: String,
     /// How many restrictions and assumptions there are beside it.
     n_others: usize,
+    language: Language,
 }
 
 impl RestrictionLine {
     /// The first restriction, or else what was assumed; `None` where there is neither.
-    pub(crate) fn new(caveats: &Caveats) -> Option<Self> {
+    pub(crate) fn new(caveats: &Caveats, format: &NumberFormat) -> Option<Self> {
+        let language = format.language;
         let (restrictions, n_assumed) = (caveats.restrictions(), caveats.assumptions().count());
         if let Some(first) = restrictions.first() {
-            let label = match first.is_warning() {
-                true => format!("Warning: {}: ", first.kind.label()),
-                false => format!("{}: ", capitalised(first.kind.label())),
+            let kind = first.kind.label_in(language);
+            let label = match (first.is_warning(), language) {
+                (true, Language::En) => format!("Warning: {kind}: "),
+                (true, Language::De) => format!("Warnung: {kind}: "),
+                (false, _) => format!("{}: ", capitalised(kind)),
             };
             let n_others = restrictions.len() - 1 + n_assumed;
             let (severity, text) = (first.severity, first.statement());
-            return Some(Self { severity, label, text, n_others });
+            return Some(Self { severity, label, text, n_others, language });
         }
         let summary = caveats.summaries().into_iter().next()?;
         let of_kind = caveats.assumptions().filter(|caveat| caveat.kind == summary.kind).count();
+        let text = match language {
+            Language::En => None,
+            Language::De => summary.text_in(format, &str::to_owned),
+        };
         Some(Self {
             severity: Severity::Info,
-            label: format!("{}: ", capitalised(summary.kind.label())),
-            text: summary.text,
+            label: format!("{}: ", capitalised(summary.kind.label_in(language))),
+            text: text.unwrap_or(summary.text),
             n_others: n_assumed - of_kind,
+            language,
         })
     }
 
@@ -85,7 +98,10 @@ impl RestrictionLine {
         let others = match (self.n_others, rect.width() < LEAST_LETTERS * TEXT_SIZE) {
             (0, _) => String::new(),
             (n, true) => format!("+{n}"),
-            (n, false) => format!("and {n} more, listed with the answer"),
+            (n, false) => match self.language {
+                Language::En => format!("and {n} more, listed with the answer"),
+                Language::De => format!("und {n} weitere, bei der Antwort aufgeführt"),
+            },
         };
         let mut job = LayoutJob::single_section(others.clone(), format(weak));
         job.wrap = TextWrapping::truncate_at_width(rect.width());
@@ -126,14 +142,23 @@ mod tests {
         let friction = Caveat::assumed(CaveatSubject::RoadFriction, "0.7", "it is dry");
         let note = Caveat::new(CaveatKind::Note, "a note restricts nothing");
         let all = Caveats::from(vec![rest.clone(), note.clone(), friction.clone(), warning]);
-        let line = RestrictionLine::new(&all).unwrap();
+        let english = NumberFormat::default();
+        let line = RestrictionLine::new(&all, &english).unwrap();
         assert_eq!((line.label.as_str(), line.n_others), ("Warning: wheel lift: ", 2));
-        let line = RestrictionLine::new(&Caveats::from(vec![friction.clone(), rest])).unwrap();
+        let german = NumberFormat { language: Language::De, ..english };
+        assert_eq!(
+            RestrictionLine::new(&all, &german).unwrap().label,
+            "Warnung: abgehobenes Rad: "
+        );
+        let all = Caveats::from(vec![friction.clone(), rest]);
+        let line = RestrictionLine::new(&all, &english).unwrap();
         assert_eq!((line.label.as_str(), line.n_others), ("Not at rest: ", 1));
         let unused = Caveat::not_used("restitution, 0.15", "the network knows it");
         let assumed = Caveats::from(vec![unused, friction]);
-        let line = RestrictionLine::new(&assumed).unwrap();
+        let line = RestrictionLine::new(&assumed, &english).unwrap();
         assert_eq!((line.text.as_str(), line.n_others), ("road friction", 1));
-        assert_eq!(RestrictionLine::new(&Caveats::from(vec![note])), None);
+        let line = RestrictionLine::new(&assumed, &german).unwrap();
+        assert_eq!(line.text, "Reibbeiwert der Fahrbahn");
+        assert_eq!(RestrictionLine::new(&Caveats::from(vec![note]), &english), None);
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use egui::{Color32, Label, RichText, Sense, TextStyle, Ui, Vec2};
 
+use crate::cell_map::scale_ui;
 use crate::theme;
 use impactlab_document::figure::{Figure, FigureElement};
 
@@ -28,7 +29,10 @@ pub fn legend_ui(ui: &mut Ui, figure: &Figure, hidden: &mut BTreeSet<String>) {
             let text = RichText::new(name).small();
             let text = if is_hidden { text.weak().strikethrough() } else { text };
             keep_together(ui, name);
-            dot_ui(ui, if is_hidden { Color32::TRANSPARENT } else { color });
+            match element {
+                FigureElement::CellMap(map) => scale_ui(ui, map),
+                _ => dot_ui(ui, if is_hidden { Color32::TRANSPARENT } else { color }),
+            }
             let label = ui.add(Label::new(text).extend().sense(Sense::click()));
             if label.on_hover_text("Click to hide or show it").clicked() && !hidden.remove(name) {
                 hidden.insert(name.to_owned());

@@ -2,6 +2,7 @@
 //! screen and in a picture off screen.
 
 mod caveats;
+mod cell_map;
 mod density;
 mod density_buffers;
 pub mod film;

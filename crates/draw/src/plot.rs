@@ -9,6 +9,7 @@ use egui_plot::{
     PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
+use crate::cell_map;
 use crate::legend::legend_ui;
 use crate::theme;
 use crate::thin::thinned;
@@ -212,9 +213,14 @@ fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions, y_label: String)
             // The name at the tick replaces the number.
             false => String::new(),
         };
-        format!("{head}{} {}{of_y}", significant(at.x), x.unit.symbol)
+        let of_x = match x.names.is_empty() {
+            true => format!("{} {}", significant(at.x), x.unit.symbol),
+            false => String::new(),
+        };
+        format!("{head}{of_x}{of_y}")
     };
-    let names = figure.y.names.clone();
+    let (names, x_names) = (figure.y.names.clone(), figure.x.names.clone());
+    let n_x_names = x_names.len();
     let n_names = names.len();
     let longest = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
     Plot::new(options.plot_name(figure))
@@ -230,14 +236,20 @@ fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions, y_label: String)
             };
             Some(readout(name, at))
         })
-        .x_grid_spacer(|input| grid(input, X_TICK_CELLS))
+        .x_grid_spacer(move |input| match n_x_names {
+            0 => grid(input, X_TICK_CELLS),
+            n => name_grid(n),
+        })
         .y_grid_spacer(move |input| match (log_y, n_names) {
             (true, _) => log_grid(input),
             (false, 0) => grid(input, Y_TICK_CELLS),
             (false, n) => name_grid(n),
         })
         .grid_fade(0.9)
-        .x_axis_formatter(|mark, _| tick_label(mark))
+        .x_axis_formatter(move |mark, _| match x_names.is_empty() {
+            true => tick_label(mark),
+            false => name_label(mark, &x_names),
+        })
         .y_axis_formatter(move |mark, _| match names.is_empty() {
             true if log_y => log_tick_label(mark),
             true => tick_label(mark),
@@ -337,6 +349,7 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, dark: bool, element: &'a FigureElemen
             }
         }
         FigureElement::HeatMap(map) => heat_map(plot, map, color),
+        FigureElement::CellMap(map) => cell_map::draw(plot, map, dark),
         FigureElement::Band(band) => {
             let edge = |edge: &[f64]| edge.iter().map(|y| height(*y)).collect::<Vec<_>>();
             let (low, high) = (edge(&band.low), edge(&band.high));

@@ -14,13 +14,13 @@ use impactlab_document::report::{Drawn, Medium, PictureContent, Pixels};
 use impactlab_document::scene::SceneStill;
 
 /// Size of a picture in a report, pixels; its sides are as those of its place on the page.
-const SIZE_PX: [u32; 2] = [1560, 655];
+const SIZE_PX: [u32; 2] = [1560, 593];
 /// Pixels per point: letters are as large as those of the captions.
 const SCALE: f32 = 2.25;
 
 /// A picture that takes half of the width of a page, with the sides of its place; its letters are as large
 /// as those of the captions.
-const HALF: Canvas = Canvas { size_px: [1040, 780], scale: 3.0, dark: false };
+const HALF: Canvas = Canvas { size_px: [1040, 603], scale: 3.0, dark: false };
 /// Room around a plot, points.
 const PLOT_MARGIN: f32 = 4.0;
 

@@ -37,9 +37,9 @@ pub use ask::checks::check_window;
 pub use ask::cost::{Cost, CostPart};
 pub use ask::error::StudyError;
 pub use ask::inputs::{
-    BadCases, ConfigChoice, DEFAULT_STRIKING, DEFAULT_VEHICLE, EvaluatedCases, InputError,
-    InputFile, InputKind, MODEL_ENDING, ModelChoice, ScenarioChoice, SeriesFile, TrainingOptions,
-    VehicleChoice, checkpoint_beside, take_vehicle,
+    ATLAS_ENDING, BadCases, ConfigChoice, DEFAULT_STRIKING, DEFAULT_VEHICLE, EvaluatedCases,
+    InputError, InputFile, InputKind, MODEL_ENDING, ModelChoice, ScenarioChoice, SeriesFile,
+    TrainingOptions, VehicleChoice, checkpoint_beside, take_vehicle,
 };
 pub use ask::library::Library;
 pub use ask::provenance::Provenance;

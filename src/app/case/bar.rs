@@ -14,7 +14,7 @@ use impactlab_study::case_file::Expert;
 pub fn case_bar_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     Panel::top("case").show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
-            let (is_changed, file) = (state.is_case_changed(), &state.case.file);
+            let (is_changed, file) = (state.session.known_case.is_changed, &state.case.file);
             let mark = if is_changed { " •" } else { "" };
             let path = state.case.path.as_ref().map(|path| path.display().to_string());
             let hint = match (&path, is_changed) {

@@ -104,6 +104,12 @@ impl State {
                 reasons.push(format!("The {what} {name:?} is in no file and is lost."));
             }
         }
+        if tasks.is_running(&TaskKey::Sweep) {
+            reasons.push(
+                "The sweep is stopped; its finished chunks stay, and it goes on from them."
+                    .to_owned(),
+            );
+        }
         if tasks.film().is_some() {
             reasons.push("A film that is being made is stopped and not written.".to_owned());
         }

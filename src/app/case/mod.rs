@@ -2,6 +2,7 @@
 
 mod bar;
 mod command;
+mod known;
 mod leaving;
 mod trust;
 mod update;
@@ -9,6 +10,7 @@ mod version_1;
 
 pub use bar::case_bar_ui;
 pub use command::{CaseCommand, Leaving, VariantCommand};
+pub use known::KnownCase;
 pub use leaving::leaving_ui;
 pub use trust::{TrustedCase, trust_ui};
 

@@ -7,9 +7,10 @@ use rfd::AsyncFileDialog;
 
 use crate::app::command::Command;
 use crate::app::dialog::purpose::Purpose;
+use crate::app::sweep::SweepCommand;
 use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::jobs::ProgressCallback;
-use impactlab_study::MODEL_ENDING;
+use impactlab_study::{ATLAS_ENDING, MODEL_ENDING};
 
 /// File extensions of site files and orthophotos.
 const GROUNDS: [&str; 6] = ["toml", "png", "jpg", "jpeg", "tif", "tiff"];
@@ -25,6 +26,9 @@ impl Purpose {
         is_confirmed: bool,
     ) -> Option<Command> {
         let path = paths.first().cloned()?;
+        if matches!(self, Self::SweepFolder) {
+            return Some(Command::Sweep(SweepCommand::Folder(path)));
+        }
         let Some(output) = self.output().cloned() else { return Some(Command::Open(paths)) };
         let endings = output.endings();
         Some(match (endings.first(), path.extension()) {
@@ -77,12 +81,23 @@ pub fn ask_for_path(purpose: Purpose, tasks: &mut Tasks) {
 async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
     let dialog = AsyncFileDialog::new().set_title(purpose.title());
     let one = match purpose {
-        Purpose::Folder => dialog.pick_folder().await,
+        Purpose::Folder | Purpose::SweepFolder => dialog.pick_folder().await,
         Purpose::Files => {
             let files = dialog
                 .add_filter(
                     "cases, tables, scenarios and evidence",
-                    &["impactlab", "csv", "txt", "tsv", "dat", "asc", "xlsx", "xlsm", "toml"],
+                    &[
+                        "impactlab",
+                        "csv",
+                        "txt",
+                        "tsv",
+                        "dat",
+                        "asc",
+                        "xlsx",
+                        "xlsm",
+                        "toml",
+                        "atlas",
+                    ],
                 )
                 .add_filter("all files", &["*"])
                 .pick_files()
@@ -94,6 +109,8 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         }
         Purpose::Ground => dialog.add_filter("site file or orthophoto", &GROUNDS).pick_file().await,
         Purpose::OpenModel => dialog.add_filter("model", &[MODEL_ENDING]).pick_file().await,
+        Purpose::OpenAtlas => dialog.add_filter("atlas", &[ATLAS_ENDING]).pick_file().await,
+        Purpose::OpenPlan => dialog.add_filter("plan", &["toml", "json"]).pick_file().await,
         Purpose::Save(output) => {
             let (endings, [_, kind]) = (output.endings(), output.texts());
             match endings.is_empty() {

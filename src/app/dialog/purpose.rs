@@ -15,6 +15,12 @@ pub enum Purpose {
     OpenModel,
     /// A `comparison.json` file to open.
     OpenComparison,
+    /// An atlas to open.
+    OpenAtlas,
+    /// The plan of a sweep to open.
+    OpenPlan,
+    /// The folder of a sweep.
+    SweepFolder,
     /// A file or a folder that is written.
     Save(Output),
 }
@@ -28,6 +34,9 @@ impl Purpose {
             Self::Ground => "Open a ground",
             Self::OpenModel => "Open a model",
             Self::OpenComparison => "Open a comparison",
+            Self::OpenAtlas => "Open an atlas",
+            Self::OpenPlan => "Open the plan of a sweep",
+            Self::SweepFolder => "A folder for the sweep",
             Self::Save(output) => output.texts()[0],
         }
     }

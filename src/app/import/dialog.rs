@@ -166,7 +166,8 @@ impl ImportDialog {
     /// Whether the table was read with another sheet, header or row of units, or with other signs.
     fn is_table_stale(&self) -> bool {
         let signs = |of: &ReadSettings| (of.separator, of.decimal_comma, of.thousands);
-        let place = |of: &ReadSettings| (signs(of), of.sheet.clone(), of.header, of.units_line);
+        let place =
+            |of: &ReadSettings| (signs(of), of.sheet.clone(), of.deck, of.header, of.units_line);
         let read = self.table.as_ref().map(|(settings, _)| place(settings));
         read != Some(place(&self.settings))
     }
@@ -183,6 +184,8 @@ impl ImportDialog {
         let is_same = before.eq(found.iter().map(|proposal| &proposal.name));
         let first = self.first_map.as_ref().filter(|_| self.is_untouched);
         self.choices = match first {
+            // A map of settings alone leaves the columns to their headers.
+            Some(map) if map.iter().next().is_none() => Choices::suggested(found),
             Some(map) => Choices::from_map(found, map),
             None if is_same => Choices::from_map(found, &self.map()),
             None => Choices::suggested(found),

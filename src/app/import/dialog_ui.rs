@@ -12,8 +12,8 @@ use crate::app::looks;
 use crate::app::model::file_name;
 use crate::app::panels::{file_vehicle_ui, start_fields};
 use impactlab_core::data::{
-    Channel, ColumnMap, FileKind, HeaderLine, ReadSettings, Severity, Sheet, SheetRef,
-    VelocityAxes, VelocityFit,
+    Channel, ColumnMap, DeckUnits, FileKind, HeaderLine, ReadSettings, Severity, Sheet, SheetRef,
+    Table, VelocityAxes, VelocityFit,
 };
 use impactlab_draw::theme;
 
@@ -92,12 +92,14 @@ impl ImportDialog {
             self.settings.units_line.or(table.as_ref().and_then(|table| table.units_line()));
         ui.horizontal(|ui| {
             if let Some(sheet) = table.as_ref().and_then(|table| table.sheet()) {
-                self.sheet_ui(ui, sheet);
+                let is_of_model = table.as_ref().is_some_and(|table| table.is_of_model());
+                self.sheet_ui(ui, sheet, is_of_model);
             }
             self.header_ui(ui, header);
             self.units_line_ui(ui, units);
         });
         let is_sheet = table.as_ref().is_some_and(|table| table.sheet().is_some());
+        self.deck_ui(ui, table.as_deref());
         self.signs_ui(ui, table.as_ref().map(|table| table.dialect()), is_sheet);
         let lines = ScrollArea::both().id_salt("lines").max_height(LINES_HEIGHT);
         lines.auto_shrink([false, true]).show(ui, |ui| {
@@ -113,19 +115,45 @@ impl ImportDialog {
         ui.separator();
     }
 
-    fn sheet_ui(&mut self, ui: &mut Ui, shown: &Sheet) {
-        let name = ui.label("Sheet");
+    fn sheet_ui(&mut self, ui: &mut Ui, shown: &Sheet, is_of_model: bool) {
+        let name = ui.label(if is_of_model { "Contact, side or node" } else { "Sheet" });
         let combo = ComboBox::from_id_salt("sheet").selected_text(&shown.name);
         let list = combo.show_ui(ui, |ui| {
             for (idx, sheet) in shown.all.iter().enumerate() {
                 if ui.selectable_label(*sheet == shown.name, sheet).clicked() {
                     // Lines that were chosen are those of the other sheet.
                     let sheet = Some(SheetRef::Number(idx + 1));
-                    self.settings = ReadSettings { sheet, ..ReadSettings::default() };
+                    let deck = self.settings.deck;
+                    self.settings = ReadSettings { sheet, deck, ..ReadSettings::default() };
                 }
             }
         });
         list.response.labelled_by(name.id);
+    }
+
+    /// Draws the choice of the units of a finite-element model, with those that its numbers suggest.
+    fn deck_ui(&mut self, ui: &mut Ui, table: Option<&Table>) {
+        let Some(table) = table.filter(|table| table.is_of_model()) else { return };
+        ui.horizontal(|ui| {
+            let name = ui.label("Units of the model");
+            let chosen = &mut self.settings.deck;
+            let text = chosen.map_or("not said: choose", DeckUnits::name);
+            let combo = ComboBox::from_id_salt("deck").selected_text(text).width(120.0);
+            let list = combo.show_ui(ui, |ui| {
+                for deck in DeckUnits::ALL {
+                    ui.selectable_value(chosen, Some(deck), deck.name());
+                }
+            });
+            list.response.labelled_by(name.id);
+            if let Some((deck, why)) = table.proposed_deck()
+                && ui.button(format!("Take {}", deck.name())).on_hover_text(why).clicked()
+            {
+                *chosen = Some(deck);
+            }
+        });
+        if let Some((_, why)) = table.proposed_deck() {
+            ui.weak(why);
+        }
     }
 
     fn header_ui(&mut self, ui: &mut Ui, shown: Option<HeaderLine>) {

@@ -37,8 +37,9 @@ pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ui.colored_label(ui.visuals().error_fg_color, error.to_string());
         return;
     }
-    ui.weak(format!("{} of {} cases", table.len(), table.checked.dataset.cases.len()));
     let subject = project.subject();
+    let hint = if subject.is_none() { ": click one to see it" } else { "" };
+    ui.weak(format!("{} of {} cases{hint}", table.len(), table.checked.dataset.cases.len()));
     let selected = match &subject {
         Some(Subject::Case { dataset, case }) if *dataset == path => Some(case.as_str()),
         _ => None,

@@ -17,6 +17,10 @@ const GAP: f32 = 4.0 * looks::GRID;
 /// Space between the edge of a door and its text, points.
 const INSIDE: f32 = 4.0 * looks::GRID;
 
+/// What to do first.
+const FIRST_STEP: &str = "New here? Set up a collision: it has an answer within seconds, and every number of \
+                          it can be changed.";
+
 /// A way to begin.
 struct Door {
     icon: Icon,
@@ -62,6 +66,7 @@ pub fn doors_ui(ui: &mut Ui, recent: &[PathBuf], commands: &mut Vec<Command>) {
         ui.weak(
             "The shipped cars, forces and networks are there already. Nothing leaves this machine.",
         );
+        ui.label(FIRST_STEP);
     });
     ui.add_space(2.0 * GAP);
     let width = DOORS.len() as f32 * (SIZE[0] + GAP) - GAP;

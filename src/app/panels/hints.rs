@@ -55,8 +55,8 @@ pub(super) fn analysis_or_hint<'a>(
             ui.horizontal(|ui| (ui.spinner(), ui.label("Working…")));
         }
         None => {
-            ui.label(RichText::new("Nothing selected").strong());
-            ui.label("Open a data set (File, or drop a folder here) and pick a case, or set up a scenario.");
+            ui.label(RichText::new("No case chosen").strong());
+            ui.label("Choose a case in the Data workspace, open a file (File, or drop it here), or set up a scenario.");
         }
     }
     None

@@ -46,6 +46,10 @@ pub fn panel(pane: Pane) -> Panel {
         Pane::ModelComparison => ("Compare models", Icon::ChartBar, panels::model_comparison_ui),
         Pane::Report => ("Report", Icon::FileText, panels::report_ui),
         Pane::ReportPages => ("Report text", Icon::BookOpen, panels::report_pages_ui),
+        Pane::AtlasChoices => ("Atlas", Icon::SlidersHorizontal, panels::atlas_choices_ui),
+        Pane::AtlasMap => ("Map", Icon::Grid3x3, panels::atlas_map_ui),
+        Pane::Sensitivity => ("What moves it", Icon::ChartBarDecreasing, panels::sensitivity_ui),
+        Pane::Sweep => ("Sweep", Icon::Repeat, panels::sweep_ui),
     };
     Panel { title, icon, ui }
 }

@@ -4,6 +4,8 @@
 //! everything else with a [`Command`](crate::app::Command). Large panes are divided among several
 //! files.
 
+mod atlas_choices;
+mod atlas_map;
 mod cases;
 mod comparison;
 mod contents;
@@ -33,6 +35,8 @@ mod scenario_plan;
 mod scene;
 mod scene_camera;
 mod scene_ground;
+mod sensitivity;
+mod sweep;
 mod training;
 mod training_force;
 mod training_losses;
@@ -43,6 +47,8 @@ mod variants;
 mod vehicle;
 mod vehicle_form;
 
+pub use atlas_choices::atlas_choices_ui;
+pub use atlas_map::atlas_map_ui;
 pub use cases::cases_ui;
 pub use comparison::comparison_ui;
 pub use contents::contents_ui;
@@ -64,6 +70,8 @@ pub use reconstruction::{evidence_ui, reconstructed_scene_ui, speeds_ui};
 pub use report::{report_pages_ui, report_ui};
 pub use scenario::scenario_ui;
 pub use scene::scene_ui;
+pub use sensitivity::sensitivity_ui;
+pub use sweep::sweep_ui;
 pub use training::training_ui;
 pub use variants::variants_ui;
 pub(in crate::app) use vehicle::file_vehicle_ui;

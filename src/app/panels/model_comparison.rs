@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use egui::{DragValue, Grid, ScrollArea, Ui};
+use egui::{Grid, ScrollArea, Ui};
 
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::cost::CostPlace;
@@ -17,7 +17,7 @@ use crate::app::response::ComparisonStatus;
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{
     bad_cases_ui, caveats_ui, config_field, cost_ui, count_field, dataset_choice, no_dataset_ui,
-    written_field,
+    seed_field, written_field,
 };
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::ranges::CHOICES;
@@ -104,7 +104,7 @@ fn form_ui(
             .labelled_by(name.id)
             .on_hover_text("Of the trajectories, for each number: how much the choice matters");
         let name = ui.label("seed");
-        ui.add(DragValue::new(&mut form.seed).speed(0.2))
+        seed_field(ui, &mut form.seed)
             .labelled_by(name.id)
             .on_hover_text("Of the split into training and test, and of the first choice");
         let name = ui.label("settings");
@@ -204,8 +204,8 @@ fn heading_ui(
             ),
         });
         if ui.button("Copy as Markdown").clicked() {
-            let text = FactWriter::english(UnitSystem::default()).markdown(&report.facts());
-            ui.ctx().copy_text(report.caveats.appended_to(text));
+            let text = FactWriter::english(units).markdown(&report.facts());
+            ui.ctx().copy_text(report.caveats.in_units(units).appended_to(text));
         }
     });
     caveats_ui(ui, &report.caveats, units, commands);

@@ -1,21 +1,22 @@
 //! The “Motion” pane: the simulated motion of the struck vehicle over time, beside the recorded
 //! one.
 
+use std::sync::Arc;
+
 use egui::{Id, Ui};
 
 use crate::app::command::Command;
+use crate::app::motion_plots::{ControlPlot, MotionPlots, MotionSource, recorded};
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::playback::PlaybackCommand;
-use crate::app::recording::{Overlaid, overlaid, recording_menu_ui};
-use crate::app::variants::{are_others_awaited, other_simulations};
+use crate::app::recording::recording_menu_ui;
+use crate::app::scene::SceneSource;
+use crate::app::variants::are_others_awaited;
 use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, time_figure};
 use impactlab_core::data::{Channel, TimeSeries};
-use impactlab_core::uncertainty::Caveats;
-use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::{
-    Figure, FigureElement, MOTION_CHANNELS, analysis_motion_figure, analysis_readout,
-    control_figures, figure_readout, recording_line,
+    Figure, FigureElement, MOTION_CHANNELS, analysis_readout, figure_readout,
 };
 use impactlab_draw::FigureOptions;
 use impactlab_study::SimulateAnswer;
@@ -35,11 +36,18 @@ const ABOUT_CONTROLS: &str = "As the simulation gave it to the wheels, drivers, 
 /// Draws v_x, v_y, yaw rate and roll over time, and below them what drivers and systems did to the wheels,
 /// with a cursor at the time of the scene. A click or a drag in a plot sets this time.
 pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let mut plots = std::mem::take(&mut pane.session.motion_plots);
+    plots_ui(ui, pane, &mut plots);
+    pane.session.motion_plots = plots;
+}
+
+fn plots_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, plots: &mut MotionPlots) {
     let PaneContext { project, view, session, between, variants, commands, .. } = pane;
-    let Some(answer) = analysis_or_hint(ui, session) else {
+    if analysis_or_hint(ui, session).is_none() {
         return;
-    };
-    let SimulateAnswer { report, analysis } = answer;
+    }
+    let Some(answer) = session.analysis.ok() else { return };
+    let SimulateAnswer { report, analysis } = &**answer;
     caveats_ui(ui, &report.caveats, view.units, commands);
     let to_controls = ui.horizontal_wrapped(|ui| {
         curves_menu_ui(ui, analysis, &mut view.motion_channels);
@@ -48,24 +56,37 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ui.weak("Shift + drag in a plot: numbers between two cursors");
         button.clicked()
     });
-    let time_s = session.playback.time_s;
-    let shown = Shown {
-        analysis,
+    let (time_s, units) = (session.playback.time_s, view.units);
+    let source = MotionSource {
+        answer: Arc::clone(answer),
         caveats: session.simulation_caveats(report).outdated_if(are_others_awaited(variants)),
-        others: other_simulations(variants).collect(),
-        recording: overlaid(project.beside.recording.as_ref(), &session.sources),
-        time_s,
-        units: view.units,
+        others: SceneSource::others(variants),
+        recording: recorded(project.beside.recording.as_ref(), &session.sources),
+        channels: view.motion_channels.clone(),
+        units,
     };
+    plots.update(source, &session.sources);
     let first = view.motion_channels.first();
-    let channels = view.motion_channels.iter();
-    let channels: Vec<Plot> =
-        channels.map(|channel| shown.channel_plot(*channel, first == Some(channel))).collect();
-    let controls = shown.control_plots();
+    let channels = view.motion_channels.iter().zip(&plots.channels);
+    let channels: Vec<Plot<'_>> = channels
+        .map(|(channel, figure)| Plot {
+            heading: analysis_readout(analysis, *channel, time_s, units),
+            figure,
+            legend: first == Some(channel),
+        })
+        .collect();
+    let controls = plots.controls.iter();
+    let controls: Vec<Plot<'_>> = controls
+        .map(|ControlPlot { own, figure }| Plot {
+            heading: figure_readout(own, time_s),
+            figure,
+            legend: true,
+        })
+        .collect();
     let n_columns = if ui.available_width() > TWO_COLUMNS_WIDTH { 2 } else { 1 };
     let n_rows = MOTION_CHANNELS.len() / n_columns + usize::from(!controls.is_empty());
     let height = (ui.available_height() / n_rows as f32 - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
-    let mut plot_ui = |ui: &mut Ui, plot: &Plot| {
+    let mut plot_ui = |ui: &mut Ui, plot: &Plot<'_>| {
         let options = FigureOptions {
             id: plot.figure.y.label.clone(),
             link: Some(Id::unique("motion")),
@@ -75,13 +96,13 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             legend: plot.legend,
             ..FigureOptions::default()
         };
-        let response = time_figure(ui, &plot.heading, &plot.figure, options, between, commands);
+        let response = time_figure(ui, &plot.heading, plot.figure, options, between, commands);
         if let Some(picked_s) = response.picked_x {
-            let last_s = figure_end(&plot.figure);
+            let last_s = figure_end(plot.figure);
             commands.push(Command::Playback(PlaybackCommand::SetTime(picked_s.clamp(0.0, last_s))));
         }
     };
-    let mut rows_ui = |ui: &mut Ui, plots: &[Plot]| {
+    let mut rows_ui = |ui: &mut Ui, plots: &[Plot<'_>]| {
         for row in plots.chunks(n_columns) {
             ui.columns(n_columns, |columns| {
                 columns.iter_mut().zip(row).for_each(|(column, plot)| plot_ui(column, plot));
@@ -102,56 +123,11 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     });
 }
 
-/// What the plots of the panel show.
-struct Shown<'a> {
-    analysis: &'a Analysis,
-    caveats: Caveats,
-    /// The other variants by their names.
-    others: Vec<(&'a str, &'a SimulateAnswer)>,
-    recording: Option<Overlaid<'a>>,
-    time_s: f64,
-    units: UnitSystem,
-}
-
 /// A plot of the panel.
-struct Plot {
+struct Plot<'a> {
     heading: String,
-    figure: Figure,
+    figure: &'a Figure,
     legend: bool,
-}
-
-impl Shown<'_> {
-    fn channel_plot(&self, channel: Channel, legend: bool) -> Plot {
-        let figure_of = |analysis: &Analysis, caveats: &Caveats| {
-            analysis_motion_figure(analysis, caveats, channel, self.units)
-        };
-        let mut figure = figure_of(self.analysis, &self.caveats);
-        for (i, (name, other)) in self.others.iter().enumerate() {
-            figure.overlay(name, i, &figure_of(&other.analysis, &other.report.caveats));
-        }
-        if let Some((name, series, offset_s)) = &self.recording {
-            let line = recording_line(name, series, *offset_s, channel, self.units);
-            figure.elements.extend(line);
-        }
-        let heading = analysis_readout(self.analysis, channel, self.time_s, self.units);
-        Plot { heading, figure, legend }
-    }
-
-    /// The plots of what was done to the wheels; those of other variants over those of the same kind.
-    fn control_plots(&self) -> Vec<Plot> {
-        let mut figures = control_figures(self.analysis, &self.caveats, self.units);
-        let headings: Vec<String> =
-            figures.iter().map(|figure| figure_readout(figure, self.time_s)).collect();
-        for (i, (name, other)) in self.others.iter().enumerate() {
-            let others = control_figures(&other.analysis, &other.report.caveats, self.units);
-            for figure in &mut figures {
-                let same = others.iter().find(|other| other.y.label == figure.y.label);
-                same.into_iter().for_each(|other| figure.overlay(name, i, other));
-            }
-        }
-        let plots = headings.into_iter().zip(figures);
-        plots.map(|(heading, figure)| Plot { heading, figure, legend: true }).collect()
-    }
 }
 
 /// Draws the menu in which the curves are chosen, of those that there are.

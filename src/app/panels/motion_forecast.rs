@@ -24,7 +24,8 @@ use crate::app::response::{
 use crate::app::state::{Session, View};
 use crate::app::variants::{AnsweredVariant, are_others_awaited, other_forecasts};
 use crate::app::widgets::{
-    MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame, sentences_ui,
+    MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame, seed_field,
+    sentences_ui,
 };
 use impactlab_core::data::{Severity, TimeSeries};
 use impactlab_core::ranges::DRAWS;
@@ -190,7 +191,7 @@ fn force_ui(ui: &mut Ui, project: &mut Project, session: &Session, commands: &mu
             .labelled_by(name.id)
             .on_hover_text("Whole curves drawn from the predicted force, each as likely; each drives its own distribution of motions");
         let name = ui.label("Seed");
-        ui.add(DragValue::new(&mut request.seed).speed(0.2)).labelled_by(name.id);
+        seed_field(ui, &mut request.seed).labelled_by(name.id);
     });
     let answer = session.response.forecast.ok();
     if answer.is_some_and(|answer| !answer.is_predicted()) {

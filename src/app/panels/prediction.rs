@@ -11,7 +11,7 @@ use crate::app::panels::prediction_form::form_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::View;
 use crate::app::widgets::{
-    MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame,
+    MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame, seed_field,
 };
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::SAMPLES;
@@ -114,7 +114,7 @@ fn choices_ui(ui: &mut Ui, view: &mut View, request: &mut PredictForceRequest) {
             .labelled_by(name.id)
             .on_hover_text("Whole curves drawn from the prediction, as coherent as real ones");
         let name = ui.label("Seed");
-        ui.add(egui::DragValue::new(&mut request.seed).speed(0.2))
+        seed_field(ui, &mut request.seed)
             .labelled_by(name.id)
             .on_hover_text("Same seed, same curves; intervals of |P|, peak and PDOF are drawn too");
         if ui.button("Draw").on_hover_text("Draw other curves: the next seed").clicked() {

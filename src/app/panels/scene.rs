@@ -78,7 +78,8 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         caveats: caveats.clone(),
         units: view.units,
     };
-    choices_ui(ui, &mut project.beside.camera_keys, &mut view.scene, session, commands);
+    let keys = &mut project.beside.camera_keys;
+    choices_ui(ui, keys, (&mut view.scene, view.units), session, commands);
     let scene = session.scene.scene(source, &session.sources);
     let time_s = session.playback.time_s;
     let numbers = || {
@@ -138,14 +139,14 @@ fn rest_ui(ui: &mut Ui, rest: Option<&RestState>, units: UnitSystem) {
 fn choices_ui(
     ui: &mut Ui,
     keys: &mut Vec<CameraKey>,
-    settings: &mut SceneSettings,
+    (settings, units): (&mut SceneSettings, UnitSystem),
     session: &mut Session,
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {
         forecast_choice_ui(ui, &mut settings.shows_forecast, session);
         let seen = (session.scene.view.camera(), session.playback.time_s);
-        if let Some(camera) = camera_menu_ui(ui, keys, settings, seen, commands) {
+        if let Some(camera) = camera_menu_ui(ui, keys, settings, seen, units, commands) {
             session.scene.view.place_at(camera);
         }
     });

@@ -35,9 +35,8 @@ fn force_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     if !has_data {
         no_dataset_ui(ui, DatasetKind::Force, commands);
     }
-    let reset = session.fit_plots;
-    let view =
-        LossView { terms: &mut view.force.loss_terms, log: &mut view.force.log_losses, reset };
+    let (reset, units, view) = (session.fit_plots, view.units, &mut view.force);
+    let view = LossView { terms: &mut view.loss_terms, log: &mut view.log_losses, reset, units };
     let (force, costs) = (&mut session.force, &mut session.costs);
     let cost = |ui: &mut Ui| cost_ui(ui, costs, CostPlace::ForceTraining, "Training");
     network_training_ui(ui, has_data, &force.training, &mut force.model, cost, view, commands);
@@ -50,8 +49,8 @@ fn response_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     if !has_data {
         no_dataset_ui(ui, DatasetKind::Trajectory, commands);
     }
-    let (reset, view) = (session.fit_plots, &mut view.response);
-    let view = LossView { terms: &mut view.loss_terms, log: &mut view.log_losses, reset };
+    let (reset, units, view) = (session.fit_plots, view.units, &mut view.response);
+    let view = LossView { terms: &mut view.loss_terms, log: &mut view.log_losses, reset, units };
     let (response, costs) = (&mut session.response, &mut session.costs);
     let (training, model) = (&response.training, &mut response.model);
     let cost = |ui: &mut Ui| cost_ui(ui, costs, CostPlace::ResponseTraining, "Training");

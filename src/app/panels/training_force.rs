@@ -7,7 +7,7 @@ use egui::{Grid, Ui};
 use crate::app::network::NetworkQuestions;
 use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
 use crate::app::source::{Source, open_datasets};
-use crate::app::widgets::dataset_choice;
+use crate::app::widgets::{dataset_choice, seed_field};
 use impactlab_core::data::DatasetKind;
 use impactlab_core::ranges::EPOCHS;
 
@@ -41,7 +41,7 @@ pub fn force_form_ui(
             .on_hover_text("At most; 0 for what the settings say. Training stops before when the validation loss stops falling");
         ui.end_row();
         let name = ui.label("Seed");
-        ui.add(egui::DragValue::new(&mut form.training.seed).speed(0.2))
+        seed_field(ui, &mut form.training.seed)
             .labelled_by(name.id)
             .on_hover_text("Of the split and of every random number: same seed, same weights");
         ui.end_row();

@@ -5,7 +5,7 @@ use egui::{Grid, Ui};
 use crate::app::command::Command;
 use crate::app::network::Network;
 use crate::app::widgets::{figure_frame, value_row};
-use impactlab_core::units::significant;
+use impactlab_core::units::{UnitSystem, significant};
 use impactlab_document::figure::{Figure, LossCurve, balance_figure, loss_figure};
 use impactlab_draw::FigureOptions;
 use impactlab_networks::learning::{EpochSummary, PhysicsBalance};
@@ -24,6 +24,8 @@ pub struct LossView<'a> {
     pub log: &'a mut bool,
     /// Whether the plots fit their view to the data again.
     pub reset: bool,
+    /// System of units of what was assumed.
+    pub units: UnitSystem,
 }
 
 /// Draws the losses, the balance between the data and the physics loss if the training has one, and

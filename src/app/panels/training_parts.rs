@@ -43,7 +43,7 @@ pub fn network_training_ui<M: TrainedModel>(
         cost(ui);
     }
     let notes = status.report.as_ref().map(M::notes);
-    run_record_ui(ui, status.problem.as_deref(), notes, commands);
+    run_record_ui(ui, status.problem.as_deref(), notes, view.units, commands);
     save_model_ui(ui, model, commands);
     ui.separator();
     match &model.current {
@@ -152,6 +152,7 @@ fn run_record_ui(
     ui: &mut Ui,
     problem: Option<&str>,
     notes: Option<(&[String], &Caveats)>,
+    units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
     let dark = ui.visuals().dark_mode;
@@ -164,5 +165,5 @@ fn run_record_ui(
         let color = theme::severity_color(Severity::Warning, dark);
         ui.colored_label(color, format!("Left out: {why}"));
     }
-    assumptions_ui(ui, caveats, UnitSystem::default(), commands);
+    assumptions_ui(ui, caveats, units, commands);
 }

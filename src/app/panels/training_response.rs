@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use egui::{ComboBox, DragValue, Grid, Ui};
+use egui::{ComboBox, Grid, Ui};
 
 use crate::app::network::{NetworkQuestions, TrainingMode};
 use crate::app::panels::file_start::{file_list_ui, open_files};
 use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
 use crate::app::source::{Source, open_datasets};
-use crate::app::widgets::dataset_choice;
+use crate::app::widgets::{dataset_choice, seed_field};
 use impactlab_core::data::FileKind;
 use impactlab_core::ranges::TRAJECTORIES;
 
@@ -95,15 +95,16 @@ fn numbers_ui(ui: &mut Ui, questions: &mut NetworkQuestions, is_of_log: bool) {
         true => "Which cases are kept for the test",
         false => "Which cases are kept for the test, and every other random number",
     };
-    ui.add(DragValue::new(&mut form.training.seed).speed(0.2))
-        .labelled_by(name.id)
-        .on_hover_text(hint);
+    seed_field(ui, &mut form.training.seed).labelled_by(name.id).on_hover_text(hint);
     ui.end_row();
     let name = ui.label("Seed of the choice");
-    let mut choice = form.choice.unwrap_or(form.training.seed);
-    let field = ui.add_enabled(is_fine_tuning, DragValue::new(&mut choice).speed(0.2));
+    let before = form.choice.unwrap_or(form.training.seed);
+    let mut choice = before;
     let hint = "Which trajectories are learned from, and every other random number; the seed of the split unless it is changed";
-    if field.labelled_by(name.id).on_hover_text(hint).changed() {
+    ui.add_enabled_ui(is_fine_tuning, |ui| {
+        seed_field(ui, &mut choice).labelled_by(name.id).on_hover_text(hint);
+    });
+    if choice != before {
         form.choice = Some(choice);
     }
     ui.end_row();

@@ -4,6 +4,8 @@
 use std::sync::Arc;
 
 use impactlab_core::data::Outcome;
+use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_core::units::{Estimate, Interval};
 use impactlab_draw::DensityGpu;
 use impactlab_networks::response::STEP_S;
 use impactlab_study::analysis::{DensityMap, DensityTask, MotionBands};
@@ -28,6 +30,8 @@ pub struct MotionAnswer {
     pub answer: PredictMotionAnswer,
     /// The intervals of the states over time, for the figures.
     pub bands: MotionBands,
+    /// Size of the impulse of the force with its interval of 90 %, N s, if a network predicted the force.
+    pub impulse_n_s: Option<Estimate>,
 }
 
 impl MotionAnswer {
@@ -67,9 +71,24 @@ impl Question for MotionQuestion {
         let answered = self.request.solve(library, observer)?;
         Ok(answered.map(|answer| {
             let bands = MotionBands::new(&answer.forecast.distribution, BAND_STRIDE);
-            MotionAnswer { answer, bands }
+            let impulse_n_s = impulse_n_s(&answer);
+            MotionAnswer { answer, bands, impulse_n_s }
         }))
     }
+}
+
+/// Median and interval of the sizes of the impulses of the predicted forces.
+fn impulse_n_s(answer: &PredictMotionAnswer) -> Option<Estimate> {
+    answer.report.force_model.as_ref()?;
+    let impulses = answer.forecast.forces.iter().map(|force| {
+        let [x, y] = force.impulse_n_s();
+        x.hypot(y)
+    });
+    let mut sizes: Vec<f64> = impulses.collect();
+    sizes.sort_by(f64::total_cmp);
+    let [low, median, high] = [0.05, 0.5, 0.95].map(|share| quantile_of_sorted(&sizes, share));
+    let interval = Interval { level: 0.9, low: low?, high: high? };
+    Some(Estimate { median: median?, intervals: vec![interval] })
 }
 
 /// A question for the density of the predicted position.

@@ -7,4 +7,4 @@ mod whole;
 
 pub use saved::{Subject, View};
 pub use session::Session;
-pub use whole::{RestoreError, State};
+pub use whole::{RestoreError, State, StateText};

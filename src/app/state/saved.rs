@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use crate::app::atlas::AtlasView;
 use crate::app::case::TrustedCase;
 use crate::app::force::ForceView;
 use crate::app::import::ColumnMaps;
@@ -13,6 +14,7 @@ use crate::app::report::ReportView;
 use crate::app::response::ResponseView;
 use crate::app::scene::SceneSettings;
 use crate::app::source::Source;
+use crate::app::sweep::SweepView;
 use crate::app::workspaces::Workspaces;
 use impactlab_core::data::{Channel, DatasetKind};
 use impactlab_core::units::UnitSystem;
@@ -75,6 +77,10 @@ pub struct View {
     pub reconstruction: ReconstructionView,
     /// How reports are written.
     pub report: ReportView,
+    /// Which map of an atlas is shown.
+    pub atlas: AtlasView,
+    /// Which sweep is worked on.
+    pub sweep: SweepView,
     /// The network that the training pane shows.
     pub trained: Network,
     /// The cases that were opened or saved last, the latest first.
@@ -108,6 +114,8 @@ impl Default for View {
             response: ResponseView::default(),
             reconstruction: ReconstructionView::default(),
             report: ReportView::default(),
+            atlas: AtlasView::default(),
+            sweep: SweepView::default(),
             trained: Network::default(),
             recent: Vec::new(),
             trusted: Vec::new(),

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::app::archive::ArchiveStatus;
+use crate::app::atlas::AtlasSession;
+use crate::app::case::KnownCase;
 use crate::app::case_table::CaseList;
 use crate::app::cost::Costs;
 use crate::app::dialog::Dialogs;
@@ -13,6 +15,7 @@ use crate::app::frame_times::FrameTimes;
 use crate::app::ground::GroundSession;
 use crate::app::import::SaidOfFile;
 use crate::app::latest::Latest;
+use crate::app::motion_plots::MotionPlots;
 use crate::app::playback::Playback;
 use crate::app::reconstruction::ReconstructionSession;
 use crate::app::replay::Replays;
@@ -21,6 +24,7 @@ use crate::app::response::{DensityChoice, ResponseSession};
 use crate::app::scene::SceneSession;
 use crate::app::source::Source;
 use crate::app::state::Subject;
+use crate::app::sweep::SweepSession;
 use crate::app::tasks::Tasks;
 use crate::app::unfinished::UnfinishedTrainings;
 use crate::app::variants::{OtherVariants, VariantDifferences};
@@ -43,6 +47,8 @@ pub struct Session {
     pub analysis: Latest<SimulateRequest>,
     /// The impulse solution of the scenario in the scenario pane.
     pub impact: Latest<ImpactRequest>,
+    /// What is known of the case as it is now.
+    pub known_case: KnownCase,
     /// The answers of the variants that are not in the forms.
     pub other_variants: OtherVariants,
     /// What the variants ask otherwise than the first one.
@@ -57,6 +63,10 @@ pub struct Session {
     pub reconstruction: ReconstructionSession,
     /// The report of the case.
     pub report: ReportSession,
+    /// The atlas that is shown, with its maps.
+    pub atlas: AtlasSession,
+    /// The plan of the sweep, and what its folder holds.
+    pub sweep: SweepSession,
     /// Models, comparisons and evaluations that are kept in the user's data folder.
     pub archive: ArchiveStatus,
     /// Trainings that have not ended and can go on.
@@ -71,6 +81,8 @@ pub struct Session {
     pub ground: GroundSession,
     /// The scene that is shown, and its picture.
     pub scene: SceneSession,
+    /// The figures of the motion over time.
+    pub motion_plots: MotionPlots,
     /// The two cursors of the figures over time.
     pub between: BetweenCursors,
     /// The time that is shown.
@@ -93,6 +105,8 @@ pub struct Session {
     pub said_of_files: BTreeMap<PathBuf, SaidOfFile>,
     /// The path that the user opened last. Its first case or file is offered to the variant once it is loaded.
     pub select_when_loaded: Option<PathBuf>,
+    /// The paths that the program has opened by itself. No case of theirs is chosen unasked.
+    pub opened_at_start: Vec<PathBuf>,
     /// The path in the text field of the data pane, as the user has typed it so far.
     pub typed_path: String,
     /// How long the window takes to draw itself.

@@ -39,6 +39,49 @@ pub struct Saved {
     sources: Vec<PathBuf>,
 }
 
+impl Saved {
+    fn new(state: &State) -> Self {
+        Self {
+            version: SAVED_VERSION,
+            project: state.project.clone(),
+            case: state.case.clone(),
+            view: state.view.clone(),
+            sources: state.session.sources.iter().map(|source| source.opened.clone()).collect(),
+        }
+    }
+
+    fn is_of(&self, state: &State) -> bool {
+        let opened = state.session.sources.iter().map(|source| &source.opened);
+        self.project == state.project
+            && self.case == state.case
+            && self.view == state.view
+            && self.sources.iter().eq(opened)
+    }
+}
+
+/// The state as text, which is written anew only when the state has changed: a window that plays a motion
+/// draws many frames of the same state.
+#[derive(Default)]
+pub struct StateText {
+    of: Option<Saved>,
+    text: String,
+}
+
+impl StateText {
+    /// The state as [`State::save`] writes it.
+    ///
+    /// # Errors
+    /// As for [`State::save`].
+    pub fn update(&mut self, state: &State) -> Result<&str, serde_json::Error> {
+        if !self.of.as_ref().is_some_and(|saved| saved.is_of(state)) {
+            let saved = Saved::new(state);
+            self.text = serde_json::to_string(&saved)?;
+            self.of = Some(saved);
+        }
+        Ok(&self.text)
+    }
+}
+
 /// The version in which a state was saved.
 #[derive(Deserialize)]
 struct SavedBy {
@@ -72,14 +115,7 @@ impl State {
     /// # Errors
     /// A file has a name that is not Unicode, which JSON cannot hold.
     pub fn save(&self) -> Result<String, serde_json::Error> {
-        let saved = Saved {
-            version: SAVED_VERSION,
-            project: self.project.clone(),
-            case: self.case.clone(),
-            view: self.view.clone(),
-            sources: self.session.sources.iter().map(|source| source.opened.clone()).collect(),
-        };
-        serde_json::to_string(&saved)
+        serde_json::to_string(&Saved::new(self))
     }
 
     /// Reads the state that [`save`](Self::save) has written and returns it with the paths that

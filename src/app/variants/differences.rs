@@ -21,13 +21,12 @@ impl VariantDifferences {
         self.found.get(name).map(Vec::as_slice)
     }
 
-    pub(super) fn update(&mut self, variants: Vec<Variant>, units: UnitSystem) {
-        let of = (variants, units);
-        if self.of == of {
+    pub(super) fn update(&mut self, variants: &[Variant], units: UnitSystem) {
+        if self.of.0 == variants && self.of.1 == units {
             return;
         }
-        self.of = of;
-        self.found = match self.of.0.split_first() {
+        self.of = (variants.to_vec(), units);
+        self.found = match variants.split_first() {
             Some((first, others)) => others
                 .iter()
                 .map(|other| (other.name.clone(), variant_differences(first, other, units)))

@@ -47,11 +47,12 @@ impl State {
 
     /// Finds what the variants ask otherwise than the first one; of one alone there is nothing to find.
     fn find_differences(&mut self) {
-        let variants = match self.case.file.variants.len() {
-            0 | 1 => Vec::new(),
-            _ => self.case.with_shown(&self.project_of_questions()).variants,
+        let Session { known_case, variant_differences, .. } = &mut self.session;
+        let variants: &[Variant] = match known_case.variants.as_slice() {
+            [] | [_] => &[],
+            several => several,
         };
-        self.session.variant_differences.update(variants, self.view.units);
+        variant_differences.update(variants, self.view.units);
     }
 
     /// Every variant of the case with its answers, in the order of the case. Those of another variant

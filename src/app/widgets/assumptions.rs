@@ -1,18 +1,24 @@
 //! The list of the values that the program assumed because the question left them open.
 
-use egui::{CollapsingHeader, Label, RichText, Sense, Ui};
+use egui::{CollapsingHeader, Grid, Label, Response, RichText, Ui};
 use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use impactlab_core::units::UnitSystem;
 
 use crate::app::command::Command;
-use crate::app::looks;
 use crate::app::panes::Pane;
 
 /// Largest number of assumptions that are listed without a click.
-const MAX_OPEN: usize = 6;
+const MAX_OPEN: usize = 3;
+/// Width of what an assumption is about and of the button beside it, points.
+const NAME_WIDTH: f32 = 120.0;
+const CHANGE_WIDTH: f32 = 80.0;
+/// Least width of a value or a reason, points.
+const LEAST_TEXT_WIDTH: f32 = 150.0;
+/// Share of the value in the room that it has with the reason.
+const VALUE_SHARE: f32 = 0.45;
 
-/// Lists the assumptions, one beside the other. Hovering over one shows the reason; a click shows
-/// the panel in which the user can set the value. An empty list draws nothing; a long one only their number, until it is opened.
+/// Draws the assumptions as a table of what, value, reason, and the button that shows the panel in which the
+/// user can set the value. An empty list draws nothing; a long one only their number, until it is opened.
 pub fn assumptions_ui(
     ui: &mut Ui,
     caveats: &Caveats,
@@ -29,7 +35,7 @@ pub fn evidence_assumptions_ui(
     units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
-    let place = |_| Some(("Click to say it in the Evidence pane", Pane::Evidence));
+    let place = |_| Some(("Say it in the Evidence pane", Pane::Evidence));
     assumptions_at_ui(ui, (caveats, units), place, commands);
 }
 
@@ -42,39 +48,63 @@ fn assumptions_at_ui(
     place: fn(CaveatSubject) -> Place,
     commands: &mut Vec<Command>,
 ) {
-    let assumptions: Vec<&Caveat> = caveats.assumptions().collect();
-    let list_ui = |ui: &mut Ui, commands: &mut Vec<Command>| {
-        ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing.x = looks::PART * 2.0;
-            for assumption in &assumptions {
-                let place = assumption.subject.and_then(place);
-                assumption_ui(ui, &assumption.in_units(units), place, commands);
-            }
-        });
-    };
+    let assumptions: Vec<Caveat> =
+        caveats.assumptions().map(|assumption| assumption.in_units(units)).collect();
     match assumptions.len() {
         0 => return,
-        1..=MAX_OPEN => return list_ui(ui, commands),
+        1..=MAX_OPEN => return table_ui(ui, &assumptions, place, commands),
         _ => {}
     }
     let title = RichText::new(format!("{} assumptions", assumptions.len())).italics();
     let header = CollapsingHeader::new(title).id_salt("assumptions");
-    header.show(ui, |ui| list_ui(ui, commands));
+    header.show(ui, |ui| table_ui(ui, &assumptions, place, commands));
 }
 
-fn assumption_ui(ui: &mut Ui, assumption: &Caveat, place: Place, commands: &mut Vec<Command>) {
-    let text = format!("{}: {}", assumption.kind.label(), assumption.statement());
-    let (hint, pane) = match place {
-        Some((hint, pane)) => (format!("\n{hint}"), Some(pane)),
-        None => (String::new(), None),
-    };
-    let sense = if pane.is_some() { Sense::click() } else { Sense::hover() };
-    let label = Label::new(RichText::new(text).italics()).wrap().sense(sense);
-    let reason = assumption.reason.as_deref().unwrap_or_default();
-    let line = ui.add(label).on_hover_text(format!("{reason}{hint}"));
-    if line.clicked() {
-        commands.extend(pane.map(Command::Show));
-    }
+/// Draws a row for each assumption: of what, its value, why, and the button that leads to where it is set.
+/// Where the pane is narrow the reason is shown on hovering alone.
+fn table_ui(
+    ui: &mut Ui,
+    assumptions: &[Caveat],
+    place: fn(CaveatSubject) -> Place,
+    commands: &mut Vec<Command>,
+) {
+    let room = (ui.available_width() - CHANGE_WIDTH - NAME_WIDTH).max(LEAST_TEXT_WIDTH);
+    let has_reasons = room > 2.0 * LEAST_TEXT_WIDTH;
+    let width = if has_reasons { room * VALUE_SHARE } else { room };
+    let id = ("assumptions", ui.next_auto_id());
+    Grid::new(id).num_columns(4).striped(true).show(ui, |ui| {
+        for assumption in assumptions {
+            let reason = assumption.reason.as_deref().unwrap_or_default();
+            cell_ui(ui, NAME_WIDTH, RichText::new(name(assumption)).italics());
+            let value = cell_ui(ui, width, RichText::new(&assumption.text));
+            if has_reasons {
+                cell_ui(ui, room - width, RichText::new(reason).weak());
+            } else if !reason.is_empty() {
+                value.on_hover_text(reason);
+            }
+            if let Some((hint, pane)) = assumption.subject.and_then(place)
+                && ui.small_button("Change").on_hover_text(hint).clicked()
+            {
+                commands.push(Command::Show(pane));
+            }
+            ui.end_row();
+        }
+    });
+}
+
+/// What an assumption is about.
+fn name(assumption: &Caveat) -> String {
+    let kind = assumption.kind.label();
+    assumption.subject.map_or(kind.to_owned(), |subject| format!("{kind}: {}", subject.label()))
+}
+
+/// Draws a text in a cell of a grid, which it does not widen.
+fn cell_ui(ui: &mut Ui, width: f32, text: RichText) -> Response {
+    let cell = ui.vertical(|ui| {
+        ui.set_max_width(width);
+        ui.add(Label::new(text).wrap())
+    });
+    cell.inner
 }
 
 /// How the user sets the subject instead of having it assumed, and the panel in which; `None` for
@@ -84,15 +114,15 @@ fn place(subject: CaveatSubject) -> Place {
         CaveatSubject::Vehicle
         | CaveatSubject::Striking
         | CaveatSubject::Speed
-        | CaveatSubject::ContactPoint => ("Click to set it in the Vehicle pane", Pane::Vehicle),
+        | CaveatSubject::ContactPoint => ("Set it in the Vehicle pane", Pane::Vehicle),
         CaveatSubject::FirstTouch
         | CaveatSubject::Restitution
         | CaveatSubject::ContactHeight
-        | CaveatSubject::Pulse => ("Click to set it: Contact in the Scenario pane", Pane::Scenario),
+        | CaveatSubject::Pulse => ("Set it: Contact in the Scenario pane", Pane::Scenario),
         CaveatSubject::VehicleParameter
         | CaveatSubject::StrikingParameter
         | CaveatSubject::RoadFriction => {
-            ("Click, and state it in a copy of the vehicle: Edit a copy", Pane::Vehicle)
+            ("State it in a copy of the vehicle: Edit a copy", Pane::Vehicle)
         }
         CaveatSubject::StartOfRecord | CaveatSubject::Steer => return None,
     })

@@ -22,7 +22,7 @@ pub use facts::{facts_text, facts_ui, sentences_ui};
 pub use figure_frame::{MIN_PLOT_HEIGHT, OUTDATED, TITLE_HEIGHT, figure_frame};
 pub use quantity::{
     EmptyField, SliderRange, count_field, duration_text, optional_quantity, quantity_field,
-    quantity_slider, quantity_value, value_row, value_ui, within_view,
+    quantity_slider, quantity_value, seed_field, value_row, value_ui, within_view,
 };
 pub use time_figure::{BetweenCursors, time_figure};
 pub use vehicle_picker::{VehiclePicker, vehicle_label, vehicle_name};

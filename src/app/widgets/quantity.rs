@@ -152,13 +152,29 @@ fn hint(range: &Range, unit: &Unit) -> String {
 /// treated as by [`quantity_field`].
 pub fn count_field<N: Numeric>(ui: &mut Ui, value: &mut N, range: &Range, speed: f64) -> Response {
     let number = number(range, Some(value.to_f64()), UnitSystem::Si);
-    let number = Number { is_whole: true, ..number };
+    let expected = format!("a whole number, {}", number.expected);
+    let number = Number { is_whole: true, expected, ..number };
     let (response, edit) =
         number_ui(ui, &number, |ui, editing| ui.add(field(editing, speed).fixed_decimals(0)));
     if let Edit::Value(taken) = edit {
         *value = N::from_f64(taken);
     }
     response
+}
+
+/// The seeds that a field takes: whole numbers that it holds exactly.
+const SEED: Range = Range::whole(
+    "seed",
+    [0, 1_000_000_000_000_000],
+    "start of the random numbers; the same seed gives the same numbers",
+);
+
+/// Draws a field for the seed of random numbers, and returns its response. What is no whole number, or too
+/// large, is treated as by [`quantity_field`]; a larger seed from elsewhere stays as it is until another one
+/// is entered.
+pub fn seed_field(ui: &mut Ui, seed: &mut u64) -> Response {
+    let exact = format!("Seed {seed}: {}", SEED.meaning);
+    count_field(ui, seed, &SEED, 0.2).on_hover_text(exact)
 }
 
 /// Formats a duration as “42 s”, “3 min 20 s” or “2 h 5 min”, rounded up to whole seconds. From one
@@ -299,5 +315,35 @@ mod tests {
         *harness.state_mut() = 1500.0;
         harness.run();
         assert!(harness.query_by_label_contains("not possible").is_none());
+    }
+
+    #[test]
+    fn a_seed_that_is_no_whole_number_is_kept_and_not_taken() {
+        let mut harness = Harness::new_ui_state(
+            |ui, seed: &mut u64| {
+                seed_field(ui, seed);
+            },
+            u64::MAX,
+        );
+        harness.run();
+        assert_eq!(*harness.state(), u64::MAX, "a larger one from elsewhere stays");
+        for (typed, stays, is_taken) in [
+            ("12.5", u64::MAX, false),
+            ("-3", u64::MAX, false),
+            ("random", u64::MAX, false),
+            ("42", 42, true),
+            ("2000000000000000", 42, false),
+            ("1000", 1000, true),
+        ] {
+            harness.key_press(Key::Tab);
+            harness.run();
+            harness.event(Event::Text(typed.to_owned()));
+            harness.run();
+            harness.key_press(Key::Enter);
+            harness.run();
+            assert_eq!(*harness.state(), stays, "{typed}");
+            let says = harness.query_by_label_contains("not possible").is_some();
+            assert_eq!(says, !is_taken, "{typed}");
+        }
     }
 }

@@ -11,10 +11,12 @@ use crate::cli::commands::render_film::{SampledArgs, reconstruction};
 use crate::cli::commands::render_reconstruction::{ExportedReconstruction, exported};
 use crate::cli::commands::render_scene::{BuiltScene, CaseArgs, build};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
-use crate::cli::options::{OverwriteArg, number};
-use impactlab_core::data::{write_atomically, write_restricted_series_csv, write_restricted_table};
+use crate::cli::options::{OverwriteArg, UnitsArg, number};
+use impactlab_core::data::{
+    write_atomically, write_restricted_series_csv, write_restricted_series_parquet,
+    write_restricted_table,
+};
 use impactlab_core::ranges::INSTANT;
-use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::PathPoint;
 use impactlab_document::exchange::{
     DxfOptions, ExchangeError, GltfFrame, dxf, glb, hve_motion, hve_pulse,
@@ -39,10 +41,13 @@ pub(in crate::cli) struct ExportArgs {
     #[arg(long, value_name = "TIME", value_parser = number(INSTANT))]
     at: Vec<f64>,
     /// The file
-    #[arg(long, value_name = "FILE.dxf|FILE.glb|FILE.csv|FILE.txt")]
+    #[arg(long, value_name = "FILE.dxf|FILE.glb|FILE.csv|FILE.parquet|FILE.txt")]
     out: PathBuf,
     #[command(flatten)]
     overwrite: OverwriteArg,
+    /// Units of labels and restrictions; coordinates and columns keep those of their format
+    #[arg(long, value_enum, default_value_t)]
+    units: UnitsArg,
 }
 
 const EXAMPLES: &str = "\
@@ -53,7 +58,8 @@ Examples:
   impactlab export assets/examples/reconstruction.toml --out found.dxf
 
 Formats: dxf is in metres, a layer for each role, restrictions as text; glb has the cars with their
-animation, Y up, for Blender and browsers; motion is CSV in SI units; hve-pulse and hve-motion are rows
+animation, Y up, for Blender and browsers; motion is CSV in SI units, parquet the
+same in columns of 64 bits; hve-pulse and hve-motion are rows
 with tabs between them in the units and axes of HVE, to be pasted into its tables.
 Of evidence: what was found, and the car on the path of a particle of median speed, one of each course of
 events; in CSV these paths. A reconstruction has no table for HVE.
@@ -70,6 +76,8 @@ enum FormatArg {
     Glb,
     /// The motion of the struck car over time, SI units (.csv)
     Motion,
+    /// The same as Parquet (.parquet)
+    Parquet,
     /// The force on the struck car over time, for a collision pulse of HVE
     HvePulse,
     /// The motion of the struck car over time, in the units and axes of HVE
@@ -100,7 +108,7 @@ pub(in crate::cli) fn run(
     if let Some(request) = reconstruction(&args.case, &args.sampled)? {
         return export_reconstruction(args, (format, &request), console);
     }
-    let built = build(&args.case, None, UnitSystem::Si, console)?;
+    let built = build(&args.case, None, args.units.into(), console)?;
     for time_s in &args.at {
         built.check_time("--at", *time_s)?;
     }
@@ -142,10 +150,13 @@ fn export_reconstruction(
     };
     match format {
         FormatArg::HvePulse => return Err(unknown("contact force over time").into()),
-        FormatArg::HveMotion => return Err(unknown("motion without its uncertainty").into()),
+        FormatArg::HveMotion | FormatArg::Parquet => {
+            return Err(unknown("motion without its uncertainty").into());
+        }
         FormatArg::Dxf | FormatArg::Glb | FormatArg::Motion => {}
     }
-    let ExportedReconstruction { scene, paths, notes } = exported(request, console)?;
+    let ExportedReconstruction { scene, paths, notes } =
+        exported(request, args.units.into(), console)?;
     let existing = args.overwrite.into();
     let mut bytes = Vec::new();
     match format {
@@ -162,7 +173,7 @@ fn export_reconstruction(
             let rows = paths
                 .iter()
                 .flat_map(|path| path.path.points.iter().map(|at| path_row(&path.name, at)));
-            let restrictions = scene.caveats.text();
+            let restrictions = scene.caveats.in_units(scene.units).text();
             write_restricted_table(&args.out, existing, &header, rows, restrictions.as_deref())?;
             return written(args, (format, &scene), notes, console);
         }
@@ -190,6 +201,7 @@ fn format_of(path: &Path) -> Result<FormatArg, CliError> {
         Some("dxf") => Ok(FormatArg::Dxf),
         Some("glb") => Ok(FormatArg::Glb),
         Some("csv") => Ok(FormatArg::Motion),
+        Some("parquet") => Ok(FormatArg::Parquet),
         _ => Err(CliError::ExportKind { path: path.to_owned() }),
     }
 }
@@ -197,7 +209,7 @@ fn format_of(path: &Path) -> Result<FormatArg, CliError> {
 fn write(args: &ExportArgs, (format, built): (FormatArg, &BuiltScene)) -> Result<(), CliError> {
     let BuiltScene { scene, analysis, .. } = built;
     let (path, existing) = (&args.out, args.overwrite.into());
-    let restrictions = scene.caveats.text();
+    let restrictions = scene.caveats.in_units(scene.units).text();
     let mut bytes = Vec::new();
     match format {
         FormatArg::Dxf => {
@@ -210,16 +222,15 @@ fn write(args: &ExportArgs, (format, built): (FormatArg, &BuiltScene)) -> Result
         FormatArg::Glb => glb(scene, &mut bytes)?,
         FormatArg::HvePulse => hve_pulse(analysis, restrictions.as_deref(), &mut bytes)?,
         FormatArg::HveMotion => hve_motion(analysis, restrictions.as_deref(), &mut bytes)?,
-        FormatArg::Motion => {
+        FormatArg::Motion | FormatArg::Parquet => {
             let simulated = analysis.written_motion()?;
             let unknown = || ExchangeError::Unknown { name: analysis.name.clone(), what: "motion" };
             let series = simulated.as_ref().or(analysis.reference.as_ref()).ok_or_else(unknown)?;
-            return Ok(write_restricted_series_csv(
-                path,
-                existing,
-                series,
-                restrictions.as_deref(),
-            )?);
+            let write = match format {
+                FormatArg::Parquet => write_restricted_series_parquet,
+                _ => write_restricted_series_csv,
+            };
+            return Ok(write(path, existing, series, restrictions.as_deref())?);
         }
     }
     write_atomically(path, existing, |out: &mut dyn Write| -> io::Result<()> {

@@ -2,6 +2,9 @@
 
 pub(super) mod app;
 pub(super) mod ask;
+pub(super) mod atlas;
+mod atlas_make;
+mod atlas_slice;
 pub(super) mod case;
 pub(super) mod check;
 pub(super) mod compare;
@@ -14,6 +17,7 @@ mod evaluate_response;
 pub(super) mod export;
 pub(super) mod fine_tune;
 pub(super) mod impact;
+pub(super) mod import;
 pub(super) mod licences;
 pub(super) mod predict;
 mod predict_force;
@@ -30,6 +34,7 @@ pub(super) mod report;
 pub(super) mod schema;
 pub(super) mod simulate;
 pub(super) mod stiffness;
+pub(super) mod sweep;
 pub(super) mod train;
 mod train_force;
 mod train_response;

@@ -139,12 +139,13 @@ pub(super) struct ExportedReconstruction {
 /// Reconstructs a case for other programs.
 pub(super) fn exported(
     request: &ReconstructRequest,
+    units: UnitSystem,
     console: &mut Console<'_>,
 ) -> Result<ExportedReconstruction, CliError> {
     let of = Reconstructed::new(request, console)?;
     let paths = ReconstructedPaths::from_answer(&of.answer);
-    let scene = of.cars(&paths, UnitSystem::Si);
-    let notes = of.notes(UnitSystem::default()).into_iter().chain(of.far_notes(&scene)).collect();
+    let scene = of.cars(&paths, units);
+    let notes = of.notes(units).into_iter().chain(of.far_notes(&scene)).collect();
     let paths = paths.median.into_iter().chain(paths.others).collect();
     Ok(ExportedReconstruction { scene, paths, notes })
 }

@@ -9,10 +9,9 @@ use impactlab_document::figure::{
     FORECAST_CHANNELS, Figure, MotionForecastFigure, forecast_channel_figure,
     forecast_scene_figure, write_figure_csv,
 };
-use impactlab_networks::response::STEP_S;
 use impactlab_study::PredictMotionAnswer;
 use impactlab_study::analysis::{
-    DensityMap, DensityTask, MOTION_BAND_LEVELS, MotionBands, MotionForecast,
+    DensityMap, DensityTask, MotionBands, MotionForecast, motion_columns,
 };
 
 /// Where the files go, and what they show.
@@ -89,34 +88,16 @@ fn write_trajectory(
     known_s: f64,
     restrictions: Option<&str>,
 ) -> Result<(), CliError> {
-    let mut header = vec!["time_s".to_owned()];
-    for channel in FORECAST_CHANNELS {
-        let name = channel.channel.header();
-        header.extend(["central", "mean", "std"].map(|kind| format!("{name}_{kind}")));
-        for level in MOTION_BAND_LEVELS {
-            let percent = (100.0 * level) as u32;
-            header.extend([format!("{name}_low_{percent}"), format!("{name}_high_{percent}")]);
-        }
-    }
-    let distribution = &forecast.distribution;
-    let rows = forecast.central.iter().enumerate().map(|(at, central)| {
-        let covariance = distribution.covariance(at);
-        let (central, mean) = (central.planar(), distribution.mean(at).planar());
-        let time_s = at as f64 * STEP_S;
-        let spread = |value: f64| match time_s <= known_s {
-            true => format!("{value:.6}"),
-            false => String::new(),
-        };
-        let mut row = vec![format!("{time_s:.2}")];
-        for (axis, (central, mean)) in central.into_iter().zip(mean).enumerate() {
-            let std = covariance[(axis, axis)].max(0.0).sqrt();
-            row.extend([central, mean].map(|value| format!("{value:.6}")));
-            row.push(spread(std));
-            for edges in bands.intervals.get(at).map(|of| of[axis]).into_iter().flatten() {
-                row.extend(edges.map(spread));
-            }
-        }
-        row
+    let columns = motion_columns(&forecast.distribution, &forecast.central, bands, known_s);
+    let header: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
+    let cell = |(idx, value): (usize, f64)| match idx {
+        _ if value.is_nan() => String::new(),
+        0 => format!("{value:.2}"),
+        _ => format!("{value:.6}"),
+    };
+    let rows = (0..forecast.central.len()).map(|at| {
+        let values = columns.iter().filter_map(|(_, values)| values.get(at).copied());
+        values.enumerate().map(cell).collect()
     });
     Ok(write_restricted_table(path, Existing::Refuse, &header, rows, restrictions)?)
 }

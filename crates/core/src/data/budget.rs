@@ -5,6 +5,9 @@
 /// Bytes of a table: a force, a motion, a steer angle.
 pub const MAX_TABLE_BYTES: u64 = 256 << 20;
 
+/// Bytes of a part of a finite-element result file, of which only what is needed is held.
+pub const MAX_BINOUT_BYTES: u64 = 8 << 30;
+
 /// Bytes of an Excel workbook. What is in it may have the size of a table when it is unpacked.
 pub const MAX_WORKBOOK_BYTES: u64 = 64 << 20;
 
@@ -67,3 +70,12 @@ pub const MAX_DRAWING_OBJECTS: usize = 400_000;
 
 /// Points of the lines of a drawing.
 pub const MAX_DRAWING_POINTS: usize = 2_000_000;
+
+/// Bytes of a file of surveyed lines and points: KML, GeoJSON, a table of points.
+pub const MAX_SURVEY_BYTES: u64 = 32 << 20;
+
+/// Bytes of a point cloud, of which never more than a few points are in memory.
+pub const MAX_CLOUD_BYTES: u64 = 64 << 30;
+
+/// Pixels of the raster that a point cloud becomes. One takes 20 bytes of memory while points are read.
+pub const MAX_RASTER_PIXELS: u64 = 16 << 20;

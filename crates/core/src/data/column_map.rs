@@ -323,7 +323,7 @@ impl From<ColumnMap> for String {
 fn short_names() -> String {
     let names: Vec<_> = Channel::ALL.iter().map(|channel| channel.short_name()).collect();
     format!(
-        "{}; or separator, decimal, thousands, sheet, header, units, shift, y_axis, headings, velocities",
+        "{}; or separator, decimal, thousands, sheet, deck, header, units, shift, y_axis, headings, velocities",
         names.join(", ")
     )
 }

@@ -4,6 +4,7 @@
 //! The file is long because it is a list: one variant for each way in which a file can be wrong, with its
 //! text beside its values, so that all texts can be read in one place.
 
+use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -136,6 +137,26 @@ pub enum DataError {
         /// The file.
         path: PathBuf,
         /// The reason, in words of the library that reads it.
+        why: String,
+    },
+    /// A file of a format of its own is damaged.
+    #[error("{}: {format} cannot be read ({why}); write it again, or export it as CSV", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What it is, within a sentence.
+        format: &'static str,
+        /// The reason, in words of the library that reads it.
+        why: String,
+    },
+    /// A file of another program does not follow its format.
+    #[error("{}{place}: {why}", path.display())]
+    DamagedAt {
+        /// The file.
+        path: PathBuf,
+        /// Where it does not.
+        place: Place,
+        /// What is wrong, in words.
         why: String,
     },
     /// A workbook has no such sheet, or the file is no workbook.
@@ -484,6 +505,27 @@ pub enum DataError {
         /// The path as it was given.
         path: PathBuf,
     },
+}
+
+/// A place in a file of another program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// The file as a whole.
+    Whole,
+    /// A line, counted from 1.
+    Line(u64),
+    /// A byte, counted from 0.
+    Byte(u64),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => Ok(()),
+            Self::Line(line) => write!(f, ":{line}"),
+            Self::Byte(byte) => write!(f, ": at byte {byte}"),
+        }
+    }
 }
 
 impl DataError {

@@ -70,7 +70,6 @@ pub(crate) fn refuse_known_binary(path: &Path, first: &[u8]) -> Result<(), DataE
     let is_binary = first.contains(&0);
     let known = MAGIC.into_iter().find(|(bytes, ..)| first.starts_with(bytes));
     let solver = match () {
-        () if is_binary && is_named("binout") => Some("LS-DYNA results (binout)"),
         () if is_binary && is_named("d3plot") => Some("LS-DYNA results (d3plot)"),
         () => None,
     };
@@ -94,15 +93,11 @@ pub(crate) fn refuse_known_text(path: &Path, text: &str) -> Result<(), DataError
     if is_drawing(lines.clone()) {
         return Err(other(path, "a drawing (DXF)", IN_SITE));
     }
-    if is_iso_mme(lines.clone()) {
-        return Err(other(path, "a file of ISO-MME (ISO/TS 13499)", EXPORT));
-    }
     let known = FIRST_LINES.into_iter().find(|(start, ..)| first.starts_with(start));
     if let Some((_, format, remedy)) = known {
         return Err(other(path, format, remedy));
     }
-    let known = |line: &str| crash_data_retrieval(line).or_else(|| solver_output(line));
-    match lines.by_ref().take(EXAMINED_LINES).find_map(known) {
+    match lines.by_ref().take(EXAMINED_LINES).find_map(solver_output) {
         Some((format, remedy)) => Err(other(path, format, remedy)),
         None => Ok(()),
     }
@@ -127,49 +122,11 @@ fn is_drawing<'a>(mut lines: impl Iterator<Item = &'a str>) -> bool {
     next == Some("0") && lines.next().is_some_and(|name| name.eq_ignore_ascii_case("section"))
 }
 
-/// Whether lines that are not blank begin as those of ISO-MME do, a name, blanks, a colon and a value: the
-/// information on a test, on its channels, or a channel.
-fn is_iso_mme<'a>(lines: impl Iterator<Item = &'a str>) -> bool {
-    const KEYS: [&str; 8] = [
-        "data format edition number",
-        "laboratory name",
-        "test object number",
-        "instrumentation standard",
-        "number of channels",
-        "name of the channel",
-        "channel code",
-        "name of channel 001",
-    ];
-    let key = |line: &str| Some(line.split_once(':')?.0.trim().to_lowercase());
-    let is_key = |line: &str| key(line).is_some_and(|key| KEYS.contains(&key.as_str()));
-    lines.take(EXAMINED_LINES).filter(|line| is_key(line)).count() >= 2
-}
-
-/// The export of a crash data retrieval tool to which a line belongs, and what to do with it.
-fn crash_data_retrieval(line: &str) -> Option<(&'static str, &'static str)> {
-    let line = line.to_lowercase();
-    let marks = ["cdr file information", "user entered vin", "imaged with crash data retrieval"];
-    let is_one = !line.starts_with('#') && marks.iter().any(|mark| line.contains(mark));
-    is_one.then_some((
-        "the report of a Bosch CDR tool",
-        "copy its table before the crash into a CSV file with a header such as \
-         \"time [s],speed [km/h],steering wheel angle [deg]\", or enter its values as [edr] in the evidence of a \
-         reconstruction",
-    ))
-}
-
 /// The output of LS-DYNA to which a line belongs, and what to do with it.
 fn solver_output(line: &str) -> Option<(&'static str, &'static str)> {
     let line = line.to_lowercase();
     let closed: String = line.chars().filter(|c| !c.is_whitespace()).collect();
-    let words: Vec<&str> = line.split_whitespace().collect();
-    let side =
-        words.first().is_some_and(|word| ["slave", "master", "surfa", "surfb"].contains(word));
-    if side && words.contains(&"time") && words.contains(&"x") && words.contains(&"y") {
-        return Some(("an LS-DYNA rcforc file", EXPORT_FORCE));
-    }
     let titles = [
-        ("nodalprintoutfortimestep", "an LS-DYNA nodout file", EXPORT_MOTION),
         ("nodalforcegroupoutput", "an LS-DYNA nodfor file", EXPORT_FORCE),
         ("rigidbodymotionattime", "an LS-DYNA rbdout file", EXPORT_MOTION),
         ("rigidwallforces", "an LS-DYNA rwforc file", EXPORT_FORCE),

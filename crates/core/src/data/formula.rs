@@ -1,6 +1,8 @@
 //! Channels that follow from several columns: the yaw angle of a quaternion, and places in metres from
 //! latitude and longitude.
 
+use crate::data::GeographicPlace;
+
 /// What is computed from several columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Formula {
@@ -29,10 +31,6 @@ pub enum FormulaPart {
     QuaternionZ,
 }
 
-/// Semi-major axis of the ellipsoid WGS 84, m.
-const EARTH_RADIUS_M: f64 = 6_378_137.0;
-/// Square of its first eccentricity.
-const ECCENTRICITY_2: f64 = 6.694_379_990_141e-3;
 /// Deviation of the length of a quaternion from 1 from which it is none.
 const UNIT_LENGTH: f64 = 0.05;
 
@@ -85,12 +83,14 @@ impl Formula {
                 rows.map(|(row, (((w, x), y), z))| yaw_rad([*w, *x, *y, *z]).ok_or(row)).collect()
             }
             (Self::East | Self::North, [latitude, longitude]) => {
-                let places =
-                    latitude.iter().zip(longitude).map(|(lat, lon)| Place::new(*lat, *lon));
+                let places = latitude
+                    .iter()
+                    .zip(longitude)
+                    .map(|(lat, lon)| GeographicPlace::from_degrees(*lat, *lon));
                 let origin = latitude.first().zip(longitude.first());
                 let Some((lat, lon)) = origin else { return Ok(Vec::new()) };
-                let origin = Place::new(*lat, *lon).ok_or(0_usize)?;
-                let way = |place: Place| match self {
+                let origin = GeographicPlace::from_degrees(*lat, *lon).ok_or(0_usize)?;
+                let way = |place: GeographicPlace| match self {
                     Self::East => origin.to_east_m(place),
                     _ => origin.to_north_m(place),
                 };
@@ -106,53 +106,6 @@ fn yaw_rad([w, x, y, z]: [f64; 4]) -> Option<f64> {
     let length = (w * w + x * x + y * y + z * z).sqrt();
     let yaw_rad = (2.0 * (w * z + x * y)).atan2(w * w + x * x - y * y - z * z);
     ((length - 1.0).abs() < UNIT_LENGTH).then_some(yaw_rad)
-}
-
-/// A place on the ellipsoid. The altitude is that of the ellipsoid.
-#[derive(Clone, Copy)]
-struct Place {
-    latitude_rad: f64,
-    longitude_rad: f64,
-}
-
-impl Place {
-    fn new(latitude_deg: f64, longitude_deg: f64) -> Option<Self> {
-        let is_place = latitude_deg.abs() <= 90.0 && longitude_deg.abs() <= 180.0;
-        let [latitude_rad, longitude_rad] = [latitude_deg, longitude_deg].map(f64::to_radians);
-        is_place.then_some(Self { latitude_rad, longitude_rad })
-    }
-
-    /// From the centre of the earth, m.
-    fn geocentric_m(self) -> [f64; 3] {
-        let (sin, cos) = self.latitude_rad.sin_cos();
-        let radius_m = EARTH_RADIUS_M / (1.0 - ECCENTRICITY_2 * sin * sin).sqrt();
-        let (sin_lon, cos_lon) = self.longitude_rad.sin_cos();
-        [
-            radius_m * cos * cos_lon,
-            radius_m * cos * sin_lon,
-            radius_m * (1.0 - ECCENTRICITY_2) * sin,
-        ]
-    }
-
-    fn difference_m(self, other: Self) -> [f64; 3] {
-        let ([x, y, z], [x0, y0, z0]) = (other.geocentric_m(), self.geocentric_m());
-        [x - x0, y - y0, z - z0]
-    }
-
-    /// To another place along the tangent plane, eastwards.
-    fn to_east_m(self, other: Self) -> f64 {
-        let [x, y, _] = self.difference_m(other);
-        let (sin, cos) = self.longitude_rad.sin_cos();
-        cos * y - sin * x
-    }
-
-    /// The same northwards.
-    fn to_north_m(self, other: Self) -> f64 {
-        let [x, y, z] = self.difference_m(other);
-        let (sin_lon, cos_lon) = self.longitude_rad.sin_cos();
-        let (sin, cos) = self.latitude_rad.sin_cos();
-        cos * z - sin * (cos_lon * x + sin_lon * y)
-    }
 }
 
 #[cfg(test)]

@@ -66,7 +66,8 @@ pub(super) fn check_force(
     Ok(())
 }
 
-fn is_impulse(x: &[f64], y: &[f64]) -> bool {
+/// Whether a curve rises from zero, never comes back and hardly changes at its end.
+pub(super) fn is_impulse(x: &[f64], y: &[f64]) -> bool {
     let n = x.len().min(y.len());
     let size = |i: usize| x[i].hypot(y[i]);
     let distance = |a: usize, b: usize| (x[b] - x[a]).hypot(y[b] - y[a]);

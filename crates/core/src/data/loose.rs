@@ -270,6 +270,7 @@ fn load_columns(
     if let Some(channel) = kind.first_missing(&columns) {
         return Err(columns.missing(table, channel, kind.needed()));
     }
+    check_deck(table, &columns, map)?;
     if table.n_rows() < MIN_ROWS {
         let (expected, got) = (MIN_ROWS, table.n_rows());
         return Err(DataError::TooFewRows { path: path(), line, expected, got });
@@ -315,7 +316,7 @@ fn load_columns(
         }
     }
     let Columns { by_channel, mut notes } = columns;
-    notes.extend(table.format().map(|text| Note::Format { text }));
+    notes.extend(table.format_notes());
     notes.extend(goes_on);
     let is_shifted = settings.time_shift_s.is_some();
     let begins_s = clock::offered_shift_s(&series).filter(|_| !is_shifted);
@@ -342,6 +343,40 @@ fn insert(
 ) -> Result<(), DataError> {
     let path = || table.path().to_owned();
     series.insert(channel, values).map_err(|source| DataError::Series { path: path(), source })
+}
+
+/// Asks for the units of a finite-element model, which its results do not state.
+///
+/// # Errors
+/// [`DataError::Open`] with a proposal; [`DataError::Contradiction`] if units of a model are said of another
+/// file.
+fn check_deck(
+    table: &Table,
+    columns: &Columns,
+    map: Option<&ColumnMap>,
+) -> Result<(), DataError> {
+    let path = || table.path().to_owned();
+    let said = map.and_then(|map| map.settings.deck).filter(|_| !table.is_of_model());
+    if let Some(deck) = said {
+        let deck = deck.name();
+        let what = format!(
+            "deck={deck} says the units of a finite-element model, and the file holds no results of one; \
+             name the unit of each column instead"
+        );
+        return Err(DataError::Contradiction { path: path(), what });
+    }
+    let is_open = |column: &ColumnUse| !column.unit_is_stated && !column.terms.is_empty();
+    match table.proposed_deck() {
+        Some((deck, why)) if columns.by_channel.values().any(is_open) => {
+            let mut map = map.cloned().unwrap_or_default();
+            map.settings.deck = Some(deck);
+            let (line, map) = (table.header_line(), Box::new(map));
+            let what =
+                format!("the units of the model are not in the file and have to be said; {why}");
+            Err(DataError::Open { path: path(), line, what, map })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Asks for the marks within the numbers that are read, if one of them may mean two things.

@@ -32,7 +32,9 @@ mod error;
 mod file;
 mod force_history;
 mod foreign;
+mod formats;
 mod formula;
+mod geographic;
 mod header;
 mod impulse;
 mod json;
@@ -62,10 +64,10 @@ pub mod write;
 
 pub use attributes::{Attributes, Value};
 pub use budget::{
-    MAX_CASE_CELLS, MAX_CASES, MAX_CASES_BYTES, MAX_CELL_BYTES, MAX_COLUMNS, MAX_DATASET_BYTES,
-    MAX_DRAWING_BYTES, MAX_DRAWING_OBJECTS, MAX_DRAWING_POINTS, MAX_LINE_BYTES, MAX_MODEL_BYTES,
-    MAX_PICTURE_BYTES, MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE, MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES,
-    MAX_TABLE_BYTES, MAX_WORKBOOK_BYTES,
+    MAX_CASES, MAX_CASES_BYTES, MAX_CASE_CELLS, MAX_CELL_BYTES, MAX_CLOUD_BYTES, MAX_COLUMNS,
+    MAX_DATASET_BYTES, MAX_DRAWING_BYTES, MAX_DRAWING_OBJECTS, MAX_DRAWING_POINTS, MAX_LINE_BYTES,
+    MAX_MODEL_BYTES, MAX_PICTURE_BYTES, MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE, MAX_RASTER_PIXELS,
+    MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, MAX_SURVEY_BYTES, MAX_TABLE_BYTES, MAX_WORKBOOK_BYTES,
 };
 pub use case_attributes::{AttributeColumn, ForceAttributes, StruckSide, TrajectoryAttributes};
 pub use case_braking::CaseBraking;
@@ -83,11 +85,17 @@ pub use correction::Correction;
 pub use dataset::{CASES_FILE, Case, Dataset, DatasetKind, Outcome};
 pub(crate) use dataset::{named_cases, names_a_file};
 pub use dialect::{Dialect, Separator};
-pub use error::DataError;
+pub use error::{DataError, Place};
 pub use file::{list_folder, open_file, read_bytes, read_utf8};
 pub use force_history::{CumulativeImpulse, ForceAxes, ForceHistory, Sampling};
 pub use foreign::is_gltf;
+pub use formats::{
+    BarrierForce, BarrierMomentum, CrashTest, RecordedControls, RecordedDeltaV, RecordedSpeed,
+    RecorderRecord, TestChannel, TestVehicle,
+};
+pub use formats::{DeckUnits, parts_beside};
 pub use formula::{Formula, FormulaPart};
+pub use geographic::GeographicPlace;
 pub use json::{finite_or_null, finite_or_nulls, null_as_nan, nulls_as_nan};
 pub use loose::{
     FileKind, Loaded, read_any_series, read_force_file, read_motion_log, read_series,
@@ -108,5 +116,5 @@ pub use velocity_fit::{VelocityFit, velocity_fit};
 pub use workbook::Sheet;
 pub use write::{
     Existing, RESTRICTIONS_COLUMN, check_target, write_atomically, write_restricted_series_csv,
-    write_restricted_table, write_series_csv,
+    write_restricted_series_parquet, write_restricted_table, write_series_csv,
 };

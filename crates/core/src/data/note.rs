@@ -86,10 +86,20 @@ pub enum Note {
         /// Changes of the map of which each removes the difference.
         corrections: Vec<Correction>,
     },
+    /// The speed that a file records could not be compared with its path.
+    SpeedUnchecked {
+        /// Why, in words.
+        why: String,
+    },
     /// The file is of a format of its own.
     Format {
         /// What it is and how it is read, in words.
-        text: &'static str,
+        text: String,
+    },
+    /// The file says, or its numbers say, that not all of it can be relied on.
+    Doubt {
+        /// What is in doubt, in words.
+        text: String,
     },
     /// Positions follow from latitude and longitude.
     Places {
@@ -114,7 +124,10 @@ impl Note {
     /// Whether numbers that were read may be wrong, so that the user should be asked.
     pub fn is_doubt(&self) -> bool {
         match self {
-            Self::UnitAssumed(_) | Self::MixedUnits { .. } | Self::Speed { .. } => true,
+            Self::UnitAssumed(_)
+            | Self::MixedUnits { .. }
+            | Self::Speed { .. }
+            | Self::Doubt { .. } => true,
             Self::Begins { first_s } => clock::is_since_1970(*first_s),
             _ => self.is_contradiction(),
         }
@@ -181,7 +194,10 @@ impl fmt::Display for Note {
                 write!(f, "{}:{line}:{column}: {} {found}", path.display(), quoted(name))?;
                 write_remedy(f, corrections, "check its unit and the clock")
             }
-            Self::Format { text } => f.write_str(text),
+            Self::SpeedUnchecked { why } => {
+                write!(f, "the speed was not compared with the path: {why}")
+            }
+            Self::Format { text } | Self::Doubt { text } => f.write_str(text),
             Self::Places { origin_deg: [latitude, longitude] } => write!(
                 f,
                 "x and y are metres to the east and to the north of the first row (latitude {latitude}°, \

@@ -7,6 +7,7 @@
 //!
 //! Half a second smooths the noise of positions and hardly cuts a bend. What a noisy path leaves goes to
 //! both sides from window to window; a wrong unit or clock goes to one side over a whole part of the path.
+//! A record of few rows is compared as a whole alone; of one that cannot be compared it is said.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -21,6 +22,9 @@ use crate::units::{Unit, significant};
 /// Duration of a window, s, and the number of windows of a motion that has fewer of that duration.
 const WINDOW_S: f64 = 0.5;
 const LEAST_WINDOWS: usize = 12;
+/// Least number of windows of a motion that is compared, and of one of which a part is.
+const LEAST_FOR_WHOLE: usize = 2;
+const LEAST_FOR_PART: usize = 6;
 /// Share of the path over which the speed has to be off to one side.
 const SHARE_OF_PATH: f64 = 0.25;
 
@@ -65,11 +69,15 @@ impl Window {
 pub fn path_speed(series: &TimeSeries) -> Option<PathSpeed> {
     let windows = windows(series, &recorded_m_s(series)?)?;
     let all_m = way_m(&windows);
-    if all_m < SHORTEST_PATH_M {
+    if all_m < SHORTEST_PATH_M || windows.len() < LEAST_FOR_WHOLE {
         return None;
     }
     let is_whole = is_other_length(ratio(&windows));
-    let off = if is_whole { windows.as_slice() } else { longest_off(&windows) };
+    let off = match is_whole {
+        true => windows.as_slice(),
+        false if windows.len() < LEAST_FOR_PART => return None,
+        false => longest_off(&windows),
+    };
     if way_m(off) < SHARE_OF_PATH * all_m || has_held_positions(series) {
         return None;
     }
@@ -81,6 +89,24 @@ pub fn path_speed(series: &TimeSeries) -> Option<PathSpeed> {
         time_s: series.time_s().get(worst.from).copied()?,
         recorded_m_s: worst.recorded_m / worst.duration_s,
         path_m_s: worst.path_m / worst.duration_s,
+    })
+}
+
+/// Why the speed of a motion could not be compared with its path, in words; `None` if it was, if there is
+/// nothing to compare or if neither goes anywhere.
+fn why_not_compared(series: &TimeSeries) -> Option<String> {
+    let windows = windows(series, &recorded_m_s(series)?)?;
+    let recorded_m: f64 = windows.iter().map(|window| window.recorded_m).sum();
+    let (path_m, n_rows) = (way_m(&windows), series.n_samples());
+    if recorded_m.max(path_m) < SHORTEST_PATH_M {
+        return None;
+    }
+    if windows.len() < LEAST_FOR_WHOLE {
+        return Some(format!("there are only {n_rows} rows"));
+    }
+    let [path, recorded] = [path_m, recorded_m].map(significant);
+    (path_m < SHORTEST_PATH_M).then(|| {
+        format!("the path is {path} m long, too short for that; by the speed it is {recorded} m")
     })
 }
 
@@ -115,7 +141,7 @@ fn windows(series: &TimeSeries, speed_m_s: &[f64]) -> Option<Vec<Window>> {
             (from, recorded_m) = (to, 0.0);
         }
     }
-    (windows.len() >= LEAST_WINDOWS / 2).then_some(windows)
+    Some(windows)
 }
 
 fn way_m(windows: &[Window]) -> f64 {
@@ -138,13 +164,15 @@ fn longest_off(windows: &[Window]) -> &[Window] {
     off.max_by(|a, b| way_m(a).total_cmp(&way_m(b))).unwrap_or_default()
 }
 
-/// The remark on a speed that is not that of the path.
+/// The remark on a speed that is not that of the path, or that could not be compared with it.
 pub(super) fn note(
     table: &Table,
     columns: &BTreeMap<Channel, ColumnUse>,
     series: &TimeSeries,
 ) -> Option<Note> {
-    let found = path_speed(series)?;
+    let Some(found) = path_speed(series) else {
+        return why_not_compared(series).map(|why| Note::SpeedUnchecked { why });
+    };
     let column = columns.get(&Channel::Speed).or_else(|| columns.get(&Channel::Vx))?;
     Some(Note::Speed {
         path: table.path().to_owned(),
@@ -258,6 +286,40 @@ mod tests {
             path_speed(&bend(|t| if (3.0..5.4).contains(&t) { 9.0 } else { 15.0 })).unwrap();
         assert!(!found.is_whole && (3.0..5.4).contains(&found.time_s), "{found:?}");
         assert!((found.recorded_m_s - 9.0).abs() < 0.1, "{found:?}");
+    }
+
+    /// Rows at a distance of a second, at 15 m/s to the east.
+    fn sparse(n_rows: u32, speed_m_s: f64) -> TimeSeries {
+        let time_s: Vec<f64> = (0..n_rows).map(f64::from).collect();
+        let east_m = time_s.iter().map(|t| 15.0 * t).collect();
+        let (north_m, speed) = (vec![0.0; time_s.len()], vec![speed_m_s; time_s.len()]);
+        let mut series = TimeSeries::new(time_s).unwrap();
+        for (channel, values) in
+            [(Channel::X, east_m), (Channel::Y, north_m), (Channel::Speed, speed)]
+        {
+            series.insert(channel, values).unwrap();
+        }
+        series
+    }
+
+    #[test]
+    fn a_short_log_is_compared_as_a_whole_and_a_shorter_one_is_said_to_be_unchecked() {
+        for n_rows in [3, 4, 5, 6] {
+            assert_eq!(path_speed(&sparse(n_rows, 15.0)), None, "{n_rows} rows");
+            assert_eq!(why_not_compared(&sparse(n_rows, 15.0)), None, "{n_rows} rows");
+            let found = path_speed(&sparse(n_rows, 54.0)).expect("another unit");
+            assert!(found.is_whole && (found.ratio - 3.6).abs() < 1e-9, "{found:?}");
+        }
+        assert_eq!(path_speed(&sparse(2, 54.0)), None);
+        let why = why_not_compared(&sparse(2, 54.0));
+        assert_eq!(why.as_deref(), Some("there are only 2 rows"));
+        // A car that stands by its speed and its path, and one that stands by its path alone.
+        let mut standing = sparse(9, 0.0);
+        standing.insert(Channel::X, vec![3.0; 9]).unwrap();
+        assert_eq!(why_not_compared(&standing), None);
+        standing.insert(Channel::Speed, vec![10.0; 9]).unwrap();
+        let why = why_not_compared(&standing).expect("it goes 80 m by its speed");
+        assert!(why.contains("by the speed it is 80"), "{why}");
     }
 
     #[test]

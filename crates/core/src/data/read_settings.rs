@@ -4,7 +4,7 @@
 
 use std::fmt;
 
-use crate::data::{MapError, Separator, Thousands, spelling};
+use crate::data::{DeckUnits, MapError, Separator, Thousands, spelling};
 use crate::ranges::INSTANT;
 use crate::units::Quantity;
 
@@ -46,6 +46,8 @@ pub struct ReadSettings {
     pub thousands: Option<Thousands>,
     /// The sheet of a workbook, `sheet=2` or `sheet=NAME`; `None` is the first one.
     pub sheet: Option<SheetRef>,
+    /// The units of a finite-element model, `deck=t-mm-s`, in which its results are.
+    pub deck: Option<DeckUnits>,
     /// The line of the header, `header=5` or `header=none`.
     pub header: Option<HeaderLine>,
     /// The line of the units, `units=6`.
@@ -77,6 +79,11 @@ impl ReadSettings {
         let is_first = match name {
             "separator" | "decimal" | "thousands" => self.take_sign(name, value)?,
             "sheet" => self.sheet.replace(sheet(value)).is_none(),
+            "deck" => {
+                let deck = DeckUnits::ALL.into_iter().find(|of| of.name() == value);
+                let deck = deck.ok_or_else(|| wrong(DeckUnits::NAMES))?;
+                self.deck.replace(deck).is_none()
+            }
             "header" => {
                 let expected = "the number of a line or none, e.g. header=5";
                 let header = match value {
@@ -201,6 +208,7 @@ impl fmt::Display for ReadSettings {
             ("decimal", self.decimal_comma.map(decimal)),
             ("thousands", self.thousands.map(|of| of.name().to_owned())),
             ("sheet", self.sheet.as_ref().map(SheetRef::to_string)),
+            ("deck", self.deck.map(|of| of.name().to_owned())),
             ("header", header),
             ("units", self.units_line.map(|line| line.to_string())),
             ("shift", self.time_shift_s.map(|shift_s| format!("{shift_s}:s"))),

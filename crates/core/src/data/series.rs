@@ -130,6 +130,11 @@ impl TimeSeries {
         self.columns.keys().copied()
     }
 
+    /// The time axis and the columns in the order of [`TimeSeries::channels`], for whoever is to own them.
+    pub fn into_columns(self) -> impl Iterator<Item = (Channel, Vec<f64>)> {
+        std::iter::once((Channel::Time, self.time_s)).chain(self.columns)
+    }
+
     /// Number of samples on the time axis.
     pub fn n_samples(&self) -> usize {
         self.time_s.len()

@@ -9,13 +9,14 @@ use sha2::{Digest, Sha256};
 use crate::data::budget::{MAX_CASES_BYTES, MAX_LINE_BYTES, MAX_TABLE_BYTES};
 use crate::data::dialect::{Dialect, Separator};
 use crate::data::foreign::refuse_known_text;
+use crate::data::formats::{self, Converted, Said};
 use crate::data::header::{Header, Line, check_fields, find_header, first_lines};
 use crate::data::rows::Rows;
 use crate::data::spelling;
 use crate::data::text::{Text, read_text};
 use crate::data::vbo;
 use crate::data::workbook::{Sheet, is_archive, read_sheet};
-use crate::data::{DataError, ReadSettings, marks};
+use crate::data::{DataError, DeckUnits, Note, ReadSettings, marks};
 
 /// The column that holds the names in a table of cases; a header with it is recognised by this
 /// name.
@@ -41,8 +42,8 @@ pub struct Table {
     beginning: Vec<(u64, String)>,
     /// The sheet of a workbook.
     sheet: Option<Sheet>,
-    /// What the file is, if it is of a format of its own.
-    format: Option<&'static str>,
+    /// What is said of the file, if it is of a format of its own.
+    said: Option<Said>,
 }
 
 impl Table {
@@ -63,6 +64,9 @@ impl Table {
     /// The same as for [`Table::read`], and [`DataError::NoSuchLine`] if there is nothing in a line
     /// that the settings name.
     pub fn read_as(path: &Path, settings: &ReadSettings) -> Result<Self, DataError> {
+        if let Some(converted) = formats::from_binary(path, settings)? {
+            return Self::of_format(path, converted, "binary", settings);
+        }
         let text = match read_text(path, MAX_TABLE_BYTES) {
             Err(DataError::NotText { .. }) if is_archive(path)? => {
                 let (text, sheet) = read_sheet(path, settings.sheet.as_ref())?;
@@ -72,17 +76,39 @@ impl Table {
             }
             text => text?,
         };
+        if let Some(converted) = formats::from_text(path, &text.text, settings)? {
+            return Self::of_format(path, converted, text.encoding, settings);
+        }
         if let Some(sheet) = &settings.sheet {
             let (path, wanted, found) = (path.to_owned(), sheet.to_string(), Vec::new());
             return Err(DataError::NoSheet { path, wanted, found });
         }
         if let Some(rows) = vbo::as_table(&text.text) {
-            let text = Text { text: rows, ..text };
-            let table = Self::parse(path, text, Some(Separator::Tab), settings)?;
-            return Ok(Self { format: Some(vbo::DESCRIPTION), ..table });
+            let said = Said {
+                description: vbo::DESCRIPTION.to_owned(),
+                keeps_lines: true,
+                ..Said::default()
+            };
+            let converted = Converted { text: rows, said };
+            return Self::of_format(path, converted, text.encoding, settings);
         }
         refuse_known_text(path, &text.text)?;
         Self::parse(path, text, None, settings)
+    }
+
+    /// The table of a file of a format of its own.
+    fn of_format(
+        path: &Path,
+        Converted { text, said }: Converted,
+        encoding: &'static str,
+        settings: &ReadSettings,
+    ) -> Result<Self, DataError> {
+        let table = Self::parse(path, Text { text, encoding }, Some(Separator::Tab), settings);
+        let table = table.map_err(|error| match &said.part {
+            Some(part) if !said.keeps_lines => in_sheet(path, &part.name, error),
+            _ => error,
+        })?;
+        Ok(Self { sheet: said.part.clone(), said: Some(said), ..table })
     }
 
     /// Reads a table of cases. It is held cell by cell, so that its size has a lower limit.
@@ -122,9 +148,9 @@ impl Table {
         let (separator, is_converted) = (dialect.separator, converted.is_some());
         let (dialect, is_ambiguous) =
             Dialect::with_marks(separator, rows.marks(), is_converted, settings);
-        let (path, sheet, format) = (path.to_owned(), None, None);
+        let (path, sheet, said) = (path.to_owned(), None, None);
         let table =
-            Self { path, encoding, dialect, is_ambiguous, header, rows, beginning, sheet, format };
+            Self { path, encoding, dialect, is_ambiguous, header, rows, beginning, sheet, said };
         Ok(table)
     }
 
@@ -167,21 +193,37 @@ impl Table {
         spelling::unit_text(unit)
     }
 
-    /// The sheet from which the table was read; `None` for a text file.
+    /// The sheet, or the part of a file of several, from which the table was read; `None` for a file of
+    /// one table.
     pub fn sheet(&self) -> Option<&Sheet> {
         self.sheet.as_ref()
     }
 
-    /// What the file is, in words, if it is of a format of its own; `None` for a plain table.
-    pub fn format(&self) -> Option<&'static str> {
-        self.format
+    /// Whether the table is of results of a finite-element model, whose units the settings can say.
+    pub fn is_of_model(&self) -> bool {
+        self.said.as_ref().is_some_and(|said| said.is_model)
+    }
+
+    /// The units that are proposed for such a model, with the reason, if nobody has said them.
+    pub fn proposed_deck(&self) -> Option<(DeckUnits, &str)> {
+        let open = self.said.as_ref()?.open_units.as_ref()?;
+        Some((open.proposed, &open.why))
+    }
+
+    /// What is said of the file if it is of a format of its own; none for a plain table.
+    pub(super) fn format_notes(&self) -> Vec<Note> {
+        let Some(said) = &self.said else { return Vec::new() };
+        let format = Note::Format { text: said.description.clone() };
+        let doubts = said.doubts.iter().map(|text| Note::Doubt { text: text.clone() });
+        std::iter::once(format).chain(doubts).collect()
     }
 
     /// An error in this table. In a sheet its place is the cell.
     pub(crate) fn placed(&self, error: DataError) -> DataError {
+        let keeps_lines = self.said.as_ref().is_some_and(|said| said.keeps_lines);
         match &self.sheet {
-            Some(sheet) => in_sheet(&self.path, &sheet.name, error),
-            None => error,
+            Some(sheet) if !keeps_lines => in_sheet(&self.path, &sheet.name, error),
+            _ => error,
         }
     }
 
@@ -201,7 +243,8 @@ impl Table {
         self.rows.n_with_text_beyond()
     }
 
-    /// A digest of the names and units of the columns, the same for every file with this header. In
+    /// A digest of the names and units of the columns, the same for every file with this header and of
+    /// this device. In
     /// a file without a header it is of the path and the number of columns.
     pub fn fingerprint(&self) -> String {
         let mut digest = Sha256::new();
@@ -209,6 +252,9 @@ impl Table {
             digest.update(text.as_bytes());
             digest.update([0]);
         };
+        if let Some(said) = self.said.as_ref().filter(|said| !said.device.is_empty()) {
+            add(&said.device);
+        }
         match self.header.is_written {
             true => self.header.names.iter().chain(&self.header.units).for_each(|name| add(name)),
             false => {

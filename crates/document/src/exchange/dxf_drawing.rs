@@ -3,7 +3,7 @@
 //! Each role and kind has a layer: `SIMULATED_PATH`, `STRIKING_OUTLINE`, `EVIDENCE_POINT`. Axes are those
 //! of the scene: X along the road, Y to the left. Outlines of cars are closed polylines at chosen
 //! instants, with the instant beside them. What restricts the answer stands as text below the drawing, in
-//! the layer `RESTRICTIONS`.
+//! the layer `RESTRICTIONS`, in the units of the scene as its labels are.
 //!
 //! Dates and identifiers of the drawing are fixed, so that the same scene gives the same drawing.
 
@@ -157,7 +157,7 @@ impl Sheet {
         let [low, _] = scene.extent_m();
         let title = format!("{}, metres, X along the road, Y to the left", scene.title);
         let survey = scene.ground.as_ref().map(|ground| survey_text(ground.origin.as_ref()));
-        let caveats = &scene.caveats;
+        let caveats = scene.caveats.in_units(scene.units);
         let caveats = caveats.restrictions().into_iter().chain(caveats.assumptions());
         let restrictions =
             caveats.map(|caveat| format!("{}: {}", caveat.kind.label(), caveat.statement()));

@@ -75,7 +75,7 @@ pub fn glb(scene: &Scene, out: &mut dyn Write) -> Result<(), ExchangeError> {
     // What restricts the answer travels with it: 3D programs show the copyright line of a file.
     builder.root.asset = Asset {
         generator: Some(concat!("impactlab ", env!("CARGO_PKG_VERSION")).to_owned()),
-        copyright: scene.caveats.text(),
+        copyright: scene.caveats.in_units(scene.units).text(),
         ..Asset::default()
     };
     builder.describe_buffer();

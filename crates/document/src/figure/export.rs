@@ -10,7 +10,8 @@ use impactlab_core::units::{Quantity, Unit, UnitSystem};
 ///
 /// The columns are `series` and the two axes under their own labels and units; each point is a row. A
 /// band gives two series, `(low)` and `(high)`; a vertical line gives a row without y; a heat map
-/// gives a row for each cell whose value is positive, with the value in the name of the series. Two
+/// gives a row for each cell whose value is positive, and a map of cells one for the middle of each that
+/// has a value, with the value in the name of the series. Two
 /// columns follow in a plan with paths: time and heading of each of their points. What restricts the
 /// figure is in the first row of a last column ([`RESTRICTIONS_COLUMN`]), if there is anything to
 /// say.
@@ -38,6 +39,14 @@ pub fn write_figure_csv(figure: &Figure, writer: impl Write) -> Result<(), csv::
                         map.low[1] + row as f64 * map.step[1],
                     ];
                     table.row(&format!("{} ({value:.6e})", map.name), at)?;
+                }
+            }
+            FigureElement::CellMap(map) => {
+                for ([low, high], value, is_hatched) in map.cells() {
+                    let Some(value) = value else { continue };
+                    let hatched = if is_hatched { ", hatched" } else { "" };
+                    let name = format!("{} ({value} {}{hatched})", map.name, map.unit.symbol);
+                    table.row(&name, [0, 1].map(|axis| 0.5 * (low[axis] + high[axis])))?;
                 }
             }
             FigureElement::Band(band) => {

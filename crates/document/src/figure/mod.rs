@@ -2,7 +2,9 @@
 //! panel on screen, the PNG and the CSV of a figure are all made from the same [`Figure`].
 
 mod analysis;
+mod atlas;
 mod calibration;
+mod contours;
 mod controls;
 mod export;
 mod force;
@@ -21,6 +23,7 @@ mod training;
 pub use analysis::{
     analysis_force_figure, analysis_motion_figure, analysis_readout, analysis_scene_figure,
 };
+pub use atlas::{AtlasFigure, atlas_figure, sensitivity_figure, write_slice_csv};
 pub use calibration::{CoveragePoint, ParityPoint, coverage_figure, parity_figure, pit_figure};
 pub use controls::{WheelInput, control_figure, control_figures, figure_readout};
 pub use export::write_figure_csv;
@@ -28,7 +31,9 @@ use force::milliseconds;
 pub use force::{ForceFigure, force_figure};
 pub use forecast::{ForceComponent, ForecastFigure, RecordedCurve, forecast_figure};
 pub use impact::impact_figure;
-pub use model::{Axis, Band, Figure, FigureElement, HeatMap, LineStyle, Path, Role, Series};
+pub use model::{
+    Axis, Band, CellMap, Figure, FigureElement, HeatMap, LineStyle, Path, Role, Series,
+};
 pub use model_comparison::{
     cluster_figure, compared_case_figure, horizon_figure, model_name, ranking_figure,
 };

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use impactlab_core::uncertainty::Caveats;
-use impactlab_core::units::{Quantity, Unit, UnitSystem};
+use impactlab_core::units::{Language, Quantity, Unit, UnitSystem};
 
 /// A plot: axes and elements, all numbers in the units of the axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,13 +23,16 @@ pub struct Figure {
     /// What restricts the answer that is shown and what it rests on: in every picture and every table
     /// of the figure.
     pub caveats: Caveats,
+    /// Language of its names and of what a picture says beside them.
+    pub language: Language,
 }
 
 impl Figure {
     /// A figure with linear axes, of nothing that is restricted.
     pub fn new(title: impl Into<String>, [x, y]: [Axis; 2], elements: Vec<FigureElement>) -> Self {
         let (equal_aspect, log_y, caveats) = (false, false, Caveats::default());
-        Self { title: title.into(), x, y, equal_aspect, log_y, elements, caveats }
+        let (title, language) = (title.into(), Language::default());
+        Self { title, x, y, equal_aspect, log_y, elements, caveats, language }
     }
 
     /// The same as a plan from above, whose axes have the same scale.
@@ -242,11 +245,53 @@ pub struct HeatMap {
     pub values: Arc<Vec<f64>>,
 }
 
+/// Values of cells over two axes, shown by a scale of colours. Cells of which the value is not to be
+/// relied upon are hatched.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellMap {
+    /// Name in the legend, in front of the scale.
+    pub name: String,
+    /// Ends of the cells along x and y, rising, in the units of the axes.
+    pub edges: [Vec<f64>; 2],
+    /// Values row by row from the lowest y upwards, each row from the lowest x onwards; `None` for a cell
+    /// that has none.
+    pub values: Vec<Option<f64>>,
+    /// Whether each cell is hatched.
+    pub is_hatched: Vec<bool>,
+    /// Values at both ends of the scale.
+    pub scale: [f64; 2],
+    /// Unit of the values and of the scale.
+    pub unit: Unit,
+}
+
+impl CellMap {
+    /// Each cell: lowest and highest [x, y], its value, and whether it is hatched.
+    pub fn cells(&self) -> impl Iterator<Item = ([[f64; 2]; 2], Option<f64>, bool)> + '_ {
+        let [x, y] = &self.edges;
+        let ends = |edges: &[f64], idx: usize| Some([*edges.get(idx)?, *edges.get(idx + 1)?]);
+        let width = x.len().saturating_sub(1).max(1);
+        self.values.iter().zip(&self.is_hatched).enumerate().filter_map(
+            move |(idx, (value, is_hatched))| {
+                let ([x0, x1], [y0, y1]) = (ends(x, idx % width)?, ends(y, idx / width)?);
+                Some(([[x0, y0], [x1, y1]], *value, *is_hatched))
+            },
+        )
+    }
+
+    /// Where a value lies on the scale, 0 to 1.
+    pub fn share(&self, value: f64) -> f64 {
+        let [low, high] = self.scale;
+        if high > low { ((value - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 }
+    }
+}
+
 /// An element of a figure.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FigureElement {
     /// Values on a grid, shown as a picture.
     HeatMap(HeatMap),
+    /// Values of cells, shown by a scale of colours.
+    CellMap(CellMap),
     /// A polyline.
     Line(Series),
     /// The path of a vehicle in a plan from above.
@@ -306,7 +351,23 @@ impl FigureElement {
             | Self::Path(Path { series, .. })
             | Self::Arrow(series) => &series.name,
             Self::HeatMap(map) => &map.name,
+            Self::CellMap(map) => &map.name,
             Self::Band(band) => &band.name,
+            Self::VerticalLine { name, .. } => name,
+        }
+    }
+
+    /// The same, to be replaced.
+    pub(crate) fn name_mut(&mut self) -> &mut String {
+        match self {
+            Self::Line(series)
+            | Self::Points(series)
+            | Self::Polygon(series)
+            | Self::Path(Path { series, .. })
+            | Self::Arrow(series) => &mut series.name,
+            Self::HeatMap(map) => &mut map.name,
+            Self::CellMap(map) => &mut map.name,
+            Self::Band(band) => &mut band.name,
             Self::VerticalLine { name, .. } => name,
         }
     }
@@ -320,6 +381,7 @@ impl FigureElement {
             | Self::Path(Path { series, .. })
             | Self::Arrow(series) => series.role,
             Self::HeatMap(map) => map.role,
+            Self::CellMap(_) => Role::Model,
             Self::Band(band) => band.role,
             Self::VerticalLine { role, .. } => *role,
         }

@@ -79,7 +79,10 @@ fn element_text(element: &FigureElement, figure: &Figure, wording: &Wording) -> 
         FigureElement::VerticalLine { name, x, .. } => {
             Some(fill(words.instant_alt, &[("name", name), ("x", &number(*x))]))
         }
-        FigureElement::Points(_) | FigureElement::Polygon(_) | FigureElement::HeatMap(_) => None,
+        FigureElement::Points(_)
+        | FigureElement::Polygon(_)
+        | FigureElement::HeatMap(_)
+        | FigureElement::CellMap(_) => None,
     }
 }
 

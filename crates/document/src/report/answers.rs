@@ -5,7 +5,7 @@ use crate::report::beside::{Said, beside_each_other};
 use crate::report::build::VariantParts;
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::Part;
-use crate::report::{Block, Language, ReportDate};
+use crate::report::{Block, Language, ReportDate, Table};
 use impactlab_core::uncertainty::Caveat;
 use impactlab_core::units::UnitSystem;
 use impactlab_study::case_file::CaseFile;
@@ -50,8 +50,9 @@ pub(super) fn answer_blocks(
     for question in questions(variants) {
         told.push(Block::heading(2, question.title));
         let said = question.answers.iter().map(|(name, part)| {
-            let blocks = part_blocks(part, wording);
-            Said { name, blocks }
+            let variant = variants.iter().find(|variant| variant.name == *name);
+            let others = Others::of(part, variant, wording);
+            Said { name, blocks: part_blocks(part, others, wording) }
         });
         let said: Vec<Said<'_>> = said.collect();
         told.extend(beside_each_other(&said, wording));
@@ -121,12 +122,51 @@ fn without_answer<'a>(
     })
 }
 
-/// A question with what may be wrong with its answer, and the answer.
-fn part_blocks(part: &Part, wording: &Wording) -> Vec<Block> {
+/// What the variant says of the same collision in answers to other questions.
+#[derive(Clone, Copy)]
+struct Others<'a> {
+    impact: Option<&'a Part>,
+    force: Option<&'a Part>,
+}
+
+impl<'a> Others<'a> {
+    fn of(part: &Part, variant: Option<&'a VariantParts>, wording: &Wording) -> Self {
+        let collision = part.title.strip_prefix(&*part.kind).unwrap_or_default();
+        let find = |kind: &str| {
+            let mut answers = variant?.answers.iter().flatten();
+            let is_other = |of: &&Part| of.kind == kind && part.kind != kind;
+            answers.find(|of| is_other(of) && of.title.strip_prefix(kind) == Some(collision))
+        };
+        let words = wording.words;
+        Self { impact: find(words.title_impact), force: find(words.title_force) }
+    }
+
+    /// Whether a row stands in the answer of the force as it is.
+    fn has_row(self, table: &Table, row: &[String]) -> bool {
+        let blocks: &[Block] = self.force.map_or(&[], |force| force.answer.as_slice());
+        blocks.iter().any(|block| match block {
+            Block::Table(of) => of.columns == table.columns && of.rows.iter().any(|it| it == row),
+            _ => false,
+        })
+    }
+}
+
+/// A question with what may be wrong with its answer, and the answer without what others say of the
+/// force of the same collision.
+fn part_blocks(part: &Part, others: Others<'_>, wording: &Wording) -> Vec<Block> {
     let warnings = part.caveats.iter().filter(|caveat| caveat.is_warning());
     let notices = warnings.map(|caveat| Block::notice(warning(caveat, wording)));
     let (question, rest) = part.answer.split_at(part.answer.len().min(1));
-    question.iter().cloned().chain(notices).chain(rest.iter().cloned()).collect()
+    let is_said = others.impact.is_some() && others.force.is_some();
+    let rest = rest.iter().filter(|block| !(is_said && part.of_first_force.contains(block)));
+    let rest = rest.map(|block| match block {
+        Block::Table(table) if part.kind == wording.words.title_motion => {
+            let rows = table.rows.iter().filter(|row| !others.has_row(table, row));
+            Block::Table(Table { rows: rows.cloned().collect(), ..table.clone() })
+        }
+        block => block.clone(),
+    });
+    question.iter().cloned().chain(notices).chain(rest).collect()
 }
 
 /// Blocks in which each table stands once: what several answers have in common, such as the two methods

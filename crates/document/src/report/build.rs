@@ -2,18 +2,19 @@
 
 use std::collections::BTreeSet;
 
-use crate::report::alt::alt_text;
 use crate::report::answer::stills::Grounds;
 use crate::report::answer::{Context, part_of};
 use crate::report::answers::{answer_blocks, warning};
-use crate::report::document::{Picture, Section, SectionKind};
+use crate::report::beside::{Said, beside_each_other};
+use crate::report::document::{Section, SectionKind};
 use crate::report::holders::AnswerNames;
-use crate::report::input_table::{input_table, left_as_they_are};
+use crate::report::input_table::input_tables;
 use crate::report::method::{Method, method_blocks};
 use crate::report::numbers::{Wording, fill};
 use crate::report::opinion::{Asked, considered_methods, opinion_blocks};
-use crate::report::parts::{InputRow, Part, PartPicture, PartProvenance};
+use crate::report::parts::{InputRow, Part, PartProvenance};
 use crate::report::paths::ShownPaths;
+use crate::report::picture_blocks::picture_blocks;
 use crate::report::provenance::{change_notice, log_blocks, provenance_blocks};
 use crate::report::validation::validation_blocks;
 use crate::report::validity::validity_blocks;
@@ -168,34 +169,7 @@ impl Builder<'_> {
 
     /// Every picture once, with its number.
     fn pictures(&self, variants: &[VariantParts]) -> Vec<Block> {
-        let words = self.wording.words;
-        let mut drawn: Vec<&PartPicture> = Vec::new();
-        let mut blocks = Vec::new();
-        for variant in variants {
-            let mut of_variant: Vec<&PartPicture> = Vec::new();
-            for picture in parts_of(variant).flat_map(|part| &part.pictures) {
-                let mut known = drawn.iter().chain(&of_variant);
-                if !known.any(|other| other.content == picture.content) {
-                    of_variant.push(picture);
-                }
-            }
-            if variants.len() > 1 && !of_variant.is_empty() {
-                blocks.push(Block::heading(2, fill(words.variant, &[("name", &variant.name)])));
-            }
-            // What takes half of the width stands beside each other.
-            of_variant.sort_by_key(|picture| picture.content.is_half_wide());
-            for picture in of_variant {
-                drawn.push(picture);
-                let number = drawn.len();
-                blocks.push(Block::Picture(Box::new(Picture {
-                    number,
-                    caption: format!("{} {number}: {}", words.figure, picture.caption),
-                    alt: alt_text(picture, self.wording),
-                    content: picture.content.clone(),
-                })));
-            }
-        }
-        or(blocks, words.no_pictures)
+        or(picture_blocks(variants, self.wording), self.wording.words.no_pictures)
     }
 
     /// The inputs of each variant, of the later ones only what the first does not have.
@@ -214,32 +188,10 @@ impl Builder<'_> {
                 blocks.push(Block::heading(2, fill(words.variant, &[("name", &variant.name)])));
                 blocks.push(Block::paragraph(fill(text, &[("name", name)])));
             }
-            blocks.extend(self.input_tables(&variant.name, &rows));
+            blocks.extend(input_tables(&variant.name, &rows, self.wording));
             first.get_or_insert((&variant.name, seen));
         }
         blocks
-    }
-
-    /// A table for each group, in the order in which the groups are first named, and a sentence of what was
-    /// left as the program has it.
-    fn input_tables(&self, variant: &str, rows: &[&InputRow]) -> Vec<Block> {
-        let is_left = |row: &&InputRow| row.source == self.wording.words.source_program;
-        let (left, rows): (Vec<&InputRow>, Vec<&InputRow>) =
-            rows.iter().copied().partition(is_left);
-        let mut groups: Vec<&str> = Vec::new();
-        for row in &rows {
-            if !groups.contains(&row.group.as_str()) {
-                groups.push(&row.group);
-            }
-        }
-        let table = |group: &&str| {
-            let of_group = rows.iter().filter(|row| row.group == **group).copied();
-            let values = [("name", variant), ("group", group)];
-            let caption = fill(self.wording.words.inputs_caption, &values);
-            input_table(&caption, &of_group.collect::<Vec<_>>(), self.wording)
-        };
-        let left = (!left.is_empty()).then(|| left_as_they_are(&left, self.wording));
-        groups.iter().flat_map(table).chain(left).collect()
     }
 
     fn validation(&self, variants: &[VariantParts]) -> Vec<Block> {
@@ -259,28 +211,30 @@ impl Builder<'_> {
     }
 
     fn sensitivity(&self, variants: &[VariantParts]) -> Vec<Block> {
-        let words = self.wording.words;
-        let mut blocks = Vec::new();
-        let mut written: Vec<&[Block]> = Vec::new();
-        for variant in variants {
-            for part in parts_of(variant).filter(|part| !part.sensitivity.is_empty()) {
-                if written.contains(&&*part.sensitivity) {
-                    continue;
-                }
-                written.push(&part.sensitivity);
-                let name = match variants.len() {
-                    1 => part.title.clone(),
-                    _ => format!(
-                        "{}; {}",
-                        fill(words.variant, &[("name", &variant.name)]),
-                        part.title
-                    ),
-                };
-                blocks.push(Block::heading(2, name));
-                blocks.extend(part.sensitivity.iter().cloned());
+        let parts = |variant| parts_of(variant).filter(|part| !part.sensitivity.is_empty());
+        let mut titles: Vec<&str> = Vec::new();
+        for part in variants.iter().flat_map(parts) {
+            if !titles.contains(&&*part.title) {
+                titles.push(&part.title);
             }
         }
-        blocks
+        let of_title = |title: &str| {
+            let said = variants.iter().flat_map(|variant| {
+                let parts = parts(variant).filter(|part| part.title == title);
+                parts.map(|part| Said { name: &variant.name, blocks: part.sensitivity.clone() })
+            });
+            let said: Vec<Said<'_>> = said.collect();
+            let names: Vec<&str> = said.iter().map(|said| said.name).collect();
+            let is_of_all = variants.iter().all(|variant| names.contains(&&*variant.name));
+            let heading = match is_of_all {
+                true => title.to_owned(),
+                false => format!("{title} ({})", names.join(", ")),
+            };
+            let mut blocks = vec![Block::heading(2, heading)];
+            blocks.extend(beside_each_other(&said, self.wording));
+            blocks
+        };
+        titles.into_iter().flat_map(of_title).collect()
     }
 
     fn provenance(&self, variants: &[VariantParts]) -> Vec<Block> {

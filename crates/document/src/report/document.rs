@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::figure::Figure;
 use crate::report::{Language, Paper};
-use crate::scene::{SceneStill, ViewKind};
+use crate::scene::SceneStill;
 use impactlab_core::units::UnitSystem;
 
 /// A report.
@@ -172,12 +172,12 @@ impl PictureContent {
         matches!(self, Self::Figure(_))
     }
 
-    /// Whether two of its kind stand beside each other on a page: plots, and cars in perspective, which
-    /// are seen from near. A scene from above has the width of the page.
+    /// Whether two of its kind stand beside each other on a page: plots, cars that are seen from near,
+    /// and a motion beside its forecast. Another scene from above has the width of the page.
     pub fn is_half_wide(&self) -> bool {
         match self {
             Self::Figure(_) => true,
-            Self::Scene(still) => still.view == ViewKind::Perspective,
+            Self::Scene(still) => still.is_half_wide,
         }
     }
 }

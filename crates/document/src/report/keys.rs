@@ -41,6 +41,9 @@ const PLAIN_ENDINGS: [(&str, &str); 8] = [
     ("_hz", "Hz"),
 ];
 
+/// Endings that are units by their whole, of names that keep the first part of them.
+const WHOLE_ENDINGS: [(&str, &str); 2] = [("_s_m", "s/m"), ("_s2_m2", "s²/m²")];
+
 /// Whether a name is left out where it stands before others.
 pub(super) fn is_silent(name: &str) -> bool {
     SILENT.contains(&name)
@@ -48,7 +51,8 @@ pub(super) fn is_silent(name: &str) -> bool {
 
 /// The quantity, or the symbol of the unit, that the ending of a name says.
 pub(super) fn quantity_of_key(key: &str) -> Option<Result<Quantity, &'static str>> {
-    let plain = PLAIN_ENDINGS.iter().map(|(ending, symbol)| (ending, Err(*symbol)));
+    let plain = PLAIN_ENDINGS.iter().chain(&WHOLE_ENDINGS);
+    let plain = plain.map(|(ending, symbol)| (ending, Err(*symbol)));
     let quantities = ENDINGS.iter().map(|(ending, quantity)| (ending, Ok(*quantity)));
     let fitting = plain.chain(quantities).filter(|(ending, _)| key.ends_with(*ending));
     fitting.max_by_key(|(ending, _)| ending.len()).map(|(_, unit)| unit)
@@ -108,6 +112,8 @@ mod tests {
             ("impulse_n_s", Some(Ok(Quantity::Impulse))),
             ("roll_stiffness_n_m_rad", Some(Err("N m/rad"))),
             ("region_90_m2", Some(Err("m²"))),
+            ("rolling_resistance_s_m", Some(Err("s/m"))),
+            ("rolling_resistance_s2_m2", Some(Err("s²/m²"))),
             ("onset_n_per_m", Some(Ok(Quantity::ForcePerLength))),
             ("stiffness_n_per_m2", Some(Ok(Quantity::ForcePerArea))),
             ("yaw_rate_rad_s", Some(Ok(Quantity::AngularVelocity))),

@@ -4,7 +4,7 @@
 use impactlab_core::collision::{PulseShape, RestitutionForm, Side};
 
 /// Names whose words do not say what they mean.
-const NAMES: [(&str, &str); 34] = [
+const NAMES: [(&str, &str); 36] = [
     ("alone", "without the other method beside it"),
     ("bullet", "striking vehicle"),
     ("bullet_ending", "striking vehicle after the impact"),
@@ -32,6 +32,8 @@ const NAMES: [(&str, &str); 34] = [
     ("response_model", "response network"),
     ("restitution_form", "restitution acts"),
     ("rise_s", "rises within"),
+    ("rolling_resistance_s2_m2", "rolling resistance per squared speed"),
+    ("rolling_resistance_s_m", "rolling resistance per speed"),
     ("samples", "curves drawn"),
     ("shape", "pulse shape"),
     ("start_s", "from"),

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::report::Block;
 use crate::report::numbers::Wording;
+use crate::report::{Block, Table};
 use impactlab_core::bibliography as sources;
 
 /// By what an answer is computed.
@@ -124,13 +124,31 @@ pub(super) fn method_blocks(methods: &BTreeSet<Method>, wording: &Wording) -> Ve
         blocks.push(Block::paragraph(format!("{text} {}: {}.", words.sources, numbers.join(", "))));
     }
     if !cited.is_empty() {
-        blocks.push(Block::heading(2, words.sources));
-        let cited = cited.iter().enumerate();
-        let items = cited.map(|(idx, text)| format!("[{}] {}", idx + 1, citation(text))).collect();
-        blocks.push(Block::List { items });
+        let row = |(idx, text): (usize, &&str)| [format!("[{}]", idx + 1), numbered(text, &cited)];
+        let rows = cited.iter().enumerate().map(row).collect();
+        let columns = [words.number, words.source_title];
+        blocks.push(Block::Table(Table::new(words.sources, columns, rows)));
     }
     blocks
 }
+
+/// A citation in which other sources are told by their numbers.
+fn numbered(text: &str, cited: &[&'static str]) -> String {
+    let mut told = citation(text);
+    for (key, name, source) in NAMED {
+        let number = cited.iter().position(|known| known == source);
+        let number = number.map_or_else(|| (*name).to_owned(), |idx| format!("[{}]", idx + 1));
+        told = told.replace(key, &number);
+    }
+    told
+}
+
+/// Sources that others name: the key in the program, authors and year, and the text.
+const NAMED: &[(&str, &str, &str)] = &[
+    ("Kudlich1966", "Kudlich 1966", sources::Kudlich1966::TEXT),
+    ("Heydinger1999", "Heydinger 1999", sources::Heydinger1999::TEXT),
+    ("KktseInertia2020", "kktse.github.io 2020", sources::KktseInertia2020::TEXT),
+];
 
 /// The first paragraph of the documentation of a source, without marks of Markdown.
 fn citation(text: &str) -> String {
@@ -152,5 +170,31 @@ mod tests {
         );
         assert!(text.contains("2000"), "{text}");
         assert!(!citation(sources::PitPinnPaper::TEXT).contains('|'));
+    }
+
+    /// Keys of the program, such as “Heydinger1999”, stood in the list.
+    #[test]
+    fn sources_are_named_by_their_numbers_and_not_by_keys_of_the_program() {
+        let cited = [sources::Heydinger1999::TEXT, sources::KktseInertia2020::TEXT];
+        assert!(numbered(cited[0], &cited).contains("[2]"), "{}", numbered(cited[0], &cited));
+        let all = [
+            Method::Impact,
+            Method::FourDof,
+            Method::ContactLaw,
+            Method::ForceNetwork,
+            Method::ResponseNetwork,
+            Method::Reconstruction,
+            Method::DataSheet,
+        ];
+        for source in all.iter().flat_map(|method| method.sources()) {
+            let told = numbered(source, &[]);
+            let mut words = told.split(|c: char| !c.is_alphanumeric());
+            let is_key = |word: &str| {
+                let name = word.trim_end_matches(|c: char| c.is_ascii_digit());
+                let is_name = name.len() > 2 && name.chars().all(char::is_alphabetic);
+                is_name && word.len() == name.len() + 4
+            };
+            assert!(!words.any(is_key), "{told}");
+        }
     }
 }

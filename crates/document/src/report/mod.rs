@@ -53,6 +53,8 @@ mod answers;
 
 mod input_table;
 
+mod picture_blocks;
+
 mod build;
 
 mod write;

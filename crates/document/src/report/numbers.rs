@@ -5,7 +5,7 @@ use std::ops::Deref;
 use crate::report::language::{Words, phrase_of, words_of};
 use crate::report::{Language, ReportSettings};
 use impactlab_core::uncertainty::Caveat;
-use impactlab_core::units::{NumberFormat, Quantity, UnitSystem, significant, trimmed};
+use impactlab_core::units::{NumberFormat, Phrase, Quantity, UnitSystem, significant, trimmed};
 
 /// Digits of a number that was given; more are those of a conversion of its unit.
 const MAX_GIVEN_DIGITS: usize = 6;
@@ -92,17 +92,43 @@ impl Wording {
         phrase_of(self.language, text).unwrap_or_else(|| self.quoted(text))
     }
 
+    /// A name in a picture in the language of the report; as it is where it has none, such as that of a
+    /// variant.
+    pub fn name(&self, text: &str) -> String {
+        let parts = || -> Option<Vec<String>> {
+            text.split(", ").map(|part| phrase_of(self.language, part)).collect()
+        };
+        let known = phrase_of(self.language, text).or_else(|| Some(parts()?.join(", ")));
+        known.map_or_else(|| text.to_owned(), |known| self.local(&known))
+    }
+
     /// What a caveat says, in the units of the report; as [`Wording::quoted`] if in English alone.
+    /// Options of the command line mean nothing to the reader of a report.
     pub fn caveat_text(&self, caveat: &Caveat) -> String {
-        let text = caveat.text_in(&self.format, &|label| self.label(label));
-        text.unwrap_or_else(|| self.quoted(&caveat.text))
+        let text = self.said(caveat.text_phrase.as_ref(), &caveat.text);
+        without_options(&text)
+    }
+
+    /// A phrase in the language and the units of the report; else the English text.
+    fn said(&self, phrase: Option<&Phrase>, text: &str) -> String {
+        match phrase {
+            Some(phrase) => phrase.say_with(&self.format, &|label| self.label(label)),
+            None => self.note(text),
+        }
+    }
+
+    /// A note, a rule or a source of the program in the language of the report, part by part; as
+    /// [`Wording::quoted`] where a part has no translation.
+    pub fn note(&self, text: &str) -> String {
+        let parts: Option<Vec<String>> =
+            text.split("; ").map(|part| phrase_of(self.language, part)).collect();
+        parts.map_or_else(|| self.quoted(text), |parts| self.local(&parts.join("; ")))
     }
 
     /// The same of why something was assumed or is not used.
     pub fn caveat_reason(&self, caveat: &Caveat) -> String {
-        let reason = caveat.reason_in(&self.format, &|label| self.label(label));
-        let english = || self.quoted(caveat.reason.as_deref().unwrap_or_default());
-        reason.unwrap_or_else(english)
+        let reason = caveat.reason.as_deref().unwrap_or_default();
+        without_options(&self.said(caveat.reason_phrase.as_ref(), reason))
     }
 
     /// A label, whole or of parts that are joined by commas.
@@ -116,6 +142,27 @@ impl Wording {
             text.split(", ").map(|part| phrase_of(self.language, part)).collect();
         parts.map_or_else(|| self.quoted(text), |parts| self.local(&parts.join(", ")))
     }
+}
+
+/// Words of what names nothing but an option or a key of a file, such as “another one: --vehicle”.
+const WORDS_OF_OPTION: usize = 3;
+
+/// A sentence without the options of the command line and the keys of files that it names.
+fn without_options(text: &str) -> String {
+    let named_before = |part: &str| {
+        let (named, _) = part.split_once(": --").or_else(|| part.split_once(": ["))?;
+        Some(named.to_owned())
+    };
+    let kept = text.split("; ").filter_map(|part| match named_before(part) {
+        None => Some(part.to_owned()),
+        Some(named) => (named.split(' ').count() > WORDS_OF_OPTION).then_some(named),
+    });
+    let mut text = kept.collect::<Vec<_>>().join("; ");
+    while let Some((before, behind)) = text.split_once(" (--") {
+        let Some((_, behind)) = behind.split_once(')') else { break };
+        text = format!("{before}{behind}");
+    }
+    text
 }
 
 /// Digits of a number from the first that is not zero.
@@ -150,7 +197,7 @@ pub(super) fn fill(template: &str, values: &[(&str, &str)]) -> String {
 mod tests {
     use super::*;
     use impactlab_core::uncertainty::CaveatKind;
-    use impactlab_core::units::{Phrase, PhraseValue};
+    use impactlab_core::units::PhraseValue;
 
     /// 62 km/h at 18° were told as 58.965504 km/h, and 1 m/s as 2.2369363 mph.
     #[test]
@@ -188,6 +235,26 @@ mod tests {
         let unknown = Caveat::not_used("what", "why");
         let told = [german.caveat_text(&unknown), german.caveat_reason(&unknown)];
         assert_eq!(told, ["„what“", "„why“"]);
+    }
+
+    /// “another one: --vehicle” stood in an opinion that is read in court.
+    #[test]
+    fn no_option_of_the_command_line_is_told() {
+        for (text, told) in [
+            ("no vehicle was named; another one: --vehicle", "no vehicle was named"),
+            ("as of dry asphalt, 7.5 % of it: --friction-sigma", "as of dry asphalt, 7.5 % of it"),
+            (
+                "say that it brakes (--brake 0.8), or rolls (--coast)",
+                "say that it brakes, or rolls",
+            ),
+            (
+                "by the struck side; otherwise: [damage] angle_deg or [prior] a",
+                "by the struck side",
+            ),
+            ("X; Y: and no more", "X; Y: and no more"),
+        ] {
+            assert_eq!(without_options(text), told);
+        }
     }
 
     #[test]

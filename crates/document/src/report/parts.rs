@@ -65,6 +65,9 @@ pub(super) struct Part {
     pub opinion: Option<PartOpinion>,
     /// The question and its answer.
     pub answer: Vec<Block>,
+    /// Of these what is left out where the impact and the force of the same collision are questions of
+    /// their own.
+    pub of_first_force: Vec<Block>,
     /// Scenes and curves.
     pub pictures: Vec<PartPicture>,
     /// What it rests on.

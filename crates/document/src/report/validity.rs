@@ -114,8 +114,9 @@ fn sentence(caveat: &Caveat, wording: &Wording) -> String {
     // A whole number of the text, so that 0 is not said by 10.
     let is_number = |c: char| c.is_ascii_digit() || c == '.' || c == '-';
     let is_in_text = |value: f64| {
-        let (number_text, mut numbers) = (significant(value), caveat.text.split(|c| !is_number(c)));
-        numbers.any(|number| number.trim_end_matches('.') == number_text)
+        let numbers = caveat.text.split(|c| !is_number(c));
+        let mut numbers = numbers.map(|number| number.trim_end_matches('.'));
+        numbers.any(|number| number == significant(value) || is_rounded(number, value))
     };
     if let Some(CaveatQuantity { name, unit, value, range }) = caveat.quantity_in(wording)
         && !caveat.value.is_some_and(is_in_text)
@@ -134,6 +135,14 @@ fn sentence(caveat: &Caveat, wording: &Wording) -> String {
         text = format!("{text}. {}.", fill(words.allowed_range, &values));
     }
     text
+}
+
+/// Whether a text says a value, or that in per cent, with fewer digits, of which there are two or more.
+fn is_rounded(number: &str, value: f64) -> bool {
+    let decimals = number.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let digits = number.trim_start_matches(['-', '0', '.']);
+    let n_digits = digits.chars().filter(char::is_ascii_digit).count();
+    n_digits > 1 && [value, 100.0 * value].iter().any(|it| format!("{it:.decimals$}") == number)
 }
 
 /// What can be done about a restriction.
@@ -164,5 +173,18 @@ fn remedy(kind: CaveatKind, wording: &Wording) -> &'static str {
         CaveatKind::TrainedOn => words.remedy_trained_on,
         CaveatKind::Assumed => words.remedy_assumed,
         CaveatKind::NotUsed => words.remedy_not_used,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// “it still moves at 7.9 m/s … speed at the end: 7.914” said one thing twice.
+    #[test]
+    fn a_value_that_the_sentence_has_with_fewer_digits_is_not_told_again() {
+        assert!(is_rounded("7.9", 7.914) && is_rounded("10.3", 0.1031) && is_rounded("4.00", 4.0));
+        assert!(!is_rounded("7.8", 7.914) && !is_rounded("8", 7.914) && !is_rounded("0.0", 0.01));
+        assert!(!is_rounded("", 0.2));
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::scene::{CarMotion, CarShape, CarState, SceneGround};
 use impactlab_core::collision::Pose;
 use impactlab_core::uncertainty::Caveats;
-use impactlab_core::units::UnitSystem;
+use impactlab_core::units::{Language, UnitSystem};
 use impactlab_core::vehicle::TireMarkPoint;
 use impactlab_study::analysis::DensityMap;
 
@@ -248,6 +248,8 @@ pub struct Scene {
     pub units: UnitSystem,
     /// What restricts the scene.
     pub caveats: Caveats,
+    /// Language of its names and of what a picture says beside them.
+    pub language: Language,
 }
 
 impl Scene {
@@ -258,15 +260,23 @@ impl Scene {
         format!("{}: scene {view} at {time_s:.2} s{}", self.title, self.after(time_s))
     }
 
-    /// The same where the time stands beside it.
+    /// The same where the time stands beside it. A scene without a title has that below the picture.
     pub fn heading_beside_time(&self, view: &str, time_s: f64) -> String {
-        format!("{}: scene {view}{}", self.title, self.after(time_s))
+        let after = self.after(time_s);
+        match self.title.is_empty() {
+            true => after.trim_start_matches(", ").to_owned(),
+            false => format!("{}: scene {view}{after}", self.title),
+        }
     }
 
     /// What a heading adds once the vehicles have met again.
     fn after(&self, time_s: f64) -> &'static str {
         let met = self.crosses.iter().any(|cross| cross.time_s <= time_s);
-        if met { ", after a second contact that is not computed" } else { "" }
+        match (met, self.language) {
+            (false, _) => "",
+            (true, Language::En) => ", after a second contact that is not computed",
+            (true, Language::De) => ", nach einem zweiten Kontakt, der nicht berechnet ist",
+        }
     }
 
     /// Lowest and highest `[X, Y]` of everything that is shown at any time, m.

@@ -38,6 +38,8 @@ pub struct SceneStill {
     pub view: ViewKind,
     /// Distance of the camera from the struck car, m; `None` to see all of the scene.
     pub near_m: Option<f64>,
+    /// Whether half of the width of a page is enough for it.
+    pub is_half_wide: bool,
 }
 
 impl SceneStill {

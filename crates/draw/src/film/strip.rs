@@ -6,10 +6,13 @@ use egui::{FontId, Rect, Ui, Vec2, pos2, vec2};
 
 use crate::caveats::{LINE_HEIGHT, RestrictionLine};
 use crate::scene::{LegendRows, ScenePicture};
+use impactlab_core::units::{Language, NumberFormat};
 
 /// Height of the line above the scene, and size of its text, points.
 const HEAD_HEIGHT: f32 = 20.0;
 const HEAD_SIZE: f32 = 13.0;
+/// Sizes of a title for which there is not enough room, points.
+const SMALLER_SIZES: [f32; 3] = [11.5, 10.0, 8.5];
 /// Distance of text from the edges at the sides, and room above and below what stands below the scene,
 /// points.
 const SIDE: f32 = 8.0;
@@ -17,7 +20,7 @@ const ROOM: f32 = 1.0;
 /// Most rows of the legend, and the largest share of the height of the frame that they take together; one
 /// row is always there.
 const MOST_ROWS: usize = 2;
-const LEGEND_SHARE: f32 = 0.12;
+const LEGEND_SHARE: f32 = 0.13;
 const ROW_HEIGHT: f32 = 13.0;
 
 /// The text of a frame.
@@ -35,8 +38,14 @@ impl Strip {
         // Courses of events have the same names.
         let scene = picture.drawn().first().map_or(&picture.scene, |first| *first);
         let legend = LegendRows::new(ui, scene, width, n_rows.clamp(1, MOST_ROWS));
-        let caveats = picture.scene.caveats.in_units(picture.scene.units);
-        Self { size, legend, restriction: RestrictionLine::new(&caveats) }
+        let (units, language) = (picture.scene.units, picture.scene.language);
+        let format = NumberFormat { units, language };
+        let caveats = &picture.scene.caveats;
+        let restriction = match language {
+            Language::En => RestrictionLine::new(&caveats.in_units(units), &format),
+            Language::De => RestrictionLine::new(caveats, &format),
+        };
+        Self { size, legend, restriction }
     }
 
     /// Where the scene is, points.
@@ -53,19 +62,29 @@ impl Strip {
     /// - `speed`: seconds of the scene that are played in a second.
     pub fn ui(&self, ui: &mut Ui, picture: &ScenePicture, speed: f64) {
         let color = ui.visuals().strong_text_color();
-        let line = |text: String, widest: f32| {
-            let font = FontId::proportional(HEAD_SIZE);
-            let mut job = LayoutJob::simple_singleline(text, font, color);
+        let line = |text: &str, widest: f32, size: f32| {
+            let font = FontId::proportional(size);
+            let mut job = LayoutJob::simple_singleline(text.to_owned(), font, color);
             job.wrap = TextWrapping::truncate_at_width(widest.max(0.0));
             ui.painter().layout_job(job)
         };
-        let time = line(time_text(picture.time_s, speed), self.size.x);
+        let format = NumberFormat { language: picture.scene.language, ..NumberFormat::default() };
+        let time_at =
+            |time_s, speed| line(&format.local(&time_text(time_s, speed)), self.size.x, HEAD_SIZE);
+        let time = time_at(picture.time_s, speed);
         // The widest time of a scene, so that none moves the title.
         let end_s = picture.scene.end_s.max(picture.time_s);
-        let room = line(time_text(end_s, 0.125), self.size.x).size().x.max(time.size().x);
+        let room = time_at(end_s, 0.125).size().x.max(time.size().x);
         let view = picture.camera.kind.phrase();
-        let title = picture.scene.heading_beside_time(view, picture.time_s);
-        let title = line(title, self.size.x - room - 3.0 * SIDE);
+        let text = picture.scene.heading_beside_time(view, picture.time_s);
+        let widest = self.size.x - room - 3.0 * SIDE;
+        // A title that is too long has smaller letters, and is cut where these are too large as well.
+        let mut title = line(&text, widest, HEAD_SIZE);
+        for size in SMALLER_SIZES {
+            if title.elided {
+                title = line(&text, widest, size);
+            }
+        }
         let top = |height: f32| (HEAD_HEIGHT - height) / 2.0;
         ui.painter().galley(pos2(SIDE, top(title.size().y)), title, color);
         let left = self.size.x - SIDE - room;

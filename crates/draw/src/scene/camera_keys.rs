@@ -168,6 +168,21 @@ pub fn set_key(keys: &mut Vec<CameraKey>, key: CameraKey) {
     keys.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
 }
 
+/// Moves a key to another time and keeps the order of time. At a time at which another key stands it is not
+/// moved.
+///
+/// - returns the key as it is moved.
+pub fn move_key(keys: &mut [CameraKey], idx: usize, time_s: f64) -> Option<CameraKey> {
+    if keys.iter().any(|other| other.time_s == time_s) {
+        return None;
+    }
+    let key = keys.get_mut(idx)?;
+    key.time_s = time_s;
+    let moved = *key;
+    keys.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+    Some(moved)
+}
+
 /// Checks the keys of a film.
 ///
 /// # Errors
@@ -323,6 +338,18 @@ mod tests {
             set_key(&mut set, key);
         }
         assert_eq!(set, [first, CameraKey { distance_m: 5.0, ..second }, third]);
+    }
+
+    #[test]
+    fn a_key_is_moved_to_its_place_in_the_order_and_never_over_another() {
+        let [first, second, third] = keys();
+        let mut moved = keys();
+        let late = CameraKey { time_s: 2.0, ..first };
+        assert_eq!(move_key(&mut moved, 0, 2.0), Some(late));
+        assert_eq!(moved, [second, late, third]);
+        assert_eq!(move_key(&mut moved, 1, third.time_s), None, "one stands there");
+        assert_eq!(move_key(&mut moved, 7, 9.0), None, "there is no such key");
+        assert_eq!(moved, [second, late, third]);
     }
 
     #[test]

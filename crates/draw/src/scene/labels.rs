@@ -11,7 +11,7 @@ use crate::scene::measures::{draw_measure, draw_measure_text, measure_text_place
 use crate::scene::shade::{ground_color, role_color, zone_color};
 use impactlab_core::data::Severity;
 use impactlab_core::uncertainty::Caveat;
-use impactlab_core::units::Quantity;
+use impactlab_core::units::{Language, Quantity};
 use impactlab_document::scene::{AreaKind, CarLook, GroundArea, Scene, SceneRole};
 
 /// Sizes of text, points.
@@ -221,9 +221,11 @@ impl Labels<'_> {
         let length = steps.into_iter().find(|step| *step <= wanted).unwrap_or(power);
         let points = (unit.to_si(length) * per_m) as f32;
         let color = self.text_color();
-        let text = match self.projection.is_parallel() {
-            true => format!("{} {}", number(length, length), unit.symbol),
-            false => format!("{} {} in the middle", number(length, length), unit.symbol),
+        let text = format!("{} {}", number(length, length), unit.symbol);
+        let text = match (self.projection.is_parallel(), scene.language) {
+            (true, _) => text,
+            (false, Language::En) => format!("{text} in the middle"),
+            (false, Language::De) => format!("{text} in der Mitte"),
         };
         let galley = painter.layout_no_wrap(text, FontId::proportional(SMALL), color);
         let half = points.max(galley.size().x) / 2.0;

@@ -6,6 +6,7 @@ use egui::{Color32, FontId, Galley, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2
 
 use crate::scene::marks::ASPHALT;
 use crate::scene::shade::{ground_line_color, mark_color, role_color, zone_color};
+use impactlab_core::units::Language;
 use impactlab_document::scene::{AreaKind, CarLook, GroundLineKind, Scene, SceneRole};
 
 /// Draws the names of what the scene shows, each with its colour.
@@ -70,7 +71,10 @@ impl LegendRows {
             })
             .collect();
         let widths: Vec<f32> = names.iter().map(LegendName::width).collect();
-        let count = |n: usize| galley(format!("and {n} more"), width);
+        let count = |n: usize| match scene.language {
+            Language::En => galley(format!("and {n} more"), width),
+            Language::De => galley(format!("und {n} weitere"), width),
+        };
         let more_width = count(names.len()).size().x + BETWEEN;
         let n_in_rows = in_rows(&widths, width, (most, more_width));
         let mut names = names.into_iter();

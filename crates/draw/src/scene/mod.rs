@@ -27,7 +27,7 @@ mod underlay_tests;
 mod view;
 
 pub use camera::{Camera, Projection};
-pub use camera_keys::{CameraKey, CameraKeyError, camera_in_scene, check_keys, set_key};
+pub use camera_keys::{CameraKey, CameraKeyError, camera_in_scene, check_keys, move_key, set_key};
 pub use canvas::{SceneCanvas, SceneLook};
 pub use courses::{CoursesView, courses_have_room, courses_view_ui};
 pub(crate) use courses::{for_all_courses, name_ui, side_by_side};

@@ -88,10 +88,8 @@ impl ForceModel {
         check(scenario)?;
         let (canonical, mirrored) = scenario.canonical();
         let variants = self.variants(&canonical);
-        let applicability =
-            variants.iter().map(|variant| variant.probability * variant.applicability).sum::<f64>();
-        let is_inside = variants.iter().all(|variant| variant.applicability == 1.0);
-        let applicability = if is_inside { 1.0 } else { applicability.clamp(0.0, 1.0) };
+        let applicability = share_of_network(&variants);
+        let is_inside = applicability == 1.0;
         let (prediction, learned, bare) = match (is_inside, applicability > 0.0) {
             (true, _) => {
                 let network = self.predict_by_network(&canonical, &variants)?;
@@ -127,6 +125,29 @@ impl ForceModel {
             is_contact_open: canonical.contact_m.is_none(),
             is_body_open: self.body_idx(&canonical).is_none() && self.bodies().len() > 1,
         })
+    }
+
+    /// How far the network applies to a scenario, 0 to 1: that of [`ForceModel::predict`], without the
+    /// prediction.
+    ///
+    /// # Errors
+    /// [`ForceError::Scenario`] for a number out of range.
+    pub fn applicability(&self, scenario: &ForceScenario) -> Result<f64, ForceError> {
+        check(scenario)?;
+        let (canonical, _) = scenario.canonical();
+        Ok(share_of_network(&self.variants(&canonical)))
+    }
+
+    /// What the network has learned of the force of a scenario, however far it applies:
+    /// [`ForcePrediction::learned`] alone.
+    ///
+    /// # Errors
+    /// As for [`ForceModel::predict`].
+    pub fn learned(&self, scenario: &ForceScenario) -> Result<CurveMixture, ForceError> {
+        check(scenario)?;
+        let (canonical, mirrored) = scenario.canonical();
+        let learned = self.predict_by_network(&canonical, &self.variants(&canonical))?.mixture;
+        Ok(if mirrored { learned.mirrored() } else { learned })
     }
 
     /// The prediction of the network alone.
@@ -293,6 +314,15 @@ impl CanonicalPrediction {
             ..self
         })
     }
+}
+
+/// Mean of the applicability over what a scenario leaves open; exactly 1 where it is that throughout.
+fn share_of_network(variants: &[Variant]) -> f64 {
+    if variants.iter().all(|variant| variant.applicability == 1.0) {
+        return 1.0;
+    }
+    let share = variants.iter().map(|variant| variant.probability * variant.applicability);
+    share.sum::<f64>().clamp(0.0, 1.0)
 }
 
 /// The caveats of a prediction.

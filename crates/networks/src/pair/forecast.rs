@@ -180,12 +180,31 @@ impl PairQuestion<'_> {
         self.simulate(&median, corrections)
     }
 
+    /// One draw by itself, without the motion at the medians. It depends on the question, the seed and
+    /// the scatter alone.
+    ///
+    /// # Errors
+    /// [`PairError`] if it cannot be computed.
+    pub fn single_draw(&self, settings: &PairSettings) -> Result<PairMotion, PairError> {
+        self.drawn_motion(0, &PairLatents::new(1, settings.seed), settings)
+    }
+
     fn draw(
         &self,
         draw: usize,
         latents: &PairLatents,
         settings: &PairSettings,
     ) -> Result<PairDraw, PairError> {
+        let motion = self.drawn_motion(draw, latents, settings)?;
+        Ok(PairDraw::from_motion(draw, motion))
+    }
+
+    fn drawn_motion(
+        &self,
+        draw: usize,
+        latents: &PairLatents,
+        settings: &PairSettings,
+    ) -> Result<PairMotion, PairError> {
         let scatter = &settings.scatter;
         let own = [0, 1].map(|i| in_turn(self.drawn[i], draw));
         let vehicle = |i: usize| match own[i] {
@@ -214,7 +233,7 @@ impl PairQuestion<'_> {
             let predictor = own[i].map_or(self.predictors[i], |drawn| drawn.predictor.as_ref());
             Some(correcting(predictor)?.coupled_draw(settings.seed, ROLES[i], draw))
         });
-        self.simulate(&drawn, corrections).map(|motion| PairDraw::from_motion(draw, motion))
+        self.simulate(&drawn, corrections)
     }
 
     fn simulate(

@@ -1,5 +1,6 @@
 //! Record of an event data recorder in one of the cars.
 
+use impactlab_core::data::{RecordedDeltaV, RecorderRecord};
 use impactlab_core::ranges::{CONTACT_X, CONTACT_Y, EVIDENCE_SPEED, PULSE_END, SPEED, SPEED_SIGMA};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,6 +8,9 @@ use serde::{Deserialize, Serialize};
 use crate::Latent;
 use crate::evidence::{Bounds, Field, Fields, Group, Item, Measured, Section, Sigma, Stated, ends};
 use crate::likelihood::{Comparison, SINGLE_DEGREES_OF_FREEDOM, student};
+
+/// Share of a recorded change of velocity by which it may be wrong (49 CFR 563.8, UN R160).
+const DELTA_V_SHARE: f64 = 0.1;
 
 /// Standard deviation of a change of velocity that is small, m/s: the rounding of the record.
 const LEAST_DELTA_V_SIGMA_M_S: f64 = 0.03;
@@ -79,6 +83,28 @@ impl Item for Edr {
 }
 
 impl Edr {
+    /// What a recorder has kept, as evidence: a change of velocity within 10 %, the last speed before the crash
+    /// with the standard deviation of the program, and the end of the record of the change of velocity. Where the
+    /// sensor is, no record says.
+    pub fn from_record(record: &RecorderRecord) -> Self {
+        let bounds = |recorded: RecordedDeltaV, sign: f64| {
+            let value = sign * recorded.delta_v_m_s;
+            let half = DELTA_V_SHARE * value.abs();
+            [Some(value - half), Some(value + half)]
+        };
+        let ends_s = record.delta_v_ahead.or(record.delta_v_right).and_then(|of| of.ends_s);
+        let speed = record.speed_before.map(|speed| speed.speed_m_s);
+        Self {
+            delta_v_x_m_s: record.delta_v_ahead.map(|recorded| bounds(recorded, 1.0)),
+            delta_v_y_m_s: record.delta_v_right.map(|recorded| bounds(recorded, -1.0)),
+            speed_before_m_s: speed
+                .filter(|speed| EVIDENCE_SPEED.contains(*speed))
+                .map(|speed| Stated { value: Some(speed), sigma: None }),
+            sensor_m: [None; 2],
+            ends_s: ends_s.filter(|ends_s| PULSE_END.contains(*ends_s)),
+        }
+    }
+
     /// Speed before the impact, m/s.
     pub fn speed_before(&self) -> Option<Measured> {
         SPEED_BEFORE_SIGMA.resolve(self.speed_before_m_s)
@@ -127,5 +153,31 @@ impl Edr {
             comparison.log_likelihood += student(distance, 1.0, SINGLE_DEGREES_OF_FREEDOM);
             comparison.tell(name, "m/s", [expected, (low + high) / 2.0], distance);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::data::RecordedSpeed;
+
+    #[test]
+    fn a_record_becomes_evidence_with_its_bounds() {
+        let recorded =
+            |delta_v_m_s| RecordedDeltaV { delta_v_m_s, ends_s: Some(0.12), is_cut: false };
+        let record = RecorderRecord {
+            delta_v_ahead: Some(recorded(-10.0)),
+            delta_v_right: Some(recorded(2.0)),
+            speed_before: Some(RecordedSpeed { speed_m_s: 20.0, at_s: -0.5 }),
+            ..RecorderRecord::default()
+        };
+        let edr = Edr::from_record(&record);
+        assert_eq!(edr.delta_v_x(), Some([-11.0, -9.0]));
+        // To the right is to the other side of y.
+        assert_eq!(edr.delta_v_y(), Some([-2.2, -1.8]));
+        let speed = edr.speed_before().unwrap();
+        assert!((speed.value, speed.sigma) == (20.0, 0.8), "{speed:?}");
+        assert_eq!((edr.ends_s, edr.sensor_m), (Some(0.12), [None; 2]));
+        assert!(Edr::from_record(&RecorderRecord::default()).is_empty());
     }
 }

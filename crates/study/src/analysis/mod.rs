@@ -11,10 +11,12 @@ mod forecast;
 mod lane_chances;
 mod monte_carlo;
 mod motion_bands;
+mod motion_columns;
 mod motion_density;
 mod motion_forecast;
 mod motion_to_rest;
 mod pair_forecast;
+mod pair_row;
 mod recorded_pair;
 mod rest_outcome;
 mod rival;
@@ -46,6 +48,7 @@ pub use forecast::{ForceForecast, ForecastSettings, Mode, pulse_curves};
 pub use lane_chances::{PlaceChance, place_chances};
 pub use monte_carlo::MonteCarloError;
 pub use motion_bands::{MOTION_BAND_LEVELS, MotionBand, MotionBands};
+pub use motion_columns::motion_columns;
 pub use motion_density::{DensityMap, DensityTask, Region};
 pub(crate) use motion_forecast::in_world;
 pub use motion_forecast::{
@@ -53,6 +56,7 @@ pub use motion_forecast::{
     forecast_collision, forecast_forces,
 };
 pub use pair_forecast::{BothVehicles, BothVehiclesQuestion, FirstForces, forecast_both};
+pub use pair_row::{PairRow, PairRowError, PairRowQuestion, pair_row};
 pub use recorded_pair::analyse_recorded_pair;
 pub use rest_outcome::{MotionEnd, RestOutcome};
 pub use rival::{Rival, RivalForce};

@@ -32,7 +32,7 @@ use impactlab_networks::response::{
 };
 
 /// By how much the seed of the striking vehicle differs.
-const SEED_OF_STRIKING: u64 = 0x9e37_79b9_7f4a_7c15;
+pub(super) const SEED_OF_STRIKING: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// The forces of the first contact, of which each draw takes one in turn.
 #[derive(Debug, Clone)]
@@ -240,17 +240,21 @@ impl BothVehiclesQuestion<'_> {
         duration_s: f64,
     ) -> Result<Vec<VehicleInput<f64>>, MotionForecastError> {
         let force = self.usual_force;
-        let opposite = || ForceHistory {
-            fx_n: force.fx_n.iter().map(|value| -value).collect(),
-            fy_n: force.fy_n.iter().map(|value| -value).collect(),
-            mz_n_m: None,
-            ..force.clone()
-        };
         let inputs = match vehicle {
             0 => self.vehicles[0].inputs(force, duration_s),
-            _ => self.vehicles[1].inputs(&opposite(), duration_s),
+            _ => self.vehicles[1].inputs(&opposite(force), duration_s),
         };
         inputs.ok_or(MotionForecastError::Diverged)
+    }
+}
+
+/// The force on the striking vehicle of a force on the struck one.
+pub(super) fn opposite(force: &ForceHistory) -> ForceHistory {
+    ForceHistory {
+        fx_n: force.fx_n.iter().map(|value| -value).collect(),
+        fy_n: force.fy_n.iter().map(|value| -value).collect(),
+        mz_n_m: None,
+        ..force.clone()
     }
 }
 

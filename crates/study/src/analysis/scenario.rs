@@ -54,6 +54,15 @@ impl PulseSetup {
             .map(|vehicle| scale_of_car(vehicle.footprint().length_m));
         self.contact_height_m * struck.min(striking)
     }
+
+    /// An impulse `[P_X, P_Y]`, N s, as the force over time.
+    ///
+    /// # Errors
+    /// [`AnalysisError::Pulse`] if the pulse is invalid.
+    pub(super) fn history(&self, impulse_n_s: [f64; 2]) -> Result<ForceHistory, AnalysisError> {
+        let pulse = Pulse::new(self.shape, impulse_n_s, 0.0, self.duration_s)?;
+        Ok(pulse.to_history(PULSE_INTERVAL_S.min(pulse.end_s() / 20.0))?)
+    }
 }
 
 /// Scale of a model of a car by its length; 1 for a car.
@@ -75,14 +84,36 @@ pub fn analyse_scenario(
     settings: &Settings,
 ) -> Result<Analysis, AnalysisError> {
     let solution = scenario.solve()?;
-    let geometry = scenario.geometry()?;
-    let history = |impulse_n_s| -> Result<ForceHistory, AnalysisError> {
-        let pulse = Pulse::new(pulse.shape, impulse_n_s, 0.0, pulse.duration_s)?;
-        Ok(pulse.to_history(PULSE_INTERVAL_S.min(pulse.end_s() / 20.0))?)
-    };
     let [px, py] = solution.impulse_world_n_s;
-    let force = history([px, py])?;
+    let force = pulse.history([px, py])?;
     check_contact_within(&force, settings.duration_s)?;
+    let (starts, normal_rad) = starts(scenario, pulse, settings)?;
+    let outlines = [scenario.struck.footprint(), scenario.striking.footprint()];
+    let name = scenario.name.clone();
+    let note = format!(
+        "force: {} of {:.0} ms that carries the impulse of the momentum solution",
+        pulse.shape.label(),
+        pulse.duration_s * 1e3
+    );
+    let mut analysis = match settings.one_contact {
+        true => apart(starts, outlines, (force, pulse.history([-px, -py])?), pulse, settings)?,
+        false => through_all_contacts(starts, outlines, force, normal_rad, settings)?,
+    };
+    analysis.name = name;
+    analysis.notes.push(note);
+    Ok(analysis)
+}
+
+/// Both vehicles at first contact, struck and striking, and the angle of the contact normal, rad.
+///
+/// # Errors
+/// [`AnalysisError::Scenario`] if the vehicles do not meet.
+pub(super) fn starts(
+    scenario: &Scenario,
+    pulse: &PulseSetup,
+    settings: &Settings,
+) -> Result<([StruckVehicle; 2], f64), AnalysisError> {
+    let geometry = scenario.geometry()?;
     let height_m = pulse.height_m(scenario);
     let start = |vehicle: &ScenarioVehicle, preset: &VehicleParameters, pose: &Pose| {
         let [x_body_m, y_body_m] = pose.body_from_world(geometry.contact_point_world_m);
@@ -104,24 +135,7 @@ pub fn analyse_scenario(
     let mut striking = start(&scenario.striking, &settings.striking, &geometry.striking);
     let striking_ending = scenario.striking_ending.clone().unwrap_or_default();
     striking.controls = striking_ending.controls(&striking.vehicle);
-    let outlines = [scenario.struck.footprint(), scenario.striking.footprint()];
-    let name = scenario.name.clone();
-    let note = format!(
-        "force: {} of {:.0} ms that carries the impulse of the momentum solution",
-        pulse.shape.label(),
-        pulse.duration_s * 1e3
-    );
-    let starts = [struck, striking];
-    let mut analysis = match settings.one_contact {
-        true => apart(starts, outlines, (force, history([-px, -py])?), pulse, settings)?,
-        false => {
-            let normal_rad = geometry.normal_angle_world_rad;
-            through_all_contacts(starts, outlines, force, normal_rad, settings)?
-        }
-    };
-    analysis.name = name;
-    analysis.notes.push(note);
-    Ok(analysis)
+    Ok(([struck, striking], geometry.normal_angle_world_rad))
 }
 
 /// Both vehicles through all contacts. The first one is the pulse; what comes after it follows from the

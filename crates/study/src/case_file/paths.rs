@@ -25,6 +25,11 @@ pub(super) fn replace_strings(value: &mut Value, change: &impl Fn(&str) -> Optio
     }
 }
 
+/// Makes absolute every string of a value that is a path as the file of a case in `folder` says it.
+pub fn begin_paths_at(value: &mut Value, folder: &Path) {
+    replace_strings(value, &|text| Some(absolute(text, folder)?.to_str()?.to_owned()));
+}
+
 /// Every string in a value that is an absolute path.
 pub(super) fn absolute_paths(value: &Value) -> Vec<PathBuf> {
     match value {
@@ -96,5 +101,13 @@ mod tests {
         replace_strings(&mut value, &|text| (text == "/a").then(|| "./a".to_owned()));
         assert_eq!(value, serde_json::json!({"/a": ["./a", {"b": "./a"}, 1, null]}));
         assert!(absolute_paths(&value).is_empty());
+    }
+
+    #[test]
+    fn paths_of_a_question_begin_at_the_folder() {
+        let mut value = serde_json::json!({"./a": ["./a", "../b", "c", "/d", ""]});
+        begin_paths_at(&mut value, Path::new("/cases/here"));
+        let expected = ["/cases/here/a", "/cases/b", "c", "/d", ""];
+        assert_eq!(value, serde_json::json!({"./a": expected}));
     }
 }

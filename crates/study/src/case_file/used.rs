@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::case_file::paths::absolute_paths;
 use crate::case_file::{CaseError, CaseFile, Variant};
 use crate::{InputKind, Request};
+use impactlab_core::data::parts_beside;
 use impactlab_core::data::write::{FileDigest, sha256_hex};
 use impactlab_core::site::Site;
 
@@ -144,22 +145,30 @@ pub(super) fn links_in(folder: &Path) -> Option<Vec<PathBuf>> {
     Some(links)
 }
 
-/// Orthophoto, world file and drawing of a site; none for any other file.
+/// Orthophoto, world file and drawing of a site, and the other parts of a file of results of which this is
+/// the first; none for any other file.
 pub(super) fn files_of_site(path: &Path) -> Vec<PathBuf> {
-    match InputKind::from_path(path).is_ground() {
-        true => Site::files_named_by(path),
+    if InputKind::from_path(path).is_ground() {
+        return Site::files_named_by(path);
+    }
+    let mut parts = parts_beside(path);
+    match parts.first().is_some_and(|first| first == path) {
+        true => parts.split_off(1),
         false => Vec::new(),
     }
 }
 
 impl CaseFile {
-    /// The files and folders that questions and views name, with those that a site names. One that is not
+    /// The files and folders that questions and views name, with those that a site names and the other parts of
+    /// a file of results. One that is not
     /// there counts if it was there when the case was saved.
     pub fn used_paths(&self) -> Vec<PathBuf> {
         let known: HashSet<&Path> = self.files.iter().map(|file| file.path.as_path()).collect();
         let mut paths = self.named_paths();
         let of_sites: Vec<PathBuf> = paths.iter().flat_map(|path| files_of_site(path)).collect();
+        let parts: Vec<PathBuf> = paths.iter().flat_map(|path| parts_beside(path)).collect();
         paths.extend(of_sites);
+        paths.extend(parts);
         paths.retain(|path| {
             path.is_absolute()
                 && path.parent().is_some()

@@ -101,7 +101,8 @@ impl ReconstructReport {
         };
         let columns = [Term::Probability, Term::StandardError, Term::StruckCar];
         let rows = self.modes.iter().map(row).collect();
-        FactTable::new(Term::Courses, rows).with_levels(PREDICTED).with_columns(&columns)
+        let table = FactTable::new(Term::Courses, rows).with_rows(Term::Course);
+        table.with_levels(PREDICTED).with_columns(&columns)
     }
 
     /// The quantities within each course of events; none if there is one course only.
@@ -119,7 +120,8 @@ impl ReconstructReport {
     /// Each item of the evidence: found, expected, and whether anything explains it.
     pub fn fit_table(&self) -> FactTable {
         let columns = [Term::Found, Term::Expected, Term::TailProbability, Term::Verdict];
-        FactTable::new(Term::Fit, self.fit.iter().map(fit_fact).collect()).with_columns(&columns)
+        let table = FactTable::new(Term::Fit, self.fit.iter().map(fit_fact).collect());
+        table.with_rows(Term::EvidenceItem).with_columns(&columns)
     }
 
     /// The speed of the struck car without each part of the evidence, and whether the part goes with the
@@ -147,6 +149,7 @@ impl ReconstructReport {
         let columns =
             [Term::TailProbability, Term::IndependentDraws, Term::Verdict, Term::StruckCar];
         FactTable::new(Term::LeftOutEvidence, rows)
+            .with_rows(Term::WithoutPart)
             .with_levels(PREDICTED)
             .with_columns(&columns)
             .unless_empty()
@@ -175,7 +178,8 @@ impl ReconstructReport {
         let columns =
             [Term::FoundLength, Term::ComputedLength, Term::MeanDistance, Term::LargestDistance];
         let rows = self.marks.iter().map(row).collect();
-        FactTable::new(Term::MarksCompared, rows).with_columns(&columns).unless_empty()
+        let table = FactTable::new(Term::MarksCompared, rows).with_rows(Term::Wheel);
+        table.with_columns(&columns).unless_empty()
     }
 
     /// What further evidence would bring, the most useful first; what cannot be believed is last. None

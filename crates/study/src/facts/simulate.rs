@@ -92,7 +92,8 @@ impl SimulateReport {
             Fact::row(Value::Joined(wheel.to_vec(), ", "), values)
         };
         let rows = self.tire_marks.iter().map(row).collect();
-        FactTable::new(Term::Marks, rows).with_columns(&columns).unless_empty()
+        let table = FactTable::new(Term::Marks, rows).with_rows(Term::Wheel);
+        table.with_columns(&columns).unless_empty()
     }
 }
 

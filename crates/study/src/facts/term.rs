@@ -249,6 +249,9 @@ terms! {
     // Both vehicles through all contacts.
     StruckCourses: "What becomes of the struck vehicle", "Was aus dem gestoßenen Fahrzeug wird";
     Course: "course of events", "Verlauf";
+    Wheel: "wheel", "Rad";
+    EvidenceItem: "item", "Merkmal";
+    WithoutPart: "without", "ohne";
     PlacesOfSite: "Parts of the ground that the vehicles come to", "Teile des Geländes, auf die die Fahrzeuge gelangen";
     PlaceOfSite: "part of the ground", "Teil des Geländes";
     StruckEnters: "struck comes over it", "gestoßenes gelangt darauf",
@@ -366,7 +369,7 @@ terms! {
     HoldsBy: "from", "aus";
     Motions: "simulated motions", "simulierte Bewegungen";
     Particles: "particles", "Partikel";
-    EffectiveSamples: "independent particles that they are worth", "effektiver Stichprobenumfang";
+    EffectiveSamples: "equivalent independent draws", "effektiver Stichprobenumfang";
     Courses: "Courses of events that the evidence leaves possible",
         "Abläufe, die nach den Spuren möglich bleiben";
     IfThis: "If this happened", "Wenn es so war";
@@ -378,7 +381,7 @@ terms! {
     Expected: "expected", "erwartet", "Median over the particles of what would be found";
     TailProbability: "p", "p",
         "Probability that measurement and model err by more than they do here";
-    Verdict: "", "Urteil";
+    Verdict: "verdict", "Urteil";
     Explained: "explained", "erklärt";
     Unexplained: "not explained", "nicht erklärt";
     MarksCompared: "Tire marks that were found beside those of a particle of median speed",

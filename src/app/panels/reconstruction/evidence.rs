@@ -1,6 +1,6 @@
 //! The “Evidence” pane: what was found, what is taken to be likely beforehand, and the run.
 
-use egui::{DragValue, ProgressBar, ScrollArea, TextEdit, Ui};
+use egui::{ProgressBar, ScrollArea, TextEdit, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
@@ -11,7 +11,7 @@ use crate::app::panels::reconstruction::notice_ui;
 use crate::app::panels::reconstruction::priors::{prior_ranges_ui, priors_ui};
 use crate::app::panes::PaneContext;
 use crate::app::reconstruction::{EvidencePreview, ReconstructionCommand, ReconstructionSession};
-use crate::app::widgets::{count_field, duration_text};
+use crate::app::widgets::{count_field, duration_text, seed_field};
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_reconstruct::evidence::Evidence;
@@ -145,7 +145,7 @@ fn run_ui(
             .labelled_by(name.id)
             .on_hover_text("More particles are more sure of the intervals and take longer");
         let name = ui.label("Seed");
-        ui.add(DragValue::new(&mut request.seed).speed(0.2)).labelled_by(name.id);
+        seed_field(ui, &mut request.seed).labelled_by(name.id);
         if preview.evidence.follows_striking_car() {
             ui.checkbox(&mut request.one_contact, "One contact only").on_hover_text(
                 "Otherwise both cars are followed through all contacts where they meet again, which takes \

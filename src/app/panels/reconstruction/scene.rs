@@ -67,18 +67,15 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         notice_ui(ui, Severity::Warning, OUTDATED);
     }
     let followed = shown.followed.as_ref();
-    let figure = {
-        let followed = followed.map(|(name, path)| FollowedPath {
-            name,
-            path,
-            time_s: session.playback.time_s,
-        });
+    let (units, time_s) = (view.units, session.playback.time_s);
+    let figure = || {
+        let followed = followed.map(|(name, path)| FollowedPath { name, path, time_s });
         let (evidence, cars) = (&preview.evidence, &preview.cars);
         let scene = ReconstructionScene { evidence, cars, drawn, followed, others, marks };
-        reconstruction_scene_figure(&scene, caveats, view.units)
+        reconstruction_scene_figure(&scene, caveats, units)
     };
     if !view.reconstruction.shows_cars {
-        let moved = plan_ui(ui, preview, of.adds_to, session.fit_plots, figure, commands);
+        let moved = plan_ui(ui, preview, of.adds_to, session.fit_plots, figure(), commands);
         if let (Some(evidence), Some(request)) = (moved, &mut project.reconstruct) {
             request.evidence = EvidenceChoice::Inline(Box::new(evidence));
         }
@@ -111,7 +108,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
     }
     let keys = &mut project.beside.reconstruction_camera_keys;
     let seen = (&mut view.reconstruction.scene, keys);
-    cars_ui(ui, &built, session.playback.time_s, figure, cars, seen, commands);
+    cars_ui(ui, &built, time_s, figure, cars, seen, commands);
 }
 
 /// What is shown of a reconstruction. Paths that go with other evidence are not.
@@ -233,12 +230,13 @@ fn plan_ui(
 
 /// Draws the cars at a time: in one scene, or each course of events in its own.
 ///
+/// - `figure`: the same as a plan, for its numbers;
 /// - `keys`: between which the camera moves.
 fn cars_ui(
     ui: &mut Ui,
     BuiltCars { scene, courses }: &BuiltCars,
     time_s: f64,
-    figure: Figure,
+    figure: impl Fn() -> Figure,
     cars: &mut ReconstructedCars,
     (settings, keys): (&mut SceneSettings, &mut Vec<CameraKey>),
     commands: &mut Vec<Command>,
@@ -249,7 +247,7 @@ fn cars_ui(
         [] => cars.view.camera(),
         _ => cars.courses_view.camera(),
     };
-    let wanted = camera_menu_ui(ui, keys, settings, (seen, time_s), commands);
+    let wanted = camera_menu_ui(ui, keys, settings, (seen, time_s), scene.units, commands);
     let keyed = cars.keyed.at(keys, settings, (scene, time_s));
     match (wanted.or(keyed), courses.as_slice()) {
         (Some(camera), []) => cars.view.place_at(camera),
@@ -269,7 +267,7 @@ fn cars_ui(
         distance_m: None,
         follow: settings.follow,
     };
-    let exported = |settings: &SceneSettings| (pictured(settings), figure.clone());
+    let exported = |settings: &SceneSettings| (pictured(settings), figure());
     let filmed = (&mut *settings, keys.as_slice());
     scene_heading_ui(ui, scene, time_s, filmed, None, exported, commands);
     let picture = pictured(settings);

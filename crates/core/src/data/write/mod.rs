@@ -14,6 +14,7 @@ mod folder;
 mod inputs;
 mod lock;
 mod manifest;
+mod parquet_series;
 mod series;
 mod temporary;
 
@@ -24,6 +25,7 @@ pub use folder::OutputFolder;
 pub use inputs::check_inputs;
 pub use lock::WriterLock;
 pub use manifest::{MANIFEST_FILE, Manifest, ModelDigest, RunRecord};
+pub use parquet_series::write_restricted_series_parquet;
 pub use series::{
     RESTRICTIONS_COLUMN, write_restricted_series_csv, write_restricted_table, write_series_csv,
 };

@@ -76,7 +76,8 @@ impl From<TextTable> for Table {
     }
 }
 
-fn capitalized(title: &str) -> String {
+/// A text that begins with a capital letter.
+pub(in crate::report) fn capitalized(title: &str) -> String {
     let mut chars = title.chars();
     let first = chars.next().map(|first| first.to_uppercase().collect::<String>());
     first.unwrap_or_default() + chars.as_str()

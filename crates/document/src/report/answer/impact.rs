@@ -21,8 +21,7 @@ pub(super) fn part(answer: &ImpactAnswer, context: Context<'_>) -> Part {
     blocks.extend(report.rival.iter().map(|rival| facts_table(&rival.table(), context)));
     let caveats = &report.caveats;
     let figure = impact_figure(&answer.scenario, &answer.solution, caveats, wording.units).ok();
-    let caption = || fill(words.impact_picture, &[("name", &report.name)]);
-    let picture = figure.map(|figure| PartPicture::figure(caption(), figure));
+    let picture = figure.map(|figure| PartPicture::figure(words.impact_picture.to_owned(), figure));
     let network = report.rival.as_ref().map(|_| Method::ForceNetwork);
     Part {
         kind: words.title_impact.to_owned(),

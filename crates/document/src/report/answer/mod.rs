@@ -1,5 +1,7 @@
 //! What each kind of answer contributes to a report.
 
+mod atlas;
+
 mod facts;
 
 mod generic;
@@ -28,7 +30,7 @@ mod tire_marks;
 
 pub(super) mod stills;
 
-pub(super) use crate::report::answer::facts::{facts_table, with_writer};
+pub(super) use crate::report::answer::facts::{capitalized, facts_table, with_writer};
 pub(super) use crate::report::answer::inputs::given_rows;
 
 pub use crate::report::answer::vehicle_inputs::{VehicleParameter, vehicle_parameters};

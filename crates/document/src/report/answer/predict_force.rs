@@ -53,6 +53,6 @@ fn picture(answer: &PredictForceAnswer, wording: &Wording) -> PartPicture {
         units: wording.units,
         caveats,
     };
-    let caption = fill(wording.words.force_forecast_picture, &[("name", &report.scenario)]);
+    let caption = wording.words.force_forecast_picture.to_owned();
     PartPicture::figure(caption, forecast_figure(ForceComponent::Magnitude, &input))
 }

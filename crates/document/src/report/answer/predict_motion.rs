@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::figure::{FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure};
 use crate::report::Block;
 use crate::report::answer::Context;
+use crate::report::answer::atlas::in_atlas;
 use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
 use crate::report::answer::predict_force::applicability;
 use crate::report::answer::stills::forecast_still;
@@ -34,7 +35,10 @@ pub(super) fn part(
     let mut blocks = vec![Block::paragraph(question.clone())];
     blocks.extend(report.course_table().iter().map(|table| facts_table(table, context)));
     blocks.push(facts_table(&report.answer_table(), context));
-    blocks.extend(report.force_table().iter().map(|table| facts_table(table, context)));
+    let force_table = report.force_table();
+    let of_first_force: Vec<Block> =
+        force_table.iter().map(|table| facts_table(table, context)).collect();
+    blocks.extend(of_first_force.iter().cloned());
     let is_one = report.n_forces <= 1 && report.n_vehicles == 0;
     let meaning = if is_one { words.meaning_motion_one } else { words.meaning_motion };
     match report.is_end_known() {
@@ -47,6 +51,8 @@ pub(super) fn part(
     blocks.extend(report.both_vehicles_tables().iter().map(|table| facts_table(table, context)));
     blocks.extend(report.rival_table().iter().map(|table| facts_table(table, context)));
     let shares = report.sensitivity_table();
+    let shares = shares.iter().map(|table| facts_table(table, context));
+    let in_atlas = in_atlas(request, answer, context);
     let draws = [
         (words.forces_drawn, report.n_forces.to_string()),
         (words.vehicles_drawn, report.n_vehicles.to_string()),
@@ -60,9 +66,10 @@ pub(super) fn part(
         title: format!("{}: {}", words.title_motion, report.scenario),
         opinion: Some(opinion_of_forecast(report, &question, context)),
         answer: blocks,
-        pictures: pictures(request, answer, context),
+        of_first_force,
+        pictures: pictures(request, answer, context).into_iter().chain(in_atlas.picture).collect(),
         inputs: vehicle_rows(&answer.analysis.vehicle, words.struck_vehicle, wording),
-        sensitivity: shares.iter().map(|table| facts_table(table, context)).collect(),
+        sensitivity: shares.chain(in_atlas.blocks).collect(),
         domain: domain(report, wording),
         caveats: report.caveats.clone(),
         provenance: provenance_of(&report.provenance, &draws, wording),
@@ -98,7 +105,8 @@ fn pictures(
         .with_motions(analysis);
     let yaw = FORECAST_CHANNELS.into_iter().find(|shown| shown.channel == Channel::Yaw);
     let yaw = yaw.map(|channel| {
-        let caption = fill(words.forecast_yaw_picture, &[("name", &report.scenario)]);
+        let cut = input.cut().map_or(String::new(), |cut| format!(", {}", wording.term(cut)));
+        let caption = format!("{}{cut}", words.forecast_yaw_picture);
         PartPicture::figure(caption, forecast_channel_figure(&input, channel))
     });
     [still].into_iter().chain(yaw).collect()

@@ -78,9 +78,11 @@ pub(super) fn part(
         pictures: pictures(request.site.as_deref(), answer, context),
         inputs: evidence_rows(request, answer, wording),
         evidence: evidence_blocks(report, context),
-        sensitivity: report.budget_table().map_or_else(Vec::new, |table| {
-            vec![Block::paragraph(words.budget_text), facts_table(&table, context)]
-        }),
+        sensitivity: report
+            .budget_table()
+            .iter()
+            .map(|table| facts_table(table, context))
+            .collect(),
         caveats: report.caveats.clone(),
         provenance: provenance_of(&report.provenance, &draws, wording),
         methods: [Method::Reconstruction, Method::Impact, Method::FourDof, Method::DataSheet]
@@ -97,11 +99,10 @@ fn pictures(
     let Context { wording, .. } = context;
     let (words, units, report) = (wording.words, wording.units, &answer.report);
     let caveats = &report.caveats;
-    let name = ("name", &*report.case);
     let paths = ReconstructedPaths::from_answer(answer);
     let scene = ReconstructionScene::new(answer, &paths);
     let plan = PartPicture::figure(
-        fill(words.reconstruction_picture, &[name]),
+        words.reconstruction_picture.to_owned(),
         reconstruction_scene_figure(&scene, caveats, units),
     );
     let still = reconstruction_still(answer, &paths, site, caveats, context);
@@ -110,13 +111,13 @@ fn pictures(
         let prior = prior_values(&answer.target, quantity);
         let label = wording.term(quantity.label());
         pictures.push(PartPicture::figure(
-            fill(words.marginal_picture, &[name, ("quantity", &label)]),
+            fill(words.marginal_picture, &[("quantity", &label)]),
             marginal_figure(answer, quantity, &prior, caveats, units),
         ));
     }
     if report.budget.iter().any(|item| item.believable) {
         pictures.push(PartPicture::figure(
-            fill(words.budget_picture, &[name]),
+            words.budget_picture.to_owned(),
             budget_figure(answer, caveats, units),
         ));
     }

@@ -83,22 +83,23 @@ fn pictures(
     let (words, units) = (context.wording.words, context.wording.units);
     let (report, analysis) = (&answer.report, &answer.analysis);
     let caveats = &report.caveats;
-    let name = [("name", &*report.name)];
-    let picture = |caption, figure| PartPicture::figure(fill(caption, &name), figure);
     let end_s = report.rest.as_ref().map_or(report.duration_s, |rest| rest.time_s);
     let has_motion = analysis.simulation.is_some() || analysis.reference.is_some();
     let contact_end_s = report.force.as_ref().and_then(|force| force.contact_end_s);
     let moments = [contact_end_s.filter(|_| has_motion), has_motion.then_some(end_s)];
     let mut pictures = simulation_stills(analysis, caveats, site, moments, context);
     let force = analysis_force_figure(analysis, caveats, None, &[], units).ok().flatten();
-    pictures.extend(force.map(|figure| picture(words.force_picture, figure)));
+    let axes =
+        report.force.as_ref().map_or(String::new(), |force| context.wording.term(&force.axes));
+    let force_caption = fill(words.force_picture, &[("axes", &axes)]);
+    pictures.extend(force.map(|figure| PartPicture::figure(force_caption, figure)));
     let yaw_rate = analysis_motion_figure(analysis, caveats, Channel::YawRate, units);
     if !yaw_rate.elements.is_empty() {
-        pictures.push(picture(words.yaw_rate_picture, yaw_rate));
+        pictures.push(PartPicture::figure(words.yaw_rate_picture.to_owned(), yaw_rate));
     }
     pictures.extend(control_figures(analysis, caveats, units).into_iter().map(|figure| {
         let quantity = context.wording.term(&figure.y.label);
-        let names = [("name", &*report.name), ("quantity", &*quantity)];
+        let names = [("quantity", &*quantity)];
         PartPicture::figure(fill(words.controls_picture, &names), figure)
     }));
     pictures

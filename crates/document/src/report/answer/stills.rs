@@ -41,9 +41,10 @@ pub(super) fn simulation_stills(
     let words = wording.words;
     let input = SimulationScene { analysis, others: &[], units: wording.units, caveats };
     let (scene, note) = on_ground(simulation_scene(&input), site, context);
-    let still = |caption, time_s, view, near_m| {
-        let caption = fill(caption, &[("name", &analysis.name)]) + &note;
-        PartPicture::still(caption, SceneStill { scene: Arc::clone(&scene), time_s, view, near_m })
+    let still = |caption: &str, time_s, view, near_m: Option<f64>| {
+        let (scene, is_half_wide) = (Arc::clone(&scene), near_m.is_some());
+        let still = SceneStill { scene, time_s, view, near_m, is_half_wide };
+        PartPicture::still(format!("{caption}{note}"), still)
     };
     let contact_s = contact_end_s.filter(|_| scene.striking().is_some());
     let near = contact_s
@@ -81,9 +82,7 @@ pub(super) fn forecast_still(
         true => wording.words.forecast_scene_picture,
         false => wording.words.forecast_paths_picture,
     };
-    let caption = fill(template, &[("name", &report.scenario)]);
-    let still = SceneStill { scene, time_s, view: ViewKind::Above, near_m: None };
-    PartPicture::still(caption + &note, still)
+    PartPicture::still(format!("{template}{note}"), from_above(scene, time_s))
 }
 
 /// The still of a reconstruction from above: the car of a particle of median speed at rest, over what was
@@ -101,11 +100,15 @@ pub(super) fn reconstruction_still(
     let Context { wording, .. } = context;
     let parts = ReconstructionParts::new(answer, paths, wording.units, caveats);
     let scene = reconstruction_scene(&parts);
-    let caption = fill(wording.words.reconstruction_cars, &[("name", &answer.report.case)]);
     let (scene, note) = on_ground(scene, site, context);
     let time_s = scene.end_s;
-    let still = SceneStill { scene, time_s, view: ViewKind::Above, near_m: None };
-    Some(PartPicture::still(caption + &note, still))
+    let caption = format!("{}{note}", wording.words.reconstruction_cars);
+    Some(PartPicture::still(caption, from_above(scene, time_s)))
+}
+
+/// All of a scene from above, over the width of a page.
+fn from_above(scene: Arc<Scene>, time_s: f64) -> SceneStill {
+    SceneStill { scene, time_s, view: ViewKind::Above, near_m: None, is_half_wide: false }
 }
 
 /// A scene with its ground, and what a caption has to say of it: that it cannot be read, is not to scale, or

@@ -60,7 +60,7 @@ pub(super) fn vehicle_rows(
                 label: label(row, wording),
                 value: row.value.clone(),
                 class: if rule.is_some() { InputClass::Estimated } else { InputClass::Given },
-                source: wording.quoted(source),
+                source: wording.note(source),
             }
         })
         .collect();
@@ -68,7 +68,7 @@ pub(super) fn vehicle_rows(
     let estimates = sheet.map_or_else(Vec::new, |sheet| sheet.estimates());
     if !estimates.is_empty() {
         let is_stated = |row: &&mut InputRow| {
-            !vehicle.stated.values().any(|source| row.source == wording.quoted(source))
+            !vehicle.stated.values().any(|source| row.source == wording.note(source))
         };
         for row in inputs.iter_mut().filter(is_stated) {
             // Which of the parameters a rule gave is told by the rows of the estimates below.
@@ -102,7 +102,7 @@ pub(super) fn estimate_row(estimate: &Estimate, group: &str, wording: &Wording) 
         label: wording.term(quantity.label()),
         value: format!("{} (90 %: {range})", text.median),
         class: InputClass::Estimated,
-        source: wording.quoted(&format!("{rule}; {source}")),
+        source: wording.note(&format!("{rule}; {source}")),
     }
 }
 

@@ -16,9 +16,8 @@ pub(super) const WORDS: Words = Words {
         wurde aus dem Fall und den Dateien berechnet, die er nennt.",
     units_si: "Einheiten: m, km/h, Grad, kN, kJ, kg. Winkel und Gierraten sind nach links positiv.",
     units_us: "Einheiten: ft, mph, Grad, lbf, ft lbf, lb. Winkel und Gierraten sind nach links positiv.",
-    language_note: "Texte in Anführungszeichen gibt das Programm nur auf Englisch aus: Schätzregeln, \
-        einzelne Annahmen mit ihren Gründen, einzelne Hinweise und Fehlermeldungen. Auch die Literaturangaben und die \
-        Beschriftungen in den Bildern sind englisch.",
+    language_note: "Texte in Anführungszeichen gibt das Programm nur auf Englisch aus: einzelne \
+        Quellen von Fahrzeugdaten, einzelne Hinweise und Fehlermeldungen. Auch was zu Literaturangaben gesagt wird, ist englisch.",
     notes: "Bemerkungen des Bearbeiters",
     changed_notice: "Seit dem Speichern des Falls hat sich etwas geändert: {what}. Die Antworten gelten für \
         den jetzigen Stand und können von den damaligen abweichen.",
@@ -81,17 +80,17 @@ pub(super) const WORDS: Words = Words {
     other_caption: "Alles, was die Antwort enthält",
     struck_vehicle: "gestoßenes Fahrzeug",
     striking_vehicle: "stoßendes Fahrzeug",
-    impact_picture: "Der Stoß „{name}“ von oben: Impuls und Geschwindigkeitsänderungen",
+    impact_picture: "Der Stoß von oben: Impuls und Geschwindigkeitsänderungen beim ersten Kontakt",
     friction_zones: "Bereiche mit eigenem Reibbeiwert",
     zone_value: "Reibbeiwert {friction}; Ecken (X; Y) {corners}",
     meaning_draws: "In jeder Zeile liegen neun von zehn gezogenen Fahrzeugen im Bereich von 90 %; variiert wird nur, was \
         das Datenblatt offen lässt.",
-    scene_picture: "Simulation von „{name}“ von oben, Fahrzeuge am Ende",
-    contact_picture: "Simulation von „{name}“ in Perspektive, Fahrzeuge am Ende des Kontakts",
+    scene_picture: "Simulation von oben, Fahrzeuge am Ende",
+    contact_picture: "Simulation in Perspektive, Fahrzeuge am Ende des Kontakts",
     ground_not_drawn: "; das Gelände ist nicht gezeichnet: {why}",
-    force_picture: "Stoßkraft von „{name}“ über der Zeit",
-    yaw_rate_picture: "Gierrate von „{name}“ über der Zeit",
-    controls_picture: "{quantity} über der Zeit, „{name}“",
+    force_picture: "Stoßkraft auf das gestoßene Fahrzeug über der Zeit, {axes}",
+    yaw_rate_picture: "Gierrate des gestoßenen Fahrzeugs über der Zeit",
+    controls_picture: "{quantity} über der Zeit",
     vehicles_drawn: "gezogene Fahrzeuge:",
     forces_drawn: "Kräfte:",
     meaning_force: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach der Verteilung des \
@@ -99,7 +98,7 @@ pub(super) const WORDS: Words = Words {
     force_network: "Kraftnetz",
     response_network: "Bewegungsnetz",
     applicability: "Das {network} trägt {share} der Verteilung; der Rest ist die der Physik allein.",
-    force_forecast_picture: "Vorhergesagte Kraft von „{name}“: Betrag über der Zeit mit Bändern",
+    force_forecast_picture: "Vorhergesagte Kraft auf das gestoßene Fahrzeug: Betrag über der Zeit mit Bändern",
     meaning_motion: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach der Verteilung des \
         Bewegungsnetzes über die gezogenen Kräfte und Fahrzeuge. Wie oft solche Bereiche des Ortes zutrafen, \
         steht in Abschnitt 7.",
@@ -108,12 +107,22 @@ pub(super) const WORDS: Words = Words {
         solche Bereiche des Ortes zutrafen, steht in Abschnitt 7.",
     learned_duration: "Das Bewegungsnetz hat aus Bewegungen von bis zu {time} gelernt; was danach kommt, ist \
         die Physik mit den gelernten Stärken.",
-    forecast_scene_picture: "Vorhersage von „{name}“ von oben: Bahnen, Dichte und Bereiche von 50 und 90 % am Ende",
-    forecast_paths_picture: "Vorhersage von „{name}“ von oben: Bahnen; keine Dichte, da sich die Fahrzeuge vor dem \
-        Ende erneut berühren",
+    forecast_scene_picture: "Vorhersage von oben: Bahnen, Dichte und Bereiche von 50 und 90 % am Ende",
+    forecast_paths_picture: "Vorhersage von oben: Bahnen; keine Dichte, da sich die Fahrzeuge vor dem Ende erneut \
+        berühren",
+    atlas_heading: "Der Fall im Atlas des PIT-Manövers",
+    atlas_text: "Der Atlas ist eine Modellstudie: {all} berechnete Manöver, an keinem gemessenen PIT geprüft. Er \
+                 sagt, wie oft etwas unter diesen vorkommt; er belegt nicht, was hier geschehen ist, und nennt keine \
+                 Geschwindigkeit sicher. Die Tabelle gilt für {rows} von {all}, die in denselben Zellen liegen wie der \
+                 Fall nach: {like}; über alles andere ist gemittelt. In {inside} davon gelten beide Netze.",
+    atlas_outside: "Der Fall liegt außerhalb des Atlas, der nichts über ihn sagt: {list}.",
+    atlas_picture: "Der Fall im Atlas des PIT-Manövers, einer Modellstudie: Wahrscheinlichkeit einer Drehung um 90° oder \
+                    mehr",
+    atlas_error: "Standardfehler",
+    atlas_few: "zu wenige",
     after_second_contact: "Die Fahrzeuge berühren sich vor dem Ende erneut, und dieser Kontakt wird nicht berechnet: \
         wohin sie danach kommen, hat keine Wahrscheinlichkeit, und die Mediane sind die einer Bewegung ohne ihn.",
-    forecast_yaw_picture: "Vorhersage von „{name}“: Gierwinkel über der Zeit mit Bändern",
+    forecast_yaw_picture: "Vorhersage: Gierwinkel des gestoßenen Fahrzeugs über der Zeit mit Bändern",
     meaning_posterior: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach den vorgefundenen Spuren, \
         wenn die Annahmen in Abschnitt 3 und die Verfahren in Abschnitt 5 zutreffen.",
     meaning_doubtful: "Auf diese Intervalle ist kein Verlass: siehe die Warnung „{badge}“ in Abschnitt 6.",
@@ -124,13 +133,11 @@ pub(super) const WORDS: Words = Words {
     simulated_motions: "simulierte Bewegungen:",
     ess: "effektiver Stichprobenumfang:",
     log_evidence: "logarithmierte Evidenz:",
-    reconstruction_cars: "Rekonstruktion von „{name}“ von oben: das gestoßene Fahrzeug in der Endlage einer Bewegung mit \
-                          mittlerer Geschwindigkeit, mit seinen Reifenspuren, über dem Gefundenen",
-    reconstruction_picture: "Rekonstruktion von „{name}“ von oben: Bahnen über den Spuren",
-    marginal_picture: "„{name}“: {quantity} vor und nach Berücksichtigung der Spuren",
-    budget_picture: "„{name}“: was weitere Messungen brächten",
-    budget_text: "Halbe Breite des 90-%-Intervalls der Geschwindigkeit des gestoßenen Fahrzeugs, jetzt und \
-        im Mittel, wenn eine Größe zusätzlich gemessen würde.",
+    reconstruction_cars: "Rekonstruktion von oben: eine Bewegung mit mittlerer Geschwindigkeit und ihren Reifenspuren, \
+        das gestoßene Fahrzeug an deren Ende, über den vorgefundenen Spuren",
+    reconstruction_picture: "Rekonstruktion von oben: mögliche Bahnen über den vorgefundenen Spuren",
+    marginal_picture: "{quantity}: wie wahrscheinlich sie ohne die Spuren ist und mit ihnen",
+    budget_picture: "Was weitere Messungen brächten",
     fit_text: "p ist die Wahrscheinlichkeit, dass Messung und Modell stärker abweichen als hier; unter \
         {level} gilt eine Spur als nicht erklärt.",
     left_out_text: "Die Geschwindigkeit ohne je einen Teil der Spuren. p ist die Wahrscheinlichkeit, dass die übrigen \
@@ -217,6 +224,8 @@ pub(super) const WORDS: Words = Words {
     remedy_assumed: "Den Wert angeben, wenn er bekannt ist.",
     remedy_not_used: "Ein Verfahren fragen, das den Wert verwendet.",
     sources: "Quellen",
+    number: "Nr.",
+    source_title: "Quelle",
     axes_text: "Achsen nach ISO 8855: x nach vorn, y nach links, Gierwinkel nach links positiv. \
         Weltachsen sind die der Lageskizze; bei einer Rekonstruktion beginnen sie im Schwerpunkt \
         des gestoßenen Fahrzeugs beim ersten Kontakt, X längs seiner Fahrtrichtung. \

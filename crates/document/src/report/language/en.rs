@@ -79,17 +79,17 @@ pub(super) const WORDS: Words = Words {
     other_caption: "All that the answer says",
     struck_vehicle: "struck vehicle",
     striking_vehicle: "striking vehicle",
-    impact_picture: "The impact “{name}” from above: impulse and changes of velocity",
+    impact_picture: "The impact from above: impulse and changes of velocity at first contact",
     friction_zones: "zones of their own friction",
     zone_value: "friction {friction}; corners (X; Y) {corners}",
     meaning_draws: "In each row nine of ten drawn vehicles lie in the interval of 90 %; only what the data sheet \
         leaves open is varied.",
-    scene_picture: "Simulation of “{name}” from above, vehicles at the end",
-    contact_picture: "Simulation of “{name}” in perspective, vehicles at the end of the contact",
+    scene_picture: "Simulation from above, vehicles at the end",
+    contact_picture: "Simulation in perspective, vehicles at the end of the contact",
     ground_not_drawn: "; the ground is not drawn: {why}",
-    force_picture: "Contact force of “{name}” over time",
-    yaw_rate_picture: "Yaw rate of “{name}” over time",
-    controls_picture: "{quantity} over time, “{name}”",
+    force_picture: "Contact force on the struck vehicle over time, {axes} axes",
+    yaw_rate_picture: "Yaw rate of the struck vehicle over time",
+    controls_picture: "{quantity} over time",
     vehicles_drawn: "vehicles drawn:",
     forces_drawn: "forces:",
     meaning_force: "Each value lies in its interval of 90 % with that probability, by the distribution of the force \
@@ -97,7 +97,7 @@ pub(super) const WORDS: Words = Words {
     force_network: "force network",
     response_network: "response network",
     applicability: "The {network} carries {share} of the distribution; the rest is that of the physics alone.",
-    force_forecast_picture: "Predicted force of “{name}”: size over time with its bands",
+    force_forecast_picture: "Predicted force on the struck vehicle: size over time with its bands",
     meaning_motion: "Each value lies in its interval of 90 % with that probability, by the distribution of the response \
         network over the forces and vehicles that were drawn. Section 7 says how often such regions of the \
         position held.",
@@ -106,13 +106,20 @@ pub(super) const WORDS: Words = Words {
         such regions of the position held.",
     learned_duration: "The response network has learned from motions of up to {time}; what comes after that is \
         the physics with the strengths that it knows.",
-    forecast_scene_picture: "Forecast of “{name}” from above: paths, and density with the regions of 50 and 90 % at \
-        the end",
-    forecast_paths_picture: "Forecast of “{name}” from above: paths; no density, since the vehicles meet again \
-        before the end",
+    forecast_scene_picture: "Forecast from above: paths, and density with the regions of 50 and 90 % at the end",
+    forecast_paths_picture: "Forecast from above: paths; no density, since the vehicles meet again before the end",
+    atlas_heading: "The case in the atlas of the PIT manoeuvre",
+    atlas_text: "The atlas is a model study: {all} computed manoeuvres, checked against no measured PIT. It says how \
+                 often something happens among those, is no evidence of what happened here, and calls no speed safe. \
+                 The table is of {rows} of the {all}, which lie in the same cells as the case of: {like}; \
+                 over all else they are averaged. In {inside} of them both networks apply.",
+    atlas_outside: "The case lies outside of the atlas, which says nothing of it: {list}.",
+    atlas_picture: "The case in the atlas of the PIT manoeuvre, a model study: probability of a turn by 90° or more",
+    atlas_error: "Standard error",
+    atlas_few: "too few",
     after_second_contact: "The vehicles meet again before the end, and that contact is not computed: where they go \
         after it has no probability, and the medians are those of a motion without it.",
-    forecast_yaw_picture: "Forecast of “{name}”: heading over time with its bands",
+    forecast_yaw_picture: "Forecast: heading of the struck vehicle over time with its bands",
     meaning_posterior: "Each value lies in its interval of 90 % with that probability, given the evidence, if the assumptions \
         of section 3 and the models of section 5 hold.",
     meaning_doubtful: "These intervals are not to be relied on: see the warning “{badge}” in section 6.",
@@ -123,13 +130,11 @@ pub(super) const WORDS: Words = Words {
     simulated_motions: "simulated motions:",
     ess: "effective sample size:",
     log_evidence: "log evidence:",
-    reconstruction_cars: "Reconstruction of “{name}” from above: the struck car as a particle of median speed leaves it \
-                          at rest, and its tire marks, over what was found",
-    reconstruction_picture: "Reconstruction of “{name}” from above: paths over what was found",
-    marginal_picture: "“{name}”: {quantity} before and after the evidence",
-    budget_picture: "“{name}”: what further evidence would bring",
-    budget_text: "Half the width of the 90 % interval of the struck car’s speed, now and on the average if \
-        a quantity were measured as well.",
+    reconstruction_cars: "Reconstruction from above: a motion of median speed with its tire marks, the struck car at \
+        its end, over what was found",
+    reconstruction_picture: "Reconstruction from above: possible paths over what was found",
+    marginal_picture: "{quantity}: how likely it is without the evidence and with it",
+    budget_picture: "What further evidence would bring",
     fit_text: "p is the probability that measurement and model err by more than they do here; an item \
         below {level} counts as unexplained.",
     left_out_text: "The speed without each part of the evidence in turn. p is the probability that the other parts \
@@ -214,6 +219,8 @@ pub(super) const WORDS: Words = Words {
     remedy_assumed: "Give the value if it is known.",
     remedy_not_used: "Ask a method that uses the value.",
     sources: "Sources",
+    number: "No.",
+    source_title: "Source",
     axes_text: "Axes are those of ISO 8855: x forward, y to the left, yaw positive to the left. World \
         axes are those of the scene; those of a reconstruction begin at the CG of the struck car \
         at first contact, X along its heading. Principal directions of force are degrees \

@@ -24,13 +24,33 @@ pub(in crate::report) fn phrase_of(language: Language, text: &str) -> Option<Str
     if let Some(label) = caveat_label(language, text) {
         return Some(label.to_owned());
     }
-    let beginnings = de_terms::BEGINNINGS.iter();
-    let mut found = beginnings.filter_map(|(english, german)| {
-        let rest = text.strip_prefix(english)?;
-        let rest = phrase_of(language, rest).unwrap_or_else(|| rest.replace("deg", "°"));
-        Some(german.replace("{}", &rest))
+    let mut found = de_terms::TEMPLATES.iter().filter_map(|(english, german)| {
+        let told =
+            |rest: &str| phrase_of(language, rest).unwrap_or_else(|| rest.replace("deg", "°"));
+        let rests = rests(english, text)?;
+        Some(
+            rests
+                .into_iter()
+                .fold((*german).to_owned(), |german, rest| german.replacen("{}", &told(rest), 1)),
+        )
     });
     found.next()
+}
+
+/// What stands in a text where a template has `{}`; `None` if it is not made from it.
+fn rests<'a>(template: &str, text: &'a str) -> Option<Vec<&'a str>> {
+    let (first, behind) = template.split_once("{}")?;
+    let mut rest = text.strip_prefix(first)?;
+    let pieces: Vec<&str> = behind.split("{}").collect();
+    let (last, between) = pieces.split_last()?;
+    let mut rests = Vec::new();
+    for piece in between {
+        let (found, behind) = rest.split_once(piece)?;
+        rests.push(found);
+        rest = behind;
+    }
+    rests.push(rest.strip_suffix(last)?);
+    Some(rests)
 }
 
 /// What caveats are called.
@@ -44,7 +64,7 @@ fn caveat_label(language: Language, text: &str) -> Option<&'static str> {
 mod tests {
     use super::*;
     use crate::figure::WheelInput;
-    use impactlab_core::vehicle::sheet::SheetQuantity;
+    use impactlab_core::vehicle::sheet::{DataSheet, SheetQuantity, VehicleClass};
     use impactlab_reconstruct::{Latent, ReconstructedQuantity};
     use impactlab_study::Measurements;
 
@@ -69,6 +89,28 @@ mod tests {
         }
         for mode in ["recovers, the driver brakes", "turns left by about 180°, no wheel blocked"] {
             for part in mode.split(", ") {
+                assert!(phrase_of(Language::De, part).is_some(), "{part}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_label_with_numbers_in_it_is_translated_around_them() {
+        let german = |text: &str| phrase_of(Language::De, text);
+        let scaled = german("scaled in proportion to the mass, from 2000 to 1500 kg");
+        assert!(scaled.is_some_and(|text| text.contains("von 2000 auf 1500 kg")));
+        let force =
+            german("force: haversine of 100 ms that carries the impulse of the momentum solution");
+        assert!(force.is_some_and(|text| text.contains("Haversine") && text.contains("100 ms")));
+        assert_eq!(german("scaled in proportion to nothing"), None);
+    }
+
+    /// Rules of data sheets were quoted in English in a German report.
+    #[test]
+    fn every_rule_of_a_data_sheet_is_translated() {
+        let sheets = VehicleClass::ALL.map(|class| DataSheet::new("car", class));
+        for estimate in sheets.iter().flat_map(DataSheet::estimates) {
+            for part in estimate.rule.split("; ").chain(estimate.source.split("; ")) {
                 assert!(phrase_of(Language::De, part).is_some(), "{part}");
             }
         }

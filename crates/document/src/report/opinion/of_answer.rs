@@ -1,7 +1,7 @@
 //! What each kind of answer contributes to the opinion. Figures are those of the tables of facts, so that
 //! opinion and annex cannot say different ones.
 
-use crate::report::answer::{Context, facts_table, with_writer};
+use crate::report::answer::{Context, capitalized, facts_table, with_writer};
 use crate::report::numbers::fill;
 use crate::report::opinion::part::{PartOpinion, Rank};
 use crate::report::opinion::words::{OpinionWords, opinion_words};
@@ -103,7 +103,7 @@ pub(in crate::report) fn opinion_of_reconstruction(
     if report.modes.len() > 1 {
         sentences.push(words.several_courses.to_owned());
     }
-    sentences.push(told(&figures, 3));
+    sentences.push(capitalized(&told(&figures, 3)));
     if !report.has_intervals() {
         sentences.push(words.no_intervals.to_owned());
     }

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use base64::prelude::{BASE64_STANDARD, Engine};
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder, ImageError};
+use png::EncodingError;
 use rayon::prelude::*;
 
 use crate::report::language::words_of;
-use crate::report::write::pictures::{Drawing, Drawn, Medium, Pixels, drawn_pictures};
+use crate::report::write::indexed_png::indexed_png;
+use crate::report::write::pictures::{Drawing, Drawn, Medium, drawn_pictures};
 use crate::report::{Block, PdfError, Picture, ReportDocument, Table};
 
 /// Characters that mean something in Markdown or in HTML.
@@ -30,15 +30,10 @@ impl ReportDocument {
             Drawn::Pixels(pixels) => Some((number, pixels)),
             Drawn::Vectors(_) => None,
         });
-        let encoded = pixels.map(|(number, Pixels { size_px, rgba })| {
-            let [width, height] = size_px;
-            let mut png = Vec::new();
-            // The usual compression is for speed; here each byte is a third larger in the text.
-            let (best, filter) = (CompressionType::Best, FilterType::Adaptive);
-            let encoder = PngEncoder::new_with_quality(&mut png, best, filter);
-            let written = encoder.write_image(&rgba, width, height, ExtendedColorType::Rgba8);
-            let failed = |error: ImageError| PdfError::Picture { number, why: error.to_string() };
-            written.map_err(failed)?;
+        let encoded = pixels.map(|(number, pixels)| {
+            let failed =
+                |error: EncodingError| PdfError::Picture { number, why: error.to_string() };
+            let png = indexed_png(&pixels).map_err(failed)?;
             Ok((number, BASE64_STANDARD.encode(png)))
         });
         Ok(self.text(&encoded.collect::<Result<_, PdfError>>()?))

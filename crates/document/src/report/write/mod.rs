@@ -4,6 +4,8 @@ mod json;
 
 mod markdown;
 
+mod indexed_png;
+
 mod pdf;
 
 mod pictures;

@@ -45,6 +45,8 @@ pub enum InputFile {
     Checkpoint,
     /// The settings of a training, which the training itself checks.
     Settings,
+    /// An atlas, or the plan of a sweep, which their own readers check.
+    OfSweep,
 }
 
 /// Why a file cannot be read.
@@ -78,7 +80,7 @@ pub enum InputError {
     #[error(
         "{}: is neither evidence (struck_car, damage), a scenario (target, bullet, contact), \
          a vehicle (mass, geometry, tires or data_sheet), a site (orthophoto, lane, kerb, \
-         friction_zone, dxf) nor the settings of a training",
+         friction_zone, dxf), the settings of a training nor the plan of a sweep (question, vary)",
         path.display()
     )]
     NotRecognised {
@@ -139,6 +141,8 @@ impl InputFile {
             InputKind::Request => read_request(path),
             InputKind::Checkpoint => Ok(Self::Checkpoint),
             InputKind::Settings => read(kind, TomlFile::read(path), |_| Self::Settings),
+            InputKind::Atlas => Ok(Self::OfSweep),
+            InputKind::Plan => read(kind, TomlFile::read(path), |_| Self::OfSweep),
             InputKind::UnknownToml => match TomlFile::read(path) {
                 Ok(text) if text.trim().is_empty() => {
                     Err(InputError::Empty { path: path.to_owned() })
@@ -165,7 +169,8 @@ impl InputFile {
             | Self::Pairs(_)
             | Self::Request(_)
             | Self::Checkpoint
-            | Self::Settings => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+            | Self::Settings
+            | Self::OfSweep => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
         }
     }
 
@@ -193,6 +198,7 @@ impl InputFile {
             }
             Self::Network(kind) => Ok(vec![kind.clone()]),
             Self::Pairs(records) => pairs_contents(records, kind),
+            Self::OfSweep => Ok(vec!["checked by its own command".to_owned()]),
             _ => Ok(Vec::new()),
         }
     }

@@ -22,11 +22,19 @@ const HEAD_BYTES: u64 = 4096;
 /// Ending of the names of trained networks.
 pub const MODEL_ENDING: &str = "safetensors";
 
+/// Ending of the names of atlases.
+pub const ATLAS_ENDING: &str = "atlas";
+
+/// What the archive of an atlas begins with, and the first file in it, whose name stands behind the header.
+const ARCHIVE: &[u8] = b"PK\x03\x04";
+const ATLAS_HEAD: &[u8] = b"atlas.json";
+const ARCHIVE_HEADER_BYTES: usize = 30;
+
 /// What stands at the beginning of the state of a reconstruction.
 const CHECKPOINT: &[u8] = b"impactlab reconstruction";
 
 /// Keys and tables at the top of a TOML file that belong to one kind of file.
-const TOML_KEYS: [(InputKind, &[&str]); 5] = [
+const TOML_KEYS: [(InputKind, &[&str]); 6] = [
     (
         InputKind::Evidence,
         &[
@@ -67,6 +75,7 @@ const TOML_KEYS: [(InputKind, &[&str]); 5] = [
             "tuning",
         ],
     ),
+    (InputKind::Plan, &["question", "design", "n", "chunk", "pit", "request", "vary"]),
 ];
 
 /// What a path holds.
@@ -101,6 +110,10 @@ pub enum InputKind {
     Checkpoint,
     /// Settings of a training.
     Settings,
+    /// An atlas: a map of many computed collisions.
+    Atlas,
+    /// The plan of a sweep.
+    Plan,
     /// A TOML file without a key of any kind.
     UnknownToml,
     /// A table of time series: force, trajectory, steering or torques at the wheels.
@@ -173,6 +186,8 @@ impl InputKind {
             Self::Checkpoint => "impactlab reconstruct EVIDENCE --resume",
             Self::Network => "impactlab evaluate force (or response) --model FILE",
             Self::Settings => "impactlab train force --config FILE",
+            Self::Atlas => "impactlab atlas cell --atlas FILE",
+            Self::Plan => "impactlab sweep plan FILE",
             Self::Site
             | Self::Orthophoto
             | Self::Comparison
@@ -191,6 +206,7 @@ impl InputKind {
                 | Self::Vehicle
                 | Self::Site
                 | Self::Settings
+                | Self::Plan
                 | Self::UnknownToml
         )
     }
@@ -218,6 +234,8 @@ impl fmt::Display for InputKind {
             Self::Request => "a question",
             Self::Checkpoint => "the state of an unfinished reconstruction",
             Self::Settings => "the settings of a training",
+            Self::Atlas => "an atlas",
+            Self::Plan => "the plan of a sweep",
             Self::UnknownToml => "a TOML file of no known kind",
             Self::Series => "a table of time series",
         })
@@ -231,6 +249,10 @@ fn from_content(path: &Path) -> Option<InputKind> {
     file.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
     if is_picture(&head) {
         return Some(InputKind::Orthophoto);
+    }
+    let first = head.get(ARCHIVE_HEADER_BYTES..).unwrap_or_default();
+    if head.starts_with(ARCHIVE) && first.starts_with(ATLAS_HEAD) {
+        return Some(InputKind::Atlas);
     }
     // The header of a trained network is JSON after its length.
     if head.get(8) == Some(&b'{') && head.first() != Some(&b'{') && head.get(7) == Some(&0) {
@@ -250,11 +272,19 @@ fn from_content(path: &Path) -> Option<InputKind> {
         let is_case = has_ending(path, CASE_ENDING) || text.contains(&format!("\"{FORMAT}\""));
         return Some(match text.contains("\"question\"") {
             _ if is_case => InputKind::Case,
+            _ if is_resolved_plan(text) => InputKind::Plan,
             true => InputKind::Request,
             false => InputKind::Comparison,
         });
     }
     from_toml(path, text)
+}
+
+/// Whether a JSON text is the plan of a sweep: its question is an object, that of a request a word.
+fn is_resolved_plan(text: &str) -> bool {
+    let Some((before, behind)) = text.split_once("\"question\"") else { return false };
+    let value = behind.trim_start().strip_prefix(':').unwrap_or_default();
+    value.trim_start().starts_with('{') && before.contains("\"format\"")
 }
 
 /// The kind of TOML file with most of its keys in a text, also if the text has slips.
@@ -286,6 +316,7 @@ fn from_name(path: &Path) -> InputKind {
         () if has_ending(path, CASE_ENDING) => InputKind::Case,
         () if has_ending(path, "toml") => InputKind::UnknownToml,
         () if has_ending(path, MODEL_ENDING) => InputKind::Network,
+        () if has_ending(path, ATLAS_ENDING) => InputKind::Atlas,
         () if has_ending(path, "json") => InputKind::Comparison,
         () if is_picture_file(path) => InputKind::Orthophoto,
         () => InputKind::Series,
@@ -308,6 +339,18 @@ mod tests {
     }
 
     #[test]
+    fn what_belongs_to_a_sweep_is_told_from_questions_and_other_archives() {
+        let plan = b"{\n  \"format\": 1,\n  \"name\": \"\",\n  \"question\": {\n    \"pit\": {";
+        assert_eq!(kind_of_text("plan.json", plan), InputKind::Plan);
+        let request = b"{\"question\": \"impact\", \"format\": 1}";
+        assert_eq!(kind_of_text("request.json", request), InputKind::Request);
+        let archive = |first: &[u8]| [b"PK\x03\x04".as_slice(), &[0; 26], first].concat();
+        assert_eq!(kind_of_text("some.zip", &archive(b"atlas.json")), InputKind::Atlas);
+        assert_eq!(kind_of_text("some.xlsx", &archive(b"[Content_Types].xml")), InputKind::Series);
+        assert_eq!(kind_of_text("broken.atlas", b""), InputKind::Atlas);
+    }
+
+    #[test]
     fn what_comes_with_the_program_is_recognised() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         for (path, expected) in [
@@ -318,6 +361,7 @@ mod tests {
             ("assets/vehicles/target-2000.toml", InputKind::Vehicle),
             ("assets/sites/country-road/site.toml", InputKind::Site),
             ("assets/models/response.toml", InputKind::Settings),
+            ("assets/atlas/pit.toml", InputKind::Plan),
             ("assets/models/force.safetensors", InputKind::Network),
             ("docs/guide/examples/steering.csv", InputKind::Series),
             ("datasets/fea", InputKind::Dataset),

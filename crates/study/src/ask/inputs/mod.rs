@@ -19,7 +19,7 @@ pub use chosen_vehicle::take_vehicle;
 pub use config::{ConfigChoice, TrainingOptions, checkpoint_beside};
 pub use file::SeriesFile;
 pub use input_file::{InputError, InputFile};
-pub use input_kind::{InputKind, MODEL_ENDING};
+pub use input_kind::{ATLAS_ENDING, InputKind, MODEL_ENDING};
 pub use model::ModelChoice;
 pub use scenario::ScenarioChoice;
 pub use vehicle::{DEFAULT_STRIKING, DEFAULT_VEHICLE, VehicleChoice};

@@ -3,5 +3,6 @@
 mod assumed;
 mod badges;
 pub(crate) mod later_contacts;
+mod particle_columns;
 pub(crate) mod paths;
 pub(crate) mod request;

@@ -226,7 +226,7 @@ impl Pages<'_> {
         let date_pt = SMALL_PT * self.flow.fonts.width(&date);
         let case = self.cut(&self.document.case, inner_pt - date_pt - 20.0);
         let right = |text: &str| width_pt - MARGIN_PT - SMALL_PT * self.flow.fonts.width(text);
-        let (top_pt, bottom_pt) = (40.0, height_pt - 34.0);
+        let (top_pt, bottom_pt) = (37.0, height_pt - 31.0);
         let texts = [
             (case, [MARGIN_PT, top_pt]),
             (date.clone(), [right(&date), top_pt]),

@@ -8,9 +8,9 @@ use crate::report::write::pdf::page::Item;
 use crate::report::{Block, Picture};
 
 /// Height of a scene over its width: three of them fit onto a page.
-const SCENE_ASPECT: f32 = 0.42;
-/// The same of what takes half of the width.
-const HALF_ASPECT: f32 = 0.75;
+const SCENE_ASPECT: f32 = 0.38;
+/// The same of what takes half of the width: eight of them fit onto a page.
+const HALF_ASPECT: f32 = 0.58;
 /// Distance between two pictures beside each other, points.
 const BETWEEN_HALVES_PT: f32 = 14.0;
 

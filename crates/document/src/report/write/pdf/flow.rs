@@ -11,7 +11,7 @@ use crate::report::{Block, ReportDocument, SectionKind};
 /// Distance of the text from the edges of the page, points.
 pub(super) const MARGIN_PT: f32 = 48.0;
 /// The same from top and bottom, which hold header and footer.
-const HIGH_MARGIN_PT: f32 = 56.0;
+const HIGH_MARGIN_PT: f32 = 52.0;
 /// Distance between base lines over the size of the font.
 pub(super) const LEADING: f32 = 1.24;
 /// Size of running text, points.
@@ -208,7 +208,7 @@ impl<'a> Flow<'a> {
             Block::Table(table) => {
                 self.space(2.0);
                 flow_table(self, table);
-                self.space(8.0);
+                self.space(6.0);
             }
             Block::Picture(picture) => self.scene(picture),
         }
@@ -334,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn six_plots_fit_onto_a_page_two_beside_each_other() {
+    fn eight_plots_fit_onto_a_page_two_beside_each_other() {
         let fonts = Fonts::load().unwrap();
         let axis = Axis::shown("x", Quantity::Time, UnitSystem::Si);
         let figure = Figure::new("plot", [axis.clone(), axis], Vec::new());
@@ -346,7 +346,7 @@ mod tests {
                 content: PictureContent::Figure(Box::new(figure.clone())),
             }))
         };
-        let mut document = document((0..7).map(plot).collect());
+        let mut document = document((0..9).map(plot).collect());
         document.title = "short".to_owned();
         let flow = Flow::from_document(&document, &fonts).unwrap();
         let places = |page: &PageItems| -> Vec<[f32; 4]> {
@@ -357,7 +357,7 @@ mod tests {
             page.items.iter().filter_map(place).collect()
         };
         let first = places(&flow.pages[0]);
-        assert_eq!((first.len(), places(&flow.pages[1]).len()), (6, 1));
+        assert_eq!((first.len(), places(&flow.pages[1]).len()), (8, 1));
         for pair in first.chunks(2) {
             let [left, right] = [pair[0], pair[1]];
             assert_eq!(left[1], right[1]);

@@ -5,6 +5,36 @@ use crate::report::write::pdf::fonts::Fonts;
 /// Letters after which a word that is too long is broken rather than elsewhere.
 const SOFT_BREAKS: [char; 6] = ['/', '-', '_', ',', ';', '\\'];
 
+/// Symbols that stay on one line with the number in front of them.
+const SYMBOLS: [&str; 27] = [
+    "%", "m", "mm", "cm", "m²", "s", "ms", "km/h", "m/s", "deg", "deg/s", "°/s", "kN", "N", "kJ",
+    "J", "kg", "rad", "ft", "ft²", "mph", "lb", "lbf", "lbf·s", "min", "kW", "V",
+];
+
+/// Whether a word is the symbol of a unit, whatever marks follow it.
+pub(super) fn is_symbol(word: &str) -> bool {
+    SYMBOLS.contains(&word.trim_end_matches([',', '.', ';', ':', ')']))
+}
+
+/// The words of a text. A number and its unit are one word.
+pub(super) fn words(text: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        let is_behind_number = |last: &String| match last.rsplit_once(' ') {
+            Some((_, symbol)) => is_symbol(symbol) && symbol.ends_with(char::is_alphanumeric),
+            None => last.ends_with(|c: char| c.is_ascii_digit() || c == ')'),
+        };
+        match words.last_mut().filter(|last| is_symbol(word) && is_behind_number(last)) {
+            Some(last) => {
+                last.push(' ');
+                last.push_str(word);
+            }
+            None => words.push(word.to_owned()),
+        }
+    }
+    words
+}
+
 /// Breaks a text into lines.
 ///
 /// - `size_pt`: size of the font;
@@ -14,8 +44,13 @@ pub(super) fn lines(text: &str, fonts: &Fonts, size_pt: f32, width_pt: f32) -> V
     let mut line = String::new();
     let mut used_pt = 0.0;
     let space_pt = size_pt * fonts.width(" ");
-    for word in text.split_whitespace() {
-        for (idx, piece) in pieces(word, fonts, size_pt, width_pt).into_iter().enumerate() {
+    // A number that is wider with its unit than a line stands without it.
+    let parts = |word: String| match size_pt * fonts.width(&word) <= width_pt {
+        true => vec![word],
+        false => word.split(' ').map(str::to_owned).collect(),
+    };
+    for word in words(text).into_iter().flat_map(parts) {
+        for (idx, piece) in pieces(&word, fonts, size_pt, width_pt).into_iter().enumerate() {
             let piece_pt = size_pt * fonts.width(&piece);
             let is_joined = idx == 0 && !line.is_empty();
             let gap_pt = if is_joined { space_pt } else { 0.0 };
@@ -62,15 +97,53 @@ fn pieces(word: &str, fonts: &Fonts, size_pt: f32, width_pt: f32) -> Vec<String>
     pieces
 }
 
-/// Width of the widest word of a text, points.
-pub(super) fn widest_word_pt(text: &str, fonts: &Fonts, size_pt: f32) -> f32 {
-    let widths = text.split_whitespace().map(|word| size_pt * fonts.width(word));
-    widths.fold(0.0, f32::max)
+/// How many lines words take.
+///
+/// - `words_pt`: their widths, none of which is wider than a line;
+/// - `space_pt`: width of a space.
+pub(super) fn n_lines(words_pt: &[f32], space_pt: f32, width_pt: f32) -> usize {
+    let (mut n, mut used_pt) = (1, 0.0);
+    for (idx, word_pt) in words_pt.iter().enumerate() {
+        let gap_pt = if used_pt > 0.0 { space_pt } else { 0.0 };
+        if idx > 0 && used_pt + gap_pt + word_pt > width_pt {
+            n += 1;
+            used_pt = *word_pt;
+        } else {
+            used_pt += gap_pt + word_pt;
+        }
+    }
+    n
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// “84.0” stood at the end of a line and “%” at the beginning of the next one.
+    #[test]
+    fn a_number_is_not_parted_from_its_unit() {
+        let text = "probability 84.0 % of 7.942 kN s (5.27; 0.70) m, s m";
+        let expected =
+            ["probability", "84.0 %", "of", "7.942 kN s", "(5.27;", "0.70) m,", "s", "m"];
+        assert_eq!(words(text), expected);
+        let fonts = Fonts::load().unwrap();
+        let width_pt = 9.0 * fonts.width("probability 84.0");
+        let [first, second] = &lines("probability 84.0 %", &fonts, 9.0, width_pt)[..] else {
+            panic!("two lines")
+        };
+        assert_eq!([&**first, &**second], ["probability", "84.0 %"]);
+    }
+
+    #[test]
+    fn words_are_counted_as_they_are_broken() {
+        let fonts = Fonts::load().unwrap();
+        let text = "a few words of 12 m that are broken somewhere in the middle of a line";
+        let words_pt: Vec<f32> = words(text).iter().map(|word| 9.0 * fonts.width(word)).collect();
+        for width_pt in [70.0, 100.0, 140.0, 500.0] {
+            let n = n_lines(&words_pt, 9.0 * fonts.width(" "), width_pt);
+            assert_eq!(n, lines(text, &fonts, 9.0, width_pt).len(), "{width_pt}");
+        }
+    }
 
     #[test]
     fn no_line_is_wider_than_asked_and_no_letter_is_lost() {

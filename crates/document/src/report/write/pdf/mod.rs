@@ -17,6 +17,10 @@ mod figures;
 
 mod table;
 
+mod widths;
+
+mod units;
+
 mod draw;
 
 mod vectors;

@@ -2,11 +2,12 @@
 //! left is divided where a page of its own would be wasted.
 
 use crate::report::Table;
-use crate::report::column_widths;
 use crate::report::write::pdf::flow::{Flow, LEADING, MARGIN_PT, Role, Style, caption_style};
 use crate::report::write::pdf::fonts::Fonts;
-use crate::report::write::pdf::lines::{lines, widest_word_pt};
+use crate::report::write::pdf::lines::lines;
 use crate::report::write::pdf::page::{Ink, Item, Owner};
+use crate::report::write::pdf::units::with_units_in_titles;
+use crate::report::write::pdf::widths::{CellStyle, widths_of};
 
 /// Size of the text in a table, points.
 const CELL_PT: f32 = 9.5;
@@ -15,11 +16,9 @@ const STEP_PT: f32 = 1.2 * CELL_PT;
 /// Distance of the text from the sides of its cell, points.
 const PADDING_PT: f32 = 3.5;
 /// The same above and below.
-const HIGH_PADDING_PT: f32 = 1.3;
+const HIGH_PADDING_PT: f32 = 1.1;
 /// Rows that a table has at the least before it goes on on the next page.
 const KEPT_ROWS: usize = 4;
-/// The widest that a column is for the sake of its longest word, as a share of the table.
-const WIDEST_WORD: f32 = 0.34;
 
 /// A table that is being set.
 struct Setting<'a> {
@@ -34,6 +33,7 @@ type Cells = Vec<Vec<String>>;
 
 /// Height of what of a table stands on one page: caption, header and the first rows.
 pub(super) fn beginning_pt(flow: &Flow<'_>, table: &Table) -> f32 {
+    let table = &with_units_in_titles(table);
     let columns = columns(table, flow.fonts, flow.width_pt());
     Setting { table, columns, owner: None }.beginning_pt(flow)
 }
@@ -43,6 +43,7 @@ pub(super) fn flow_table(flow: &mut Flow<'_>, table: &Table) {
     if table.columns.is_empty() {
         return;
     }
+    let table = &with_units_in_titles(table);
     let columns = columns(table, flow.fonts, flow.width_pt());
     let setting = Setting { table, columns, owner: None };
     let header = setting.header_cells(flow.fonts);
@@ -172,30 +173,14 @@ fn height_pt(cells: &Cells) -> f32 {
     n as f32 * STEP_PT + 2.0 * HIGH_PADDING_PT
 }
 
-/// Left edges and widths: what each column would like, as far as all of them fit; else the longest
-/// words first, and the rest by how much is wanted.
+/// Left edges and widths of the columns.
 fn columns(table: &Table, fonts: &Fonts, width_pt: f32) -> Vec<[f32; 2]> {
-    let n = table.columns.len();
-    let texts = |idx: usize| {
-        let cells = table.rows.iter().filter_map(move |row| row.get(idx));
-        cells.chain(table.columns.get(idx).map(|column| &column.title))
-    };
-    let padded = |pt: f32| pt + 2.0 * PADDING_PT + 0.5;
-    let size = |width_pt: &dyn Fn(&str) -> f32, idx| {
-        texts(idx).map(|text| width_pt(text)).fold(8.0, f32::max)
-    };
-    let wanted: Vec<f32> =
-        (0..n).map(|idx| padded(size(&|t| CELL_PT * fonts.width(t), idx))).collect();
-    let widest = WIDEST_WORD * width_pt;
-    let least: Vec<f32> = (0..n)
-        .map(|idx| padded(size(&|t| widest_word_pt(t, fonts, CELL_PT), idx)).min(widest))
-        .collect();
-    let widths = column_widths(&wanted, &least, width_pt);
+    let style = CellStyle { size_pt: CELL_PT, padding_pt: PADDING_PT };
     let mut left_pt = MARGIN_PT;
     let place = |width: f32| {
         let column = [left_pt, width];
         left_pt += width;
         column
     };
-    widths.into_iter().map(place).collect()
+    widths_of(table, style, fonts, width_pt).into_iter().map(place).collect()
 }

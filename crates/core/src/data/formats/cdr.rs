@@ -1,0 +1,392 @@
+//! The export of a Bosch CDR tool as CSV.
+//!
+//! ```text
+//! CDR FILE INFORMATION                                  a section: one cell, in capitals
+//! User Entered VIN/Frame Number,1HG…                    keys and values
+//! EDR Device Type,Airbag Control Module
+//! Complete File Recorded,Yes
+//! SYSTEM STATUS AT EVENT (EVENT RECORD 1)
+//! "Maximum Delta-V, Longitudinal (MPH [km/h])",-14.9 [-24.0]
+//! PRE-CRASH DATA -5 TO 0 SEC [2 SAMPLES/SEC] (EVENT RECORD 1)
+//! Times (sec),"Speed, Vehicle Indicated (MPH [km/h])","Steering Input (deg)",Service Brake
+//! -5.0,31 [50],0,Off                                    a header, then rows
+//! "DELTA-V, LONGITUDINAL (EVENT RECORD 1)"
+//! Time (msec),"Delta-V, Longitudinal (MPH [km/h])"
+//! EVENT RECORD 2 contains no recorded data
+//! ```
+//!
+//! Which columns there are differs from module to module. A number in brackets is the same in another unit.
+//! The `.CDRX` of which the export was made is not read.
+
+use std::path::Path;
+
+use crate::data::dialect::{Dialect, Separator, split};
+use crate::data::formats::{Converted, Said, number_text};
+use crate::data::spelling::{letters_and_digits, unit};
+use crate::data::{DataError, ReadSettings, Sheet, SheetRef};
+use crate::units::Quantity;
+
+/// Bytes of a report. Those of modules with many events have some hundred kilobytes.
+const MAX_BYTES: usize = 8 << 20;
+
+/// Lines within which a report says what it is.
+const EXAMINED_LINES: usize = 60;
+
+/// Characters of a name of a section that are kept.
+const SHOWN_CHARS: usize = 120;
+
+/// Beginnings of the names of sections, as the tools write them, without capitals.
+const TITLES: [&str; 12] = [
+    "cdr file information",
+    "system status at",
+    "deployment command data",
+    "dtcs present",
+    "faults present",
+    "pre-crash",
+    "pre_crash",
+    "longitudinal",
+    "lateral crash pulse",
+    "rollover",
+    "vertical crash pulse",
+    "delta-v",
+];
+
+/// A section of a report.
+#[derive(Debug, Clone)]
+pub(crate) struct Section {
+    /// Its name, with the event in parentheses.
+    pub title: String,
+    /// Line and cells of its rows that are not blank, without blank cells at their ends.
+    pub rows: Vec<(u64, Vec<String>)>,
+}
+
+/// A report with all of its sections.
+#[derive(Debug, Clone)]
+pub(crate) struct Report {
+    pub sections: Vec<Section>,
+}
+
+/// Whether a text is such a report.
+pub(crate) fn is_report(text: &str) -> bool {
+    let marks = ["cdr file information", "user entered vin", "imaged with c"];
+    let is_mark = |line: &str| {
+        let line = line.trim_start_matches(['"', ' ']);
+        marks.iter().any(|mark| {
+            line.get(..mark.len()).is_some_and(|start| start.eq_ignore_ascii_case(mark))
+        })
+    };
+    text.lines().take(EXAMINED_LINES).any(is_mark)
+}
+
+impl Report {
+    /// Divides a report into its sections.
+    ///
+    /// # Errors
+    /// [`DataError::TooLarge`].
+    pub(crate) fn parse(path: &Path, text: &str) -> Result<Self, DataError> {
+        if text.len() > MAX_BYTES {
+            let (bytes, limit) = (text.len() as u64, MAX_BYTES as u64);
+            return Err(DataError::TooLarge { path: path.to_owned(), bytes, limit });
+        }
+        let separator = separator(text);
+        let mut sections: Vec<Section> = Vec::new();
+        for (number, line) in (1..).zip(text.lines()) {
+            let cells = split(line, separator);
+            let n_cells = cells.iter().rposition(|cell| !cell.trim().is_empty());
+            let Some(last) = n_cells else { continue };
+            let cells: Vec<String> =
+                cells.iter().take(last + 1).map(|cell| cell.trim().to_owned()).collect();
+            if let Some(title) = title(&cells) {
+                sections.push(Section { title, rows: Vec::new() });
+            } else if let Some(section) = sections.last_mut() {
+                section.rows.push((number, cells));
+            } else {
+                let title = "FILE".to_owned();
+                sections.push(Section { title, rows: vec![(number, cells)] });
+            }
+        }
+        Ok(Self { sections })
+    }
+
+    /// The value beside a key that begins so, in letters and digits; the first that is not blank.
+    pub(crate) fn value(&self, key: &str) -> Option<&str> {
+        self.sections.iter().find_map(|section| section.value(key))
+    }
+
+    /// What a person has to know of the file: its device, and whether it is complete.
+    pub(crate) fn description(&self) -> String {
+        let mut text = "a Bosch CDR report".to_owned();
+        for (key, name) in [
+            ("edrdevicetype", "device"),
+            ("imagedwith", "imaged with"),
+            ("eventsrecovered", "events"),
+            ("completefilerecorded", "complete file recorded"),
+        ] {
+            if let Some(value) = self.value(key) {
+                text += &format!("; {name}: {}", shortened(value));
+            }
+        }
+        text
+    }
+
+    /// What the report says against itself.
+    pub(crate) fn doubts(&self) -> Vec<String> {
+        let complete = self.value("completefilerecorded");
+        let mut doubts = Vec::new();
+        match complete {
+            Some(value) if letters_and_digits(value).starts_with("yes") => {}
+            Some(value) => doubts.push(format!(
+                "the record is not complete (complete file recorded: {}): values may be those of another \
+                 event or be missing",
+                shortened(value)
+            )),
+            None => doubts.push(
+                "the report does not say whether the complete file was recorded; look it up in the PDF"
+                    .to_owned(),
+            ),
+        }
+        let empty = self.sections.iter().flat_map(|section| &section.rows);
+        let empty = empty.filter(|(_, cells)| is_no_data(cells)).count();
+        if empty > 0 {
+            doubts.push(format!("{empty} events or tables contain no recorded data"));
+        }
+        doubts
+    }
+
+    fn tables(&self) -> impl Iterator<Item = &Section> {
+        self.sections.iter().filter(|section| section.is_table())
+    }
+}
+
+impl Section {
+    /// The values beside keys that begin so.
+    fn value(&self, key: &str) -> Option<&str> {
+        let is_key = |cells: &[String]| {
+            cells.first().is_some_and(|cell| letters_and_digits(cell).starts_with(key))
+        };
+        self.rows.iter().filter(|(_, cells)| is_key(cells)).find_map(|(_, cells)| {
+            cells.get(1).map(String::as_str).filter(|value| !value.is_empty())
+        })
+    }
+
+    /// A row of keys whose value is a number, with its line: the first that begins so.
+    pub(crate) fn number(&self, key: &str) -> Option<(&str, f64)> {
+        let is_key = |cells: &&(u64, Vec<String>)| {
+            cells.1.first().is_some_and(|cell| letters_and_digits(cell).starts_with(key))
+        };
+        let (_, cells) = self.rows.iter().find(is_key)?;
+        Some((cells.first()?.as_str(), number(cells.get(1)?)?))
+    }
+
+    /// Whether it has a header and below it a row of numbers.
+    pub(crate) fn is_table(&self) -> bool {
+        let n_numbers =
+            |cells: &[String]| cells.iter().filter(|cell| number(cell).is_some()).count();
+        let [(_, header), below @ ..] = self.rows.as_slice() else { return false };
+        let is_header = header.len() > 1 && n_numbers(header) == 0;
+        is_header && below.iter().any(|(_, cells)| cells.len() > 1 && n_numbers(cells) > 0)
+    }
+
+    /// Names of the columns, as a header with the unit in brackets.
+    pub(crate) fn header(&self) -> Vec<String> {
+        let header = self.rows.first().map_or(&[][..], |(_, cells)| cells);
+        header.iter().map(|name| column_name(name)).collect()
+    }
+
+    /// The numbers of a column; `None` where a cell is blank or says that nothing was recorded.
+    pub(crate) fn column(&self, idx: usize) -> Vec<Option<f64>> {
+        let rows = self.rows.iter().skip(1).filter(|(_, cells)| !is_no_data(cells));
+        rows.map(|(_, cells)| cells.get(idx).and_then(|cell| number(cell))).collect()
+    }
+
+    /// The texts of a column, in the same rows.
+    pub(crate) fn texts(&self, idx: usize) -> Vec<String> {
+        let rows = self.rows.iter().skip(1).filter(|(_, cells)| !is_no_data(cells));
+        rows.map(|(_, cells)| cells.get(idx).cloned().unwrap_or_default()).collect()
+    }
+
+    /// The section as text: tabs between the cells, each row in its line.
+    fn as_table(&self) -> String {
+        let mut text = String::new();
+        let mut line = 1;
+        let width = self.rows.first().map_or(0, |(_, cells)| cells.len());
+        for (row_idx, (number_of_line, cells)) in self.rows.iter().enumerate() {
+            if is_no_data(cells) {
+                continue;
+            }
+            while line < *number_of_line {
+                text.push('\n');
+                line += 1;
+            }
+            let cell = |idx: usize| {
+                let cell = cells.get(idx).map_or("", String::as_str);
+                match (row_idx, number(cell)) {
+                    (0, _) => column_name(cell),
+                    (_, Some(number)) => number_text(number),
+                    (_, None) => cell.replace(['\t', '"'], " "),
+                }
+            };
+            let cells: Vec<String> = (0..width.max(cells.len())).map(cell).collect();
+            text.push_str(&cells.join("\t"));
+        }
+        text.push('\n');
+        text
+    }
+}
+
+/// A table of a report as text.
+///
+/// # Errors
+/// [`DataError::NoSheet`] without such a table, [`DataError::OtherFormat`] without any.
+pub(super) fn as_table(
+    path: &Path,
+    text: &str,
+    settings: &ReadSettings,
+) -> Result<Option<Converted>, DataError> {
+    if !is_report(text) {
+        return Ok(None);
+    }
+    let report = Report::parse(path, text)?;
+    let tables: Vec<&Section> = report.tables().collect();
+    let all: Vec<String> = tables.iter().map(|section| section.title.clone()).collect();
+    let first = tables.iter().position(|section| is_before_crash(section));
+    let first = first.or((!tables.is_empty()).then_some(0));
+    let Some(first) = first else {
+        let remedy = "it holds no table of recorded data: export it again, or enter its values as [edr] in \
+                      the evidence of a reconstruction";
+        let format = "the report of a Bosch CDR tool";
+        return Err(DataError::OtherFormat { path: path.to_owned(), format, remedy });
+    };
+    let chosen = match &settings.sheet {
+        None => Some(first),
+        Some(SheetRef::Number(number)) => number.checked_sub(1),
+        Some(SheetRef::Name(name)) => all.iter().position(|title| title == name),
+    };
+    let Some((section, name)) = chosen.and_then(|idx| Some((*tables.get(idx)?, all.get(idx)?)))
+    else {
+        let wanted = settings.sheet.as_ref().map_or_else(String::new, SheetRef::to_string);
+        return Err(DataError::NoSheet { path: path.to_owned(), wanted, found: all });
+    };
+    let said = Said {
+        description: format!("{}; read is {name:?}", report.description()),
+        doubts: report.doubts(),
+        part: Some(Sheet { name: name.clone(), all: all.clone() }),
+        device: report.value("edrdevicetype").unwrap_or("CDR").to_owned(),
+        keeps_lines: true,
+        ..Said::default()
+    };
+    Ok(Some(Converted { text: section.as_table(), said }))
+}
+
+/// Whether a section is a table of the seconds before the crash.
+pub(crate) fn is_before_crash(section: &Section) -> bool {
+    letters_and_digits(&section.title).starts_with("precrash") && section.is_table()
+}
+
+/// The number at the beginning of a cell: `31 [50]` is 31.
+pub(crate) fn number(cell: &str) -> Option<f64> {
+    let first = match cell.split_once('[') {
+        Some((first, rest)) if rest.trim_end().ends_with(']') => first.trim(),
+        _ => cell.trim(),
+    };
+    let (separator, decimal_comma, thousands) = (Separator::Tab, false, None);
+    Dialect { separator, decimal_comma, thousands }.number(first)
+}
+
+/// The name of a section, if a line is one: one cell, or one that its commas have divided.
+fn title(cells: &[String]) -> Option<String> {
+    let is_capital =
+        |cell: &String| cell.chars().any(char::is_alphabetic) && cell.to_uppercase() == *cell;
+    let joined = cells.join(" ");
+    let lower = joined.to_lowercase();
+    let is_known = TITLES.iter().any(|title| lower.starts_with(title));
+    let is_title = match cells {
+        [cell] => is_known || (is_capital(cell) && cell.contains(' ')),
+        _ => is_known && cells.iter().all(is_capital),
+    };
+    // A comma would end the name in the text of a map.
+    (is_title && !is_no_data(cells)).then(|| shortened(&joined).replace(',', ""))
+}
+
+fn is_no_data(cells: &[String]) -> bool {
+    cells.first().is_some_and(|cell| cell.to_lowercase().contains("no recorded data"))
+}
+
+/// A header as the columns of a table are named: the first of two units in brackets, and the words of
+/// recorders by those of this program. Columns whose sign differs from report to report keep their names.
+fn column_name(name: &str) -> String {
+    let name = name.replace(['\t', '"'], " ");
+    let name = name.trim();
+    let (bare, symbol) = match name.rsplit_once('(') {
+        Some((bare, rest)) => {
+            let symbol = rest.split(['[', ')', ',']).next().unwrap_or_default();
+            (bare.trim(), symbol.trim())
+        }
+        None => (name, ""),
+    };
+    let key = letters_and_digits(bare);
+    let has = |word: &str| key.contains(word);
+    let is = |quantity| unit(quantity, symbol).is_some();
+    let of = |name: &str| format!("{name} [{symbol}]");
+    match () {
+        () if is(Quantity::Time) && has("time") && !has("maximum") => of("time"),
+        () if is(Quantity::Speed) && has("speed") && !has("wheelspeed") => of("speed"),
+        () if is(Quantity::Angle) && has("steering") => of("steering wheel"),
+        () if symbol.is_empty() => bare.to_owned(),
+        () => format!("{bare} [{symbol}]"),
+    }
+}
+
+/// The one of comma, semicolon and tab that a report has most of.
+fn separator(text: &str) -> Separator {
+    let separators = [Separator::Tab, Separator::Semicolon, Separator::Comma];
+    let count = |separator: &Separator| {
+        text.bytes().take(EXAMINED_LINES << 10).filter(|byte| *byte == separator.byte()).count()
+    };
+    separators.into_iter().max_by_key(count).unwrap_or(Separator::Comma)
+}
+
+fn shortened(text: &str) -> String {
+    text.chars().filter(|c| !c.is_control()).take(SHOWN_CHARS).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const REPORT: &str = "CDR FILE INFORMATION\nUser Entered VIN/Frame Number,X1\n\
+        EDR Device Type,Module 7\nComplete File Recorded,No\n\
+        SYSTEM STATUS AT EVENT (EVENT RECORD 1)\n\
+        \"Maximum Delta-V, Longitudinal (MPH [km/h])\",-14.9 [-24.0]\n\
+        \"PRE-CRASH DATA -5 TO 0 SEC, TABLE 1 OF 1 (EVENT RECORD 1)\"\n\
+        Times (sec),\"Speed, Vehicle Indicated (MPH [km/h])\",Steering Input (deg),Service Brake\n\
+        -5.0,31 [50],0,Off\n-4.5,30 [48],-12,On\n\
+        PRE-CRASH DATA (EVENT RECORD 2)\nEvent record 2 contains no recorded data\n";
+
+    #[test]
+    fn the_table_before_the_crash_keeps_its_lines() {
+        let path = Path::new("r.csv");
+        let table = as_table(path, REPORT, &ReadSettings::default()).unwrap().unwrap();
+        let lines: Vec<&str> = table.text.lines().collect();
+        assert_eq!(lines[7], "time [sec]\tspeed [MPH]\tsteering wheel [deg]\tService Brake");
+        assert_eq!(lines[8], "-5\t31\t0\tOff");
+        assert_eq!(lines.len(), 10);
+        let said = table.said;
+        assert_eq!(said.device, "Module 7");
+        assert!(said.doubts[0].contains("complete file recorded: No"), "{:?}", said.doubts);
+        assert!(said.doubts[1].contains("no recorded data"), "{:?}", said.doubts);
+        assert!(said.description.contains("device: Module 7"), "{}", said.description);
+        assert!(as_table(path, "t,fx\n0,1\n", &ReadSettings::default()).unwrap().is_none());
+    }
+
+    #[test]
+    fn keys_have_their_numbers() {
+        let report = Report::parse(Path::new("r.csv"), REPORT).unwrap();
+        let (name, value) = report.sections[1].number("maximumdeltavlongitudinal").unwrap();
+        assert_eq!(
+            (column_name(name).as_str(), value),
+            ("Maximum Delta-V, Longitudinal [MPH]", -14.9,)
+        );
+        assert_eq!(report.value("edrdevicetype"), Some("Module 7"));
+    }
+}

@@ -1,0 +1,334 @@
+//! `binout` of LS-DYNA: the text files of results in one binary container (`lsda`), in one part or
+//! many.
+//!
+//! ```text
+//! /rcforc/metadata    ids, side (0 slave, 1 master), legend (70 or 80 letters each), legend_ids
+//! /rcforc/d000001     time, x_force, y_force, z_force, z_moment: one number for each id and side
+//! /secforc/d000001    time, x_force, y_force, z_force
+//! /nodout/d000001     time, x_coordinate, y_coordinate, x_velocity, y_velocity
+//! /matsum/d000001     time, x_momentum, y_momentum, x_rbvelocity, y_rbvelocity of each part
+//! ```
+//!
+//! Other folders are skipped. A state whose time is not later than that of one before it counts in its
+//! place, as after a restart.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::data::budget::MAX_TABLE_BYTES;
+use crate::data::formats::fem::deck::Dimension;
+use crate::data::formats::fem::legend::plain_title;
+use crate::data::formats::fem::lsda::{self, Array};
+use crate::data::formats::fem::momenta::{Momenta, PartMomentum};
+use crate::data::formats::fem::parts::parts;
+use crate::data::formats::fem::results::{FORCE, History, Kind, MOMENT, NODE, Results, columns};
+use crate::data::formats::fem::states::{cut_state, written_again};
+use crate::data::{DataError, Place};
+
+/// The folders that are read, with the arrays of a state after the time. The first of them must be there.
+const CONTACTS: (&str, &[&str]) = ("rcforc", &["x_force", "y_force", "z_force", "z_moment"]);
+const SECTIONS: (&str, &[&str]) = ("secforc", &["x_force", "y_force", "z_force"]);
+const NODES: (&str, &[&str]) =
+    ("nodout", &["x_coordinate", "y_coordinate", "x_velocity", "y_velocity"]);
+const PARTS: (&str, &[&str]) =
+    ("matsum", &["x_momentum", "y_momentum", "x_rbvelocity", "y_rbvelocity"]);
+const READ: [(&str, &[&str]); 4] = [CONTACTS, SECTIONS, NODES, PARTS];
+
+/// Arrays of the metadata that are read.
+const METADATA: [&str; 4] = ["ids", "side", "legend", "legend_ids"];
+
+/// A folder as it is read.
+#[derive(Default)]
+struct Folder {
+    ids: Vec<f64>,
+    sides: Vec<f64>,
+    legend: Vec<u8>,
+    legend_ids: Vec<f64>,
+    states: Vec<State>,
+}
+
+/// Arrays of one instant, by their names.
+struct State {
+    /// The part and the folder in which they stand.
+    place: (usize, String),
+    arrays: BTreeMap<String, Vec<f64>>,
+}
+
+/// The states of a folder in the order of time.
+struct Table {
+    ids: Vec<i64>,
+    time: Vec<f64>,
+    /// For each array a row of numbers, one for each id, at each instant; `None` if it is not there.
+    arrays: Vec<Option<Vec<Vec<f64>>>>,
+}
+
+/// Reads a file with its other parts.
+pub(super) fn read(path: &Path) -> Result<Results, DataError> {
+    let mut folders: BTreeMap<&'static str, Folder> = BTreeMap::new();
+    let (mut left, mut doubts) = (MAX_TABLE_BYTES, Vec::new());
+    let parts = parts(path)?;
+    for (at, part) in parts.iter().enumerate() {
+        let mut take = |array: Array<'_>| keep(&mut folders, at, array);
+        if lsda::read(part, &is_read, &mut left, &mut take)? {
+            let name = part.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            doubts.push(format!("{name} ends within a record, as that of a run that was ended"));
+        }
+    }
+    let notes = match parts.len() {
+        1 => Vec::new(),
+        n => vec![format!("read from {n} files")],
+    };
+    let damaged = |why: String| {
+        let place = Place::Whole;
+        DataError::DamagedAt { path: path.to_owned(), place, why }
+    };
+    let mut results =
+        Results { format: "an LS-DYNA binout file", notes, doubts, ..Results::default() };
+    results.add(&mut folders).map_err(&damaged)?;
+    if results.histories.is_empty() {
+        let names = "rcforc, secforc or nodout with states";
+        return Err(damaged(format!("is a binout of LS-DYNA without {names}; write one of them")));
+    }
+    Ok(results)
+}
+
+/// Whether an array is one that is read.
+fn is_read(folder: &[String], name: &str) -> bool {
+    let [database, inner] = folder else { return false };
+    let found = READ.into_iter().find(|(of, _)| *of == database.as_str());
+    let Some((_, arrays)) = found else { return false };
+    match inner.as_str() {
+        "metadata" => METADATA.contains(&name),
+        _ => is_state(inner) && (name == "time" || arrays.contains(&name)),
+    }
+}
+
+fn is_state(folder: &str) -> bool {
+    let digits = folder.strip_prefix('d').unwrap_or_default();
+    !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// Keeps an array.
+///
+/// The error is what is wrong with it.
+fn keep(
+    folders: &mut BTreeMap<&'static str, Folder>,
+    part: usize,
+    Array { folder, name, values }: Array<'_>,
+) -> Result<(), String> {
+    let [database, inner] = folder else { return Ok(()) };
+    let found = READ.into_iter().find(|(of, _)| *of == database.as_str());
+    let Some((database, _)) = found else { return Ok(()) };
+    let of = folders.entry(database).or_default();
+    match (inner.as_str(), name) {
+        ("metadata", "legend") => of.legend = values.into_bytes(),
+        ("metadata", "legend_ids") => of.legend_ids = values.into_numbers(),
+        ("metadata", "side") => of.sides = values.into_numbers(),
+        ("metadata", _) => {
+            let ids = values.into_numbers();
+            if !of.ids.is_empty() && !ids.is_empty() && of.ids != ids {
+                return Err(format!("the ids of {database} are others than before"));
+            }
+            of.ids = ids;
+        }
+        (state, _) => {
+            let is_same = |last: &State| last.place.0 == part && last.place.1 == state;
+            if !of.states.last().is_some_and(is_same) {
+                let place = (part, state.to_owned());
+                of.states.push(State { place, arrays: BTreeMap::new() });
+            }
+            if let Some(last) = of.states.last_mut() {
+                last.arrays.insert(name.to_owned(), values.into_numbers());
+            }
+        }
+    }
+    Ok(())
+}
+
+impl Results {
+    /// Adds what the folders hold. The error is what is wrong with them.
+    fn add(&mut self, folders: &mut BTreeMap<&'static str, Folder>) -> Result<(), String> {
+        if let Some((table, folder)) = self.table(CONTACTS, folders)? {
+            self.histories.extend(table.contacts(&folder));
+        }
+        if let Some((table, folder)) = self.table(SECTIONS, folders)? {
+            self.histories.extend(table.histories((Kind::Section, "section"), &FORCE, &folder));
+            let note = "the force of a section is in the axes of the section, where it has some";
+            self.notes.push(note.to_owned());
+        }
+        if let Some((table, folder)) = self.table(NODES, folders)? {
+            self.histories.extend(table.histories((Kind::Node, "node"), &NODE, &folder));
+        }
+        if let Some((table, _)) = self.table(PARTS, folders)? {
+            self.momenta = table.momenta();
+        }
+        Ok(())
+    }
+
+    /// The states of a folder, and the folder; `None` if there is none.
+    fn table(
+        &mut self,
+        (name, arrays): (&str, &[&str]),
+        folders: &mut BTreeMap<&'static str, Folder>,
+    ) -> Result<Option<(Table, Folder)>, String> {
+        let Some(mut folder) = folders.remove(name) else { return Ok(None) };
+        let table = Table::new((name, arrays), &mut folder, &mut self.doubts)?;
+        Ok(table.map(|table| (table, folder)))
+    }
+}
+
+impl Table {
+    /// The states of a folder in the order of time; `None` if it has none.
+    ///
+    /// The error is what is wrong with them.
+    fn new(
+        (name, wanted): (&str, &[&str]),
+        folder: &mut Folder,
+        doubts: &mut Vec<String>,
+    ) -> Result<Option<Self>, String> {
+        let mut states = std::mem::take(&mut folder.states);
+        let is_complete = |state: &State| {
+            let first = wanted.first().copied().unwrap_or_default();
+            state.arrays.contains_key("time") && state.arrays.contains_key(first)
+        };
+        if states.last().is_some_and(|last| !is_complete(last)) {
+            states.pop();
+            doubts.push(format!("{name}: {}", cut_state()));
+        }
+        let (mut time, mut kept): (Vec<f64>, Vec<State>) = (Vec::new(), Vec::new());
+        let mut n_again = 0;
+        for mut state in states {
+            let at = state.arrays.remove("time").and_then(|time| time.first().copied());
+            let folder = &state.place.1;
+            let at = at.filter(|at| at.is_finite());
+            let at = at.ok_or_else(|| format!("{name}/{folder}: has no finite time"))?;
+            let n = time.iter().rposition(|earlier| *earlier < at).map_or(0, |last| last + 1);
+            n_again += time.len() - n;
+            time.truncate(n);
+            kept.truncate(n);
+            time.push(at);
+            kept.push(state);
+        }
+        if n_again > 0 {
+            doubts.push(format!("{name}: {}", written_again(n_again)));
+        }
+        let ids: Vec<i64> = folder.ids.iter().map(|id| *id as i64).collect();
+        if kept.is_empty() || ids.is_empty() {
+            return Ok(None);
+        }
+        let arrays = wanted.iter().map(|array| rows(name, array, ids.len(), &mut kept));
+        let arrays = arrays.collect::<Result<Vec<_>, _>>()?;
+        Ok(Some(Self { ids, time, arrays }))
+    }
+
+    /// A number of one id at all instants.
+    fn column(&self, array: usize, id_idx: usize) -> Option<Vec<f64>> {
+        let rows = self.arrays.get(array)?.as_ref()?;
+        rows.iter().map(|row| row.get(id_idx).copied()).collect()
+    }
+
+    /// The columns of one id up to the first that is not there.
+    fn columns(&self, id_idx: usize) -> Vec<Vec<f64>> {
+        (0..self.arrays.len()).map_while(|array| self.column(array, id_idx)).collect()
+    }
+
+    /// A history for each id.
+    fn histories(
+        &self,
+        (kind, word): (Kind, &str),
+        names: &[(&'static str, Dimension)],
+        folder: &Folder,
+    ) -> Vec<History> {
+        let (time, titles) = (Arc::new(self.time.clone()), folder.titles());
+        let history = |(at, id): (usize, &i64)| {
+            let values = self.columns(at);
+            let title = titles.get(id).cloned().unwrap_or_default();
+            let name = (format!("{word} {id}"), title);
+            // A file may hold less than what is read of it.
+            let is_whole = values.len() >= names.len();
+            is_whole.then(|| History::new(kind, name, &time, columns(names, values)))
+        };
+        self.ids.iter().enumerate().filter_map(history).collect()
+    }
+
+    /// The force on each side of each contact.
+    fn contacts(&self, folder: &Folder) -> Vec<History> {
+        let mut names = FORCE.to_vec();
+        if self.arrays.last().is_some_and(Option::is_some) {
+            names.push(MOMENT);
+        }
+        let mut histories = self.histories((Kind::Contact, "contact"), &names, folder);
+        let count = |id: &i64, ids: &[i64]| ids.iter().filter(|of| *of == id).count();
+        let sides = (folder.sides.len() == self.ids.len()).then_some(&folder.sides);
+        for (at, (id, history)) in self.ids.iter().zip(&mut histories).enumerate() {
+            let before = self.ids.get(..at).unwrap_or_default();
+            let side = match sides.and_then(|sides| sides.get(at)) {
+                Some(side) if *side == 0.0 => " slave".to_owned(),
+                Some(_) => " master".to_owned(),
+                None if count(id, &self.ids) > 1 => format!(" side {}", count(id, before) + 1),
+                None => String::new(),
+            };
+            history.name += &side;
+        }
+        for at in 0..histories.len() {
+            let others = self.ids.iter().enumerate();
+            let mut others = others.filter(|(of, id)| *of != at && Some(*id) == self.ids.get(at));
+            let other = others.next().map(|(of, _)| of).filter(|_| others.next().is_none());
+            if let Some(history) = histories.get_mut(at) {
+                history.other_side = other;
+            }
+        }
+        histories
+    }
+
+    /// The momenta of the parts; `None` if they or the first velocities are not there.
+    fn momenta(&self) -> Option<Momenta> {
+        let part = |at: usize| {
+            let [px, py, vx, vy] = <[Vec<f64>; 4]>::try_from(self.columns(at)).ok()?;
+            let start = [*vx.first()?, *vy.first()?];
+            Some(PartMomentum { start, momentum: [px, py] })
+        };
+        let parts: Option<Vec<PartMomentum>> = (0..self.ids.len()).map(part).collect();
+        Some(Momenta { time: self.time.clone(), parts: parts? })
+    }
+}
+
+/// The rows of an array at all instants; `None` if it is in none of the states.
+///
+/// The error says which state lacks it or has another number of values.
+fn rows(
+    name: &str,
+    array: &str,
+    n_ids: usize,
+    states: &mut [State],
+) -> Result<Option<Vec<Vec<f64>>>, String> {
+    if states.iter().all(|state| !state.arrays.contains_key(array)) {
+        return Ok(None);
+    }
+    let row = |state: &mut State| {
+        let row = state.arrays.remove(array).unwrap_or_default();
+        match row.len() == n_ids {
+            true => Ok(row),
+            false => {
+                let (folder, n) = (&state.place.1, row.len());
+                Err(format!("{name}/{folder}/{array}: has {n} values, expected {n_ids}"))
+            }
+        }
+    };
+    states.iter_mut().map(row).collect::<Result<Vec<_>, _>>().map(Some)
+}
+
+impl Folder {
+    /// The titles by id: letters of one length for each of them.
+    fn titles(&self) -> BTreeMap<i64, String> {
+        let ids = if self.legend_ids.is_empty() { &self.ids } else { &self.legend_ids };
+        let length = self.legend.len().checked_div(ids.len()).unwrap_or(0);
+        if length == 0 {
+            return BTreeMap::new();
+        }
+        let title = |letters: &[u8]| plain_title(&String::from_utf8_lossy(letters));
+        let titles = self.legend.chunks_exact(length).map(title);
+        ids.iter().map(|id| *id as i64).zip(titles).collect()
+    }
+}

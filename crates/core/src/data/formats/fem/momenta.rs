@@ -1,0 +1,155 @@
+//! The momenta of the parts of a model: what a contact gives to a car its parts must gain.
+
+use crate::data::ForceHistory;
+use crate::data::formats::fem::deck::{DeckUnits, Dimension, shown};
+use crate::numerics::interpolate;
+
+/// Velocities at the start that differ by less than this share of the largest are those of one car.
+const SAME_VELOCITY: f64 = 0.02;
+
+/// Largest difference of momentum and impulse, as a share of the impulse.
+const LARGEST: f64 = 0.05;
+
+/// Momenta of all parts at the same instants.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Momenta {
+    pub time: Vec<f64>,
+    pub parts: Vec<PartMomentum>,
+}
+
+/// The momentum of one part along x and y, and its velocity at the start.
+#[derive(Debug, Clone, Default)]
+pub(super) struct PartMomentum {
+    pub start: [f64; 2],
+    pub momentum: [Vec<f64>; 2],
+}
+
+impl Momenta {
+    /// Compares an impulse with the change of momentum of the parts that begin with one velocity, as
+    /// those of one car do.
+    ///
+    /// - returns what is found, in words, and whether it contradicts the impulse; `None` where nothing
+    ///   can be compared.
+    pub(super) fn check(
+        &self,
+        force: &ForceHistory,
+        deck: Option<DeckUnits>,
+    ) -> Option<(String, bool)> {
+        let from = self.time.first()?.max(*force.time_s.first()?);
+        let to = self.time.last()?.min(*force.time_s.last()?);
+        let impulse = force.cumulative();
+        let over = |knots: &[f64], values: &[f64]| {
+            Some(interpolate(knots, values, to)? - interpolate(knots, values, from)?)
+        };
+        let [px, py] = [&impulse.px_n_s, &impulse.py_n_s].map(|sum| over(&impulse.knots_s, sum));
+        let (px, py) = (px?, py?);
+        let size = px.hypot(py);
+        if to <= from || !size.is_finite() || size <= 0.0 {
+            return None;
+        }
+        let groups = self.groups();
+        let [_, _] = groups.as_slice() else {
+            let text = "the momenta of the parts are not compared with the impulse: which parts are one \
+                        car does not follow from their first velocities";
+            return Some((text.to_owned(), false));
+        };
+        let error = |group: &Vec<usize>| -> Option<f64> {
+            let gained = |axis: usize| -> Option<f64> {
+                let parts = group.iter().filter_map(|at| self.parts.get(*at));
+                parts.map(|part| over(&self.time, part.momentum.get(axis)?)).sum()
+            };
+            Some((gained(0)? - px).hypot(gained(1)? - py) / size)
+        };
+        let errors = groups.iter().filter_map(|group| Some((group, error(group)?)));
+        let errors = errors.filter(|(_, error)| error.is_finite());
+        let (group, error) = errors.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let start = group.first().and_then(|at| self.parts.get(*at)).map(|part| part.start)?;
+        let per_unit = deck.map_or(1.0, |deck| deck.si_per_unit(Dimension::Velocity));
+        let unit = deck.map_or("", |_| " m/s");
+        let [x, y] = start.map(|component| shown(component * per_unit));
+        let percent = shown(100.0 * error);
+        let car = format!("the parts that begin with ({x}, {y}){unit}");
+        match error > LARGEST {
+            false => Some((
+                format!(
+                    "the momentum of {car} changes by the impulse of this force to {percent} %, so that \
+                         it is the force on them"
+                ),
+                false,
+            )),
+            true => Some((
+                format!(
+                    "the momentum of no car changes by the impulse of this force; that of {car} comes \
+                     nearest and differs by {percent} %: other contacts or the road act, too, or it is \
+                     another side"
+                ),
+                true,
+            )),
+        }
+    }
+
+    /// The parts by their velocities at the start.
+    fn groups(&self) -> Vec<Vec<usize>> {
+        let sizes = self.parts.iter().map(|part| part.start[0].hypot(part.start[1]));
+        let largest = sizes.fold(0.0, f64::max);
+        let mut groups: Vec<([f64; 2], Vec<usize>)> = Vec::new();
+        for (at, part) in self.parts.iter().enumerate() {
+            let is_same = |velocity: &[f64; 2]| {
+                let apart = (velocity[0] - part.start[0]).hypot(velocity[1] - part.start[1]);
+                apart <= SAME_VELOCITY * largest
+            };
+            let is_many = groups.len() > MOST_GROUPS;
+            match groups.iter_mut().find(|(velocity, _)| is_same(velocity)) {
+                Some((_, group)) => group.push(at),
+                None if is_many => break,
+                None => groups.push((part.start, vec![at])),
+            }
+        }
+        groups.into_iter().map(|(_, group)| group).collect()
+    }
+}
+
+/// More groups than this are not those of two cars.
+const MOST_GROUPS: usize = 8;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{ForceAxes, Sampling};
+
+    /// Two cars of two parts each; the second drives at 10 and loses 4 of momentum to the first.
+    fn pair(gain: f64) -> Momenta {
+        let part = |start: [f64; 2], from: f64, to: f64| PartMomentum {
+            start,
+            momentum: [vec![from, to], vec![0.0, 0.0]],
+        };
+        let parts = vec![
+            part([0.0, 0.0], 0.0, gain / 2.0),
+            part([10.0, 0.0], 10.0, 7.0),
+            part([0.01, 0.0], 0.0, gain / 2.0),
+            part([10.0, 0.0], 10.0, 9.0),
+        ];
+        Momenta { time: vec![0.0, 2.0], parts }
+    }
+
+    #[test]
+    fn the_parts_of_one_car_gain_the_impulse_of_the_force_on_it() {
+        let force = |sign: f64| ForceHistory {
+            axes: ForceAxes::World,
+            sampling: Sampling::Instant,
+            time_s: vec![0.0, 1.0, 2.0],
+            fx_n: vec![0.0, sign * 4.0, 0.0],
+            fy_n: vec![0.0; 3],
+            mz_n_m: None,
+        };
+        let (text, is_wrong) = pair(4.0).check(&force(1.0), Some(DeckUnits::KgMmMs)).unwrap();
+        assert!(!is_wrong && text.contains("(0, 0) m/s"), "{text}");
+        let (text, is_wrong) = pair(4.0).check(&force(-1.0), None).unwrap();
+        assert!(!is_wrong && text.contains("(10.00, 0) changes"), "{text}");
+        let (text, is_wrong) = pair(3.0).check(&force(1.0), None).unwrap();
+        assert!(is_wrong && text.contains("25.00 %"), "{text}");
+        let mut one = pair(4.0);
+        one.parts.iter_mut().for_each(|part| part.start = [0.0; 2]);
+        assert!(!one.check(&force(1.0), None).unwrap().1);
+    }
+}

@@ -1,0 +1,278 @@
+//! Parquet files: columns of numbers by their names, nested ones with points between the names.
+//!
+//! Read are columns of numbers and switches that are not repeated; texts, decimals and lists are left out. A
+//! column that says that it holds times since 1970 has their unit. What the file says of its own sizes is checked
+//! first ([`parquet_check`](super::parquet_check)). Written by pandas, polars, Spark and DuckDB, and here by
+//! [`write_restricted_series_parquet`](crate::data::write_restricted_series_parquet).
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::DataType;
+use parquet::errors::ParquetError;
+use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
+use parquet::schema::types::ColumnDescriptor;
+
+use crate::data::budget::{MAX_COLUMNS, MAX_TABLE_BYTES};
+use crate::data::formats::{Converted, Said, number_text, parquet_check};
+use crate::data::{DataError, RESTRICTIONS_COLUMN, Sheet, open_file, read_bytes};
+
+/// Cells that any file may have, and how many more for each of its bytes: long runs of one number are packed
+/// into a few bytes.
+const FREE_CELLS: usize = 500_000;
+const CELLS_PER_BYTE: usize = 16;
+
+/// Rows that are read at a time.
+const BATCH: usize = 8192;
+
+/// Names of columns of stamps, which are the time if they have its unit.
+const STAMPS: [&str; 5] = ["timestamp", "time", "stamp", "header.stamp", "t"];
+
+/// A column of numbers.
+struct NumberColumn {
+    /// Its place among all columns.
+    idx: usize,
+    header: String,
+    /// The level of its definition at which a value is there.
+    full: i16,
+    /// Whether whole numbers have no sign.
+    is_unsigned: bool,
+    values: Vec<Option<f64>>,
+}
+
+/// Reads a Parquet file as the text of a table.
+///
+/// # Errors
+/// [`DataError::Damaged`] if it cannot be read, [`DataError::TooLarge`] beyond the limits.
+pub(super) fn as_table(path: &Path) -> Result<Converted, DataError> {
+    let bytes = read_bytes(path, MAX_TABLE_BYTES)?;
+    let damaged =
+        |why: String| DataError::Damaged { path: path.to_owned(), format: "the Parquet file", why };
+    if parquet_check::footer(&bytes).is_none() {
+        return Err(damaged("its footer is damaged".to_owned()));
+    }
+    let (file, _) = open_file(path, MAX_TABLE_BYTES)?;
+    // What the checks above have not foreseen is a panic of the library.
+    let read = catch_unwind(AssertUnwindSafe(|| columns(file, &bytes)));
+    let (columns, left_out, restrictions) = match read {
+        Ok(read) => read.map_err(damaged)?,
+        Err(_) => return Err(damaged("its pages are damaged".to_owned())),
+    };
+    if columns.is_empty() {
+        let remedy = "it has no column of numbers that are not repeated; export the channels over time as CSV";
+        return Err(DataError::OtherFormat {
+            path: path.to_owned(),
+            format: "a Parquet file",
+            remedy,
+        });
+    }
+    let mut description = format!("a Parquet file with {} columns of numbers", columns.len());
+    if !left_out.is_empty() {
+        let shown: Vec<&str> = left_out.iter().take(12).map(String::as_str).collect();
+        description += &format!("; left out are columns of other kinds: {}", shown.join(", "));
+    }
+    let doubts = restrictions.map(|text| format!("the file says of itself: {text}"));
+    let name = "columns".to_owned();
+    let said = Said {
+        description,
+        doubts: doubts.into_iter().collect(),
+        part: Some(Sheet { name: name.clone(), all: vec![name] }),
+        device: String::new(),
+        keeps_lines: false,
+        ..Said::default()
+    };
+    Ok(Converted { text: text(&columns), said })
+}
+
+fn text(columns: &[NumberColumn]) -> String {
+    let header: Vec<&str> = columns.iter().map(|column| column.header.as_str()).collect();
+    let mut text = header.join("\t") + "\n";
+    let n_rows = columns.iter().map(|column| column.values.len()).max().unwrap_or(0);
+    for row in 0..n_rows {
+        for (idx, column) in columns.iter().enumerate() {
+            if idx > 0 {
+                text.push('\t');
+            }
+            if let Some(value) = column.values.get(row).copied().flatten() {
+                text.push_str(&number_text(value));
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The columns of numbers, the names of the others, and what the file says restricts its numbers.
+type Read = (Vec<NumberColumn>, Vec<String>, Option<String>);
+
+/// # Errors
+/// What is wrong, in words.
+fn columns(file: std::fs::File, bytes: &[u8]) -> Result<Read, String> {
+    let said = |error: ParquetError| error.to_string().chars().take(200).collect::<String>();
+    let reader = SerializedFileReader::new(file).map_err(said)?;
+    let metadata = reader.metadata().file_metadata();
+    let schema = metadata.schema_descr();
+    if schema.num_columns() > MAX_COLUMNS {
+        return Err(format!(
+            "it has {} columns, expected {MAX_COLUMNS} at most",
+            schema.num_columns()
+        ));
+    }
+    let (mut columns, mut left_out) = (Vec::new(), Vec::new());
+    for (idx, column) in schema.columns().iter().enumerate() {
+        match is_number(column) {
+            true => columns.push(NumberColumn::new(idx, column)),
+            false => left_out.push(plain(&column.path().string())),
+        }
+    }
+    let pairs = metadata.key_value_metadata().into_iter().flatten();
+    let restrictions = pairs
+        .filter(|pair| pair.key == RESTRICTIONS_COLUMN)
+        .find_map(|pair| pair.value.clone())
+        .map(|text| plain(&text));
+    let mut left = FREE_CELLS + CELLS_PER_BYTE * bytes.len();
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group).map_err(said)?;
+        check_pages(&*group, &columns, bytes)?;
+        let n_rows = usize::try_from(group.metadata().num_rows()).ok().ok_or("rows below 0")?;
+        let n_cells = n_rows.saturating_mul(columns.len());
+        left = left.checked_sub(n_cells).ok_or_else(|| {
+            format!("it says that it has {n_rows} rows in one part, more than its bytes can hold")
+        })?;
+        for column in &mut columns {
+            let mut reader = group.get_column_reader(column.idx).map_err(said)?;
+            let values = numbers(&mut reader, column, n_rows).map_err(said)?;
+            if values.len() != n_rows {
+                return Err(format!("{:?} has {} of {n_rows} rows", column.header, values.len()));
+            }
+            column.values.extend(values);
+        }
+    }
+    Ok((columns, left_out, restrictions))
+}
+
+/// Checks the pages of the columns that are read.
+fn check_pages(
+    group: &dyn RowGroupReader,
+    columns: &[NumberColumn],
+    bytes: &[u8],
+) -> Result<(), String> {
+    let mut unpacked = 0;
+    for column in columns {
+        let chunk = group.metadata().columns().get(column.idx).ok_or("a column is missing")?;
+        let start = chunk.dictionary_page_offset().unwrap_or(chunk.data_page_offset());
+        let pages = parquet_check::pages(bytes, start, chunk.compressed_size());
+        unpacked += pages.ok_or_else(|| format!("a page of {:?} is damaged", column.header))?;
+        if unpacked > MAX_TABLE_BYTES {
+            return Err(format!("it unpacks to more than {MAX_TABLE_BYTES} bytes"));
+        }
+    }
+    Ok(())
+}
+
+impl NumberColumn {
+    fn new(idx: usize, column: &ColumnDescriptor) -> Self {
+        let is_unsigned = match column.logical_type_ref() {
+            Some(LogicalType::Integer(of)) => !of.is_signed,
+            _ => matches!(column.converted_type(), ConvertedType::UINT_32 | ConvertedType::UINT_64),
+        };
+        let (header, full) = (header(column), column.max_def_level());
+        Self { idx, header, full, is_unsigned, values: Vec::new() }
+    }
+}
+
+/// Whether a column holds one plain number or switch in a row.
+fn is_number(column: &ColumnDescriptor) -> bool {
+    let is_plain = matches!(
+        column.physical_type(),
+        Type::BOOLEAN | Type::INT32 | Type::INT64 | Type::FLOAT | Type::DOUBLE
+    );
+    let is_decimal = column.converted_type() == ConvertedType::DECIMAL
+        || matches!(column.logical_type_ref(), Some(LogicalType::Decimal(_)));
+    is_plain && !is_decimal && column.max_rep_level() == 0
+}
+
+/// The name of a column, with the unit of its stamps.
+fn header(column: &ColumnDescriptor) -> String {
+    let name = plain(&column.path().string());
+    let unit = match column.logical_type_ref() {
+        Some(LogicalType::Timestamp(of) | LogicalType::Time(of)) => match of.unit {
+            TimeUnit::MILLIS => Some("ms"),
+            TimeUnit::MICROS => Some("us"),
+            TimeUnit::NANOS => Some("ns"),
+        },
+        _ => match column.converted_type() {
+            ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIME_MILLIS => Some("ms"),
+            ConvertedType::TIMESTAMP_MICROS | ConvertedType::TIME_MICROS => Some("us"),
+            _ => None,
+        },
+    };
+    match unit {
+        Some(unit) if STAMPS.contains(&name.to_lowercase().as_str()) => format!("time [{unit}]"),
+        Some(unit) => format!("{name} [{unit}]"),
+        None => name,
+    }
+}
+
+fn numbers(
+    reader: &mut ColumnReader,
+    column: &NumberColumn,
+    n_rows: usize,
+) -> Result<Vec<Option<f64>>, ParquetError> {
+    use ColumnReader::{
+        BoolColumnReader, DoubleColumnReader, FloatColumnReader, Int32ColumnReader,
+        Int64ColumnReader,
+    };
+    let extent = (column.full, n_rows);
+    let is_unsigned = column.is_unsigned;
+    match reader {
+        BoolColumnReader(reader) => all(reader, extent, |value| f64::from(u8::from(*value))),
+        Int32ColumnReader(reader) => all(reader, extent, |value| match is_unsigned {
+            true => f64::from(value.cast_unsigned()),
+            false => f64::from(*value),
+        }),
+        Int64ColumnReader(reader) => all(reader, extent, |value| match is_unsigned {
+            true => value.cast_unsigned() as f64,
+            false => *value as f64,
+        }),
+        FloatColumnReader(reader) => all(reader, extent, |value| f64::from(*value)),
+        DoubleColumnReader(reader) => all(reader, extent, |value| *value),
+        _ => Ok(Vec::new()),
+    }
+}
+
+/// The values of a column in all rows of a group; `None` where there is none.
+///
+/// - `full`: the level at which a value is there.
+fn all<T: DataType>(
+    reader: &mut ColumnReaderImpl<T>,
+    (full, n_rows): (i16, usize),
+    to_number: impl Fn(&T::T) -> f64,
+) -> Result<Vec<Option<f64>>, ParquetError> {
+    let mut numbers: Vec<Option<f64>> = Vec::new();
+    let (mut levels, mut values): (Vec<i16>, Vec<T::T>) = (Vec::new(), Vec::new());
+    while numbers.len() < n_rows {
+        levels.clear();
+        values.clear();
+        let most = BATCH.min(n_rows - numbers.len());
+        let (n_records, ..) = reader.read_records(most, Some(&mut levels), None, &mut values)?;
+        if n_records == 0 {
+            break;
+        }
+        let mut next = values.iter().map(&to_number);
+        match full {
+            0 => numbers.extend(next.map(Some)),
+            _ => {
+                let number = |level: &i16| if *level == full { next.next() } else { None };
+                numbers.extend(levels.iter().map(number));
+            }
+        }
+    }
+    Ok(numbers)
+}
+
+fn plain(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() || c == '"' { ' ' } else { c }).take(120).collect()
+}

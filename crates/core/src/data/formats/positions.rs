@@ -1,0 +1,302 @@
+//! Logs of satellite receivers: GPX (tracks) and NMEA 0183 (sentences `RMC`, else `GGA`).
+//!
+//! ```text
+//! <trkpt lat="51.985" lon="-0.975"><ele>100</ele><time>2026-11-25T10:00:00.5Z</time></trkpt>
+//! $GPRMC,100000.50,A,5159.1000,N,00058.5000,W,29.2,090.0,251126,,*1A
+//! $GPGGA,100000.50,5159.1000,N,00058.5000,W,4,12,0.7,100.0,M,,M,,*55
+//! ```
+//!
+//! Latitude and longitude become degrees, to the north and to the east positive, and metres in the plane at the
+//! first point by the formulas `east` and `north` of a map. A place of NMEA is degrees and minutes of arc, a
+//! speed knots, a course clockwise from north. A sentence whose checksum is wrong or that says that there was no
+//! fix is left out and counted. Positions are those of the antenna.
+
+use std::path::Path;
+
+use crate::data::formats::{Converted, Said, number_text};
+use crate::data::{DataError, ReadSettings, Sheet, SheetRef};
+
+/// Metres in a nautical mile.
+const NAUTICAL_MILE_M: f64 = 1852.0;
+
+/// Lines at the beginning by which a log is known.
+const EXAMINED_LINES: usize = 40;
+
+/// Tracks of a file.
+const MAX_TRACKS: usize = 1000;
+
+/// What is said of positions.
+const OF_ANTENNA: &str = "positions are those of the antenna: where it is not at the centre of gravity, the \
+     path and a turn of the car mix; ask where it was mounted";
+
+/// A part of a log.
+struct Track {
+    name: String,
+    /// Names of the columns.
+    header: &'static str,
+    rows: String,
+}
+
+/// A log as the text of a table.
+///
+/// # Errors
+/// [`DataError::NoSheet`] without such a track, [`DataError::OtherFormat`] without any.
+pub(super) fn as_table(
+    path: &Path,
+    text: &str,
+    settings: &ReadSettings,
+) -> Result<Option<Converted>, DataError> {
+    let (format, (tracks, mut doubts)) = match () {
+        () if is_gpx(text) => ("a GPX file", (gpx_tracks(text), Vec::new())),
+        () if is_nmea(text) => ("a log of NMEA sentences", nmea_track(text)),
+        () => return Ok(None),
+    };
+    if tracks.is_empty() {
+        let remedy = "it has no track with positions; record one, or give a CSV file with time, latitude and \
+                      longitude";
+        return Err(DataError::OtherFormat { path: path.to_owned(), format, remedy });
+    }
+    let all: Vec<String> = tracks.iter().map(|track| track.name.clone()).collect();
+    let chosen = match &settings.sheet {
+        None => Some(0),
+        Some(SheetRef::Number(number)) => number.checked_sub(1),
+        Some(SheetRef::Name(name)) => all.iter().position(|track| track == name),
+    };
+    let Some(track) = chosen.and_then(|idx| tracks.get(idx)) else {
+        let wanted = settings.sheet.as_ref().map_or_else(String::new, SheetRef::to_string);
+        return Err(DataError::NoSheet { path: path.to_owned(), wanted, found: all });
+    };
+    doubts.push(OF_ANTENNA.to_owned());
+    let said = Said {
+        description: format!(
+            "{format}: places from latitude and longitude; read is {}",
+            track.name
+        ),
+        doubts,
+        part: Some(Sheet { name: track.name.clone(), all }),
+        device: String::new(),
+        keeps_lines: false,
+        ..Said::default()
+    };
+    Ok(Some(Converted { text: format!("{}\n{}", track.header, track.rows), said }))
+}
+
+fn is_gpx(text: &str) -> bool {
+    let start: String = text.chars().take(4096).collect();
+    text.trim_start().starts_with('<') && start.contains("<gpx")
+}
+
+/// The tracks of a GPX file, each segment by itself.
+fn gpx_tracks(text: &str) -> Vec<Track> {
+    let mut tracks = Vec::new();
+    for segment in parts(text, "<trkseg", "</trkseg>").take(MAX_TRACKS) {
+        let mut rows = String::new();
+        for point in parts(segment, "<trkpt", "</trkpt>") {
+            let head = point.split('>').next().unwrap_or_default();
+            let cells = [
+                within(point, "<time>", "</time>"),
+                attribute(head, "lat"),
+                attribute(head, "lon"),
+                within(point, "<ele>", "</ele>"),
+            ];
+            let cells = cells.map(|cell| plain(cell.unwrap_or_default()));
+            rows.push_str(&cells.join("\t"));
+            rows.push('\n');
+        }
+        if !rows.is_empty() {
+            let name = format!("track {}", tracks.len() + 1);
+            let header = "time [s]\tlatitude [deg]\tlongitude [deg]\televation [m]";
+            tracks.push(Track { name, header, rows });
+        }
+    }
+    tracks
+}
+
+/// The parts of a text from one mark to the next end of them, or of the next one.
+fn parts<'a>(text: &'a str, start: &'a str, end: &'a str) -> impl Iterator<Item = &'a str> {
+    text.split(start).skip(1).map(move |part| part.split(end).next().unwrap_or_default())
+}
+
+fn within<'a>(text: &'a str, start: &str, end: &str) -> Option<&'a str> {
+    text.split_once(start)?.1.split_once(end).map(|(inside, _)| inside)
+}
+
+/// The value of an attribute within the head of an element.
+fn attribute<'a>(head: &'a str, name: &str) -> Option<&'a str> {
+    let mut rest = head;
+    while let Some(at) = rest.find(name) {
+        let (before, after) = rest.split_at(at);
+        let after = after.get(name.len()..)?;
+        let value = after.trim_start().strip_prefix('=').map(str::trim_start);
+        let is_word = before.ends_with(char::is_whitespace);
+        if let Some(value) = value.filter(|_| is_word) {
+            let quote = value.chars().next().filter(|c| matches!(c, '"' | '\''))?;
+            return value.get(1..)?.split(quote).next();
+        }
+        rest = after;
+    }
+    None
+}
+
+fn is_nmea(text: &str) -> bool {
+    let lines = text.lines().filter(|line| !line.trim().is_empty()).take(EXAMINED_LINES);
+    let n_sentences = lines.filter(|line| matches!(kind(line), Some("RMC" | "GGA"))).count();
+    n_sentences >= 2
+}
+
+/// The kind of a sentence.
+fn kind(line: &str) -> Option<&str> {
+    let name = line.trim().strip_prefix('$')?.split(',').next()?;
+    name.get(2..5).filter(|_| name.len() == 5)
+}
+
+/// The track of a log of sentences, and what is in doubt.
+fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
+    let lines = || text.lines().map(str::trim);
+    let talker = lines().find(|line| kind(line) == Some("RMC"));
+    let wanted = if talker.is_some() { "RMC" } else { "GGA" };
+    let talker = talker.or_else(|| lines().find(|line| kind(line) == Some(wanted)));
+    let talker = talker.and_then(|line| line.get(..6)).unwrap_or_default();
+    let (mut rows, mut n_wrong, mut n_without) = (String::new(), 0, 0);
+    for line in lines().filter(|line| line.starts_with(talker)) {
+        let Some(sentence) = checked(line) else {
+            n_wrong += 1;
+            continue;
+        };
+        let fields: Vec<&str> = sentence.split(',').collect();
+        let row = match wanted {
+            "RMC" => rmc(&fields),
+            _ => gga(&fields),
+        };
+        match row {
+            Some(row) => rows.push_str(&row),
+            None => n_without += 1,
+        }
+    }
+    let mut doubts = Vec::new();
+    if n_wrong > 0 {
+        doubts.push(format!("{n_wrong} sentences with a wrong checksum are left out"));
+    }
+    if n_without > 0 {
+        doubts.push(format!("{n_without} sentences without a position are left out"));
+    }
+    let header = match wanted {
+        "RMC" => "time [s]\tlatitude [deg]\tlongitude [deg]\tspeed [m/s]\tyaw [deg]",
+        _ => "time [s]\tlatitude [deg]\tlongitude [deg]",
+    };
+    let track = Track { name: wanted.to_owned(), header, rows };
+    (if track.rows.is_empty() { Vec::new() } else { vec![track] }, doubts)
+}
+
+/// What stands between the sign and the checksum, if it is right or not given.
+fn checked(line: &str) -> Option<&str> {
+    let body = line.strip_prefix('$')?;
+    let Some((sentence, sum)) = body.split_once('*') else { return Some(body) };
+    let sum = u8::from_str_radix(sum.get(..2)?, 16).ok()?;
+    (sentence.bytes().fold(0, |sum, byte| sum ^ byte) == sum).then_some(sentence)
+}
+
+/// Time, place, speed and direction of `…RMC,time,status,lat,N,lon,E,knots,course,…`.
+fn rmc(fields: &[&str]) -> Option<String> {
+    let [_, time, status, lat, ns, lon, ew, knots, course, ..] = fields else { return None };
+    let [time, lat, lon] = [clock(time)?, degrees(lat, ns, 2)?, degrees(lon, ew, 3)?];
+    let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite());
+    let speed = number(knots).map(|knots| knots * NAUTICAL_MILE_M / 3600.0);
+    // The direction of the way over ground; a receiver that stands has none.
+    let yaw = number(course).map(|course| 90.0 - course);
+    let [speed, yaw] = [speed, yaw].map(|number| number.map_or_else(String::new, number_text));
+    (*status == "A").then(|| format!("{time}\t{lat}\t{lon}\t{speed}\t{yaw}\n"))
+}
+
+/// Time and place of `…GGA,time,lat,N,lon,E,quality,…`.
+fn gga(fields: &[&str]) -> Option<String> {
+    let [_, time, lat, ns, lon, ew, quality, ..] = fields else { return None };
+    let [time, lat, lon] = [clock(time)?, degrees(lat, ns, 2)?, degrees(lon, ew, 3)?];
+    (*quality != "0" && !quality.is_empty()).then(|| format!("{time}\t{lat}\t{lon}\n"))
+}
+
+/// `hh:mm:ss.ss` of `hhmmss.ss`.
+fn clock(text: &str) -> Option<String> {
+    let [hours, minutes, seconds] = [text.get(..2)?, text.get(2..4)?, text.get(4..)?];
+    let is_clock = text.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+    is_clock.then(|| format!("{hours}:{minutes}:{seconds}"))
+}
+
+/// Degrees of degrees and minutes, such as `5159.1000`.
+///
+/// - `n_digits`: of the degrees.
+fn degrees(text: &str, side: &str, n_digits: usize) -> Option<String> {
+    let whole: f64 = text.get(..n_digits)?.parse().ok()?;
+    let minutes: f64 = text.get(n_digits..)?.parse().ok()?;
+    let sign = match side {
+        "N" | "E" => 1.0,
+        "S" | "W" => -1.0,
+        _ => return None,
+    };
+    (0.0..60.0).contains(&minutes).then(|| number_text(sign * (whole + minutes / 60.0)))
+}
+
+/// A cell without what would end it.
+fn plain(text: &str) -> String {
+    text.chars().take(80).map(|c| if c.is_control() || c == '"' { ' ' } else { c }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Channel, read_any_series};
+
+    fn read(name: &str, text: &str) -> Result<crate::data::Loaded, DataError> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        read_any_series(&path, None)
+    }
+
+    fn sentence(body: &str) -> String {
+        let sum = body.bytes().fold(0, |sum: u8, byte| sum ^ byte);
+        format!("${body}*{sum:02X}\r\n")
+    }
+
+    #[test]
+    fn a_gpx_track_becomes_a_path_in_metres() {
+        let point = |lon: f64, second: u32| {
+            format!(
+                "<trkpt lat=\"52.0\" lon=\"{lon}\"><ele>9</ele><time>2026-11-25T10:00:0{second}Z</time></trkpt>"
+            )
+        };
+        let text = format!(
+            "<?xml version=\"1.0\"?>\n<gpx version=\"1.1\"><trk><trkseg>{}{}</trkseg></trk></gpx>",
+            point(-1.0, 0),
+            point(-0.999, 5)
+        );
+        let loaded = read("a.gpx", &text).unwrap();
+        // 0.001° of longitude at 52° is 68.7 m.
+        let x = loaded.series.require(Channel::X).unwrap();
+        assert!((x[1] - 68.68).abs() < 0.05 && x[0] == 0.0, "{x:?}");
+        assert_eq!(loaded.series.time_s(), [36_000.0, 36_005.0]);
+        assert!(read("a.gpx", "<?xml version=\"1.0\"?>\n<gpx></gpx>").is_err());
+    }
+
+    #[test]
+    fn sentences_become_a_path_and_bad_ones_are_counted() {
+        let rmc = |seconds: &str, lon: &str, status: char| {
+            sentence(&format!(
+                "GPRMC,1000{seconds},{status},5200.0000,N,{lon},W,10.0,090.0,251126,,"
+            ))
+        };
+        let good = rmc("00.00", "00100.0000", 'A') + &rmc("01.00", "00059.9950", 'A');
+        let bad = good.clone() + &rmc("02.00", "00059.9900", 'V') + "$GPRMC,100003.00,A,1,N*00\r\n";
+        let loaded = read("a.nmea", &bad).unwrap();
+        assert_eq!(loaded.series.n_samples(), 2);
+        let x = loaded.series.require(Channel::X).unwrap();
+        assert!((x[1] - 5.72).abs() < 0.01, "{x:?}");
+        let speed = loaded.series.require(Channel::Speed).unwrap();
+        assert!((speed[0] - 5.144_44).abs() < 1e-4, "{speed:?}");
+        assert!(loaded.series.require(Channel::Yaw).unwrap()[0].abs() < 1e-12);
+        let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+        for said in ["1 sentences with a wrong", "1 sentences without a position", "the antenna"] {
+            assert!(notes.iter().any(|note| note.contains(said)), "{said}: {notes:?}");
+        }
+    }
+}

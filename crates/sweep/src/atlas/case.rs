@@ -1,0 +1,213 @@
+//! Where a case lies in the atlas of the PIT manoeuvre.
+
+use std::f64::consts::FRAC_PI_3;
+
+use crate::PitInput;
+use crate::atlas::Atlas;
+use impactlab_core::collision::Scenario;
+use impactlab_core::numerics::wrap_angle_rad;
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::vehicle::{Ending, VehicleParameters};
+
+/// Masses of the cars of the plan, kg, and by how much the striking car is faster along the lane in it, m/s:
+/// what the cells are averaged over, and beyond which they say nothing of a case.
+const MASSES_KG: [f64; 2] = [1400.0, 2600.0];
+const FASTER_M_S: [f64; 2] = [0.0, 3.0];
+
+/// Greatest angle between the headings of a PIT, rad.
+const MOST_ANGLE_RAD: f64 = FRAC_PI_3;
+
+/// A case as the inputs of the atlas.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CasePlace {
+    /// The inputs that the case says, with their values in SI units.
+    pub values: Vec<(PitInput, f64)>,
+    /// Masses of the struck and the striking car, kg.
+    pub masses_kg: [f64; 2],
+}
+
+/// The inputs of a case; `None` if it is no PIT: a touch of the side behind the CG of the struck car by
+/// one that drives the same way at up to 60° to it and closes in.
+///
+/// - `struck`: the struck car, on its road.
+pub fn place_of_case(scenario: &Scenario, struck: &VehicleParameters) -> Option<CasePlace> {
+    let geometry = scenario.geometry().ok()?;
+    let [x_m, y_m] = geometry.struck.body_from_world(geometry.contact_point_world_m);
+    let outline = scenario.struck.footprint();
+    // The bumper is touched further in than the sides.
+    let is_side = y_m.abs() > 0.4 * outline.width_m;
+    // The striking car comes from the right to the right side and turns to the left.
+    let side = -y_m.signum();
+    let (sin, cos) = scenario.struck.heading_rad.sin_cos();
+    let in_lane = |x: f64, y: f64| [x * cos + y * sin, side * (y * cos - x * sin)];
+    let [speed, _] = in_lane(scenario.struck.vx_world_m_s, scenario.struck.vy_world_m_s);
+    let [along, closing] = in_lane(scenario.striking.vx_world_m_s, scenario.striking.vy_world_m_s);
+    let between_rad = wrap_angle_rad(scenario.striking.heading_rad - scenario.struck.heading_rad);
+    let angle_rad = side * between_rad;
+    let is_pit = is_side
+        && x_m < 0.0
+        && speed > 0.0
+        && along > 0.0
+        && closing > 0.0
+        && (0.0..=MOST_ANGLE_RAD).contains(&angle_rad);
+    if !is_pit {
+        return None;
+    }
+    let ending = scenario.ending.clone().unwrap_or_default();
+    let mut values = vec![
+        (PitInput::TargetSpeed, speed),
+        (PitInput::Closing, closing),
+        (PitInput::Faster, along - speed),
+        (PitInput::Angle, angle_rad),
+        (PitInput::Overlap, x_m + struck.geometry.cg_to_rear_axle_m),
+        (PitInput::Friction, struck.tires.friction),
+        (PitInput::Esc, f64::from(u8::from(ending.esc.is_some()))),
+    ];
+    values.extend(driver(&ending).map(|driver| (PitInput::Driver, driver)));
+    let masses_kg = [scenario.struck.mass_kg, scenario.striking.mass_kg];
+    Some(CasePlace { values, masses_kg })
+}
+
+/// What the driver does, as the plan counts it; `None` for what is in none of its rows.
+fn driver(ending: &Ending) -> Option<f64> {
+    let is_other = ending.engine.is_some()
+        || ending.drive.is_some()
+        || ending.steer.is_some()
+        || !ending.damage.is_empty();
+    match (ending.countersteer.is_some(), ending.brake.is_some()) {
+        _ if is_other => None,
+        (false, false) => Some(0.0),
+        (true, false) => Some(1.0),
+        (false, true) => Some(2.0),
+        (true, true) => None,
+    }
+}
+
+impl CasePlace {
+    /// The value of an axis, by the name of its column.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        self.values.iter().find(|(input, _)| input.name() == name).map(|(_, value)| *value)
+    }
+
+    /// The bin of every axis in which the case lies.
+    pub fn bins(&self, atlas: &Atlas) -> Vec<Option<usize>> {
+        let values: Vec<(&str, f64)> =
+            self.values.iter().map(|(input, value)| (input.name(), *value)).collect();
+        atlas.locate(&values)
+    }
+
+    /// What of the case lies outside of the map, a phrase each; empty if nothing does.
+    pub fn outside(&self, atlas: &Atlas, units: UnitSystem) -> Vec<String> {
+        let shown = |quantity: Quantity, value: f64| quantity.shown(value, units);
+        let mut outside = Vec::new();
+        for axis in &atlas.axes {
+            let Some(value) = self.value(&axis.name) else { continue };
+            let (Some(low), Some(high)) = (axis.edges.first(), axis.edges.last()) else { continue };
+            if axis.locate(value).is_none() {
+                let quantity = axis.quantity();
+                let [value, low, high] = [value, *low, *high].map(|it| shown(quantity, it));
+                outside.push(format!("{}: {value}, the map has {low} to {high}", axis.label));
+            }
+        }
+        let mut check = |what: &str, quantity: Quantity, value: f64, [low, high]: [f64; 2]| {
+            if !(low..=high).contains(&value) {
+                let [value, low, high] = [value, low, high].map(|it| shown(quantity, it));
+                outside.push(format!("{what}: {value}, the map has {low} to {high}"));
+            }
+        };
+        let [struck, striking] = self.masses_kg;
+        check("Mass of the struck car", Quantity::Mass, struck, MASSES_KG);
+        check("Mass of the striking car", Quantity::Mass, striking, MASSES_KG);
+        if let Some(faster) = self.value(PitInput::Faster.name()) {
+            check("Speed above that of the struck car", Quantity::Speed, faster, FASTER_M_S);
+        }
+        outside
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::atlas::Axis;
+    use impactlab_core::vehicle::{Countersteer, Preset, built_in_vehicle};
+
+    #[test]
+    fn the_example_is_a_pit_with_the_values_of_its_file() {
+        let (scenario, struck) = (Scenario::example(), Preset::Reference.parameters());
+        let place = place_of_case(&scenario, &struck).unwrap();
+        let value = |input: PitInput| place.value(input.name()).unwrap();
+        assert!((value(PitInput::TargetSpeed) - 15.0).abs() < 1e-9);
+        let closing = 62.0 / 3.6 * 18_f64.to_radians().sin();
+        assert!((value(PitInput::Closing) - closing).abs() < 1e-9);
+        assert!((value(PitInput::Angle) - 18_f64.to_radians()).abs() < 1e-9);
+        assert_eq!((value(PitInput::Esc), value(PitInput::Driver)), (0.0, 0.0));
+        assert!(value(PitInput::Overlap).abs() < 0.6, "{place:?}");
+    }
+
+    #[test]
+    fn a_mirrored_case_has_the_same_place_and_what_is_no_pit_has_none() {
+        let (scenario, struck) = (Scenario::example(), Preset::Reference.parameters());
+        let place = place_of_case(&scenario, &struck).unwrap();
+        let mut mirrored = scenario.clone();
+        mirrored.striking.heading_rad *= -1.0;
+        mirrored.striking.vy_world_m_s *= -1.0;
+        let impactlab_core::collision::ContactLocation::Side { side, .. } =
+            &mut mirrored.contact.location
+        else {
+            panic!("{:?}", mirrored.contact)
+        };
+        *side = impactlab_core::collision::Side::Left;
+        let other = place_of_case(&mirrored, &struck).unwrap();
+        for ((input, value), (_, other)) in place.values.iter().zip(&other.values) {
+            assert!((value - other).abs() < 1e-9, "{input:?}: {value} {other}");
+        }
+        let mut away = scenario.clone();
+        away.striking.vy_world_m_s *= -1.0;
+        assert_eq!(place_of_case(&away, &struck), None);
+        let mut standing = scenario.clone();
+        standing.struck.vx_world_m_s = 0.0;
+        assert_eq!(place_of_case(&standing, &struck), None);
+        let mut countersteers = scenario;
+        let ending = Ending { countersteer: Some(Countersteer::default()), ..Ending::default() };
+        countersteers.ending = Some(ending);
+        let place = place_of_case(&countersteers, &struck).unwrap();
+        assert_eq!(place.value(PitInput::Driver.name()), Some(1.0));
+    }
+
+    /// What the cells are averaged over is what the shipped plans say, and their pairs are the labels.
+    #[test]
+    fn the_limits_are_those_of_the_shipped_plans() {
+        for text in [
+            include_str!("../../../../assets/atlas/pit.toml"),
+            include_str!("../../../../assets/atlas/pit-saltelli.toml"),
+        ] {
+            let plan: toml::Table = toml::from_str(text).unwrap();
+            let numbers = |name: &str, kind: &str| -> Vec<f64> {
+                let list = plan["vary"][name][kind].as_array().unwrap();
+                let number = |value: &toml::Value| {
+                    value.as_float().or(value.as_integer().map(|n| n as f64)).unwrap()
+                };
+                list.iter().map(number).collect()
+            };
+            assert_eq!(numbers("faster_m_s", "uniform"), FASTER_M_S);
+            for axis in Axis::pit().unwrap() {
+                if axis.is_choice() {
+                    assert_eq!(numbers(&axis.name, "list").len(), axis.labels.len());
+                    continue;
+                }
+                let ends = numbers(&axis.name, "uniform");
+                for (end, edge) in ends.iter().zip([axis.edges[0], axis.edges[axis.n_bins()]]) {
+                    assert!((end - edge).abs() < 1e-9, "{}: {end} {edge}", axis.name);
+                    assert!(axis.locate(*end).is_some(), "{}: {end}", axis.name);
+                }
+            }
+            for pair in plan["pit"]["pairs"].as_array().unwrap() {
+                for part in ["struck", "striking"] {
+                    let vehicle = built_in_vehicle(pair[part].as_str().unwrap()).unwrap();
+                    let mass_kg = vehicle.mass.mass_kg;
+                    assert!((MASSES_KG[0]..=MASSES_KG[1]).contains(&mass_kg), "{pair} {mass_kg}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Why there is no atlas.
+
+use std::path::PathBuf;
+
+use crate::SweepError;
+use crate::atlas::{AtlasFileError, AxisError, SensitivityError};
+use impactlab_core::data::DataError;
+
+/// An atlas that cannot be made, read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum AtlasError {
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// A table of rows cannot be read.
+    #[error(transparent)]
+    Rows(Box<SweepError>),
+    /// The rows of a file cannot be used.
+    #[error("{}: its rows cannot be used", path.display())]
+    RowsOf {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: Box<AtlasError>,
+    },
+    /// A file is no atlas.
+    #[error("{}: is no atlas", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: Box<AtlasFileError>,
+    },
+    /// An atlas cannot be written as a file.
+    #[error("the atlas cannot be written")]
+    Encode(#[source] Box<AtlasFileError>),
+    /// A file of axes is no TOML, or has other keys.
+    #[error("{}: says no axes", path.display())]
+    AxesSyntax {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with line and column.
+        source: Box<toml::de::Error>,
+    },
+    /// An axis is no axis.
+    #[error("axis {name:?}")]
+    Axis {
+        /// The axis.
+        name: String,
+        /// What is wrong.
+        source: AxisError,
+    },
+    /// There are no axes.
+    #[error("there are no axes")]
+    NoAxes,
+    /// Two axes have one name.
+    #[error("there are two axes {name:?}")]
+    SameAxis {
+        /// The name.
+        name: String,
+    },
+    /// There are more cells than can be numbered.
+    #[error("the axes have more than {limit} cells")]
+    TooManyCells {
+        /// The limit.
+        limit: u64,
+    },
+    /// The rows lack a column.
+    #[error("the rows have no column {name:?}")]
+    NoColumn {
+        /// The column.
+        name: String,
+    },
+    /// A column has another number of rows than there are.
+    #[error("column {name:?} has {got} rows, expected {expected}")]
+    ColumnLength {
+        /// The column.
+        name: String,
+        /// Rows of the column.
+        got: usize,
+        /// Rows.
+        expected: usize,
+    },
+    /// An outcome is infinite.
+    #[error(
+        "row {row}: {name} is {value}, expected a finite number, or NaN where it does not apply"
+    )]
+    Infinite {
+        /// The row.
+        row: u64,
+        /// The outcome.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
+    /// An outcome that happens or not is something between.
+    #[error("row {row}: {name} is {value}, expected 0 or 1")]
+    NotZeroOrOne {
+        /// The row.
+        row: u64,
+        /// The outcome.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
+    /// Rows of two plans or two programs.
+    #[error("the rows come from different {what}: {first} and {second}")]
+    Mixed {
+        /// What differs.
+        what: &'static str,
+        /// That of the rows before.
+        first: String,
+        /// That of these rows.
+        second: String,
+    },
+    /// A row is there twice.
+    #[error("row {row} is there twice")]
+    Twice {
+        /// The row.
+        row: u64,
+    },
+    /// No row can be used.
+    #[error("none of {n_rows} rows lies in a cell of the atlas and has an answer")]
+    NoRows {
+        /// Rows that there are.
+        n_rows: u64,
+    },
+    /// No Sobol indices follow from rows.
+    #[error("no Sobol indices follow from these rows")]
+    Sensitivity(#[from] SensitivityError),
+}
+
+impl From<SweepError> for AtlasError {
+    fn from(error: SweepError) -> Self {
+        Self::Rows(Box::new(error))
+    }
+}

@@ -1,0 +1,373 @@
+//! Rows as Parquet files, which the same rows always give the same bytes.
+//!
+//! A row group for each chunk, compressed by zstd, numbers with their bytes in streams; no time, no name of
+//! a machine. What the columns mean stands in the metadata.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use parquet::basic::{
+    Compression, ConvertedType, Encoding, LogicalType, Repetition, Type as PhysicalType, ZstdLevel,
+};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
+use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::schema::types::{ColumnPath, PrimitiveTypeBuilder, Type, TypePtr};
+
+use crate::rows::{Column, Rows, RowsMeta};
+use crate::{Plan, SweepError};
+use impactlab_core::data::open_file;
+
+/// Column of the numbers of the rows.
+const ROW: &str = "row";
+
+/// Column of the reasons of rows that failed.
+const REASON: &str = "reason";
+
+/// Level of zstd.
+const ZSTD_LEVEL: i32 = 3;
+
+/// Largest file that is read at once, bytes.
+const MOST_BYTES: u64 = 1 << 32;
+
+/// Most rows that are read at once.
+const MOST_ROWS: i64 = 50_000_000;
+
+/// Most columns of a table.
+const MOST_COLUMNS: usize = 10_000;
+
+/// The file of a chunk in the folder of a sweep.
+pub fn chunk_path(folder: &Path, chunk: u64) -> PathBuf {
+    folder.join(format!("part-{chunk:06}.parquet"))
+}
+
+/// What is written to, and taken out again as it grows.
+#[derive(Clone, Default)]
+struct Buffer(Arc<Mutex<Vec<u8>>>);
+
+impl Buffer {
+    fn take(&self) -> Vec<u8> {
+        std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Write for Buffer {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Writes tables one after the other, each as a row group of one file.
+pub(crate) struct RowsWriter {
+    buffer: Buffer,
+    writer: SerializedFileWriter<Buffer>,
+}
+
+impl RowsWriter {
+    /// - `like`: a table with the columns; its metadata are those of the file.
+    pub fn new(like: &Rows) -> Result<Self, ParquetError> {
+        let buffer = Buffer::default();
+        let properties = Arc::new(properties(like)?);
+        let writer = SerializedFileWriter::new(buffer.clone(), schema(like)?, properties)?;
+        Ok(Self { buffer, writer })
+    }
+
+    /// Adds rows, and gives the bytes that are due.
+    pub fn add(&mut self, rows: &Rows) -> Result<Vec<u8>, ParquetError> {
+        let mut group = self.writer.next_row_group()?;
+        let index: Vec<i64> =
+            rows.index.iter().map(|&index| i64::try_from(index).unwrap_or(i64::MAX)).collect();
+        put::<Int64Type>(&mut group, &index)?;
+        for column in rows.columns() {
+            put::<DoubleType>(&mut group, &column.values)?;
+        }
+        let reasons: Vec<ByteArray> =
+            rows.reasons.iter().map(|reason| ByteArray::from(reason.as_str())).collect();
+        put::<ByteArrayType>(&mut group, &reasons)?;
+        group.close()?;
+        self.writer.flush().map_err(|error| ParquetError::External(Box::new(error)))?;
+        Ok(self.buffer.take())
+    }
+
+    /// The last bytes.
+    pub fn finish(self) -> Result<Vec<u8>, ParquetError> {
+        self.writer.close()?;
+        Ok(self.buffer.take())
+    }
+}
+
+fn put<T: DataType>(
+    group: &mut SerializedRowGroupWriter<'_, Buffer>,
+    values: &[T::T],
+) -> Result<(), ParquetError> {
+    let missing = || ParquetError::General("there is one column too many".to_owned());
+    let mut column = group.next_column()?.ok_or_else(missing)?;
+    column.typed::<T>().write_batch(values, None, None)?;
+    column.close()
+}
+
+/// One table as the bytes of a file.
+///
+/// # Errors
+/// [`SweepError::Encode`].
+pub fn rows_bytes(rows: &Rows) -> Result<Vec<u8>, SweepError> {
+    let mut writer = RowsWriter::new(rows)?;
+    let mut bytes = writer.add(rows)?;
+    bytes.extend(writer.finish()?);
+    Ok(bytes)
+}
+
+fn required(name: &str, kind: PhysicalType) -> PrimitiveTypeBuilder<'_> {
+    Type::primitive_type_builder(name, kind).with_repetition(Repetition::REQUIRED)
+}
+
+fn schema(rows: &Rows) -> Result<TypePtr, ParquetError> {
+    let mut fields = vec![Arc::new(required(ROW, PhysicalType::INT64).build()?)];
+    for column in rows.columns() {
+        fields.push(Arc::new(required(&column.name, PhysicalType::DOUBLE).build()?));
+    }
+    let text = required(REASON, PhysicalType::BYTE_ARRAY)
+        .with_converted_type(ConvertedType::UTF8)
+        .with_logical_type(Some(LogicalType::String));
+    fields.push(Arc::new(text.build()?));
+    Ok(Arc::new(Type::group_type_builder("rows").with_fields(fields).build()?))
+}
+
+fn properties(rows: &Rows) -> Result<WriterProperties, ParquetError> {
+    let RowsMeta { plan_sha256, program, chunk, networks } = &rows.meta;
+    let units: BTreeMap<&str, &str> =
+        rows.columns().map(|column| (column.name.as_str(), column.unit.as_str())).collect();
+    let inputs: Vec<&str> = rows.inputs.iter().map(|column| column.name.as_str()).collect();
+    let json = |text: serde_json::Result<String>| {
+        text.map_err(|error| ParquetError::External(Box::new(error)))
+    };
+    let pairs = [
+        ("plan_sha256", plan_sha256.clone()),
+        ("program", program.clone()),
+        ("chunk", chunk.map_or_else(|| "all".to_owned(), |chunk| chunk.to_string())),
+        ("units", json(serde_json::to_string(&units))?),
+        ("inputs", json(serde_json::to_string(&inputs))?),
+        ("networks", json(serde_json::to_string(networks))?),
+    ];
+    let pairs = Vec::from(pairs.map(|(key, value)| KeyValue::new(key.to_owned(), value)));
+    let mut builder = WriterProperties::builder()
+        .set_created_by("impactlab".to_owned())
+        .set_compression(Compression::ZSTD(ZstdLevel::try_new(ZSTD_LEVEL)?))
+        .set_dictionary_enabled(false)
+        .set_statistics_enabled(EnabledStatistics::Chunk)
+        .set_max_row_group_row_count(None)
+        .set_key_value_metadata(Some(pairs))
+        .set_column_encoding(ColumnPath::from(ROW), Encoding::DELTA_BINARY_PACKED)
+        .set_column_dictionary_enabled(ColumnPath::from(REASON), true);
+    for column in rows.columns() {
+        let path = ColumnPath::new(vec![column.name.clone()]);
+        builder = builder.set_column_encoding(path, Encoding::BYTE_STREAM_SPLIT);
+    }
+    Ok(builder.build())
+}
+
+/// Reads a table of rows: a chunk, or all chunks merged.
+///
+/// # Errors
+/// [`SweepError::Rows`] says what is wrong with the file; [`SweepError::Data`] if it cannot be opened.
+pub fn read_rows(path: &Path) -> Result<Rows, SweepError> {
+    let wrong = |what: String| SweepError::Rows { path: path.to_owned(), what };
+    let (file, _) = open_file(path, MOST_BYTES)?;
+    read_file(file).map_err(|error| wrong(error.to_string()))
+}
+
+fn read_file(file: File) -> Result<Rows, ParquetError> {
+    let refused = |what: &str| ParquetError::General(what.to_owned());
+    let reader = SerializedFileReader::new(file)?;
+    let metadata = reader.metadata().file_metadata();
+    let n_rows = metadata.num_rows();
+    if !(0..=MOST_ROWS).contains(&n_rows) {
+        return Err(refused(&format!("{n_rows} rows, expected at most {MOST_ROWS}")));
+    }
+    let pairs = metadata.key_value_metadata().into_iter().flatten();
+    let pairs: BTreeMap<&str, &str> =
+        pairs.filter_map(|it| Some((it.key.as_str(), it.value.as_deref()?))).collect();
+    let stated = |key: &str| pairs.get(key).copied().ok_or_else(|| refused(&format!("no {key}")));
+    let json = |error: serde_json::Error| ParquetError::External(Box::new(error));
+    let units: BTreeMap<String, String> = serde_json::from_str(stated("units")?).map_err(json)?;
+    let input_names: Vec<String> = serde_json::from_str(stated("inputs")?).map_err(json)?;
+    let meta = RowsMeta {
+        plan_sha256: stated("plan_sha256")?.to_owned(),
+        program: stated("program")?.to_owned(),
+        chunk: match stated("chunk")? {
+            "all" => None,
+            chunk => {
+                let number = chunk.parse().ok();
+                Some(number.ok_or_else(|| refused("a chunk without a number"))?)
+            }
+        },
+        networks: serde_json::from_str(stated("networks")?).map_err(json)?,
+    };
+    let schema = metadata.schema_descr();
+    let names: Vec<String> =
+        schema.columns().iter().map(|column| column.name().to_owned()).collect();
+    let is_rows = names.first().is_some_and(|it| it == ROW)
+        && names.last().is_some_and(|it| it == REASON)
+        && schema.columns().iter().all(|column| column.max_def_level() == 0);
+    if !is_rows || names.len() > MOST_COLUMNS {
+        return Err(refused("other columns than those of a sweep"));
+    }
+    let n_numbers = names.len() - 2;
+    let mut index: Vec<i64> = Vec::new();
+    let mut numbers: Vec<Vec<f64>> = vec![Vec::new(); n_numbers];
+    let mut reasons: Vec<ByteArray> = Vec::new();
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group)?;
+        let left = n_rows - index.len() as i64;
+        let n = Some(group.metadata().num_rows()).filter(|n| (0..=left).contains(n));
+        let n = n.ok_or_else(|| refused("more rows than it says"))? as usize;
+        take::<Int64Type>(&*group, 0, n, &mut index)?;
+        for (idx, values) in numbers.iter_mut().enumerate() {
+            take::<DoubleType>(&*group, idx + 1, n, values)?;
+        }
+        take::<ByteArrayType>(&*group, n_numbers + 1, n, &mut reasons)?;
+    }
+    if index.len() as i64 != n_rows {
+        return Err(refused("fewer rows than it says"));
+    }
+    let index: Option<Vec<u64>> = index.into_iter().map(|row| u64::try_from(row).ok()).collect();
+    let index = index.ok_or_else(|| refused("a row with a negative number"))?;
+    let reasons = reasons.iter().map(|reason| reason.as_utf8().map(str::to_owned));
+    let reasons = reasons.collect::<Result<Vec<String>, _>>()?;
+    let numbers = names.get(1..=n_numbers).unwrap_or_default().iter().zip(numbers);
+    let columns = numbers.map(|(name, values)| {
+        let unit = units.get(name).cloned().unwrap_or_else(|| "1".to_owned());
+        Column { name: name.clone(), unit, values }
+    });
+    let (inputs, outcomes) = columns.partition(|column| input_names.contains(&column.name));
+    Ok(Rows { inputs, outcomes, index, reasons, meta })
+}
+
+/// Reads one column of a row group.
+fn take<T: DataType>(
+    group: &dyn RowGroupReader,
+    idx: usize,
+    n: usize,
+    values: &mut Vec<T::T>,
+) -> Result<(), ParquetError> {
+    let refused = |what: &str| Err(ParquetError::General(what.to_owned()));
+    let reader: ColumnReader = group.get_column_reader(idx)?;
+    let Some(mut reader): Option<ColumnReaderImpl<T>> = T::get_column_reader(reader) else {
+        return refused("a column of another type");
+    };
+    let before = values.len();
+    while values.len() - before < n {
+        let (_, read, _) = reader.read_records(n - (values.len() - before), None, None, values)?;
+        if read == 0 {
+            return refused("a column that ends early");
+        }
+    }
+    Ok(())
+}
+
+/// Reads the chunk of a plan, and checks that it is that and whole.
+///
+/// # Errors
+/// [`SweepError::Rows`] says what is wrong.
+pub fn read_chunk(folder: &Path, plan: &Plan, chunk: u64) -> Result<Rows, SweepError> {
+    let path = chunk_path(folder, chunk);
+    let rows = read_rows(&path)?;
+    match chunk_fault(&rows, plan, chunk) {
+        None => Ok(rows),
+        Some(what) => Err(SweepError::Rows { path, what }),
+    }
+}
+
+/// What is wrong with a chunk; `None` if nothing is.
+fn chunk_fault(rows: &Rows, plan: &Plan, chunk: u64) -> Option<String> {
+    let sha256 = plan.sha256();
+    if rows.meta.plan_sha256 != sha256 {
+        return Some(format!("it is of plan {}, not of {sha256}", rows.meta.plan_sha256));
+    }
+    if rows.meta.chunk != Some(chunk) {
+        return Some(format!("it is chunk {:?}, not {chunk}", rows.meta.chunk));
+    }
+    if rows.meta.program != plan.program || rows.meta.networks != plan.networks {
+        return Some("another program or other networks have answered".to_owned());
+    }
+    let expected = plan.rows_of(chunk);
+    if !rows.index.iter().copied().eq(expected.clone()) {
+        return Some(format!(
+            "it has {} rows, not those from {} to {}",
+            rows.len(),
+            expected.start,
+            expected.end.saturating_sub(1)
+        ));
+    }
+    let inputs = plan.vary.iter().map(|vary| vary.name.as_str());
+    let outcomes = plan.outcomes();
+    let names = inputs.chain(outcomes.iter().map(|(name, _)| name.as_str()));
+    let is_same = rows.columns().map(|column| column.name.as_str()).eq(names);
+    (!is_same).then(|| "it has other columns".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows() -> Rows {
+        let column = |name: &str, unit: &str, values: Vec<f64>| Column {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            values,
+        };
+        Rows {
+            inputs: vec![column("speed_m_s", "m/s", vec![1.5, 2.5, -0.0])],
+            outcomes: vec![column("x_m", "m", vec![1e300, f64::NAN, 3.0])],
+            index: vec![4, 5, 6],
+            reasons: vec![String::new(), "the vehicles do not meet".to_owned(), String::new()],
+            meta: RowsMeta {
+                plan_sha256: "ab".to_owned(),
+                program: "0".to_owned(),
+                chunk: Some(2),
+                networks: BTreeMap::from([("force".to_owned(), "cd".to_owned())]),
+            },
+        }
+    }
+
+    #[test]
+    fn rows_come_back_to_the_bit_and_have_the_same_bytes() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.parquet");
+        let bytes = rows_bytes(&rows()).unwrap();
+        assert_eq!(bytes, rows_bytes(&rows()).unwrap());
+        std::fs::write(&path, &bytes).unwrap();
+        let read = read_rows(&path).unwrap();
+        let bits = |rows: &Rows| -> Vec<u64> {
+            rows.columns().flat_map(|column| column.values.iter().map(|it| it.to_bits())).collect()
+        };
+        assert_eq!(bits(&read), bits(&rows()));
+        assert_eq!((&read.index, &read.reasons), (&rows().index, &rows().reasons));
+        assert_eq!((read.meta.clone(), read.n_failed()), (rows().meta, 1));
+        assert_eq!(read.inputs[0].unit, "m/s");
+        assert_eq!(read.column("x_m").map(|column| column.values[2]), Some(3.0));
+    }
+
+    #[test]
+    fn a_file_that_was_cut_off_or_changed_is_no_table() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.parquet");
+        let bytes = rows_bytes(&rows()).unwrap();
+        for n in [0, 3, bytes.len() / 2, bytes.len() - 1] {
+            std::fs::write(&path, &bytes[..n]).unwrap();
+            assert!(matches!(read_rows(&path), Err(SweepError::Rows { .. })), "{n}");
+        }
+    }
+}

@@ -1,0 +1,300 @@
+//! The rows of a PIT: from the inputs of a row to its scenario.
+//!
+//! The lane is along the heading of the struck car in the scenario of the plan. What does not vary stays as
+//! the scenario has it.
+
+use impactlab_core::collision::{ContactLocation, Scenario, Side};
+use impactlab_core::ranges::{CONTACT_OFFSET, ROAD_FRICTION, Range, SPEED, YAW_RATE};
+use impactlab_core::vehicle::{
+    Braking, Countersteer, DEFAULT_BRAKE_RISE_S, StabilityControl, VehicleParameters,
+    built_in_vehicle,
+};
+use impactlab_study::{DEFAULT_STRIKING, DEFAULT_VEHICLE};
+use serde_json::Value;
+
+use crate::plan::PitQuestion;
+use crate::vary::{Distribution, Vary};
+
+/// An input of a PIT that can vary.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, strum::VariantArray, strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "snake_case")]
+pub enum PitInput {
+    /// Speed of the struck car along the lane, m/s.
+    #[strum(serialize = "target_speed_m_s")]
+    TargetSpeed,
+    /// Speed of the striking car across the lane, towards the struck one, m/s.
+    #[strum(serialize = "closing_m_s")]
+    Closing,
+    /// By how much the striking car is faster along the lane, m/s.
+    #[strum(serialize = "faster_m_s")]
+    Faster,
+    /// Angle between the headings, towards the struck car, rad.
+    #[strum(serialize = "angle_rad")]
+    Angle,
+    /// Where the striking car touches: distance ahead of the rear axle of the struck one, m.
+    #[strum(serialize = "overlap_m")]
+    Overlap,
+    /// Yaw rate of the striking car, towards the struck one, rad/s.
+    #[strum(serialize = "yaw_rate_rad_s")]
+    YawRate,
+    /// Peak friction of the road.
+    Friction,
+    /// Place in the list of pairs, from 0.
+    Pair,
+    /// Whether the struck car has a stability control, 0 or 1.
+    Esc,
+    /// What the driver of the struck car does: 0 nothing, 1 countersteers, 2 brakes.
+    Driver,
+}
+
+/// Reaction of a driver who brakes, s, and braking force over what the road can hold.
+const BRAKING: [f64; 2] = [0.8, 0.8];
+
+impl PitInput {
+    /// Its name in a plan and in a table.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+
+    /// The input of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let all = <Self as strum::VariantArray>::VARIANTS;
+        all.iter().copied().find(|input| input.name() == name)
+    }
+
+    /// Its SI unit; "1" for a pure number.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::TargetSpeed | Self::Closing | Self::Faster => "m/s",
+            Self::Angle => "rad",
+            Self::Overlap => "m",
+            Self::YawRate => "rad/s",
+            Self::Friction | Self::Pair | Self::Esc | Self::Driver => "1",
+        }
+    }
+
+    /// The numbers that it may have.
+    fn range(self, n_pairs: usize) -> Range {
+        let last = n_pairs.saturating_sub(1) as u64;
+        match self {
+            Self::TargetSpeed => SPEED.within([1.0, 100.0]),
+            Self::Closing => SPEED.within([0.0, 50.0]),
+            Self::Faster => SPEED.within([-50.0, 50.0]),
+            Self::Angle => Range::real(
+                "angle",
+                impactlab_core::units::Quantity::Angle,
+                [0.0, std::f64::consts::FRAC_PI_2],
+                "angle between the headings",
+            ),
+            Self::Overlap => CONTACT_OFFSET.within([-5.0, 5.0]),
+            Self::YawRate => YAW_RATE.within([-5.0, 5.0]),
+            Self::Friction => ROAD_FRICTION,
+            Self::Pair => Range::whole("pair", [0, last], "place in the list of pairs"),
+            Self::Esc => Range::whole("esc", [0, 1], "stability control"),
+            Self::Driver => Range::whole("driver", [0, 2], "driver of the struck car"),
+        }
+    }
+
+    /// The side on which the struck car of a scenario is hit: 1 if the striking car turns to its left, −1
+    /// if to its right; `None` if it is no side.
+    pub(crate) fn side(scenario: &Scenario) -> Option<f64> {
+        match scenario.contact.location {
+            ContactLocation::Side { side: Side::Right, .. } => Some(1.0),
+            ContactLocation::Side { side: Side::Left, .. } => Some(-1.0),
+            _ => None,
+        }
+    }
+}
+
+impl PitQuestion {
+    /// What is expected of an input that may not be as it is; `None` if it may.
+    pub(crate) fn fault_of(&self, vary: &Vary) -> Option<String> {
+        let Some(input) = PitInput::from_name(&vary.name) else {
+            return Some("an input of a pit".to_owned());
+        };
+        let range = input.range(self.pairs.len());
+        let is_within = match &vary.distribution {
+            Distribution::List { values, .. } => {
+                let is_good = |value: &Value| value.as_f64().is_some_and(|it| range.contains(it));
+                values.iter().all(is_good)
+            }
+            other => {
+                let [low, high] = other.support()?;
+                !range.is_whole && range.contains(low) && range.contains(high)
+            }
+        };
+        let is_open = input == PitInput::Pair && self.pairs.is_empty();
+        match (is_within, is_open) {
+            (true, false) => None,
+            (_, true) => Some("pairs in [pit], of which one is taken".to_owned()),
+            (false, false) if range.is_whole => {
+                Some(format!("a list of whole numbers, {}", range.expected_si()))
+            }
+            (false, false) => {
+                Some(format!("{} throughout, with low and high", range.expected_si()))
+            }
+        }
+    }
+
+    /// The scenario of some inputs.
+    ///
+    /// - `vehicles`: the struck and the striking vehicle of a question without pairs;
+    /// - `number`: the value of an input; `None` for one that stays as the question has it;
+    /// - returns `None` if there is no such pair, or the struck vehicle is not hit in a side.
+    pub fn scenario_of(
+        &self,
+        vehicles: [VehicleParameters; 2],
+        number: impl Fn(PitInput) -> Option<f64>,
+    ) -> Option<Scenario> {
+        let vehicles = match self.pairs.is_empty() {
+            true => PitVehicles(vec![vehicles]),
+            false => PitVehicles::new(self),
+        };
+        PitRow::new(self, &vehicles, number).map(|row| row.scenario)
+    }
+}
+
+/// Vehicles of a plan, read once.
+#[derive(Debug, Clone)]
+pub(crate) struct PitVehicles(Vec<[VehicleParameters; 2]>);
+
+impl PitVehicles {
+    /// Those of the pairs, or of the scenario.
+    pub fn new(question: &PitQuestion) -> Self {
+        let scenario = &question.scenario;
+        let named = |name: Option<&str>, usual: impactlab_core::vehicle::Preset| {
+            name.and_then(built_in_vehicle).unwrap_or_else(|| usual.parameters())
+        };
+        if question.pairs.is_empty() {
+            let struck = named(scenario.struck_vehicle.as_deref(), DEFAULT_VEHICLE);
+            let striking = named(scenario.striking_vehicle.as_deref(), DEFAULT_STRIKING);
+            return Self(vec![[struck, striking]]);
+        }
+        let pairs = question.pairs.iter();
+        Self(
+            pairs
+                .map(|pair| {
+                    let struck = named(Some(&pair.struck), DEFAULT_VEHICLE);
+                    [struck, named(Some(&pair.striking), DEFAULT_STRIKING)]
+                })
+                .collect(),
+        )
+    }
+}
+
+/// The scenario of a row with its vehicles on its road.
+pub(crate) struct PitRow {
+    pub scenario: Scenario,
+    pub vehicles: [VehicleParameters; 2],
+}
+
+impl PitRow {
+    /// - `number`: the value of an input; `None` for one that does not vary.
+    pub fn new(
+        question: &PitQuestion,
+        vehicles: &PitVehicles,
+        number: impl Fn(PitInput) -> Option<f64>,
+    ) -> Option<Self> {
+        let mut scenario = question.scenario.clone();
+        let pair_idx = number(PitInput::Pair).map_or(0, |idx| idx as usize);
+        let mut vehicles = vehicles.0.get(pair_idx)?.clone();
+        if let Some(friction) = number(PitInput::Friction) {
+            vehicles = vehicles.map(|vehicle| vehicle.with_friction(friction));
+        }
+        if let Some(ids) = question.pairs.get(pair_idx) {
+            let [struck, striking] = &vehicles;
+            scenario.struck.take(struck);
+            scenario.striking.take(striking);
+            scenario.struck_vehicle = Some(ids.struck.clone());
+            scenario.striking_vehicle = Some(ids.striking.clone());
+        }
+        let side = PitInput::side(&scenario)?;
+        set_motion(&mut scenario, side, &number);
+        if let (Some(overlap_m), ContactLocation::Side { offset_m, .. }) =
+            (number(PitInput::Overlap), &mut scenario.contact.location)
+        {
+            let middle_m = scenario.struck.cg_from_front_m - scenario.struck.length_m / 2.0;
+            *offset_m = overlap_m - vehicles[0].geometry.cg_to_rear_axle_m - middle_m;
+        }
+        let ending = scenario.ending.get_or_insert_default();
+        if let Some(esc) = number(PitInput::Esc) {
+            ending.esc = (esc > 0.5).then(StabilityControl::default);
+        }
+        if let Some(driver) = number(PitInput::Driver) {
+            let [start_s, share] = BRAKING;
+            ending.countersteer = (driver == 1.0).then(Countersteer::default);
+            ending.brake =
+                (driver == 2.0).then(|| Braking::new(start_s, share, DEFAULT_BRAKE_RISE_S));
+        }
+        Some(Self { scenario, vehicles })
+    }
+}
+
+/// Velocities and heading of both vehicles, in axes along the lane.
+fn set_motion(scenario: &mut Scenario, side: f64, number: &impl Fn(PitInput) -> Option<f64>) {
+    let heading_rad = scenario.struck.heading_rad;
+    let (sin, cos) = heading_rad.sin_cos();
+    let in_lane = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
+    let of_struck = in_lane([scenario.struck.vx_world_m_s, scenario.struck.vy_world_m_s]);
+    let of_striking = in_lane([scenario.striking.vx_world_m_s, scenario.striking.vy_world_m_s]);
+    let along = number(PitInput::TargetSpeed).unwrap_or(of_struck[0]);
+    let faster = number(PitInput::Faster).unwrap_or(of_striking[0] - of_struck[0]);
+    let across = number(PitInput::Closing).map_or(of_striking[1], |closing| side * closing);
+    let in_world = |[x, y]: [f64; 2]| [x * cos - y * sin, x * sin + y * cos];
+    let struck = in_world([along, of_struck[1]]);
+    let striking = in_world([along + faster, across]);
+    [scenario.struck.vx_world_m_s, scenario.struck.vy_world_m_s] = struck;
+    [scenario.striking.vx_world_m_s, scenario.striking.vy_world_m_s] = striking;
+    if let Some(angle_rad) = number(PitInput::Angle) {
+        scenario.striking.heading_rad = heading_rad + side * angle_rad;
+    }
+    if let Some(rate_rad_s) = number(PitInput::YawRate) {
+        scenario.striking.yaw_rate_rad_s = side * rate_rad_s;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_inputs_of_a_row_are_those_of_its_scenario() {
+        let question = PitQuestion {
+            scenario: Scenario::example(),
+            pairs: Vec::new(),
+            road_sigma: 0.0,
+            limit_s: 20.0,
+        };
+        let vehicles = PitVehicles::new(&question);
+        let unchanged = PitRow::new(&question, &vehicles, |_| None).unwrap();
+        let (before, after) = (&question.scenario, &unchanged.scenario);
+        assert!((before.striking.vx_world_m_s - after.striking.vx_world_m_s).abs() < 1e-12);
+        assert_eq!(before.contact, after.contact);
+        let value = |input| match input {
+            PitInput::TargetSpeed => Some(20.0),
+            PitInput::Closing => Some(3.0),
+            PitInput::Faster => Some(1.0),
+            PitInput::Angle => Some(0.2),
+            PitInput::Overlap => Some(-0.25),
+            PitInput::Friction => Some(0.5),
+            PitInput::Driver => Some(2.0),
+            PitInput::Esc => Some(1.0),
+            PitInput::YawRate | PitInput::Pair => None,
+        };
+        let row = PitRow::new(&question, &vehicles, value).unwrap();
+        let scenario = &row.scenario;
+        assert!((scenario.struck.vx_world_m_s - 20.0).abs() < 1e-12);
+        assert!((scenario.striking.vx_world_m_s - 21.0).abs() < 1e-12);
+        assert!((scenario.striking.vy_world_m_s - 3.0).abs() < 1e-12);
+        assert!((scenario.striking.heading_rad - 0.2).abs() < 1e-12);
+        assert!(row.vehicles.iter().all(|vehicle| vehicle.tires.friction == 0.5));
+        let ending = scenario.ending.as_ref().unwrap();
+        assert!(ending.esc.is_some() && ending.brake.is_some() && ending.countersteer.is_none());
+        let geometry = scenario.geometry().unwrap();
+        let [x_m, y_m] = geometry.struck.body_from_world(geometry.contact_point_world_m);
+        let rear_axle_m = -row.vehicles[0].geometry.cg_to_rear_axle_m;
+        assert!((x_m - (rear_axle_m - 0.25)).abs() < 1e-6 && y_m < 0.0, "{x_m} {y_m}");
+    }
+}

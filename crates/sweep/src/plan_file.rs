@@ -1,0 +1,338 @@
+//! Reads the plan that a person writes.
+//!
+//! ```toml
+//! name = "PIT at 35 to 45 mph"
+//! question = "pit"                  # or "request"
+//! design = "sobol"                  # or "saltelli", "grid"
+//! n = 100000                        # rows; base points (saltelli); rows a cell (grid)
+//! chunk = 2000                      # rows of a file, 1000 if not given
+//! seed = 1                          # 0 if not given
+//!
+//! [pit]
+//! scenario = "pit-right-rear"       # what does not vary: a file, or one that comes with the program
+//! limit_s = 30                      # followed to rest, at the latest for so long
+//! friction_sigma = 0.05             # 0 if friction varies, else 0.075 of it
+//! pairs = [{ struck = "toyota-camry-2018", striking = "ford-explorer-2020" }]
+//!
+//! [vary.target_speed_m_s]           # a name of PitInput
+//! uniform = [15.6, 20.1]            # normal, lognormal, triangular, list, steps; low and high cut off
+//! ```
+//!
+//! Of a request, `[request]` has its `file`, `seed_at`, and `[[request.outcomes]]` with `name`, `at` and
+//! `unit`; each `[vary.NAME]` says with `at` where its value goes.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::SweepError;
+use crate::pit::PitInput;
+use crate::plan::{
+    Design, FORMAT, PickedOutcome, PitQuestion, Plan, RequestQuestion, SweptQuestion,
+    VehiclePairIds, files_of, networks,
+};
+use crate::vary::{Distribution, Vary};
+use impactlab_core::collision::{SCENARIO_PRESETS, Scenario};
+use impactlab_core::data::{MAX_SETTINGS_BYTES, TomlError, TomlFile, read_utf8};
+use impactlab_core::program;
+use impactlab_core::ranges::{REST_LIMIT, ROAD_FRICTION_SIGMA};
+use impactlab_core::vehicle::{ROAD_FRICTION_SPREAD, built_in_vehicle};
+use impactlab_study::{DEFAULT_VEHICLE, Library, Request};
+
+/// Time after which a motion is followed no further where nobody says it, s.
+const DEFAULT_LIMIT_S: f64 = 30.0;
+
+/// Rows of a chunk where nobody says it.
+const DEFAULT_CHUNK: u64 = 1000;
+
+/// Most steps between two ends.
+const MOST_STEPS: usize = 10_000;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlanFile {
+    #[serde(default)]
+    name: String,
+    question: Kind,
+    #[serde(default)]
+    design: Design,
+    n: u64,
+    #[serde(default = "default_chunk")]
+    chunk: u64,
+    #[serde(default)]
+    seed: u64,
+    pit: Option<PitFile>,
+    request: Option<RequestFile>,
+    vary: BTreeMap<String, VaryFile>,
+}
+
+fn default_chunk() -> u64 {
+    DEFAULT_CHUNK
+}
+
+#[derive(Clone, Copy, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Kind {
+    Pit,
+    Request,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct PitFile {
+    scenario: Option<String>,
+    limit_s: Option<f64>,
+    friction_sigma: Option<f64>,
+    pairs: Vec<VehiclePairIds>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RequestFile {
+    file: String,
+    #[serde(default)]
+    seed_at: Places,
+    outcomes: Vec<PickedOutcome>,
+}
+
+/// One JSON pointer, or several.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Places {
+    One(String),
+    Many(Vec<String>),
+}
+
+impl Default for Places {
+    fn default() -> Self {
+        Self::Many(Vec::new())
+    }
+}
+
+impl Places {
+    fn into_vec(self) -> Vec<String> {
+        match self {
+            Self::One(place) => vec![place],
+            Self::Many(places) => places,
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct VaryFile {
+    uniform: Option<[f64; 2]>,
+    normal: Option<[f64; 2]>,
+    lognormal: Option<[f64; 2]>,
+    triangular: Option<[f64; 3]>,
+    list: Option<Vec<Value>>,
+    steps: Option<(f64, f64, usize)>,
+    #[serde(default)]
+    weights: Vec<f64>,
+    low: Option<f64>,
+    high: Option<f64>,
+    #[serde(default)]
+    at: Places,
+    unit: Option<String>,
+}
+
+/// The keys of distributions.
+const DISTRIBUTIONS: [&str; 6] = ["uniform", "normal", "lognormal", "triangular", "list", "steps"];
+
+impl Plan {
+    /// Reads the plan that a person has written, and resolves it: what it names is read and stands in it.
+    ///
+    /// # Errors
+    /// [`SweepError::Toml`] with file, line and column; and if what it names cannot be read.
+    pub fn read(path: &Path, library: &Library) -> Result<Self, SweepError> {
+        let text = TomlFile::read(path)?;
+        let file = TomlFile { path, text: &text };
+        let written: PlanFile = file.to()?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let (question, files) = match written.question {
+            Kind::Pit => {
+                if written.request.is_some() {
+                    return Err(file.wrong_value("request", "", "no [request] of a pit").into());
+                }
+                let varies = |input: PitInput| written.vary.contains_key(input.name());
+                let pit = written.pit.unwrap_or_default();
+                let question = pit.resolved(file, folder, varies(PitInput::Friction))?;
+                (SweptQuestion::Pit(Box::new(question)), Vec::new())
+            }
+            Kind::Request => {
+                if written.pit.is_some() {
+                    return Err(file.wrong_value("pit", "", "no [pit] of a request").into());
+                }
+                let Some(request) = written.request else {
+                    return Err(file.wrong_value("request", "missing", "[request]").into());
+                };
+                let (question, request) = request.resolved(folder)?;
+                if request.written_path().is_some() {
+                    let expected = "a request that writes no file itself";
+                    return Err(file.wrong_value("request.file", "", expected).into());
+                }
+                (SweptQuestion::Request(Box::new(question)), files_of(&request)?)
+            }
+        };
+        let mut vary = Vec::with_capacity(written.vary.len());
+        for (name, of_file) in written.vary {
+            vary.push(of_file.resolved(file, name, matches!(question, SweptQuestion::Pit(_)))?);
+        }
+        if matches!(question, SweptQuestion::Pit(_)) {
+            vary.sort_by_key(|vary| PitInput::from_name(&vary.name));
+        }
+        let plan = Self {
+            format: FORMAT,
+            name: written.name,
+            question,
+            design: written.design,
+            n: written.n,
+            chunk: written.chunk,
+            seed: written.seed,
+            vary,
+            program: program::version().to_owned(),
+            networks: networks(library)?,
+            files,
+        };
+        plan.checked(file)
+    }
+
+    /// The plan, if nothing is wrong with it.
+    fn checked(self, file: TomlFile<'_>) -> Result<Self, SweepError> {
+        if let Some((key, expected)) = self.fault() {
+            let mut inner = DISTRIBUTIONS.iter().map(|name| format!("{key}.{name}"));
+            let inner = inner.find(|key| file.contains(key));
+            let value = if file.contains(&key) { "this" } else { "missing" };
+            return Err(file.wrong_value(&inner.unwrap_or(key), value, &expected).into());
+        }
+        if let SweptQuestion::Request(question) = &self.question {
+            // The first row shows whether values and places go together.
+            let request = crate::row::with_inputs(question, &self, &self.inputs(0));
+            serde_json::from_value::<Request>(request)
+                .map_err(|source| SweepError::Request { path: file.path.to_owned(), source })?;
+        }
+        Ok(self)
+    }
+}
+
+impl PitFile {
+    fn resolved(
+        self,
+        file: TomlFile<'_>,
+        folder: &Path,
+        friction_varies: bool,
+    ) -> Result<PitQuestion, SweepError> {
+        let name = self.scenario.as_deref().unwrap_or("pit-right-rear");
+        let is_preset = SCENARIO_PRESETS.iter().any(|(preset, _)| *preset == name);
+        let scenario = match is_preset {
+            true => Scenario::preset_or_file(Path::new(name))?,
+            false => Scenario::load(&folder.join(name))?,
+        };
+        if PitInput::side(&scenario).is_none() {
+            let expected = "a scenario whose contact is on the left or right side, from = \"side\"";
+            return Err(file.wrong_value("pit.scenario", name, expected).into());
+        }
+        for pair in &self.pairs {
+            for id in [&pair.struck, &pair.striking] {
+                if built_in_vehicle(id).is_none() {
+                    let expected = format!("vehicles that impactlab vehicles lists, not {id:?}");
+                    return Err(file.wrong_value("pit.pairs", id, &expected).into());
+                }
+            }
+        }
+        let limit_s = self.limit_s.unwrap_or(DEFAULT_LIMIT_S);
+        if !REST_LIMIT.contains(limit_s) {
+            return Err(out_of_range(file, "pit.limit_s", limit_s, &REST_LIMIT.expected_si()));
+        }
+        let struck = scenario.struck_vehicle.as_deref().and_then(built_in_vehicle);
+        let friction = struck.unwrap_or_else(|| DEFAULT_VEHICLE.parameters()).tires.friction;
+        let usual = if friction_varies { 0.0 } else { ROAD_FRICTION_SPREAD * friction };
+        let road_sigma = self.friction_sigma.unwrap_or(usual);
+        if !ROAD_FRICTION_SIGMA.contains(road_sigma) {
+            let expected = ROAD_FRICTION_SIGMA.expected_si();
+            return Err(out_of_range(file, "pit.friction_sigma", road_sigma, &expected));
+        }
+        Ok(PitQuestion { scenario, pairs: self.pairs, road_sigma, limit_s })
+    }
+}
+
+fn out_of_range(file: TomlFile<'_>, key: &str, value: f64, expected: &str) -> SweepError {
+    file.wrong_value(key, &value.to_string(), expected).into()
+}
+
+impl RequestFile {
+    fn resolved(self, folder: &Path) -> Result<(RequestQuestion, Request), SweepError> {
+        let path = folder.join(&self.file);
+        let text = read_utf8(&path, MAX_SETTINGS_BYTES)?;
+        let wrong = |source| SweepError::Request { path: path.clone(), source };
+        let value: Value = serde_json::from_str(&text).map_err(wrong)?;
+        let request: Request = serde_json::from_value(value).map_err(wrong)?;
+        // With what the file leaves out, so that it can be varied too.
+        let value = serde_json::to_value(&request).map_err(wrong)?;
+        let (seed_at, outcomes) = (self.seed_at.into_vec(), self.outcomes);
+        Ok((RequestQuestion { request: value, seed_at, outcomes }, request))
+    }
+}
+
+impl VaryFile {
+    fn resolved(self, file: TomlFile<'_>, name: String, is_pit: bool) -> Result<Vary, TomlError> {
+        let key = format!("vary.{name}");
+        let wrong = |inner: &str, expected: &str| {
+            Err(file.wrong_value(&format!("{key}.{inner}"), "missing", expected))
+        };
+        let given = DISTRIBUTIONS.iter().filter(|of| file.contains(&format!("{key}.{of}")));
+        if given.count() != 1 {
+            return Err(file.wrong_value(&key, "this", &format!("one of {DISTRIBUTIONS:?}")));
+        }
+        let is_cut = self.low.or(self.high).is_some();
+        if is_cut && self.normal.or(self.lognormal).is_none() {
+            let inner = if self.low.is_some() { "low" } else { "high" };
+            return wrong(inner, "no ends but of normal or lognormal");
+        }
+        if !self.weights.is_empty() && self.list.is_none() {
+            return wrong("weights", "no weights but of a list");
+        }
+        let (low, high) = (self.low, self.high);
+        let distribution = if let Some([low, high]) = self.uniform {
+            Distribution::Uniform { low, high }
+        } else if let Some([mean, sigma]) = self.normal {
+            Distribution::Normal { mean, sigma, low, high }
+        } else if let Some([median, log_sigma]) = self.lognormal {
+            Distribution::Lognormal { median, log_sigma, low, high }
+        } else if let Some([low, mode, high]) = self.triangular {
+            Distribution::Triangular { low, mode, high }
+        } else if let Some((low, high, n)) = self.steps {
+            if !(2..=MOST_STEPS).contains(&n) {
+                return wrong(
+                    "steps",
+                    &format!("[low, high, number of values from 2 to {MOST_STEPS}]"),
+                );
+            }
+            let at = |i: usize| low + (high - low) * i as f64 / (n - 1) as f64;
+            let values = (0..n).map(|i| Value::from(at(i))).collect();
+            Distribution::List { values, weights: Vec::new() }
+        } else {
+            let (values, weights) = (self.list.unwrap_or_default(), self.weights);
+            Distribution::List { values, weights }
+        };
+        let at = self.at.into_vec();
+        if !is_pit {
+            let unit = self.unit.unwrap_or_else(|| "1".to_owned());
+            return Ok(Vary { name, unit, at, distribution });
+        }
+        let Some(input) = PitInput::from_name(&name) else {
+            let known = <PitInput as strum::VariantArray>::VARIANTS.iter().map(|it| it.name());
+            let known: Vec<&str> = known.collect();
+            return Err(file.wrong_value(&key, "this", &format!("one of {known:?}")));
+        };
+        if !at.is_empty() {
+            return wrong("at", "no place: a pit knows where its inputs go");
+        }
+        if self.unit.is_some() {
+            return wrong("unit", "no unit: the name of the input has it");
+        }
+        Ok(Vary { name, unit: input.unit().to_owned(), at, distribution })
+    }
+}

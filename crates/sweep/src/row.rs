@@ -1,0 +1,150 @@
+//! The answer of one row.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use crate::SweepError;
+use crate::outcome::outcomes;
+use crate::pit::{PitInput, PitRow, PitVehicles};
+use crate::plan::{PitQuestion, Plan, RequestQuestion, RowInputs, SweptQuestion};
+use impactlab_core::data::Outcome as Ended;
+use impactlab_core::error_chain;
+use impactlab_networks::force::ForceModel;
+use impactlab_networks::response::ResponseModel;
+use impactlab_study::analysis::{PairRowQuestion, pair_row};
+use impactlab_study::{Library, ModelChoice, Request};
+
+/// Longest reason of a row that failed, bytes.
+const MAX_REASON_BYTES: usize = 500;
+
+/// A row with its inputs and, if it could be answered, its outcomes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Its number.
+    pub index: u64,
+    /// Numbers of the inputs.
+    pub inputs: Vec<f64>,
+    /// The outcomes, or why there are none.
+    pub outcomes: Result<Vec<f64>, String>,
+}
+
+/// What answers the rows of a plan: networks and vehicles, read once.
+pub struct Answerer<'a> {
+    plan: &'a Plan,
+    kind: Kind<'a>,
+}
+
+enum Kind<'a> {
+    Pit {
+        question: &'a PitQuestion,
+        vehicles: PitVehicles,
+        force: Arc<ForceModel>,
+        response: Arc<ResponseModel>,
+    },
+    Request {
+        question: &'a RequestQuestion,
+        library: &'a Library,
+    },
+}
+
+impl<'a> Answerer<'a> {
+    /// # Errors
+    /// [`SweepError::Study`] if a network cannot be read.
+    pub fn new(plan: &'a Plan, library: &'a Library) -> Result<Self, SweepError> {
+        let kind = match &plan.question {
+            SweptQuestion::Pit(question) => Kind::Pit {
+                question,
+                vehicles: PitVehicles::new(question),
+                force: library.force_model(&ModelChoice::default())?,
+                response: library.response_model(&ModelChoice::default())?,
+            },
+            SweptQuestion::Request(question) => Kind::Request { question, library },
+        };
+        Ok(Self { plan, kind })
+    }
+
+    /// Answers a row, which follows from (plan, seed, row) alone.
+    pub fn row(&self, index: u64) -> Row {
+        let inputs = self.plan.inputs(index);
+        let outcomes = match &self.kind {
+            Kind::Pit { question, vehicles, force, response } => {
+                self.pit((*question, vehicles), &inputs, force, response)
+            }
+            Kind::Request { question, library } => self.asked(question, library, &inputs),
+        };
+        let inputs = inputs.values.iter().map(|value| value.number).collect();
+        Row { index, inputs, outcomes: outcomes.map_err(shortened) }
+    }
+
+    fn pit(
+        &self,
+        (question, vehicles): (&PitQuestion, &PitVehicles),
+        inputs: &RowInputs,
+        force: &ForceModel,
+        response: &ResponseModel,
+    ) -> Result<Vec<f64>, String> {
+        let number = |input: PitInput| {
+            let idx = self.plan.vary.iter().position(|vary| vary.name == input.name())?;
+            inputs.values.get(idx).map(|value| value.number)
+        };
+        let row = PitRow::new(question, vehicles, number).ok_or("no such pair of vehicles")?;
+        let asked = PairRowQuestion {
+            scenario: &row.scenario,
+            vehicles: row.vehicles.each_ref(),
+            road_sigma: question.road_sigma,
+            limit_s: question.limit_s,
+            seed: inputs.seed,
+        };
+        let drawn = pair_row(&asked, force, response).map_err(|error| error_chain(&error))?;
+        Ok(outcomes(&drawn))
+    }
+
+    fn asked(
+        &self,
+        question: &RequestQuestion,
+        library: &Library,
+        inputs: &RowInputs,
+    ) -> Result<Vec<f64>, String> {
+        let request = with_inputs(question, self.plan, inputs);
+        let request: Request =
+            serde_json::from_value(request).map_err(|error| error_chain(&error))?;
+        let answered = request
+            .run(library, &mut |_| ControlFlow::Continue(()))
+            .map_err(|error| error_chain(&error))?;
+        let Ended::Complete(report) = answered else { return Err("cancelled".to_owned()) };
+        let report = serde_json::to_value(&report).map_err(|error| error_chain(&error))?;
+        let picked = question.outcomes.iter().map(|outcome| match report.pointer(&outcome.at) {
+            Some(Value::Null) => Ok(f64::NAN),
+            Some(Value::Bool(holds)) => Ok(f64::from(u8::from(*holds))),
+            Some(value) => value.as_f64().ok_or_else(|| format!("{} is no number", outcome.at)),
+            None => Err(format!("the answer has no {}", outcome.at)),
+        });
+        picked.collect()
+    }
+}
+
+/// The request of a row.
+pub(crate) fn with_inputs(question: &RequestQuestion, plan: &Plan, inputs: &RowInputs) -> Value {
+    let mut request = question.request.clone();
+    let mut put = |at: &str, value: Value| {
+        if let Some(place) = request.pointer_mut(at) {
+            *place = value;
+        }
+    };
+    for (vary, input) in plan.vary.iter().zip(&inputs.values) {
+        vary.at.iter().for_each(|at| put(at, input.value.clone()));
+    }
+    // Numbers of JSON that every program reads whole.
+    let seed = inputs.seed >> 11;
+    question.seed_at.iter().for_each(|at| put(at, Value::from(seed)));
+    request
+}
+
+/// A reason within its length, in one line.
+fn shortened(reason: String) -> String {
+    let reason = reason.replace(['\n', '\r'], " ");
+    let end = reason.floor_char_boundary(MAX_REASON_BYTES);
+    reason.get(..end).unwrap_or_default().to_owned()
+}

@@ -1,0 +1,113 @@
+//! The command that reads files of other programs.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::fs;
+
+use impactlab_core::data::{Channel, read_steer_file, read_trajectory_file};
+use impactlab_reconstruct::evidence::{Edr, Evidence};
+
+use crate::program::{TRAJECTORIES, answer, program, text};
+
+const REPORT: &[u8] = include_bytes!("../fuzz/corpus/cdr/report.csv");
+const EVIDENCE: &str = "tests/data/evidence/spin.toml";
+
+/// The texts of all notes, and the names of the files.
+fn said(report: &serde_json::Value) -> (String, Vec<String>) {
+    let texts = |key: &str| -> Vec<String> {
+        report[key].as_array().unwrap().iter().map(|of| of.as_str().unwrap().to_owned()).collect()
+    };
+    (texts("notes").join("\n"), texts("files"))
+}
+
+#[test]
+fn a_recorder_becomes_evidence_and_controls() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let utf16: Vec<u8> = std::iter::once(0xfeff)
+        .chain(std::str::from_utf8(REPORT).unwrap().encode_utf16())
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    for (name, bytes) in [("utf8", REPORT.to_vec()), ("utf16", utf16)] {
+        let report = file(&format!("{name}.csv"));
+        fs::write(&report, bytes).unwrap();
+        let out = file(name);
+        let args = ["import", text(&report), "--evidence", EVIDENCE, "--car", "striking"];
+        let answer = answer(&[&args[..], &["--out", text(&out)]].concat());
+        let (notes, files) = said(&answer);
+        assert_eq!(files.len(), 2, "{files:?}");
+        for part in ["Module 7", "complete file recorded: Yes", "EVENT RECORD 1 of 2", "cut off"] {
+            assert!(notes.contains(part), "{part}: {notes}");
+        }
+        let before = Evidence::load(EVIDENCE.as_ref()).unwrap();
+        let evidence = Evidence::load(&out.join("evidence.toml")).unwrap();
+        let Edr { ends_s, sensor_m, .. } = evidence.striking_edr.unwrap();
+        assert_eq!((ends_s, sensor_m), (Some(0.1), [None; 2]));
+        let [low, high] = evidence.striking_edr.unwrap().delta_v_x().unwrap();
+        let delta_v_m_s = -14.9 * 0.447_04;
+        assert!((low / delta_v_m_s - 1.1).abs() < 1e-9 && (high / delta_v_m_s - 0.9).abs() < 1e-9);
+        let without = Evidence { striking_edr: before.striking_edr, ..evidence };
+        assert_eq!(without, before, "the rest of the evidence stays as it is");
+        let map = "shift=1:s".parse().unwrap();
+        let controls = read_steer_file(&out.join("controls.csv"), Some(&map)).unwrap();
+        let steering = controls.series.require(Channel::SteeringWheel).unwrap();
+        assert!((steering[2] + 20_f64.to_radians()).abs() < 1e-12, "{steering:?}");
+        let speed = controls.series.require(Channel::Speed).unwrap();
+        assert!((speed[2] - 27.0 * 0.447_04).abs() < 1e-9, "{speed:?}");
+    }
+}
+
+#[test]
+fn a_table_of_a_report_is_opened_as_any_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = folder.path().join("report.csv");
+    fs::write(&report, REPORT).unwrap();
+    let checked = answer(&["check", text(&report), "--map", "shift=1:s"]);
+    let shown = checked.to_string();
+    assert!(shown.contains("Bosch CDR report"), "{shown}");
+    assert!(shown.contains("steering_wheel"), "{shown}");
+}
+
+#[test]
+fn a_crash_test_gives_the_stiffness_of_its_front() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    fs::copy("tests/fuzz/corpus/ev5/v1.EV5", file("v1.EV5")).unwrap();
+    let curve: String = (-10..=200)
+        .map(|i| {
+            let t = f64::from(i) * 1e-3;
+            let inside = (0..100).contains(&i);
+            format!("{t:.4}\t{}\n", if inside { -110_000.0 } else { 0.0 })
+        })
+        .collect();
+    fs::write(file("v1.001"), curve).unwrap();
+    let out = file("out");
+    let report = answer(&["import", text(&file("v1.EV5")), "--out", text(&out)]);
+    let (notes, files) = said(&report);
+    assert_eq!(files.len(), 2, "{files:?}");
+    assert!(notes.contains("1.100 times the momentum"), "{notes}");
+    assert!(notes.contains("no valid data"), "{notes}");
+    assert!(notes.contains("CFC 60"), "{notes}");
+    // Kv = m V²/(L C²) = 1000 · 10² / (1.8 · 0.4²).
+    assert!(notes.contains("Kv = 347222 N/m²"), "{notes}");
+    let section = fs::read_to_string(out.join("crush.toml")).unwrap();
+    assert!(section.starts_with("[crush.front]\nonset_n_per_m = "), "{section}");
+    let again = program().args(["import", text(&file("v1.EV5")), "--out", text(&out)]).output();
+    assert!(!again.unwrap().status.success(), "nothing is replaced unasked");
+}
+
+#[test]
+fn a_motion_goes_out_as_parquet_and_comes_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let case = ["export", TRAJECTORIES, "--case", "FE_c002", "--out"];
+    for name in ["a.csv", "a.parquet"] {
+        answer(&[&case[..], &[text(&file(name))]].concat());
+    }
+    let read = |name: &str| read_trajectory_file(&file(name), None).unwrap().series;
+    assert_eq!(read("a.parquet"), read("a.csv"));
+    let out = file("out");
+    answer(&["import", text(&file("a.parquet")), "--out", text(&out)]);
+    let back = read_trajectory_file(&out.join("series.csv"), None).unwrap().series;
+    assert_eq!(back, read("a.csv"));
+}

@@ -1,0 +1,267 @@
+//! `impactlab sweep`: the same rows whatever computes them, and nothing half done.
+
+#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use impactlab_sweep::{Outcome, Rows, chunk_path, read_rows};
+use tempfile::TempDir;
+
+use crate::program::{json, ok, program};
+
+const PIT: &str = "\
+name = \"PIT\"
+question = \"pit\"
+n = 10
+chunk = 3
+seed = 5
+
+[pit]
+scenario = \"pit-right-rear\"
+limit_s = 20
+pairs = [{ struck = \"toyota-camry-2018\", striking = \"ford-explorer-2020\" }]
+
+[vary.target_speed_m_s]
+uniform = [15, 20]
+
+[vary.closing_m_s]
+triangular = [2, 3, 5]
+
+[vary.esc]
+list = [0, 1]
+
+[vary.driver]
+list = [0, 1, 2]
+";
+
+fn sweep(args: &[&str]) -> Command {
+    let mut command = program();
+    command.arg("sweep").args(args);
+    command
+}
+
+fn run(args: &[&str]) -> Output {
+    sweep(args).output().unwrap()
+}
+
+fn shown(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// A plan that was resolved into a folder of its own.
+fn planned(folder: &TempDir, plan: &str, name: &str) -> std::path::PathBuf {
+    let file = folder.path().join(format!("{name}.toml"));
+    fs::write(&file, plan).unwrap();
+    let out = folder.path().join(name);
+    ok(run(&["plan", shown(&file), "--out", shown(&out)]));
+    out
+}
+
+fn merged(folder: &Path) -> Vec<u8> {
+    let out = folder.with_extension("parquet");
+    ok(run(&["merge", shown(folder), "--out", shown(&out), "--overwrite"]));
+    fs::read(out).unwrap()
+}
+
+fn error(args: &[&str]) -> String {
+    let output = run(args);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+fn bits(rows: &Rows, n: usize) -> Vec<u64> {
+    let columns = rows.inputs.iter().chain(&rows.outcomes);
+    columns.flat_map(|column| column.values[..n].iter().map(|value| value.to_bits())).collect()
+}
+
+#[test]
+fn whatever_computes_the_chunks_the_table_has_the_same_bytes() {
+    let folder = TempDir::new().unwrap();
+    let at_once = planned(&folder, PIT, "once");
+    ok(run(&["run", shown(&at_once)]));
+    let whole = merged(&at_once);
+
+    // In another order, on one thread, as tasks of an array, and killed in between.
+    let parts = planned(&folder, PIT, "parts");
+    ok(sweep(&["run", shown(&parts), "--chunks", "2..3"])
+        .env("RAYON_NUM_THREADS", "1")
+        .output()
+        .unwrap());
+    let mut killed = sweep(&["run", shown(&parts), "--chunk", "0"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    let status = json(&ok(run(&["status", shown(&parts), "--json"])));
+    assert_eq!(status["broken"].as_array().map(Vec::len), Some(0), "{status}");
+    for task in ["0", "1"] {
+        let mut array = sweep(&["run", shown(&parts), "--array", "--stride", "2"]);
+        ok(array.env("SLURM_ARRAY_TASK_ID", task).output().unwrap());
+    }
+    assert!(merged(&parts) == whole, "the same rows have other bytes");
+    let status = json(&ok(run(&["status", shown(&parts), "--json"])));
+    assert!(status["missing"] == "" && status["rows_done"] == 10, "{status}");
+
+    let rows = read_rows(&at_once.with_extension("parquet")).unwrap();
+    assert_eq!(rows.index, (0..10).collect::<Vec<_>>());
+    assert_eq!(rows.n_failed(), 0, "{:?}", rows.reasons);
+    assert_eq!(rows.outcomes.len(), Outcome::ALL.len());
+    let speeds = &rows.column("target_speed_m_s").unwrap().values;
+    assert!(speeds.iter().all(|speed| (15.0..=20.0).contains(speed)), "{speeds:?}");
+    let travel = &rows.column("travel_m").unwrap().values;
+    assert!(travel.iter().all(|travel| (5.0..600.0).contains(travel)), "{travel:?}");
+    let contact = &rows.column("contact_s").unwrap().values;
+    assert!(contact.iter().any(|contact| *contact > 0.0), "{contact:?}");
+
+    // Other chunks and fewer rows: what is there is the same.
+    let plan = PIT.replace("n = 10", "n = 7").replace("chunk = 3", "chunk = 5");
+    let fewer = planned(&folder, &plan, "fewer");
+    ok(run(&["run", shown(&fewer)]));
+    merged(&fewer);
+    let fewer = read_rows(&fewer.with_extension("parquet")).unwrap();
+    assert_eq!(bits(&fewer, 7), bits(&rows, 7));
+}
+
+#[test]
+fn a_broken_chunk_is_found_and_computed_anew() {
+    let folder = TempDir::new().unwrap();
+    let sweep = planned(&folder, &PIT.replace("n = 10", "n = 6"), "sweep");
+    ok(run(&["run", shown(&sweep)]));
+    let before = fs::read(chunk_path(&sweep, 1)).unwrap();
+    fs::write(chunk_path(&sweep, 1), &before[..before.len() / 2]).unwrap();
+    let output = run(&["status", shown(&sweep)]);
+    assert_eq!(output.status.code(), Some(1), "a broken chunk is a problem");
+    assert_eq!(ok(run(&["status", shown(&sweep), "--missing"])), "1\n");
+    let out = folder.path().join("all.parquet");
+    let said = error(&["merge", shown(&sweep), "--out", shown(&out)]);
+    assert!(said.contains("part-000001.parquet: is no whole table"), "{said}");
+    assert!(!out.exists());
+    let told = ok(run(&["run", shown(&sweep)]));
+    assert!(told.contains("part-000001.parquet: computed anew"), "{told}");
+    assert!(told.contains("1 chunks computed, 3 rows"), "{told}");
+    assert_eq!(fs::read(chunk_path(&sweep, 1)).unwrap(), before);
+    // A chunk under another number is none of this plan.
+    fs::copy(chunk_path(&sweep, 0), chunk_path(&sweep, 1)).unwrap();
+    assert_eq!(ok(run(&["status", shown(&sweep), "--missing", "--stride", "1"])), "0\n");
+    fs::remove_file(chunk_path(&sweep, 0)).unwrap();
+    let said = error(&["merge", shown(&sweep), "--out", shown(&out)]);
+    assert!(said.contains("chunks are missing: 0;"), "{said}");
+}
+
+#[test]
+fn a_plan_that_is_wrong_is_refused_with_its_place() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("plan.toml");
+    let out = folder.path().join("out");
+    for (line, instead, expected) in [
+        ("seed = 5", "sede = 5", "plan.toml:5:1: unknown field `sede`"),
+        ("[vary.esc]", "[vary.ecs]", "vary.ecs"),
+        (
+            "uniform = [15, 20]",
+            "uniform = [20, 15]",
+            "plan.toml:13:11: vary.target_speed_m_s.uniform",
+        ),
+        ("uniform = [15, 20]", "uniform = [15, 200]", "expected 1 to 100 m/s throughout"),
+        ("uniform = [15, 20]", "normal = [15, 2]", "with low and high"),
+        ("list = [0, 1]", "list = [0, 2]", "a list of whole numbers, 0 to 1"),
+        ("limit_s = 20", "limit_s = 1000", "plan.toml:9:11: pit.limit_s is 1000"),
+        ("toyota-camry-2018", "camry", "not \"camry\""),
+        ("n = 10", "n = 0", "plan.toml:3:5: n is 0, expected 1 to"),
+        ("pit-right-rear", "carpenter-welcher-barrier", "plan.toml:8:12: pit.scenario"),
+    ] {
+        assert!(PIT.contains(line), "{line}");
+        fs::write(&file, PIT.replacen(line, instead, 1)).unwrap();
+        let said = error(&["plan", shown(&file), "--out", shown(&out)]);
+        assert!(said.contains(expected), "{instead}: {said}");
+        assert!(!out.exists(), "{instead}");
+    }
+}
+
+#[test]
+fn any_request_can_be_swept_and_a_row_that_fails_is_a_row_with_its_reason() {
+    let folder = TempDir::new().unwrap();
+    let mut question = program();
+    question.args(["simulate", "--vehicle", "reference-2000", "--speed", "20"]);
+    question.args(["--duration", "2", "--print-request"]);
+    fs::write(folder.path().join("ask.json"), ok(question.output().unwrap())).unwrap();
+    let plan = "\
+question = \"request\"
+design = \"grid\"
+n = 1
+chunk = 2
+[request]
+file = \"ask.json\"
+outcomes = [{ name = \"x_m\", at = \"/end/x_m\", unit = \"m\" }]
+[vary.friction]
+at = \"/friction\"
+list = [0.5, 0.9, 50]
+";
+    let sweep = planned(&folder, plan, "asked");
+    ok(run(&["run", shown(&sweep)]));
+    let told = ok(run(&["status", shown(&sweep)]));
+    assert!(told.contains("failed   1") && told.contains("friction"), "{told}");
+    merged(&sweep);
+    let rows = read_rows(&sweep.with_extension("parquet")).unwrap();
+    assert_eq!(rows.column("friction").unwrap().values, [0.5, 0.9, 50.0]);
+    let x_m = &rows.column("x_m").unwrap().values;
+    assert!(x_m[..2].iter().all(|x_m| (35.0..41.0).contains(x_m)) && x_m[2].is_nan(), "{x_m:?}");
+    assert!(rows.reasons[2].contains("50"), "{:?}", rows.reasons);
+    assert_eq!(rows.column("x_m").unwrap().unit, "m");
+    let bad = folder.path().join("bad.toml");
+    fs::write(&bad, plan.replace("/friction", "/frictoin")).unwrap();
+    let out = folder.path().join("bad");
+    let said = error(&["plan", shown(&bad), "--out", shown(&out)]);
+    assert!(said.contains("bad.toml:9:6: vary.friction.at") && said.contains("JSON"), "{said}");
+}
+
+#[test]
+fn a_plan_of_another_program_or_of_another_file_is_not_run() {
+    let folder = TempDir::new().unwrap();
+    let sweep = planned(&folder, PIT, "sweep");
+    let path = sweep.join("plan.json");
+    let text = fs::read_to_string(&path).unwrap();
+    let mut plan = json(&text);
+    plan["program"] = "0.0.1+other".into();
+    fs::write(&path, plan.to_string()).unwrap();
+    let said = error(&["run", shown(&sweep), "--chunk", "0"]);
+    assert!(said.contains("made with impactlab 0.0.1+other"), "{said}");
+    let mut plan = json(&text);
+    plan["networks"]["force"] = "ab".into();
+    fs::write(&path, plan.to_string()).unwrap();
+    let said = error(&["run", shown(&sweep), "--chunk", "0"]);
+    assert!(said.contains("made with networks"), "{said}");
+    let mut plan = json(&text);
+    plan["chunk"] = 0.into();
+    fs::write(&path, plan.to_string()).unwrap();
+    let said = error(&["status", shown(&sweep)]);
+    assert!(said.contains("plan.json: is no plan of a sweep: chunk"), "{said}");
+    fs::write(&path, &text).unwrap();
+    let said = error(&["run", shown(&sweep), "--chunk", "4"]);
+    assert!(said.contains("there is no chunk 4"), "{said}");
+    // Another plan does not take the place of this one.
+    let other = folder.path().join("other.toml");
+    fs::write(&other, PIT.replace("seed = 5", "seed = 6")).unwrap();
+    let said = error(&["plan", shown(&other), "--out", shown(&sweep)]);
+    assert!(said.contains("plan.json: exists already"), "{said}");
+    assert_eq!(fs::read_to_string(&path).unwrap(), text);
+}
+
+#[test]
+fn the_batch_file_for_slurm_is_a_script_of_the_shell() {
+    let folder = TempDir::new().unwrap();
+    let sweep = planned(&folder, PIT, "a 'b'");
+    let script = ok(run(&["script", "slurm", shown(&sweep), "--program", "/opt/impactlab"]));
+    assert!(script.contains("#SBATCH --array=0-3\n"), "{script}");
+    assert!(script.contains("--array --stride 4\n") && script.contains("afterany:"), "{script}");
+    let file = folder.path().join("sweep.sh");
+    fs::write(&file, &script).unwrap();
+    ok(Command::new("bash").arg("-n").arg(&file).output().unwrap());
+    let quoted = script.lines().find(|line| line.starts_with("plan=")).unwrap();
+    let echo = format!("{quoted}; printf %s \"$plan\"");
+    let echoed = ok(Command::new("bash").args(["-c", &echo]).output().unwrap());
+    assert_eq!(Path::new(&echoed), sweep);
+}
