@@ -12,6 +12,7 @@ use crate::app::archive::{ArchiveEntry, ArchiveEvent, ModelsDialog, Removal};
 use crate::app::atlas::AtlasCommand;
 use crate::app::case::{CaseCommand, VariantCommand};
 use crate::app::cost::CostPlace;
+use crate::app::crash_test::CrashTestCommand;
 use crate::app::dialog::Purpose;
 use crate::app::film::FilmCommand;
 use crate::app::found::Found;
@@ -23,6 +24,7 @@ use crate::app::output::Output;
 use crate::app::panes::Pane;
 use crate::app::playback::PlaybackCommand;
 use crate::app::reconstruction::ReconstructionCommand;
+use crate::app::recorder::RecorderCommand;
 use crate::app::report::ReportCommand;
 use crate::app::source::OpenedPath;
 use crate::app::state::Subject;
@@ -107,6 +109,10 @@ pub enum Command {
     Ground(GroundCommand),
     /// Act on the reconstruction.
     Reconstruct(ReconstructionCommand),
+    /// Take something of a crash test that was opened.
+    CrashTest(CrashTestCommand),
+    /// Take something of a recorder that was opened.
+    Recorder(RecorderCommand),
     /// Make the report of the case, or show a part of it.
     Report(ReportCommand),
     /// Act on the atlas.

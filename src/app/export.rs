@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use impactlab_core::data::{Existing, write_atomically};
 use impactlab_core::error_chain;
-use impactlab_document::exchange::{DxfOptions, dxf, glb};
+use impactlab_core::site::MapFormat;
+use impactlab_document::exchange::{DxfOptions, dxf, glb, map};
 use impactlab_document::figure::{Figure, write_figure_csv};
 use impactlab_document::report::{ReportDocument, ReportFormat};
 use impactlab_document::scene::Scene;
@@ -84,6 +85,8 @@ pub struct SceneExport {
 pub enum SceneFormat {
     /// A drawing in metres.
     Dxf,
+    /// Ground, paths and marks on a map.
+    Kml,
     /// The scene with its animation in 3D.
     Glb,
 }
@@ -93,6 +96,7 @@ impl SceneFormat {
     pub fn ending(self) -> &'static str {
         match self {
             Self::Dxf => "dxf",
+            Self::Kml => "kml",
             Self::Glb => "glb",
         }
     }
@@ -107,6 +111,7 @@ pub fn write_exchange(export: SceneExport, path: &Path, existing: Existing) -> R
     let mut bytes = Vec::new();
     match format {
         SceneFormat::Dxf => dxf(&scene, &DxfOptions { outlines_s }, &mut bytes),
+        SceneFormat::Kml => map(&scene, MapFormat::Kml, &mut bytes),
         SceneFormat::Glb => glb(&scene, &mut bytes),
     }
     .map_err(|error| error_chain(&error))?;

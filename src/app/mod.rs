@@ -14,6 +14,7 @@ mod chain;
 mod command;
 mod contents;
 mod cost;
+mod crash_test;
 mod dialog;
 mod export;
 mod film;
@@ -42,6 +43,7 @@ mod project;
 mod question_job;
 mod reading;
 mod reconstruction;
+mod recorder;
 mod recording;
 mod renderer;
 mod replace;
@@ -90,6 +92,7 @@ pub use chain::Link;
 pub use command::{Command, ComparisonCommand, ModelsCommand, TrainingCommand};
 pub use contents::{ContentsEntry, Group};
 pub use cost::{CostPlace, Costs};
+pub use crash_test::{CrashTestCommand, CrashTestForm};
 pub use dialog::{Dialog, Dialogs, Purpose};
 pub use film::FilmCommand;
 pub use force::{ForceSession, NamedCollision, collision_of};
@@ -103,6 +106,7 @@ pub use playback::PlaybackCommand;
 pub use project::{Beside, Project};
 pub use question_job::{Answered, QuestionJob};
 pub use reconstruction::{FollowedParticle, ReconstructionCommand, ReconstructionSession};
+pub use recorder::{RecorderCommand, RecorderForm};
 pub use recording::OverlaidRecording;
 pub use renderer::RendererChoice;
 pub use replay::ReplayStatus;
@@ -216,7 +220,11 @@ impl App {
             state.select(Subject::Scenario);
         }
         let shown = state.view.workspaces.shown;
+        // What was open when the window was closed has been asked about already.
+        let is_table = |path: &PathBuf| !has_paths && open::is_asked_about(path);
+        let (tables, to_open): (Vec<_>, Vec<_>) = to_open.into_iter().partition(is_table);
         state.apply(Command::Open(to_open), &cc.egui_ctx);
+        tables.into_iter().for_each(|path| state.load(path, None));
         if !has_paths {
             state.view.workspaces.shown = shown;
             let asks_nothing =

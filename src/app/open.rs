@@ -20,12 +20,17 @@ use crate::app::sweep::SweepCommand;
 use crate::app::tasks::TaskKey;
 use crate::app::workspaces::Workspace;
 use impactlab_core::collision::Role;
-use impactlab_core::data::{ColumnMap, Existing, Severity};
+use impactlab_core::data::{ColumnMap, CrashTest, Existing, RecorderRecord, Severity};
 use impactlab_networks::learning::ModelFile;
 use impactlab_networks::response::ResponseModel;
 use impactlab_study::{
     InputFile, InputKind, ModelChoice, Request, ScenarioChoice, SimulateRequest, VehicleChoice,
 };
+
+/// Whether it is asked of a file, when a person opens it, what becomes of it beside a table.
+pub(super) fn is_asked_about(path: &Path) -> bool {
+    path.is_file() && (CrashTest::is_test(path) || RecorderRecord::is_record(path))
+}
 
 impl State {
     /// Opens paths as what they hold: a case, a ground, evidence, a vehicle, a scenario, a model, a
@@ -36,7 +41,10 @@ impl State {
             let path = std::path::absolute(&path).unwrap_or(path);
             match InputKind::from_path(&path) {
                 InputKind::Case => self.leave(Leaving::Open(path), context),
-                InputKind::Site | InputKind::Orthophoto => self.open_ground(path),
+                InputKind::Site | InputKind::Orthophoto | InputKind::Survey => {
+                    self.open_ground(path);
+                }
+                InputKind::PointCloud => self.ask_cloud(path),
                 InputKind::Comparison => {
                     self.compare(ComparisonCommand::Open(path), context);
                     self.view.workspaces.show_pane(Pane::ModelComparison);
@@ -52,6 +60,8 @@ impl State {
                 | InputKind::Checkpoint
                 | InputKind::Settings
                 | InputKind::UnknownToml) => self.open_file(path, kind),
+                InputKind::Series if CrashTest::is_test(&path) => self.ask_crash_test(path),
+                InputKind::Series if RecorderRecord::is_record(&path) => self.ask_recorder(path),
                 InputKind::Dataset | InputKind::Folder | InputKind::Series => {
                     if path.is_dir() && self.view.workspaces.shown == Workspace::Case {
                         // Where a case of it is chosen.

@@ -33,6 +33,8 @@ pub enum Pane {
     ReconstructedScene,
     /// What the evidence says of the speeds before the impact.
     Speeds,
+    /// A calculation by hand.
+    Hand,
     /// The variants of the case side by side.
     Variants,
     /// Models in use, work under way, and what has been finished.

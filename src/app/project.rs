@@ -14,7 +14,7 @@ use impactlab_draw::scene::CameraKey;
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::case_file::Variant;
 use impactlab_study::{
-    Drive, ForceQuestion, ForceSource, ImpactRequest, ModelChoice, MotionSource,
+    Drive, ForceQuestion, ForceSource, HandRequest, ImpactRequest, ModelChoice, MotionSource,
     PredictForceRequest, PredictMotionRequest, ReconstructRequest, Request, ScenarioChoice,
     SeriesFile, SimulateRequest,
 };
@@ -36,6 +36,9 @@ pub struct Project {
     /// The reconstruction; `None` without evidence.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reconstruct: Option<ReconstructRequest>,
+    /// The calculation by hand; `None` if the variant asks for none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hand: Option<HandRequest>,
     /// Questions of the variant for which there is no panel.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub others: Vec<Request>,
@@ -103,6 +106,7 @@ impl Default for Project {
             predict_motion: PredictMotionRequest::new(MotionSource::default(), ForceSource::Given),
             simulate,
             reconstruct: None,
+            hand: None,
             others: Vec::new(),
             beside: Beside::default(),
             networks: NetworkQuestions::default(),
@@ -286,6 +290,7 @@ impl Project {
             }
         }
         variant.questions.extend(self.reconstruct.clone().map(Request::from));
+        variant.questions.extend(self.hand.clone().map(Request::from));
         variant.questions.extend(self.others.iter().cloned());
         if self.beside != start.beside {
             variant.view = serde_json::to_value(&self.beside).unwrap_or_default();
@@ -356,6 +361,7 @@ struct FoundQuestions {
     predict_force: Option<PredictForceRequest>,
     predict_motion: Option<PredictMotionRequest>,
     reconstruct: Option<ReconstructRequest>,
+    hand: Option<HandRequest>,
 }
 
 impl FoundQuestions {
@@ -371,6 +377,7 @@ impl FoundQuestions {
                 self.predict_motion = Some(*of);
             }
             Request::Reconstruct(of) if self.reconstruct.is_none() => self.reconstruct = Some(*of),
+            Request::Hand(of) if self.hand.is_none() => self.hand = Some(*of),
             other => return Some(other),
         }
         None
@@ -379,7 +386,7 @@ impl FoundQuestions {
     /// Puts the questions into a project. One that is not there is like the others where it has something
     /// in common with them.
     fn fill_in(self, project: &mut Project) {
-        let Self { impact, simulate, predict_force, predict_motion, reconstruct } = self;
+        let Self { impact, simulate, predict_force, predict_motion, reconstruct, hand } = self;
         let of_motion = || {
             let motion = predict_motion.as_ref()?.motion.clone();
             Some(SimulateRequest { vehicle_draws: None, ..motion })
@@ -418,6 +425,7 @@ impl FoundQuestions {
             project.beside.start.contact = *contact;
         }
         project.reconstruct = reconstruct;
+        project.hand = hand;
         project.keep_in_step();
     }
 }

@@ -35,6 +35,8 @@ pub enum TaskKey {
     Report,
     /// The ground of the scene is read, by its path.
     Ground(PathBuf),
+    /// A ground is made of a point cloud.
+    MakeGround,
     /// The table or the curve of a file is read for the import dialog.
     Import,
     /// The desktop asks the user for a path.
@@ -263,6 +265,7 @@ impl TaskKey {
             Self::Film(_) => "film",
             Self::Report => "report",
             Self::Ground(_) => "ground",
+            Self::MakeGround => "make ground",
             Self::Import => "import",
             Self::FileDialog => "file dialog",
             Self::LoadModel(_) => "load model",

@@ -36,6 +36,7 @@ impl State {
         cases.update(sources, replays, &self.view);
         self.update_ground();
         self.update_simulation(context);
+        self.update_hand(context);
         self.update_force(context);
         self.update_response(context);
         self.update_scene(context);
@@ -165,6 +166,16 @@ impl State {
         match simulate {
             Some(question) => analysis.ask(question, library, wake(context)),
             None => analysis.forget(),
+        }
+    }
+
+    /// Asks for the calculation by hand, if the question has changed.
+    fn update_hand(&mut self, context: &Context) {
+        let Session { hand, library, .. } = &mut self.session;
+        hand.poll();
+        match &self.project.hand {
+            Some(question) => hand.ask(question.clone(), library, wake(context)),
+            None => hand.forget(),
         }
     }
 

@@ -64,6 +64,30 @@ pub enum CliError {
         /// Why.
         why: String,
     },
+    /// An input that a method by hand does not have.
+    #[error("{name:?} is no input of the method; it takes {known}")]
+    HandInput {
+        /// What was said.
+        name: String,
+        /// Its inputs.
+        known: String,
+    },
+    /// An input of a method by hand that is no number of its quantity.
+    #[error("{name}={text}")]
+    HandValue {
+        /// The input.
+        name: String,
+        /// What was said.
+        text: String,
+        /// What is expected.
+        source: TypedError,
+    },
+    /// An input of a method by hand that is given twice.
+    #[error("{name} is given twice")]
+    HandTwice {
+        /// The input.
+        name: String,
+    },
     /// A test against a barrier that says nothing of a face.
     #[error("no stiffness follows from this test")]
     Stiffness(#[from] FaceLawError),
@@ -134,6 +158,14 @@ pub enum CliError {
         /// The option.
         option: &'static str,
     },
+    /// An option of a ground is given for a file that does not take it.
+    #[error("{}: is no file that takes {option}; leave it out", path.display())]
+    OptionOfGround {
+        /// The file.
+        path: PathBuf,
+        /// The option.
+        option: &'static str,
+    },
     /// Nothing of what a figure shows is known.
     #[error("{name}: nothing is known of {channel} over time")]
     NothingToShow {
@@ -190,7 +222,7 @@ pub enum CliError {
     },
     /// What is exported is of an unknown kind.
     #[error(
-        "{}: cannot be made; expected a name that ends in .dxf, .glb, .csv or .parquet, or --format",
+        "{}: cannot be made; expected a name that ends in .dxf, .kml, .geojson, .glb, .csv or .parquet, or --format",
         path.display()
     )]
     ExportKind {

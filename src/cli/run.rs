@@ -9,9 +9,9 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::cli::CliError;
 use crate::cli::commands::{
-    app, ask, atlas, case, check, compare, condition, evaluate, export, fine_tune, impact, import,
-    licences, predict, ranges, reconstruct, render, report, schema, simulate, stiffness, sweep,
-    train, vehicles,
+    app, ask, atlas, case, check, compare, condition, evaluate, export, fine_tune, hand, impact,
+    import, licences, predict, ranges, reconstruct, render, report, schema, simulate, stiffness,
+    sweep, train, vehicles,
 };
 use crate::cli::console::{Console, Escaped, Targets, Verdict, within_line};
 use impactlab_core::error_chain;
@@ -50,6 +50,7 @@ enum CliCommand {
     Ask(ask::AskArgs),
     Case(case::CaseArgs),
     Impact(impact::ImpactArgs),
+    Hand(hand::HandArgs),
     Simulate(Box<simulate::SimulateArgs>),
     Train(train::TrainArgs),
     FineTune(fine_tune::FineTuneArgs),
@@ -132,6 +133,7 @@ impl Cli {
                 CliCommand::Check(_)
                 | CliCommand::Ask(_)
                 | CliCommand::Impact(_)
+                | CliCommand::Hand(_)
                 | CliCommand::Simulate(_)
                 | CliCommand::Train(_)
                 | CliCommand::FineTune(_)
@@ -173,6 +175,7 @@ fn dispatch(command: Option<CliCommand>, console: &mut Console<'_>) -> Result<Ve
         Some(CliCommand::Ask(args)) => ask::run(&args, console),
         Some(CliCommand::Case(args)) => case::run(&args, console),
         Some(CliCommand::Impact(args)) => impact::run(&args, console),
+        Some(CliCommand::Hand(args)) => hand::run(&args, console),
         Some(CliCommand::Simulate(args)) => simulate::run(&args, console),
         Some(CliCommand::Train(args)) => train::run(&args, console),
         Some(CliCommand::FineTune(args)) => fine_tune::run(&args, console),

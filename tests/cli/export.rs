@@ -32,7 +32,11 @@ fn each_format_is_written_and_nothing_is_replaced_unasked() {
         assert!(error.contains("exists already; --overwrite replaces it"), "{error}");
     }
     for (file, options, part) in [
-        ("a.step", vec![], "expected a name that ends in .dxf, .glb, .csv or .parquet, or --format"),
+        (
+            "a.step",
+            vec![],
+            "expected a name that ends in .dxf, .kml, .geojson, .glb, .csv or .parquet, or --format",
+        ),
         ("b.glb", vec!["--at", "1"], "leave it out, or write a drawing (.dxf)"),
         ("b.dxf", vec!["--at", "900"], "--at is 900 s, expected between"),
     ] {

@@ -111,3 +111,31 @@ fn a_motion_goes_out_as_parquet_and_comes_back() {
     let back = read_trajectory_file(&out.join("series.csv"), None).unwrap().series;
     assert_eq!(back, read("a.csv"));
 }
+
+#[test]
+fn a_side_of_lateral_values_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = folder.path().join("table.csv");
+    let rows = "-1,50,10,0\n0,40,10,0\n0.1,,,12\n0.2,,,18\n0.3,,,18\n";
+    let header = "Time [s],Speed [km/h],Yaw Rate [deg/s],\"Delta-V, Lateral [km/h]\"\n";
+    fs::write(&table, header.to_owned() + rows).unwrap();
+    for (side, sign) in [("right", -1.0), ("left", 1.0)] {
+        let out = folder.path().join(side);
+        let args = ["import", text(&table), "--recorder", "--lateral", side, "--yaw-rate", side];
+        let answer = answer(&[&args[..], &["--out", text(&out)]].concat());
+        let (notes, _) = said(&answer);
+        assert!(
+            notes.contains(&format!("lateral Δv is taken as positive to the {side}")),
+            "{notes}"
+        );
+        let evidence = Evidence::load(&out.join("evidence.toml")).unwrap();
+        // Both are positive to the left in this program.
+        let [low, high] = evidence.edr.unwrap().delta_v_y().unwrap();
+        let middle = (low + high) / 2.0 * 3.6;
+        assert!((middle - sign * 18.0).abs() < 1e-9, "{side}: {middle}");
+        let controls = fs::read_to_string(out.join("controls.csv")).unwrap();
+        let yaw_rate_deg_s: f64 =
+            controls.lines().nth(1).unwrap().split(',').nth(2).unwrap().parse().unwrap();
+        assert!((yaw_rate_deg_s.to_degrees() - sign * 10.0).abs() < 1e-9, "{side}: {controls}");
+    }
+}

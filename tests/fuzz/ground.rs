@@ -1,11 +1,13 @@
 //! The ground of a scene: site files, world files, drawings and pictures.
 
+use std::io::Cursor;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use image::ImageFormat;
 use impactlab_core::site::{
-    DrawingFile, LengthUnit, PixelMap, Site, SiteOrigin, WorldFile, picture_size_px, read_drawing,
-    read_picture,
+    CloudFormat, DrawingFile, LengthUnit, PixelMap, Site, SiteOrigin, SurveyFormat, SurveyOptions,
+    WorldFile, picture_size_px, read_drawing, read_picture, survey_cloud,
 };
 
 use crate::harness::{Answer, Format, run};
@@ -52,6 +54,106 @@ fn drawings() {
             Err(error) => Answer::refused(&error),
         }
     });
+}
+
+#[test]
+fn surveys() {
+    for (name, file_name, format) in [
+        ("kml", "map.kml", SurveyFormat::Kml),
+        ("geojson", "map.geojson", SurveyFormat::GeoJson),
+        ("survey-table", "points.csv", SurveyFormat::Table),
+    ] {
+        text_format((name, 4_000), file_name, &|path| match Site::from_survey(
+            path,
+            format,
+            &SurveyOptions::default(),
+        ) {
+            Ok(site) => Answer::accepted(&(&site, site.contents(None))),
+            Err(error) => Answer::refused(&error),
+        });
+    }
+}
+
+#[test]
+fn las_clouds() {
+    clouds_of(("las", "scan.las"), CloudFormat::Las, vec![las(0, false), las(7, false)]);
+}
+
+#[test]
+fn laz_clouds() {
+    clouds_of(("laz", "scan.laz"), CloudFormat::Las, vec![las(3, true), las(7, true)]);
+}
+
+#[test]
+fn e57_clouds() {
+    clouds_of(("e57", "scan.e57"), CloudFormat::E57, vec![e57()]);
+}
+
+fn clouds_of(
+    (name, file_name): (&'static str, &'static str),
+    format: CloudFormat,
+    seeds: Vec<Vec<u8>>,
+) {
+    run(&Format {
+        name,
+        n_inputs: 2_000,
+        file_name,
+        names_file: true,
+        seeds,
+        mutate: if format == CloudFormat::E57 { resealed_bytes } else { changed_bytes },
+        load: &|path| {
+            let read =
+                survey_cloud(path, format, LengthUnit::Metre, &mut |_| ControlFlow::Continue(()));
+            match read {
+                Ok(summary) => Answer::accepted(&summary),
+                Err(error) => Answer::refused(&error),
+            }
+        },
+    });
+}
+
+/// A LAS file of a few points.
+fn las(format: u8, is_compressed: bool) -> Vec<u8> {
+    let mut builder = las::Builder::from((1, 4));
+    builder.point_format = las::point::Format::new(format).expect("a format");
+    builder.point_format.is_compressed = is_compressed;
+    let format = builder.point_format;
+    let header = builder.into_header().expect("a header");
+    let mut writer = las::Writer::new(Cursor::new(Vec::new()), header).expect("a writer");
+    for idx in 0..40_u16 {
+        let color = las::Color { red: idx, green: 200, blue: 40 };
+        let point = las::Point {
+            x: f64::from(idx) * 0.25,
+            y: 3.5,
+            z: 0.01 * f64::from(idx),
+            intensity: idx,
+            gps_time: format.has_gps_time.then_some(f64::from(idx)),
+            color: format.has_color.then_some(color),
+            ..las::Point::default()
+        };
+        writer.write_point(point).expect("a point");
+    }
+    writer.into_inner().expect("a file").into_inner()
+}
+
+/// An E57 file of a few points.
+fn e57() -> Vec<u8> {
+    let mut file = Cursor::new(Vec::new());
+    let mut writer = e57::E57Writer::new(&mut file, "file").expect("a writer");
+    let records = vec![
+        e57::Record::CARTESIAN_X_F64,
+        e57::Record::CARTESIAN_Y_F64,
+        e57::Record::CARTESIAN_Z_F64,
+    ];
+    let mut cloud = writer.add_pointcloud("cloud", records).expect("a cloud");
+    for idx in 0..40 {
+        let at = [f64::from(idx), 2.0, 0.5].map(e57::RecordValue::Double);
+        cloud.add_point(at.to_vec()).expect("a point");
+    }
+    cloud.finalize().expect("a cloud");
+    writer.finalize().expect("a file");
+    drop(writer);
+    file.into_inner()
 }
 
 #[test]
@@ -110,4 +212,25 @@ fn changed_bytes(mutator: &mut Mutator, input: &[u8], _other: &[u8]) -> Vec<u8> 
         }
     }
     bytes
+}
+
+/// The same with the checksum of every page of E57 put right.
+fn resealed_bytes(mutator: &mut Mutator, input: &[u8], other: &[u8]) -> Vec<u8> {
+    let mut bytes = changed_bytes(mutator, input, other);
+    for page in bytes.chunks_exact_mut(1024) {
+        let (content, checksum) = page.split_at_mut(1020);
+        checksum.copy_from_slice(&crc32c(content).to_be_bytes());
+    }
+    bytes
+}
+
+/// The checksum of Castagnoli, by its definition.
+fn crc32c(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |mut crc, byte| {
+        crc ^= u32::from(*byte);
+        for _ in 0..8 {
+            crc = if crc & 1 == 1 { (crc >> 1) ^ 0x82f6_3b78 } else { crc >> 1 };
+        }
+        crc
+    })
 }

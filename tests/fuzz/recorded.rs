@@ -78,6 +78,23 @@ fn bytes(mutator: &mut Mutator, input: &[u8], other: &[u8]) -> Vec<u8> {
     changed
 }
 
+/// A binary format whose kept files are changed byte by byte.
+fn binary_format(name: &'static str, file_name: &'static str, map: &'static str) {
+    let load = |path: &Path| series(path, map);
+    let (seeds, mutate, n_inputs) = (Vec::new(), bytes, 3_000);
+    run(&Format { name, n_inputs, file_name, names_file: true, seeds, mutate, load: &load });
+}
+
+#[test]
+fn logs_of_labview() {
+    binary_format("tdms", "log.tdms", "");
+}
+
+#[test]
+fn measurements_of_buses() {
+    binary_format("mdf", "log.mf4", "fx=2:N,fy=3:N");
+}
+
 #[test]
 fn files_of_columns() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -3,12 +3,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use impactlab_core::data::Existing;
 use impactlab_core::data::write::WriterLock;
+use impactlab_core::data::{CrashTest, Existing};
 use impactlab_study::case_file::{CaseError, CaseFile, Change, UsedFile, Variant, pack, unpack};
 use impactlab_study::{
-    Drive, Event, ImpactRequest, Library, MotionSource, Report, Request, ScenarioChoice,
-    SeriesFile, SimulateRequest,
+    CheckRequest, Drive, Event, ImpactRequest, Library, MotionSource, Report, Request,
+    ScenarioChoice, SeriesFile, SimulateRequest,
 };
 
 /// A folder of the test's own, empty.
@@ -381,4 +381,29 @@ fn a_package_has_the_files_of_questions_and_nothing_else_that_a_case_names() {
     let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
     assert_eq!(names, ["files/0/force.csv"]);
     assert_eq!(files[0].path, folder.join("force.csv"));
+}
+
+#[test]
+fn a_package_takes_the_curves_of_a_crash_test_along() {
+    let folder = folder("curves");
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/corpus/ev5/v1.EV5");
+    let test = folder.join("v1.EV5");
+    fs::copy(kept, &test).expect("copied");
+    fs::write(folder.join("v1.001"), "0\t0\n0.001\t-10\n0.002\t0\n").expect("written");
+    let check = CheckRequest { paths: vec![test.clone()], all: false, map: None };
+    let questions = vec![Request::from(check)];
+    let variant = Variant { name: "base".to_owned(), questions, ..Variant::default() };
+    let case = CaseFile::new("a", variant);
+    assert_eq!(case.used_paths(), [folder.join("v1.001"), test]);
+    let zip = folder.join("a.zip");
+    let packed = pack(&case, &zip, Existing::Refuse).expect("packed");
+    let named = |ending: &str| {
+        let found = packed.iter().find(|file| file.name.ends_with(ending)).expect("packed");
+        found.name.clone()
+    };
+    assert_eq!(named("v1.EV5").replace("EV5", "001"), named("v1.001"), "side by side");
+    let opened = unpack(&zip, &folder.join("there")).expect("unpacked");
+    let there = opened.with_file_name(named("v1.EV5"));
+    let force = CrashTest::read(&there).and_then(|test| test.barrier_force());
+    assert_eq!(force.expect("a test").expect("a force").time_s, [0.0, 0.001, 0.002]);
 }

@@ -214,7 +214,10 @@ fn a_racelogic_file_is_read_and_a_crash_report_is_named() {
     assert!(values(&loaded, Channel::Yaw)[0].abs() < 1e-9);
     assert!(loaded.notes.iter().any(|note| note.to_string().contains("Racelogic VBO")));
     let error = read("CDR File Information\nUser Entered VIN,1G1\n", "").unwrap_err().to_string();
-    assert!(error.contains("is the report of a Bosch CDR tool; it holds no table of recorded data"), "{error}");
+    assert!(
+        error.contains("is the report of a Bosch CDR tool; it holds no table of recorded data"),
+        "{error}"
+    );
 }
 
 #[test]

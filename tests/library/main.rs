@@ -10,6 +10,7 @@ mod data_budgets;
 mod data_corrections;
 mod data_dialects;
 mod data_import;
+mod data_loggers;
 mod data_maps;
 mod data_quality;
 mod data_shipped;

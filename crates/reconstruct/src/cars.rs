@@ -6,7 +6,7 @@ use crate::evidence::{CarEvidence, Evidence};
 use impactlab_core::collision::Side;
 use impactlab_core::numerics::NORMAL_QUANTILE_95;
 use impactlab_core::vehicle::sheet::{Estimate, SheetQuantity};
-use impactlab_core::vehicle::{DataSheet, VehicleClass, VehicleParameters};
+use impactlab_core::vehicle::{DataSheet, RoadSlope, VehicleClass, VehicleParameters};
 
 /// Share of the wheelbase behind the CG beyond which a flank is hit as in a PIT manoeuvre.
 const PIT_SHARE: f64 = 0.2;
@@ -42,6 +42,15 @@ impl Cars {
             struck: Car::new(&evidence.struck_car, struck),
             striking: Car::new(&evidence.striking_car, striking),
         }
+    }
+
+    /// The same cars on a road with a slope.
+    #[must_use]
+    pub fn on_slope(mut self, slope: RoadSlope) -> Self {
+        for car in [&mut self.struck, &mut self.striking] {
+            car.parameters.slope = slope;
+        }
+        self
     }
 
     /// Whether the struck car was hit on a flank and clearly behind its CG, as in a PIT manoeuvre.

@@ -7,7 +7,7 @@
 //! Assumptions: the struck car drives straight ahead before the impact; both cars are rigid during it
 //! and touch at one point; the striking car touches with the corner or the front that its heading turns
 //! towards the struck side; the contact lies 0.55 m above the road. Where the ground has zones, each wheel
-//! stands on the friction of its own.
+//! stands on the friction of its own; a slope of the road moves both cars.
 
 use rayon::prelude::*;
 
@@ -15,6 +15,7 @@ use crate::evidence::{Evidence, ends};
 use crate::held_wheels::{HeldWheels, wheels_near};
 use crate::later_contact::{FollowedCar, Later, LaterContacts, ParticleContact};
 use crate::prior::towards;
+use crate::skid::Skid;
 use crate::{Cars, ImpactState, Latent, LatentValues, Prior};
 use impactlab_core::collision::{Pulse, PulseShape, Side};
 use impactlab_core::data::{ForceAxes, ForceHistory, Sampling};
@@ -23,8 +24,8 @@ use impactlab_core::ranges::{ROAD_FRICTION, STRUCK_TURN};
 use impactlab_core::units::STANDARD_GRAVITY_M_S2;
 use impactlab_core::vehicle::{
     Braking, ContactLoad, ContactPoint, DEFAULT_BRAKE_RISE_S, DrivenAxle, Ending, EngineBraking,
-    FrictionZone, HeldSteer, Manoeuvre, Path, PathLimit, PitDriver, PitEnd, SimulationRun,
-    VehicleParameters, VehicleState, simulate_paths,
+    FrictionZone, HeldSteer, Manoeuvre, Path, PathLimit, PitDriver, PitEnd, RoadSlope,
+    SimulationRun, VehicleParameters, VehicleState, simulate_paths,
 };
 
 /// Height of the contact above the road, m: sills and bumpers of passenger cars.
@@ -84,6 +85,8 @@ pub struct ForwardModel {
     /// Wheels of the struck and of the striking car that damage may hold.
     wheels: [HeldWheels; 2],
     pub(super) restitution: Option<[f64; 2]>,
+    /// Skids of the struck and of the striking car before the impact.
+    pub(super) skids: [Option<Skid>; 2],
     follows_striking: bool,
     later: Later,
     zones: Vec<FrictionZone>,
@@ -127,12 +130,19 @@ impl ForwardModel {
                 },
             ],
             restitution: ends(evidence.prior.restitution),
+            skids: Skid::of_both_cars(evidence),
             follows_striking: evidence.follows_striking_car(),
             later: Later::LeftOut,
             zones: Vec::new(),
             limit: PathLimit { distance_m },
-            cars,
+            cars: cars.on_slope(evidence.slope()),
         }
+    }
+
+    /// The same on a road with a slope, in the axes of the evidence.
+    #[must_use]
+    pub fn on_slope(self, slope: RoadSlope) -> Self {
+        Self { cars: self.cars.on_slope(slope), ..self }
     }
 
     /// The same on a ground with zones of their own friction, in the axes of the evidence.

@@ -23,6 +23,9 @@ pub struct ImpactState {
     pub struck_speed_m_s: f64,
     /// Speed of the striking car before it, m/s.
     pub striking_speed_m_s: f64,
+    /// Speeds of the struck and of the striking car before a skid that ended at it, m/s; `None` of a car
+    /// without one.
+    pub speeds_before_skid_m_s: [Option<f64>; 2],
     /// Size of the difference of the velocities of both CGs, m/s.
     pub closing_speed_m_s: f64,
     /// Heading of the striking car against that of the struck car, rad.
@@ -109,6 +112,11 @@ impl ForwardModel {
         ImpactState {
             struck_speed_m_s,
             striking_speed_m_s,
+            speeds_before_skid_m_s: self.speeds_before_skid_m_s(
+                values,
+                [struck_speed_m_s, striking_speed_m_s],
+                course_rad,
+            ),
             closing_speed_m_s: closing[0].hypot(closing[1]),
             heading_difference_rad: wrap_angle_rad(heading_rad),
             striking_velocity_m_s,

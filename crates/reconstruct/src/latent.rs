@@ -156,6 +156,16 @@ latents! {
     StrikingYawRate: "bullet_yaw_rate_rad_s", "rad/s", "yaw rate of the striking car inwards";
     /// Loads that crush both cars over those of their classes, where later contacts are followed.
     ContactStiffnessFactor: "contact_stiffness_factor", "", "stiffness of both cars over the usual";
+    /// Length of the skid of the struck car to first contact, m.
+    SkidLength: "skid_before_m", "m", "skid before the impact";
+    /// Its drag factor, where it is known of this skid.
+    SkidDrag: "skid_drag", "", "drag of the skid before the impact";
+    /// Length of the skid of the striking car to first contact, m.
+    #[serde(rename = "bullet_skid_length")]
+    StrikingSkidLength: "bullet_skid_before_m", "m", "skid of the striking car before the impact";
+    /// Its drag factor, where it is known of this skid.
+    #[serde(rename = "bullet_skid_drag")]
+    StrikingSkidDrag: "bullet_skid_drag", "", "drag of the skid of the striking car";
     /// Friction of the zones of the ground over that which the site says, in all of them alike.
     ZoneFrictionFactor: "zone_friction_factor", "", "friction of the zones over that of the site";
 }
@@ -214,15 +224,20 @@ impl LatentValues {
 
     /// Drag factor of the struck car with all wheels locked, over the acceleration of gravity.
     pub fn locked_drag(&self) -> f64 {
-        [
-            Latent::RoadFriction,
-            Latent::TireFrictionFactor,
-            Latent::LongitudinalFrictionRatio,
-            Latent::SlidingRatio,
-        ]
-        .map(|latent| self.get(latent))
-        .iter()
-        .product()
+        self.locked_drag_on(Latent::TireFrictionFactor)
+    }
+
+    /// The same of the striking car; NaN where its tires are not among the quantities.
+    pub fn striking_locked_drag(&self) -> f64 {
+        self.locked_drag_on(Latent::StrikingTireFrictionFactor)
+    }
+
+    /// - `tires`: friction of the tires of the car over that of the road.
+    fn locked_drag_on(&self, tires: Latent) -> f64 {
+        [Latent::RoadFriction, tires, Latent::LongitudinalFrictionRatio, Latent::SlidingRatio]
+            .map(|latent| self.get(latent))
+            .iter()
+            .product()
     }
 
     /// Which of two wheels near the damage is blocked, where nobody looked.

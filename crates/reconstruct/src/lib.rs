@@ -12,13 +12,14 @@
 //! - `forward`: from z to the motion of both cars; `later_contact`: where they meet again;
 //! - `likelihood`: how well a motion goes with the evidence;
 //! - [`sampler`]: draws from the posterior;
-//! - `hand`: what one computes by hand, as a baseline; `hand_checks`: the same as independent checks;
+//! - [`hand`]: what one computes by hand: methods that are asked, the baseline, independent checks;
 //! - [`evaluate`]: how well all of these do on staged collisions, of which the truth is known.
 
 pub mod baseline;
 pub mod domain;
 pub mod evaluate;
 pub mod evidence;
+pub mod hand;
 pub mod sampler;
 
 mod budget;
@@ -27,8 +28,6 @@ mod cars;
 mod computed_marks;
 mod distribution;
 mod forward;
-mod hand;
-mod hand_checks;
 mod held_wheels;
 mod hinges;
 mod impact_state;
@@ -40,6 +39,7 @@ mod modes;
 mod posterior;
 mod prior;
 mod quantity;
+mod skid;
 
 pub use budget::Narrowing;
 pub use calibration::{RankedQuantity, Ranks, ranks_of_cases};
@@ -47,8 +47,7 @@ pub use cars::{Car, Cars};
 pub use computed_marks::MarkComparison;
 pub use distribution::Distribution;
 pub use forward::{CollisionMotion, ForwardModel, StrikingMotion};
-pub use hand::HandCalculation;
-pub use hand_checks::{HandCheck, HandSpeed};
+pub use hand::{HandCalculation, HandCheck, HandSpeed};
 pub use hinges::{SpeedChange, SpeedHinge};
 pub use impact_state::ImpactState;
 pub use latent::{

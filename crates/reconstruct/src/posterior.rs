@@ -98,6 +98,15 @@ impl Posterior {
         self.points().map(|point| quantity.value(&point)).collect()
     }
 
+    /// The quantities that the case is asked for: those of every case, and the speeds before its skids.
+    pub fn asked(&self) -> Vec<ReconstructedQuantity> {
+        let has = |quantity: &&ReconstructedQuantity| {
+            self.values(**quantity).iter().all(|value| !value.is_nan())
+        };
+        let before_skid = ReconstructedQuantity::BEFORE_SKID.iter().filter(has);
+        ReconstructedQuantity::ALL.iter().chain(before_skid).copied().collect()
+    }
+
     fn points(&self) -> impl Iterator<Item = PosteriorPoint<'_>> {
         let points = self.values.iter().zip(&self.impacts).zip(&self.yaw_rates_after_rad_s);
         points.map(|((values, impact), yaw_rate_after_rad_s)| PosteriorPoint {
@@ -149,7 +158,7 @@ impl Posterior {
             let value = |&idx: &usize| all[idx];
             QuantityEstimate::from_values(*quantity, chosen.iter().map(value).collect(), levels)
         };
-        ReconstructedQuantity::ALL.iter().filter_map(estimate).collect()
+        self.asked().iter().filter_map(estimate).collect()
     }
 
     /// The kinds of courses of events, the most probable one first; none of particles that are not of the

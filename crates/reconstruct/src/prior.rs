@@ -128,6 +128,7 @@ impl Prior {
         prior.add_contact(evidence, cars);
         prior.add_cars(evidence, cars);
         prior.add_ending(evidence);
+        prior.add_skids(evidence);
         prior
     }
 
@@ -386,6 +387,35 @@ impl Prior {
         }
     }
 
+    /// Skids before the impact: what was measured of them.
+    fn add_skids(&mut self, evidence: &Evidence) {
+        for (skid, length, drag) in [
+            (&evidence.skid_before, Latent::SkidLength, Latent::SkidDrag),
+            (&evidence.striking_skid_before, Latent::StrikingSkidLength, Latent::StrikingSkidDrag),
+        ] {
+            let Some(skid) = skid else { continue };
+            for (latent, measured) in [(length, skid.length()), (drag, skid.drag_factor())] {
+                let Some(Measured { value, sigma }) = measured else { continue };
+                let low = (value - 4.0 * sigma).max(0.0);
+                let distribution = normal(value, sigma, low, value + 4.0 * sigma);
+                self.add(latent, PriorSource::Measured, distribution);
+            }
+        }
+        if evidence.striking_skid_before.is_some() {
+            self.assume_striking_tires();
+        }
+    }
+
+    /// How the tires of the striking car differ from those of a friction test, unless that is assumed
+    /// already.
+    fn assume_striking_tires(&mut self) {
+        let latent = Latent::StrikingTireFrictionFactor;
+        if self.components.iter().all(|component| component.latent != latent) {
+            let factor = log_normal(TIRE_FRICTION_FACTOR, TIRE_FRICTION_SCATTER, 0.7, 1.4);
+            self.assume(latent, factor);
+        }
+    }
+
     /// Wheels that damage holds: one of two near it where nobody looked.
     fn add_held_wheels(&mut self, after: &After, [which, drag]: [Latent; 2]) {
         if !after.wheels_are_known() {
@@ -420,10 +450,7 @@ impl Prior {
             }
             None => self.fixed.set(Latent::StrikingBrakeDecision, 1.0),
         }
-        self.assume(
-            Latent::StrikingTireFrictionFactor,
-            log_normal(TIRE_FRICTION_FACTOR, TIRE_FRICTION_SCATTER, 0.7, 1.4),
-        );
+        self.assume_striking_tires();
         let latents = [Latent::StrikingBlockedWheel, Latent::StrikingBlockedDrag];
         self.add_held_wheels(after, latents);
     }

@@ -8,7 +8,10 @@ use impactlab_core::numerics::{quantile_of_sorted, unwrapped_rad};
 use impactlab_core::units::{Estimate, Quantity};
 
 macro_rules! quantities {
-    ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $value:expr;)+) => {
+    (
+        $($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $value:expr;)+
+        --- $($late:ident),+
+    ) => {
         /// A quantity that a reconstruction asks for.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
@@ -17,8 +20,15 @@ macro_rules! quantities {
         }
 
         impl ReconstructedQuantity {
-            /// All of them.
-            pub const ALL: &'static [Self] = &[$(Self::$name),+];
+            /// Every one of them.
+            pub const EVERY: &'static [Self] = &[$(Self::$name),+];
+
+            /// Those that only a case with a skid before the impact has: the last ones.
+            pub const BEFORE_SKID: &'static [Self] = &[$(Self::$late),+];
+
+            /// Those that every case has.
+            pub const ALL: &'static [Self] =
+                Self::EVERY.split_at(Self::EVERY.len() - Self::BEFORE_SKID.len()).0;
 
             /// Name with its unit.
             pub const fn key(self) -> &'static str {
@@ -54,6 +64,13 @@ quantities! {
     DeltaVStruck: "delta_v_target_m_s", "m/s", |point| point.impact.delta_v_struck_m_s();
     /// Yaw rate of the struck car at the end of the contact, over which the tires act as well, rad/s.
     StruckYawRate: "target_yaw_rate_after_rad_s", "rad/s", |point| point.yaw_rate_after_rad_s;
+    /// Speed of the struck car before a skid that ended at the impact, m/s.
+    StruckSpeedBeforeSkid: "target_speed_before_skid_m_s", "m/s",
+        |point| point.impact.speeds_before_skid_m_s[0].unwrap_or(f64::NAN);
+    /// The same of the striking car, m/s.
+    StrikingSpeedBeforeSkid: "bullet_speed_before_skid_m_s", "m/s",
+        |point| point.impact.speeds_before_skid_m_s[1].unwrap_or(f64::NAN);
+    --- StruckSpeedBeforeSkid, StrikingSpeedBeforeSkid
 }
 
 impl ReconstructedQuantity {
@@ -67,15 +84,20 @@ impl ReconstructedQuantity {
             Self::RoadFriction => "friction of the road",
             Self::DeltaVStruck => "Δv of the struck car",
             Self::StruckYawRate => "yaw rate after the impact",
+            Self::StruckSpeedBeforeSkid => "speed of the struck car before its skid",
+            Self::StrikingSpeedBeforeSkid => "speed of the striking car before its skid",
         }
     }
 
     /// What kind of quantity it is.
     pub fn quantity(self) -> Quantity {
         match self {
-            Self::StruckSpeed | Self::StrikingSpeed | Self::ClosingSpeed | Self::DeltaVStruck => {
-                Quantity::Speed
-            }
+            Self::StruckSpeed
+            | Self::StrikingSpeed
+            | Self::ClosingSpeed
+            | Self::DeltaVStruck
+            | Self::StruckSpeedBeforeSkid
+            | Self::StrikingSpeedBeforeSkid => Quantity::Speed,
             Self::HeadingDifference => Quantity::Angle,
             Self::RoadFriction => Quantity::Ratio,
             Self::StruckYawRate => Quantity::AngularVelocity,
@@ -143,7 +165,7 @@ pub(crate) struct PosteriorPoint<'a> {
 impl QuantityEstimate {
     /// Which quantity it is.
     fn reconstructed(&self) -> Option<ReconstructedQuantity> {
-        ReconstructedQuantity::ALL.iter().copied().find(|quantity| quantity.key() == self.name)
+        ReconstructedQuantity::EVERY.iter().copied().find(|quantity| quantity.key() == self.name)
     }
 
     /// What it is called.

@@ -70,7 +70,11 @@ pub use questions::evaluate::reconstruction::{
     EvaluateReconstructionAnswer, EvaluateReconstructionReport, EvaluateReconstructionRequest,
 };
 pub use questions::evaluate::response::{EvaluateResponseAnswer, EvaluateResponseRequest};
-pub use questions::impact::{BodyReport, ImpactAnswer, ImpactReport, ImpactRequest};
+pub use questions::hand::{
+    DEFAULT_HAND_DRAWS, HandInputReport, HandMethodAnswer, HandReport, HandRequest, HandResult,
+    HandSensitivityReport,
+};
+pub use questions::impact::{BodyReport, ImpactAnswer, ImpactReport, ImpactRequest, SkidReport};
 pub use questions::predict::force::{
     ForceQuestion, ImpulseReport, PredictForceAnswer, PredictForceReport, PredictForceRequest,
 };

@@ -12,8 +12,11 @@ use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::jobs::ProgressCallback;
 use impactlab_study::{ATLAS_ENDING, MODEL_ENDING};
 
-/// File extensions of site files and orthophotos.
-const GROUNDS: [&str; 6] = ["toml", "png", "jpg", "jpeg", "tif", "tiff"];
+/// File extensions of site files, orthophotos, surveyed lines and points, and point clouds.
+const GROUNDS: [&str; 13] = [
+    "toml", "png", "jpg", "jpeg", "tif", "tiff", "kml", "kmz", "geojson", "csv", "las", "laz",
+    "e57",
+];
 
 impl Purpose {
     /// The command that follows once paths are known.
@@ -107,7 +110,7 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         Purpose::OpenComparison => {
             dialog.add_filter("comparison.json", &["json"]).pick_file().await
         }
-        Purpose::Ground => dialog.add_filter("site file or orthophoto", &GROUNDS).pick_file().await,
+        Purpose::Ground => dialog.add_filter("ground", &GROUNDS).pick_file().await,
         Purpose::OpenModel => dialog.add_filter("model", &[MODEL_ENDING]).pick_file().await,
         Purpose::OpenAtlas => dialog.add_filter("atlas", &[ATLAS_ENDING]).pick_file().await,
         Purpose::OpenPlan => dialog.add_filter("plan", &["toml", "json"]).pick_file().await,

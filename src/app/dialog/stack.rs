@@ -5,10 +5,13 @@ use std::path::{Path, PathBuf};
 
 use crate::app::archive::ModelsDialog;
 use crate::app::case::{Leaving, TrustedCase};
+use crate::app::crash_test::CrashTestForm;
 use crate::app::dialog::PathDialog;
 use crate::app::film::FilmForm;
+use crate::app::ground::CloudForm;
 use crate::app::import::ImportDialog;
 use crate::app::output::Output;
+use crate::app::recorder::RecorderForm;
 
 /// A dialog within the window.
 pub enum Dialog {
@@ -37,6 +40,12 @@ pub enum Dialog {
     Models(ModelsDialog),
     /// How a film of the scene is to be made.
     Film(Box<FilmForm>),
+    /// How a point cloud becomes a ground.
+    Cloud(Box<CloudForm>),
+    /// What of a crash test a vehicle gets.
+    CrashTest(Box<CrashTestForm>),
+    /// What of an event data recorder becomes evidence.
+    Recorder(Box<RecorderForm>),
 }
 
 /// The dialogs that are open, the uppermost last.

@@ -7,10 +7,11 @@ use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::licences::licences_ui;
 use crate::app::menu::messages_ui;
-use crate::app::panels::{film_ui, models_dialog_ui};
+use crate::app::panels::{cloud_ui, crash_test_ui, film_ui, models_dialog_ui, recorder_ui};
 use crate::app::reading::unread_ui;
 use crate::app::replace::replace_ui;
 use crate::app::state::State;
+use crate::app::tasks::TaskKey;
 
 /// Draws the dialogs that are open and adds a command when the user has answered one. A click beside
 /// the uppermost one or Escape closes it.
@@ -40,6 +41,9 @@ impl Dialog {
             Self::Path(_) => "path dialog",
             Self::Models(_) => "models dialog",
             Self::Film(_) => "film dialog",
+            Self::Cloud(_) => "cloud dialog",
+            Self::CrashTest(_) => "crash test dialog",
+            Self::Recorder(_) => "recorder dialog",
         }
     }
 }
@@ -55,9 +59,15 @@ fn dialog_ui(ui: &mut Ui, dialog: &mut Dialog, state: &mut State, commands: &mut
         Dialog::Unread(paths) => unread_ui(ui, paths, commands),
         Dialog::Path(dialog) => dialog.ui(ui, commands),
         Dialog::Models(dialog) => models_dialog_ui(ui, dialog, commands),
+        Dialog::CrashTest(form) => crash_test_ui(ui, form, commands),
+        Dialog::Recorder(form) => recorder_ui(ui, form, commands),
         Dialog::Film(form) => {
             let is_busy = state.session.tasks.film().is_some();
             film_ui(ui, form, is_busy, commands);
+        }
+        Dialog::Cloud(form) => {
+            let progress = state.session.tasks.progress(&TaskKey::MakeGround);
+            cloud_ui(ui, form, progress.map(|(progress, _)| progress), commands);
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use crate::app::ground::{CloudForm, MadeGround};
 use impactlab_document::scene::LoadedGround;
 
 /// An action on the ground.
@@ -19,4 +20,10 @@ pub enum GroundCommand {
     Remove,
     /// Take the ground that was read of this file, or why it cannot be shown.
     Read(PathBuf, Result<Arc<LoadedGround>, String>),
+    /// Make a ground of a point cloud.
+    MakeOfCloud(CloudForm),
+    /// Stop that; nothing is left behind.
+    StopCloud,
+    /// Take the ground that was made; `None` if it was stopped.
+    CloudMade(Result<Option<MadeGround>, String>),
 }

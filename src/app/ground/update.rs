@@ -2,9 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::app::command::Command;
+use crate::app::dialog::Dialog;
+use crate::app::ground::cloud::{CloudForm, MadeGround, make_ground};
 use crate::app::ground::command::GroundCommand;
 use crate::app::panes::Pane;
 use crate::app::state::{Session, State};
+use crate::app::tasks::TaskKey;
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::{Existing, Severity, write_atomically};
 use impactlab_core::error_chain;
@@ -40,6 +44,13 @@ impl State {
     pub(in crate::app) fn change_ground(&mut self, command: GroundCommand) {
         match command {
             GroundCommand::Remove => self.project.put_on_site(None),
+            GroundCommand::MakeOfCloud(form) => self.session.tasks.start_in_background(
+                TaskKey::MakeGround,
+                move |report| make_ground(&form, report),
+                |made| Command::Ground(GroundCommand::CloudMade(made)),
+            ),
+            GroundCommand::StopCloud => self.session.tasks.cancel(&TaskKey::MakeGround),
+            GroundCommand::CloudMade(made) => self.take_made_ground(made),
             GroundCommand::Read(path, result) => {
                 let extent_m = self.session.scene.extent_m().unwrap_or_default();
                 for (severity, text) in self.session.ground.take(&path, result, extent_m) {
@@ -61,6 +72,25 @@ impl State {
                     }
                 }
             }
+        }
+    }
+
+    /// Asks how a point cloud becomes a ground.
+    pub(in crate::app) fn ask_cloud(&mut self, path: PathBuf) {
+        self.session.dialogs.open(Dialog::Cloud(Box::new(CloudForm::new(path))));
+    }
+
+    /// Shows the ground that was made of a point cloud. If there is none, the dialog stays open.
+    fn take_made_ground(&mut self, made: Result<Option<MadeGround>, String>) {
+        match made {
+            Ok(Some(MadeGround { site, notes })) => {
+                self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Cloud(_)));
+                self.say(Severity::Info, format!("{} written", site.display()));
+                notes.into_iter().for_each(|note| self.say(Severity::Info, note));
+                self.open_ground(site);
+            }
+            Ok(None) => {}
+            Err(why) => self.say(Severity::Error, why),
         }
     }
 

@@ -213,6 +213,14 @@ impl Choices {
             || self.computed().iter().any(|(of, ..)| *of == channel)
     }
 
+    /// Whether positions follow from latitude and longitude, as those of a receiver do.
+    pub fn has_geographic_place(&self) -> bool {
+        let is_place = |(_, formula, _): &(Channel, Formula, Result<Vec<usize>, String>)| {
+            matches!(formula, Formula::East | Formula::North)
+        };
+        self.computed().iter().any(is_place)
+    }
+
     /// The force component that no column holds although another column holds the other one.
     pub fn missing_force(&self) -> Option<Channel> {
         let has = |channel| self.columns.iter().any(|of| of.channel() == Some(channel));

@@ -15,6 +15,7 @@ use impactlab_core::data::{
     Channel, ColumnMap, DeckUnits, FileKind, HeaderLine, ReadSettings, Severity, Sheet, SheetRef,
     Table, VelocityAxes, VelocityFit,
 };
+use impactlab_core::ranges::{CONTACT_X, CONTACT_Y};
 use impactlab_draw::theme;
 
 /// Size of the dialog and of its parts, points.
@@ -259,7 +260,32 @@ impl ImportDialog {
             ui.end_row();
             self.headings_ui(ui);
             self.velocities_ui(ui);
+            self.antenna_ui(ui);
         });
+    }
+
+    /// Draws the place of the antenna, for positions that follow from latitude and longitude.
+    fn antenna_ui(&mut self, ui: &mut Ui) {
+        let is_receiver = self.choices.has_geographic_place() || self.settings.antenna_m.is_some();
+        if !(is_receiver && self.choices.has(Channel::Yaw)) {
+            return;
+        }
+        let name = ui.label("Antenna from the CG");
+        let mut place_m = self.settings.antenna_m.unwrap_or_default();
+        ui.horizontal(|ui| {
+            let mut is_changed = false;
+            let fields = [("ahead", CONTACT_X), ("to the left", CONTACT_Y)];
+            for (place_m, (side, range)) in place_m.iter_mut().zip(fields) {
+                let field = egui::DragValue::new(place_m).speed(0.01).suffix(" m");
+                let field = ui.add(field.range(range.low..=range.high)).labelled_by(name.id);
+                is_changed |= field.on_hover_text(side).changed();
+                ui.weak(side);
+            }
+            if is_changed {
+                self.settings.antenna_m = (place_m != [0.0; 2]).then_some(place_m);
+            }
+        });
+        ui.end_row();
     }
 
     /// Draws the button with which the time begins at 0, where it does not.

@@ -39,6 +39,7 @@ pub fn panel(pane: Pane) -> Panel {
             ("Reconstructed scene", Icon::MapPin, panels::reconstructed_scene_ui)
         }
         Pane::Speeds => ("Speeds", Icon::Sigma, panels::speeds_ui),
+        Pane::Hand => ("By hand", Icon::Calculator, panels::hand_ui),
         Pane::Variants => ("Variants", Icon::Layers, panels::variants_ui),
         Pane::Models => ("Models", Icon::BrainCircuit, panels::models_ui),
         Pane::Training => ("Training", Icon::GraduationCap, panels::training_ui),

@@ -16,19 +16,26 @@ use crate::app::widgets::{
 };
 use impactlab_core::collision::{
     ContactLocation, DEFAULT_FRICTION_LIMIT, PulseShape, RestitutionForm, Role, Scenario,
-    ScenarioContact, ScenarioVehicle, SharedNumber, Side, default_restitution_in_words,
+    ScenarioContact, ScenarioSkid, ScenarioVehicle, SharedNumber, Side,
+    default_restitution_in_words,
 };
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::{
     BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
     CONTACT_HEIGHT, CONTACT_OFFSET, FRICTION_LIMIT, FRICTION_OF_CRITICAL, HEADING, POSITION,
-    PULSE_DURATION, RESTITUTION, ROAD_FRICTION, ROAD_FRICTION_SIGMA, Range, SPEED, YAW_RATE,
+    PULSE_DURATION, RESTITUTION, ROAD_CROSS_SLOPE, ROAD_FRICTION, ROAD_FRICTION_SIGMA, ROAD_GRADE,
+    Range, SKID_LENGTH, SPEED, YAW_RATE,
 };
 use impactlab_core::units::{NumberFormat, UnitSystem, significant};
-use impactlab_core::vehicle::{BuiltInVehicle, ROAD_FRICTION_SPREAD, VehicleParameters};
+use impactlab_core::vehicle::{
+    BuiltInVehicle, FixedObject, ROAD_FRICTION_SPREAD, RoadSlope, VehicleParameters,
+};
 use impactlab_draw::theme;
 use impactlab_study::DEFAULT_VEHICLE;
 use impactlab_study::analysis::PulseSetup;
+
+/// Drag factor with which a skid begins in the form: locked wheels on dry asphalt.
+const USUAL_DRAG_FACTOR: f64 = 0.7;
 
 /// Draws the plan view of the vehicles at first contact, the forms that edit the scenario, and the momentum
 /// solution.
@@ -94,6 +101,23 @@ fn forms_ui(
     for (vehicle, ending) in [("struck vehicle", ending), ("striking vehicle", striking_ending)] {
         ending_form(ui, vehicle, ending, &mut beside.steering_ratio, units);
     }
+    slope_form(ui, &mut scenario.road, units);
+}
+
+/// Draws the fields of the slope of the road. A level road is not said.
+fn slope_form(ui: &mut Ui, road: &mut Option<RoadSlope>, units: UnitSystem) {
+    egui::CollapsingHeader::new("Slope of the road").show(ui, |ui| {
+        Grid::new("slope").num_columns(2).show(ui, |ui| {
+            let before = road.unwrap_or_default();
+            let mut slope = before;
+            quantity_field(ui, "Grade along X, uphill", &mut slope.grade, &ROAD_GRADE, units);
+            let cross = &mut slope.cross_slope;
+            quantity_field(ui, "Cross slope, up to the left", cross, &ROAD_CROSS_SLOPE, units);
+            if slope != before {
+                *road = (!slope.is_level()).then_some(slope);
+            }
+        });
+    });
 }
 
 fn vehicles_form(ui: &mut Ui, scenario: &mut Scenario, chosen: &ChosenVehicles, units: UnitSystem) {
@@ -120,6 +144,9 @@ fn vehicle_form(
     of: Option<&VehicleParameters>,
     units: UnitSystem,
 ) {
+    if let Some(object) = vehicle.fixed {
+        return fixed_form(ui, object, vehicle, units);
+    }
     let mut speed_m_s = vehicle.vx_world_m_s.hypot(vehicle.vy_world_m_s);
     let mut course_rad = vehicle.vy_world_m_s.atan2(vehicle.vx_world_m_s);
     // The course says which way.
@@ -132,6 +159,7 @@ fn vehicle_form(
     }
     quantity_field(ui, "Heading", &mut vehicle.heading_rad, &HEADING, units);
     quantity_field(ui, "Yaw rate", &mut vehicle.yaw_rate_rad_s, &YAW_RATE, units);
+    skid_form(ui, &mut vehicle.skid, units);
     let shared = of.map(|of| vehicle.beside(of));
     let mass_before_kg = vehicle.mass_kg;
     let cg_range = BODY_CG.at_most(vehicle.length_m);
@@ -161,6 +189,42 @@ fn vehicle_form(
         let loaded = of.clone().with_mass(vehicle.mass_kg, None);
         vehicle.yaw_inertia_kg_m2 = loaded.mass.yaw_inertia_kg_m2;
     }
+}
+
+/// Draws the fields of a skid that ends at the first contact.
+fn skid_form(ui: &mut Ui, skid: &mut Option<ScenarioSkid>, units: UnitSystem) {
+    let mut length_m = skid.map(|skid| skid.length_m);
+    let name = ui.label("Skid before contact");
+    let empty = EmptyField { text: "none", start_si: 10.0 };
+    let field = optional_quantity(ui, &mut length_m, empty, &SKID_LENGTH, units);
+    let hint = "The velocity above is that after it; the speed before it is told below";
+    field.labelled_by(name.id).on_hover_text(hint);
+    ui.end_row();
+    let drag_factor = skid.map_or(USUAL_DRAG_FACTOR, |skid| skid.drag_factor);
+    *skid = length_m.map(|length_m| ScenarioSkid { length_m, drag_factor });
+    if let Some(skid) = skid {
+        quantity_field(ui, "Drag factor of the skid", &mut skid.drag_factor, &ROAD_FRICTION, units);
+    }
+}
+
+/// Draws the fields of an object that does not move.
+fn fixed_form(ui: &mut Ui, object: FixedObject, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
+    ui.label("Fixed object");
+    ui.label(object.word());
+    ui.end_row();
+    match object {
+        FixedObject::Wall => {
+            quantity_field(ui, "Direction along it", &mut vehicle.heading_rad, &HEADING, units);
+            quantity_field(ui, "Length", &mut vehicle.length_m, &BODY_LENGTH, units);
+            quantity_field(ui, "Thickness", &mut vehicle.width_m, &BODY_WIDTH, units);
+        }
+        FixedObject::Pole => {
+            let range = BODY_LENGTH.at_most(BODY_WIDTH.high);
+            quantity_field(ui, "Diameter", &mut vehicle.length_m, &range, units);
+            vehicle.width_m = vehicle.length_m;
+        }
+    }
+    vehicle.cg_from_front_m = vehicle.length_m / 2.0;
 }
 
 /// Draws the button that sets a number of the scenario back to that of its vehicle.

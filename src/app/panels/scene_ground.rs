@@ -1,9 +1,12 @@
 //! The ground in the “Scene” pane: its menu, and measuring on it.
 
+use std::sync::Arc;
+
 use egui::{DragValue, Key, Modifiers, Painter, Pos2, Response, Ui, vec2};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
+use crate::app::export::{SceneExport, SceneFormat};
 use crate::app::ground::{GroundCommand, GroundSession};
 use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::measure::{Measure, Measurement, Measuring};
@@ -39,7 +42,8 @@ pub fn ground_menu_ui(
             (None, Some(problem)) => drop(ui.label(problem)),
             (None, None) if ground.is_loading() => drop(ui.weak("loading…")),
             (None, None) => {
-                drop(ui.weak("A site file (TOML) or an orthophoto; drop it here as well"))
+                drop(ui.weak("A site file (TOML), an orthophoto, KML, GeoJSON, surveyed points or a point cloud; drop it \
+                          here as well"))
             }
         }
         ui.separator();
@@ -51,6 +55,13 @@ pub fn ground_menu_ui(
                 commands.push(Command::Ask(Purpose::Save(Output::Site)));
             }
         });
+        if shown.is_some_and(|loaded| loaded.site.geographic.is_some())
+            && ui.add(icon_button(Icon::Map, "Save for maps (KML)…")).clicked()
+        {
+            let (scene, outlines_s) = (Arc::new(scene.clone()), Vec::new());
+            let export = SceneExport { scene, format: SceneFormat::Kml, outlines_s };
+            commands.push(Command::Ask(Purpose::Save(Output::Exchange(Box::new(export)))));
+        }
         ui.add_enabled_ui(shown.is_some() || ground.problem.is_some(), |ui| {
             if ui.button("Remove ground").clicked() {
                 commands.push(Command::Ground(GroundCommand::Remove));

@@ -117,7 +117,7 @@ impl State {
     }
 
     /// Puts other evidence into the form, and shows it. An answer about the last one is not about it.
-    fn take_evidence(&mut self, evidence: EvidenceChoice) {
+    pub(in crate::app) fn take_evidence(&mut self, evidence: EvidenceChoice) {
         match &mut self.project.reconstruct {
             Some(request) => request.evidence = evidence,
             none => *none = Some(ReconstructRequest::new(evidence)),

@@ -32,7 +32,9 @@ use crate::app::vehicles::ChosenVehicles;
 use crate::app::widgets::BetweenCursors;
 use impactlab_core::data::Severity;
 use impactlab_core::uncertainty::Caveats;
-use impactlab_study::{Answer, ImpactRequest, Library, SimulateReport, SimulateRequest};
+use impactlab_study::{
+    Answer, HandRequest, ImpactRequest, Library, SimulateReport, SimulateRequest,
+};
 
 /// Loaded data, answers and running work, which are not saved.
 #[derive(Default)]
@@ -47,6 +49,8 @@ pub struct Session {
     pub analysis: Latest<SimulateRequest>,
     /// The impulse solution of the scenario in the scenario pane.
     pub impact: Latest<ImpactRequest>,
+    /// The calculation by hand.
+    pub hand: Latest<HandRequest>,
     /// What is known of the case as it is now.
     pub known_case: KnownCase,
     /// The answers of the variants that are not in the forms.
@@ -120,6 +124,7 @@ impl Session {
     pub fn is_waiting(&self) -> bool {
         self.analysis.is_waiting()
             || self.impact.is_waiting()
+            || self.hand.is_waiting()
             || self.force.forecast.is_waiting()
             || self.response.forecast.is_waiting()
     }

@@ -252,6 +252,7 @@ fn print_question(
 ) -> io::Result<()> {
     match (&answer.report, &answer.error) {
         (Some(Report::Impact(report)), _) => print_answer(out, &**report, units),
+        (Some(Report::Hand(report)), _) => print_answer(out, &**report, units),
         (Some(Report::Simulate(report)), _) => print_answer(out, &**report, units),
         (Some(Report::PredictForce(report)), _) => print_answer(out, &**report, units),
         (Some(Report::PredictMotion(report)), _) => print_answer(out, &**report, units),

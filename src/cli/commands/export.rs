@@ -17,14 +17,15 @@ use impactlab_core::data::{
     write_restricted_table,
 };
 use impactlab_core::ranges::INSTANT;
+use impactlab_core::site::MapFormat;
 use impactlab_core::vehicle::PathPoint;
 use impactlab_document::exchange::{
-    DxfOptions, ExchangeError, GltfFrame, dxf, glb, hve_motion, hve_pulse,
+    DxfOptions, ExchangeError, GltfFrame, dxf, glb, hve_motion, hve_pulse, map,
 };
 use impactlab_document::scene::{FilmTiming, Scene};
 use impactlab_study::ReconstructRequest;
 
-/// Write the scene or the motion of a case, or a reconstruction, for other programs: DXF, glTF, CSV, tables
+/// Write the scene or the motion of a case, or a reconstruction, for other programs: DXF, KML, glTF, CSV, tables
 /// for HVE
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -41,7 +42,10 @@ pub(in crate::cli) struct ExportArgs {
     #[arg(long, value_name = "TIME", value_parser = number(INSTANT))]
     at: Vec<f64>,
     /// The file
-    #[arg(long, value_name = "FILE.dxf|FILE.glb|FILE.csv|FILE.parquet|FILE.txt")]
+    #[arg(
+        long,
+        value_name = "FILE.dxf|FILE.kml|FILE.geojson|FILE.glb|FILE.csv|FILE.parquet|FILE.txt"
+    )]
     out: PathBuf,
     #[command(flatten)]
     overwrite: OverwriteArg,
@@ -57,7 +61,8 @@ Examples:
   impactlab export datasets/trajectories-fea --case FE_c002 --format hve-pulse --out pulse.txt
   impactlab export assets/examples/reconstruction.toml --out found.dxf
 
-Formats: dxf is in metres, a layer for each role, restrictions as text; glb has the cars with their
+Formats: dxf is in metres, a layer for each role, restrictions as text; kml and geojson have ground, paths
+and marks on a map, if [origin] of the site file has latitude and longitude; glb has the cars with their
 animation, Y up, for Blender and browsers; motion is CSV in SI units, parquet the
 same in columns of 64 bits; hve-pulse and hve-motion are rows
 with tabs between them in the units and axes of HVE, to be pasted into its tables.
@@ -72,6 +77,10 @@ JSON: out, format, title, notes";
 enum FormatArg {
     /// A drawing in metres: paths, outlines, lines and points (.dxf)
     Dxf,
+    /// Ground, paths, marks and points on a map (.kml)
+    Kml,
+    /// The same with the times of paths (.geojson)
+    Geojson,
     /// The scene with its animation in 3D (.glb)
     Glb,
     /// The motion of the struck car over time, SI units (.csv)
@@ -153,7 +162,11 @@ fn export_reconstruction(
         FormatArg::HveMotion | FormatArg::Parquet => {
             return Err(unknown("motion without its uncertainty").into());
         }
-        FormatArg::Dxf | FormatArg::Glb | FormatArg::Motion => {}
+        FormatArg::Dxf
+        | FormatArg::Kml
+        | FormatArg::Geojson
+        | FormatArg::Glb
+        | FormatArg::Motion => {}
     }
     let ExportedReconstruction { scene, paths, notes } =
         exported(request, args.units.into(), console)?;
@@ -167,6 +180,8 @@ fn export_reconstruction(
             };
             dxf(&scene, &DxfOptions { outlines_s }, &mut bytes)?;
         }
+        FormatArg::Kml => map(&scene, MapFormat::Kml, &mut bytes)?,
+        FormatArg::Geojson => map(&scene, MapFormat::GeoJson, &mut bytes)?,
         FormatArg::Glb => glb(&scene, &mut bytes)?,
         _ => {
             let header = PATH_COLUMNS.map(str::to_owned);
@@ -199,6 +214,8 @@ fn format_of(path: &Path) -> Result<FormatArg, CliError> {
     let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
     match ending.as_deref().and_then(|ending| ending.to_str()) {
         Some("dxf") => Ok(FormatArg::Dxf),
+        Some("kml") => Ok(FormatArg::Kml),
+        Some("geojson") => Ok(FormatArg::Geojson),
         Some("glb") => Ok(FormatArg::Glb),
         Some("csv") => Ok(FormatArg::Motion),
         Some("parquet") => Ok(FormatArg::Parquet),
@@ -219,6 +236,8 @@ fn write(args: &ExportArgs, (format, built): (FormatArg, &BuiltScene)) -> Result
             };
             dxf(scene, &DxfOptions { outlines_s }, &mut bytes)?;
         }
+        FormatArg::Kml => map(scene, MapFormat::Kml, &mut bytes)?,
+        FormatArg::Geojson => map(scene, MapFormat::GeoJson, &mut bytes)?,
         FormatArg::Glb => glb(scene, &mut bytes)?,
         FormatArg::HvePulse => hve_pulse(analysis, restrictions.as_deref(), &mut bytes)?,
         FormatArg::HveMotion => hve_motion(analysis, restrictions.as_deref(), &mut bytes)?,

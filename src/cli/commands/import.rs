@@ -7,21 +7,23 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::cli::CliError;
+use crate::cli::commands::import_ground::{Ground, GroundArgs, import_ground};
 use crate::cli::console::{Console, Verdict, shown_path};
 use crate::cli::options::{OverwriteArg, Words, one_of};
 use impactlab_core::collision::contact::BarrierTest;
 use impactlab_core::collision::{ChannelClass, filter_channel};
 use impactlab_core::data::{
-    ColumnMap, CrashTest, Existing, RecordedControls, RecorderRecord, TestVehicle, parts_beside,
+    ColumnMap, CrashTest, Existing, RecordedControls, RecorderRecord, parts_beside,
     read_any_series, write_atomically, write_restricted_series_csv, write_restricted_table,
 };
 use impactlab_reconstruct::evidence::{Edr, Evidence};
 
-/// Read a recorder, a crash test or a log, and write what can be used of it
+/// Read a recorder, a crash test, a log or a ground, and write what can be used of it
 ///
 /// Files are known by their content: reports of Bosch CDR tools as CSV, tests of the NHTSA database (.EV5 with
-/// its curves), ISO-MME, GPX, NMEA, VBO, Parquet, results of LS-DYNA (rcforc, nodout, secforc, binout) and
-/// OpenRadioss (T01), and tables.
+/// its curves), ISO-MME, GPX, NMEA, VBO, Parquet, TDMS, MDF, results of LS-DYNA (rcforc, nodout, secforc,
+/// binout) and OpenRadioss (T01), and tables; for a ground KML, GeoJSON, points of a total station, LAS, LAZ
+/// and E57.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct ImportArgs {
@@ -43,9 +45,17 @@ pub(in crate::cli) struct ImportArgs {
     /// In which car the recorder was
     #[arg(long, value_parser = one_of(CARS), default_value = "struck")]
     car: RecorderCar,
+    /// To which side the lateral Δv of the recorder is positive
+    #[arg(long, value_parser = one_of(SIDES), default_value = "right")]
+    lateral: Side,
+    /// To which side its yaw rate is positive
+    #[arg(long, value_parser = one_of(SIDES), default_value = "right")]
+    yaw_rate: Side,
     /// Evidence that the record is added to; a new file has the record alone
     #[arg(long, value_name = "EVIDENCE.toml")]
     evidence: Option<PathBuf>,
+    #[command(flatten)]
+    ground: GroundArgs,
     #[command(flatten)]
     overwrite: OverwriteArg,
 }
@@ -58,8 +68,12 @@ Examples:
   impactlab import binout0000 --map \"deck=t-mm-s,sheet=contact 3 master\" --out force
   impactlab import log.parquet --map \"x=east_m,y=north_m\" --out log
 
+  impactlab import scan.laz --resolution 0.02 --out ground
+  impactlab import points.csv --line TL --out ground
+
 A recorder gives evidence.toml (Δv within 10 %, the speed before the crash within 4 %) and controls.csv. A
-crash test gives barrier_force.csv and crush.toml, a section of a vehicle file. Anything else gives series.csv
+crash test gives barrier_force.csv and crush.toml, a section of a vehicle file. A ground gives site.toml, with
+an orthophoto and a picture of heights if it is a point cloud. Anything else gives series.csv
 in SI units.
 
 JSON: {kind, files, notes}";
@@ -74,12 +88,30 @@ enum RecorderCar {
 const CARS: Words<RecorderCar> =
     &[("struck", "", RecorderCar::Struck), ("striking", "", RecorderCar::Striking)];
 
+/// A side of a car.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Left,
+    Right,
+}
+
+const SIDES: Words<Side> = &[("right", "", Side::Right), ("left", "", Side::Left)];
+
+impl Side {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+}
+
 /// What was written, and what is to be said of it.
 #[derive(Debug, Serialize)]
-struct Imported {
-    kind: &'static str,
-    files: Vec<PathBuf>,
-    notes: Vec<String>,
+pub(super) struct Imported {
+    pub kind: &'static str,
+    pub files: Vec<PathBuf>,
+    pub notes: Vec<String>,
 }
 
 /// Reads the file, writes the folder and says what is in it.
@@ -87,6 +119,8 @@ pub(in crate::cli) fn run(
     args: &ImportArgs,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
+    let ground = Ground::from_path(&args.file).filter(|_| args.map.is_none() && !args.recorder);
+    args.ground.check(&args.file, ground.as_ref())?;
     console.expect_folder();
     let mut read: Vec<PathBuf> = [&args.file].into_iter().chain(&args.evidence).cloned().collect();
     read.extend(parts_beside(&args.file));
@@ -95,10 +129,11 @@ pub(in crate::cli) fn run(
     let is_recorder =
         args.recorder || (args.map.is_none() && RecorderRecord::is_report(&args.file));
     let is_test = args.map.is_none() && CrashTest::is_test(&args.file);
-    let mut imported = match () {
-        () if is_recorder => import_recorder(args, folder.staging())?,
-        () if is_test => import_test(args, folder.staging())?,
-        () => import_series(args, folder.staging())?,
+    let mut imported = match &ground {
+        Some(ground) => import_ground(&args.file, ground, &args.ground, folder.staging())?,
+        None if is_recorder => import_recorder(args, folder.staging())?,
+        None if is_test => import_test(args, folder.staging())?,
+        None => import_series(args, folder.staging())?,
     };
     for file in &mut imported.files {
         *file = folder.path_of(&file.to_string_lossy());
@@ -121,7 +156,13 @@ fn print(out: &mut dyn Write, imported: &Imported) -> io::Result<()> {
 
 /// Evidence and controls of a recorder.
 fn import_recorder(args: &ImportArgs, staging: &Path) -> Result<Imported, CliError> {
-    let record = RecorderRecord::read(&args.file, args.event)?;
+    let mut record = RecorderRecord::read(&args.file, args.event)?;
+    if args.lateral == Side::Left {
+        record.turn_lateral();
+    }
+    if args.yaw_rate == Side::Left {
+        record.turn_yaw_rate();
+    }
     let mut evidence = match &args.evidence {
         Some(path) => Evidence::load(path).map_err(impactlab_study::StudyError::from)?,
         None => Evidence { case: args.file.display().to_string(), ..Evidence::default() },
@@ -150,11 +191,13 @@ fn import_recorder(args: &ImportArgs, staging: &Path) -> Result<Imported, CliErr
             speed.speed_m_s, speed.at_s
         ));
     }
-    notes.push(
+    notes.push(format!(
         "time 0 is when the recorder woke up, some milliseconds after the first contact; the sensor is taken to be \
-         at the CG until sensor_x_m and sensor_y_m say where it is; lateral values are taken as positive to the right"
-            .to_owned(),
-    );
+         at the CG until sensor_x_m and sensor_y_m say where it is; lateral Δv is taken as positive to the {}, the \
+         yaw rate as positive to the {}",
+        args.lateral.word(),
+        args.yaw_rate.word()
+    ));
     if !record.before.time_s.is_empty() {
         write_controls(&staging.join("controls.csv"), &record.before)?;
         files.push(PathBuf::from("controls.csv"));
@@ -213,12 +256,7 @@ fn import_test(args: &ImportArgs, staging: &Path) -> Result<Imported, CliError> 
             Err(error) => notes.push(format!("the force cannot be filtered: {error}")),
         }
     }
-    let [vehicle] = test.vehicles.as_slice() else {
-        notes
-            .push("stiffness follows from a test of one vehicle against a barrier only".to_owned());
-        return nothing_else(args, Imported { kind: "crash test", files, notes });
-    };
-    match crush_section(vehicle, test.barrier.as_deref()) {
+    match crush_section(&test) {
         Ok((section, said)) => {
             write_atomically(&staging.join("crush.toml"), Existing::Refuse, |out| {
                 out.write_all(section.as_bytes())
@@ -246,23 +284,8 @@ fn nothing_else(args: &ImportArgs, imported: Imported) -> Result<Imported, CliEr
 ///
 /// # Errors
 /// What is missing, in words.
-fn crush_section(
-    vehicle: &TestVehicle,
-    barrier: Option<&str>,
-) -> Result<(String, Vec<String>), String> {
-    let known =
-        |value: Option<f64>, name: &str| value.ok_or_else(|| format!("no {name} is stated"));
-    let test = BarrierTest {
-        mass_kg: known(vehicle.mass_kg, "test mass")?,
-        width_m: known(vehicle.width_m, "width")?,
-        speed_m_s: known(vehicle.speed_m_s, "speed")?,
-        no_damage_speed_m_s: 5.0 * impactlab_core::units::MILE_PER_HOUR_M_S,
-        crush_m: vehicle.crush_m.ok_or("no crush C1 to C6 is stated")?,
-    };
-    let rigid = barrier.is_some_and(|barrier| barrier.starts_with('R'));
-    if !rigid {
-        return Err("the barrier is not said to be rigid".to_owned());
-    }
+fn crush_section(test: &CrashTest) -> Result<(String, Vec<String>), String> {
+    let test = BarrierTest::from_crash_test(test)?;
     let found = test.stiffness().map_err(|error| error.to_string())?;
     let mean_m = test.mean_crush_m();
     let one_n_per_m2 = test.mass_kg * test.speed_m_s.powi(2) / (test.width_m * mean_m.powi(2));

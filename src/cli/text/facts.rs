@@ -9,8 +9,9 @@ use impactlab_core::units::UnitSystem;
 use impactlab_study::facts::{FactTable, FactWriter};
 use impactlab_study::{
     Answer, CheckReport, CompareReport, EvaluatePairsReport, EvaluateReconstructionReport,
-    ForceEvaluation, ImpactReport, PredictForceReport, PredictMotionReport, ReconstructReport,
-    ResponseTrainingReport, SimulateDatasetReport, SimulateReport, TrainForceReport,
+    ForceEvaluation, HandReport, ImpactReport, PredictForceReport, PredictMotionReport,
+    ReconstructReport, ResponseTrainingReport, SimulateDatasetReport, SimulateReport,
+    TrainForceReport,
 };
 
 /// What is printed of an answer.
@@ -39,6 +40,7 @@ macro_rules! answers {
 }
 
 answers! {
+    HandReport: of => of.name.to_owned();
     ImpactReport: of => of.name.clone();
     PredictForceReport: of => of.scenario.clone();
     PredictMotionReport: of => of.scenario.clone();

@@ -111,6 +111,8 @@ impl ImpactCase {
                     vx_world_m_s,
                     vy_world_m_s,
                     yaw_rate_rad_s: 0.0,
+                    fixed: None,
+                    skid: None,
                 }
             };
         Ok(Scenario {
@@ -141,6 +143,7 @@ impl ImpactCase {
             striking_ending: None,
             struck_vehicle: None,
             striking_vehicle: None,
+            road: None,
         })
     }
 }

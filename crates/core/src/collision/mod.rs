@@ -36,6 +36,7 @@ mod restitution_line;
 mod contact_distribution;
 mod contact_work;
 mod dented_outline;
+mod fixed_place;
 mod footprint;
 mod impact_case;
 mod outline_contact;
@@ -44,6 +45,7 @@ mod scenario;
 mod scenario_file;
 mod scenario_of_vehicle;
 mod scenario_preset;
+mod scenario_skid;
 mod scenario_write;
 mod second_contact;
 
@@ -84,6 +86,7 @@ pub use scenario::{
 };
 pub use scenario_of_vehicle::{Role, SharedNumber};
 pub use scenario_preset::SCENARIO_PRESETS;
+pub use scenario_skid::{BeforeSkid, ScenarioSkid};
 pub use second_contact::SecondContact;
 
 #[cfg(test)]

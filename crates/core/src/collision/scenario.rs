@@ -10,10 +10,11 @@ use serde::{Deserialize, Serialize};
 use crate::collision::{
     ContactSurface, DEFAULT_FRICTION_LIMIT, Footprint, FootprintError, FrictionModel, Impact,
     ImpactBody, ImpactError, ImpactSolution, MovingFootprint, OffOutline, Pose, RestitutionForm,
-    Side, StruckSurface, default_restitution, find_contact, place_touching,
+    ScenarioSkid, Side, StruckSurface, default_restitution, find_contact, place_touching,
 };
 
-use crate::vehicle::Ending;
+use crate::collision::fixed_place::place_wall;
+use crate::vehicle::{Ending, FIXED_MASS_KG, FIXED_YAW_INERTIA_KG_M2, FixedObject, RoadSlope};
 
 use crate::ranges::{
     BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
@@ -46,6 +47,13 @@ pub struct ScenarioVehicle {
     pub vy_world_m_s: f64,
     /// Yaw rate before the impact, rad/s, −50 to 50, counter-clockwise positive.
     pub yaw_rate_rad_s: f64,
+    /// What it is, if it is an object that does not move. Mass, inertia and velocities are then those of
+    /// such an object, whatever is said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<FixedObject>,
+    /// A skid that ends at the first contact; the velocities are those after it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub skid: Option<ScenarioSkid>,
 }
 
 /// The way in which a scenario specifies contact point, contact normal and position of the striking
@@ -160,6 +168,9 @@ pub struct Scenario {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[serde(rename = "bullet_vehicle")]
     pub striking_vehicle: Option<String>,
+    /// Slope of the road in world axes; `None` if the scenario does not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub road: Option<RoadSlope>,
 }
 
 /// Poses and contact of the two vehicles of a scenario, in world axes.
@@ -250,6 +261,16 @@ impl ScenarioVehicle {
     }
 
     fn body(&self, pose: &Pose, contact_point_m: [f64; 2]) -> ImpactBody {
+        if self.fixed.is_some() {
+            return ImpactBody {
+                mass_kg: FIXED_MASS_KG,
+                yaw_inertia_kg_m2: FIXED_YAW_INERTIA_KG_M2,
+                heading_rad: self.heading_rad,
+                velocity_world_m_s: [0.0; 2],
+                yaw_rate_rad_s: 0.0,
+                contact_arm_world_m: [contact_point_m[0] - pose.x_m, contact_point_m[1] - pose.y_m],
+            };
+        }
         ImpactBody {
             mass_kg: self.mass_kg,
             yaw_inertia_kg_m2: self.yaw_inertia_kg_m2,
@@ -309,7 +330,8 @@ impl Scenario {
             ("target_y_m".to_owned(), self.struck_y_world_m, POSITION),
         ];
         for (name, vehicle) in [("target", &self.struck), ("bullet", &self.striking)] {
-            let own = vehicle.ranges().into_iter();
+            let skid = vehicle.skid.iter().flat_map(ScenarioSkid::ranges);
+            let own = vehicle.ranges().into_iter().chain(skid);
             numbers.extend(own.map(|(key, value, range)| (format!("{name}.{key}"), value, range)));
         }
         let own = self.contact.ranges().into_iter();
@@ -318,6 +340,8 @@ impl Scenario {
             let own = ending.iter().flat_map(Ending::ranges);
             numbers.extend(own.map(|(key, value, range)| (format!("{name}.{key}"), value, range)));
         }
+        let own = self.road.iter().flat_map(RoadSlope::ranges);
+        numbers.extend(own.map(|(key, value, range)| (format!("road.{key}"), value, range)));
         numbers
     }
 
@@ -339,6 +363,11 @@ impl Scenario {
         let striking = match self.contact.location {
             ContactLocation::Footprints { striking_x_world_m, striking_y_world_m } => {
                 striking_at(striking_x_world_m, striking_y_world_m)
+            }
+            ContactLocation::Side { side, offset_m }
+                if self.striking.fixed == Some(FixedObject::Wall) =>
+            {
+                place_wall((&outlines[0], &struck), (side, offset_m), &outlines[1], heading_rad)
             }
             ContactLocation::Side { side, offset_m } => {
                 place_touching(&outlines[0], &struck, side, offset_m, &outlines[1], heading_rad)?

@@ -12,9 +12,15 @@
 //! cg_from_front_m = 2.3
 //! speed_km_h = 54             # along the heading; or vx_… and vy_… in world axes; _m_s, _mph …
 //! heading_deg = 0             # optional; heading_rad
+//! # skid_length_m = 18        # optional: a skid up to the first contact; with skid_drag_factor, and
+//! # skid_drag_factor = 0.7    # speed_before_skid_km_h instead of speed_km_h if that is what is known
 //! yaw_rate_deg_s = 0          # optional; yaw_rate_rad_s
 //! x_m = 0                     # optional here, part of the contact in [bullet]
 //! y_m = 0
+//!
+//! # [bullet]                  # or an object that does not move, instead of all of these:
+//! # fixed = "wall"            # length_m along heading_deg, 10; width_m, its thickness, 0.5
+//! # fixed = "pole"            # diameter_m
 //!
 //! [contact]
 //! from = "side"               # side and offset: the striking vehicle is placed so that it touches
@@ -27,6 +33,9 @@
 //! friction_limit = 0.4        # optional; or friction_of_critical, friction_of_critical_percent
 //! friction_model = "limit"    # optional; or "paper"
 //!
+//! # [road]                    # optional: slope; grade along X, cross_slope along Y, or in _percent
+//! # grade = 0.05              # positive uphill, and where the road rises to the left
+//!
 //! # [ending]                  # optional: wheels of the struck vehicle; see Ending::read
 //! # [bullet_ending]           # optional: the same of the striking vehicle
 //! ```
@@ -35,19 +44,26 @@
 //! [`Quantity::units`](crate::units::Quantity::units). The key ends in the symbol of the unit, with
 //! `_` for `/`, `·` and spaces, and with digits for powers.
 
+use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
 use crate::collision::{
-    ContactLocation, FrictionModel, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle,
-    Side,
+    ContactLocation, FrictionModel, RestitutionForm, Scenario, ScenarioContact, ScenarioSkid,
+    ScenarioVehicle, Side,
 };
 use crate::data::{TomlError, TomlFile, TomlTable};
 use crate::ranges::{
     BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
-    CONTACT_OFFSET, FRICTION_LIMIT, FRICTION_OF_CRITICAL, HEADING, POSITION, RESTITUTION, Range,
-    SPEED, YAW_RATE,
+    CONTACT_OFFSET, EVIDENCE_SPEED, FRICTION_LIMIT, FRICTION_OF_CRITICAL, HEADING, POSITION,
+    RESTITUTION, ROAD_FRICTION, Range, SKID_LENGTH, SPEED, YAW_RATE,
 };
-use crate::vehicle::{Ending, VehicleParameters, built_in_vehicle};
+use crate::vehicle::{
+    Ending, FIXED_MASS_KG, FIXED_YAW_INERTIA_KG_M2, FixedObject, RoadSlope, VehicleParameters,
+    built_in_vehicle,
+};
+
+/// Length and thickness of a wall where nobody says them, m.
+const USUAL_WALL_M: [f64; 2] = [10.0, 0.5];
 
 pub(super) const LOCATIONS: [&str; 3] = ["footprints", "side", "point"];
 pub(super) const FRICTION_MODELS: [&str; 2] = ["limit", "paper"];
@@ -76,24 +92,36 @@ impl Scenario {
         let mut contact = top.table("contact")?;
         let ending = top.optional_table("ending")?.map(Ending::read).transpose()?;
         let striking_ending = top.optional_table("bullet_ending")?.map(Ending::read).transpose()?;
+        let road = top.optional_table("road")?.map(RoadSlope::read).transpose()?;
         top.finish()?;
         let struck_x_world_m = position(&mut struck, "x")?.unwrap_or(0.0);
         let struck_y_world_m = position(&mut struck, "y")?.unwrap_or(0.0);
         let location = read_location(&mut contact, &mut striking)?;
         let (struck_vehicle, of_struck) = named_vehicle(&mut struck)?;
         let (striking_vehicle, of_striking) = named_vehicle(&mut striking)?;
+        let fixed = striking.choice("fixed", FixedObject::WORDS)?;
+        if fixed.is_some() && striking_vehicle.is_some() {
+            return Err(striking.conflict("vehicle"));
+        }
+        let fixed = fixed.and_then(|idx| FixedObject::ALL.get(idx)).copied();
+        let slope = road.unwrap_or_default();
+        let struck = read_vehicle(struck, of_struck, &slope)?;
         Ok(Self {
             name,
             notes,
             struck_x_world_m,
             struck_y_world_m,
-            struck: read_vehicle(struck, of_struck)?,
-            striking: read_vehicle(striking, of_striking)?,
+            striking: match fixed {
+                Some(object) => read_fixed(striking, object, struck.heading_rad)?,
+                None => read_vehicle(striking, of_striking, &slope)?,
+            },
+            struck,
             contact: read_contact(contact, location)?,
             ending,
             striking_ending,
             struck_vehicle,
             striking_vehicle,
+            road,
         })
     }
 }
@@ -129,6 +157,7 @@ fn position(section: &mut TomlTable<'_>, base: &str) -> Result<Option<f64>, Toml
 fn read_vehicle(
     mut section: TomlTable<'_>,
     vehicle: Option<VehicleParameters>,
+    slope: &RoadSlope,
 ) -> Result<ScenarioVehicle, TomlError> {
     let s = &mut section;
     let mass_kg =
@@ -153,18 +182,9 @@ fn read_vehicle(
     let heading = s.number("heading", &HEADING)?;
     let heading_rad = heading.unwrap_or(0.0);
     let yaw_rate_rad_s = s.number("yaw_rate", &YAW_RATE)?.unwrap_or(0.0);
-    let speed = s.number("speed", &SPEED)?;
-    let first = s.last_key();
-    let vx = s.number("vx", &SPEED)?;
-    let vy = s.number("vy", &SPEED)?;
-    let [vx_world_m_s, vy_world_m_s] = match (speed, vx, vy) {
-        (Some(speed), None, None) => [speed * heading_rad.cos(), speed * heading_rad.sin()],
-        (None, Some(vx), Some(vy)) => [vx, vy],
-        (Some(_), _, _) => return Err(s.conflict(&first)),
-        (None, None, None) => return Err(s.missing("speed_m_s (or vx_m_s and vy_m_s)")),
-        (None, None, _) => return Err(s.missing("vx_m_s")),
-        (None, _, None) => return Err(s.missing("vy_m_s")),
-    };
+    let skid = read_skid(s)?;
+    let of_skid = skid.map(|skid| (skid, slope.along(heading_rad)));
+    let [vx_world_m_s, vy_world_m_s] = read_velocity(s, heading_rad, of_skid)?;
     section.finish()?;
     Ok(ScenarioVehicle {
         mass_kg,
@@ -176,7 +196,53 @@ fn read_vehicle(
         vx_world_m_s,
         vy_world_m_s,
         yaw_rate_rad_s,
+        fixed: None,
+        skid,
     })
+}
+
+fn read_skid(s: &mut TomlTable<'_>) -> Result<Option<ScenarioSkid>, TomlError> {
+    let length_m = s.number("skid_length", &SKID_LENGTH)?;
+    let drag_factor = s.number("skid_drag_factor", &ROAD_FRICTION)?;
+    match (length_m, drag_factor) {
+        (Some(length_m), Some(drag_factor)) => Ok(Some(ScenarioSkid { length_m, drag_factor })),
+        (None, None) => Ok(None),
+        (None, Some(_)) => Err(s.missing("skid_length_m")),
+        (Some(_), None) => Err(s.missing("skid_drag_factor")),
+    }
+}
+
+/// Velocity `[v_X, v_Y]` at first contact, m/s.
+///
+/// - `skid`: that ends there, with the grade along it.
+fn read_velocity(
+    s: &mut TomlTable<'_>,
+    heading_rad: f64,
+    skid: Option<(ScenarioSkid, f64)>,
+) -> Result<[f64; 2], TomlError> {
+    let mut speed = s.number("speed", &SPEED)?;
+    let mut first = s.last_key();
+    if let Some((skid, grade)) = skid
+        && let Some(before) = s.number("speed_before_skid", &EVIDENCE_SPEED)?
+    {
+        if speed.is_some() {
+            return Err(s.conflict(&first));
+        }
+        let after = skid.speed_after_m_s(before, grade);
+        let expected = "a speed with which the vehicle does not stop within its skid";
+        speed = Some(after.ok_or_else(|| s.refuse_last(expected))?);
+        first = s.last_key();
+    }
+    let vx = s.number("vx", &SPEED)?;
+    let vy = s.number("vy", &SPEED)?;
+    match (speed, vx, vy) {
+        (Some(speed), None, None) => Ok([speed * heading_rad.cos(), speed * heading_rad.sin()]),
+        (None, Some(vx), Some(vy)) => Ok([vx, vy]),
+        (Some(_), _, _) => Err(s.conflict(&first)),
+        (None, None, None) => Err(s.missing("speed_m_s (or vx_m_s and vy_m_s)")),
+        (None, None, _) => Err(s.missing("vx_m_s")),
+        (None, _, None) => Err(s.missing("vy_m_s")),
+    }
 }
 
 fn read_location(
@@ -212,6 +278,43 @@ fn read_location(
             })
         }
     }
+}
+
+/// An object that does not move.
+///
+/// - `struck_heading_rad`: by which the object is turned where nobody says its heading.
+fn read_fixed(
+    mut section: TomlTable<'_>,
+    object: FixedObject,
+    struck_heading_rad: f64,
+) -> Result<ScenarioVehicle, TomlError> {
+    let s = &mut section;
+    let (length_m, width_m, usual_rad) = match object {
+        FixedObject::Wall => (
+            s.number("length", &BODY_LENGTH)?.unwrap_or(USUAL_WALL_M[0]),
+            s.number("width", &BODY_WIDTH)?.unwrap_or(USUAL_WALL_M[1]),
+            struck_heading_rad + FRAC_PI_2,
+        ),
+        FixedObject::Pole => {
+            let diameter_m = s.require("diameter", &BODY_LENGTH.at_most(BODY_WIDTH.high))?;
+            (diameter_m, diameter_m, struck_heading_rad)
+        }
+    };
+    let heading_rad = s.number("heading", &HEADING)?.unwrap_or(usual_rad);
+    section.finish()?;
+    Ok(ScenarioVehicle {
+        mass_kg: FIXED_MASS_KG,
+        yaw_inertia_kg_m2: FIXED_YAW_INERTIA_KG_M2,
+        length_m,
+        width_m,
+        cg_from_front_m: length_m / 2.0,
+        heading_rad,
+        vx_world_m_s: 0.0,
+        vy_world_m_s: 0.0,
+        yaw_rate_rad_s: 0.0,
+        fixed: Some(object),
+        skid: None,
+    })
 }
 
 fn read_contact(

@@ -80,8 +80,9 @@ impl ScenarioVehicle {
         ]
     }
 
-    /// Takes over mass, yaw inertia and outline of a vehicle. Where it is and how it moves stays.
+    /// Takes over mass, yaw inertia and outline of a vehicle, also in place of a fixed object. Where it is and how it moves stays.
     pub fn take(&mut self, vehicle: &VehicleParameters) {
+        self.fixed = None;
         let (mass, geometry) = (&vehicle.mass, &vehicle.geometry);
         self.mass_kg = mass.mass_kg;
         self.yaw_inertia_kg_m2 = mass.yaw_inertia_kg_m2;
@@ -93,6 +94,9 @@ impl ScenarioVehicle {
     /// Follows a vehicle whose data were edited: what was as that had it is as it has it now, and what the
     /// scenario says otherwise stays.
     pub fn follow(&mut self, before: &VehicleParameters, now: &VehicleParameters) {
+        if self.fixed.is_some() {
+            return;
+        }
         let differs = self.beside(before).map(|number| number.differs());
         let own = self.clone();
         self.take(now);

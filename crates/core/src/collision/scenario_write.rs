@@ -2,6 +2,7 @@
 
 use crate::collision::scenario_file::{FRICTION_MODELS, LOCATIONS};
 use crate::collision::{ContactLocation, FrictionModel, Scenario, ScenarioVehicle};
+use crate::vehicle::FixedObject;
 
 impl Scenario {
     /// Returns the text of a file from which [`Scenario::from_toml`] reads the same scenario.
@@ -66,7 +67,12 @@ impl Scenario {
                 ending.line(&key, value);
             }
         }
-        [top.0, struck.0, striking.0, contact.0, ending.0].concat()
+        let mut road = Lines::default();
+        if let Some(slope) = &self.road {
+            road.0.push_str("\n[road]\n");
+            slope.entries().into_iter().for_each(|(key, value)| road.number(key, value));
+        }
+        [top.0, struck.0, striking.0, contact.0, road.0, ending.0].concat()
     }
 }
 
@@ -95,6 +101,18 @@ fn quoted(text: &str) -> toml::Value {
 
 fn vehicle_lines(name: &str, vehicle: &ScenarioVehicle) -> Lines {
     let mut lines = Lines(format!("\n[{name}]\n"));
+    if let Some(object) = vehicle.fixed {
+        lines.line("fixed", quoted(object.word()));
+        match object {
+            FixedObject::Wall => {
+                lines.number("length_m", vehicle.length_m);
+                lines.number("width_m", vehicle.width_m);
+            }
+            FixedObject::Pole => lines.number("diameter_m", vehicle.length_m),
+        }
+        lines.number("heading_rad", vehicle.heading_rad);
+        return lines;
+    }
     for (key, value) in [
         ("mass_kg", vehicle.mass_kg),
         ("yaw_inertia_kg_m2", vehicle.yaw_inertia_kg_m2),
@@ -108,6 +126,10 @@ fn vehicle_lines(name: &str, vehicle: &ScenarioVehicle) -> Lines {
     ] {
         lines.number(key, value);
     }
+    if let Some(skid) = vehicle.skid {
+        lines.number("skid_length_m", skid.length_m);
+        lines.number("skid_drag_factor", skid.drag_factor);
+    }
     lines
 }
 
@@ -118,7 +140,7 @@ mod tests {
     use super::*;
     use crate::collision::RestitutionForm;
     use crate::data::TomlError;
-    use crate::vehicle::{Braking, Ending};
+    use crate::vehicle::{Braking, Ending, RoadSlope};
 
     const PIT: &str = include_str!("../../../../assets/scenarios/pit_right_rear.toml");
 
@@ -135,6 +157,7 @@ mod tests {
         scenario.ending =
             Some(Ending { brake: Some(Braking::new(0.1 + 0.2, 1.2, 0.5)), ..Ending::default() });
         scenario.striking_ending = scenario.ending.clone();
+        scenario.road = Some(RoadSlope { grade: -0.1 - 0.02, cross_slope: 0.025 });
         scenario.contact.restitution_form = RestitutionForm::CommonVelocity;
         for location in [
             scenario.contact.location,

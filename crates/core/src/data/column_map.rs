@@ -159,7 +159,7 @@ impl FromStr for ColumnMap {
     /// ([`ReadSettings`]) stand among them.
     fn from_str(text: &str) -> Result<Self, MapError> {
         let mut map = Self::default();
-        for part in text.split(',').filter(|part| !part.trim().is_empty()) {
+        for part in parts(text) {
             let (name, value) = divided(part.trim())?;
             if map.settings.take(name, value)? {
                 continue;
@@ -171,6 +171,24 @@ impl FromStr for ColumnMap {
         }
         Ok(map)
     }
+}
+
+/// The parts of a map between its commas. The comma of a place, `antenna=0.4,-0.3`, divides no parts.
+fn parts(text: &str) -> Vec<String> {
+    let mut parts: Vec<String> = Vec::new();
+    for part in text.split(',').filter(|part| !part.trim().is_empty()) {
+        let is_place = |last: &&mut String| {
+            last.split('=').next().is_some_and(|name| name.trim() == "antenna")
+        };
+        match parts.last_mut().filter(is_place).filter(|_| !part.contains('=')) {
+            Some(last) => {
+                last.push(' ');
+                last.push_str(part);
+            }
+            None => parts.push(part.to_owned()),
+        }
+    }
+    parts
 }
 
 fn divided(part: &str) -> Result<(&str, &str), MapError> {

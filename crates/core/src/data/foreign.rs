@@ -17,7 +17,7 @@ const IN_SITE: &str = "name it in a site file as the ground of a scene, [dxf] fi
 const AS_WORKBOOK: &str = "save the sheet as .xlsx or as CSV";
 
 /// The first bytes of formats that are not read: the bytes, what they are, and what to do.
-const MAGIC: [(&[u8], &str, &str); 28] = [
+const MAGIC: [(&[u8], &str, &str); 26] = [
     (b"MATLAB 7.3", "a MATLAB file", "save the signals with writetable as CSV"),
     (b"MATLAB 5.0", "a MATLAB file", "save the signals with writetable as CSV"),
     (b"\x89HDF\r\n\x1a\n", "an HDF5 file", EXPORT),
@@ -39,8 +39,6 @@ const MAGIC: [(&[u8], &str, &str); 28] = [
     (b"PAR1", "a Parquet file", EXPORT),
     (b"ARROW1", "an Arrow file", EXPORT),
     (b"\x93NUMPY", "a NumPy file", "save it with numpy.savetxt as CSV"),
-    (b"TDSm", "a TDMS file of LabVIEW", EXPORT),
-    (b"MDF     ", "a measurement file (MDF)", EXPORT),
     (b"LOGG", "a bus log of Vector (BLF)", EXPORT),
     (b"\x7fELF", "a program", "is it the right file?"),
     (b"glTF", "a scene of bodies (glTF)", AS_NUMBERS),

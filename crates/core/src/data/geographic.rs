@@ -88,7 +88,9 @@ mod tests {
 
     #[test]
     fn points_of_the_plane_come_back() {
-        for (latitude_deg, longitude_deg) in [(52.0, -1.0), (-33.9, 151.2), (0.0, 0.0), (69.6, 18.9)] {
+        for (latitude_deg, longitude_deg) in
+            [(52.0, -1.0), (-33.9, 151.2), (0.0, 0.0), (69.6, 18.9)]
+        {
             let here = GeographicPlace::from_degrees(latitude_deg, longitude_deg).unwrap();
             for way_m in [[0.0, 0.0], [12.5, -40.0], [-900.0, 700.0], [5000.0, 8000.0]] {
                 let there = here.at_m(way_m);

@@ -8,8 +8,8 @@ use crate::data::si_values::{instants_s, si_values};
 use crate::data::velocity_fit::in_body_axes;
 use crate::data::{
     Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, ReadSettings, Sampling,
-    SeriesError, Table, Thousands, TimeSeries, VelocityAxes, clock, computed, corrections, degrees,
-    impulse, path_speed,
+    SeriesError, Table, Thousands, TimeSeries, VelocityAxes, antenna, clock, computed, corrections,
+    degrees, impulse, path_speed,
 };
 use crate::ranges::TIME_STEP;
 
@@ -315,6 +315,7 @@ fn load_columns(
             insert(&mut series, Channel::Vy, vy, table)?;
         }
     }
+    check_antenna(table, &columns, &series, &settings)?;
     let Columns { by_channel, mut notes } = columns;
     notes.extend(table.format_notes());
     notes.extend(goes_on);
@@ -324,6 +325,8 @@ fn load_columns(
     notes.extend(computed::note(table, &by_channel));
     notes.extend(found);
     notes.extend(path_speed::note(table, &by_channel, &series));
+    // What is checked above is what the receiver has measured.
+    notes.extend(move_to_cg(&mut series, &settings, table)?);
     let columns = by_channel.into_values().collect();
     Ok(Loaded {
         kind,
@@ -345,16 +348,46 @@ fn insert(
     series.insert(channel, values).map_err(|source| DataError::Series { path: path(), source })
 }
 
+/// Refuses the place of an antenna for a file without the positions and the yaw angle that it takes.
+///
+/// # Errors
+/// [`DataError::MissingColumn`].
+fn check_antenna(
+    table: &Table,
+    columns: &Columns,
+    series: &TimeSeries,
+    settings: &ReadSettings,
+) -> Result<(), DataError> {
+    let needed = settings.antenna_m.map(|_| [Channel::X, Channel::Y, Channel::Yaw]);
+    let is_missing = |channel: &Channel| series.get(*channel).is_none();
+    match needed.into_iter().flatten().find(is_missing) {
+        Some(channel) => {
+            let needed = "x, y and yaw, by which an antenna is moved";
+            Err(columns.missing(table, channel, needed))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Moves positions of an antenna to the CG, and says so.
+fn move_to_cg(
+    series: &mut TimeSeries,
+    settings: &ReadSettings,
+    table: &Table,
+) -> Result<Option<Note>, DataError> {
+    let Some(place_m) = settings.antenna_m else { return Ok(None) };
+    let Some([x, y]) = antenna::of_cg(series, place_m) else { return Ok(None) };
+    insert(series, Channel::X, x, table)?;
+    insert(series, Channel::Y, y, table)?;
+    Ok(Some(antenna::note(place_m)))
+}
+
 /// Asks for the units of a finite-element model, which its results do not state.
 ///
 /// # Errors
 /// [`DataError::Open`] with a proposal; [`DataError::Contradiction`] if units of a model are said of another
 /// file.
-fn check_deck(
-    table: &Table,
-    columns: &Columns,
-    map: Option<&ColumnMap>,
-) -> Result<(), DataError> {
+fn check_deck(table: &Table, columns: &Columns, map: Option<&ColumnMap>) -> Result<(), DataError> {
     let path = || table.path().to_owned();
     let said = map.and_then(|map| map.settings.deck).filter(|_| !table.is_of_model());
     if let Some(deck) = said {

@@ -11,6 +11,7 @@
 //!   what was read.
 //! - [`TomlFile`] and [`TomlTable`] read settings; [`mod@write`] writes files and folders.
 
+mod antenna;
 mod attributes;
 mod budget;
 mod case_attributes;
@@ -64,7 +65,7 @@ pub mod write;
 
 pub use attributes::{Attributes, Value};
 pub use budget::{
-    MAX_CASES, MAX_CASES_BYTES, MAX_CASE_CELLS, MAX_CELL_BYTES, MAX_CLOUD_BYTES, MAX_COLUMNS,
+    MAX_CASE_CELLS, MAX_CASES, MAX_CASES_BYTES, MAX_CELL_BYTES, MAX_CLOUD_BYTES, MAX_COLUMNS,
     MAX_DATASET_BYTES, MAX_DRAWING_BYTES, MAX_DRAWING_OBJECTS, MAX_DRAWING_POINTS, MAX_LINE_BYTES,
     MAX_MODEL_BYTES, MAX_PICTURE_BYTES, MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE, MAX_RASTER_PIXELS,
     MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, MAX_SURVEY_BYTES, MAX_TABLE_BYTES, MAX_WORKBOOK_BYTES,

@@ -4,7 +4,7 @@
 
 use std::fmt;
 
-use crate::data::{DeckUnits, MapError, Separator, Thousands, spelling};
+use crate::data::{DeckUnits, MapError, Separator, Thousands, antenna, spelling};
 use crate::ranges::INSTANT;
 use crate::units::Quantity;
 
@@ -60,6 +60,9 @@ pub struct ReadSettings {
     /// Whether yaw angles are compass headings, clockwise from north, over a path with x to the east and y to
     /// the north: `headings=compass`. The numbers are turned into yaw angles.
     pub compass_headings: bool,
+    /// Place of the antenna whose positions the file has, ahead and to the left of the CG, m:
+    /// `antenna=0.4,-0.3`. The positions are moved to the CG by the yaw angle.
+    pub antenna_m: Option<[f64; 2]>,
     /// The axes of `vx` and `vy`, `velocities=world`; `None` takes them as body axes and compares
     /// them with the path.
     pub velocities: Option<VelocityAxes>,
@@ -115,6 +118,11 @@ impl ReadSettings {
                     _ => return Err(wrong("compass or yaw")),
                 };
                 !std::mem::replace(&mut self.compass_headings, is_compass)
+            }
+            "antenna" => {
+                let expected = "x and y from the CG in metres, e.g. antenna=0.4,-0.3";
+                let place_m = antenna::place_m(value).ok_or_else(|| wrong(expected))?;
+                self.antenna_m.replace(place_m).is_none()
             }
             "velocities" => {
                 let axes = match value {
@@ -214,6 +222,7 @@ impl fmt::Display for ReadSettings {
             ("shift", self.time_shift_s.map(|shift_s| format!("{shift_s}:s"))),
             ("y_axis", self.y_to_right.then(|| "right".to_owned())),
             ("headings", self.compass_headings.then(|| "compass".to_owned())),
+            ("antenna", self.antenna_m.map(|[x_m, y_m]| format!("{x_m} {y_m}"))),
             ("velocities", velocities),
         ];
         let given = parts.into_iter().filter_map(|(name, value)| Some((name, value?)));

@@ -69,6 +69,9 @@ impl Table {
         }
         let text = match read_text(path, MAX_TABLE_BYTES) {
             Err(DataError::NotText { .. }) if is_archive(path)? => {
+                if let Some(converted) = formats::from_archive(path, settings)? {
+                    return Self::of_format(path, converted, "archive", settings);
+                }
                 let (text, sheet) = read_sheet(path, settings.sheet.as_ref())?;
                 let table = Self::parse(path, text, Some(Separator::Tab), settings);
                 let table = table.map_err(|error| in_sheet(path, &sheet.name, error))?;

@@ -41,6 +41,10 @@ ranges! {
         "peak friction between tire and road; 0.8 on dry asphalt, 0.1 on ice";
     ROAD_FRICTION_SIGMA: "uncertainty of the road friction" = real(Quantity::Ratio, [0.0, 0.5]),
         "standard deviation of the peak friction between tire and road; 0 if it is known exactly";
+    ROAD_GRADE: "grade of the road" = real(Quantity::Ratio, [-0.3, 0.3]),
+        "rise over run along X, positive uphill; 0.06 on steep main roads";
+    ROAD_CROSS_SLOPE: "cross slope of the road" = real(Quantity::Ratio, [-0.3, 0.3]),
+        "rise over run along Y, positive where the road rises to the left; 0.025 to 0.08 in bends";
 }
 
 ranges! {
@@ -308,10 +312,48 @@ ranges! {
         "error that two masses share, as a share of them";
     FRICTION_SIGMA: "standard deviation of friction" = real(Quantity::Ratio, [0.001, 1.0]),
         "how well the friction of the road is known";
+    SKID_LENGTH: "length of a skid" = real(Quantity::Length, [0.1, 500.0]),
+        "distance over which a car skidded to the first contact";
     EVIDENCE_TIME: "time of evidence" = real(Quantity::Time, [0.0, 60.0]),
         "time after the first contact";
     PULSE_END: "end of a recorded pulse" = real(Quantity::Time, [0.005, 5.0]),
         "time after the first contact at which a recorder ends";
+}
+
+ranges! {
+    /// Calculations by hand.
+    HAND = "hand methods";
+    HAND_DRAWS: "draws of the inputs" = whole([1000, 1_000_000]),
+        "draws from which the interval of a calculation by hand follows";
+    HAND_DISTANCE: "distance by hand" = real(Quantity::Length, [0.0, 2000.0]),
+        "distance over which a vehicle slides, flies or drives";
+    HAND_COORDINATE: "point of a yaw mark" = real(Quantity::Length, [-2e7, 2e7]),
+        "coordinate of a point of a tire mark";
+    MARK_CHORD: "chord" = real(Quantity::Length, [0.5, 500.0]), "chord of a curved tire mark";
+    MIDDLE_ORDINATE: "middle ordinate" = real(Quantity::Length, [0.001, 100.0]),
+        "height of a curved mark above the middle of its chord";
+    MARK_RADIUS: "radius of a mark" = real(Quantity::Length, [1.0, 10_000.0]),
+        "radius of a curved tire mark";
+    MARK_TO_CG: "mark to CG" = real(Quantity::Length, [-3.0, 3.0]),
+        "how much smaller the radius of the path of the CG is than that of the mark";
+    FRICTION_SHARE: "share of the friction" = real(Quantity::Ratio, [0.0, 1.0]),
+        "drag of a vehicle over that of one with all wheels locked";
+    LAUNCH_ANGLE: "launch angle" = real(Quantity::Angle, [-1.2, 1.2]),
+        "direction at take-off above the horizontal";
+    HAND_DROP: "drop" = real(Quantity::Length, [-100.0, 500.0]),
+        "how far the CG lies lower where it lands than where it takes off";
+    HAND_DECELERATION: "deceleration by hand" = real(Quantity::Acceleration, [0.1, 20.0]),
+        "mean deceleration of a braking vehicle";
+    HAND_ENERGY: "energy by hand" = real(Quantity::Energy, [0.0, 1e8]),
+        "energy that a vehicle has taken up by crush";
+    HAND_RESTITUTION: "restitution by hand" = real(Quantity::Ratio, [0.0, 0.9]),
+        "coefficient of restitution of a calculation from crush";
+    PDOF_OFF_NORMAL: "angle of force" = real(Quantity::Angle, [-1.4, 1.4]),
+        "principal direction of force from the normal of the crushed face";
+    MASS_FACTOR: "effective mass" = real(Quantity::Ratio, [0.05, 1.0]),
+        "share of a mass that acts at the point of the force; 1 in a central impact";
+    FORMULA_FACTOR: "factor of the formula" = real(Quantity::Ratio, [0.2, 5.0]),
+        "speed over what the formula gives";
 }
 
 ranges! {
@@ -321,6 +363,10 @@ ranges! {
         "coordinates of national grids reach 10⁷ m";
     SITE_AZIMUTH: "azimuth of X" = real(Quantity::Angle, [-2.0 * PI, 2.0 * PI]),
         "direction of X, clockwise from grid north";
+    LATITUDE: "latitude" = real(Quantity::Angle, [-PI / 2.0, PI / 2.0]),
+        "positive to the north";
+    LONGITUDE: "longitude" = real(Quantity::Angle, [-PI, PI]),
+        "positive to the east";
     PIXEL_COORDINATE: "point of an orthophoto" = in_unit("px", [0.0, 1e6]),
         "column or row, counted from the left top corner of the picture";
     PIXEL_SIZE: "pixel of an orthophoto" = real(Quantity::Length, [0.0005, 100.0]),

@@ -125,6 +125,61 @@ pub enum SiteError {
         /// The largest permitted number of points.
         limit: usize,
     },
+    /// Surveyed lines and points cannot be read.
+    #[error("{}{place}: {message}", path.display())]
+    Survey {
+        /// The file.
+        path: PathBuf,
+        /// Where in it, as `:line` or `:line:column`; empty for the whole file.
+        place: String,
+        /// What is wrong, and what is expected.
+        message: String,
+    },
+    /// A point cloud cannot be read.
+    #[error("{}: cannot be read as a point cloud: {message}", path.display())]
+    Cloud {
+        /// The point cloud.
+        path: PathBuf,
+        /// What is wrong.
+        message: String,
+    },
+    /// A point cloud would become too large a picture.
+    #[error(
+        "{}: spans {:.1} x {:.1} m, {} x {} pixels of {pixel_m} m, expected at most {limit} pixels in all and \
+         65535 on a side: a pixel of {least_m} m or more would do, or a smaller part (--within)",
+        path.display(), extent_m[0], extent_m[1], size_px[0], size_px[1]
+    )]
+    Raster {
+        /// The point cloud.
+        path: PathBuf,
+        /// Width and height of what would be drawn, m.
+        extent_m: [f64; 2],
+        /// The same in pixels.
+        size_px: [u64; 2],
+        /// Side of a pixel, m.
+        pixel_m: f64,
+        /// The largest permitted number of pixels.
+        limit: u64,
+        /// A side of a pixel with which it would be permitted, m.
+        least_m: f64,
+    },
+    /// The work was cancelled.
+    #[error("cancelled")]
+    Cancelled,
+    /// A site file would be larger than one that is read.
+    #[error(
+        "{}: its lines and points take {bytes} bytes in a site file, of which at most {limit} are read; leave \
+         out what the scene does not need, or open it as it is",
+        path.display()
+    )]
+    LongSite {
+        /// The file with the lines.
+        path: PathBuf,
+        /// Bytes of the site file.
+        bytes: usize,
+        /// The largest that is read.
+        limit: u64,
+    },
     /// A drawing lies outside of the permitted coordinates.
     #[error(
         "{}: has a point at [{}, {}] m, expected coordinates of -2e7 to 2e7 m; is the unit right?",

@@ -8,6 +8,9 @@
 //! easting_m = 512345.0              # or easting_ft (0.3048 m), easting_us_survey_ft (1200/3937 m)
 //! northing_m = 5423456.0
 //! x_axis_azimuth_deg = 75           # direction of X, clockwise from grid north; 90 if not given
+//! # or the place of the site's origin on the earth, with the direction of X from true north
+//! # latitude_deg = 52.0123456
+//! # longitude_deg = -1.0123456
 //!
 //! [orthophoto]
 //! file = "crossing.png"             # PNG, JPEG or TIFF, beside the site file or in a folder below it
@@ -30,10 +33,22 @@
 //! [[kerb]]
 //! line_m = [[-60, -3.6], [90, -3.6]]
 //!
+//! [road]
+//! grade_percent = 4                 # rise along X; cross_slope_percent: along Y; or as ratios
+//!
 //! [[friction_zone]]                 # where zones overlap, the last one holds
 //! name = "wet patch"
 //! border_m = [[8, -3.5], [20, -3.5], [20, 3.5], [8, 3.5]]
 //! friction = 0.35
+//!
+//! [[line]]                          # surveyed: a tire mark, an edge, a wall
+//! name = "skid mark"
+//! line_m = [[12, 0.4], [31, 0.9]]
+//!
+//! [[point]]
+//! name = "gouge"
+//! at_m = [32.1, 0.7]
+//! height_m = 101.32                 # in the system of the survey; optional
 //!
 //! [dxf]
 //! file = "survey.dxf"               # in survey coordinates, if there is an [origin]
@@ -43,19 +58,20 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use crate::data::{TomlError, TomlFile, TomlTable};
+use crate::data::{GeographicPlace, TomlError, TomlFile, TomlTable};
 use crate::ranges::{
-    LANE_WIDTH, PIXEL_COORDINATE, POSITION, ROAD_FRICTION, SITE_AZIMUTH, SITE_DISTANCE,
-    SURVEY_COORDINATE,
+    LANE_WIDTH, LATITUDE, LONGITUDE, PIXEL_COORDINATE, POSITION, ROAD_FRICTION, SITE_AZIMUTH,
+    SITE_DISTANCE, SURVEY_COORDINATE,
 };
 use crate::site::parts::file_name;
 use crate::site::picture::{is_picture_file, picture_size_px};
 use crate::site::{
     DrawingFile, EdgeLine, Kerb, Lane, LengthUnit, Orthophoto, PixelMap, Site, SiteError,
-    SiteOrigin, WorldFile, world_file_beside,
+    SiteOrigin, SurveyFormat, SurveyOptions, SurveyedLine, SurveyedPoint, WorldFile,
+    world_file_beside,
 };
 use crate::units::{Quantity, US_SURVEY_FOOT};
-use crate::vehicle::FrictionZone;
+use crate::vehicle::{FrictionZone, RoadSlope};
 
 impl Site {
     /// The files that a site file, or an orthophoto as a site of its own, consists of beside itself:
@@ -85,14 +101,17 @@ impl Site {
         picture.into_iter().chain(world).chain(beside).chain(drawing).collect()
     }
 
-    /// Reads a site file, or a picture as a site of its own ([`Site::from_picture`]). Orthophoto and drawing
-    /// are looked at but not decoded.
+    /// Reads a site file, or a picture or surveyed lines as a site of their own ([`Site::from_picture`],
+    /// [`Site::from_survey`]). Orthophoto and drawing are looked at but not decoded.
     ///
     /// # Errors
     /// [`SiteError`] with file, line, key and what is expected.
     pub fn load(path: &Path) -> Result<Self, SiteError> {
         if is_picture_file(path) {
             return Self::from_picture(path);
+        }
+        if let Some(format) = SurveyFormat::from_path(path) {
+            return Self::from_survey(path, format, &SurveyOptions::default());
         }
         let text = TomlFile::read(path)?;
         Self::from_toml(TomlFile { path, text: &text })
@@ -107,7 +126,8 @@ impl Site {
         let mut top = TomlTable::root(file, &root);
         let folder = file.path.parent().unwrap_or(Path::new(""));
         let name = top.string("name")?;
-        let origin = top.optional_table("origin")?.map(read_origin).transpose()?;
+        let (origin, geographic) =
+            top.optional_table("origin")?.map(read_origin).transpose()?.unzip();
         let known_origin = origin.unwrap_or_default();
         let orthophoto = match top.optional_table("orthophoto")? {
             Some(table) => Some(read_orthophoto(table, folder, known_origin, file.path)?),
@@ -117,6 +137,11 @@ impl Site {
         let kerbs = top.tables("kerb")?.into_iter().map(read_kerb).collect::<Result<_, _>>()?;
         let zones = top.tables("friction_zone")?.into_iter().map(read_zone);
         let friction_zones = zones.collect::<Result<_, _>>()?;
+        let slope = top.optional_table("road")?.map(RoadSlope::read).transpose()?;
+        let lines = top.tables("line")?.into_iter().map(read_surveyed_line);
+        let lines = lines.collect::<Result<_, _>>()?;
+        let points = top.tables("point")?.into_iter().map(read_surveyed_point);
+        let points = points.collect::<Result<_, _>>()?;
         let drawing = match top.optional_table("dxf")? {
             Some(table) => Some(read_drawing_file(table, folder)?),
             None => None,
@@ -126,25 +151,45 @@ impl Site {
             name: name.unwrap_or_else(|| file_name(file.path)),
             path: file.path.to_owned(),
             origin,
+            geographic: geographic.flatten(),
             orthophoto,
             lanes,
             kerbs,
             friction_zones,
+            slope,
+            lines,
+            points,
             drawing,
+            notes: Vec::new(),
         })
     }
 }
 
-fn read_origin(mut table: TomlTable<'_>) -> Result<SiteOrigin, TomlError> {
-    let easting_m = read_survey_coordinate(&mut table, "easting")?;
-    let northing_m = read_survey_coordinate(&mut table, "northing")?;
+fn read_origin(
+    mut table: TomlTable<'_>,
+) -> Result<(SiteOrigin, Option<GeographicPlace>), TomlError> {
+    let geographic = read_geographic(&mut table)?;
+    let survey_m = match geographic {
+        Some(_) => [0.0; 2],
+        None => [
+            read_survey_coordinate(&mut table, "easting")?,
+            read_survey_coordinate(&mut table, "northing")?,
+        ],
+    };
     let azimuth_rad = table.number("x_axis_azimuth", &SITE_AZIMUTH)?;
     table.finish()?;
     let usual = SiteOrigin::default();
-    Ok(SiteOrigin {
-        survey_m: [easting_m, northing_m],
-        x_axis_azimuth_rad: azimuth_rad.unwrap_or(usual.x_axis_azimuth_rad),
-    })
+    let x_axis_azimuth_rad = azimuth_rad.unwrap_or(usual.x_axis_azimuth_rad);
+    Ok((SiteOrigin { survey_m, x_axis_azimuth_rad }, geographic))
+}
+
+/// The place of the origin on the earth, if the file says that.
+fn read_geographic(table: &mut TomlTable<'_>) -> Result<Option<GeographicPlace>, TomlError> {
+    let Some(latitude_rad) = table.number("latitude", &LATITUDE)? else { return Ok(None) };
+    let Some(longitude_rad) = table.number("longitude", &LONGITUDE)? else {
+        return Err(table.missing("longitude_deg"));
+    };
+    Ok(Some(GeographicPlace { latitude_rad, longitude_rad }))
 }
 
 /// A coordinate of the origin, whose unit may also be the foot of the United States survey.
@@ -338,6 +383,24 @@ fn read_kerb(mut table: TomlTable<'_>) -> Result<Kerb, TomlError> {
     let Some(line_m) = line_m else { return Err(table.missing("line_m")) };
     table.finish()?;
     Ok(Kerb { name, line_m })
+}
+
+fn read_surveyed_line(mut table: TomlTable<'_>) -> Result<SurveyedLine, TomlError> {
+    let name = table.string("name")?.unwrap_or_default();
+    let line_m = read_line(&mut table, "line_m")?;
+    let Some(line_m) = line_m else { return Err(table.missing("line_m")) };
+    table.finish()?;
+    Ok(SurveyedLine { name, line_m })
+}
+
+fn read_surveyed_point(mut table: TomlTable<'_>) -> Result<SurveyedPoint, TomlError> {
+    let name = table.string("name")?.unwrap_or_default();
+    let Some(at_m) = table.point("at_m", &SURVEY_COORDINATE)? else {
+        return Err(table.missing("at_m"));
+    };
+    let height_m = table.number("height", &SURVEY_COORDINATE)?;
+    table.finish()?;
+    Ok(SurveyedPoint { name, at_m, height_m })
 }
 
 fn read_zone(mut table: TomlTable<'_>) -> Result<FrictionZone, TomlError> {

@@ -198,3 +198,14 @@ fn a_distance_of_two_points_is_enough() {
     let map = site.orthophoto.as_ref().unwrap().map;
     assert_eq!((map.ground_m([0.0, 200.0]), map.per_column_m), ([0.0, 0.0], [0.1, 0.0]));
 }
+
+#[test]
+fn the_slope_of_the_road_is_read_told_and_comes_back() {
+    let folder = folder();
+    let site = read(folder.path(), "[road]\ngrade_percent = 4\ncross_slope = -0.02\n").unwrap();
+    let slope = site.slope.unwrap();
+    assert!((slope.grade - 0.04).abs() < 1e-15 && slope.cross_slope == -0.02, "{slope:?}");
+    assert_eq!(site.contents(None), ["slope of 4.0 % along X, -2.0 % along Y"]);
+    let text = site.to_toml(folder.path()).unwrap();
+    assert_eq!(read(folder.path(), &text).unwrap(), site, "{text}");
+}

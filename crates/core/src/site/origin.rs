@@ -4,6 +4,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::GeographicPlace;
+
 /// The origin and the direction of the axes of a site in a national grid or another system with an
 /// easting and a northing.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -52,6 +54,27 @@ impl SiteOrigin {
             return (1.0, 0.0);
         }
         self.x_axis_azimuth_rad.sin_cos()
+    }
+}
+
+/// Where a site lies on the earth, if that is known.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GeographicFrame {
+    /// The origin of the site.
+    pub place: GeographicPlace,
+    /// Direction of X, clockwise from true north, rad.
+    pub x_axis_azimuth_rad: f64,
+}
+
+impl GeographicFrame {
+    /// Longitude and latitude of a place of the site, degrees, in the order of KML and GeoJSON.
+    pub fn longitude_latitude_deg(&self, at_m: [f64; 2]) -> [f64; 2] {
+        let x_axis_azimuth_rad = self.x_axis_azimuth_rad;
+        let origin = SiteOrigin { survey_m: [0.0; 2], x_axis_azimuth_rad };
+        let [latitude_deg, longitude_deg] =
+            self.place.at_m(origin.survey_from_site(at_m)).degrees();
+        [longitude_deg, latitude_deg]
     }
 }
 

@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::data::GeographicPlace;
 use crate::site::{
-    DrawingSummary, PixelMap, SiteError, SiteOrigin, WorldFile, picture_size_px, world_file_beside,
+    DrawingSummary, GeographicFrame, PixelMap, SiteError, SiteOrigin, WorldFile, picture_size_px,
+    world_file_beside,
 };
 use crate::units::US_SURVEY_FOOT;
-use crate::vehicle::FrictionZone;
+use crate::vehicle::{FrictionZone, RoadSlope};
 
 /// Side of a pixel of a picture of which nothing says where it lies, m; its middle is then at the origin.
 const ASSUMED_PIXEL_M: f64 = 0.05;
@@ -20,6 +22,9 @@ pub struct Site {
     pub path: PathBuf,
     /// Where it lies in survey coordinates, if that is known.
     pub origin: Option<SiteOrigin>,
+    /// The geographic place of its origin, if that is known; `origin` then says the direction of X alone,
+    /// from true north.
+    pub geographic: Option<GeographicPlace>,
     /// A picture of the ground from above.
     pub orthophoto: Option<Orthophoto>,
     /// Lanes of roads.
@@ -28,8 +33,16 @@ pub struct Site {
     pub kerbs: Vec<Kerb>,
     /// Parts of the ground with their own friction, in their order: where they overlap, the last holds.
     pub friction_zones: Vec<FrictionZone>,
+    /// Slope of the road, if that is known.
+    pub slope: Option<RoadSlope>,
+    /// Lines that were surveyed: tire marks, edges, walls.
+    pub lines: Vec<SurveyedLine>,
+    /// Points that were surveyed.
+    pub points: Vec<SurveyedPoint>,
     /// A drawing whose lines are shown.
     pub drawing: Option<DrawingFile>,
+    /// What whoever reads the file has to know of how it was read.
+    pub notes: Vec<String>,
 }
 
 /// A picture of the ground from above, to scale.
@@ -89,6 +102,26 @@ pub struct Kerb {
     pub name: String,
     /// Its line, m.
     pub line_m: Vec<[f64; 2]>,
+}
+
+/// A line that was surveyed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurveyedLine {
+    /// What it is called, or its code; may be empty.
+    pub name: String,
+    /// Its points, m.
+    pub line_m: Vec<[f64; 2]>,
+}
+
+/// A point that was surveyed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurveyedPoint {
+    /// What it is called, with its code; may be empty.
+    pub name: String,
+    /// Where it is, m.
+    pub at_m: [f64; 2],
+    /// Its height in the system of the survey, if that is known, m.
+    pub height_m: Option<f64>,
 }
 
 /// A drawing in the format DXF.
@@ -181,23 +214,34 @@ impl Site {
         };
         let is_placed = world_file.is_some();
         let file = path.to_owned();
-        Ok(Self {
+        let world_unit = LengthUnit::Metre;
+        let orthophoto = Orthophoto { file, world_file, world_unit, size_px, map, is_placed };
+        Ok(Self { orthophoto: Some(orthophoto), ..Self::empty(path) })
+    }
+
+    /// A site of which nothing is known but its file.
+    pub(super) fn empty(path: &Path) -> Self {
+        Self {
             name: file_name(path),
-            path: file.clone(),
+            path: path.to_owned(),
             origin: None,
-            orthophoto: Some(Orthophoto {
-                file,
-                world_file,
-                world_unit: LengthUnit::Metre,
-                size_px,
-                map,
-                is_placed,
-            }),
+            geographic: None,
+            orthophoto: None,
             lanes: Vec::new(),
             kerbs: Vec::new(),
             friction_zones: Vec::new(),
+            slope: None,
+            lines: Vec::new(),
+            points: Vec::new(),
             drawing: None,
-        })
+            notes: Vec::new(),
+        }
+    }
+
+    /// Where it lies on the earth, if that is known.
+    pub fn geographic_frame(&self) -> Option<GeographicFrame> {
+        let x_axis_azimuth_rad = self.origin.unwrap_or_default().x_axis_azimuth_rad;
+        self.geographic.map(|place| GeographicFrame { place, x_axis_azimuth_rad })
     }
 
     /// Direction of grid north in the axes of the site, counter-clockwise from X, rad.
@@ -237,7 +281,34 @@ impl Site {
         });
         let zones = counted(self.friction_zones.len(), "friction zone");
         let counts = [counted(self.lanes.len(), "lane"), counted(self.kerbs.len(), "kerb"), zones];
-        orthophoto.into_iter().chain(counts.into_iter().flatten()).chain(drawing).collect()
+        let slope = self.slope.map(|RoadSlope { grade, cross_slope }| {
+            let [along, across] = [grade, cross_slope].map(|slope| 100.0 * slope);
+            format!("slope of {along:.1} % along X, {across:.1} % along Y")
+        });
+        let counts = counts.into_iter().flatten().chain(slope);
+        let counts = counts.chain(self.surveyed_text()).chain(self.place_text());
+        orthophoto.into_iter().chain(counts).chain(drawing).collect()
+    }
+
+    /// What of it was surveyed, and where that lies.
+    fn surveyed_text(&self) -> Option<String> {
+        let lines = self.lines.iter().flat_map(|line| line.line_m.iter().copied());
+        let extent = extent_of(lines.chain(self.points.iter().map(|point| point.at_m)))?;
+        let (n_lines, n_points) = (self.lines.len(), self.points.len());
+        Some(format!("surveyed lines: {n_lines}, points: {n_points}{}", extent_text(extent)))
+    }
+
+    /// Where its origin lies, for a site with surveyed lines or on the earth.
+    fn place_text(&self) -> Option<String> {
+        if let Some(place) = self.geographic {
+            let [latitude_deg, longitude_deg] = place.degrees();
+            return Some(format!(
+                "origin at latitude {latitude_deg:.7}°, longitude {longitude_deg:.7}°"
+            ));
+        }
+        let is_surveyed = !self.lines.is_empty() || !self.points.is_empty();
+        let [easting_m, northing_m] = self.origin.filter(|_| is_surveyed)?.survey_m;
+        Some(format!("origin at easting {easting_m} m, northing {northing_m} m"))
     }
 }
 

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use toml::{Table, Value};
 
-use crate::site::{EdgeLine, Kerb, Lane, LengthUnit, Orthophoto, Site};
+use crate::site::{
+    EdgeLine, Kerb, Lane, LengthUnit, Orthophoto, Site, SurveyedLine, SurveyedPoint,
+};
 use crate::vehicle::FrictionZone;
 
 /// A file of a site that its site file cannot name, because it is in another folder.
@@ -29,10 +31,18 @@ impl Site {
         let mut top = Table::new();
         set(&mut top, "name", self.name.as_str());
         if let Some(origin) = self.origin {
-            let [easting_m, northing_m] = origin.survey_m;
             let mut table = Table::new();
-            set(&mut table, "easting_m", easting_m);
-            set(&mut table, "northing_m", northing_m);
+            match self.geographic {
+                Some(place) => {
+                    set(&mut table, "latitude_rad", place.latitude_rad);
+                    set(&mut table, "longitude_rad", place.longitude_rad);
+                }
+                None => {
+                    let [easting_m, northing_m] = origin.survey_m;
+                    set(&mut table, "easting_m", easting_m);
+                    set(&mut table, "northing_m", northing_m);
+                }
+            }
             set(&mut table, "x_axis_azimuth_rad", origin.x_axis_azimuth_rad);
             set(&mut top, "origin", table);
         }
@@ -42,6 +52,13 @@ impl Site {
         set_all(&mut top, "lane", self.lanes.iter().map(lane_table));
         set_all(&mut top, "kerb", self.kerbs.iter().map(kerb_table));
         set_all(&mut top, "friction_zone", self.friction_zones.iter().map(zone_table));
+        if let Some(slope) = self.slope {
+            let mut table = Table::new();
+            slope.entries().into_iter().for_each(|(key, value)| set(&mut table, key, value));
+            set(&mut top, "road", table);
+        }
+        set_all(&mut top, "line", self.lines.iter().map(line_table));
+        set_all(&mut top, "point", self.points.iter().map(point_table));
         if let Some(drawing) = &self.drawing {
             let mut table = Table::new();
             set(&mut table, "file", name_below(&drawing.file, folder)?);
@@ -102,6 +119,23 @@ fn zone_table(zone: &FrictionZone) -> Table {
     set(&mut table, "name", zone.name.as_str());
     set(&mut table, "friction", zone.friction);
     set(&mut table, "border_m", pairs(&zone.border_m));
+    table
+}
+
+fn line_table(line: &SurveyedLine) -> Table {
+    let mut table = Table::new();
+    set(&mut table, "name", line.name.as_str());
+    set(&mut table, "line_m", pairs(&line.line_m));
+    table
+}
+
+fn point_table(point: &SurveyedPoint) -> Table {
+    let mut table = Table::new();
+    set(&mut table, "name", point.name.as_str());
+    set(&mut table, "at_m", pair(point.at_m));
+    if let Some(height_m) = point.height_m {
+        set(&mut table, "height_m", height_m);
+    }
     table
 }
 

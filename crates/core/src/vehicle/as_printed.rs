@@ -13,7 +13,7 @@
 //!   roll does not influence yaw.
 //! - The front tire forces are not rotated by the steer angle δ.
 //!
-//! Zones of the ground with their own friction are honoured as by the corrected equations.
+//! Zones of the ground with their own friction, and the slope of the road, are honoured as by the corrected equations.
 //!
 //! Drive and brake forces and the fall of friction beyond its peak are not part of these equations;
 //! the inputs and parameters for them have no effect. The paper does not say how the loop of loads,
@@ -77,6 +77,7 @@ impl<P: Copy> VehicleConstants<P> {
             - collision.force_body_n[1] * roll_arm_m
             - yaw_acceleration * printed.roll_yaw_product_kg_m2;
         let roll_acceleration = roll_moment / printed.roll_inertia_kg_m2;
+        let acceleration = self.with_weight_along(heading, acceleration);
         VehicleEvaluation {
             derivative: x.derivative(heading, acceleration, [yaw_acceleration, roll_acceleration]),
             acceleration_body_m_s2: acceleration,

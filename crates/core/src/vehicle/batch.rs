@@ -63,12 +63,14 @@ struct Numbered<T> {
 }
 
 /// Runs that can go side by side: they have the same number of steps, the same form of the equations,
-/// the same kind of force, and all or none have drivers or systems that act on the wheels.
+/// the same kind of force, and all or none are on a slope or have drivers or systems that act on the
+/// wheels.
 fn alike(mut runs: Vec<Numbered<Run<'_>>>) -> Vec<Vec<Numbered<Run<'_>>>> {
     let kind = |run: &Numbered<Run<'_>>| {
         let is_printed = run.item.constants.equations == Equations::Paper;
         let is_controlled = run.item.has_controlled_wheels();
-        (run.item.steps_per_output, is_printed, is_controlled, run.item.kind_of_force())
+        let is_sloped = run.item.constants.slope_m_s2.is_some();
+        (run.item.steps_per_output, is_printed, is_controlled, is_sloped, run.item.kind_of_force())
     };
     runs.sort_by_key(kind);
     let mut groups: Vec<Vec<Numbered<Run<'_>>>> = Vec::new();

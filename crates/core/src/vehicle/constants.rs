@@ -158,6 +158,9 @@ pub struct VehicleConstants<P> {
     pub(super) body: BodyConstants<P>,
     pub(super) tires: TireConstants<P>,
     pub(super) printed: PrintedConstants<P>,
+    /// Acceleration `[g_X, g_Y]` by the weight along the road in world axes, m/s²; `None` where the road
+    /// is level in every lane.
+    pub(super) slope_m_s2: Option<[P; 2]>,
 }
 
 impl TireParameters {
@@ -189,12 +192,13 @@ impl VehicleParameters {
             body: self.body_constants(),
             tires: self.tires.constants(),
             printed: self.printed_constants(),
+            slope_m_s2: (!self.slope.is_level()).then(|| self.slope.gravity_m_s2()),
         }
     }
 
     fn body_constants(&self) -> BodyConstants<f64> {
         let Self { mass, geometry, suspension, .. } = self;
-        let weight_n = mass.mass_kg * STANDARD_GRAVITY_M_S2;
+        let weight_n = mass.mass_kg * STANDARD_GRAVITY_M_S2 * self.slope.normal_share();
         let sprung_moment_kg_m = mass.sprung_mass_kg * suspension.roll_arm_m;
         let (izz, ixx) = (mass.yaw_inertia_kg_m2, mass.roll_inertia_kg_m2);
         let ixz = mass.roll_yaw_product_kg_m2;
@@ -254,11 +258,19 @@ impl VehicleConstants<f64> {
         simd: S,
         vehicle: impl Fn(usize) -> &'a Self,
     ) -> VehicleConstants<Packed<S>> {
+        let slope = |lane: usize| vehicle(lane).slope_m_s2;
+        let is_sloped = (0..MAX_LANES).any(|lane| slope(lane).is_some());
+        let along = |axis: usize| -> Packed<S> {
+            let values: [f64; MAX_LANES] =
+                std::array::from_fn(|lane| slope(lane).map_or(0.0, |slope| slope[axis]));
+            Packed::new(simd, &values)
+        };
         VehicleConstants {
             equations: vehicle(0).equations,
             body: BodyConstants::packed(simd, &|lane| &vehicle(lane).body),
             tires: TireConstants::packed(simd, &|lane| &vehicle(lane).tires),
             printed: PrintedConstants::packed(simd, &|lane| &vehicle(lane).printed),
+            slope_m_s2: is_sloped.then(|| [along(0), along(1)]),
         }
     }
 }

@@ -1,5 +1,5 @@
-//! The mechanical energy of the 4DOF vehicle, which nothing but a force, a drive or work on the roll
-//! model may increase.
+//! The mechanical energy of the 4DOF vehicle, which nothing but a force, a drive, the slope of the road or
+//! work on the roll model may increase.
 
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::{VehicleParameters, VehicleState};
@@ -38,13 +38,24 @@ const NEGLIGIBLE_SPEED_M_S: f64 = 1e-3;
 /// The energy of a vehicle along its motion, while nothing pushes it.
 #[derive(Debug, Default)]
 pub(super) struct EnergyWatch {
-    /// Energy at the end of the force and the lowest since then, J; `None` before the first sample
-    /// and while a force acts.
-    released: Option<(f64, f64)>,
+    /// Since the end of the force; `None` before the first sample and while a force acts.
+    released: Option<Released>,
+}
+
+/// What the energy is compared with.
+#[derive(Debug, Clone, Copy)]
+struct Released {
+    /// Energy at the end of the force, J.
+    energy_j: f64,
+    /// Energy that the weight had given along the slope of the road by then, J.
+    by_slope_j: f64,
+    /// The lowest energy since then, less what the weight has given, J.
+    lowest_j: f64,
 }
 
 impl EnergyWatch {
-    /// Growth above the lowest energy since the force has ended, as a share of the energy at its end.
+    /// Growth above the lowest energy since the force has ended, as a share of the energy at its end and of
+    /// what the slope of the road exchanges.
     ///
     /// - `is_pushed`: whether a force acts over the interval that begins.
     pub(super) fn gain(
@@ -54,9 +65,23 @@ impl EnergyWatch {
         is_pushed: bool,
     ) -> f64 {
         let energy_j = vehicle.energy_j(x);
+        let [g_x, g_y] = vehicle.slope.gravity_m_s2();
+        let by_slope_j = vehicle.mass.mass_kg * (g_x * x.x_m + g_y * x.y_m);
+        let own_j = energy_j - by_slope_j;
         let negligible_j = vehicle.mass.mass_kg * NEGLIGIBLE_SPEED_M_S.powi(2) / 2.0;
-        let (released_j, lowest_j) = self.released.unwrap_or((energy_j, energy_j));
-        self.released = (!is_pushed).then_some((released_j, lowest_j.min(energy_j)));
-        (energy_j - lowest_j) / (released_j + negligible_j)
+        let released = self.released.unwrap_or(Released { energy_j, by_slope_j, lowest_j: own_j });
+        let lowest_j = released.lowest_j.min(own_j);
+        self.released = (!is_pushed).then_some(Released { lowest_j, ..released });
+        let exchanged_j =
+            (by_slope_j - released.by_slope_j).abs() + lean_on_slope_j(vehicle) / MAX_ENERGY_GAIN;
+        (own_j - released.lowest_j) / (released.energy_j + exchanged_j + negligible_j)
     }
+}
+
+/// Most energy that the body takes up where it leans on a road with a slope, J: that of twice its steady
+/// lean.
+fn lean_on_slope_j(vehicle: &VehicleParameters) -> f64 {
+    let [g_x, g_y] = vehicle.slope.gravity_m_s2();
+    let moment = vehicle.mass.sprung_mass_kg * vehicle.suspension.roll_arm_m * g_x.hypot(g_y);
+    2.0 * moment * moment / vehicle.suspension.roll_stiffness_n_m_rad
 }

@@ -3,14 +3,15 @@
 //! that the same lines serve for simulation and for exact Jacobians.
 //!
 //! ```text
-//! m (v̇_x − v_y r)   = ΣF_x,tire + F_x,coll
-//! m (v̇_y + v_x r)   = ΣF_y,tire + F_y,coll
+//! m (v̇_x − v_y r)   = ΣF_x,tire + F_x,coll + m g_x
+//! m (v̇_y + v_x r)   = ΣF_y,tire + F_y,coll + m g_y
 //! I_zz ṙ + I_xz φ̈   = M_z,tire + M_z,coll
-//! I_xx φ̈ + I_xz ṙ   = m_s g h sin φ + m_s h a_y − K_φ φ − B φ̇ + M_x,coll      a_y = v̇_y + v_x r
+//! I_xx φ̈ + I_xz ṙ   = m_s g h sin φ + m_s h a_y − K_φ φ − B φ̇ + M_x,coll      a_y = v̇_y + v_x r − g_y
 //! Ẋ = v_x cos ψ − v_y sin ψ      Ẏ = v_x sin ψ + v_y cos ψ
 //! ```
 //!
 //! Source: `eq:4dof`, `eq:4dof2` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
+//! g_x, g_y: weight along the road, 0 on a level one (`road_slope.rs`).
 //! Assumes a rigid sprung mass on a roll axis along x, no pitch, no heave and no tire relaxation.
 //! A wheel turns freely, turns against a brake or is locked; the inertia of its spin is that of a
 //! steady rotation of the vehicle (`tire.rs`).
@@ -252,9 +253,10 @@ impl<P: Copy> VehicleConstants<P> {
             - x.roll_rate_rad_s * body.roll_damping_n_m_s_rad
             - collision.force_body_n[1] * roll_arm_m;
         let [yaw_acceleration, roll_acceleration] = body.solve_yaw_roll(yaw_moment, roll_moment);
+        let acceleration = self.with_weight_along(heading, [ax, ay]);
         VehicleEvaluation {
-            derivative: x.derivative(heading, [ax, ay], [yaw_acceleration, roll_acceleration]),
-            acceleration_body_m_s2: [ax, ay],
+            derivative: x.derivative(heading, acceleration, [yaw_acceleration, roll_acceleration]),
+            acceleration_body_m_s2: acceleration,
             vertical_loads_n,
             collision_force_body_n: collision.force_body_n,
             collision_yaw_moment_n_m: collision.yaw_moment_n_m,
@@ -277,6 +279,42 @@ impl<P: Copy> VehicleConstants<P> {
         let roll_moment = ay * self.body.sprung_moment_kg_m;
         let [yaw, roll] = self.body.solve_yaw_roll(yaw_moment_n_m, roll_moment);
         [ax, ay, yaw, roll]
+    }
+
+    /// Acceleration of the CG by the forces, together with that by the weight along a road with a slope,
+    /// `[a_x, a_y]` in body axes, m/s². The roll of the body follows the forces alone, since the weight acts
+    /// on every part of it alike.
+    #[inline(always)]
+    pub(super) fn with_weight_along<T: Lanes + LanesOver<P>>(
+        &self,
+        heading: Heading<T>,
+        [ax, ay]: [T; 2],
+    ) -> [T; 2] {
+        match self.slope_m_s2 {
+            None => [ax, ay],
+            Some([g_x, g_y]) => {
+                let zero = ax.constant(0.0);
+                let [down_x, down_y] = heading.body_from_world([zero + g_x, zero + g_y]);
+                [ax + down_x, ay + down_y]
+            }
+        }
+    }
+
+    /// Energy that the weight gives to a vehicle which comes from one place of a road with a slope to
+    /// another one, J; `None` on a level road.
+    #[inline(always)]
+    pub fn energy_by_slope_j<T: Lanes + LanesOver<P>>(
+        &self,
+        from: &VehicleState<T>,
+        to: &VehicleState<T>,
+    ) -> Option<T> {
+        match self.slope_m_s2 {
+            None => None,
+            Some([g_x, g_y]) => {
+                let along = (to.x_m - from.x_m) * g_x + (to.y_m - from.y_m) * g_y;
+                Some(along * self.body.half_mass_kg * 2.0)
+            }
+        }
     }
 
     /// Energy of the planar motion, `m (v_x² + v_y²)/2 + I_zz r²/2`, J.

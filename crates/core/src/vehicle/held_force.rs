@@ -184,7 +184,8 @@ impl<'a> HeldForceRun<'a> {
     }
 
     /// The state at the end of an output interval without a collision force, with the planar energy of
-    /// its beginning where a residual acceleration has made it grow.
+    /// its beginning, and what the weight has given on a slope, where a residual acceleration has made it
+    /// grow.
     pub fn without_energy_gain(&self, state: [f64; N_STATE]) -> [f64; N_STATE] {
         if self.run.coming().is_driven() {
             return state;
@@ -192,7 +193,8 @@ impl<'a> HeldForceRun<'a> {
         let mut after = VehicleState::from_array(state);
         let before = VehicleState::from_array(self.run.state);
         let energy_j = |x: &VehicleState<f64>| self.run.constants.planar_energy_j(x);
-        let (before_j, after_j) = (energy_j(&before), energy_j(&after));
+        let by_slope_j = self.run.constants.energy_by_slope_j(&before, &after).unwrap_or(0.0);
+        let (before_j, after_j) = ((energy_j(&before) + by_slope_j).max(0.0), energy_j(&after));
         if after_j > before_j {
             let share = (before_j / after_j).sqrt();
             after.vx_body_m_s *= share;

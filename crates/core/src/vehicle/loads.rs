@@ -117,7 +117,7 @@ fn wheel_loads_n<T: Lanes>(load_n: T, shift_n: T) -> [T; 2] {
 /// Vertical loads of the front and of the rear axle at rest, N.
 pub(super) fn static_axle_loads_n(vehicle: &VehicleParameters) -> [f64; 2] {
     let geometry = &vehicle.geometry;
-    let weight = vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
+    let weight = vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2 * vehicle.slope.normal_share();
     let front = weight * geometry.cg_to_rear_axle_m * (1.0 / geometry.wheelbase_m());
     let front = front.clamp(0.0, weight);
     [front, weight - front]

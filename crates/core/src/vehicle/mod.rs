@@ -7,6 +7,7 @@ mod controls;
 mod crush;
 mod draws;
 mod energy;
+mod fixed_object;
 pub mod frames;
 mod loads;
 mod multibody_record;
@@ -14,6 +15,7 @@ mod pace;
 mod parameters;
 mod preset;
 mod rest;
+mod road_slope;
 mod scaled_mass;
 mod scaled_size;
 pub mod sheet;
@@ -58,6 +60,7 @@ pub use ending::{
 };
 pub use energy::MAX_ENERGY_GAIN;
 pub use fishhook::{USUAL_STEERING_RATIO, angle_at_third_g_rad, fishhook, fishhook_amplitude_rad};
+pub use fixed_object::{FIXED_MASS_KG, FIXED_YAW_INERTIA_KG_M2, FixedObject};
 pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput};
 pub use friction_zone::{FrictionZone, FrictionZoneError, MAX_BORDER_CORNERS, friction_at};
 pub(crate) use held_force::HeldForceRun;
@@ -68,7 +71,8 @@ pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, V
 pub use path_batch::{MAX_PATH_STEP_S, Path, PathEnd, PathLimit, PathPoint, simulate_paths};
 pub use preset::{BuiltInVehicle, Preset, built_in_vehicle};
 pub use rest::RestWatch;
-pub use rest::{REST_DURATION_S, REST_SPEED_M_S, REST_YAW_RATE_RAD_S};
+pub use rest::{REST_DURATION_S, REST_ON_SLOPE_S, REST_SPEED_M_S, REST_YAW_RATE_RAD_S};
+pub use road_slope::{RoadSlope, USUAL_SLOPE};
 pub use sheet::{DataSheet, LibraryVehicle, SheetQuantity, VehicleClass};
 pub use simulate::{
     ContactLoad, Integrator, Manoeuvre, Motion, MotionFlag, OUTPUT_INTERVAL_S, ROLL_LIMIT_RAD,

@@ -10,7 +10,7 @@ use crate::vehicle::parameters::{
     GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters,
 };
 use crate::vehicle::tire::{SAME_IN_ALL_DIRECTIONS, TireParameters};
-use crate::vehicle::{CrushParameters, DrivenAxle, Equations};
+use crate::vehicle::{CrushParameters, DrivenAxle, Equations, RoadSlope};
 
 /// Vertical load at which the record states the cornering stiffnesses of the tires, N.
 const TIRE_REFERENCE_LOAD_N: f64 = 4905.0;
@@ -173,6 +173,8 @@ impl MultibodyRecord {
             estimates: self.estimates(),
             stated: BTreeMap::new(),
             sheet: None,
+            slope: RoadSlope::default(),
+            fixed: None,
         }
     }
 

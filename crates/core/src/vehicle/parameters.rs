@@ -20,7 +20,8 @@ use crate::ranges::{
 use crate::vehicle::sheet::SheetQuantity;
 use crate::vehicle::tire::{TireParameters, WHEEL_MASS_SHARE};
 use crate::vehicle::{
-    CrushParameters, DataSheet, Equations, MultibodyRecord, VehicleMismatch, Wheel,
+    CrushParameters, DataSheet, Equations, FixedObject, MultibodyRecord, RoadSlope,
+    VehicleMismatch, Wheel,
 };
 
 /// Parameters of one vehicle in SI units. [`VehicleParameters::load`] and
@@ -58,6 +59,12 @@ pub struct VehicleParameters {
     /// estimate is, and what else changes with the mass. It is not part of a full vehicle file.
     #[serde(skip)]
     pub sheet: Option<Arc<DataSheet>>,
+    /// Slope of the road that it is on, which is part of a question and of no vehicle file.
+    #[serde(skip)]
+    pub slope: RoadSlope,
+    /// What it is, if it is no vehicle but an object that does not move; likewise.
+    #[serde(skip)]
+    pub fixed: Option<FixedObject>,
 }
 
 /// Masses and moments of inertia of one vehicle.
@@ -199,6 +206,12 @@ impl VehicleParameters {
         self
     }
 
+    /// The same vehicle on a road with a slope, which is not checked.
+    pub fn on_slope(mut self, slope: RoadSlope) -> Self {
+        self.slope = slope;
+        self
+    }
+
     /// The same vehicle with the estimates of its data sheet away from their medians; unchanged if it
     /// has no data sheet.
     ///
@@ -206,7 +219,9 @@ impl VehicleParameters {
     ///   deviations.
     pub fn drawn(&self, latents: &[f64]) -> Self {
         match &self.sheet {
-            Some(sheet) => sheet.at(latents).vehicle().with_equations(self.equations),
+            Some(sheet) => {
+                sheet.at(latents).vehicle().with_equations(self.equations).on_slope(self.slope)
+            }
             None => self.clone(),
         }
     }

@@ -13,7 +13,8 @@
 //! zones, h is at most 5 ms; the mean of the force over a step keeps the impulse exact.
 //! Where drivers or systems act, a step ends at each of their samples, every 10 ms.
 //! Below 0.3 m/s a car that only slows down is not followed by small steps: it comes to rest at its
-//! present deceleration a, after `|v|/(2 a)` more of its present velocities.
+//! present deceleration a, after `|v|/(2 a)` more of its present velocities; on a road with a slope only
+//! where it slows down by more than twice what the weight does along the road, so that the road holds it.
 //! The largest difference to the reference step is measured by the test of this file.
 
 use pulp::{Simd, WithSimd};
@@ -25,8 +26,8 @@ use crate::vehicle::ground::Ground;
 use crate::vehicle::run::{Inputs, StepInputs};
 use crate::vehicle::tire::SLIP_ANGLE_SPEED_M_S;
 use crate::vehicle::{
-    Integrator, N_STATE, OUTPUT_INTERVAL_S, REST_DURATION_S, RestWatch, SimulationRun,
-    VehicleConstants, VehicleInput, VehicleState, WheelEffort,
+    Integrator, N_STATE, OUTPUT_INTERVAL_S, RestWatch, SimulationRun, VehicleConstants,
+    VehicleInput, VehicleState, WheelEffort,
 };
 
 /// Longest step of a path, s.
@@ -119,7 +120,7 @@ pub fn simulate_paths<R: Send>(
 ) -> Vec<R> {
     let lanes: Vec<Lane<'_>> =
         runs.iter().enumerate().map(|(idx, run)| Lane::new(idx, run)).collect();
-    let kind = |lane: &Lane<'_>| lane.inputs.kind_of_force();
+    let kind = |lane: &Lane<'_>| (lane.inputs.kind_of_force(), lane.constants.slope_m_s2.is_some());
     let parts: Vec<&[Lane<'_>]> = lanes
         .chunk_by(|a, b| kind(a) == kind(b))
         .flat_map(|alike| alike.chunks(RUNS_PER_TASK))
@@ -148,6 +149,9 @@ struct Lane<'a> {
     duration_s: f64,
     shortest_step_s: f64,
     longest_step_s: f64,
+    rest_duration_s: f64,
+    /// Deceleration below which a vehicle is not taken to come to rest, m/s².
+    least_deceleration_m_s2: f64,
     /// K/(λ₀ ε), s²/m.
     step_per_speed_s2_m: f64,
     time_s: f64,
@@ -168,6 +172,7 @@ impl<'a> Lane<'a> {
         let inputs = Inputs::with_closed_loop(manoeuvre, vehicle);
         let reference_s = Integrator::Rk4.step_s();
         let initial = manoeuvre.initial;
+        let [g_x, g_y] = vehicle.slope.gravity_m_s2();
         Self {
             idx,
             constants: vehicle.constants(),
@@ -180,6 +185,8 @@ impl<'a> Lane<'a> {
             shortest_step_s: reference_s
                 / vehicle.braked_substeps(reference_s, &manoeuvre.friction_zones) as f64,
             longest_step_s: MAX_PATH_STEP_S.min(vehicle.roll_step_s()),
+            rest_duration_s: vehicle.rest_duration_s(),
+            least_deceleration_m_s2: LEAST_DECELERATION_M_S2 + 2.0 * g_x.hypot(g_y),
             step_per_speed_s2_m: RATE_TIMES_STEP
                 / (vehicle.tire_rate_at_rest_1_s() * SLIP_ANGLE_SPEED_M_S),
             time_s: 0.0,
@@ -216,7 +223,7 @@ impl<'a> Lane<'a> {
         match (is_slow, self.slow_since_s) {
             (false, _) => self.slow_since_s = None,
             (true, None) => self.slow_since_s = Some(self.time_s),
-            (true, Some(since_s)) if self.time_s >= since_s + REST_DURATION_S => {
+            (true, Some(since_s)) if self.time_s >= since_s + self.rest_duration_s => {
                 return Some(PathEnd::Rest);
             }
             (true, Some(_)) => {}
@@ -263,7 +270,7 @@ impl<'a> Lane<'a> {
     /// Time to rest at the deceleration of the last step, s; `None` if the vehicle hardly slows down.
     fn stop_s(&self, speed_m_s: f64) -> Option<f64> {
         let deceleration_m_s2 = (self.speed_m_s - speed_m_s) / self.step_s;
-        (deceleration_m_s2 > LEAST_DECELERATION_M_S2).then(|| speed_m_s / deceleration_m_s2)
+        (deceleration_m_s2 > self.least_deceleration_m_s2).then(|| speed_m_s / deceleration_m_s2)
     }
 
     /// Notes where the vehicle stands after it has stopped within a time.

@@ -1,6 +1,6 @@
 //! When a vehicle has come to rest.
 
-use crate::vehicle::VehicleState;
+use crate::vehicle::{VehicleParameters, VehicleState};
 
 /// Speed of the CG below which a vehicle counts as at rest, m/s.
 pub const REST_SPEED_M_S: f64 = 0.05;
@@ -11,11 +11,17 @@ pub const REST_YAW_RATE_RAD_S: f64 = 0.01;
 /// rest.
 pub const REST_DURATION_S: f64 = 0.1;
 
+/// The same on a road with a slope, s: a vehicle that rolls uphill stands still for longer before it rolls
+/// back. One that the slope moves by less than 0.05 m/s² counts as at rest.
+pub const REST_ON_SLOPE_S: f64 = 2.0;
+
 /// Looks for rest along a motion.
 #[derive(Debug)]
 pub struct RestWatch {
     /// Before this instant the vehicle may still be pushed or braked otherwise, s.
     last_change_s: f64,
+    /// How long both limits must hold, s.
+    duration_s: f64,
     /// Since when both limits have held, s.
     since_s: Option<f64>,
 }
@@ -23,7 +29,13 @@ pub struct RestWatch {
 impl RestWatch {
     /// Watches for the vehicle to come to rest after the last change from outside.
     pub fn after(last_change_s: f64) -> Self {
-        Self { last_change_s, since_s: None }
+        Self { last_change_s, duration_s: REST_DURATION_S, since_s: None }
+    }
+
+    /// The same for a vehicle that may be on a road with a slope.
+    #[must_use]
+    pub fn of(self, vehicle: &VehicleParameters) -> Self {
+        Self { duration_s: vehicle.rest_duration_s(), ..self }
     }
 
     /// Whether both limits hold at an instant.
@@ -32,20 +44,27 @@ impl RestWatch {
         speed_m_s < REST_SPEED_M_S && x.yaw_rate_rad_s.abs() < REST_YAW_RATE_RAD_S
     }
 
-    /// Whether the vehicle has been at rest for [`REST_DURATION_S`].
+    /// Whether the vehicle has been at rest for [`REST_DURATION_S`], or for [`REST_ON_SLOPE_S`].
     pub fn has_settled(&mut self, time_s: f64, x: &VehicleState<f64>) -> bool {
         if !Self::is_slow(x) || time_s < self.last_change_s {
             self.since_s = None;
             return false;
         }
-        *self.since_s.get_or_insert(time_s) + REST_DURATION_S - 1e-9 <= time_s
+        *self.since_s.get_or_insert(time_s) + self.duration_s - 1e-9 <= time_s
     }
 
     /// The instant since which the vehicle is at rest, s; `None` if it still moves.
     ///
     /// - `end_s`: the last instant that was looked at.
     pub fn since_s(&self, end_s: f64) -> Option<f64> {
-        self.since_s.filter(|since_s| since_s + REST_DURATION_S - 1e-9 <= end_s)
+        self.since_s.filter(|since_s| since_s + self.duration_s - 1e-9 <= end_s)
+    }
+}
+
+impl VehicleParameters {
+    /// How long the vehicle must be slow to count as at rest, s.
+    pub fn rest_duration_s(&self) -> f64 {
+        if self.slope.is_level() { REST_DURATION_S } else { REST_ON_SLOPE_S }
     }
 }
 

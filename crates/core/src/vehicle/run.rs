@@ -50,7 +50,7 @@ impl<'a> Run<'a> {
         vehicle.check_relations()?;
         manoeuvre.friction_zones.iter().try_for_each(FrictionZone::check)?;
         let inputs = Inputs::with_closed_loop(manoeuvre, vehicle);
-        let rest = RestWatch::after(inputs.last_change_s());
+        let rest = RestWatch::after(inputs.last_change_s()).of(vehicle);
         let (step_s, steps_per_output) = steps(vehicle, integrator, manoeuvre);
         let n_outputs = (duration_s / OUTPUT_INTERVAL_S).round() as usize + 1;
         let applied = inputs.has_closed_loop().then(AppliedControls::default);

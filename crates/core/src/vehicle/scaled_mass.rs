@@ -72,7 +72,7 @@ impl VehicleParameters {
             if let Some(inertia) = yaw_inertia_kg_m2 {
                 sheet.state(SheetQuantity::YawInertia, inertia);
             }
-            return sheet.vehicle().with_equations(self.equations);
+            return sheet.vehicle().with_equations(self.equations).on_slope(self.slope);
         }
         let ratio = mass_kg / self.mass.mass_kg;
         let mass = &mut self.mass;

@@ -1,5 +1,5 @@
-//! Scenes and motions for other programs: DXF for drawings, glTF for 3D programs and browsers, tables for
-//! HVE. Everything is written in metres and seconds but the tables for HVE, whose units are those of the
+//! Scenes and motions for other programs: DXF for drawings, KML and GeoJSON for maps, glTF for 3D programs
+//! and browsers, tables for HVE. Everything is written in metres and seconds but the tables for HVE, whose units are those of the
 //! United States.
 
 mod dxf_drawing;
@@ -10,11 +10,13 @@ mod gltf_frame;
 mod gltf_lines;
 mod hve;
 mod looks;
+mod maps;
 
 pub use dxf_drawing::{DxfOptions, dxf};
 pub use gltf_file::glb;
 pub use gltf_frame::GltfFrame;
 pub use hve::{hve_motion, hve_pulse};
+pub use maps::map;
 
 /// The reason why something is not written for another program.
 #[derive(Debug, thiserror::Error)]

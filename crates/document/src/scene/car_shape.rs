@@ -1,8 +1,10 @@
 //! The meshes of a car.
 
 use crate::scene::body_mesh::{Detail, body_mesh};
+use crate::scene::fixed_shape::fixed_mesh;
 use crate::scene::wheel_mesh::wheel_mesh;
 use crate::scene::{CarBody, Mesh};
+use impactlab_core::vehicle::FixedObject;
 
 /// A car as it is drawn, in body axes: x forward from the CG, y to the left, z up from the ground.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +29,13 @@ impl CarShape {
             wheel: wheel_mesh(body.wheel_radius_m, body.wheel_width_m()),
             body,
         }
+    }
+
+    /// Builds an object that does not move, which stands in the place of a car.
+    pub fn of_fixed(object: FixedObject, body: CarBody) -> Self {
+        let mesh = fixed_mesh(object, &body);
+        let wheel = wheel_mesh(body.wheel_radius_m, body.wheel_width_m());
+        Self { coarse: mesh.clone(), mesh, wheel, body }
     }
 }
 

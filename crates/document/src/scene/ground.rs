@@ -3,12 +3,17 @@
 use std::sync::Arc;
 
 use crate::scene::GroundPicture;
-use impactlab_core::site::{Drawing, EdgeLine, Lane, Site, SiteOrigin};
+use impactlab_core::site::{
+    Drawing, EdgeLine, GeographicFrame, Lane, MapFeature, Site, SiteOrigin, SurveyedPoint,
+    map_features,
+};
 use impactlab_core::vehicle::FrictionZone;
 
 /// Width of the marking of a lane and of a kerb, m.
 const MARKING_M: f64 = 0.12;
 const KERB_M: f64 = 0.15;
+/// Half the size of the cross at a surveyed point, m.
+const CROSS_M: f64 = 0.15;
 /// Length and gap of a dashed marking, m: those of a road within a town.
 const MARKING_DASH_M: [f64; 2] = [3.0, 6.0];
 
@@ -25,6 +30,17 @@ pub struct SceneGround {
     pub north_rad: Option<f64>,
     /// Where the scene lies in survey coordinates, if that is known.
     pub origin: Option<SiteOrigin>,
+    /// Where it lies on the earth, if that is known, with its lines and points as features of a map.
+    pub geographic: Option<Arc<GeographicGround>>,
+}
+
+/// A ground whose place on the earth is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GeographicGround {
+    /// Where it lies.
+    pub frame: GeographicFrame,
+    /// Its lanes, kerbs, zones, lines and points.
+    pub features: Vec<MapFeature>,
 }
 
 /// What a surface is.
@@ -56,6 +72,8 @@ pub enum GroundLineKind {
     Kerb,
     /// A line of a drawing.
     Drawing,
+    /// A surveyed line, or the cross at a surveyed point.
+    Surveyed,
 }
 
 /// A line on the ground.
@@ -92,14 +110,30 @@ impl SceneGround {
             width_m: KERB_M,
         });
         let markings = site.lanes.iter().flat_map(markings);
-        let lines = of_drawing.chain(markings).chain(kerbs).collect();
-        Self { picture, areas, lines, north_rad: site.north_rad(), origin: site.origin }
+        let surveyed = site.lines.iter().map(|line| line.line_m.clone());
+        let surveyed = surveyed
+            .chain(site.points.iter().flat_map(cross))
+            .map(|points_m| GroundLine { kind: GroundLineKind::Surveyed, points_m, width_m: 0.0 });
+        let lines = of_drawing.chain(markings).chain(kerbs).chain(surveyed).collect();
+        let geographic = site
+            .geographic_frame()
+            .map(|frame| Arc::new(GeographicGround { frame, features: map_features(site) }));
+        // The origin of a place on the earth has no coordinates of a survey.
+        let origin = site.origin.filter(|_| geographic.is_none());
+        Self { picture, areas, lines, north_rad: site.north_rad(), origin, geographic }
     }
 
     /// Whether there is a picture.
     pub fn has_picture(&self) -> bool {
         self.picture.is_some()
     }
+}
+
+/// The two lines of the cross at a point.
+fn cross(point: &SurveyedPoint) -> [Vec<[f64; 2]>; 2] {
+    let [x, y] = point.at_m;
+    [1.0, -1.0]
+        .map(|slope| vec![[x - CROSS_M, y - slope * CROSS_M], [x + CROSS_M, y + slope * CROSS_M]])
 }
 
 fn surface(lane: &Lane) -> GroundArea {

@@ -38,7 +38,7 @@ impl LoadedGround {
         let drawing = site.drawing.as_ref();
         let drawing = drawing.map(|file| read_drawing(file, &site.origin.unwrap_or_default()));
         let (picture, drawing) = (picture.transpose()?, drawing.transpose()?);
-        let mut notes = Vec::new();
+        let mut notes = site.notes.clone();
         if let Some(orthophoto) =
             site.orthophoto.as_ref().filter(|orthophoto| !orthophoto.is_placed)
         {

@@ -26,6 +26,7 @@ mod contact_force;
 mod crush_outline;
 mod dents;
 mod film;
+mod fixed_shape;
 
 mod forecast;
 mod reconstruction;
@@ -38,7 +39,7 @@ pub use car_motion::{CarMotion, CarState};
 pub use car_shape::CarShape;
 pub use film::{FilmInstant, FilmSection, FilmTiming, FilmTimingError};
 pub use forecast::{ForecastScene, add_forecast};
-pub use ground::{AreaKind, GroundArea, GroundLine, GroundLineKind, SceneGround};
+pub use ground::{AreaKind, GeographicGround, GroundArea, GroundLine, GroundLineKind, SceneGround};
 pub use ground_picture::{GroundPicture, PictureLevel, TILE};
 pub use load_ground::LoadedGround;
 pub use mesh::{Mesh, MeshTriangle, Surface, triangle_normal};

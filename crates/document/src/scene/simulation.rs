@@ -99,18 +99,24 @@ pub(super) fn struck_shape(analysis: &Analysis) -> Arc<CarShape> {
 
 /// The meshes of the striking car.
 pub(super) fn striking_shape(track: &VehicleTrack) -> Arc<CarShape> {
-    Arc::new(CarShape::new(CarBody::new(&track.start.vehicle, &track.footprint)))
+    let (vehicle, footprint) = (&track.start.vehicle, &track.footprint);
+    Arc::new(match vehicle.fixed {
+        Some(object) => CarShape::of_fixed(object, CarBody::of_fixed(object, footprint)),
+        None => CarShape::new(CarBody::new(vehicle, footprint)),
+    })
 }
 
 /// Adds the striking vehicle, if it is known.
 pub(super) fn add_striking(scene: &mut Scene, analysis: &Analysis) {
     let Some(track) = &analysis.striking else { return };
-    let body = CarBody::new(&track.start.vehicle, &track.footprint);
+    let shape = striking_shape(track);
     let controls = track.start.controlled();
     add_marks(scene, &tire_marks(&track.motion, controls));
-    let motion = CarMotion::from_series(&track.motion, &body, Some(controls));
-    let shape = Arc::new(CarShape::new(body));
-    let named = ["striking vehicle", "striking"];
+    let motion = CarMotion::from_series(&track.motion, &shape.body, Some(controls));
+    let named = match track.start.vehicle.fixed {
+        Some(object) => [object.word(); 2],
+        None => ["striking vehicle", "striking"],
+    };
     add(scene, named, SceneRole::Striking, CarLook::Solid, &shape, motion);
 }
 

@@ -253,6 +253,7 @@ fn ground_entries(scene: &Scene, dark: bool) -> impl Iterator<Item = (&str, Colo
         let name = match line.kind {
             GroundLineKind::Drawing => "drawing",
             GroundLineKind::Kerb => "kerb",
+            GroundLineKind::Surveyed => "surveyed",
             GroundLineKind::Marking => "",
         };
         (name, ground_line_color(line.kind, dark), Entry::Line)

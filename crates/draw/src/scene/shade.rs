@@ -71,7 +71,7 @@ pub fn ground_line_color(kind: GroundLineKind, dark: bool) -> Color32 {
     let (light_ground, dark_ground) = match kind {
         GroundLineKind::Marking => ([255, 255, 255], [196, 199, 202]),
         GroundLineKind::Kerb => ([158, 161, 164], [112, 116, 120]),
-        GroundLineKind::Drawing => ([96, 102, 110], [150, 156, 163]),
+        GroundLineKind::Drawing | GroundLineKind::Surveyed => ([96, 102, 110], [150, 156, 163]),
     };
     let [r, g, b] = if dark { dark_ground } else { light_ground };
     Color32::from_rgb(r, g, b)

@@ -235,7 +235,8 @@ pub fn ground_strokes(ground: &Ground<'_>, site: &SceneGround, strokes: &mut Vec
 /// Adds a line with its width in metres; where that is less than can be seen, it is paler.
 fn add_line(ground: &Ground<'_>, line: &GroundLine, strokes: &mut Vec<Stroke>) {
     let color = ground_line_color(line.kind, ground.dark);
-    let least = if line.kind == GroundLineKind::Drawing { 1.0 } else { 0.8 } * ground.points;
+    let is_thin = matches!(line.kind, GroundLineKind::Drawing | GroundLineKind::Surveyed);
+    let least = if is_thin { 1.0 } else { 0.8 } * ground.points;
     for pair in line.points_m.windows(2) {
         let way = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
         let is_split = !ground.projection.is_parallel() && line.width_m > 0.0;

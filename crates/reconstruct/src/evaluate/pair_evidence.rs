@@ -153,7 +153,7 @@ impl<R: Rng> Errors<R> {
     fn road(&mut self, friction: f64) -> Road {
         let value = self.normal(friction, FRICTION_SIGMA);
         let value = rounded(value, 0.001).clamp(ROAD_FRICTION.low, ROAD_FRICTION.high);
-        Road { value: Some(value), sigma: Some(FRICTION_SIGMA), drag_factor: None }
+        Road { value: Some(value), sigma: Some(FRICTION_SIGMA), ..Road::default() }
     }
 
     fn car(&mut self, vehicle: &VehicleParameters) -> CarEvidence {

@@ -140,7 +140,9 @@ impl TrueQuantities {
             ReconstructedQuantity::HeadingDifference => self.heading_difference_rad,
             ReconstructedQuantity::DeltaVStruck => self.delta_v_struck_m_s,
             ReconstructedQuantity::StruckYawRate => self.yaw_rate_after_rad_s,
-            ReconstructedQuantity::RoadFriction => None,
+            ReconstructedQuantity::RoadFriction
+            | ReconstructedQuantity::StruckSpeedBeforeSkid
+            | ReconstructedQuantity::StrikingSpeedBeforeSkid => None,
         }
     }
 }

@@ -3,13 +3,14 @@
 //! World axes: origin at the CG of the struck car at first contact, X along its heading before the
 //! impact, Y to the left.
 
+use impactlab_core::vehicle::RoadSlope;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::evidence::{
     After, CarEvidence, Damage, DriverBraked, Edr, Item, Items, Mark, Measured, PriorRanges,
-    RestPose, Road, VideoPosition, Weighing, after, car, damage, mark, position, prior_ranges,
-    recorder, rest, road, weighing,
+    RestPose, Road, SkidBefore, VideoPosition, Weighing, after, car, damage, mark, position,
+    prior_ranges, recorder, rest, road, skid, weighing,
 };
 use crate::likelihood::{Compared, ComparedCar, Comparison, Discrepancy, PathResidual, Track};
 use crate::{CollisionMotion, StrikingMotion};
@@ -32,6 +33,12 @@ pub struct Evidence {
     pub weighing: Option<Weighing>,
     /// Where the struck car was hit.
     pub damage: Damage,
+    /// Skid of the struck car that ended at the first contact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub skid_before: Option<SkidBefore>,
+    /// The same of the striking car.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub striking_skid_before: Option<SkidBefore>,
     /// Where the struck car came to rest; `None` if that is not known.
     pub rest: Option<RestPose>,
     /// Where the striking car came to rest.
@@ -74,6 +81,8 @@ impl Evidence {
             striking_car,
             weighing,
             damage,
+            skid_before,
+            striking_skid_before,
             rest,
             striking_rest,
             after,
@@ -89,6 +98,8 @@ impl Evidence {
         visitor.item(&car::STRUCK, None, struck_car);
         visitor.item(&car::STRIKING, None, striking_car);
         visitor.optional(&weighing::SECTION, weighing);
+        visitor.optional(&skid::STRUCK, skid_before);
+        visitor.optional(&skid::STRIKING, striking_skid_before);
         visitor.optional(&rest::STRUCK, rest);
         visitor.optional(&rest::STRIKING, striking_rest);
         visitor.many(&mark::STRUCK, marks);
@@ -120,6 +131,9 @@ impl Evidence {
             // The scale is a quantity of the prior.
             weighing: _,
             damage,
+            // Their lengths are quantities of the prior, and nothing else of the motion depends on them.
+            skid_before: _,
+            striking_skid_before: _,
             rest,
             striking_rest,
             // What driver and wheels did, and ranges, are parts of the forward model and the prior.
@@ -200,6 +214,11 @@ impl Evidence {
     /// Drag factor of locked wheels, where it was measured.
     pub fn drag_factor(&self) -> Option<Measured> {
         self.friction.and_then(|road| road.drag_factor())
+    }
+
+    /// Slope of the road; level where nobody states it.
+    pub fn slope(&self) -> RoadSlope {
+        self.friction.map_or_else(RoadSlope::default, |road| road.slope())
     }
 
     /// The event data recorder, which may have recorded nothing.

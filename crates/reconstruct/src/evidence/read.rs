@@ -8,6 +8,7 @@
 //! friction = 0.72
 //! friction_sigma = 0.04
 //! drag_factor = 0.66                # of locked wheels, instead of a peak friction or beside it
+//! grade_percent = 4                 # uphill along X; and cross_slope_percent, rising to the left
 //!
 //! [struck_car]                      # mass_kg, or a data sheet (--vehicle)
 //! mass_kg = 1520
@@ -28,6 +29,11 @@
 //! y_m = -0.9                        # the other coordinate, optional
 //! angle_deg = 20                    # heading of the striking car against the struck car
 //! angle_sigma_deg = 10
+//!
+//! [skid_before]                     # and [striking_skid_before]
+//! length_m = 18.5                   # to first contact
+//! locked_wheels = ["FL", "FR"]      # all four if not given
+//! # drag_factor = 0.7               # of this skid, else by the road; grade = 0.03
 //!
 //! [rest]                            # and [striking_rest]
 //! x_m = 41.2

@@ -1,11 +1,12 @@
-//! Friction of the road. A peak friction is measured by itself, so that it is a part of the prior; the drag
+//! Friction and slope of the road. A peak friction is measured by itself, so that it is a part of the prior; the drag
 //! factor of a car with locked wheels is what follows from it and from tires, and is compared.
 //!
 //! ```text
 //! f = μ · f_tire · κ · d        d: sliding over peak friction, κ: friction along a wheel over across it
 //! ```
 
-use impactlab_core::ranges::{FRICTION_SIGMA, ROAD_FRICTION};
+use impactlab_core::ranges::{FRICTION_SIGMA, ROAD_CROSS_SLOPE, ROAD_FRICTION, ROAD_GRADE};
+use impactlab_core::vehicle::RoadSlope;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -47,7 +48,11 @@ const DRAG_FACTOR_SIGMA: Sigma = Sigma::fixed(
     "skid tests with another car on the same road",
 );
 
-/// Friction of the road.
+const GRADE: Field = Field::new("grade", "grade along X, uphill", ROAD_GRADE);
+const CROSS_SLOPE: Field =
+    Field::new("cross_slope", "cross slope, rising to the left", ROAD_CROSS_SLOPE).turned();
+
+/// Friction and slope of the road.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Road {
@@ -59,17 +64,25 @@ pub struct Road {
     /// Drag factor of a car whose wheels are locked, deceleration over that of gravity.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub drag_factor: Option<Stated>,
+    /// Rise over run along X, positive uphill; level where nobody states it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grade: Option<f64>,
+    /// Rise over run along Y, positive where the road rises to the left; likewise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cross_slope: Option<f64>,
 }
 
 impl Item for Road {
     fn fields(&mut self, visitor: &mut impl Fields) {
-        let Self { value, sigma, drag_factor } = self;
+        let Self { value, sigma, drag_factor, grade, cross_slope } = self;
         let parts = Stated { value: *value, sigma: *sigma };
         let mut stated = Some(parts).filter(|stated| *stated != Stated::default());
         visitor.measured(&FRICTION, &SIGMA, &mut stated);
         let stated = stated.unwrap_or_default();
         (*value, *sigma) = (stated.value, stated.sigma);
         visitor.measured(&DRAG_FACTOR, &DRAG_FACTOR_SIGMA, drag_factor);
+        visitor.number(&GRADE, grade);
+        visitor.number(&CROSS_SLOPE, cross_slope);
     }
 }
 
@@ -82,6 +95,12 @@ impl Road {
     /// Drag factor of locked wheels.
     pub fn drag_factor(&self) -> Option<Measured> {
         DRAG_FACTOR_SIGMA.resolve(self.drag_factor)
+    }
+
+    /// Its slope; level where nobody states it.
+    pub fn slope(&self) -> RoadSlope {
+        let Self { grade, cross_slope, .. } = self;
+        RoadSlope { grade: grade.unwrap_or(0.0), cross_slope: cross_slope.unwrap_or(0.0) }
     }
 
     pub(super) fn compare_drag(&self, comparison: &mut Comparison<'_>) {

@@ -88,6 +88,7 @@ mod tests {
     use std::path::{Path, PathBuf};
 
     use super::*;
+    use crate::evidence::SkidBefore;
     use crate::evidence::examples::read;
     use impactlab_core::vehicle::Wheel;
 
@@ -132,11 +133,13 @@ mod tests {
     fn every_key_survives() {
         let all = r#"
             case = "a \"quoted\" name"
-            road = { friction = 0.7, drag_factor = 0.6 }
+            road = { friction = 0.7, drag_factor = 0.6, grade_percent = -4, cross_slope = 0.025 }
             struck_car = { mass_kg = 1500, length_m = 4.4, width_m = 1.8, yaw_inertia_kg_m2 = 2400 }
             striking_car = { cg_to_front_axle_m = 1.2, cg_to_rear_axle_m = 1.5, cg_height_m = 0.5 }
             weighing = { shared_scale_sigma = 0.01 }
             damage = { side = "rear", y_m = 0.2, x_m = -2.1, angle_deg = 4 }
+            skid_before = { length_m = 12.5, locked_wheels = ["FL", "FR"], grade = -0.02 }
+            striking_skid_before = { length_ft = 60, length_sigma_m = 1, drag_factor = 0.7 }
             rest = { x_m = 30.25, y_m = -4, heading_deg = 190 }
             striking_rest = { x_m = 60, y_m = 2 }
             after = { driver_braked = "yes" }
@@ -184,6 +187,10 @@ mod tests {
         let edr = mirror.striking_edr.unwrap();
         assert_eq!(edr.delta_v_y(), Some([1.0, 2.0]));
         assert_eq!(edr.speed_before().unwrap().value, 21.0);
+        let [cross, mirrored] = [&evidence, &mirror].map(|of| of.slope().cross_slope);
+        assert_eq!((cross, mirrored, mirror.slope().grade), (0.025, -0.025, -0.04));
+        let locked = evidence.skid_before.as_ref().map(SkidBefore::locked_shares);
+        assert_eq!(locked, Some([1.0, 0.0]));
         assert_eq!(mirror.mirrored(), evidence);
     }
 }

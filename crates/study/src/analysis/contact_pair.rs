@@ -1,16 +1,25 @@
 //! The two vehicles of a scenario as the contact law sees them, and their motion through all contacts.
 
 use crate::analysis::{AnalysisError, Settings, StruckVehicle};
-use impactlab_core::collision::Pose;
 use impactlab_core::collision::contact::{
     ContactBody, ContactConditions, ContactOutline, CoupledSettings, FaceLaws, PairError,
-    PairMotion, PairVehicle, VehiclePair, way_to_touch_m,
+    PairMotion, PairVehicle, USUAL_ELEMENT_M, VehiclePair, way_to_touch_m,
 };
+use impactlab_core::collision::{Footprint, FootprintError, Pose};
 use impactlab_core::data::ForceHistory;
-use impactlab_core::vehicle::{ContactLoad, Manoeuvre};
+use impactlab_core::vehicle::{ContactLoad, FixedObject, Manoeuvre};
 
 /// Longest way of the striking vehicle that closes the gap between rounded outlines, m.
 const LONGEST_WAY_M: f64 = 1.0;
+
+/// Radius of the edges of a wall over its thickness.
+const WALL_CORNER_SHARE: f64 = 0.1;
+
+/// The same of a pole, whose outline is all corners.
+const POLE_CORNER_SHARE: f64 = 0.499;
+
+/// Elements along a wall at the most.
+const MOST_WALL_ELEMENTS: f64 = 400.0;
 
 /// Outlines, faces and contact of two vehicles; arrays are struck, striking.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,7 +39,10 @@ impl ContactPair {
     /// # Errors
     /// [`AnalysisError::Outline`] or [`AnalysisError::Faces`] for dimensions or a mass out of range.
     pub fn new([struck, striking]: [&StruckVehicle; 2]) -> Result<Self, AnalysisError> {
-        let outline = |it: &StruckVehicle| ContactOutline::from_vehicle(&it.vehicle);
+        let outline = |it: &StruckVehicle| match it.vehicle.fixed {
+            Some(object) => outline_of(object, Footprint::from(&it.vehicle.geometry)),
+            None => ContactOutline::from_vehicle(&it.vehicle),
+        };
         let faces = |it: &StruckVehicle| FaceLaws::by_class(&it.vehicle);
         let height_m = struck.contact.height_m;
         Ok(Self {
@@ -88,6 +100,21 @@ impl ContactPair {
         VehiclePair { vehicles, conditions: self.conditions, settings: CoupledSettings::default() }
             .simulate()
     }
+}
+
+/// Outline of an object that does not move.
+///
+/// # Errors
+/// [`FootprintError::Range`] if its dimensions are out of range.
+fn outline_of(object: FixedObject, footprint: Footprint) -> Result<ContactOutline, FootprintError> {
+    let shorter_m = footprint.length_m.min(footprint.width_m);
+    let (corner_share, element_m) = match object {
+        FixedObject::Wall => {
+            (WALL_CORNER_SHARE, USUAL_ELEMENT_M.max(footprint.length_m / MOST_WALL_ELEMENTS))
+        }
+        FixedObject::Pole => (POLE_CORNER_SHARE, USUAL_ELEMENT_M / 2.0),
+    };
+    ContactOutline::new(footprint, corner_share * shorter_m, element_m)
 }
 
 /// What both vehicles do, with the force of the first contact on the struck one.

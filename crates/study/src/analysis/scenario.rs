@@ -50,9 +50,11 @@ impl PulseSetup {
         if !self.is_height_open() {
             return self.contact_height_m;
         }
-        let [struck, striking] = [&scenario.struck, &scenario.striking]
+        let vehicles = [&scenario.struck, &scenario.striking].into_iter();
+        let scales = vehicles
+            .filter(|vehicle| vehicle.fixed.is_none())
             .map(|vehicle| scale_of_car(vehicle.footprint().length_m));
-        self.contact_height_m * struck.min(striking)
+        self.contact_height_m * scales.fold(1.0, f64::min)
     }
 
     /// An impulse `[P_X, P_Y]`, N s, as the force over time.
@@ -118,9 +120,14 @@ pub(super) fn starts(
     let start = |vehicle: &ScenarioVehicle, preset: &VehicleParameters, pose: &Pose| {
         let [x_body_m, y_body_m] = pose.body_from_world(geometry.contact_point_world_m);
         let contact = ContactPoint { x_body_m, y_body_m, height_m };
-        // A car of full size that stands in for a model would be far too light for its size.
-        let of_size = preset.clone().at_model_scale(vehicle.footprint().length_m);
-        let of_mass = of_size.with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2));
+        let of_mass = match vehicle.fixed {
+            Some(object) => object.body(),
+            // A car of full size that stands in for a model would be far too light for its size.
+            None => preset
+                .clone()
+                .at_model_scale(vehicle.footprint().length_m)
+                .with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2)),
+        };
         StruckVehicle {
             // One car has one size: that of the collision.
             vehicle: vehicle.footprint().given_to(of_mass),
@@ -252,6 +259,10 @@ fn drive_on(
     };
     Ok(start.vehicle.simulate(&manoeuvre, settings.integrator)?)
 }
+
+#[cfg(test)]
+#[path = "fixed_tests.rs"]
+mod fixed_tests;
 
 #[cfg(test)]
 mod tests {

@@ -13,6 +13,7 @@ use impactlab_core::vehicle::{Preset, SimulationError};
 use impactlab_networks::force::{EvaluateError, ForceError};
 use impactlab_networks::learning::{LearningError, LoadError};
 use impactlab_networks::response::LogError;
+use impactlab_reconstruct::hand::HandError;
 use impactlab_reconstruct::sampler::SamplerError;
 
 /// A question that cannot be answered.
@@ -251,6 +252,9 @@ pub enum StudyError {
         /// Why.
         source: Box<SamplerError>,
     },
+    /// Nothing follows from the inputs of a method by hand.
+    #[error(transparent)]
+    Hand(#[from] HandError),
     /// A scenario has no solution.
     #[error("{name}: cannot be solved")]
     Scenario {
@@ -352,6 +356,26 @@ pub enum StudyError {
     FrictionOfCase {
         /// Name of the case.
         case: String,
+    },
+    /// A forecast is asked of a vehicle that meets an object which does not move.
+    #[error(
+        "{name}: the struck vehicle meets a {object}, which does not move, and the networks have learned from \
+         two cars; ask impact or simulate, which use momentum and the contact law"
+    )]
+    FixedPartner {
+        /// The scenario.
+        name: String,
+        /// What it meets.
+        object: &'static str,
+    },
+    /// The slope of the road is given twice.
+    #[error(
+        "{name}: [road] gives another slope than the site; take it out of one of them, or give both the \
+         same"
+    )]
+    TwoSlopes {
+        /// The scenario or the evidence.
+        name: String,
     },
     /// There is no force, so that nothing can be forecast.
     #[error("{name}: has no force on a vehicle to forecast a motion from")]

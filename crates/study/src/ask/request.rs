@@ -8,11 +8,12 @@ use crate::questions::evaluate::compare::CompareReport;
 use crate::{
     Answer, CheckReport, CheckRequest, CompareRequest, EvaluateForceRequest, EvaluatePairsReport,
     EvaluatePairsRequest, EvaluateReconstructionReport, EvaluateReconstructionRequest,
-    EvaluateResponseRequest, FineTuneRequest, ForceEvaluation, ImpactReport, ImpactRequest,
-    Library, Observer, PredictForceReport, PredictForceRequest, PredictMotionReport,
-    PredictMotionRequest, Provenance, Question, ReconstructReport, ReconstructRequest,
-    ResponseTrainingReport, SimulateDatasetReport, SimulateDatasetRequest, SimulateReport,
-    SimulateRequest, StudyError, TrainForceReport, TrainForceRequest, TrainResponseRequest,
+    EvaluateResponseRequest, FineTuneRequest, ForceEvaluation, HandReport, HandRequest,
+    ImpactReport, ImpactRequest, Library, Observer, PredictForceReport, PredictForceRequest,
+    PredictMotionReport, PredictMotionRequest, Provenance, Question, ReconstructReport,
+    ReconstructRequest, ResponseTrainingReport, SimulateDatasetReport, SimulateDatasetRequest,
+    SimulateReport, SimulateRequest, StudyError, TrainForceReport, TrainForceRequest,
+    TrainResponseRequest,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::uncertainty::Caveats;
@@ -145,6 +146,8 @@ questions! {
     PredictMotion(PredictMotionRequest) -> PredictMotionReport;
     /// How fast both cars were, from the evidence.
     Reconstruct(ReconstructRequest) -> ReconstructReport;
+    /// What a method by hand gives.
+    Hand(HandRequest) -> HandReport;
     /// A training of the force network.
     TrainForce(TrainForceRequest) -> TrainForceReport;
     /// A pre-training of the response network.

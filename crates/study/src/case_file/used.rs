@@ -145,8 +145,8 @@ pub(super) fn links_in(folder: &Path) -> Option<Vec<PathBuf>> {
     Some(links)
 }
 
-/// Orthophoto, world file and drawing of a site, and the other parts of a file of results of which this is
-/// the first; none for any other file.
+/// Orthophoto, world file and drawing of a site, the other parts of a file of results of which this is the
+/// first, and the curves of a crash test; none for any other file.
 pub(super) fn files_of_site(path: &Path) -> Vec<PathBuf> {
     if InputKind::from_path(path).is_ground() {
         return Site::files_named_by(path);

@@ -15,7 +15,9 @@ use impactlab_core::data::{
 };
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
-use impactlab_core::vehicle::{ContactPoint, REST_SPEED_M_S, VehicleParameters};
+use impactlab_core::vehicle::{
+    ContactPoint, REST_SPEED_M_S, RoadSlope, USUAL_SLOPE, VehicleParameters,
+};
 use impactlab_networks::response::{OutsideDomain, STEP_S};
 
 /// Largest standard error of the end of an interval by the number of draws, as a share of the width.
@@ -49,6 +51,24 @@ pub(crate) fn energy_gain_caveat(dissipated_j: f64) -> Option<Caveat> {
         Caveat::new(CaveatKind::EnergyGain, text)
             .with_value("energy lost in the contact [J]", dissipated_j)
             .with_range([0.0, f64::INFINITY])
+    })
+}
+
+/// A road that is steeper than any on which the program was compared with a motion.
+pub(crate) fn slope_caveat(slope: &RoadSlope) -> Option<Caveat> {
+    let steepest = [slope.grade, slope.cross_slope].map(f64::abs).into_iter().fold(0.0, f64::max);
+    slope.is_unusual().then(|| {
+        let text = Phrase::new(
+            "the road has a slope of {0}; motions were compared on level roads, and of roads beyond {1} \
+             nothing is known of how well they are followed",
+            "Die Fahrbahn hat eine Neigung von {0}; verglichen wurden Bewegungen auf ebener Fahrbahn, und \
+             jenseits von {1} ist über die Güte nichts bekannt",
+        )
+        .with(PhraseValue::fixed(Quantity::Ratio, steepest, 1).in_unit("%"))
+        .with(PhraseValue::fixed(Quantity::Ratio, USUAL_SLOPE, 0).in_unit("%"));
+        Caveat::new(CaveatKind::OutsideDomain, text)
+            .with_value("slope of the road", steepest)
+            .with_range([0.0, USUAL_SLOPE])
     })
 }
 

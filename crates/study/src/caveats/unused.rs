@@ -36,6 +36,49 @@ pub(crate) fn zones_by_network(struck: &StruckVehicle) -> Option<Caveat> {
     })
 }
 
+/// A slope of the road in a forecast with a response network.
+pub(crate) fn slope_by_network(struck: &StruckVehicle) -> Option<Caveat> {
+    (!struck.vehicle.slope.is_level()).then(|| {
+        Caveat::new(
+            CaveatKind::Note,
+            Phrase::new(
+                "the response network has learned motions on level roads: the weight along the slope is \
+                 added to its motion by the equations of motion",
+                "das Bewegungsnetz hat Bewegungen auf ebener Fahrbahn gelernt: die Hangabtriebskraft \
+                 kommt durch die Bewegungsgleichungen hinzu",
+            ),
+        )
+    })
+}
+
+/// A vehicle that was chosen in place of an object that does not move.
+pub(crate) fn vehicle_of_fixed(scenario: &Scenario, choice: &VehicleChoice) -> Option<Caveat> {
+    let object = scenario.striking.fixed.filter(|_| *choice != VehicleChoice::Automatic)?;
+    Some(Caveat::not_used(
+        Phrase::new("the chosen striking vehicle", "das gewählte stoßende Fahrzeug"),
+        Phrase::new(
+            "what the struck vehicle meets is an object that does not move: {0}",
+            "das gestoßene Fahrzeug trifft auf ein unbewegliches Objekt: {0}",
+        )
+        .with(PhraseValue::Term(object.word().to_owned())),
+    ))
+}
+
+/// The force network, which has learned from collisions of two cars.
+pub(crate) fn network_of_fixed(scenario: &Scenario) -> Option<Caveat> {
+    let object = scenario.striking.fixed?;
+    Some(Caveat::not_used(
+        Phrase::new("the force network", "das Kraftnetz"),
+        Phrase::new(
+            "it has learned from collisions of two cars, and this is one with an object that does not move: \
+             {0}; the impulse by momentum and the contact law stand alone",
+            "es hat an Kollisionen zweier Fahrzeuge gelernt, diese ist eine mit einem unbeweglichen Objekt: \
+             {0}; Impulslösung und Kontaktgesetz gelten allein",
+        )
+        .with(PhraseValue::Term(object.word().to_owned())),
+    ))
+}
+
 /// Lanes and kerbs, where the draws of a forecast are not whole motions.
 pub(crate) fn lanes_by_network(site: &Site) -> Option<Caveat> {
     let has_places = !site.lanes.is_empty() || !site.kerbs.is_empty();

@@ -4,7 +4,7 @@ use impactlab_core::collision::FrictionModel;
 use impactlab_core::units::Quantity;
 
 use crate::facts::{Fact, FactTable, Term, Value};
-use crate::{BodyReport, ImpactReport, ImpulseRival};
+use crate::{BodyReport, ImpactReport, ImpulseRival, SkidReport};
 
 /// Overlap or gap of outlines that counts as touching, m.
 const TOUCHING_M: f64 = 5e-4;
@@ -85,7 +85,21 @@ impl ImpactReport {
             Fact::number(Term::ImpulseTangential, Quantity::Impulse, self.impulse_tangential_n_s),
             Fact::number(Term::EnergyLoss, Quantity::Energy, self.dissipated_energy_j),
         ]);
+        facts.extend(self.skids.iter().map(SkidReport::fact));
         facts
+    }
+}
+
+impl SkidReport {
+    /// The speed before the skid.
+    pub(super) fn fact(&self) -> Fact {
+        let vehicle = match self.vehicle {
+            "target" => Term::StruckVehicle,
+            _ => Term::StrikingVehicle,
+        };
+        let name = vec![Value::Term(vehicle), Value::Term(Term::SpeedBeforeSkid)];
+        let speed = Value::Number(Quantity::Speed, self.speed_before_m_s);
+        Fact::row(Value::Joined(name, ", "), vec![speed])
     }
 }
 

@@ -18,6 +18,7 @@ mod evaluate_force;
 mod evaluate_pairs;
 mod evaluate_reconstruction;
 mod force_beside;
+mod hand;
 mod held;
 mod impact;
 mod impulse_rival;

@@ -2,6 +2,7 @@
 
 use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
+use impactlab_core::vehicle::RoadSlope;
 
 use crate::analysis::{MonteCarloError, RestOutcome, Sensitivity};
 use crate::facts::both_vehicles::phase_table;
@@ -9,8 +10,8 @@ use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::questions::simulate::flag::is_no_rare_contact;
 use crate::{
-    ForceReport, FrictionZoneReport, ImpulseRival, RestState, SimulateReport, TireMarkReport,
-    VehicleUncertainty,
+    ForceReport, FrictionZoneReport, ImpulseRival, RestState, SimulateReport, SkidReport,
+    TireMarkReport, VehicleUncertainty,
 };
 
 impl SimulateReport {
@@ -41,6 +42,8 @@ impl SimulateReport {
             Fact::new(Term::RoadFriction, Value::Given(Quantity::Ratio, self.friction)),
             Fact::new(Term::Duration, Value::Given(Quantity::Time, self.duration_s)),
         ];
+        facts.extend(slope_facts(self.slope));
+        facts.extend(self.skids.iter().map(SkidReport::fact));
         facts.extend(zones(&self.friction_zones));
         facts.extend(self.force.iter().flat_map(ForceReport::facts));
         let surface = self.momentum.as_ref().map(|momentum| momentum.surface());
@@ -105,6 +108,15 @@ pub(super) fn zones(zones: &[FrictionZoneReport]) -> Option<Fact> {
     };
     let all = Value::Joined(zones.iter().map(zone).collect(), "; ");
     (!zones.is_empty()).then(|| Fact::new(Term::FrictionZones, all))
+}
+
+/// Grade and cross slope of the road, where it has any.
+fn slope_facts(slope: Option<RoadSlope>) -> impl Iterator<Item = Fact> {
+    let facts = |RoadSlope { grade, cross_slope }| {
+        [(Term::RoadGrade, grade), (Term::RoadCrossSlope, cross_slope)]
+            .map(|(term, value)| Fact::new(term, Value::Given(Quantity::Ratio, value)))
+    };
+    slope.map(facts).into_iter().flatten()
 }
 
 impl ForceReport {

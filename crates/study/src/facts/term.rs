@@ -141,6 +141,9 @@ terms! {
     Equations: "equations of motion", "Bewegungsgleichungen";
     Integration: "integration", "Integrationsverfahren";
     RoadFriction: "friction of the road", "Reibbeiwert der Fahrbahn";
+    SpeedBeforeSkid: "speed before the skid", "Geschwindigkeit vor der Bremsspur";
+    RoadGrade: "grade of the road along X", "Längsneigung der Fahrbahn entlang X";
+    RoadCrossSlope: "cross slope of the road", "Querneigung der Fahrbahn";
     FrictionZones: "zones of their own friction", "Bereiche mit eigenem Reibbeiwert";
     Duration: "duration", "Dauer";
     ForceFile: "file of the force", "Kraftdatei";
@@ -594,6 +597,27 @@ terms! {
         "Bewegungsmodelle mit Bewegungen, die keines kennt";
     UnseenMotions: "trajectories", "Bewegungen";
     Choices: "choices of those to learn from", "Auswahlen der Bewegungen zum Lernen";
+    // Methods by hand.
+    HandResults: "By hand", "Von Hand";
+    HandAtValues: "at the values of the inputs", "bei den Werten der Eingaben";
+    HandFirstOrder: "± to first order", "± in erster Ordnung", "One standard deviation";
+    HandAvoided: "stops before the place of the collision with", "steht vor der Unfallstelle mit";
+    HandInputs: "Inputs of the calculation by hand", "Eingaben der Rechnung von Hand";
+    HandSource: "whose it is", "Herkunft";
+    HandSigmaAssumed: "value stated, ± assumed", "Wert angegeben, ± angenommen";
+    HandSensitivities: "What one standard deviation more of an input, or 1 % of an exact one, changes",
+        "Was eine Standardabweichung mehr einer Eingabe oder 1 % einer genauen ändert";
+    HandBias: "The same formula on marks of the 4DOF model, whose speed is known",
+        "Dieselbe Formel auf Spuren des 4DOF-Modells, deren Geschwindigkeit bekannt ist";
+    HandBiasTruth: "true speed at the begin of the mark", "wahre Geschwindigkeit am Beginn der Spur";
+    HandBiasSteer: "angle of the front wheels", "Winkel der Vorderräder";
+    HandBiasRadius: "radius of its begin", "Radius ihres Beginns";
+    HandBiasSpeed: "speed by the mark", "Geschwindigkeit nach der Spur";
+    HandBiasRatio: "of the true speed", "der wahren Geschwindigkeit";
+    HandBiasMean: "mean, and from smallest to largest", "Mittel, und vom kleinsten zum größten";
+    HandFormula: "How the method works", "Wie das Verfahren rechnet";
+    HandEquation: "equation", "Gleichung";
+    HandHolds: "holds if", "gilt, wenn";
     // The check of files.
     Checked: "What was checked", "Geprüft";
     DataSets: "data sets", "Datensätze";

@@ -12,10 +12,11 @@ use crate::{
 };
 use impactlab_core::collision::{
     BodyAfter, FrictionModel, ImpactSolution, PrincipalDirectionOfForce, Regime, RestitutionForm,
-    Scenario, StruckSurface,
+    Role, Scenario, StruckSurface,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::uncertainty::Caveats;
+use impactlab_core::vehicle::RoadSlope;
 
 /// Seed of the draws from the force network beside the solution.
 const SEED: u64 = 0;
@@ -88,8 +89,43 @@ pub struct ImpactReport {
     /// The striking vehicle after the impact.
     #[serde(rename = "bullet")]
     pub striking: BodyReport,
+    /// The vehicles before skids that end at the first contact.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub skids: Vec<SkidReport>,
     /// The force network beside it; none where it is not asked or has nothing of its own to say.
     pub rival: Option<ImpulseRival>,
+}
+
+/// A vehicle before a skid that ends at the first contact, SI units.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct SkidReport {
+    /// Which vehicle: `target` or `bullet`.
+    pub vehicle: &'static str,
+    /// Distance over which it skids, m.
+    pub length_m: f64,
+    /// Deceleration on a level road over that of gravity.
+    pub drag_factor: f64,
+    /// Speed at the start of the skid, m/s.
+    pub speed_before_m_s: f64,
+    /// How long the skid lasts, s.
+    pub duration_s: f64,
+}
+
+impl SkidReport {
+    /// The skids of a scenario on a road.
+    pub(crate) fn of(scenario: &Scenario, slope: &RoadSlope) -> Vec<Self> {
+        let skid = |(role, vehicle)| {
+            let before = scenario.before_skid(role, slope)?;
+            Some(Self {
+                vehicle,
+                length_m: before.skid.length_m,
+                drag_factor: before.skid.drag_factor,
+                speed_before_m_s: before.speed_m_s,
+                duration_s: before.duration_s,
+            })
+        };
+        Role::ALL.into_iter().zip(["target", "bullet"]).filter_map(skid).collect()
+    }
 }
 
 /// One vehicle after the impact, world axes.
@@ -197,6 +233,7 @@ impl Question for ImpactRequest {
             dissipated_energy_j: solution.dissipated_energy_j,
             struck: (&solution.struck).into(),
             striking: (&solution.striking).into(),
+            skids: SkidReport::of(&scenario, &scenario.road.unwrap_or_default()),
             rival,
         };
         let provenance = match model {

@@ -2,6 +2,7 @@
 
 pub(crate) mod check;
 pub(crate) mod evaluate;
+pub(crate) mod hand;
 pub(crate) mod impact;
 pub(crate) mod predict;
 pub(crate) mod reconstruct;

@@ -291,7 +291,8 @@ impl<'a> PairRun<'a> {
         STEP_TICKS.into_iter().find(fits).unwrap_or(1)
     }
 
-    /// Takes one step of both vehicles under the contact force in its middle.
+    /// Takes one step of both vehicles under the contact force in its middle. A fixed object stays where it
+    /// is.
     fn step(
         &mut self,
         states: &States,
@@ -319,6 +320,9 @@ impl<'a> PairRun<'a> {
         self.phases.add([start_s, end_s], force.as_ref(), &middle);
         let mut next = *states;
         for i in 0..2 {
+            if self.pair.vehicles[i].vehicle.fixed.is_some() {
+                continue;
+            }
             let collision = force.map(|force| self.collision_force(i, &force, &middle[i]));
             next[i] = self.runs[i].stepped(collision, [start_s, step_s], &states[i], residuals[i]);
         }

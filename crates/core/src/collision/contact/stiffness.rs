@@ -12,8 +12,9 @@
 
 use crate::collision::Side;
 use crate::collision::contact::law::{FaceLaw, FaceLawError, FaceParameters, Recovery};
+use crate::data::CrashTest;
 use crate::numerics::normal_quantile;
-use crate::units::{Estimate, Interval};
+use crate::units::{Estimate, Interval, MILE_PER_HOUR_M_S};
 use crate::vehicle::{CrushFace, CrushParameters, CrushStiffness, VehicleClass, VehicleParameters};
 
 /// A and B of a face.
@@ -294,6 +295,28 @@ pub struct BarrierTest {
 }
 
 impl BarrierTest {
+    /// The test of one vehicle against a rigid barrier, with 5 mph up to which nothing is crushed.
+    ///
+    /// # Errors
+    /// What is missing, in words.
+    pub fn from_crash_test(test: &CrashTest) -> Result<Self, String> {
+        let [vehicle] = test.vehicles.as_slice() else {
+            return Err("it is not a test of one vehicle against a barrier".to_owned());
+        };
+        if !test.barrier.as_deref().is_some_and(|barrier| barrier.starts_with('R')) {
+            return Err("the barrier is not said to be rigid".to_owned());
+        }
+        let known =
+            |value: Option<f64>, name: &str| value.ok_or_else(|| format!("no {name} is stated"));
+        Ok(Self {
+            mass_kg: known(vehicle.mass_kg, "test mass")?,
+            width_m: known(vehicle.width_m, "width")?,
+            speed_m_s: known(vehicle.speed_m_s, "speed")?,
+            no_damage_speed_m_s: 5.0 * MILE_PER_HOUR_M_S,
+            crush_m: vehicle.crush_m.ok_or("no crush C1 to C6 is stated")?,
+        })
+    }
+
     /// C̄: mean depth of the crush, m.
     pub fn mean_crush_m(&self) -> f64 {
         let [c1, c2, c3, c4, c5, c6] = self.crush_m;

@@ -27,7 +27,7 @@ use crate::data::{DataError, ReadSettings, Sheet, SheetRef};
 use crate::units::Quantity;
 
 /// Bytes of a report. Those of modules with many events have some hundred kilobytes.
-const MAX_BYTES: usize = 8 << 20;
+pub(crate) const MAX_BYTES: usize = 8 << 20;
 
 /// Lines within which a report says what it is.
 const EXAMINED_LINES: usize = 60;

@@ -101,9 +101,7 @@ pub(super) fn as_table(
     if !is_mme(text) {
         return Ok(None);
     }
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    let is_test = matches!(ending.as_deref(), Some("mme" | "chn")) || !has_code(text);
-    let (channels, mut doubts) = match is_test {
+    let (channels, mut doubts) = match is_of_test(path, text) {
         true => read_test(path)?,
         false => (vec![MmeChannel::parse(path.to_owned(), text)?], Vec::new()),
     };
@@ -151,8 +149,24 @@ fn has_code(text: &str) -> bool {
     text.lines().take(MAX_KEYS).filter_map(pair).any(|(key, _)| key == "channel code")
 }
 
-/// The channels of a test in the folder of a file or in its folder `Channel`, and what is in doubt.
-fn read_test(path: &Path) -> Result<(Vec<MmeChannel>, Vec<String>), DataError> {
+/// Whether a file stands for a whole test, and not for one channel.
+fn is_of_test(path: &Path, text: &str) -> bool {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    matches!(ending.as_deref(), Some("mme" | "chn")) || !has_code(text)
+}
+
+/// The channels that are read with a file of a test; none for any other file.
+///
+/// - `text`: its beginning.
+pub(super) fn channels_beside(path: &Path, text: &str) -> Vec<PathBuf> {
+    match is_mme(text) && is_of_test(path, text) {
+        true => files_of_test(path).unwrap_or_default().into_values().collect(),
+        false => Vec::new(),
+    }
+}
+
+/// The files of the channels of a test, in the folder of a file or in its folder `Channel`, by their numbers.
+fn files_of_test(path: &Path) -> Result<BTreeMap<u32, PathBuf>, DataError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -165,8 +179,13 @@ fn read_test(path: &Path) -> Result<(Vec<MmeChannel>, Vec<String>), DataError> {
     if let Some(inner) = entries.iter().find(is_channels) {
         found.extend(channel_files(&list_folder(inner)?, &stem));
     }
+    Ok(found)
+}
+
+/// The channels of a test, and what is in doubt.
+fn read_test(path: &Path) -> Result<(Vec<MmeChannel>, Vec<String>), DataError> {
     let (mut channels, mut doubts, mut bytes) = (Vec::new(), Vec::new(), 0);
-    for path in found.into_values() {
+    for path in files_of_test(path)?.into_values() {
         let text = read_text(&path, MAX_FILE_BYTES)?.text;
         bytes += text.len() as u64;
         if bytes > MAX_TEST_BYTES {
@@ -416,6 +435,9 @@ mod tests {
             let loaded = read_any_series(&path, Some(&map)).unwrap();
             assert_eq!(loaded.series.time_s(), [0.0, 0.001, 0.002]);
             assert_eq!(loaded.series.require(Channel::FxBody).unwrap(), [-1e3, -2e3, -1e3]);
+            let beside = crate::data::parts_beside(&path);
+            assert_eq!(beside.len(), 4, "{beside:?}");
+            assert!(beside[0] == path && beside[1].ends_with("CHANNEL/T.001"), "{beside:?}");
             // The other part has no channel with all of its samples.
             let alone = folder.path().join("CHANNEL/t.002");
             assert!(Table::read(&alone).is_err());

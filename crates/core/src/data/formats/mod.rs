@@ -4,23 +4,30 @@
 //! A reader makes the text of a table of a file, with the units in its header, so that columns are
 //! found, mapped, converted and checked as those of any table.
 
+mod archive;
+mod bytes;
 mod cdr;
 mod fem;
 mod iso_mme;
+mod mdf;
+mod mdf_blocks;
+mod mdf_records;
 mod nhtsa;
 mod nhtsa_curves;
 mod parquet_check;
 mod parquet_file;
 mod positions;
 mod recorder;
+mod tdms;
+mod tdms_file;
 
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::data::{DataError, ReadSettings, Sheet, open_file};
+use crate::data::{DataError, ReadSettings, Sheet, SheetRef, open_file};
 
+pub use fem::DeckUnits;
 pub(super) use fem::OpenUnits;
-pub use fem::{DeckUnits, parts_beside};
 pub use nhtsa::{CrashTest, TestChannel, TestVehicle};
 pub use nhtsa_curves::{BarrierForce, BarrierMomentum};
 pub use recorder::{RecordedControls, RecordedDeltaV, RecordedSpeed, RecorderRecord};
@@ -56,6 +63,38 @@ pub(super) struct Said {
     pub open_units: Option<OpenUnits>,
 }
 
+/// Bytes at the beginning of a file by which it is known to have others beside it.
+const HEAD_BYTES: u64 = 16 << 10;
+
+/// The files that are read together with a file: all parts of a `binout`, a crash test and its curves, a test in
+/// ISO-MME and its channels. The file itself is among them, for a test the first one; none for a file that is
+/// read alone.
+pub fn parts_beside(path: &Path) -> Vec<PathBuf> {
+    let parts = fem::parts_beside(path);
+    if !parts.is_empty() {
+        return parts;
+    }
+    let text = head_text(path);
+    let beside = match nhtsa::is_test(&text) {
+        true => CrashTest::read(path).map(|test| test.curve_files()).unwrap_or_default(),
+        false => iso_mme::channels_beside(path, &text),
+    };
+    match beside.is_empty() {
+        true => Vec::new(),
+        false => std::iter::once(path.to_owned()).chain(beside).collect(),
+    }
+}
+
+/// The beginning of a file as text; empty if it cannot be read.
+fn head_text(path: &Path) -> String {
+    let head = open_file(path, u64::MAX).ok().and_then(|(file, _)| {
+        let mut head = Vec::new();
+        file.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
+        Some(head)
+    });
+    String::from_utf8_lossy(&head.unwrap_or_default()).into_owned()
+}
+
 /// Reads a binary file of one of these formats; `None` if it is none of them.
 ///
 /// # Errors
@@ -71,7 +110,24 @@ pub(super) fn from_binary(
     if first.starts_with(b"PAR1") {
         return parquet_file::as_table(path).map(Some);
     }
+    if first.starts_with(b"TDSm") {
+        return tdms::as_table(path, settings).map(Some);
+    }
+    if mdf_blocks::is_mdf(&first) {
+        return mdf::as_table(path, settings).map(Some);
+    }
     fem::from_binary(path, settings)
+}
+
+/// Reads the crash test in an archive; `None` if there is none in it.
+///
+/// # Errors
+/// [`DataError`] if there is one and it cannot be read.
+pub(super) fn from_archive(
+    path: &Path,
+    settings: &ReadSettings,
+) -> Result<Option<Converted>, DataError> {
+    archive::as_table(path, settings)
 }
 
 /// Reads a text file of one of these formats; `None` if it is none of them.
@@ -92,6 +148,29 @@ pub(super) fn from_text(
         }
     }
     fem::from_text(path, text, settings)
+}
+
+/// The index of the part of a file that the settings name.
+///
+/// - `first`: taken if they name none.
+///
+/// # Errors
+/// [`DataError::NoSheet`] without such a part.
+fn chosen_part(
+    path: &Path,
+    all: &[String],
+    first: usize,
+    settings: &ReadSettings,
+) -> Result<usize, DataError> {
+    let chosen = match &settings.sheet {
+        None => Some(first),
+        Some(SheetRef::Number(number)) => number.checked_sub(1),
+        Some(SheetRef::Name(name)) => all.iter().position(|part| part == name),
+    };
+    chosen.filter(|idx| *idx < all.len()).ok_or_else(|| {
+        let wanted = settings.sheet.as_ref().map_or_else(String::new, SheetRef::to_string);
+        DataError::NoSheet { path: path.to_owned(), wanted, found: all.to_vec() }
+    })
 }
 
 /// A number with the fewest digits that give it again; with an exponent if it would be long.

@@ -25,6 +25,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::data::DataError;
+use crate::data::formats::head_text;
 use crate::data::text::read_text;
 
 /// Bytes of a description or a curve.
@@ -156,7 +157,7 @@ impl CrashTest {
 
     /// Whether a file is the description of a test.
     pub fn is_test(path: &Path) -> bool {
-        read_text(path, MAX_CURVE_BYTES).is_ok_and(|text| is_test(&text.text))
+        is_test(&head_text(path))
     }
 
     pub(super) fn parse(path: &Path, text: &str) -> Result<Self, DataError> {

@@ -1,6 +1,7 @@
 //! The curves of a crash test of the NHTSA database ([`nhtsa`](super::nhtsa)): one part of a test as a table,
 //! and the force of the barrier with its momentum.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::data::formats::nhtsa::{
@@ -116,6 +117,13 @@ impl CrashTest {
             curves.values.push((channel, values));
         }
         Ok(curves)
+    }
+
+    /// The files of its curves, as far as they are there.
+    pub(super) fn curve_files(&self) -> Vec<PathBuf> {
+        let numbers: BTreeSet<u32> = self.channels.iter().map(|channel| channel.curve).collect();
+        let paths = numbers.into_iter().map(|number| self.curve_path(number));
+        paths.filter(|path| path.is_file()).collect()
     }
 
     fn curve_path(&self, number: u32) -> PathBuf {
@@ -363,6 +371,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = write(folder.path(), 1.0);
         let test = CrashTest::read(&path).unwrap();
+        let beside = crate::data::parts_beside(&path);
+        assert_eq!(beside.len(), 5, "{beside:?}");
+        assert!(beside[0] == path && beside[4].ends_with("v1.004"), "{beside:?}");
+        assert!(crate::data::parts_beside(&beside[1]).is_empty());
         let vehicle = &test.vehicles[0];
         assert_eq!((vehicle.mass_kg, vehicle.width_m), (Some(1000.0), Some(1.8)));
         assert_eq!(vehicle.crush_m, Some([0.4; 6]));

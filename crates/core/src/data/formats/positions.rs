@@ -13,8 +13,8 @@
 
 use std::path::Path;
 
-use crate::data::formats::{Converted, Said, number_text};
-use crate::data::{DataError, ReadSettings, Sheet, SheetRef};
+use crate::data::formats::{Converted, Said, chosen_part, number_text};
+use crate::data::{DataError, ReadSettings, Sheet};
 
 /// Metres in a nautical mile.
 const NAUTICAL_MILE_M: f64 = 1852.0;
@@ -27,7 +27,7 @@ const MAX_TRACKS: usize = 1000;
 
 /// What is said of positions.
 const OF_ANTENNA: &str = "positions are those of the antenna: where it is not at the centre of gravity, the \
-     path and a turn of the car mix; ask where it was mounted";
+     path and a turn of the car mix; say where it was mounted (antenna=x,y from the CG)";
 
 /// A part of a log.
 struct Track {
@@ -57,16 +57,12 @@ pub(super) fn as_table(
         return Err(DataError::OtherFormat { path: path.to_owned(), format, remedy });
     }
     let all: Vec<String> = tracks.iter().map(|track| track.name.clone()).collect();
-    let chosen = match &settings.sheet {
-        None => Some(0),
-        Some(SheetRef::Number(number)) => number.checked_sub(1),
-        Some(SheetRef::Name(name)) => all.iter().position(|track| track == name),
+    let Some(track) = tracks.get(chosen_part(path, &all, 0, settings)?) else {
+        return Err(DataError::Empty { path: path.to_owned() });
     };
-    let Some(track) = chosen.and_then(|idx| tracks.get(idx)) else {
-        let wanted = settings.sheet.as_ref().map_or_else(String::new, SheetRef::to_string);
-        return Err(DataError::NoSheet { path: path.to_owned(), wanted, found: all });
-    };
-    doubts.push(OF_ANTENNA.to_owned());
+    if settings.antenna_m.is_none() {
+        doubts.push(OF_ANTENNA.to_owned());
+    }
     let said = Said {
         description: format!(
             "{format}: places from latitude and longitude; read is {}",

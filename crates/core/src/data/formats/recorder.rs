@@ -12,7 +12,7 @@
 use std::path::Path;
 
 use crate::data::budget::MAX_TABLE_BYTES;
-use crate::data::formats::cdr::{Report, Section, is_before_crash, is_report, number};
+use crate::data::formats::cdr::{MAX_BYTES, Report, Section, is_before_crash, is_report, number};
 use crate::data::spelling::{letters_and_digits, quantity_name, trailing_unit};
 use crate::data::text::read_text;
 use crate::data::{DataError, ReadSettings, Table};
@@ -25,6 +25,9 @@ const SETTLED_S: f64 = 0.02;
 
 /// Change over this time from which the record is cut off, m/s.
 const CUT_M_S: f64 = 0.3;
+
+/// Lines within which the header of a table stands.
+const HEADER_LINES: usize = 5;
 
 /// Longest time over which a change of velocity is recorded, s.
 const LONGEST_S: f64 = 2.0;
@@ -123,6 +126,27 @@ impl RecorderRecord {
     /// Whether a file is the report of a recorder's tool.
     pub fn is_report(path: &Path) -> bool {
         read_text(path, MAX_TABLE_BYTES).is_ok_and(|text| is_report(&text.text))
+    }
+
+    /// Turns lateral changes of velocity that a report has as positive to the left.
+    pub fn turn_lateral(&mut self) {
+        if let Some(delta_v) = &mut self.delta_v_right {
+            delta_v.delta_v_m_s = 0.0 - delta_v.delta_v_m_s;
+        }
+    }
+
+    /// Turns yaw rates that a report has as positive to the left.
+    pub fn turn_yaw_rate(&mut self) {
+        for rate in &mut self.before.yaw_rate_right_rad_s {
+            *rate = 0.0 - *rate;
+        }
+    }
+
+    /// Whether a file is such a report, or a table with a change of velocity in its first lines.
+    pub fn is_record(path: &Path) -> bool {
+        let Ok(text) = read_text(path, MAX_BYTES as u64) else { return false };
+        let mut first = text.text.lines().take(HEADER_LINES).map(letters_and_digits);
+        is_report(&text.text) || first.any(|line| line.contains("deltav"))
     }
 
     fn is_empty(&self) -> bool {

@@ -18,7 +18,9 @@ use std::sync::Arc;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::sheet::{DataSheet, SheetQuantity as Q};
 use crate::vehicle::tire::{SAME_IN_ALL_DIRECTIONS, TireParameters};
-use crate::vehicle::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
+use crate::vehicle::{
+    GeometryParameters, MassParameters, RoadSlope, SuspensionParameters, VehicleParameters,
+};
 
 use super::data_sheet::SheetValues;
 
@@ -71,6 +73,8 @@ impl DataSheet {
             estimates: self.rules(),
             stated: BTreeMap::new(),
             sheet: None,
+            slope: RoadSlope::default(),
+            fixed: None,
         }
     }
 

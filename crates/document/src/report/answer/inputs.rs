@@ -10,8 +10,8 @@ use crate::report::parts::{InputRow, Part};
 use crate::report::paths::ShownPaths;
 use impactlab_core::uncertainty::Caveat;
 use impactlab_study::{
-    ImpactRequest, PredictForceRequest, PredictMotionRequest, ReconstructRequest, Request,
-    SimulateRequest,
+    HandRequest, ImpactRequest, PredictForceRequest, PredictMotionRequest, ReconstructRequest,
+    Request, SimulateRequest,
 };
 
 /// What a question is about; everything else in it is a setting.
@@ -27,6 +27,7 @@ fn group_or(group: String, kind: &str) -> String {
 fn default_settings(request: &Request) -> Value {
     let settings = match request {
         Request::Impact(asked) => serde_json::to_value(ImpactRequest::new(asked.scenario.clone())),
+        Request::Hand(asked) => serde_json::to_value(HandRequest::new(asked.method)),
         Request::Simulate(asked) => {
             serde_json::to_value(SimulateRequest::new(asked.source.clone()))
         }
@@ -66,6 +67,12 @@ pub(in crate::report) fn given_rows(
         // What was found is told with its uncertainty.
         if let Some(Value::Object(evidence)) = fields.get_mut("evidence") {
             evidence.remove("inline");
+        }
+        // What a method by hand takes is told with its labels.
+        if matches!(request, Request::Hand(_)) {
+            for told in ["method", "inputs", "points_m"] {
+                fields.remove(told);
+            }
         }
     }
     let defaults = flatten(&default_settings(request), wording, paths);

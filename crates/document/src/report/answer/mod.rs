@@ -6,6 +6,8 @@ mod facts;
 
 mod generic;
 
+mod hand;
+
 mod impact;
 
 mod inputs;
@@ -57,6 +59,7 @@ pub(super) struct Context<'a> {
 pub(super) fn part_of(request: &Request, answer: &AnyAnswer, context: Context<'_>) -> Part {
     let part = match (request, answer) {
         (_, AnyAnswer::Impact(answer)) => impact::part(answer, context),
+        (_, AnyAnswer::Hand(answer)) => hand::part(&answer.report, context),
         (Request::Simulate(request), AnyAnswer::Simulate(answer)) => {
             simulate::part(request, answer, context)
         }

@@ -123,6 +123,8 @@ pub(super) const WORDS: Words = Words {
     after_second_contact: "Die Fahrzeuge berühren sich vor dem Ende erneut, und dieser Kontakt wird nicht berechnet: \
         wohin sie danach kommen, hat keine Wahrscheinlichkeit, und die Mediane sind die einer Bewegung ohne ihn.",
     forecast_yaw_picture: "Vorhersage: Gierwinkel des gestoßenen Fahrzeugs über der Zeit mit Bändern",
+    meaning_hand: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, wenn das Verfahren gilt und die \
+                   Eingaben so unsicher sind wie angegeben und nicht voneinander abhängen.",
     meaning_posterior: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach den vorgefundenen Spuren, \
         wenn die Annahmen in Abschnitt 3 und die Verfahren in Abschnitt 5 zutreffen.",
     meaning_doubtful: "Auf diese Intervalle ist kein Verlass: siehe die Warnung „{badge}“ in Abschnitt 6.",

@@ -120,6 +120,8 @@ pub(super) const WORDS: Words = Words {
     after_second_contact: "The vehicles meet again before the end, and that contact is not computed: where they go \
         after it has no probability, and the medians are those of a motion without it.",
     forecast_yaw_picture: "Forecast: heading of the struck vehicle over time with its bands",
+    meaning_hand: "Each value lies in its interval of 90 % with that probability if the method holds, the inputs are as \
+                   uncertain as they say, and do not depend on each other.",
     meaning_posterior: "Each value lies in its interval of 90 % with that probability, given the evidence, if the assumptions \
         of section 3 and the models of section 5 hold.",
     meaning_doubtful: "These intervals are not to be relied on: see the warning “{badge}” in section 6.",

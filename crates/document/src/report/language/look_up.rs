@@ -65,17 +65,25 @@ mod tests {
     use super::*;
     use crate::figure::WheelInput;
     use impactlab_core::vehicle::sheet::{DataSheet, SheetQuantity, VehicleClass};
+    use impactlab_reconstruct::hand::HandMethod;
     use impactlab_reconstruct::{Latent, ReconstructedQuantity};
     use impactlab_study::Measurements;
 
     #[test]
     fn every_label_of_the_program_has_a_german_one() {
         let latents = Latent::ALL.iter().map(|latent| latent.label());
-        let quantities = ReconstructedQuantity::ALL.iter().map(|quantity| quantity.label());
+        let quantities = ReconstructedQuantity::EVERY.iter().map(|quantity| quantity.label());
         let sheet = SheetQuantity::ALL.iter().map(|quantity| quantity.label());
         let controls = WheelInput::ALL.into_iter().map(WheelInput::label);
         for label in latents.chain(quantities).chain(sheet).chain(controls) {
             assert!(phrase_of(Language::De, label).is_some(), "{label}");
+        }
+        for method in HandMethod::ALL {
+            let fields = method.fields().iter().map(|field| field.label);
+            let outputs = method.outputs().iter().map(|output| output.label);
+            for label in fields.chain(outputs).chain([method.label(), "points of the mark"]) {
+                assert!(phrase_of(Language::De, label).is_some(), "{label}");
+            }
         }
         let measured = Measurements::shipped();
         for held in measured.iter().flat_map(|measurement| &measurement.held) {

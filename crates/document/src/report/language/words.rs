@@ -98,6 +98,7 @@ pub(in crate::report) struct Words {
     pub atlas_error: &'static str,
     pub atlas_few: &'static str,
     pub forecast_yaw_picture: &'static str,
+    pub meaning_hand: &'static str,
     pub meaning_posterior: &'static str,
     pub meaning_doubtful: &'static str,
     pub too_few_particles: &'static str,

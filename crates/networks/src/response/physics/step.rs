@@ -6,7 +6,8 @@
 //!
 //! over 10 ms by one Runge–Kutta step; the shipped trajectories come out as with steps of 1 ms to
 //! 0.1 mm. Without a contact force and with the throttle released the planar kinetic energy does not
-//! grow: a step that would make it grow is scaled back to the energy before it.
+//! grow: a step that would make it grow is scaled back to the energy before it, on a slope to that with
+//! what the weight has given.
 
 use serde::{Deserialize, Serialize};
 
@@ -164,7 +165,14 @@ fn without_energy_gain<P: Copy, T: Lanes + LanesOver<P>>(
     before: &VehicleState<T>,
     mut after: VehicleState<T>,
 ) -> VehicleState<T> {
-    let (old, new) = (constants.planar_energy_j(before), constants.planar_energy_j(&after));
+    let (kinetic, new) = (constants.planar_energy_j(before), constants.planar_energy_j(&after));
+    let old = match constants.energy_by_slope_j(before, &after) {
+        Some(by_slope) => {
+            let (sum, none) = (kinetic + by_slope, kinetic.constant(0.0));
+            sum.if_less(none, none, sum)
+        }
+        None => kinetic,
+    };
     if old.any_less(new) {
         let share = old.if_less(new, (old / new).sqrt(), old.constant(1.0));
         after.vx_body_m_s *= share;

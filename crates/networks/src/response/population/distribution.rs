@@ -285,6 +285,7 @@ impl StrengthPopulation {
             shared_out: 0,
             step_noise: self.step_noise,
             tail_ratio: strengths.widths.tail_ratio,
+            growth: strengths.widths.growth,
         }
     }
 

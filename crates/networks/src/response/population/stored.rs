@@ -21,6 +21,8 @@ struct Stored {
     widening: f64,
     #[serde(default = "normal")]
     tail_ratio: f64,
+    #[serde(default)]
+    growth: f64,
     step_noise: f64,
     cars: Vec<StoredCar>,
 }
@@ -34,6 +36,8 @@ struct StoredCar {
     widening: f64,
     #[serde(default = "normal")]
     tail_ratio: f64,
+    #[serde(default)]
+    growth: f64,
 }
 
 impl StrengthPopulation {
@@ -59,13 +63,23 @@ impl StrengthPopulation {
             add(format!("car{i}.covariance"), &car.strengths.covariance)?;
             add(format!("car{i}.mean"), &row(&car.strengths.mean))?;
             let (vehicle, n_trajectories) = (car.vehicle.clone(), car.n_trajectories);
-            let CarStrengths { remainder, widths: Widths { widening, tail_ratio }, .. } =
+            let CarStrengths { remainder, widths: Widths { widening, tail_ratio, growth }, .. } =
                 car.strengths;
-            cars.push(StoredCar { vehicle, n_trajectories, remainder, widening, tail_ratio });
+            cars.push(StoredCar {
+                vehicle,
+                n_trajectories,
+                remainder,
+                widening,
+                tail_ratio,
+                growth,
+            });
         }
         let Self { noise, remainder, step_noise, widths, .. } = *self;
-        let Widths { widening, tail_ratio } = widths;
-        file.put(NAME, &Stored { noise, remainder, widening, tail_ratio, step_noise, cars })?;
+        let Widths { widening, tail_ratio, growth } = widths;
+        file.put(
+            NAME,
+            &Stored { noise, remainder, widening, tail_ratio, growth, step_noise, cars },
+        )?;
         file.put_group(NAME, tensors);
         Ok(())
     }
@@ -79,7 +93,7 @@ impl StrengthPopulation {
         let Some(stored): Option<Stored> = file.find(NAME)? else { return Ok(None) };
         check_numbers("population.noise", &stored.noise, Expected::NotNegative)?;
         check_number("population.remainder", stored.remainder, Expected::NotNegative)?;
-        let widths = checked("population", [stored.widening, stored.tail_ratio])?;
+        let widths = checked("population", [stored.widening, stored.tail_ratio, stored.growth])?;
         check_number("population.step_noise", stored.step_noise, Expected::NotNegative)?;
         let tensors = file.take_group(NAME);
         let matrix = |name: &str, n_rows: usize| matrix(&tensors, name, n_rows);
@@ -98,13 +112,14 @@ impl StrengthPopulation {
         };
         let mut cars = Vec::new();
         for (i, car) in stored.cars.into_iter().enumerate() {
-            let StoredCar { vehicle, n_trajectories, remainder, widening, tail_ratio } = car;
+            let StoredCar { vehicle, n_trajectories, remainder, widening, tail_ratio, growth } =
+                car;
             check_number("population.car.remainder", remainder, Expected::NotNegative)?;
             let strengths = CarStrengths {
                 mean: row(&format!("car{i}.mean"))?,
                 covariance: covariance(&format!("car{i}.covariance"))?,
                 remainder,
-                widths: checked("population.car", [widening, tail_ratio])?,
+                widths: checked("population.car", [widening, tail_ratio, growth])?,
             };
             cars.push(KnownCar { vehicle, n_trajectories, strengths });
         }
@@ -128,10 +143,11 @@ fn normal() -> f64 {
     Widths::NORMAL.tail_ratio
 }
 
-fn checked(name: &str, [widening, tail_ratio]: [f64; 2]) -> Result<Widths, NnError> {
+fn checked(name: &str, [widening, tail_ratio, growth]: [f64; 3]) -> Result<Widths, NnError> {
     check_number(&format!("{name}.widening"), widening, Expected::NotNegative)?;
     check_number(&format!("{name}.tail_ratio"), tail_ratio, Expected::Positive)?;
-    Ok(Widths { widening, tail_ratio })
+    check_number(&format!("{name}.growth"), growth, Expected::NotNegative)?;
+    Ok(Widths { widening, tail_ratio, growth })
 }
 
 fn tensor(matrix: &DMatrix<f64>) -> Result<Tensor, NnError> {

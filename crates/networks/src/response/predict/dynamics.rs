@@ -138,7 +138,7 @@ impl<'a> Dynamics<'a> {
         batch: &mut NetworkBatch,
     ) -> [f64; N_RESIDUAL] {
         batch.begin(self.share_at(time_s));
-        let mut terms = self.effects_at(component, x, now);
+        let mut terms = self.effects_at(component, (x, now), time_s);
         if batch.share > 0.0 {
             batch.push(self.features(x, now, time_s));
             self.evaluate_network(batch);
@@ -152,8 +152,8 @@ impl<'a> Dynamics<'a> {
     pub(super) fn effects_at<T: Lanes>(
         &self,
         component: usize,
-        x: &VehicleState<T>,
-        now: &VehicleEvaluation<T>,
+        (x, now): (&VehicleState<T>, &VehicleEvaluation<T>),
+        time_s: f64,
     ) -> CorrectionTerms<T> {
         let amounts = self.effects.amounts(x, now);
         let none = [x.vx_body_m_s.constant(0.0); N_RESIDUAL];
@@ -161,9 +161,11 @@ impl<'a> Dynamics<'a> {
         if let Some(known) = self.network.strengths(component) {
             terms.value = self.effects.combined(&amounts, known);
         }
+        let growth = self.latents.growth_at(time_s);
         for (latent, by_latent) in terms.by_latents.iter_mut().enumerate() {
             if !self.ignored[latent] {
-                *by_latent = self.effects.combined(&amounts, &self.latents.directions[latent]);
+                let direction = self.latents.directions[latent].map(|change| change * growth);
+                *by_latent = self.effects.combined(&amounts, &direction);
             }
         }
         terms

@@ -55,6 +55,8 @@ pub(crate) struct Latents {
     pub step_noise: f64,
     /// Ratio of the two widths of the distribution.
     pub tail_ratio: f64,
+    /// Growth of all standard deviations with time, see [`Widths`].
+    pub growth: f64,
 }
 
 /// How uncertain a model is along a motion, by latent factors that have a name.
@@ -89,17 +91,31 @@ impl Default for LatentScales {
 /// ```text
 /// s = widening / √ratio   or   s = widening √ratio
 /// ```
+///
+/// The longer a motion lasts, the further it leaves what was learned from, so that what is missed
+/// grows beyond what a constant error of the strengths comes to:
+///
+/// ```text
+/// s(t) = s (1 + growth t / 4 s)
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Widths {
     /// Factor on all standard deviations: geometric mean of the two widths.
     pub widening: f64,
     /// Ratio of the wider to the narrower; 1 for a normal distribution.
     pub tail_ratio: f64,
+    /// Growth of the standard deviations of the strengths within [`GROWTH_S`]; 0 where they are constant.
+    pub growth: f64,
 }
+
+/// Time of the growth of [`Widths`], s.
+const GROWTH_S: f64 = 4.0;
+/// Longest time that it is known for, s: no recording of a fleet is longer.
+const GROWTH_END_S: f64 = 12.0;
 
 impl Widths {
     /// A normal distribution with the deviations as they are.
-    pub const NORMAL: Self = Self { widening: 1.0, tail_ratio: 1.0 };
+    pub const NORMAL: Self = Self { widening: 1.0, tail_ratio: 1.0, growth: 0.0 };
 }
 
 /// The two widths about their geometric mean, the narrower first.
@@ -170,11 +186,18 @@ impl LatentScales {
             shared_out,
             step_noise: self.step_noise,
             tail_ratio: Widths::NORMAL.tail_ratio,
+            growth: Widths::NORMAL.growth,
         }
     }
 }
 
 impl Latents {
+    /// Factor on the latent factors at a time.
+    #[inline(always)]
+    pub(crate) fn growth_at(&self, time_s: f64) -> f64 {
+        1.0 + self.growth * time_s.min(GROWTH_END_S) / GROWTH_S
+    }
+
     /// One of the two widths, which are equally likely.
     ///
     /// - `share`: a number from 0 to 1 that decides on it.

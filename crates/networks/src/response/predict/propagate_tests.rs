@@ -48,9 +48,16 @@ fn driving(yaw_rate_rad_s: f64) -> VehicleState<f64> {
 #[test]
 fn it_agrees_with_ten_thousand_coherent_draws() {
     let n = 300;
-    for (start, tail_ratio) in [(driving(0.3), 1.0), (driving(2.5), 1.0), (driving(0.3), 4.0)] {
+    let cases = [
+        (driving(0.3), 1.0, 0.0),
+        (driving(2.5), 1.0, 0.0),
+        (driving(0.3), 4.0, 0.0),
+        (driving(0.3), 1.0, 1.0),
+    ];
+    for (start, tail_ratio, growth) in cases {
         let mut predictor = predictor();
         predictor.latents.tail_ratio = tail_ratio;
+        predictor.latents.growth = growth;
         let inputs = released(n);
         let motion = predictor.motion(&start, &inputs);
         let draws = predictor.sample(&start, &inputs, 10_000, 5);

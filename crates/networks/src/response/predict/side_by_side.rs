@@ -45,7 +45,7 @@ impl WithSimd for Evaluation<'_, '_> {
             let x = VehicleState::from_array(Packed::columns(simd, states));
             let now = dynamics.model.constants.evaluate(&x, &u);
             let features = Packed::rows(&features_of(dynamics.vehicle, &x, &now, time_s));
-            let terms = dynamics.effects_at(component, &x, &now);
+            let terms = dynamics.effects_at(component, (&x, &now), time_s);
             let values = Packed::rows(&terms.value);
             let mut by_latents = [[[0.0; N_RESIDUAL]; MAX_LANES]; N_LATENTS];
             for (rows, of_lanes) in by_latents.iter_mut().zip(&terms.by_latents) {

@@ -140,8 +140,8 @@ fn follow(
 ) -> SettledMotion {
     let changes = |pair: &[VehicleInput<f64>]| pair[0] != pair[1];
     let last_change = inputs.windows(2).rposition(changes).map_or(0, |before| before + 1);
-    let mut watch = RestWatch::after(last_change as f64 * STEP_S);
     let [within, _] = dynamics;
+    let mut watch = RestWatch::after(last_change as f64 * STEP_S).of(within.vehicle);
     let mut batch = NetworkBatch::default();
     let (mut state, mut states) = (*initial, vec![*initial]);
     for (i, u) in inputs.iter().enumerate() {

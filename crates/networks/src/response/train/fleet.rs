@@ -23,20 +23,21 @@ use crate::response::{
 const N_PARTS: usize = 4;
 /// A car with more than this many times the trajectories of the median car is left out of no training.
 const MANY: usize = 2;
-/// Factors on all deviations and ratios of the two widths that are tried, and the levels at which the
-/// regions shall be right.
-const FACTORS: [f64; 15] =
-    [0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3, 1.6, 2.0];
+/// Growths of all deviations, factors on them, factors about the best of these, and ratios of the two
+/// widths that are tried, and the levels at which the regions shall be right.
+const GROWTHS: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
+const FACTORS: [f64; 9] = [0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0, 1.3, 2.0];
+const FINE_FACTORS: [f64; 4] = [0.84, 0.92, 1.08, 1.16];
 const RATIOS: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 10.0];
 const LEVELS: [f64; 2] = [0.5, 0.9];
 /// How many times what the larger regions hold too little counts: regions that are too narrow mislead,
 /// those that are too wide do not.
 const SHORTFALL: f64 = 3.0;
-/// Steps from one instant at which the regions are looked at to the next: 1 s, up to 8 s, which is as long
-/// as the recordings of a fleet. Regions that were calibrated up to 4 s held 69 % of the ends at 8 s
+/// Steps from one instant at which the regions are looked at to the next: 1 s, up to 12 s, which is as
+/// long as the recordings of a fleet. Regions that were calibrated up to 4 s held 69 % of the ends at 8 s
 /// instead of 90 %.
 const STRIDE_STEPS: usize = 100;
-const LAST_STEP: usize = 800;
+const N_INSTANTS: usize = 12;
 
 /// Trajectories of cars, and a model that has not seen them.
 #[derive(Debug)]
@@ -296,33 +297,56 @@ fn well_known_widths(
     if unseen_cases.is_empty() { Ok(population.widths()) } else { calibrated(&unseen_cases) }
 }
 
-/// The widths with which the regions hold as many of the recorded positions as they say.
+/// The widths with which the regions hold as many of the recorded positions as they say, early and late
+/// in the motions.
 fn calibrated(unseen_cases: &[UnseenCases<'_>]) -> Result<Widths, LearningError> {
     let mut best = (f64::INFINITY, Widths::NORMAL);
-    for widening in FACTORS {
-        let mut counts = [Held::default(); RATIOS.len()];
-        for part in unseen_cases {
-            let mut population = part.population.clone();
-            population.set_widths(Widths { widening, ..Widths::NORMAL });
-            let mut model = part.model.copied()?;
-            model.set_population(population);
-            let of_cases: Vec<[Held; RATIOS.len()]> = part
-                .cases
-                .par_iter()
-                .map(|case| held_positions(&model, case))
-                .collect::<Result<_, _>>()?;
-            for of_case in of_cases {
-                counts.iter_mut().zip(of_case).for_each(|(sum, of_case)| sum.add(of_case));
+    let mut try_out = |widening: f64, growth: f64| -> Result<Widths, LearningError> {
+        for (held, tail_ratio) in held_with(unseen_cases, widening, growth)?.iter().zip(RATIOS) {
+            let off = off(held);
+            if off < best.0 {
+                best = (off, Widths { widening, tail_ratio, growth });
             }
         }
-        for (held, tail_ratio) in counts.iter().zip(RATIOS) {
-            let off = held.off();
-            if off < best.0 {
-                best = (off, Widths { widening, tail_ratio });
+        Ok(best.1)
+    };
+    let mut found = Widths::NORMAL;
+    for growth in GROWTHS {
+        for widening in FACTORS {
+            found = try_out(widening, growth)?;
+        }
+    }
+    let (widening, growth) = (found.widening, found.growth);
+    for factor in FINE_FACTORS {
+        found = try_out(factor * widening, growth)?;
+    }
+    Ok(found)
+}
+
+/// The recorded positions that the regions hold at each instant, with each ratio of the widths.
+fn held_with(
+    unseen_cases: &[UnseenCases<'_>],
+    widening: f64,
+    growth: f64,
+) -> Result<[HeldByTime; RATIOS.len()], LearningError> {
+    let mut counts = [HeldByTime::default(); RATIOS.len()];
+    for part in unseen_cases {
+        let mut population = part.population.clone();
+        population.set_widths(Widths { widening, growth, ..Widths::NORMAL });
+        let mut model = part.model.copied()?;
+        model.set_population(population);
+        let of_cases: Vec<[HeldByTime; RATIOS.len()]> = part
+            .cases
+            .par_iter()
+            .map(|case| held_positions(&model, case))
+            .collect::<Result<_, _>>()?;
+        for of_case in &of_cases {
+            for (sums, at) in counts.iter_mut().zip(of_case) {
+                sums.iter_mut().zip(at).for_each(|(sum, at)| sum.add(*at));
             }
         }
     }
-    Ok(best.1)
+    Ok(counts)
 }
 
 /// Recorded positions in the region of each level, and all of them.
@@ -331,6 +355,9 @@ struct Held {
     inside: [usize; LEVELS.len()],
     all: usize,
 }
+
+/// The same at each instant.
+type HeldByTime = [Held; N_INSTANTS];
 
 impl Held {
     fn add(&mut self, other: Self) {
@@ -346,22 +373,27 @@ impl Held {
     }
 }
 
+/// How far the regions are off over all instants, each as much as it has positions.
+fn off(held: &HeldByTime) -> f64 {
+    let all: usize = held.iter().map(|at| at.all).sum();
+    held.iter().map(|at| at.all as f64 * at.off()).sum::<f64>() / f64::max(all as f64, 1.0)
+}
+
 /// The recorded positions of one motion that the regions hold with each ratio of the widths.
 fn held_positions(
     model: &ResponseModel,
     case: &ResponseCase,
-) -> Result<[Held; RATIOS.len()], LearningError> {
+) -> Result<[HeldByTime; RATIOS.len()], LearningError> {
     let Some(initial) = case.states.first() else { return Ok(Default::default()) };
-    let n_steps = case.inputs.len().min(LAST_STEP);
+    let n_steps = case.inputs.len().min(N_INSTANTS * STRIDE_STEPS);
     let mut motion = model.predictor(&case.vehicle)?.motion(initial, &case.inputs[..n_steps]);
     let mut of_ratio = |tail_ratio: f64| {
         motion.components.iter_mut().for_each(|component| component.tail_ratio = tail_ratio);
-        let mut held = Held::default();
-        for at in (STRIDE_STEPS..=n_steps).step_by(STRIDE_STEPS) {
+        let mut held = HeldByTime::default();
+        for (at, held) in (STRIDE_STEPS..=n_steps).step_by(STRIDE_STEPS).zip(&mut held) {
             let Some(state) = case.states.get(at) else { break };
             let level = motion.position(at).level_of([state.x_m, state.y_m]);
-            let inside = LEVELS.map(|limit| usize::from(level <= limit));
-            held.add(Held { inside, all: 1 });
+            *held = Held { inside: LEVELS.map(|limit| usize::from(level <= limit)), all: 1 };
         }
         held
     };

@@ -1,6 +1,7 @@
 //! Files without time series, read as what their content says they are.
 
 use std::error::Error;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
@@ -14,7 +15,10 @@ use impactlab_core::data::{
     CASES_FILE, MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, TomlFile, read_utf8,
 };
 use impactlab_core::error_chain;
-use impactlab_core::site::{Site, read_drawing, read_picture};
+use impactlab_core::site::{
+    CloudFormat, CloudSummary, LengthUnit, Site, SiteError, read_drawing, read_picture,
+    survey_cloud,
+};
 use impactlab_core::vehicle::VehicleParameters;
 use impactlab_networks::nn::kind_of_file;
 use impactlab_networks::response::evaluate::Comparison;
@@ -33,6 +37,8 @@ pub enum InputFile {
     Vehicle(Box<VehicleParameters>),
     /// A ground, or a picture as a ground of its own.
     Site(Box<Site>),
+    /// A point cloud, of which every point was read.
+    Cloud(Box<CloudSummary>),
     /// A trained network: which one its header names.
     Network(String),
     /// A comparison of response networks.
@@ -80,7 +86,7 @@ pub enum InputError {
     #[error(
         "{}: is neither evidence (struck_car, damage), a scenario (target, bullet, contact), \
          a vehicle (mass, geometry, tires or data_sheet), a site (orthophoto, lane, kerb, \
-         friction_zone, dxf), the settings of a training nor the plan of a sweep (question, vary)",
+         friction_zone, line, point, dxf), the settings of a training nor the plan of a sweep (question, vary)",
         path.display()
     )]
     NotRecognised {
@@ -127,7 +133,10 @@ impl InputFile {
             InputKind::Evidence => read(kind, Evidence::load(path), Self::Evidence),
             InputKind::Scenario => read(kind, Scenario::load(path), Self::Scenario),
             InputKind::Vehicle => read(kind, VehicleParameters::load(path), Self::Vehicle),
-            InputKind::Site | InputKind::Orthophoto => read(kind, Site::load(path), Self::Site),
+            InputKind::Site | InputKind::Orthophoto | InputKind::Survey => {
+                read(kind, Site::load(path), Self::Site)
+            }
+            InputKind::PointCloud => read(kind, read_cloud(path), Self::Cloud),
             InputKind::Network => read(kind, kind_of_file(path), |kind| Self::Network(*kind)),
             InputKind::Comparison if is_other_json(path) => {
                 Err(InputError::NotRecognisedJson { path: path.to_owned() })
@@ -164,7 +173,8 @@ impl InputFile {
             Self::Scenario(scenario) => scenario.name.clone(),
             Self::Vehicle(vehicle) => vehicle.name.clone(),
             Self::Site(site) => site.name.clone(),
-            Self::Network(_)
+            Self::Cloud(_)
+            | Self::Network(_)
             | Self::Comparison(_)
             | Self::Pairs(_)
             | Self::Request(_)
@@ -194,8 +204,10 @@ impl InputFile {
                 let origin = site.origin.unwrap_or_default();
                 let drawing = site.drawing.as_ref().map(|drawing| read_drawing(drawing, &origin));
                 let drawing = drawing.transpose().map_err(|error| wrong(&error))?;
-                Ok(site.contents(drawing.map(|drawing| drawing.summary()).as_ref()))
+                let contents = site.contents(drawing.map(|drawing| drawing.summary()).as_ref());
+                Ok(contents.into_iter().chain(site.notes.iter().cloned()).collect())
             }
+            Self::Cloud(summary) => Ok(summary.contents()),
             Self::Network(kind) => Ok(vec![kind.clone()]),
             Self::Pairs(records) => pairs_contents(records, kind),
             Self::OfSweep => Ok(vec!["checked by its own command".to_owned()]),
@@ -221,6 +233,12 @@ fn pairs_contents(records: &PairRecords, kind: InputKind) -> Result<Vec<String>,
     let counted = kinds.chunk_by(|a, b| a == b).filter(|of_kind| !of_kind[0].is_empty());
     let counted = counted.map(|of_kind| format!("{} {}", of_kind.len(), of_kind[0]));
     Ok([format!("{} cases", names.len())].into_iter().chain(counted).collect())
+}
+
+/// Reads all points of a cloud.
+fn read_cloud(path: &Path) -> Result<CloudSummary, SiteError> {
+    let format = CloudFormat::from_path(path).unwrap_or(CloudFormat::Las);
+    survey_cloud(path, format, LengthUnit::Metre, &mut |_| ControlFlow::Continue(()))
 }
 
 /// Whether a file is JSON that has not what every comparison has.

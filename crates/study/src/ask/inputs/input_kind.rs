@@ -14,7 +14,7 @@ use crate::StudyError;
 use crate::case_file::{CASE_ENDING, FORMAT};
 use impactlab_core::compare::PairRecords;
 use impactlab_core::data::{CASES_FILE, DatasetKind, TomlFile, is_gltf, open_file};
-use impactlab_core::site::{is_picture, is_picture_file};
+use impactlab_core::site::{CloudFormat, SurveyFormat, is_picture, is_picture_file};
 
 /// Bytes at the start of a file by which its kind is found out; a settings file is read whole.
 const HEAD_BYTES: u64 = 4096;
@@ -29,6 +29,10 @@ pub const ATLAS_ENDING: &str = "atlas";
 const ARCHIVE: &[u8] = b"PK\x03\x04";
 const ATLAS_HEAD: &[u8] = b"atlas.json";
 const ARCHIVE_HEADER_BYTES: usize = 30;
+
+/// Endings of the names of surveyed lines and points, and of point clouds.
+const SURVEYS: [&str; 3] = ["kml", "kmz", "geojson"];
+const CLOUDS: [&str; 3] = ["las", "laz", "e57"];
 
 /// What stands at the beginning of the state of a reconstruction.
 const CHECKPOINT: &[u8] = b"impactlab reconstruction";
@@ -51,14 +55,20 @@ const TOML_KEYS: [(InputKind, &[&str]); 6] = [
             "prior",
             "weighing",
             "position",
+            "road",
+            "skid_before",
+            "striking_skid_before",
         ],
     ),
-    (InputKind::Scenario, &["target", "bullet", "contact", "ending", "bullet_ending"]),
+    (InputKind::Scenario, &["target", "bullet", "contact", "ending", "bullet_ending", "road"]),
     (
         InputKind::Vehicle,
         &["mass", "geometry", "suspension", "tires", "estimates", "data_sheet", "equations"],
     ),
-    (InputKind::Site, &["origin", "orthophoto", "lane", "kerb", "friction_zone", "dxf"]),
+    (
+        InputKind::Site,
+        &["origin", "orthophoto", "lane", "kerb", "friction_zone", "line", "point", "dxf", "road"],
+    ),
     (
         InputKind::Settings,
         &[
@@ -100,6 +110,10 @@ pub enum InputKind {
     Site,
     /// A picture from above, which is a ground of its own.
     Orthophoto,
+    /// Surveyed lines and points, which are a ground of their own: KML, GeoJSON, a table of points.
+    Survey,
+    /// A point cloud, which becomes a ground: LAS, LAZ, E57.
+    PointCloud,
     /// A trained network.
     Network,
     /// The comparison of response networks.
@@ -162,7 +176,9 @@ impl InputKind {
         let found = Self::from_path(path);
         // These are what is left where nothing in the file says what it is.
         let is_guess = matches!(found, Self::UnknownToml | Self::Series | Self::Comparison);
-        if found == self || is_guess || !path.exists() {
+        // Each kind of ground is taken where a site is.
+        let is_as_good = found == self || found.is_ground() && self.is_ground();
+        if is_as_good || is_guess || !path.exists() {
             return Ok(());
         }
         Err(StudyError::OtherKind { path: path.to_owned(), found, expected: self })
@@ -188,7 +204,9 @@ impl InputKind {
             Self::Settings => "impactlab train force --config FILE",
             Self::Atlas => "impactlab atlas cell --atlas FILE",
             Self::Plan => "impactlab sweep plan FILE",
-            Self::Site
+            Self::PointCloud => "impactlab import FILE --out DIR --resolution 0.05",
+            Self::Survey
+            | Self::Site
             | Self::Orthophoto
             | Self::Comparison
             | Self::Folder
@@ -213,7 +231,7 @@ impl InputKind {
 
     /// Whether it is the ground of a scene.
     pub fn is_ground(self) -> bool {
-        matches!(self, Self::Site | Self::Orthophoto)
+        matches!(self, Self::Site | Self::Orthophoto | Self::Survey)
     }
 }
 
@@ -229,6 +247,8 @@ impl fmt::Display for InputKind {
             Self::Vehicle => "a vehicle",
             Self::Site => "a site",
             Self::Orthophoto => "an orthophoto",
+            Self::Survey => "surveyed lines and points",
+            Self::PointCloud => "a point cloud",
             Self::Network => "a trained network",
             Self::Comparison => "a comparison of response networks",
             Self::Request => "a question",
@@ -249,6 +269,12 @@ fn from_content(path: &Path) -> Option<InputKind> {
     file.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
     if is_picture(&head) {
         return Some(InputKind::Orthophoto);
+    }
+    if CloudFormat::from_head(&head).is_some() {
+        return Some(InputKind::PointCloud);
+    }
+    if SurveyFormat::from_path(path).is_some() {
+        return Some(InputKind::Survey);
     }
     let first = head.get(ARCHIVE_HEADER_BYTES..).unwrap_or_default();
     if head.starts_with(ARCHIVE) && first.starts_with(ATLAS_HEAD) {
@@ -319,6 +345,8 @@ fn from_name(path: &Path) -> InputKind {
         () if has_ending(path, ATLAS_ENDING) => InputKind::Atlas,
         () if has_ending(path, "json") => InputKind::Comparison,
         () if is_picture_file(path) => InputKind::Orthophoto,
+        () if SURVEYS.iter().any(|ending| has_ending(path, ending)) => InputKind::Survey,
+        () if CLOUDS.iter().any(|ending| has_ending(path, ending)) => InputKind::PointCloud,
         () => InputKind::Series,
     }
 }
@@ -392,6 +420,15 @@ mod tests {
         assert_eq!(kind_of_text("car.gltf", scene), InputKind::Series);
         let force = b"time_s,fx_n,fy_n\n0,0,0\n0.1,1,2\n";
         assert_eq!(kind_of_text("force.toml.csv", force), InputKind::Series);
+        let map = b"{\"type\": \"FeatureCollection\", \"features\": []}";
+        assert_eq!(kind_of_text("map.json", map), InputKind::Survey);
+        let kml = b"<?xml version=\"1.0\"?><kml xmlns=\"http://www.opengis.net/kml/2.2\"/>";
+        assert_eq!(kind_of_text("map.txt", kml), InputKind::Survey);
+        let points = b"name,E,N,Z,code\n1,512345.1,5423456.2,101.3,KERB1\n";
+        assert_eq!(kind_of_text("points.csv", points), InputKind::Survey);
+        assert_eq!(kind_of_text("scan.dat", b"LASF\0\0"), InputKind::PointCloud);
+        assert_eq!(kind_of_text("scan", b"ASTM-E57\x01"), InputKind::PointCloud);
+        assert_eq!(InputKind::from_path(Path::new("no/such.laz")), InputKind::PointCloud);
         // The preamble of a data logger.
         assert_eq!(kind_of_text("log.txt", b"[mass]\nrate=100\n0;1;2\n"), InputKind::Series);
     }

@@ -106,6 +106,7 @@ impl Request {
                 files.vehicle(&request.striking);
                 files.site(request.site.as_deref());
             }
+            Self::Hand(_) => {}
             Self::TrainForce(request) => {
                 files.paths(std::iter::once(&request.data).chain(&request.extra));
                 files.training(&request.training);

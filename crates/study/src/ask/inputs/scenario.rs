@@ -67,6 +67,19 @@ impl ScenarioChoice {
         }
     }
 
+    /// Refuses a scenario in which a vehicle meets an object that does not move: networks know two cars.
+    ///
+    /// # Errors
+    /// [`StudyError::FixedPartner`], and those of [`ScenarioChoice::load`].
+    pub(crate) fn refuse_fixed(&self) -> Result<(), StudyError> {
+        match self.load()?.striking.fixed {
+            Some(object) => {
+                Err(StudyError::FixedPartner { name: self.name(), object: object.word() })
+            }
+            None => Ok(()),
+        }
+    }
+
     /// The error of a scenario that has no solution.
     pub(crate) fn unsolved(&self, source: ScenarioError) -> StudyError {
         StudyError::Scenario { name: self.name(), source }

@@ -180,6 +180,7 @@ impl ForceQuestion {
         let across = |numbers: &ForceScenario| Some((numbers.likely_impact()?, 0.0));
         let (name, numbers, impact) = match self {
             Self::Scenario(choice) => {
+                choice.refuse_fixed()?;
                 let scenario = choice.load()?;
                 unused = by_force_network(choice, &scenario)?;
                 contact = Some(scenario.contact);

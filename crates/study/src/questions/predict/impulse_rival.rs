@@ -13,6 +13,7 @@ use serde::Serialize;
 
 use crate::analysis::StruckVehicle;
 use crate::caveats::restrictions::learned_case_caveat;
+use crate::caveats::unused::network_of_fixed;
 use crate::{
     Answer, ForceQuestion, ForceSource, Library, ModelChoice, MotionSource, Observer,
     PredictForceReport, PredictForceRequest, PredictMotionRequest, Question, ScenarioChoice,
@@ -96,6 +97,9 @@ impl Beside {
         let Some(pdof) = pdof.filter(|_| solution.regime != Regime::NotApproaching) else {
             return Ok(Outcome::Complete(Self::default()));
         };
+        if let Some(unknown) = network_of_fixed(scenario) {
+            return Ok(Outcome::Complete(Self { caveats: vec![unknown], ..Self::default() }));
+        }
         let digest = library.force_model_digest(&model)?;
         let alone = |why: &str| {
             let text = Phrase::new(

@@ -14,7 +14,7 @@ use crate::ask::checks::{check, check_count};
 use crate::caveats::assumed::{self, contact_default};
 use crate::caveats::driver::open_driver;
 use crate::caveats::restrictions;
-use crate::caveats::unused::{by_forecast, contact_by_force_network};
+use crate::caveats::unused::{by_forecast, contact_by_force_network, slope_by_network};
 use crate::questions::predict::both_vehicles::{Both, with_contact_law};
 use crate::questions::predict::recorded_impulse::RecordedImpulse;
 use crate::questions::simulate::dataset::take_case;
@@ -280,6 +280,9 @@ impl Question for PredictMotionRequest {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<PredictMotionAnswer>, StudyError> {
+        if let MotionSource::Scenario { scenario, .. } = &self.motion.source {
+            scenario.refuse_fixed()?;
+        }
         // The vehicles are drawn for the forecast, not for the simulation beside it.
         let mut simulation =
             SimulateRequest { vehicle_draws: Some(0), alone: true, ..self.motion.clone() };
@@ -307,6 +310,8 @@ impl Question for PredictMotionRequest {
             seed: self.seed,
         };
         let mut noted = Noted { unused: by_forecast(self), of_force: Vec::new() };
+        noted.unused.extend(slope_by_network(struck));
+        noted.unused.extend(restrictions::slope_caveat(&struck.vehicle.slope));
         let forecast = match Both::of_simulation(&analysis) {
             Some(both) => {
                 self.of_both_vehicles(&both, &model, &settings, (library, observer), &mut noted)?

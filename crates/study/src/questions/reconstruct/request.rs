@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
+use crate::caveats::restrictions::slope_caveat;
 use crate::questions::reconstruct::assumed::{assumptions, unused};
 use crate::questions::reconstruct::badges::{
     of_fit, of_left_out, of_particles, of_validation, several_courses,
@@ -216,8 +217,16 @@ impl ReconstructRequest {
     pub fn model(&self, evidence: &Evidence) -> Result<ForwardModel, StudyError> {
         let load = |path| InputKind::Site.explain(path, Site::load(path));
         let site = self.site.as_deref().map(load).transpose()?;
-        let zones = site.map_or_else(Vec::new, |site| site.friction_zones);
-        Ok(ForwardModel::new(evidence, self.cars(evidence)?).on_zones(zones))
+        let (zones, of_site) =
+            site.map_or_else(Default::default, |site| (site.friction_zones, site.slope));
+        let model = ForwardModel::new(evidence, self.cars(evidence)?).on_zones(zones);
+        match of_site {
+            Some(slope) if evidence.slope().is_level() => Ok(model.on_slope(slope)),
+            Some(slope) if slope != evidence.slope() => {
+                Err(StudyError::TwoSlopes { name: self.evidence.name() })
+            }
+            _ => Ok(model),
+        }
     }
 
     /// Digest of all that the particles follow from, this build of the program included.
@@ -379,7 +388,10 @@ impl Question for ReconstructRequest {
         let posterior = Posterior::new(&target, &particles);
         let (fit, turned_rad) = target.fit(&particles);
         let ground = target.model().zones();
-        let by_hand = HandCheck::all(target.evidence(), target.model().cars(), ground);
+        let cars = target.model().cars();
+        let mut by_hand = HandCheck::all(target.evidence(), cars, ground);
+        // They know no slope.
+        by_hand.retain(|_| cars.struck.parameters.slope.is_level());
         let before = by_hand.iter().find(|check| check.speed == HandSpeed::Struck);
         let by_hand_m_s = before.map(|check| [check.value_m_s, check.sigma_m_s]);
         let mut caveats = Caveats::from(of_particles(&particles));
@@ -387,6 +399,7 @@ impl Question for ReconstructRequest {
         let modes = posterior.modes(&particles, &turned_rad);
         caveats.extend(several_courses(&modes));
         caveats.extend(outside);
+        caveats.extend(slope_caveat(&target.model().cars().struck.parameters.slope));
         caveats.extend(of_fit(&fit));
         let left_out = self.left_out(&target, &particles, &fit, observer);
         let alone = left_out.iter().map(|part| part.n_simulations).sum::<usize>();

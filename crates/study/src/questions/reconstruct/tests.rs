@@ -197,3 +197,22 @@ fn a_form_that_has_not_been_filled_in_is_not_reconstructed_from() {
     let error = evidence.load().unwrap_err().to_string();
     assert!(error.contains("struck car at rest has not been placed"), "{error}");
 }
+
+#[test]
+fn the_slope_of_a_site_moves_the_cars_and_another_one_of_the_evidence_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let site = folder.path().join("site.toml");
+    std::fs::write(&site, "name = \"hill\"\n[road]\ngrade = 0.04\n").unwrap();
+    let mut evidence = spin();
+    let on_site = ReconstructRequest { site: Some(site), ..request(100) };
+    let model = on_site.model(&evidence).unwrap();
+    let cars = model.cars();
+    for car in [&cars.struck, &cars.striking] {
+        assert_eq!((car.parameters.slope.grade, car.parameters.slope.cross_slope), (0.04, 0.0));
+    }
+    evidence.friction.as_mut().unwrap().grade = Some(0.05);
+    let error = on_site.model(&evidence).unwrap_err();
+    assert!(error.to_string().contains("another slope than the site"), "{error}");
+    let alone = request(100).model(&evidence).unwrap();
+    assert_eq!(alone.cars().struck.parameters.slope.grade, 0.05);
+}

@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use crate::analysis::{Analysis, ContactPhaseReport, MotionEnd, StruckVehicle, told};
 use crate::{
-    FlagReport, ImpulseRival, MomentumReport, SimulateRequest, TireMarkReport, VehicleUncertainty,
-    word,
+    FlagReport, ImpulseRival, MomentumReport, MotionSource, SimulateRequest, SkidReport,
+    TireMarkReport, VehicleUncertainty, word,
 };
 use impactlab_core::collision::PrincipalDirectionOfForce;
 use impactlab_core::compare::{MotionError, largest_yaw_change_rad};
@@ -17,7 +17,7 @@ use impactlab_core::data::{
 };
 use impactlab_core::numerics::interpolate;
 use impactlab_core::vehicle::frames::world_from_body;
-use impactlab_core::vehicle::{FrictionZone, Motion};
+use impactlab_core::vehicle::{FrictionZone, Motion, RoadSlope};
 
 /// A part of the ground with its own friction.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -57,6 +57,9 @@ pub struct SimulateReport {
     /// Parts of the ground with their own friction, in which the wheels may stand.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub friction_zones: Vec<FrictionZoneReport>,
+    /// Slope of the road, rise over run along X and Y; none on a level road.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slope: Option<RoadSlope>,
     /// Duration of the simulation, s.
     pub duration_s: f64,
     /// The force on the vehicle.
@@ -88,6 +91,9 @@ pub struct SimulateReport {
     /// Phases of contact of the vehicles, where both were followed through all of them; without grazes, of
     /// less than 1 % of the impulse of the largest.
     pub contacts: Vec<ContactPhaseReport>,
+    /// The vehicles of a scenario before skids that end at the first contact.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub skids: Vec<SkidReport>,
     /// Wheel lift, roll beyond the limit, a second contact.
     pub flags: Vec<FlagReport>,
 }
@@ -175,6 +181,16 @@ impl SimulateReport {
             equations: word(&analysis.vehicle.equations),
             integrator: word(&request.integrator),
             friction: analysis.vehicle.tires.friction,
+            skids: match &request.source {
+                MotionSource::Scenario { scenario, .. } => {
+                    let scenario = scenario.load().ok();
+                    scenario.map_or_else(Vec::new, |scenario| {
+                        SkidReport::of(&scenario, &analysis.vehicle.slope)
+                    })
+                }
+                _ => Vec::new(),
+            },
+            slope: Some(analysis.vehicle.slope).filter(|slope| !slope.is_level()),
             friction_zones: analysis
                 .friction_zones
                 .iter()

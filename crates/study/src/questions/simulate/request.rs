@@ -14,7 +14,7 @@ use crate::ask::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
 use crate::caveats::driver::open_driver;
 use crate::caveats::other_vehicle::other_vehicles;
 use crate::caveats::unused::{
-    by_recorded_pair, by_simulation, contact_at_medians, integrator_of_pair,
+    by_recorded_pair, by_simulation, contact_at_medians, integrator_of_pair, vehicle_of_fixed,
 };
 use crate::caveats::{assumed, restrictions};
 use crate::questions::predict::impulse_rival::Beside;
@@ -40,7 +40,7 @@ use impactlab_core::site::Site;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
 use impactlab_core::vehicle::{
     ContactPoint, Ending, Equations, FrictionZone, Integrator, ROAD_FRICTION_SPREAD, RoadDraws,
-    VehicleParameters,
+    RoadSlope, VehicleParameters,
 };
 
 /// Asks where the struck vehicle goes, by the 4DOF model.
@@ -152,8 +152,9 @@ impl SimulateRequest {
         if let Some(friction) = self.friction {
             struck = struck.with_friction(friction);
         }
+        let (friction_zones, slope) = self.ground()?;
         let has_striking = match &self.source {
-            MotionSource::Scenario { .. } => true,
+            MotionSource::Scenario { scenario, .. } => scenario.load()?.striking.fixed.is_none(),
             MotionSource::Case { dataset, .. } => {
                 DatasetKind::from_folder(dataset) == Some(DatasetKind::Force)
             }
@@ -164,14 +165,14 @@ impl SimulateRequest {
         let striking = striking_vehicle(&self.striking, named_striking, assumed)?;
         assumed.extend(assumed::medians(CaveatSubject::StrikingParameter, &striking));
         Ok(Settings {
-            struck,
-            striking,
+            struck: struck.on_slope(slope),
+            striking: striking.on_slope(slope),
             ending: self.ending.clone().unwrap_or_default(),
             integrator: self.integrator,
             duration_s: self.duration_s,
             ends_at_rest: self.until_rest,
             one_contact: self.one_contact,
-            friction_zones: self.friction_zones()?,
+            friction_zones,
         })
     }
 
@@ -186,10 +187,20 @@ impl SimulateRequest {
         let striking = scenario.striking_vehicle.as_deref();
         caveats.extend(pulse_assumptions(pulse, pulse.height_m(scenario)));
         let mut settings = self.settings(&open, striking, caveats)?;
+        caveats.extend(vehicle_of_fixed(scenario, &self.striking));
         let choices = [&self.vehicle, &self.striking];
         caveats.extend(other_vehicles(scenario, choices, [&settings.struck, &settings.striking]));
         if let (None, Some(ending)) = (&self.ending, &scenario.ending) {
             settings.ending.clone_from(ending);
+        }
+        if let Some(slope) = scenario.road {
+            let of_site = settings.struck.slope;
+            if !of_site.is_level() && of_site != slope {
+                return Err(StudyError::TwoSlopes { name: self.source.name() });
+            }
+            for vehicle in [&mut settings.struck, &mut settings.striking] {
+                vehicle.slope = slope;
+            }
         }
         Ok(settings)
     }
@@ -206,9 +217,13 @@ impl SimulateRequest {
             return Err(StudyError::FrictionOfCase { case: case.name });
         }
         caveats.extend(by_recorded_pair(self));
-        let vehicle = |i: usize| match self.equations {
-            Some(equations) => case.vehicles[i].clone().with_equations(equations),
-            None => case.vehicles[i].clone(),
+        let (friction_zones, slope) = self.ground()?;
+        let vehicle = |i: usize| {
+            let vehicle = case.vehicles[i].clone().on_slope(slope);
+            match self.equations {
+                Some(equations) => vehicle.with_equations(equations),
+                None => vehicle,
+            }
         };
         let settings = Settings {
             struck: vehicle(0),
@@ -218,7 +233,7 @@ impl SimulateRequest {
             duration_s: self.duration_s,
             ends_at_rest: false,
             one_contact: false,
-            friction_zones: self.friction_zones()?,
+            friction_zones,
         };
         Ok((settings, case))
     }
@@ -262,11 +277,12 @@ impl SimulateRequest {
         Some(uncertainty)
     }
 
-    /// The zones of the site.
-    fn friction_zones(&self) -> Result<Vec<FrictionZone>, StudyError> {
+    /// The zones and the slope of the site; none and level without one.
+    fn ground(&self) -> Result<(Vec<FrictionZone>, RoadSlope), StudyError> {
         let load = |path| InputKind::Site.explain(path, Site::load(path));
         let site = self.site.as_deref().map(load).transpose()?;
-        Ok(site.map_or_else(Vec::new, |site| site.friction_zones))
+        let ground = |site: Site| (site.friction_zones, site.slope.unwrap_or_default());
+        Ok(site.map_or_else(Default::default, ground))
     }
 
     fn contact_outside(&self, outside: ContactOutside) -> StudyError {
@@ -322,7 +338,8 @@ impl SimulateRequest {
         let simulated = restrictions::simulation_caveats(report, self.until_rest);
         let at_medians =
             analysis.pair.as_ref().filter(|_| !self.alone).map(|_| contact_at_medians());
-        simulated.into_iter().chain(overlap).chain(cut).chain(at_medians)
+        let slope = restrictions::slope_caveat(&analysis.vehicle.slope);
+        simulated.into_iter().chain(overlap).chain(cut).chain(slope).chain(at_medians)
     }
 }
 

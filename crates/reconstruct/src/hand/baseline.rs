@@ -2,7 +2,7 @@
 //! distance of its spin-out, and from there back through the impact by momentum.
 //!
 //! ```text
-//! v_after  = √(2 g d (μ_s s + f (1 − s)))        d: straight distance from impact to rest
+//! v_after  = √(2 g d (μ_s s + f (1 − s) + G))    d: straight distance from impact to rest, G: grade along it
 //! v_before = v_after − Δv_x                       s: share of d along which the wheels left marks
 //! v_n      = Δv_n (m_t (1/m_t + 1/m_b + r_t²/I_t + r_b²/I_b))/(1 + e)     closing, from Δv
 //! ```
@@ -18,16 +18,14 @@
 
 use crate::Cars;
 use crate::evidence::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Evidence, Measured};
+use crate::hand::slide::{SPIN_DRAG, SPIN_DRAG_SIGMA, slide_speed_m_s};
 use impactlab_core::collision::Side;
-use impactlab_core::units::STANDARD_GRAVITY_M_S2;
 use impactlab_core::vehicle::{FrictionZone, friction_at};
 
 /// Sliding over peak friction.
 const SLIDING_RATIO: f64 = 0.8;
 /// Drag factor of a car that rolls, with engine braking.
 const ROLLING_DRAG: f64 = 0.03;
-/// Drag of a spinning car over peak friction, mean over a spin.
-const SPIN_DRAG_SHARE: f64 = 0.5;
 /// Restitution of the hand calculation.
 const RESTITUTION: f64 = 0.3;
 /// Places on the way to rest at which the friction of the ground is looked up.
@@ -46,7 +44,8 @@ pub struct HandCalculation {
 }
 
 impl HandCalculation {
-    /// The speeds of a case; `None` if its rest position is not known.
+    /// The speeds of a case; `None` if its rest position is not known, or if it lies down a slope on which nothing
+    /// comes to rest.
     ///
     /// - `zones`: parts of the ground with their own friction.
     pub fn new(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) -> Option<Self> {
@@ -58,10 +57,14 @@ impl HandCalculation {
         let friction = friction_on_the_way(road, [x_m, y_m], zones);
         let (drag_share, scatter) = drag_share(evidence, distance_m, friction.value);
         let drag = friction.value * drag_share;
-        let after = (2.0 * STANDARD_GRAVITY_M_S2 * drag * distance_m).sqrt();
+        let grade = evidence.slope().along(y_m.atan2(x_m));
+        if drag + grade <= 0.0 {
+            return None;
+        }
+        let after = slide_speed_m_s((drag + grade) / grade.hypot(1.0), distance_m);
         // v goes with the root of the drag.
         let relative = [friction.sigma / friction.value, scatter / drag_share]
-            .map(|share| share / 2.0)
+            .map(|share| share / 2.0 * drag / (drag + grade))
             .into_iter()
             .chain([0.05])
             .map(|share| share * share)
@@ -91,7 +94,7 @@ fn friction_on_the_way(road: Measured, rest_m: [f64; 2], zones: &[FrictionZone])
 /// Drag over friction, with its standard deviation.
 fn drag_share(evidence: &Evidence, distance_m: f64, friction: f64) -> (f64, f64) {
     if evidence.marks.is_empty() {
-        return (SPIN_DRAG_SHARE, 0.15);
+        return (SPIN_DRAG, SPIN_DRAG_SIGMA);
     }
     let length = |points: &[[f64; 2]]| -> f64 {
         points.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).sum()

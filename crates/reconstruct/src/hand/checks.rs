@@ -3,48 +3,45 @@
 //! they do not.
 //!
 //! ```text
-//! way to rest     v' = √(2 g f d)                      f: drag factor, d: straight way from impact to rest
+//! way to rest     v' = √(2 g d (f + G)/√(1 + G²))      f: drag factor, d: straight way from impact to rest,
+//!                                                     G: grade along it
 //! momentum        m_t v_t + m_b v_b = m_t v_t' + m_b v_b'     v' along the ways to rest
 //! ```
 //!
 //! The drag factor is that of locked wheels, as measured or, where it was not, the friction of the road;
 //! that of a car that spins with wheels that turn is half of the friction on the average. Momentum gives
 //! both speeds of cars that meet at an angle; where they meet in line, it gives that of the striking car if
-//! that of the struck car is stated.
+//! that of the struck car is stated. Both ways have the friction of one road, so that its error moves both
+//! speeds after the impact together.
 //!
 //! Source: [`Brach2011`](impactlab_core::bibliography::Brach2011).
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::Cars;
 use crate::evidence::{After, DriverBraked, Evidence, Mark, MarkKind, Measured, RestPose, ends};
+use crate::hand::momentum::{LEAST_ANGLE_RAD, speed_in_line, speeds_at_angles};
+use crate::hand::slide::{LEAST_SPIN_RAD, SPIN_DRAG, SPIN_DRAG_SIGMA, slide_speed_m_s};
 use impactlab_core::collision::Side;
 use impactlab_core::numerics::wrap_angle_rad;
-use impactlab_core::units::STANDARD_GRAVITY_M_S2;
 use impactlab_core::vehicle::{FrictionZone, Wheel};
 
 /// Relative scatter of the friction of the road as the drag factor of a car.
 const DRAG_BY_FRICTION: f64 = 0.08;
-/// Drag of a spinning car whose wheels turn over the friction of the road, mean over a spin.
-const SPIN_DRAG: Measured = Measured { value: 0.5, sigma: 0.15 };
 /// Scatter of the distance that a car slides before its wheels are locked, m.
 const LOCKING_WAY_M: f64 = 0.5;
 /// Way to rest below which nothing follows from it, m.
 const LEAST_WAY_M: f64 = 1.0;
 /// Share of the way over which the marks of each wheel have to reach for it to have been locked all along.
 const MARKED_SHARE: f64 = 0.9;
-/// Turn at rest beyond which a car has spun.
-const LEAST_SPIN_RAD: f64 = FRAC_PI_2;
 /// When braking may begin that locks the wheels from the impact on, s.
 const AT_ONCE_S: f64 = 0.15;
 /// Largest width of a range in which a stated speed lies, m/s.
 const STATED_WIDTH_M_S: f64 = 2.0;
-/// Least angle between the cars at which momentum gives both speeds, and the largest at which they meet in
-/// line, rad.
-const LEAST_ANGLE_RAD: f64 = 0.35;
+/// Largest angle between the cars at which they meet in line, rad.
 const IN_LINE_RAD: f64 = 0.2;
 /// Standard deviation of the place of the impact along a car, m: how far both are crushed.
 const CRUSH_M: f64 = 0.3;
@@ -92,6 +89,8 @@ impl HandSpeed {
 #[derive(Debug, Clone, Copy)]
 struct Departure {
     speed: Measured,
+    /// Part of its standard deviation that comes of the drag, as a share of the speed.
+    drag_share: f64,
     course_rad: Measured,
     holds: &'static str,
 }
@@ -152,11 +151,17 @@ fn slide(
     let (drag, holds) = drag(evidence, rest, which, length_m)?;
     let place_m = rest.position_sigma_m().hypot(LOCKING_WAY_M);
     let place_m = if which == Which::Striking { place_m.hypot(CRUSH_M) } else { place_m };
-    let value = (2.0 * STANDARD_GRAVITY_M_S2 * drag.value * length_m).sqrt();
-    // v goes with the root of drag and way.
-    let sigma = value / 2.0 * (drag.sigma / drag.value).hypot(place_m / length_m);
     let course_rad = Measured { value: way_m[1].atan2(way_m[0]), sigma: place_m / length_m };
-    Some(Departure { speed: Measured { value, sigma }, course_rad, holds })
+    let grade = evidence.slope().along(course_rad.value);
+    let resistance = drag.value + grade;
+    if resistance <= 0.0 {
+        return None;
+    }
+    let value = slide_speed_m_s(resistance / grade.hypot(1.0), length_m);
+    // v goes with the root of resistance and way.
+    let drag_share = drag.sigma / resistance / 2.0;
+    let sigma = value * drag_share.hypot(place_m / length_m / 2.0);
+    Some(Departure { speed: Measured { value, sigma }, drag_share, course_rad, holds })
 }
 
 /// The mean drag factor on the way of a car, where it is known, and why.
@@ -196,8 +201,8 @@ fn drag(
     let turns = after.driver_braked == DriverBraked::No && is_free(after);
     (which == Which::Struck && has_spun && turns).then_some(())?;
     let road = friction?;
-    let value = SPIN_DRAG.value * road.value;
-    let relative = (SPIN_DRAG.sigma / SPIN_DRAG.value).hypot(road.sigma / road.value);
+    let value = SPIN_DRAG * road.value;
+    let relative = (SPIN_DRAG_SIGMA / SPIN_DRAG).hypot(road.sigma / road.value);
     let drag = Measured { value, sigma: relative * value };
     Some((drag, "way to rest; it spun with wheels that turned, with half of the friction"))
 }
@@ -256,27 +261,33 @@ fn momentum(
     };
     let struck_kg = mass(evidence.struck_car.mass(), cars.struck.parameters.mass.mass_kg);
     let striking_kg = mass(evidence.striking_car.mass(), cars.striking.parameters.mass.mass_kg);
+    let common = struck.drag_share.min(striking.drag_share);
+    let own = |after: Departure| {
+        let Measured { value, sigma } = after.speed;
+        let rest = sigma.powi(2) - (common * value).powi(2);
+        Measured { value, sigma: rest.max(0.0).sqrt() }
+    };
     let inputs = [
-        struck.speed,
+        own(struck),
         struck.course_rad,
-        striking.speed,
+        own(striking),
         striking.course_rad,
         struck_kg,
         striking_kg,
         heading,
+        Measured { value: 1.0, sigma: common },
     ];
-    let after = |[v_t, a_t, v_b, a_b, m_t, m_b, _]: [f64; 7]| {
+    let after = |[v_t, a_t, v_b, a_b, m_t, m_b, _, friction]: [f64; 8]| {
         let x = m_t * v_t * a_t.cos() + m_b * v_b * a_b.cos();
-        [x, m_t * v_t * a_t.sin() + m_b * v_b * a_b.sin()]
+        [friction * x, friction * (m_t * v_t * a_t.sin() + m_b * v_b * a_b.sin())]
     };
     let across = heading.value.sin().abs();
     if across > LEAST_ANGLE_RAD.sin() {
-        let striking =
-            propagated(inputs, |inputs| after(inputs)[1] / (inputs[5] * inputs[6].sin()));
-        let struck = propagated(inputs, |inputs| {
-            let [x, y] = after(inputs);
-            (x - y / inputs[6].tan()) / inputs[4]
-        });
+        let before = |inputs: [f64; 8]| {
+            speeds_at_angles(after(inputs), [inputs[4], inputs[5]], [0.0, inputs[6]])
+        };
+        let struck = propagated(inputs, |inputs| before(inputs)[0]);
+        let striking = propagated(inputs, |inputs| before(inputs)[1]);
         let holds = "momentum of both cars before and after; the struck car drove straight on, the \
                      striking car along its heading";
         let both = [(HandSpeed::Struck, struck), (HandSpeed::Striking, striking)];
@@ -292,7 +303,7 @@ fn momentum(
     }
     let before = (low + high) / 2.0;
     let striking = propagated(inputs, |inputs| {
-        (after(inputs)[0] - inputs[4] * before) / (inputs[5] * inputs[6].cos())
+        speed_in_line(after(inputs)[0], inputs[5] * inputs[6].cos(), inputs[4] * before)
     });
     // Every value of the stated range is equally likely.
     let own = (high - low) / 12.0_f64.sqrt();
@@ -357,6 +368,19 @@ mod tests {
         assert_eq!(checks(&rear("rest = { x_m = 20, y_m = 0 }")), []);
     }
 
+    /// Uphill the weight brakes, too.
+    #[test]
+    fn a_grade_counts_on_the_way_to_rest() {
+        let text = rear(&format!("rest = {{ x_m = 20, y_m = 0 }}\nafter = {{ {LOCKED} }}"));
+        for (grade, sign) in [(5.0 / 24.0, 1.0), (-5.0 / 24.0, -1.0)] {
+            let of_road = format!("friction_sigma = 0.02, grade = {grade}");
+            let found = checks(&text.replace("friction_sigma = 0.02", &of_road));
+            let drag = (0.7 + sign * 5.0 / 24.0) / (5.0_f64 / 24.0).hypot(1.0);
+            let expected = (2.0 * 9.806_65 * drag * 20.0).sqrt();
+            assert!((found[0].1 - expected).abs() < 1e-9, "{found:?}, expected {expected}");
+        }
+    }
+
     /// Marks of the last metres say nothing of the way before them.
     #[test]
     fn marks_of_locked_wheels_count_where_they_reach_over_the_way() {
@@ -391,7 +415,9 @@ mod tests {
         let (speed, value, sigma) = found[2];
         assert_eq!(speed, HandSpeed::Striking);
         assert!((value - (15.0 * 3000.0 - 1800.0 * 0.1) / 1200.0).abs() < 1e-9, "{value}");
-        assert!((0.5..4.0).contains(&sigma), "{sigma}");
+        // Friction of 0.7 ± 0.02 and 8 % moves both speeds after the impact together.
+        let together = 15.0 * (0.02_f64 / 0.7).hypot(0.08) / 2.0 * 3000.0 / 1200.0;
+        assert!((together..4.5).contains(&sigma), "{sigma}, expected at least {together}");
     }
 
     /// At right angles each component of the momentum belongs to one car.

@@ -1,0 +1,156 @@
+//! Reads GeoJSON (RFC 7946): features with their geometries, longitude before latitude.
+//!
+//! Files of the draft of 2008 may have a member `crs` and the coordinates of a grid; coordinates that are no
+//! degrees are taken as easting and northing in metres.
+
+use std::path::Path;
+
+use geojson::{Feature, GeoJson, GeometryValue, JsonObject, Position};
+
+use crate::site::survey::found::{Found, PROPERTIES, Thing, kept_text, wrong};
+use crate::site::{MapShape, SiteError};
+
+/// Members of properties that name a feature, in the order in which they are looked for.
+const NAMES: [&str; 5] = ["name", "Name", "NAME", "title", "id"];
+
+/// Whether a text that begins like this is GeoJSON.
+///
+/// - `head`: its beginning, without blanks.
+pub(super) fn is_geojson(head: &str) -> bool {
+    let has = |word: &str| head.contains(&format!("\"{word}\""));
+    let is_of_features = has("FeatureCollection") || has("Feature") && has("geometry");
+    head.starts_with('{') && has("type") && (is_of_features || has("coordinates"))
+}
+
+/// Reads the text of a file.
+///
+/// # Errors
+/// [`SiteError::Survey`] with the line, [`SiteError::TooManyPoints`], [`SiteError::TooManyObjects`].
+pub(super) fn read(path: &Path, text: &str) -> Result<Found, SiteError> {
+    let parsed = serde_json::from_str::<GeoJson>(text.trim_start_matches('\u{feff}').trim_end());
+    let parsed = parsed.map_err(|error| {
+        let line = (error.line() > 0).then_some(error.line() as u64);
+        wrong(path, line, &format!("is no GeoJSON: {error}"))
+    })?;
+    let features = match parsed {
+        GeoJson::FeatureCollection(collection) => collection.features,
+        GeoJson::Feature(feature) => vec![feature],
+        GeoJson::Geometry(geometry) => {
+            vec![Feature { geometry: Some(geometry), ..Feature::default() }]
+        }
+    };
+    let mut found = Found::default();
+    for feature in features {
+        let of = Described::new(feature.properties.unwrap_or_default());
+        match feature.geometry {
+            Some(geometry) => add(path, &mut found, &of, geometry.value, 0)?,
+            None => found.leave_out("without geometry"),
+        }
+    }
+    let is_degree = |[lon, lat]: &[f64; 2]| lon.abs() <= 180.0 && lat.abs() <= 90.0;
+    found.is_geographic = found.things.iter().flat_map(|thing| &thing.at).all(is_degree);
+    if !found.is_geographic {
+        let note = "coordinates are no longitude and latitude; taken as easting and northing";
+        found.notes.push(note.to_owned());
+    }
+    Ok(found)
+}
+
+/// What the properties of a feature say.
+struct Described {
+    name: String,
+    properties: Vec<(String, String)>,
+}
+
+impl Described {
+    fn new(properties: JsonObject) -> Self {
+        let text = |value: &serde_json::Value| match value {
+            serde_json::Value::String(text) => Some(kept_text(text)),
+            serde_json::Value::Number(number) => Some(number.to_string()),
+            _ => None,
+        };
+        let name = NAMES.iter().find_map(|key| text(properties.get(*key)?)).unwrap_or_default();
+        let kept = properties.iter().filter_map(|(key, value)| {
+            let key = key.to_lowercase();
+            PROPERTIES.contains(&key.as_str()).then_some(())?;
+            Some((key, text(value)?))
+        });
+        Self { name, properties: kept.collect() }
+    }
+}
+
+/// Geometries within geometries, at most.
+const MAX_DEPTH: usize = 8;
+
+fn add(
+    path: &Path,
+    found: &mut Found,
+    of: &Described,
+    value: GeometryValue,
+    depth: usize,
+) -> Result<(), SiteError> {
+    match value {
+        GeometryValue::Point { coordinates } => {
+            one(path, found, of, &[coordinates], MapShape::Point)
+        }
+        GeometryValue::MultiPoint { coordinates } => coordinates
+            .iter()
+            .try_for_each(|at| one(path, found, of, std::slice::from_ref(at), MapShape::Point)),
+        GeometryValue::LineString { coordinates } => {
+            one(path, found, of, &coordinates, MapShape::Line)
+        }
+        GeometryValue::MultiLineString { coordinates } => {
+            coordinates.iter().try_for_each(|line| one(path, found, of, line, MapShape::Line))
+        }
+        GeometryValue::Polygon { coordinates } => area(path, found, of, &coordinates),
+        GeometryValue::MultiPolygon { coordinates } => {
+            coordinates.iter().try_for_each(|rings| area(path, found, of, rings))
+        }
+        GeometryValue::GeometryCollection { geometries } if depth < MAX_DEPTH => geometries
+            .into_iter()
+            .try_for_each(|geometry| add(path, found, of, geometry.value, depth + 1)),
+        GeometryValue::GeometryCollection { .. } => {
+            found.leave_out("nested collection");
+            Ok(())
+        }
+    }
+}
+
+/// The border of an area; its holes are counted.
+fn area(
+    path: &Path,
+    found: &mut Found,
+    of: &Described,
+    rings: &[Vec<Position>],
+) -> Result<(), SiteError> {
+    (1..rings.len()).for_each(|_| found.leave_out("hole of an area"));
+    match rings.first() {
+        Some(border) => one(path, found, of, border, MapShape::Area),
+        None => Ok(()),
+    }
+}
+
+fn one(
+    path: &Path,
+    found: &mut Found,
+    of: &Described,
+    positions: &[Position],
+    shape: MapShape,
+) -> Result<(), SiteError> {
+    let pair = |position: &Position| match position.as_slice() {
+        [x, y, ..] if x.is_finite() && y.is_finite() => Ok([*x, *y]),
+        _ => Err(wrong(path, None, &"has a position without two numbers")),
+    };
+    let at = positions.iter().map(pair).collect::<Result<_, _>>()?;
+    let first = positions.first().map(Position::as_slice).unwrap_or_default();
+    let height_m = first.get(2).copied().filter(|height| height.is_finite());
+    let thing = Thing {
+        name: of.name.clone(),
+        shape,
+        at,
+        height_m: height_m.filter(|_| shape == MapShape::Point),
+        properties: of.properties.iter().cloned().collect(),
+        line: None,
+    };
+    found.add(path, thing)
+}

@@ -1,0 +1,267 @@
+//! Reads the points of a total station or a GNSS receiver: a table with a header.
+//!
+//! ```text
+//! name,E,N,Z,code          E [m] and northing_ft say their unit; metres if none is said
+//! 101,512345.12,5423456.78,101.3,KERB1
+//! ```
+//!
+//! Separators are commas, semicolons and tabs; a comma is the decimal sign where it separates nothing.
+//! Points with the same code of a line stand in their order along it. A code is one of a line if it is a word
+//! for one, such as `kerb` or `skid`, with a number behind it where there are several, or if it is named.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use csv::{ReaderBuilder, StringRecord};
+
+use crate::ranges::SURVEY_COORDINATE;
+use crate::site::survey::found::{Found, Thing, kept_text, name_and_unit, wrong};
+use crate::site::{LengthUnit, MapShape, SiteError, SurveyOptions};
+
+/// Words of headers, in small letters.
+const EAST: [&str; 8] = ["e", "east", "easting", "ost", "ostwert", "rechtswert", "rw", "x"];
+const NORTH: [&str; 8] = ["n", "north", "northing", "nord", "nordwert", "hochwert", "hw", "y"];
+const HEIGHT: [&str; 8] = ["z", "h", "height", "elevation", "elev", "altitude", "höhe", "hoehe"];
+const NAME: [&str; 10] =
+    ["name", "point", "pt", "nr", "no", "id", "number", "punkt", "punktnummer", "point_no"];
+const CODE: [&str; 8] =
+    ["code", "description", "desc", "feature", "type", "layer", "objekt", "codierung"];
+/// Headers of what is no list of points.
+const OF_SERIES: [&str; 6] = ["t", "time", "zeit", "frame", "timestamp", "yaw"];
+
+/// Codes of lines.
+const LINES: [&str; 20] = [
+    "kerb",
+    "curb",
+    "bordstein",
+    "edge",
+    "lane",
+    "line",
+    "centreline",
+    "centerline",
+    "wall",
+    "fence",
+    "barrier",
+    "guardrail",
+    "skid",
+    "yaw",
+    "scuff",
+    "mark",
+    "tiremark",
+    "tyremark",
+    "track",
+    "rand",
+];
+
+/// The columns of a table by their index, with the units of coordinates.
+#[derive(Debug, PartialEq)]
+struct Columns {
+    separator: u8,
+    east: usize,
+    north: usize,
+    height: Option<usize>,
+    name: Option<usize>,
+    code: Option<usize>,
+    units: [Option<LengthUnit>; 3],
+}
+
+impl Columns {
+    /// The columns that a header names; `None` if it is none of a list of points.
+    fn from_header(line: &str) -> Option<Self> {
+        let separator =
+            [b';', b'\t', b','].into_iter().find(|byte| line.as_bytes().contains(byte))?;
+        let cells: Vec<(String, Option<LengthUnit>)> =
+            line.split(char::from(separator)).map(name_and_unit).collect();
+        let find =
+            |words: &[&str]| cells.iter().position(|(name, _)| words.contains(&name.as_str()));
+        let (east, north) = (find(&EAST)?, find(&NORTH)?);
+        let (height, name, code) = (find(&HEIGHT), find(&NAME), find(&CODE));
+        // What only has x and y may be anything.
+        let is_plain = cells.get(east).is_some_and(|(name, _)| name == "x");
+        let is_list = code.is_some() || !is_plain && (name.is_some() || height.is_some());
+        let unit = |idx: Option<usize>| cells.get(idx?)?.1;
+        let units = [unit(Some(east)), unit(Some(north)), unit(height)];
+        let is_of_series = |name: &str| {
+            let word = name.split(|letter: char| !letter.is_alphanumeric()).next();
+            word.is_some_and(|word| OF_SERIES.contains(&word))
+        };
+        let is_series = cells.iter().any(|(name, _)| is_of_series(name));
+        (is_list && !is_series).then_some(Self {
+            separator,
+            east,
+            north,
+            height,
+            name,
+            code,
+            units,
+        })
+    }
+}
+
+/// Whether a file that begins like this is a list of points.
+pub(super) fn is_table(head: &str) -> bool {
+    head.lines().next().and_then(Columns::from_header).is_some()
+}
+
+/// Reads the text of a table.
+///
+/// # Errors
+/// [`SiteError::Survey`] with line and column, [`SiteError::TooManyPoints`],
+/// [`SiteError::TooManyObjects`].
+pub(super) fn read(path: &Path, text: &str, options: &SurveyOptions) -> Result<Found, SiteError> {
+    let text = text.trim_start_matches('\u{feff}');
+    let columns = text.lines().next().and_then(Columns::from_header);
+    let columns = columns.ok_or_else(|| {
+        wrong(path, Some(1), &"no header names E and N, with a name or a code (name,E,N,Z,code)")
+    })?;
+    let lengths_m = columns.lengths_m(path, options)?;
+    let mut builder = ReaderBuilder::new();
+    builder.delimiter(columns.separator).flexible(true).has_headers(true);
+    let mut found = Found { is_in_metres: true, ..Found::default() };
+    let mut lines: BTreeMap<String, usize> = BTreeMap::new();
+    for record in builder.from_reader(text.as_bytes()).records() {
+        let record = record.map_err(|error| {
+            wrong(path, error.position().map(csv::Position::line), &"is no row of a table")
+        })?;
+        if record.iter().all(|cell| cell.trim().is_empty()) {
+            continue;
+        }
+        let thing = columns.thing(path, &record, lengths_m)?;
+        let code = thing.properties.get("code").cloned().unwrap_or_default();
+        if !options.is_line(&code) {
+            found.add(path, thing)?;
+            continue;
+        }
+        match lines.get(&code).and_then(|idx| found.things.get_mut(*idx)) {
+            Some(line) => line.at.extend(thing.at),
+            None => {
+                lines.insert(code.clone(), found.things.len());
+                found.add(path, Thing { name: code, shape: MapShape::Line, ..thing })?;
+            }
+        }
+    }
+    found.notes.extend(columns.notes(options));
+    if !lines.is_empty() {
+        let codes: Vec<&str> = lines.keys().map(String::as_str).take(20).collect();
+        found.notes.push(format!("the points of these codes are joined: {}", codes.join(", ")));
+    }
+    for line in found.things.iter_mut().filter(|thing| thing.shape == MapShape::Line) {
+        line.at.dedup();
+    }
+    Ok(found)
+}
+
+impl Columns {
+    /// Lengths of the units of E, N and Z, m.
+    fn lengths_m(&self, path: &Path, options: &SurveyOptions) -> Result<[f64; 3], SiteError> {
+        let [east, north, height] = self.units;
+        let plane = options.unit.or(east).or(north);
+        if options.unit.is_none() && east.zip(north).is_some_and(|(east, north)| east != north) {
+            return Err(wrong(path, Some(1), &"E and N have different units"));
+        }
+        let plane = plane.unwrap_or_default();
+        let height = options.unit.or(height).unwrap_or(plane);
+        Ok([plane.length_m(), plane.length_m(), height.length_m()])
+    }
+
+    fn notes(&self, options: &SurveyOptions) -> Vec<String> {
+        let mut notes = Vec::new();
+        if options.unit.is_none() && self.units == [None; 3] {
+            notes.push("no unit is said; coordinates are taken as metres".to_owned());
+        }
+        if self.code.is_none() {
+            notes.push("there is no column of codes, so that all are points".to_owned());
+        }
+        notes
+    }
+
+    /// The point of a row.
+    fn thing(
+        &self,
+        path: &Path,
+        record: &StringRecord,
+        lengths_m: [f64; 3],
+    ) -> Result<Thing, SiteError> {
+        let line = record.position().map(csv::Position::line);
+        let cell = |idx: usize| record.get(idx).unwrap_or_default().trim();
+        let number = |idx: usize, length_m: f64| {
+            let text = match self.separator {
+                b',' => cell(idx).to_owned(),
+                _ => cell(idx).replace(',', "."),
+            };
+            let number = text.parse::<f64>().ok().map(|number| number * length_m);
+            let found = number.filter(|number| SURVEY_COORDINATE.contains(*number));
+            found.ok_or_else(|| {
+                let (line, column) = (line.unwrap_or(1), idx + 1);
+                SiteError::Survey {
+                    path: path.to_owned(),
+                    place: format!(":{line}:{column}"),
+                    message: format!(
+                        "is {:?}, expected a coordinate of -2e7 to 2e7 m",
+                        kept_text(cell(idx))
+                    ),
+                }
+            })
+        };
+        let at = [number(self.east, lengths_m[0])?, number(self.north, lengths_m[1])?];
+        let height = self.height.filter(|idx| !cell(*idx).is_empty());
+        let height_m = height.map(|idx| number(idx, lengths_m[2])).transpose()?;
+        let name = self.name.map(|idx| kept_text(cell(idx))).unwrap_or_default();
+        let code = self.code.map(|idx| kept_text(cell(idx))).unwrap_or_default();
+        let properties = [("code".to_owned(), code)].into_iter().collect();
+        let shape = MapShape::Point;
+        Ok(Thing { name, shape, at: vec![at], height_m, properties, line })
+    }
+}
+
+impl SurveyOptions {
+    /// Whether points of a code are joined to a line.
+    fn is_line(&self, code: &str) -> bool {
+        let code = code.trim().to_lowercase();
+        let word = code.trim_end_matches(|letter: char| !letter.is_alphabetic());
+        let mut named = self.line_codes.iter().map(|named| named.trim().to_lowercase());
+        !code.is_empty()
+            && (LINES.contains(&word) || named.any(|named| named == code || named == word))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_header_of_points_is_known_and_that_of_a_motion_is_not() {
+        for header in [
+            "name,E,N,Z,code",
+            "Punkt;Rechtswert [m];Hochwert [m];Höhe [m]",
+            "point_no\teasting_ft\tnorthing_ft\tdescription",
+            "id,x,y,z,code",
+        ] {
+            assert!(is_table(header), "{header}");
+        }
+        for header in [
+            "t,x,y",
+            "t (s);x (m);y (m);code",
+            "time_s,x_m,y_m,code",
+            "x,y,z",
+            "name = \"E\"",
+            "",
+            "fx,fy",
+            "E,N",
+            "frame,e,n,name",
+        ] {
+            assert!(!is_table(header), "{header}");
+        }
+    }
+
+    #[test]
+    fn a_number_behind_a_code_keeps_its_lines_apart() {
+        let options = SurveyOptions { line_codes: vec!["TL".to_owned()], ..Default::default() };
+        for code in ["KERB", "kerb1", "Skid 2", "TL", "tl.3"] {
+            assert!(options.is_line(code), "{code}");
+        }
+        for code in ["", "TREE", "12", "kerbside", "debris"] {
+            assert!(!options.is_line(code), "{code}");
+        }
+    }
+}

@@ -1,0 +1,460 @@
+//! A method by hand with its numbers: what it gives, how sure that is, and what moves it.
+//!
+//! ```text
+//! σ_y² = Σ_i (y(x_i + σ_i/2) − y(x_i − σ_i/2))²        to first order
+//! ```
+//!
+//! The intervals come from draws: each input is normal about its value with its standard deviation, cut off at
+//! the limits of its range, and independent of the others; points of a mark are normal in X and in Y. Inputs
+//! whose standard deviation is 0 are exact. The draws follow from the seed alone.
+
+use std::collections::BTreeMap;
+
+use rand::RngExt as _;
+
+use crate::evidence::Stated;
+use crate::hand::values::HandValues;
+use crate::hand::{HandDefault, HandField, HandMethod, HandOutput};
+use impactlab_core::numerics::{normal_cdf, normal_quantile, quantile_of_sorted, random_stream};
+use impactlab_core::ranges::{HAND_COORDINATE, OutOfRange};
+use impactlab_core::units::{Estimate, Phrase};
+
+/// Levels of the intervals.
+const LEVELS: [f64; 3] = [0.5, 0.9, 0.95];
+/// Share of draws without an answer beyond which there is none: they are left out on one side of the others, so
+/// that more of them would make an interval of 95 % too narrow.
+const LARGEST_UNSOLVED_SHARE: f64 = 0.05;
+/// Most points of a mark.
+const MOST_POINTS: usize = 500;
+/// Change of an input that is exact by which the others are compared, as a share of its value.
+const EXACT_STEP: f64 = 0.01;
+
+/// Key of the standard deviation of the points of a mark.
+const POINT_ERROR: &str = "point_error";
+
+/// Inputs by their keys with SI units.
+pub type HandInputs = BTreeMap<String, Stated>;
+
+/// A method with its numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HandQuestion<'a> {
+    /// The method.
+    pub method: HandMethod,
+    /// Its inputs.
+    pub inputs: &'a HandInputs,
+    /// Points of a mark, in the order in which it was left, m.
+    pub points_m: &'a [[f64; 2]],
+}
+
+/// An input as a method has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HandNumber {
+    /// What it is.
+    pub field: &'static HandField,
+    /// Its value, SI.
+    pub value: f64,
+    /// Its standard deviation, SI; 0 if it is exact.
+    pub sigma: f64,
+    /// Whether the value is that of the program.
+    pub is_value_assumed: bool,
+    /// Whether the standard deviation is that of the program.
+    pub is_sigma_assumed: bool,
+}
+
+/// A number that a method gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HandQuantity {
+    /// What it is.
+    pub output: &'static HandOutput,
+    /// Its value at the values of the inputs, SI.
+    pub value: f64,
+    /// Standard deviation to first order, SI; `None` where it has none to first order.
+    pub sigma: Option<f64>,
+    /// Median and intervals of the draws, SI; the value alone if all inputs are exact.
+    pub estimate: Estimate,
+}
+
+/// What an output does if one input is larger.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HandSensitivity {
+    /// Key of the input with its SI unit; `points_m` for the points of a mark together.
+    pub input: String,
+    /// What a person calls it.
+    pub label: &'static str,
+    /// By how much it is larger, SI: its standard deviation, or 1 % of an exact value.
+    pub step: f64,
+    /// Whether it is exact, so that the step is none of its errors.
+    pub is_exact: bool,
+    /// Change of each output, SI; of points the standard deviation that they bring.
+    pub changes: Vec<Option<f64>>,
+}
+
+/// What a method gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HandAnswer {
+    /// The inputs, in the order of the method.
+    pub numbers: Vec<HandNumber>,
+    /// The outputs that follow, the one that was asked for first.
+    pub quantities: Vec<HandQuantity>,
+    /// What moves them.
+    pub sensitivities: Vec<HandSensitivity>,
+    /// Conditions of the method that are violated.
+    pub violated: Vec<Phrase>,
+    /// Draws without an answer, which are left out.
+    pub n_unsolved: usize,
+    /// Share of the draws in which the vehicle stops before the place of the collision, where that is asked.
+    pub avoided_share: Option<f64>,
+}
+
+/// Inputs from which a method gives nothing.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum HandError {
+    /// An input that the method does not know.
+    #[error("{key:?} is no input of the method {method}; it takes {known}")]
+    Unknown {
+        /// The method.
+        method: String,
+        /// The input.
+        key: String,
+        /// Those that it knows.
+        known: String,
+    },
+    /// An input is missing.
+    #[error("the method {method} needs {missing}; it takes {known}")]
+    Missing {
+        /// The method.
+        method: String,
+        /// What is missing.
+        missing: String,
+        /// Its inputs.
+        known: String,
+    },
+    /// A number is out of range.
+    #[error("{key}")]
+    OutOfRange {
+        /// The input.
+        key: String,
+        /// The number and its range.
+        source: OutOfRange,
+    },
+    /// Points for a method that takes none, or too many.
+    #[error("{n} points, expected {expected}")]
+    Points {
+        /// Number of points.
+        n: usize,
+        /// What is expected.
+        expected: &'static str,
+    },
+    /// Inputs that do not go together.
+    #[error("{method}: {why}")]
+    Refused {
+        /// The method.
+        method: String,
+        /// Why.
+        why: &'static str,
+    },
+    /// Nothing follows from the inputs, or from too much of what they may be.
+    #[error(
+        "{method}: nothing follows from these numbers in {share:.0} % of the draws; they do not go together, or \
+         their standard deviations are too large"
+    )]
+    Unsolved {
+        /// The method.
+        method: String,
+        /// Share of the draws without an answer, per cent.
+        share: f64,
+    },
+}
+
+impl HandQuestion<'_> {
+    /// The inputs with what the program puts in place of those that are left out.
+    ///
+    /// # Errors
+    /// [`HandError`] with the first input that is unknown, missing or out of range, or why they do not go
+    /// together.
+    pub fn numbers(&self) -> Result<Vec<HandNumber>, HandError> {
+        let fields = self.method.fields();
+        let unknown = self.inputs.keys().find(|key| fields.iter().all(|of| of.si_key() != **key));
+        if let Some(key) = unknown {
+            let (method, key, known) = (self.method.word(), key.clone(), self.known());
+            return Err(HandError::Unknown { method, key, known });
+        }
+        self.check_points()?;
+        let mut numbers = Vec::new();
+        for field in fields.iter().filter(|field| self.applies(field)) {
+            numbers.extend(self.number(field)?);
+        }
+        let values = self.table(&numbers);
+        match (self.method.formula().refuse)(&self.values(&values, self.points_m)) {
+            Some(why) => Err(HandError::Refused { method: self.method.word(), why }),
+            None => Ok(numbers),
+        }
+    }
+
+    /// Whether an input has a meaning: the error of points has none without any.
+    fn applies(&self, field: &HandField) -> bool {
+        field.key != POINT_ERROR || !self.points_m.is_empty()
+    }
+
+    /// The inputs of the method with their units, in words.
+    fn known(&self) -> String {
+        let mut names: Vec<String> = self.method.fields().iter().map(HandField::si_key).collect();
+        if self.method.takes_points() {
+            names.push("points_m".to_owned());
+        }
+        names.join(", ")
+    }
+
+    fn check_points(&self) -> Result<(), HandError> {
+        let n = self.points_m.len();
+        if n > 0 && !self.method.takes_points() {
+            return Err(HandError::Points { n, expected: "none, since the method takes no mark" });
+        }
+        if n > MOST_POINTS {
+            return Err(HandError::Points { n, expected: "at most 500" });
+        }
+        let key = || "points_m".to_owned();
+        self.points_m.iter().flatten().try_for_each(|coordinate| {
+            let checked = HAND_COORDINATE.check(*coordinate);
+            checked.map(|_| ()).map_err(|source| HandError::OutOfRange { key: key(), source })
+        })
+    }
+
+    /// An input; `None` for one that the method does without.
+    fn number(&self, field: &'static HandField) -> Result<Option<HandNumber>, HandError> {
+        let key = field.si_key();
+        let stated = self.inputs.get(&key).copied().unwrap_or_default();
+        let (value, is_value_assumed) = match (stated.value, field.default) {
+            (Some(value), _) => (value, false),
+            (None, HandDefault::Value(value)) => (value, true),
+            (None, HandDefault::Open) => return Ok(None),
+            (None, HandDefault::Required) => {
+                let missing = format!("{} ({key})", field.label);
+                let (method, known) = (self.method.word(), self.known());
+                return Err(HandError::Missing { method, missing, known });
+            }
+        };
+        let out_of_range = |source| HandError::OutOfRange { key: key.clone(), source };
+        field.range.check(value).map_err(out_of_range)?;
+        let sigma = stated.sigma.unwrap_or_else(|| field.usual_sigma(value));
+        field.sigma_range().check(sigma).map_err(out_of_range)?;
+        let is_sigma_assumed = stated.sigma.is_none();
+        Ok(Some(HandNumber { field, value, sigma, is_value_assumed, is_sigma_assumed }))
+    }
+
+    /// The value of each field of the method.
+    fn table(&self, numbers: &[HandNumber]) -> Vec<Option<f64>> {
+        let value = |field: &HandField| {
+            numbers.iter().find(|number| number.field.key == field.key).map(|number| number.value)
+        };
+        self.method.fields().iter().map(value).collect()
+    }
+
+    fn values<'b>(&self, numbers: &'b [Option<f64>], points_m: &'b [[f64; 2]]) -> HandValues<'b> {
+        HandValues { fields: self.method.fields(), numbers, points_m }
+    }
+
+    /// Computes what follows.
+    ///
+    /// - `draws`: number of draws;
+    /// - `seed`: of the draws.
+    ///
+    /// # Errors
+    /// As for [`Self::numbers`], and [`HandError::Unsolved`] if nothing follows, or from too many draws nothing.
+    pub fn answer(&self, draws: usize, seed: u64) -> Result<HandAnswer, HandError> {
+        let numbers = self.numbers()?;
+        let formula = self.method.formula();
+        let table = self.table(&numbers);
+        let at = self.values(&table, self.points_m);
+        let outputs = (formula.solve)(&at);
+        let unsolved = |share| HandError::Unsolved { method: self.method.word(), share };
+        if !outputs.first().is_some_and(|value| value.is_finite()) {
+            return Err(unsolved(100.0));
+        }
+        let sensitivities = self.sensitivities(&numbers, &table);
+        let drawn = self.drawn(&numbers, &table, (draws, seed));
+        let n_unsolved = draws - drawn.len();
+        if n_unsolved as f64 > LARGEST_UNSOLVED_SHARE * draws as f64 {
+            return Err(unsolved(100.0 * n_unsolved as f64 / draws as f64));
+        }
+        let is_exact =
+            numbers.iter().all(|number| number.sigma == 0.0) && self.point_error(&table) == 0.0;
+        let quantities = formula.outputs.iter().zip(&outputs).enumerate();
+        let quantities = quantities.filter(|(_, (_, value))| value.is_finite());
+        let quantities = quantities
+            .filter_map(|(idx, (output, &value))| {
+                let sigma = first_order(&sensitivities, idx);
+                let all = estimate(&drawn, idx)?;
+                let estimate = if is_exact { all.without_intervals() } else { all };
+                Some(HandQuantity { output, value, sigma, estimate })
+            })
+            .collect();
+        let margin = formula.outputs.iter().position(|output| output.key == "margin_m");
+        let avoided_share = margin
+            .filter(|idx| outputs.get(*idx).is_some_and(|value| value.is_finite()))
+            .map(|idx| share_of(&drawn, |outputs| outputs.get(idx).is_some_and(|m| *m >= 0.0)));
+        let violated = (formula.warn)(&at, &outputs);
+        Ok(HandAnswer { numbers, quantities, sensitivities, violated, n_unsolved, avoided_share })
+    }
+
+    /// Standard deviation of the points of a mark, m; 0 without any.
+    fn point_error(&self, table: &[Option<f64>]) -> f64 {
+        match self.points_m.is_empty() {
+            true => 0.0,
+            false => self.values(table, &[]).get(POINT_ERROR).unwrap_or(0.0),
+        }
+    }
+
+    fn sensitivities(&self, numbers: &[HandNumber], table: &[Option<f64>]) -> Vec<HandSensitivity> {
+        let solve = self.method.formula().solve;
+        let change = |low: &HandValues<'_>, high: &HandValues<'_>| -> Vec<Option<f64>> {
+            let pairs = solve(low).into_iter().zip(solve(high));
+            pairs.map(|(low, high)| Some(high - low).filter(|change| change.is_finite())).collect()
+        };
+        let of_number = |number: &HandNumber| {
+            let is_exact = number.sigma == 0.0;
+            let step = if is_exact { EXACT_STEP * number.value.abs() } else { number.sigma };
+            let field = number.field;
+            let idx = self.method.fields().iter().position(|of| of.key == field.key)?;
+            let moved = |by: f64| {
+                let mut moved = table.to_vec();
+                let value = (number.value + by).clamp(field.range.low, field.range.high);
+                if let Some(entry) = moved.get_mut(idx) {
+                    *entry = Some(value);
+                }
+                moved
+            };
+            let [low, high] = [moved(-step / 2.0), moved(step / 2.0)];
+            let points = self.points_m;
+            let changes = change(&self.values(&low, points), &self.values(&high, points));
+            let (input, label) = (field.si_key(), field.label);
+            (step > 0.0).then_some(HandSensitivity { input, label, step, is_exact, changes })
+        };
+        let moves = numbers.iter().filter(|number| number.field.key != POINT_ERROR);
+        let mut all: Vec<HandSensitivity> = moves.filter_map(of_number).collect();
+        all.extend(self.sensitivity_to_points(table, change));
+        all
+    }
+
+    /// What the errors of all points of a mark bring together.
+    fn sensitivity_to_points(
+        &self,
+        table: &[Option<f64>],
+        change: impl Fn(&HandValues<'_>, &HandValues<'_>) -> Vec<Option<f64>>,
+    ) -> Option<HandSensitivity> {
+        let step = self.point_error(table);
+        if step == 0.0 {
+            return None;
+        }
+        let mut squares = vec![Some(0.0); self.method.outputs().len()];
+        for point in 0..self.points_m.len() {
+            for axis in [0, 1] {
+                let moved = |by: f64| {
+                    let mut moved = self.points_m.to_vec();
+                    if let Some(point) = moved.get_mut(point) {
+                        point[axis] += by;
+                    }
+                    moved
+                };
+                let [low, high] = [moved(-step / 2.0), moved(step / 2.0)];
+                let changes = change(&self.values(table, &low), &self.values(table, &high));
+                for (sum, change) in squares.iter_mut().zip(changes) {
+                    *sum = sum.zip(change).map(|(sum, change): (f64, f64)| sum + change * change);
+                }
+            }
+        }
+        let changes = squares.into_iter().map(|sum| sum.map(f64::sqrt)).collect();
+        let (input, label) = ("points_m".to_owned(), "points of the mark");
+        Some(HandSensitivity { input, label, step, is_exact: false, changes })
+    }
+
+    /// The outputs of each draw from which the first one follows.
+    fn drawn(
+        &self,
+        numbers: &[HandNumber],
+        table: &[Option<f64>],
+        (draws, seed): (usize, u64),
+    ) -> Vec<Vec<f64>> {
+        let solve = self.method.formula().solve;
+        let fields = self.method.fields();
+        let varied: Vec<(usize, Cut)> = numbers
+            .iter()
+            .filter(|number| number.sigma > 0.0)
+            .filter_map(|number| {
+                let idx = fields.iter().position(|field| field.key == number.field.key)?;
+                Some((idx, Cut::new(number)))
+            })
+            .collect();
+        let point_error = self.point_error(table);
+        let mut rng = random_stream(seed, "hand", 0);
+        let (mut numbers, mut points) = (table.to_vec(), self.points_m.to_vec());
+        let mut outputs = Vec::with_capacity(draws);
+        for _ in 0..draws {
+            for (idx, cut) in &varied {
+                if let Some(entry) = numbers.get_mut(*idx) {
+                    *entry = Some(cut.at(rng.random::<f64>()));
+                }
+            }
+            if point_error > 0.0 {
+                for (point, known) in points.iter_mut().zip(self.points_m) {
+                    // Half open intervals leave out 0, where a normal variable is infinite.
+                    let mut normal = || normal_quantile(1.0 - rng.random::<f64>()).clamp(-9.0, 9.0);
+                    *point = known.map(|coordinate| coordinate + point_error * normal());
+                }
+            }
+            outputs.push(solve(&self.values(&numbers, &points)));
+        }
+        outputs.retain(|of: &Vec<f64>| of.first().is_some_and(|value| value.is_finite()));
+        outputs
+    }
+}
+
+/// A normal distribution that is cut off at the limits of a range.
+#[derive(Debug, Clone, Copy)]
+struct Cut {
+    value: f64,
+    sigma: f64,
+    limits: [f64; 2],
+    /// Probabilities below the limits without the cut.
+    below: [f64; 2],
+}
+
+impl Cut {
+    fn new(number: &HandNumber) -> Self {
+        let HandNumber { field, value, sigma, .. } = *number;
+        let limits = [field.range.low, field.range.high];
+        let below = limits.map(|limit| normal_cdf((limit - value) / sigma));
+        Self { value, sigma, limits, below }
+    }
+
+    /// The value with a probability below it.
+    fn at(&self, probability: f64) -> f64 {
+        let [low, high] = self.below;
+        let z = normal_quantile(low + probability * (high - low));
+        (self.value + self.sigma * z).clamp(self.limits[0], self.limits[1])
+    }
+}
+
+/// Standard deviation of an output to first order; `None` if an input moves it to where it is none.
+fn first_order(sensitivities: &[HandSensitivity], idx: usize) -> Option<f64> {
+    let of_errors = sensitivities.iter().filter(|of| !of.is_exact);
+    let changes: Option<Vec<f64>> =
+        of_errors.map(|of| of.changes.get(idx).copied().flatten()).collect();
+    Some(changes?.iter().map(|change| change * change).sum::<f64>().sqrt())
+}
+
+/// Median and intervals of an output over the draws; `None` if no draw has it.
+fn estimate(drawn: &[Vec<f64>], idx: usize) -> Option<Estimate> {
+    let values = drawn.iter().filter_map(|outputs| outputs.get(idx).copied());
+    let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    Estimate::from_quantiles(&LEVELS, |probability| quantile_of_sorted(&values, probability))
+}
+
+fn share_of(drawn: &[Vec<f64>], holds: impl Fn(&[f64]) -> bool) -> f64 {
+    drawn.iter().filter(|outputs| holds(outputs)).count() as f64 / drawn.len().max(1) as f64
+}
+
+#[cfg(test)]
+#[path = "calculation_tests.rs"]
+pub(super) mod tests;

@@ -1,0 +1,62 @@
+//! The form that asks how a point cloud becomes a ground.
+
+use egui::{ComboBox, Grid, ProgressBar, TextEdit, Ui};
+
+use crate::app::command::Command;
+use crate::app::ground::{CloudForm, GroundCommand};
+use crate::app::widgets::quantity_field;
+use impactlab_core::jobs::Progress;
+use impactlab_core::ranges::PIXEL_SIZE;
+use impactlab_core::site::LengthUnit;
+use impactlab_core::units::UnitSystem;
+
+/// Units that are offered.
+const UNITS: [LengthUnit; 3] = [LengthUnit::Metre, LengthUnit::Foot, LengthUnit::SurveyFoot];
+
+/// Draws the form, or how far the work is, and adds a command when the user has answered.
+pub fn cloud_ui(
+    ui: &mut Ui,
+    form: &mut CloudForm,
+    progress: Option<&Progress>,
+    commands: &mut Vec<Command>,
+) {
+    ui.heading("Ground of a point cloud");
+    ui.weak(form.path.display().to_string());
+    if let Some(progress) = progress {
+        let bar = ProgressBar::new(progress.fraction().unwrap_or(0.0));
+        ui.add(bar.text(progress.message.as_str()).desired_width(420.0));
+        if ui.button("Stop").clicked() {
+            commands.push(Command::Ground(GroundCommand::StopCloud));
+        }
+        return;
+    }
+    ui.label("It becomes a picture from above with its place, in a folder of its own.");
+    Grid::new("cloud").num_columns(2).show(ui, |ui| {
+        quantity_field(ui, "Pixel", &mut form.pixel_m, &PIXEL_SIZE, UnitSystem::Si);
+        if let Some(unit) = &mut form.unit {
+            let name = ui.label("Unit of its coordinates");
+            let list = ComboBox::from_id_salt("unit of a point cloud").selected_text(unit.word());
+            let list = list.show_ui(ui, |ui| {
+                for offered in UNITS {
+                    ui.selectable_value(unit, offered, offered.word());
+                }
+            });
+            list.response.labelled_by(name.id);
+            ui.end_row();
+        }
+        let name = ui.label("New folder");
+        let field = TextEdit::singleline(&mut form.folder).desired_width(420.0);
+        ui.add(field).labelled_by(name.id);
+        ui.end_row();
+    });
+    ui.separator();
+    ui.horizontal(|ui| {
+        let is_possible = !form.folder.trim().is_empty();
+        if ui.add_enabled(is_possible, egui::Button::new("Make ground")).clicked() {
+            commands.push(Command::Ground(GroundCommand::MakeOfCloud(form.clone())));
+        }
+        if ui.button("Cancel").clicked() {
+            commands.push(Command::CloseDialog);
+        }
+    });
+}

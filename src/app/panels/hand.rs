@@ -1,0 +1,118 @@
+//! The “By hand” pane: a method, its inputs with their standard deviations, and what it gives, beside the
+//! reconstruction.
+
+use egui::{Button, ComboBox, Grid, Label, RichText, ScrollArea, Ui};
+
+use crate::app::looks;
+use crate::app::panes::PaneContext;
+use crate::app::widgets::{EmptyField, caveats_ui, facts_ui, optional_quantity};
+use impactlab_core::data::Severity;
+use impactlab_core::units::UnitSystem;
+use impactlab_draw::theme;
+use impactlab_reconstruct::evidence::Stated;
+use impactlab_reconstruct::hand::{HandDefault, HandField, HandInputs, HandMethod};
+use impactlab_study::HandRequest;
+
+/// Width of the texts, points.
+const TEXT_WIDTH: f32 = 620.0;
+
+/// Draws the choice of the method, its inputs and its answer.
+pub fn hand_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext { project, view, session, commands, .. } = pane;
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.set_max_width(TEXT_WIDTH.min(ui.available_width()));
+        choice_ui(ui, &mut project.hand);
+        let Some(request) = &mut project.hand else { return };
+        ui.add(Label::new(request.method.equation()).wrap());
+        inputs_ui(ui, request, view.units);
+        ui.add_space(looks::PART);
+        match &session.hand.answer {
+            None => drop(ui.spinner()),
+            Some(Err(problem)) => {
+                let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+                ui.add(Label::new(RichText::new(problem).color(color)).wrap());
+            }
+            Some(Ok(answer)) => {
+                let report = &answer.report;
+                super::faded(ui, session.hand.is_late(), |ui| {
+                    caveats_ui(ui, &report.caveats, view.units, commands);
+                    facts_ui(ui, report.name, &report.facts(), view.units);
+                });
+            }
+        }
+    });
+}
+
+/// Draws the choice of the method. Another method has other inputs.
+fn choice_ui(ui: &mut Ui, request: &mut Option<HandRequest>) {
+    let chosen = request.as_ref().map(|request| request.method);
+    ui.horizontal_wrapped(|ui| {
+        let name = ui.label("Method");
+        let shown = chosen.map_or("none", HandMethod::label);
+        let list = ComboBox::from_id_salt("hand method").selected_text(shown);
+        let list = list.show_ui(ui, |ui| {
+            for &method in HandMethod::ALL {
+                let is_chosen = chosen == Some(method);
+                if ui.selectable_label(is_chosen, method.label()).clicked() && !is_chosen {
+                    *request = Some(HandRequest::new(method));
+                }
+            }
+        });
+        list.response.labelled_by(name.id);
+        let remove = ui.add_enabled(chosen.is_some(), Button::new("Remove").small());
+        if remove.on_hover_text("The case asks for no calculation by hand any more").clicked() {
+            *request = None;
+        }
+    });
+}
+
+/// Draws value and standard deviation of each input.
+fn inputs_ui(ui: &mut Ui, request: &mut HandRequest, units: UnitSystem) {
+    let method = request.method;
+    Grid::new(("hand inputs", method)).num_columns(4).show(ui, |ui| {
+        for field in method.fields() {
+            input_ui(ui, field, &mut request.inputs, units);
+            ui.end_row();
+        }
+    });
+    let n = request.points_m.len();
+    if method.takes_points() {
+        let text = match n {
+            0 => "Points of a mark are given by the command or in the case file.".to_owned(),
+            n => format!("{n} points of the mark, from the case file."),
+        };
+        ui.weak(text);
+    }
+}
+
+fn input_ui(ui: &mut Ui, field: &HandField, inputs: &mut HandInputs, units: UnitSystem) {
+    let name = ui.label(field.label);
+    let mut stated = inputs.get(&field.si_key()).copied().unwrap_or_default();
+    let before = stated;
+    let usual = match field.default {
+        HandDefault::Value(value) => value,
+        HandDefault::Required | HandDefault::Open => 0.0,
+    };
+    let text = match field.default {
+        HandDefault::Value(_) => field.range.quantity.shown(usual, units),
+        HandDefault::Required => "needed".to_owned(),
+        HandDefault::Open => "open".to_owned(),
+    };
+    let empty = EmptyField { text: &text, start_si: usual };
+    optional_quantity(ui, &mut stated.value, empty, &field.range, units).labelled_by(name.id);
+    ui.label("±");
+    let sigma = field.usual_sigma(stated.value.unwrap_or(usual));
+    let text = field.range.quantity.shown(sigma, units);
+    let empty = EmptyField { text: &text, start_si: sigma };
+    let hint = "One standard deviation; empty for that of the program, 0 for an exact number";
+    let response = optional_quantity(ui, &mut stated.sigma, empty, &field.sigma_range(), units);
+    response.on_hover_text(hint);
+    if stated == before {
+        return;
+    }
+    if stated == Stated::default() {
+        inputs.remove(&field.si_key());
+    } else {
+        inputs.insert(field.si_key(), stated);
+    }
+}

@@ -1,0 +1,104 @@
+//! The form that asks what of an event data recorder becomes evidence.
+
+use egui::{ComboBox, Grid, Ui};
+
+use crate::app::command::Command;
+use crate::app::recorder::{RecorderCommand, RecorderForm, title};
+use impactlab_core::collision::Role;
+use impactlab_core::data::{RecordedDeltaV, RecorderRecord, Severity};
+use impactlab_draw::theme;
+
+/// Width of the form, points.
+const WIDTH: f32 = 560.0;
+
+/// Draws the form and adds a command when the user has answered.
+pub fn recorder_ui(ui: &mut Ui, form: &mut RecorderForm, commands: &mut Vec<Command>) {
+    ui.set_width(WIDTH);
+    ui.heading(title(form));
+    let Some(record) = form.record() else { return };
+    ui.label(&record.description);
+    Grid::new("recorder").num_columns(2).show(ui, |ui| {
+        choices_ui(ui, form);
+        for (name, value) in recorded(&record) {
+            ui.label(name);
+            ui.label(value);
+            ui.end_row();
+        }
+    });
+    let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+    for doubt in &record.doubts {
+        ui.colored_label(color, format!("• {doubt}"));
+    }
+    ui.separator();
+    ui.horizontal(|ui| {
+        let hint = "Δv within 10 %, the last speed before within 4 %, as a new edit of the evidence. Undo takes \
+                    it back";
+        if ui.button("Make evidence of it").on_hover_text(hint).clicked() {
+            let (record, car) = (Box::new(record.clone()), form.car);
+            commands.push(Command::Recorder(RecorderCommand::MakeEvidence { record, car }));
+        }
+        let controls = ui.button("Controls as a series");
+        if controls.on_hover_text("Speed and steering before the crash, as a table").clicked() {
+            let path = form.path.clone();
+            commands.push(Command::Recorder(RecorderCommand::OpenControls(path)));
+        }
+        if ui.button("Cancel").clicked() {
+            commands.push(Command::CloseDialog);
+        }
+    });
+}
+
+/// Draws the event, the car and the side of lateral values.
+fn choices_ui(ui: &mut Ui, form: &mut RecorderForm) {
+    let event = |record: &RecorderRecord| match record.event.as_str() {
+        "" => "the only one".to_owned(),
+        event => event.to_owned(),
+    };
+    let name = ui.label("Event");
+    let shown = form.records.get(form.event).map(event).unwrap_or_default();
+    let list = ComboBox::from_id_salt("event of a recorder").selected_text(shown);
+    let list = list.show_ui(ui, |ui| {
+        for (idx, record) in form.records.iter().enumerate() {
+            ui.selectable_value(&mut form.event, idx, event(record));
+        }
+    });
+    list.response.labelled_by(name.id);
+    ui.end_row();
+    let name = ui.label("It was in the");
+    let list = ComboBox::from_id_salt("car of a recorder").selected_text(form.car.label());
+    let list = list.show_ui(ui, |ui| {
+        for role in Role::ALL {
+            ui.selectable_value(&mut form.car, role, role.label());
+        }
+    });
+    list.response.labelled_by(name.id);
+    ui.end_row();
+    let name = ui.label("Lateral Δv is positive to the");
+    let side = |is_left: bool| if is_left { "left" } else { "right (SAE J1698)" };
+    let list = ComboBox::from_id_salt("side of a recorder");
+    let list = list.selected_text(side(form.is_lateral_to_left)).show_ui(ui, |ui| {
+        for is_left in [false, true] {
+            ui.selectable_value(&mut form.is_lateral_to_left, is_left, side(is_left));
+        }
+    });
+    list.response.labelled_by(name.id);
+    ui.end_row();
+}
+
+/// What was recorded, by its names.
+fn recorded(record: &RecorderRecord) -> Vec<(&'static str, String)> {
+    let delta_v = |delta_v: RecordedDeltaV| {
+        let until = delta_v.ends_s.map_or_else(String::new, |ends_s| format!(" up to {ends_s} s"));
+        let cut = if delta_v.is_cut { ", where the record is cut off" } else { "" };
+        format!("{:.2} m/s{until}{cut}", delta_v.delta_v_m_s)
+    };
+    let speed = record.speed_before;
+    let speed = speed.map(|speed| format!("{:.2} m/s at {} s", speed.speed_m_s, speed.at_s));
+    let rows = [
+        ("Δv ahead", record.delta_v_ahead.map(delta_v)),
+        ("Δv to the right", record.delta_v_right.map(delta_v)),
+        ("Speed before", speed),
+    ];
+    let missing = || "not recorded".to_owned();
+    rows.into_iter().map(|(name, value)| (name, value.unwrap_or_else(missing))).collect()
+}

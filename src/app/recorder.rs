@@ -1,0 +1,136 @@
+//! The record of an event data recorder that was opened: what of it is put into the evidence.
+
+use std::path::{Path, PathBuf};
+
+use crate::app::dialog::Dialog;
+use crate::app::model::file_name;
+use crate::app::state::State;
+use impactlab_core::collision::Role;
+use impactlab_core::data::{DataError, RecorderRecord, Severity};
+use impactlab_reconstruct::evidence::{Edr, Evidence};
+use impactlab_study::EvidenceChoice;
+
+/// Events of a report that are offered.
+const MAX_EVENTS: usize = 32;
+
+/// What of a recorder becomes evidence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecorderForm {
+    /// The file.
+    pub path: PathBuf,
+    /// The records of its events, as far as anything was recorded.
+    pub records: Vec<RecorderRecord>,
+    /// The event that is chosen, by its index.
+    pub event: usize,
+    /// The car in which the recorder was.
+    pub car: Role,
+    /// Whether lateral changes of velocity are positive to the left in the file.
+    pub is_lateral_to_left: bool,
+}
+
+/// An action on a recorder that was opened.
+#[derive(Debug, Clone)]
+pub enum RecorderCommand {
+    /// Put a record into the evidence of the reconstruction, in place of another one of this car.
+    MakeEvidence {
+        /// The record, with lateral values positive to the right.
+        record: Box<RecorderRecord>,
+        /// The car in which the recorder was.
+        car: Role,
+    },
+    /// Open the controls before the crash as a series.
+    OpenControls(PathBuf),
+}
+
+impl RecorderForm {
+    /// Reads the records of all events.
+    ///
+    /// # Errors
+    /// [`DataError`] if nothing was recorded in any of them.
+    fn read(path: &Path) -> Result<Self, DataError> {
+        let first = RecorderRecord::read(path, None);
+        let mut records: Vec<RecorderRecord> = match &first {
+            // Without the remark that one of several was taken unasked.
+            Ok(record) if record.events.len() > 1 => Vec::new(),
+            Ok(record) => vec![record.clone()],
+            Err(_) => Vec::new(),
+        };
+        let n_events = first.as_ref().map_or(MAX_EVENTS, |record| record.events.len());
+        if records.is_empty() {
+            let read = |event| RecorderRecord::read(path, Some(event));
+            for record in (1..=n_events.min(MAX_EVENTS)).map(read) {
+                match record {
+                    Err(DataError::NoSheet { .. }) => break,
+                    record => records.extend(record),
+                }
+            }
+        }
+        if records.is_empty() {
+            first?;
+        }
+        let (path, event, car) = (path.to_owned(), 0, Role::Struck);
+        Ok(Self { path, records, event, car, is_lateral_to_left: false })
+    }
+
+    /// The record of the chosen event, with lateral values positive to the right.
+    pub fn record(&self) -> Option<RecorderRecord> {
+        let mut record = self.records.get(self.event)?.clone();
+        if self.is_lateral_to_left {
+            record.turn_lateral();
+        }
+        Some(record)
+    }
+}
+
+impl State {
+    /// Asks what becomes of a recorder's file. A file without a record is opened as a table, and so is another
+    /// one as long as that is asked of one.
+    pub(super) fn ask_recorder(&mut self, path: PathBuf) {
+        let is_open = |dialog: &Dialog| matches!(dialog, Dialog::Recorder(_));
+        if self.session.dialogs.iter().any(is_open) {
+            return self.load(path, None);
+        }
+        match RecorderForm::read(&path) {
+            Ok(form) => self.session.dialogs.open(Dialog::Recorder(Box::new(form))),
+            Err(_) => self.load(path, None),
+        }
+    }
+
+    /// Carries out what was chosen of a recorder.
+    pub(super) fn take_recorder(&mut self, command: RecorderCommand) {
+        self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Recorder(_)));
+        match command {
+            RecorderCommand::OpenControls(path) => {
+                self.session.shows_doors = false;
+                self.load(path, None);
+            }
+            RecorderCommand::MakeEvidence { record, car } => {
+                let mut evidence = self.evidence().cloned().unwrap_or_else(Evidence::empty);
+                let slot = match car {
+                    Role::Struck => &mut evidence.edr,
+                    Role::Striking => &mut evidence.striking_edr,
+                };
+                let before = slot.replace(Edr::from_record(&record));
+                self.take_evidence(EvidenceChoice::Inline(Box::new(evidence)));
+                let of = match before {
+                    Some(_) => "in place of the one that was there",
+                    None => "which had none",
+                };
+                let text = format!(
+                    "the record is in the evidence of the {}, {of}; time 0 is when the recorder woke up, and its \
+                     sensor is at the CG until its place is entered",
+                    car.label()
+                );
+                self.say(Severity::Info, text);
+                for doubt in &record.doubts {
+                    self.say(Severity::Warning, doubt.clone());
+                }
+            }
+        }
+    }
+}
+
+/// The name of a file as the title of its form.
+pub(in crate::app) fn title(form: &RecorderForm) -> String {
+    format!("Recorder: {}", file_name(&form.path))
+}
