@@ -216,6 +216,50 @@ list = [0.5, 0.9, 50]
     let out = folder.path().join("bad");
     let said = error(&["plan", shown(&bad), "--out", shown(&out)]);
     assert!(said.contains("bad.toml:9:6: vary.friction.at") && said.contains("JSON"), "{said}");
+    // Two values for one place: one of the columns would say what no row has.
+    let again = "[vary.again]\nat = \"/friction\"\nlist = [0.6]\n[vary.friction]";
+    fs::write(&bad, plan.replace("[vary.friction]", again)).unwrap();
+    let said = error(&["plan", shown(&bad), "--out", shown(&out)]);
+    assert!(said.contains("another place than \"/friction\""), "{said}");
+}
+
+#[test]
+fn every_file_that_a_row_may_read_is_known_by_its_content() {
+    let folder = TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let vehicles = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/vehicles");
+    for (name, of) in [("a.toml", "reference-2000.toml"), ("b.toml", "target-2000.toml")] {
+        fs::copy(vehicles.join(of), at(name)).unwrap();
+    }
+    let [a, b] = ["a.toml", "b.toml"].map(|name| shown(&at(name)).to_owned());
+    let mut question = program();
+    question.args(["simulate", "--vehicle", &a, "--speed", "20"]);
+    question.args(["--duration", "1", "--print-request"]);
+    fs::write(at("ask.json"), ok(question.output().unwrap())).unwrap();
+    let plan = format!(
+        "question = \"request\"\ndesign = \"grid\"\nn = 1\n[request]\nfile = \"ask.json\"\n\
+         outcomes = [{{ name = \"x_m\", at = \"/end/x_m\", unit = \"m\" }}]\n\
+         [vary.vehicle]\nat = \"/vehicle/File\"\nlist = ['{a}', '{b}']\n"
+    );
+    let sweep = planned(&folder, &plan, "vehicles");
+    ok(run(&["run", shown(&sweep)]));
+    let told = ok(run(&["status", shown(&sweep)]));
+    assert!(told.contains("failed   0"), "{told}");
+    let path = sweep.join("plan.json");
+    let text = fs::read_to_string(&path).unwrap();
+    assert_eq!(json(&text)["files"].as_array().map(Vec::len), Some(2), "{text}");
+    // A plan that leaves a file out reads it in no row.
+    fs::remove_file(chunk_path(&sweep, 0)).unwrap();
+    let mut fewer = json(&text);
+    fewer["files"].as_array_mut().unwrap().pop();
+    fs::write(&path, fewer.to_string()).unwrap();
+    ok(run(&["run", shown(&sweep)]));
+    let told = ok(run(&["status", shown(&sweep)]));
+    assert!(told.contains("failed   1") && told.contains("does not know its content"), "{told}");
+    fs::write(&path, &text).unwrap();
+    fs::write(at("b.toml"), fs::read_to_string(at("b.toml")).unwrap() + "# changed\n").unwrap();
+    let said = error(&["run", shown(&sweep)]);
+    assert!(said.contains("the content of") && said.contains("b.toml"), "{said}");
 }
 
 #[test]

@@ -72,6 +72,9 @@ fn the_camera_is_keyed_in_the_scene_and_goes_with_the_time() {
     let read = project.with_variant(&project.to_variant("base")).expect("what was written");
     assert_eq!(read.beside.camera_keys, project.beside.camera_keys, "they are part of the case");
 
+    // A click elsewhere closes the menu and does nothing else.
+    harness.get_by_label("Camera keys").click();
+    harness.run_steps(3);
     ask_film(&mut harness);
     let film = film_of_form(&harness);
     assert!(film.keys.len() == 2 && film.instants().is_ok());

@@ -121,7 +121,7 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
         assert!(harness.query_by_label(label).is_some(), "{label}");
     }
     // The wheels of the example turn for a part of the way, so that no drag factor is known of it.
-    assert!(harness.query_by_label_contains("By hand").is_none());
+    assert!(harness.query_by_label_contains("By hand, each number").is_none());
 
     // The course of events that is clicked is shown alone, and a path of it is played.
     let name = answer.answer.report.modes[0].name.clone();

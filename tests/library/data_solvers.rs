@@ -390,6 +390,7 @@ fn impulses_of_radioss_are_differentiated_and_forces_of_springs_are_not() {
     let spring = read(&path, &format!("{DECK},sheet=spring 8"));
     assert_close(&fx(&spring), &(0..=100).map(|step| 1e3 * ramp(step).1).collect::<Vec<_>>());
     assert_eq!(doubts(&spring), "");
+    assert!(notes(&spring).contains("on which of its two sides"), "{}", notes(&spring));
     let node = read(&path, &format!("{DECK},sheet=node 101"));
     assert!((node.series.require(Channel::X).unwrap()[100] - 1.0).abs() < 1e-6);
 }

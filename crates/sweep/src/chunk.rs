@@ -40,8 +40,9 @@ const MOST_BYTES: u64 = 1 << 32;
 /// Most rows that are read at once.
 const MOST_ROWS: i64 = 50_000_000;
 
-/// Most columns of a table.
+/// Most columns of a table, and most numbers in it: eight gigabytes of them.
 const MOST_COLUMNS: usize = 10_000;
+const MOST_NUMBERS: i64 = 1 << 30;
 
 /// The file of a chunk in the folder of a sweep.
 pub fn chunk_path(folder: &Path, chunk: u64) -> PathBuf {
@@ -225,6 +226,9 @@ fn read_file(file: File) -> Result<Rows, ParquetError> {
         return Err(refused("other columns than those of a sweep"));
     }
     let n_numbers = names.len() - 2;
+    if n_rows.saturating_mul(n_numbers as i64) > MOST_NUMBERS {
+        return Err(refused("more numbers than are read at once; read its chunks one by one"));
+    }
     let mut index: Vec<i64> = Vec::new();
     let mut numbers: Vec<Vec<f64>> = vec![Vec::new(); n_numbers];
     let mut reasons: Vec<ByteArray> = Vec::new();

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use crate::chunk::{RowsWriter, chunk_path, read_chunk};
 use crate::status::array_expression;
-use crate::{Plan, SweepError};
+use crate::{PLAN_FILE, Plan, SweepError};
+use impactlab_core::data::write::check_inputs;
 use impactlab_core::data::{Existing, write_atomically};
 use impactlab_core::jobs::{Progress, ProgressCallback};
 
@@ -24,7 +25,8 @@ pub struct MergeReport {
 /// plan, program and networks, its number, and that its rows are those of the plan, each once.
 ///
 /// # Errors
-/// [`SweepError::Missing`] if chunks are missing, [`SweepError::Rows`] with the first that is broken.
+/// [`SweepError::Missing`] if chunks are missing, [`SweepError::Rows`] with the first that is broken,
+/// [`SweepError::Data`] if the file is one of those that it is made of.
 pub fn merge(
     folder: &Path,
     out: &Path,
@@ -39,6 +41,8 @@ pub fn merge(
         let (missing, first) = (array_expression(&missing), first.to_string());
         return Err(SweepError::Missing { missing, first });
     }
+    let parts = (0..n_chunks).map(|chunk| chunk_path(folder, chunk));
+    check_inputs(out, &parts.chain([folder.join(PLAN_FILE)]).collect::<Vec<_>>())?;
     let mut like = read_chunk(folder, &plan, 0)?;
     like.meta.chunk = None;
     let mut writer = RowsWriter::new(&like)?;

@@ -4,6 +4,7 @@
 //! the scenario has it.
 
 use impactlab_core::collision::{ContactLocation, Scenario, Side};
+use impactlab_core::numerics::{latin_normals, random_stream};
 use impactlab_core::ranges::{CONTACT_OFFSET, ROAD_FRICTION, Range, SPEED, YAW_RATE};
 use impactlab_core::vehicle::{
     Braking, Countersteer, DEFAULT_BRAKE_RISE_S, StabilityControl, VehicleParameters,
@@ -33,6 +34,10 @@ pub enum PitInput {
     /// Angle between the headings, towards the struck car, rad.
     #[strum(serialize = "angle_rad")]
     Angle,
+    /// Angle from the way of the striking car to its heading, towards the struck one, rad: how far it slides.
+    /// The angle between the headings follows from it.
+    #[strum(serialize = "slip_rad")]
+    Slip,
     /// Where the striking car touches: distance ahead of the rear axle of the struck one, m.
     #[strum(serialize = "overlap_m")]
     Overlap,
@@ -49,7 +54,7 @@ pub enum PitInput {
     Driver,
 }
 
-/// Reaction of a driver who brakes, s, and braking force over what the road can hold.
+/// Median reaction of a driver who brakes, s, and braking force over what the road can hold.
 const BRAKING: [f64; 2] = [0.8, 0.8];
 
 impl PitInput {
@@ -68,7 +73,7 @@ impl PitInput {
     pub fn unit(self) -> &'static str {
         match self {
             Self::TargetSpeed | Self::Closing | Self::Faster => "m/s",
-            Self::Angle => "rad",
+            Self::Angle | Self::Slip => "rad",
             Self::Overlap => "m",
             Self::YawRate => "rad/s",
             Self::Friction | Self::Pair | Self::Esc | Self::Driver => "1",
@@ -87,6 +92,12 @@ impl PitInput {
                 impactlab_core::units::Quantity::Angle,
                 [0.0, std::f64::consts::FRAC_PI_2],
                 "angle between the headings",
+            ),
+            Self::Slip => Range::real(
+                "slip",
+                impactlab_core::units::Quantity::Angle,
+                [-0.5, 0.5],
+                "angle from the way of the striking car to its heading",
             ),
             Self::Overlap => CONTACT_OFFSET.within([-5.0, 5.0]),
             Self::YawRate => YAW_RATE.within([-5.0, 5.0]),
@@ -230,6 +241,20 @@ impl PitRow {
         }
         Some(Self { scenario, vehicles })
     }
+
+    /// The same with the reaction time of its driver who brakes drawn, as one who countersteers has it.
+    ///
+    /// - `seed`: of the row.
+    pub fn with_drawn_reaction(mut self, seed: u64) -> Self {
+        let mut rng = random_stream(seed, "reaction of a driver who brakes", 0);
+        let mut z = [0.0; Countersteer::N_DRAWN];
+        z.iter_mut().zip(latin_normals(1, &mut rng)).for_each(|(z, drawn)| *z = drawn);
+        let brake = self.scenario.ending.as_mut().and_then(|ending| ending.brake.as_mut());
+        if let (Some(brake), Some(delay_s)) = (brake, Countersteer::default().drawn(z).delay_s) {
+            brake.start_s = delay_s;
+        }
+        self
+    }
 }
 
 /// Velocities and heading of both vehicles, in axes along the lane.
@@ -249,6 +274,10 @@ fn set_motion(scenario: &mut Scenario, side: f64, number: &impl Fn(PitInput) -> 
     [scenario.striking.vx_world_m_s, scenario.striking.vy_world_m_s] = striking;
     if let Some(angle_rad) = number(PitInput::Angle) {
         scenario.striking.heading_rad = heading_rad + side * angle_rad;
+    }
+    if let Some(slip_rad) = number(PitInput::Slip) {
+        let way_rad = (side * across).atan2(along + faster);
+        scenario.striking.heading_rad = heading_rad + side * (way_rad + slip_rad);
     }
     if let Some(rate_rad_s) = number(PitInput::YawRate) {
         scenario.striking.yaw_rate_rad_s = side * rate_rad_s;
@@ -281,7 +310,7 @@ mod tests {
             PitInput::Friction => Some(0.5),
             PitInput::Driver => Some(2.0),
             PitInput::Esc => Some(1.0),
-            PitInput::YawRate | PitInput::Pair => None,
+            PitInput::Slip | PitInput::YawRate | PitInput::Pair => None,
         };
         let row = PitRow::new(&question, &vehicles, value).unwrap();
         let scenario = &row.scenario;
@@ -294,7 +323,28 @@ mod tests {
         assert!(ending.esc.is_some() && ending.brake.is_some() && ending.countersteer.is_none());
         let geometry = scenario.geometry().unwrap();
         let [x_m, y_m] = geometry.struck.body_from_world(geometry.contact_point_world_m);
+        let slides = |input| match input {
+            PitInput::Slip => Some(0.05),
+            PitInput::Angle => None,
+            other => value(other),
+        };
+        let sliding = PitRow::new(&question, &vehicles, slides).unwrap().scenario.striking;
+        assert!((sliding.heading_rad - (3.0_f64.atan2(21.0) + 0.05)).abs() < 1e-12);
         let rear_axle_m = -row.vehicles[0].geometry.cg_to_rear_axle_m;
-        assert!((x_m - (rear_axle_m - 0.25)).abs() < 1e-6 && y_m < 0.0, "{x_m} {y_m}");
+        assert!(
+            (x_m - (rear_axle_m - 0.25)).abs() < 0.01 && y_m < 0.0,
+            "{x_m} {y_m} {rear_axle_m}"
+        );
+        let mut reactions_s: Vec<f64> = (0..1000)
+            .map(|seed| {
+                let row = PitRow::new(&question, &vehicles, value).unwrap();
+                row.with_drawn_reaction(seed).scenario.ending.unwrap().brake.unwrap().start_s
+            })
+            .collect();
+        reactions_s.sort_by(f64::total_cmp);
+        let expected_s = [(50, 0.38), (500, 0.8), (950, 1.68)];
+        for (place, expected_s) in expected_s {
+            assert!((reactions_s[place] / expected_s - 1.0).abs() < 0.15, "{reactions_s:?}");
+        }
     }
 }

@@ -4,12 +4,13 @@
 //! it, with the digests of program, networks and files. Row i follows from (plan, seed, i) alone.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rand::Rng as _;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::pit::PitInput;
 use crate::points::point;
 use crate::vary::{Distribution, InputValue, Vary, listed};
 use crate::{Outcome, SweepError};
@@ -300,25 +301,30 @@ impl Plan {
     /// # Errors
     /// [`SweepError::OtherProgram`] with the first that is not.
     pub fn check_program(&self, library: &Library) -> Result<(), SweepError> {
-        let other = |what: &str, planned: &str, present: &str| {
-            let [planned, present] = [planned, present].map(str::to_owned);
-            Err(SweepError::OtherProgram { what: what.to_owned(), planned, present })
-        };
         if self.program != program::version() {
-            return other("impactlab", &self.program, program::version());
+            return Err(other("impactlab", &self.program, program::version()));
         }
         let present = networks(library)?;
         if self.networks != present {
             let list = |of: &BTreeMap<String, String>| {
                 of.iter().map(|(name, sha256)| format!("{name} {sha256}")).collect::<Vec<_>>()
             };
-            return other("networks", &list(&self.networks).join(", "), &list(&present).join(", "));
+            let [planned, present] = [&self.networks, &present].map(|of| list(of).join(", "));
+            return Err(other("networks", &planned, &present));
         }
+        self.check_files()
+    }
+
+    /// Checks that the files that rows read still are those of the plan.
+    ///
+    /// # Errors
+    /// [`SweepError::OtherProgram`] with the first that is not, [`SweepError::Input`].
+    pub(crate) fn check_files(&self) -> Result<(), SweepError> {
         for planned in &self.files {
             let present = used(&planned.path)?;
             if present != *planned {
                 let what = format!("the content of {},", planned.path.display());
-                return other(&what, &planned.sha256, &present.sha256);
+                return Err(other(&what, &planned.sha256, &present.sha256));
             }
         }
         Ok(())
@@ -392,9 +398,38 @@ impl Plan {
                 let expected = format!("a JSON pointer to a value of the request, not {at:?}");
                 return Some(("request.seed_at".to_owned(), expected));
             }
+            return self.fault_of_places(request);
         }
-        None
+        let varies = |input: PitInput| self.vary.iter().any(|vary| vary.name == input.name());
+        (varies(PitInput::Angle) && varies(PitInput::Slip)).then(|| {
+            let slip = format!("vary.{}", PitInput::Slip.name());
+            (slip, format!("not beside {}, which follows from it", PitInput::Angle.name()))
+        })
     }
+
+    /// A place in the request into which two values go, of which one would be lost.
+    fn fault_of_places(&self, request: &RequestQuestion) -> Option<(String, String)> {
+        let of_vary = |vary: &Vary| -> Vec<(String, String)> {
+            vary.at.iter().map(|at| (format!("vary.{}.at", vary.name), at.clone())).collect()
+        };
+        let of_seed = request.seed_at.iter().map(|at| ("request.seed_at".to_owned(), at.clone()));
+        let places: Vec<(String, String)> =
+            self.vary.iter().flat_map(of_vary).chain(of_seed).collect();
+        let is_within = |at: &str, outer: &str| {
+            at.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+        };
+        places.iter().enumerate().find_map(|(idx, (key, at))| {
+            let mut earlier = places.iter().take(idx).map(|(_, at)| at.as_str());
+            let other = earlier.find(|other| is_within(at, other) || is_within(other, at))?;
+            Some((key.clone(), format!("another place than {other:?}, which has a value already")))
+        })
+    }
+}
+
+/// What of a plan is not as it is here.
+fn other(what: &str, planned: &str, present: &str) -> SweepError {
+    let [what, planned, present] = [what, planned, present].map(str::to_owned);
+    SweepError::OtherProgram { what, planned, present }
 }
 
 /// Digests of the networks that come with the program.
@@ -404,10 +439,11 @@ pub(crate) fn networks(library: &Library) -> Result<BTreeMap<String, String>, Sw
     Ok(both.into_iter().map(|it| (it.network.to_string(), it.sha256)).collect())
 }
 
-/// The files that a request reads, by their content.
-pub(crate) fn files_of(request: &Request) -> Result<Vec<UsedFile>, SweepError> {
-    let mut paths = request.files_read();
+/// The files that requests read, by their content.
+pub(crate) fn files_of(requests: &[Request]) -> Result<Vec<UsedFile>, SweepError> {
+    let mut paths: Vec<PathBuf> = requests.iter().flat_map(Request::files_read).collect();
     paths.sort();
+    paths.dedup();
     paths.iter().map(|path| used(path)).collect()
 }
 

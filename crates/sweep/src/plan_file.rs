@@ -151,7 +151,7 @@ impl Plan {
         let file = TomlFile { path, text: &text };
         let written: PlanFile = file.to()?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        let (question, files) = match written.question {
+        let question = match written.question {
             Kind::Pit => {
                 if written.request.is_some() {
                     return Err(file.wrong_value("request", "", "no [request] of a pit").into());
@@ -159,7 +159,7 @@ impl Plan {
                 let varies = |input: PitInput| written.vary.contains_key(input.name());
                 let pit = written.pit.unwrap_or_default();
                 let question = pit.resolved(file, folder, varies(PitInput::Friction))?;
-                (SweptQuestion::Pit(Box::new(question)), Vec::new())
+                SweptQuestion::Pit(Box::new(question))
             }
             Kind::Request => {
                 if written.pit.is_some() {
@@ -168,12 +168,7 @@ impl Plan {
                 let Some(request) = written.request else {
                     return Err(file.wrong_value("request", "missing", "[request]").into());
                 };
-                let (question, request) = request.resolved(folder)?;
-                if request.written_path().is_some() {
-                    let expected = "a request that writes no file itself";
-                    return Err(file.wrong_value("request.file", "", expected).into());
-                }
-                (SweptQuestion::Request(Box::new(question)), files_of(&request)?)
+                SweptQuestion::Request(Box::new(request.resolved(folder)?))
             }
         };
         let mut vary = Vec::with_capacity(written.vary.len());
@@ -194,13 +189,13 @@ impl Plan {
             vary,
             program: program::version().to_owned(),
             networks: networks(library)?,
-            files,
+            files: Vec::new(),
         };
         plan.checked(file)
     }
 
-    /// The plan, if nothing is wrong with it.
-    fn checked(self, file: TomlFile<'_>) -> Result<Self, SweepError> {
+    /// The plan with the files that its rows read, if nothing is wrong with it.
+    fn checked(mut self, file: TomlFile<'_>) -> Result<Self, SweepError> {
         if let Some((key, expected)) = self.fault() {
             let mut inner = DISTRIBUTIONS.iter().map(|name| format!("{key}.{name}"));
             let inner = inner.find(|key| file.contains(key));
@@ -209,9 +204,13 @@ impl Plan {
         }
         if let SweptQuestion::Request(question) = &self.question {
             // The first row shows whether values and places go together.
-            let request = crate::row::with_inputs(question, &self, &self.inputs(0));
-            serde_json::from_value::<Request>(request)
+            let requests = crate::row::sampled_requests(question, &self)
                 .map_err(|source| SweepError::Request { path: file.path.to_owned(), source })?;
+            if requests.iter().any(|request| request.written_path().is_some()) {
+                let expected = "a request that writes no file itself";
+                return Err(file.wrong_value("request.file", "", expected).into());
+            }
+            self.files = files_of(&requests)?;
         }
         Ok(self)
     }
@@ -263,7 +262,7 @@ fn out_of_range(file: TomlFile<'_>, key: &str, value: f64, expected: &str) -> Sw
 }
 
 impl RequestFile {
-    fn resolved(self, folder: &Path) -> Result<(RequestQuestion, Request), SweepError> {
+    fn resolved(self, folder: &Path) -> Result<RequestQuestion, SweepError> {
         let path = folder.join(&self.file);
         let text = read_utf8(&path, MAX_SETTINGS_BYTES)?;
         let wrong = |source| SweepError::Request { path: path.clone(), source };
@@ -272,7 +271,7 @@ impl RequestFile {
         // With what the file leaves out, so that it can be varied too.
         let value = serde_json::to_value(&request).map_err(wrong)?;
         let (seed_at, outcomes) = (self.seed_at.into_vec(), self.outcomes);
-        Ok((RequestQuestion { request: value, seed_at, outcomes }, request))
+        Ok(RequestQuestion { request: value, seed_at, outcomes })
     }
 }
 

@@ -1,6 +1,7 @@
 //! The answer of one row.
 
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use serde_json::Value;
@@ -9,6 +10,7 @@ use crate::SweepError;
 use crate::outcome::outcomes;
 use crate::pit::{PitInput, PitRow, PitVehicles};
 use crate::plan::{PitQuestion, Plan, RequestQuestion, RowInputs, SweptQuestion};
+use crate::vary::listed;
 use impactlab_core::data::Outcome as Ended;
 use impactlab_core::error_chain;
 use impactlab_networks::force::ForceModel;
@@ -90,6 +92,9 @@ impl<'a> Answerer<'a> {
             inputs.values.get(idx).map(|value| value.number)
         };
         let row = PitRow::new(question, vehicles, number).ok_or("no such pair of vehicles")?;
+        // That of a scenario is stated.
+        let is_drawn = number(PitInput::Driver).is_some();
+        let row = if is_drawn { row.with_drawn_reaction(inputs.seed) } else { row };
         let asked = PairRowQuestion {
             scenario: &row.scenario,
             vehicles: row.vehicles.each_ref(),
@@ -101,6 +106,18 @@ impl<'a> Answerer<'a> {
         Ok(outcomes(&drawn))
     }
 
+    /// Checks that a request reads no files but those whose content the plan knows, and writes none.
+    fn check_files_of(&self, request: &Request) -> Result<(), String> {
+        if let Some(path) = request.written_path() {
+            return Err(format!("the question would write {}", path.display()));
+        }
+        let is_known = |path: &PathBuf| self.plan.files.iter().any(|file| file.path == *path);
+        match request.files_read().iter().find(|path| !is_known(path)) {
+            None => Ok(()),
+            Some(path) => Err(format!("{}: the plan does not know its content", path.display())),
+        }
+    }
+
     fn asked(
         &self,
         question: &RequestQuestion,
@@ -110,6 +127,7 @@ impl<'a> Answerer<'a> {
         let request = with_inputs(question, self.plan, inputs);
         let request: Request =
             serde_json::from_value(request).map_err(|error| error_chain(&error))?;
+        self.check_files_of(&request)?;
         let answered = request
             .run(library, &mut |_| ControlFlow::Continue(()))
             .map_err(|error| error_chain(&error))?;
@@ -123,6 +141,30 @@ impl<'a> Answerer<'a> {
         });
         picked.collect()
     }
+}
+
+/// The request of the first row, and the same with each text that is varied, which may name a file.
+///
+/// # Errors
+/// [`serde_json::Error`] if one of them is no request.
+pub(crate) fn sampled_requests(
+    question: &RequestQuestion,
+    plan: &Plan,
+) -> Result<Vec<Request>, serde_json::Error> {
+    let first = plan.inputs(0);
+    let mut all = vec![first.clone()];
+    for (idx, vary) in plan.vary.iter().enumerate() {
+        let values = vary.distribution.list().unwrap_or_default();
+        for (place, _) in values.iter().enumerate().filter(|(_, value)| value.is_string()) {
+            let mut inputs = first.clone();
+            if let Some(slot) = inputs.values.get_mut(idx) {
+                *slot = listed(values, place);
+            }
+            all.push(inputs);
+        }
+    }
+    let requests = all.iter().map(|inputs| with_inputs(question, plan, inputs));
+    requests.map(serde_json::from_value).collect()
 }
 
 /// The request of a row.

@@ -101,6 +101,8 @@ pub fn run_chunks(
             progress(Progress::new(done, total, message).going_on_from(kept_rows))
         };
         let rows = answer_rows(&answerer, plan.rows_of(chunk), &mut report)?;
+        // A file that was changed in the meantime would have answered some of the rows.
+        plan.check_files()?;
         let table = Rows::new(&plan, chunk, &rows);
         let bytes = rows_bytes(&table)?;
         write_atomically(&path, Existing::Replace, |out| out.write_all(&bytes))?;

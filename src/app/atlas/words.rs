@@ -26,6 +26,20 @@ pub fn cell_text(measure: Measure, cell: &SliceCell, units: UnitSystem) -> Strin
         0 => String::new(),
         n => format!(", {n} more have no answer"),
     };
+    let of = match cell.n_applies == n_rows {
+        true => String::new(),
+        false => format!("{} of ", cell.n_applies),
+    };
     let inside = format.percent(cell.inside);
-    format!("{label}: {value} in {n_rows} runs{failed}; both networks apply in {inside} of them")
+    let doubt = match (cell.is_sound(), cell.at_rest < 1.0) {
+        (true, _) => String::new(),
+        (false, false) => "; not to be relied upon".to_owned(),
+        (false, true) => {
+            let rest = format.percent(cell.at_rest);
+            format!("; not to be relied upon: {rest} come to rest in the time that is computed")
+        }
+    };
+    format!(
+        "{label}: {value} in {of}{n_rows} runs{failed}; both networks apply in {inside} of them{doubt}"
+    )
 }

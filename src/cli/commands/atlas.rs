@@ -52,14 +52,14 @@ Examples:\n  impactlab atlas cell --set speed=45mph --set closing=6mph --set fri
 impactlab atlas cell --set esc=1 --json\n\n\
 An axis that is not set is averaged over, as often as the plan has each of its values.\n\n\
 JSON: {note, held [{axis, bin, text}], n_rows, n_failed, inside, outcomes [{name, unit, mean, standard_error, \
-n_applies}], corridor {length_m {value, error}, width_m {value, error}}}")]
+n_applies, is_sound}], corridor {length_m {value, error}, width_m {value, error}}}")]
     Cell(CellArgs),
     /// A map over two axes, as a table, a picture or CSV
     #[command(after_help = "\
 Examples:\n  impactlab atlas slice --x speed --y closing --outcome turns_90 --out map.png\n  \
-impactlab atlas slice --x speed --y angle --outcome corridor_length_m --set esc=1 --out map.csv\n\n\
+impactlab atlas slice --x speed --y overlap --outcome corridor_length_m --set esc=1 --out map.csv\n\n\
 JSON: {note, out, outcome, unit, held [{axis, bin, text}], x, y, cells [{n_rows, n_failed, n_applies, mean, error, \
-inside}], row by row from the lowest y; x and y as in `impactlab atlas --json`}")]
+inside, at_rest}], row by row from the lowest y; x and y as in `impactlab atlas --json`}")]
     Slice(SliceArgs),
     /// Which input moves an outcome: Sobol indices, alone and with the others
     #[command(after_help = "\
@@ -77,7 +77,7 @@ JSON: {out, bytes, sha256, n_rows, n_failed, n_outside, n_cells, n_outcomes_with
 /// What is held.
 #[derive(Debug, Args)]
 pub(super) struct HeldArgs {
-    /// Hold an axis at the interval in which a value lies, such as speed=45mph, angle=15deg, esc=1; several if
+    /// Hold an axis at the interval in which a value lies, such as speed=45mph, closing=8mph, esc=1; several if
     /// given again
     #[arg(long = "set", value_name = "AXIS=VALUE", value_parser = named_value)]
     set: Vec<(String, String)>,
@@ -296,6 +296,11 @@ pub(super) fn measure_text(measure: Measure, cell: &SliceCell, units: UnitSystem
     format!("{mean:.decimals$} ± {error:.decimals$} {}", unit.symbol)
 }
 
+/// What is said of a number that maps hatch.
+pub(super) fn doubt_text(cell: &SliceCell) -> &'static str {
+    if cell.mean.is_some() && !cell.is_sound() { "not to be relied upon" } else { "" }
+}
+
 #[derive(Debug, Serialize)]
 struct PrintedCell {
     note: &'static str,
@@ -314,6 +319,7 @@ struct PrintedOutcome {
     mean: Option<f64>,
     standard_error: Option<f64>,
     n_applies: u64,
+    is_sound: bool,
 }
 
 fn cell(atlas: &Atlas, args: &CellArgs, console: &mut Console<'_>) -> Result<(), CliError> {
@@ -327,6 +333,7 @@ fn cell(atlas: &Atlas, args: &CellArgs, console: &mut Console<'_>) -> Result<(),
             mean: told.mean,
             standard_error: told.mean.map(|_| told.error),
             n_applies: told.n_applies,
+            is_sound: told.is_sound(),
         }
     };
     let printed = PrintedCell {
@@ -353,10 +360,11 @@ fn cell(atlas: &Atlas, args: &CellArgs, console: &mut Console<'_>) -> Result<(),
                 true => String::new(),
                 false => format!("of {} rows", told.n_applies),
             };
-            vec![measure.label().to_owned(), measure_text(measure, &told, units), part]
+            let doubt = doubt_text(&told).to_owned();
+            vec![measure.label().to_owned(), measure_text(measure, &told, units), part, doubt]
         };
         let table: Vec<_> = Measure::all().map(row).collect();
-        print_table(out, &["outcome", "± standard error", ""], &table)
+        print_table(out, &["outcome", "± standard error", "", ""], &table)
     })
 }
 

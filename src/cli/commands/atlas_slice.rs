@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::commands::atlas::{
-    Held, HeldArgs, NOTE, axis_idx, listed, measure_of, measure_text, print_held,
+    Held, HeldArgs, NOTE, axis_idx, doubt_text, listed, measure_of, measure_text, print_held,
 };
 use crate::cli::console::{Console, print_table, shown_path};
 use crate::cli::options::{OverwriteArg, UnitsArg, size_px};
@@ -133,14 +133,13 @@ pub(super) fn run(
 fn table(slice: &Slice, measure: Measure, units: UnitsArg) -> Vec<Vec<String>> {
     let (units, width) = (units.into(), slice.x.n_bins().max(1));
     let row = |(idx, cell): (usize, &SliceCell)| {
-        let is_doubtful = cell.mean.is_some() && !cell.is_sound();
         vec![
             slice.x.bin_text(idx % width, units),
             slice.y.bin_text(idx / width, units),
             measure_text(measure, cell, units),
             cell.n_rows.to_string(),
             percent(cell.inside),
-            if is_doubtful { "not to be relied upon" } else { "" }.to_owned(),
+            doubt_text(cell).to_owned(),
         ]
     };
     slice.cells.iter().enumerate().map(row).collect()

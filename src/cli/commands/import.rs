@@ -71,10 +71,10 @@ Examples:
   impactlab import scan.laz --resolution 0.02 --out ground
   impactlab import points.csv --line TL --out ground
 
-A recorder gives evidence.toml (Δv within 10 %, the speed before the crash within 4 %) and controls.csv. A
-crash test gives barrier_force.csv and crush.toml, a section of a vehicle file. A ground gives site.toml, with
-an orthophoto and a picture of heights if it is a point cloud. Anything else gives series.csv
-in SI units.
+A recorder gives evidence.toml (Δv within 10 %, the speed before the crash within 4 %, or more where it was
+recorded earlier than the crash) and controls.csv. A crash test gives barrier_force.csv and crush.toml, a
+section of a vehicle file. A ground gives site.toml, with an orthophoto and a picture of heights if it is a
+point cloud. Anything else gives series.csv in SI units.
 
 JSON: {kind, files, notes}";
 
@@ -165,7 +165,10 @@ fn import_recorder(args: &ImportArgs, staging: &Path) -> Result<Imported, CliErr
     }
     let mut evidence = match &args.evidence {
         Some(path) => Evidence::load(path).map_err(impactlab_study::StudyError::from)?,
-        None => Evidence { case: args.file.display().to_string(), ..Evidence::default() },
+        None => {
+            let name = args.file.file_name().unwrap_or_default();
+            Evidence { case: name.to_string_lossy().into_owned(), ..Evidence::default() }
+        }
     };
     let edr = Edr::from_record(&record);
     let before = match args.car {
@@ -187,14 +190,23 @@ fn import_recorder(args: &ImportArgs, staging: &Path) -> Result<Imported, CliErr
     }
     if let Some(speed) = record.speed_before {
         notes.push(format!(
-            "the speed before the crash is {:.2} m/s, recorded at {} s; what braking took after that is not in it",
+            "the speed before the crash is {:.2} m/s, recorded at {} s; what braking took after that is not in it, \
+             and where it was recorded earlier than 0 s its standard deviation is larger by that",
             speed.speed_m_s, speed.at_s
+        ));
+    }
+    if let Some(delta_v) = record.delta_v_ahead {
+        let became = if delta_v.delta_v_m_s < 0.0 { "slower" } else { "faster" };
+        notes.push(format!(
+            "by the record the crash made the car {became} by {:.2} m/s along it; if that is the wrong way round, \
+             change the sign of delta_v_x in evidence.toml",
+            delta_v.delta_v_m_s.abs()
         ));
     }
     notes.push(format!(
         "time 0 is when the recorder woke up, some milliseconds after the first contact; the sensor is taken to be \
          at the CG until sensor_x_m and sensor_y_m say where it is; lateral Δv is taken as positive to the {}, the \
-         yaw rate as positive to the {}",
+         yaw rate as positive to the {}, the angle of the steering wheel as positive to the left",
         args.lateral.word(),
         args.yaw_rate.word()
     ));

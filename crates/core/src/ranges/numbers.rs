@@ -325,6 +325,8 @@ ranges! {
     HAND = "hand methods";
     HAND_DRAWS: "draws of the inputs" = whole([1000, 1_000_000]),
         "draws from which the interval of a calculation by hand follows";
+    HAND_GRADE: "grade by hand" = real(Quantity::Ratio, [-0.5, 0.5]),
+        "rise over run of a road along or across the path";
     HAND_DISTANCE: "distance by hand" = real(Quantity::Length, [0.0, 2000.0]),
         "distance over which a vehicle slides, flies or drives";
     HAND_COORDINATE: "point of a yaw mark" = real(Quantity::Length, [-2e7, 2e7]),

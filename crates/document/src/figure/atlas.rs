@@ -33,7 +33,7 @@ pub struct AtlasFigure<'a> {
 }
 
 /// A map of the atlas: a colour for each cell, lines of equal value, and the case at hand. Cells with too
-/// few rows or failed ones, and cells in which the networks do not apply, are hatched.
+/// few rows, with ones that fail or are cut off before rest, and where the networks do not apply, are hatched.
 pub fn atlas_figure(input: &AtlasFigure<'_>) -> Figure {
     let AtlasFigure { atlas, axes: [x, y], held, measure, case, units } = *input;
     let slice = atlas.slice(x, y, held, measure);
@@ -53,9 +53,10 @@ pub fn atlas_figure(input: &AtlasFigure<'_>) -> Figure {
 fn caveats() -> Caveats {
     let text = Phrase::new(
         "a model study of the PIT, checked against no measured one; no speed in it is a safe speed. \
-         Hatched: few rows, or the networks do not apply",
+         Hatched: few rows, or ones that fail or are cut off before rest, or the networks do not apply",
         "eine Modellstudie zum PIT, an keinem gemessenen geprüft; keine Geschwindigkeit darin ist eine \
-         sichere. Schraffiert: wenige Rechnungen, oder die Netze gelten nicht",
+         sichere. Schraffiert: wenige Rechnungen, oder solche, die scheitern oder vor dem Stillstand \
+         abgeschnitten sind, oder die Netze gelten nicht",
     );
     Caveats::from(vec![Caveat::new(CaveatKind::HardlyValidated, text)])
 }
@@ -282,7 +283,8 @@ mod tests {
 
     fn cell(mean: Option<f64>, inside: f64) -> SliceCell {
         let error = if mean.is_some() { 0.01 } else { f64::INFINITY };
-        SliceCell { n_rows: 100, n_failed: 0, n_applies: 100, mean, error, inside }
+        let (n_rows, n_failed, n_applies, at_rest) = (100, 0, 100, 1.0);
+        SliceCell { n_rows, n_failed, n_applies, mean, error, inside, at_rest }
     }
 
     fn slice() -> Slice {

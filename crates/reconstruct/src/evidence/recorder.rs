@@ -1,6 +1,6 @@
 //! Record of an event data recorder in one of the cars.
 
-use impactlab_core::data::{RecordedDeltaV, RecorderRecord};
+use impactlab_core::data::{RecordedControls, RecordedDeltaV, RecorderRecord};
 use impactlab_core::ranges::{CONTACT_X, CONTACT_Y, EVIDENCE_SPEED, PULSE_END, SPEED, SPEED_SIGMA};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -14,6 +14,10 @@ const DELTA_V_SHARE: f64 = 0.1;
 
 /// Standard deviation of a change of velocity that is small, m/s: the rounding of the record.
 const LEAST_DELTA_V_SIGMA_M_S: f64 = 0.03;
+
+/// Least deceleration that a driver is taken to be able to have between the speed that was recorded last and the
+/// crash, m/s²: a rule of ours.
+const UNSEEN_DECELERATION_M_S2: f64 = 2.0;
 
 /// The recorder of the struck car in a file, a form and a report.
 pub const STRUCK: Section = Section {
@@ -84,22 +88,31 @@ impl Item for Edr {
 
 impl Edr {
     /// What a recorder has kept, as evidence: a change of velocity within 10 %, the last speed before the crash
-    /// with the standard deviation of the program, and the end of the record of the change of velocity. Where the
-    /// sensor is, no record says.
+    /// with the standard deviation of the program, and the end of the record of the change of velocity. A speed
+    /// that was recorded earlier than the crash has a larger standard deviation: what its last change, or at least
+    /// 2 m/s², makes of the time in between. Where the sensor is, no record says.
     pub fn from_record(record: &RecorderRecord) -> Self {
         let bounds = |recorded: RecordedDeltaV, sign: f64| {
             let value = sign * recorded.delta_v_m_s;
             let half = DELTA_V_SHARE * value.abs();
             [Some(value - half), Some(value + half)]
         };
-        let ends_s = record.delta_v_ahead.or(record.delta_v_right).and_then(|of| of.ends_s);
+        // What ends earlier than the other no longer changed there.
+        let both = [record.delta_v_ahead, record.delta_v_right].into_iter().flatten();
+        let ends: Option<Vec<f64>> = both.map(|of| of.ends_s).collect();
+        let ends_s = ends.and_then(|ends| ends.into_iter().reduce(f64::max));
         let speed = record.speed_before.map(|speed| speed.speed_m_s);
+        let change_m_s = change_until_crash_m_s(record);
+        let stated = |speed: f64| {
+            let value = Some(speed);
+            let of_record = SPEED_BEFORE_SIGMA.resolve(Some(Stated { value, sigma: None }));
+            let wider = of_record.map(|of| of.sigma.hypot(change_m_s).min(SPEED_SIGMA.high));
+            Stated { value, sigma: wider.filter(|_| change_m_s > 0.0) }
+        };
         Self {
             delta_v_x_m_s: record.delta_v_ahead.map(|recorded| bounds(recorded, 1.0)),
             delta_v_y_m_s: record.delta_v_right.map(|recorded| bounds(recorded, -1.0)),
-            speed_before_m_s: speed
-                .filter(|speed| EVIDENCE_SPEED.contains(*speed))
-                .map(|speed| Stated { value: Some(speed), sigma: None }),
+            speed_before_m_s: speed.filter(|speed| EVIDENCE_SPEED.contains(*speed)).map(stated),
             sensor_m: [None; 2],
             ends_s: ends_s.filter(|ends_s| PULSE_END.contains(*ends_s)),
         }
@@ -156,6 +169,17 @@ impl Edr {
     }
 }
 
+/// By how much the speed may have changed from when it was recorded last to the crash, m/s.
+fn change_until_crash_m_s(record: &RecorderRecord) -> f64 {
+    let Some(last) = record.speed_before else { return 0.0 };
+    let RecordedControls { time_s, speed_m_s, .. } = &record.before;
+    let rate = match (time_s.as_slice(), speed_m_s.as_slice()) {
+        ([.., t0, t1], [.., v0, v1]) if t1 > t0 => ((v1 - v0) / (t1 - t0)).abs(),
+        _ => 0.0,
+    };
+    rate.max(UNSEEN_DECELERATION_M_S2) * (0.0 - last.at_s).max(0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -176,8 +200,25 @@ mod tests {
         // To the right is to the other side of y.
         assert_eq!(edr.delta_v_y(), Some([-2.2, -1.8]));
         let speed = edr.speed_before().unwrap();
-        assert!((speed.value, speed.sigma) == (20.0, 0.8), "{speed:?}");
+        // Half a second before the crash, over which 2 m/s² may have been missed.
+        assert!((speed.value, speed.sigma) == (20.0, 0.8_f64.hypot(1.0)), "{speed:?}");
         assert_eq!((edr.ends_s, edr.sensor_m), (Some(0.12), [None; 2]));
+        let before = RecordedControls {
+            time_s: vec![-1.0, -0.5],
+            speed_m_s: vec![24.0, 20.0],
+            ..RecordedControls::default()
+        };
+        let braking = Edr::from_record(&RecorderRecord { before, ..record.clone() });
+        let sigma_m_s = braking.speed_before().unwrap().sigma;
+        assert!((sigma_m_s - 0.8_f64.hypot(4.0)).abs() < 1e-12, "{sigma_m_s}");
+        let at_crash = Some(RecordedSpeed { speed_m_s: 20.0, at_s: 0.0 });
+        let at_crash = RecorderRecord { speed_before: at_crash, ..record.clone() };
+        let sigma_m_s = Edr::from_record(&at_crash).speed_before().unwrap().sigma;
+        assert!((sigma_m_s - 0.8).abs() < 1e-12, "{sigma_m_s}");
+        // The component that is over earlier holds at the end of the other one.
+        let later = RecordedDeltaV { ends_s: Some(0.2), ..recorded(2.0) };
+        let later = RecorderRecord { delta_v_right: Some(later), ..record };
+        assert_eq!(Edr::from_record(&later).ends_s, Some(0.2));
         assert!(Edr::from_record(&RecorderRecord::default()).is_empty());
     }
 }

@@ -16,7 +16,7 @@ use crate::hand::method::{Formula, HandOutput, accept, violated};
 use crate::hand::values::HandValues;
 use impactlab_core::bibliography::Brach2011;
 use impactlab_core::ranges::{
-    EVIDENCE_HEADING, EVIDENCE_SPEED, FRICTION_SHARE, HAND_DISTANCE, ROAD_FRICTION, ROAD_GRADE,
+    EVIDENCE_HEADING, EVIDENCE_SPEED, FRICTION_SHARE, HAND_DISTANCE, HAND_GRADE, ROAD_FRICTION,
 };
 use impactlab_core::units::{Phrase, PhraseValue, Quantity, STANDARD_GRAVITY_M_S2};
 
@@ -46,7 +46,7 @@ const DISTANCE: HandField =
     HandField::new("distance", "distance of the slide", HAND_DISTANCE, DISTANCE_SIGMA_M);
 const FRICTION: HandField =
     HandField::new("friction", "drag factor of locked wheels", ROAD_FRICTION, DRAG_SIGMA);
-const GRADE: HandField = HandField::new("grade", "grade, uphill positive", ROAD_GRADE, GRADE_SIGMA);
+const GRADE: HandField = HandField::new("grade", "grade, uphill positive", HAND_GRADE, GRADE_SIGMA);
 const END_SPEED: HandField =
     HandField::relative("end_speed", "speed at the end of the slide", EVIDENCE_SPEED, 0.1);
 
@@ -113,15 +113,15 @@ pub(super) const SKID: Formula = Formula {
         HandField::new("distance_2", "distance on surface 2", HAND_DISTANCE, DISTANCE_SIGMA_M)
             .open(),
         HandField::new("friction_2", "drag factor of surface 2", ROAD_FRICTION, DRAG_SIGMA).open(),
-        HandField::new("grade_2", "grade of surface 2", ROAD_GRADE, GRADE_SIGMA).open(),
+        HandField::new("grade_2", "grade of surface 2", HAND_GRADE, GRADE_SIGMA).open(),
         HandField::new("distance_3", "distance on surface 3", HAND_DISTANCE, DISTANCE_SIGMA_M)
             .open(),
         HandField::new("friction_3", "drag factor of surface 3", ROAD_FRICTION, DRAG_SIGMA).open(),
-        HandField::new("grade_3", "grade of surface 3", ROAD_GRADE, GRADE_SIGMA).open(),
+        HandField::new("grade_3", "grade of surface 3", HAND_GRADE, GRADE_SIGMA).open(),
         HandField::new("distance_4", "distance on surface 4", HAND_DISTANCE, DISTANCE_SIGMA_M)
             .open(),
         HandField::new("friction_4", "drag factor of surface 4", ROAD_FRICTION, DRAG_SIGMA).open(),
-        HandField::new("grade_4", "grade of surface 4", ROAD_GRADE, GRADE_SIGMA).open(),
+        HandField::new("grade_4", "grade of surface 4", HAND_GRADE, GRADE_SIGMA).open(),
     ],
     outputs: &[SPEED, DECELERATION],
     solve: |values| slide(values, values.number("braked_share")),

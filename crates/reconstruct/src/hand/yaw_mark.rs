@@ -21,8 +21,8 @@ use crate::hand::method::{Formula, HandOutput, violated};
 use crate::hand::values::HandValues;
 use impactlab_core::bibliography::{Brach2011, Davis2014, Richardson2012};
 use impactlab_core::ranges::{
-    FORMULA_FACTOR, MARK_CHORD, MARK_RADIUS, MARK_TO_CG, MIDDLE_ORDINATE, POSITION_SIGMA,
-    ROAD_FRICTION, ROAD_GRADE,
+    FORMULA_FACTOR, HAND_GRADE, MARK_CHORD, MARK_RADIUS, MARK_TO_CG, MIDDLE_ORDINATE,
+    POSITION_SIGMA, ROAD_FRICTION,
 };
 use impactlab_core::units::{Phrase, PhraseValue, Quantity, STANDARD_GRAVITY_M_S2};
 
@@ -53,11 +53,11 @@ pub(super) const YAW_MARK: Formula = Formula {
         HandField::new(
             "superelevation",
             "superelevation, outside higher positive",
-            ROAD_GRADE,
+            HAND_GRADE,
             0.01,
         )
         .or(0.0),
-        HandField::new("grade", "grade, uphill positive", ROAD_GRADE, 0.01).or(0.0),
+        HandField::new("grade", "grade, uphill positive", HAND_GRADE, 0.01).or(0.0),
         HandField::new("mark_to_cg", "from the mark to the path of the CG", MARK_TO_CG, 0.1)
             .or(MARK_TO_CG_M),
         HandField::new("formula", "factor of the formula", FORMULA_FACTOR, 0.06).or(1.0),

@@ -70,9 +70,10 @@ impl Particles {
     /// large.
     pub const LEAST_WEAKENED: f64 = 0.0625;
 
-    /// How many times as large as stated the standard deviations of the evidence count, `1 / √β`.
+    /// How many times as large as stated the standard deviations of the evidence count: `1 / √β` in a
+    /// weakened posterior, else 1.
     pub fn sigma_factor(&self) -> f64 {
-        1.0 / self.temperature.sqrt()
+        if self.is_weakened() { 1.0 / self.temperature.sqrt() } else { 1.0 }
     }
 
     /// Effective number of draws that these particles are copies of: `1 / Σ w²` by the share of each.

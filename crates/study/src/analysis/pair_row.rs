@@ -12,7 +12,7 @@ use crate::analysis::pair_forecast::{SEED_OF_STRIKING, opposite};
 use crate::analysis::scenario::starts;
 use crate::analysis::{AnalysisError, MotionForecastError, PulseSetup, Settings, StruckVehicle};
 use impactlab_core::collision::contact::PairError;
-use impactlab_core::collision::{Footprint, Scenario, ScenarioError, Side};
+use impactlab_core::collision::{Footprint, Regime, Scenario, ScenarioError, Side};
 use impactlab_core::data::{ContactOutside, ForceHistory, check_contact_within};
 use impactlab_core::numerics::random_stream;
 use impactlab_core::ranges::{OutOfRange, REST_LIMIT};
@@ -71,6 +71,9 @@ pub enum PairRowError {
     /// The scenario has no start.
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
+    /// The vehicles move apart where they touch.
+    #[error("the vehicles do not approach each other where they touch")]
+    NotApproaching,
     /// The motion cannot be followed.
     #[error(transparent)]
     Forecast(Box<MotionForecastError>),
@@ -98,9 +101,13 @@ pub fn pair_row(
     let pair = ContactPair::new([&struck, &striking])?;
     pair.close_gap(&struck, &mut striking, normal_rad);
     let (force, force_applicability) = question.first_force(&struck, force_model)?;
+    let solved = scenario.solve().map_err(no_scenario)?;
+    if solved.regime == Regime::NotApproaching {
+        return Err(PairRowError::NotApproaching);
+    }
     let usual = match &force {
         Some(force) => force.clone(),
-        None => pulse.history(scenario.solve().map_err(no_scenario)?.impulse_world_n_s)?,
+        None => pulse.history(solved.impulse_world_n_s)?,
     };
     check_contact_within(&usual, limit_s).map_err(outside)?;
     let seeds = [question.seed, question.seed ^ SEED_OF_STRIKING];
@@ -271,7 +278,7 @@ mod tests {
         assert!(!first.draw.phases.is_empty(), "the cars meet");
         assert!((0.0..=1.0).contains(&first.response_applicability), "{first:?}");
         let mut apart = scenario.clone();
-        apart.striking.vx_world_m_s = -20.0;
+        apart.striking.vy_world_m_s = -apart.striking.vy_world_m_s;
         let question = PairRowQuestion {
             scenario: &apart,
             vehicles: [&vehicles[0], &vehicles[1]],

@@ -59,6 +59,7 @@ pub fn place_of_case(scenario: &Scenario, struck: &VehicleParameters) -> Option<
         (PitInput::Closing, closing),
         (PitInput::Faster, along - speed),
         (PitInput::Angle, angle_rad),
+        (PitInput::Slip, angle_rad - closing.atan2(along)),
         (PitInput::Overlap, x_m + struck.geometry.cg_to_rear_axle_m),
         (PitInput::Friction, struck.tires.friction),
         (PitInput::Esc, f64::from(u8::from(ending.esc.is_some()))),
@@ -140,6 +141,7 @@ mod tests {
         let closing = 62.0 / 3.6 * 18_f64.to_radians().sin();
         assert!((value(PitInput::Closing) - closing).abs() < 1e-9);
         assert!((value(PitInput::Angle) - 18_f64.to_radians()).abs() < 1e-9);
+        assert!(value(PitInput::Slip).abs() < 1e-9, "it drives where it points");
         assert_eq!((value(PitInput::Esc), value(PitInput::Driver)), (0.0, 0.0));
         assert!(value(PitInput::Overlap).abs() < 0.6, "{place:?}");
     }

@@ -8,10 +8,11 @@ use crate::atlas::HistogramKind;
 /// Fewest rows of which a mean or a quantile is told.
 pub const MIN_ROWS: u64 = 20;
 
-/// Fewest shares of rows in which both networks apply and of rows with an answer, for a cell to be shown
-/// without hatching.
+/// Fewest shares of rows in which both networks apply, of rows with an answer, and of rows that come to rest
+/// where the measure is that of a motion to rest, for a cell to be shown without hatching.
 const LEAST_INSIDE: f64 = 0.5;
 const LEAST_ANSWERED: f64 = 0.9;
+const LEAST_AT_REST: f64 = 0.9;
 
 /// Probability that a draw stays within the corridor, for its length and for its width.
 const CORRIDOR: f64 = 0.9;
@@ -69,6 +70,19 @@ impl Measure {
     /// Whether it is a probability.
     pub fn is_probability(self) -> bool {
         matches!(self, Self::Mean(outcome) if outcome.is_probability())
+    }
+
+    /// Whether it is one of a motion to rest: the rows that the time limit of the plan cuts off have too little
+    /// of it, or are left out.
+    fn needs_rest(self) -> bool {
+        use Outcome as O;
+        match self {
+            Self::Mean(outcome) => matches!(
+                outcome,
+                O::TravelM | O::ReachM | O::OffsetM | O::RestTimeS | O::RestDistanceM
+            ),
+            Self::CorridorLength | Self::CorridorWidth => true,
+        }
     }
 }
 
@@ -137,10 +151,14 @@ pub struct SliceCell {
     /// The measure, in its SI unit; `None` where fewer than [`MIN_ROWS`] rows have it, or a quantile
     /// lies beyond the histogram.
     pub mean: Option<f64>,
-    /// Its Monte Carlo standard error; infinite (null in JSON) where there is no mean.
+    /// Its Monte Carlo standard error, of a probability with the most by which rows without an answer could
+    /// move it; infinite (null in JSON) where there is no mean.
     pub error: f64,
     /// Share of the rows in which both networks apply by at least a half.
     pub inside: f64,
+    /// Share of the rows that come to rest within the time limit of the plan, where the measure is one of a
+    /// motion to rest; 1 for any other.
+    pub at_rest: f64,
 }
 
 /// A quantile with its Monte Carlo standard error.
@@ -162,12 +180,13 @@ pub struct Corridor {
 }
 
 impl SliceCell {
-    /// Whether the measure may be shown without hatching: there are enough rows, nearly all have an answer,
-    /// and in most of them both networks apply.
+    /// Whether the measure may be shown without hatching: there are enough rows, nearly all have an answer
+    /// and, where it matters, come to rest, and in most of them both networks apply.
     pub fn is_sound(&self) -> bool {
         let all = (self.n_rows + self.n_failed) as f64;
         self.mean.is_some()
             && self.inside >= LEAST_INSIDE
+            && self.at_rest >= LEAST_AT_REST
             && self.n_rows as f64 >= LEAST_ANSWERED * all
     }
 }
@@ -197,7 +216,18 @@ impl Cell {
 
     /// Share of the rows in which both networks apply by at least a half.
     pub fn inside(&self) -> f64 {
-        if self.n_rows == 0 { 0.0 } else { self.n_inside as f64 / self.n_rows as f64 }
+        self.share(self.n_inside)
+    }
+
+    /// A number of its rows as a share of them.
+    fn share(&self, n: u64) -> f64 {
+        if self.n_rows == 0 { 0.0 } else { n as f64 / self.n_rows as f64 }
+    }
+
+    /// The most by which the rows without an answer could move a probability.
+    fn failed_share(&self, probability: f64) -> f64 {
+        let all = (self.n_rows + self.n_failed).max(1) as f64;
+        self.n_failed as f64 / all * probability.max(1.0 - probability)
     }
 
     /// Puts the rows of another cell to those of this one.
@@ -216,9 +246,13 @@ impl Cell {
     pub(super) fn merge_for(&mut self, other: &Self, measure: Measure) {
         self.merge_counts(other);
         let (outcome, histogram) = parts_of(measure);
-        let moments = self.moments.get_mut(outcome).zip(other.moments.get(outcome));
-        if let Some((moments, other)) = moments {
-            moments.merge(other);
+        let rest = Outcome::RestTimeS as usize;
+        let with_rest = (measure.needs_rest() && outcome != rest).then_some(rest);
+        for outcome in [Some(outcome), with_rest].into_iter().flatten() {
+            let moments = self.moments.get_mut(outcome).zip(other.moments.get(outcome));
+            if let Some((moments, other)) = moments {
+                moments.merge(other);
+            }
         }
         let Some(kind) = histogram else { return };
         let counts =
@@ -245,11 +279,12 @@ impl Cell {
             None => Some(Quantile {
                 value: moments.mean,
                 error: match measure.is_probability() {
-                    true => moments.error_of_share(),
+                    true => moments.error_of_share().hypot(self.failed_share(moments.mean)),
                     false => moments.error_of_mean(),
                 },
             }),
         };
+        let n_at_rest = self.moments.get(Outcome::RestTimeS as usize).map_or(0, |rest| rest.n);
         SliceCell {
             n_rows: self.n_rows,
             n_failed: self.n_failed,
@@ -257,6 +292,7 @@ impl Cell {
             mean: estimate.map(|estimate| estimate.value),
             error: estimate.map_or(f64::INFINITY, |estimate| estimate.error),
             inside: self.inside(),
+            at_rest: if measure.needs_rest() { self.share(n_at_rest) } else { 1.0 },
         }
     }
 
@@ -347,18 +383,55 @@ mod tests {
     #[test]
     fn few_rows_have_no_mean() {
         let mut cell = Cell::default();
-        let travel = Outcome::TravelM as usize;
+        let contact = Outcome::ContactS as usize;
         for i in 0..MIN_ROWS {
-            assert_eq!(cell.measure(Outcome::TravelM).mean, None, "{i} rows");
+            assert_eq!(cell.measure(Outcome::ContactS).mean, None, "{i} rows");
             cell.n_rows += 1;
             cell.n_inside += 1;
-            cell.moments[travel].add(30.0);
+            cell.moments[contact].add(0.5);
         }
-        let told = cell.measure(Outcome::TravelM);
-        assert_eq!((told.mean, told.error, told.inside), (Some(30.0), 0.0, 1.0));
+        let told = cell.measure(Outcome::ContactS);
+        assert_eq!((told.mean, told.error, told.inside), (Some(0.5), 0.0, 1.0));
         assert!(told.is_sound());
         cell.n_failed = MIN_ROWS;
-        assert!(!cell.measure(Outcome::TravelM).is_sound());
+        assert!(!cell.measure(Outcome::ContactS).is_sound());
         assert_eq!(cell.measure(Outcome::ReachM).mean, None);
+    }
+
+    /// A cell of 100 rows, of which some come to rest.
+    fn cell_with_rests(n_at_rest: usize) -> Cell {
+        let mut cell = Cell { n_rows: 100, n_inside: 100, ..Cell::default() };
+        for i in 0..100 {
+            cell.moments[Outcome::TravelM as usize].add(30.0 + f64::from(i));
+            cell.moments[Outcome::Turns90 as usize].add(f64::from(u8::from(i < 20)));
+        }
+        (0..n_at_rest).for_each(|_| cell.moments[Outcome::RestTimeS as usize].add(9.0));
+        cell
+    }
+
+    #[test]
+    fn what_the_time_limit_cuts_off_is_not_sound() {
+        for (n_at_rest, is_sound) in [(95, true), (60, false)] {
+            let mut merged = Cell::default();
+            merged.merge_for(&cell_with_rests(n_at_rest), Outcome::TravelM.into());
+            for outcome in [Outcome::TravelM, Outcome::RestTimeS] {
+                let told = merged.measure(outcome);
+                assert_eq!(told.is_sound(), is_sound, "{outcome:?} {told:?}");
+                assert_eq!(told.at_rest, n_at_rest as f64 / 100.0);
+            }
+        }
+        let turns = cell_with_rests(60).measure(Outcome::Turns90);
+        assert!(turns.is_sound() && turns.at_rest == 1.0, "{turns:?}");
+    }
+
+    #[test]
+    fn rows_without_an_answer_widen_the_error_of_a_probability() {
+        let mut cell = cell_with_rests(100);
+        let all = cell.measure(Outcome::Turns90).error;
+        cell.n_failed = 10;
+        let told = cell.measure(Outcome::Turns90);
+        // All of the ten could turn: 30 of 110 and not 20 of 100.
+        assert!((told.error - all.hypot(0.8 * 10.0 / 110.0)).abs() < 1e-12, "{told:?} {all}");
+        assert!(told.error > 30.0 / 110.0 - 0.2);
     }
 }

@@ -113,6 +113,12 @@ pub enum AtlasError {
         /// That of these rows.
         second: String,
     },
+    /// Rows that share their inputs.
+    #[error(
+        "the rows are those of a Saltelli design, which share their inputs: they give Sobol indices \
+         (--saltelli) and no cells, whose errors would be too small"
+    )]
+    Saltelli,
     /// A row is there twice.
     #[error("row {row} is there twice")]
     Twice {

@@ -7,7 +7,7 @@ use crate::atlas::axis::check_all;
 use crate::atlas::cell::Moments;
 use crate::atlas::file::MAX_FILE_CELLS;
 use crate::atlas::model::{MAX_CELLS, n_cells_of};
-use crate::atlas::sensitivity::sensitivity_of_rows;
+use crate::atlas::sensitivity::{is_saltelli, sensitivity_of_rows};
 use crate::atlas::{Atlas, AtlasError, Axis, Cell, HistogramKind};
 use crate::{Column, Outcome, Rows, read_rows};
 
@@ -61,9 +61,13 @@ impl AtlasBuilder {
     ///
     /// # Errors
     /// [`AtlasError`] if columns are missing or of other lengths, if the rows come from another plan,
-    /// program or network than those before or are there already, or if an outcome is infinite.
+    /// program or network than those before or are there already, if they share their inputs, or if an outcome
+    /// is infinite.
     pub fn add(&mut self, rows: &Rows) -> Result<(), AtlasError> {
         self.take_meta(rows)?;
+        if is_saltelli(rows) {
+            return Err(AtlasError::Saltelli);
+        }
         let n = rows.index.len();
         let inputs: Vec<&Column> = self
             .atlas
@@ -124,11 +128,14 @@ impl AtlasBuilder {
     /// Adds the Sobol indices of the rows of a Saltelli design.
     ///
     /// # Errors
-    /// [`AtlasError::Sensitivity`] if the rows are no such design, [`AtlasError::Mixed`] if another program
-    /// computed them.
+    /// [`AtlasError::Sensitivity`] if the rows are no such design, [`AtlasError::NoColumn`] if an axis does not
+    /// vary in them, [`AtlasError::Mixed`] if another program or network computed them.
     pub fn add_sensitivity(&mut self, rows: &Rows) -> Result<(), AtlasError> {
-        if !self.atlas.program.is_empty() {
-            same("programs", &self.atlas.program, &rows.meta.program)?;
+        for axis in &self.atlas.axes {
+            column(&rows.inputs, &axis.name, rows.index.len())?;
+        }
+        if !self.seen.is_empty() {
+            self.check_program(rows)?;
         }
         self.atlas.sensitivity = sensitivity_of_rows(rows)?;
         self.atlas.sensitivity_plan_sha256 = Some(rows.meta.plan_sha256.clone());
@@ -165,11 +172,16 @@ impl AtlasBuilder {
             return Ok(());
         }
         same("plans", &atlas.plan_sha256, &rows.meta.plan_sha256)?;
-        same("programs", &atlas.program, &rows.meta.program)?;
+        self.check_program(rows)
+    }
+
+    /// Checks that the program and the networks of the rows before have computed these rows.
+    fn check_program(&self, rows: &Rows) -> Result<(), AtlasError> {
+        same("programs", &self.atlas.program, &rows.meta.program)?;
         let listed = |networks: &BTreeMap<String, String>| {
             networks.values().cloned().collect::<Vec<_>>().join(", ")
         };
-        same("networks", &listed(&atlas.networks), &listed(&rows.meta.networks))
+        same("networks", &listed(&self.atlas.networks), &listed(&rows.meta.networks))
     }
 
     /// The number of the cell of some bins.

@@ -161,8 +161,7 @@ pub(super) fn sensitivity_of_rows(
     rows: &Rows,
 ) -> Result<Vec<OutcomeSensitivity>, SensitivityError> {
     let n_inputs = rows.inputs.len();
-    let order: BTreeMap<u64, usize> =
-        rows.index.iter().enumerate().map(|(at, row)| (*row, at)).collect();
+    let order = places(rows);
     let design = [true, false]
         .into_iter()
         .find_map(|has_unknowns| SaltelliRows::new(rows, &order, has_unknowns))
@@ -175,6 +174,20 @@ pub(super) fn sensitivity_of_rows(
         .iter()
         .filter(|column| Outcome::ALL.iter().any(|outcome| outcome.name() == column.name));
     Ok(known.filter_map(|column| design.indices(column)).collect())
+}
+
+/// Whether rows are those of a Saltelli design, which do not vary independently of each other.
+pub(super) fn is_saltelli(rows: &Rows) -> bool {
+    let order = places(rows);
+    [true, false].into_iter().any(|has_unknowns| {
+        let design = SaltelliRows::new(rows, &order, has_unknowns);
+        design.is_some_and(|it| it.bases.len() >= MIN_BASES && it.has_exchanged(&rows.inputs))
+    })
+}
+
+/// Where each row stands in the table, by its number.
+fn places(rows: &Rows) -> BTreeMap<u64, usize> {
+    rows.index.iter().enumerate().map(|(at, row)| (*row, at)).collect()
 }
 
 /// The rows of a Saltelli design, by their places in the table.
@@ -202,6 +215,14 @@ impl SaltelliRows {
         let bases: Vec<Vec<usize>> = numbers.into_iter().filter_map(base_rows).collect();
         let is_exchanged = |base: &Vec<usize>| is_base(&rows.inputs, base);
         (!bases.is_empty() && bases.iter().all(is_exchanged)).then_some(Self { names, bases })
+    }
+
+    /// Whether A and B differ anywhere: rows that are all at one place are no design.
+    fn has_exchanged(&self, inputs: &[Column]) -> bool {
+        let differ = |a: &usize, b: &usize| {
+            inputs.iter().any(|column| column.values.get(*a) != column.values.get(*b))
+        };
+        self.bases.iter().any(|base| matches!(&base[..], [a, b, ..] if differ(a, b)))
     }
 
     fn indices(&self, column: &Column) -> Option<OutcomeSensitivity> {
@@ -369,6 +390,11 @@ mod tests {
         }
         let indices = sensitivity_of_rows(&saltelli_rows(1024, false)).unwrap();
         assert_eq!(indices[0].inputs.len(), 2);
+        assert!(is_saltelli(&saltelli_rows(200, true)) && is_saltelli(&saltelli_rows(200, false)));
+        // Many rows at one place are independent of each other.
+        let mut one_place = saltelli_rows(200, true);
+        one_place.inputs.iter_mut().for_each(|column| column.values.fill(0.5));
+        assert!(!is_saltelli(&one_place));
     }
 
     #[test]

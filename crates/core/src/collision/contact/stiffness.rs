@@ -295,16 +295,27 @@ pub struct BarrierTest {
 }
 
 impl BarrierTest {
-    /// The test of one vehicle against a rigid barrier, with 5 mph up to which nothing is crushed.
+    /// The test of the front of one vehicle against a rigid barrier, with 5 mph up to which nothing is crushed.
     ///
     /// # Errors
-    /// What is missing, in words.
+    /// What is missing, or why it is no such test, in words.
     pub fn from_crash_test(test: &CrashTest) -> Result<Self, String> {
         let [vehicle] = test.vehicles.as_slice() else {
             return Err("it is not a test of one vehicle against a barrier".to_owned());
         };
         if !test.barrier.as_deref().is_some_and(|barrier| barrier.starts_with('R')) {
             return Err("the barrier is not said to be rigid".to_owned());
+        }
+        if test.barrier.as_deref().is_some_and(|barrier| barrier.starts_with("R POL")) {
+            return Err("the barrier is a pole, which crushes a part of the face".to_owned());
+        }
+        if test.is_oblique {
+            return Err("the impact was at an angle".to_owned());
+        }
+        // The third sign of the code is the face: F for the front.
+        let face = vehicle.damage_code.chars().nth(2).filter(|face| face.is_alphabetic());
+        if let Some(face) = face.filter(|face| *face != 'F') {
+            return Err(format!("the damage {} is on the face {face}", vehicle.damage_code));
         }
         let known =
             |value: Option<f64>, name: &str| value.ok_or_else(|| format!("no {name} is stated"));
@@ -384,6 +395,42 @@ mod tests {
             (BarrierTest { crush_m: [0.0; 6], ..CAMRY }, "mean crush"),
         ] {
             assert_eq!(bad.stiffness().unwrap_err().name, name);
+        }
+    }
+
+    /// What is no test of a front against a wall gives no stiffness of a front.
+    #[test]
+    fn a_pole_a_side_or_an_angle_is_refused() {
+        let row = |code: &str| {
+            let mut fields = vec!["0"; 60];
+            for (idx, text) in
+                [(0, "1"), (10, "1500"), (14, "1800"), (41, "56.0"), (47, "400"), (53, code)]
+            {
+                fields[idx] = text;
+            }
+            fields.join("|")
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("v1.EV5");
+        let of = |barrier: &str, code: &str| {
+            let text = format!(
+                "----- EV5 -----\n----- TEST -----\nV5|A|B\n----- VEHICLE -----\n{}\n----- BARRIER -----\n\
+                 {barrier}\n----- END -----\n",
+                row(code)
+            );
+            std::fs::write(&path, text).unwrap();
+            BarrierTest::from_crash_test(&CrashTest::read(&path).unwrap())
+        };
+        assert!(of("R|LCB|0|0|WALL", "12FDEW2").is_ok());
+        assert!(of("R|LCB|0|0|WALL", "0").is_ok());
+        for (barrier, code, part) in [
+            ("R|POL|0|254|POLE", "12FCEN3", "a pole"),
+            ("R|LCB|30|0|WALL", "12FDEW2", "at an angle"),
+            ("R|LCB|0|0|WALL", "06BDEW2", "on the face B"),
+            ("D|LCB|0|0|WALL", "12FDEW2", "rigid"),
+        ] {
+            let why = of(barrier, code).unwrap_err();
+            assert!(why.contains(part), "{part}: {why}");
         }
     }
 

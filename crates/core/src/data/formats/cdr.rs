@@ -314,7 +314,7 @@ fn is_no_data(cells: &[String]) -> bool {
 
 /// A header as the columns of a table are named: the first of two units in brackets, and the words of
 /// recorders by those of this program. Columns whose sign differs from report to report keep their names.
-fn column_name(name: &str) -> String {
+pub(crate) fn column_name(name: &str) -> String {
     let name = name.replace(['\t', '"'], " ");
     let name = name.trim();
     let (bare, symbol) = match name.rsplit_once('(') {

@@ -14,7 +14,7 @@
 //! 0.000000E+00                                           then a value in a line, or NOVALUE
 //! ```
 //!
-//! Keys are the same in capitals, and so are the names of files. A code has the object, the position, twelve
+//! Keys are the same in capitals, and so are the names of files. A code has the object, the position, ten
 //! characters of the place, the dimension (`AC`, `FO`, `VE` …), the axis and the filter class; places and axes
 //! differ from laboratory to laboratory, so that columns are named by their codes and mapped. Values are read as
 //! recorded; a channel of another time than the first one is a part of its own.
@@ -22,9 +22,12 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::data::formats::nhtsa_curves::OTHER_AXES;
 use crate::data::formats::{Converted, Said, number_text};
+use crate::data::spelling::unit;
 use crate::data::text::read_text;
 use crate::data::{DataError, ReadSettings, Sheet, SheetRef, list_folder};
+use crate::units::Quantity;
 
 /// Bytes of one file, and of all channels of a test together.
 const MAX_FILE_BYTES: u64 = 32 << 20;
@@ -35,6 +38,8 @@ const MAX_CHANNELS: usize = 999;
 const MAX_TIMES: usize = 64;
 /// Lines of keys above the values of a channel.
 const MAX_KEYS: usize = 400;
+/// Remarks on channels that are shown.
+const MAX_REMARKS: usize = 6;
 /// Difference of two instants that are the same, s.
 const SAME_S: f64 = 1e-9;
 
@@ -128,6 +133,11 @@ pub(super) fn as_table(
             "channels with samples that are not there are left out: {}",
             some(&incomplete)
         ));
+    }
+    let of_group = || group.channels.iter().filter_map(|idx| channels.get(*idx));
+    doubts.extend(of_group().filter_map(MmeChannel::remark).take(MAX_REMARKS));
+    if of_group().any(MmeChannel::has_other_axis) {
+        doubts.push(OTHER_AXES.to_owned());
     }
     let said = Said {
         description: format!(
@@ -248,6 +258,34 @@ impl MmeChannel {
         plain(self.value("channel code").unwrap_or(&ending))
     }
 
+    /// What is in doubt of its samples and their times, in words.
+    fn remark(&self) -> Option<String> {
+        let (code, n) = (self.code(), self.values.len());
+        match self.number("number of samples") {
+            Some(stated) if stated != n as f64 => {
+                Some(format!("{code} has {n} samples and says {stated}; is it cut?"))
+            }
+            _ if self.is_explicit() || self.number("time of first sample").is_some() => None,
+            _ => Some(format!(
+                "{code} does not say the time of its first sample; it is taken as 0 s"
+            )),
+        }
+    }
+
+    /// Whether its times are those of another channel.
+    fn is_explicit(&self) -> bool {
+        let of = self.value("reference channel");
+        of.is_some_and(|of| of.eq_ignore_ascii_case("explicit"))
+    }
+
+    /// Whether it is measured along or about an axis that points elsewhere than here: the fifteenth sign of a code.
+    fn has_other_axis(&self) -> bool {
+        self.code()
+            .chars()
+            .nth(14)
+            .is_some_and(|axis| matches!(axis.to_ascii_uppercase(), 'Y' | 'Z'))
+    }
+
     /// Its instants by its own keys, s.
     fn implicit_s(&self) -> Option<Vec<f64>> {
         let interval_s = self.number("sampling interval").filter(|interval| *interval > 0.0)?;
@@ -286,10 +324,7 @@ fn grouped(channels: &[MmeChannel]) -> (Vec<Group>, Vec<String>) {
     let is_time = |channel: &MmeChannel| channel.code().to_uppercase().contains("TIRS");
     for (idx, channel) in channels.iter().enumerate().filter(|(_, channel)| !is_time(channel)) {
         doubts.extend(channel.status());
-        let is_explicit = channel
-            .value("reference channel")
-            .is_some_and(|of| of.eq_ignore_ascii_case("explicit"));
-        let time_s = match is_explicit {
+        let time_s = match channel.is_explicit() {
             true => explicit_s(channels, channel),
             false => channel.implicit_s(),
         };
@@ -312,7 +347,7 @@ fn grouped(channels: &[MmeChannel]) -> (Vec<Group>, Vec<String>) {
             doubts.push(format!("{} is left out: too many times", channel.code()));
         }
     }
-    let shown = doubts.len().min(6);
+    let shown = doubts.len().min(MAX_REMARKS);
     let more = doubts.len() - shown;
     doubts.truncate(shown);
     if more > 0 {
@@ -328,9 +363,16 @@ fn explicit_s(channels: &[MmeChannel], of: &MmeChannel) -> Option<Vec<f64>> {
         Some(name) => channel.code().eq_ignore_ascii_case(name),
         None => channel.code().to_uppercase().contains("TIRS"),
     };
-    let time = channels.iter().find(is_it)?;
-    let is_ms = time.value("unit").is_some_and(|unit| unit.eq_ignore_ascii_case("ms"));
-    let factor = if is_ms { 1e-3 } else { 1.0 };
+    let mut times = channels.iter().filter(is_it);
+    let time = times.next()?;
+    if times.next().is_some() {
+        return None;
+    }
+    // Seconds are what a time has that does not say its unit.
+    let factor = match time.value("unit") {
+        None => 1.0,
+        Some(symbol) => unit(Quantity::Time, symbol)?.si_per_unit,
+    };
     let instants: Option<Vec<f64>> =
         time.values.iter().map(|value| value.map(|value| factor * value)).collect();
     instants.filter(|instants| instants.len() == of.values.len())
@@ -442,6 +484,45 @@ mod tests {
             let alone = folder.path().join("CHANNEL/t.002");
             assert!(Table::read(&alone).is_err());
         }
+    }
+
+    #[test]
+    fn a_cut_channel_and_another_axis_are_said() {
+        let keys = [
+            ("Channel code", "11SEAT000000ACYP"),
+            ("Time of first sample", "-0.1"),
+            ("Sampling interval", "0.1"),
+            ("Number of samples", "3"),
+        ];
+        let doubts = |values: &[&str]| {
+            let text = channel(&keys, values);
+            let settings = ReadSettings::default();
+            as_table(Path::new("a.001"), &text, &settings).unwrap().unwrap().said.doubts
+        };
+        assert!(doubts(&["1", "2"])[0].contains("has 2 samples and says 3"));
+        let whole = doubts(&["1", "2", "3"]);
+        assert!(whole.len() == 1 && whole[0].contains("to the right and down"), "{whole:?}");
+    }
+
+    /// A time in a unit that is none is no time in seconds, and one of two times is not guessed.
+    #[test]
+    fn a_time_that_is_not_known_is_none() {
+        let of = |code: &str, more: &[(&str, &str)]| {
+            let keys = [&[("Channel code", code)][..], more].concat();
+            MmeChannel::parse("a.001".into(), &channel(&keys, &["0", "1"])).unwrap()
+        };
+        let force = of("11BARR000000FOXP", &[("Reference channel", "explicit")]);
+        let [us, other] =
+            ["us", "fortnights"].map(|unit| of("11TIRS000000TIRP", &[("Unit", unit)]));
+        let again = of("12TIRS000000TIRP", &[]);
+        let all = [force, us];
+        assert_eq!(explicit_s(&all, &all[0]), Some(vec![0.0, 1e-6]));
+        let [force, us] = all;
+        let all = [force, other];
+        assert_eq!(explicit_s(&all, &all[0]), None);
+        let [force, _] = all;
+        let all = [force, us, again];
+        assert_eq!(explicit_s(&all, &all[0]), None);
     }
 
     #[test]

@@ -5,10 +5,11 @@
 //! # Source: NHTSA Vehicle Database - Test Number: 10146
 //! ----- EV5 -----
 //! ----- TEST -----
-//! V5|title|objective|date|laboratory|contract|reference|type|configuration|…|closing speed km/h|angle|…
+//! V5|title|objective|date|laboratory|contract|reference|type|configuration|…|(14) closing speed km/h|
+//!     (15) angle of the impact|…
 //! ----- VEHICLE -----
 //! number|make|model|year|…|(10) test mass kg|curb mass|(12) wheelbase mm|(13) length|(14) width|
-//!     (15) CG behind front axle|…|(20–40) BX1–BX21|(41) speed km/h|…|(47–52) crush C1–C6 mm|…
+//!     (15) CG behind front axle|…|(20–40) BX1–BX21|(41) speed km/h|…|(47–52) crush C1–C6 mm|(53) CDC|…
 //! ----- BARRIER -----
 //! R|LCB|angle|diameter|description                      rigid or deformable, shape
 //! ----- OCCUPANT ----- … ----- RESTRAINT ----- …
@@ -42,6 +43,8 @@ pub struct CrashTest {
     pub vehicles: Vec<TestVehicle>,
     /// The barrier in the words of the file; `None` for one vehicle against another.
     pub barrier: Option<String>,
+    /// Whether the test says that the impact was at an angle, or the barrier stood at one.
+    pub is_oblique: bool,
     /// The channels that were instrumented.
     pub channels: Vec<TestChannel>,
     pub(super) path: PathBuf,
@@ -66,6 +69,8 @@ pub struct TestVehicle {
     pub speed_m_s: Option<f64>,
     /// Crush C1 to C6 across the face, m; `None` if none was measured.
     pub crush_m: Option<[f64; 6]>,
+    /// The damage by SAE J224, such as `12FDEW2`; empty if none is stated.
+    pub damage_code: String,
 }
 
 /// A channel of a test.
@@ -165,6 +170,7 @@ impl CrashTest {
             title: String::new(),
             vehicles: Vec::new(),
             barrier: None,
+            is_oblique: false,
             channels: Vec::new(),
             path: path.to_owned(),
         };
@@ -181,9 +187,13 @@ impl CrashTest {
             match name {
                 "TEST" if test.title.is_empty() => {
                     test.title = plain(fields.get(1).copied().unwrap_or_default());
+                    test.is_oblique |= is_angle(fields.get(15));
                 }
                 "VEHICLE" => test.vehicles.push(vehicle(path, number, &fields)?),
-                "BARRIER" => test.barrier = Some(plain(&fields.join(" "))),
+                "BARRIER" => {
+                    test.barrier = Some(plain(&fields.join(" ")));
+                    test.is_oblique |= is_angle(fields.get(2));
+                }
                 "INSTRUMENTATION" => test.channels.push(channel(path, number, &fields)?),
                 _ => {}
             }
@@ -194,6 +204,12 @@ impl CrashTest {
         }
         Ok(test)
     }
+}
+
+/// Whether a field holds an angle that is not 0.
+fn is_angle(field: Option<&&str>) -> bool {
+    let angle_deg: Option<f64> = field.and_then(|text| text.parse().ok());
+    angle_deg.is_some_and(|angle_deg| angle_deg != 0.0)
 }
 
 fn vehicle(path: &Path, line: u64, fields: &[&str]) -> Result<TestVehicle, DataError> {
@@ -221,6 +237,7 @@ fn vehicle(path: &Path, line: u64, fields: &[&str]) -> Result<TestVehicle, DataE
         cg_to_front_axle_m: number(15, "CG behind the front axle", 1e-3)?,
         speed_m_s: number(41, "speed", 1.0 / 3.6)?,
         crush_m: Some(crush_m).filter(|crush_m| crush_m.iter().any(|depth| *depth != 0.0)),
+        damage_code: plain(fields.get(53).copied().unwrap_or_default()),
     })
 }
 

@@ -20,6 +20,10 @@ const SAME_S: f64 = 2e-6;
 /// Share of the momentum of the car that a barrier may say: up to the full stop, and with a rebound.
 const MOMENTUM: std::ops::RangeInclusive<f64> = 0.9..=1.3;
 
+/// What is said of channels along or about axes that point elsewhere than here.
+pub(super) const OTHER_AXES: &str = "axes y and z of such a test point to the right and down (SAE J211): a channel \
+     along or about one of them takes a minus in the map, such as vy=-5";
+
 /// The part in which the force of the barrier is.
 const BARRIER_FORCE: &str = "barrier force";
 
@@ -169,6 +173,13 @@ impl CrashTest {
                 some(&force.left_out)
             ));
         }
+        if self.is_oblique {
+            doubts.push(
+                "the impact was at an angle: the force is the one along the normal of the barrier, and not along \
+                 the heading of the vehicle as its column says"
+                    .to_owned(),
+            );
+        }
         match self.momentum(force) {
             None => doubts.push(
                 "mass and speed of one vehicle are not stated: the momentum of the record is not checked"
@@ -256,10 +267,13 @@ impl CrashTest {
             }
             text.push('\n');
         }
-        let doubts = match left_out.is_empty() {
-            true => Vec::new(),
-            false => vec![format!("channels are left out: {}", some(&left_out))],
-        };
+        let mut doubts = Vec::new();
+        if !left_out.is_empty() {
+            doubts.push(format!("channels are left out: {}", some(&left_out)));
+        }
+        if values.iter().any(|(channel, _)| channel.axis.starts_with(['Y', 'Z'])) {
+            doubts.push(OTHER_AXES.to_owned());
+        }
         Ok((text, doubts))
     }
 

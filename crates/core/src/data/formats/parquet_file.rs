@@ -23,6 +23,8 @@ use crate::data::{DataError, RESTRICTIONS_COLUMN, Sheet, open_file, read_bytes};
 /// into a few bytes.
 const FREE_CELLS: usize = 500_000;
 const CELLS_PER_BYTE: usize = 16;
+/// Cells that no file may exceed; each takes 16 bytes of memory, and some 20 as text.
+const MAX_CELLS: usize = 32 << 20;
 
 /// Rows that are read at a time.
 const BATCH: usize = 8192;
@@ -132,14 +134,17 @@ fn columns(file: std::fs::File, bytes: &[u8]) -> Result<Read, String> {
         .filter(|pair| pair.key == RESTRICTIONS_COLUMN)
         .find_map(|pair| pair.value.clone())
         .map(|text| plain(&text));
-    let mut left = FREE_CELLS + CELLS_PER_BYTE * bytes.len();
+    let mut left = (FREE_CELLS + CELLS_PER_BYTE * bytes.len()).min(MAX_CELLS);
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(said)?;
         check_pages(&*group, &columns, bytes)?;
         let n_rows = usize::try_from(group.metadata().num_rows()).ok().ok_or("rows below 0")?;
         let n_cells = n_rows.saturating_mul(columns.len());
         left = left.checked_sub(n_cells).ok_or_else(|| {
-            format!("it says that it has {n_rows} rows in one part, more than its bytes can hold")
+            format!(
+                "it says that it has {n_rows} rows in one part, more than its bytes can hold or than the \
+                 {MAX_CELLS} cells that are read"
+            )
         })?;
         for column in &mut columns {
             let mut reader = group.get_column_reader(column.idx).map_err(said)?;

@@ -29,6 +29,13 @@ const MAX_TRACKS: usize = 1000;
 const OF_ANTENNA: &str = "positions are those of the antenna: where it is not at the centre of gravity, the \
      path and a turn of the car mix; say where it was mounted (antenna=x,y from the CG)";
 
+/// What is said of the yaw angle of sentences `RMC`.
+const OF_COURSE: &str = "the yaw angle is the course over ground: of a car that slides or spins it is not the \
+     heading";
+
+/// Columns of sentences `RMC`.
+const RMC_HEADER: &str = "time [s]\tlatitude [deg]\tlongitude [deg]\tspeed [m/s]\tyaw [deg]";
+
 /// A part of a log.
 struct Track {
     name: String,
@@ -62,6 +69,9 @@ pub(super) fn as_table(
     };
     if settings.antenna_m.is_none() {
         doubts.push(OF_ANTENNA.to_owned());
+    }
+    if track.header == RMC_HEADER {
+        doubts.push(OF_COURSE.to_owned());
     }
     let said = Said {
         description: format!(
@@ -177,7 +187,7 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
         doubts.push(format!("{n_without} sentences without a position are left out"));
     }
     let header = match wanted {
-        "RMC" => "time [s]\tlatitude [deg]\tlongitude [deg]\tspeed [m/s]\tyaw [deg]",
+        "RMC" => RMC_HEADER,
         _ => "time [s]\tlatitude [deg]\tlongitude [deg]",
     };
     let track = Track { name: wanted.to_owned(), header, rows };
@@ -291,7 +301,12 @@ mod tests {
         assert!((speed[0] - 5.144_44).abs() < 1e-4, "{speed:?}");
         assert!(loaded.series.require(Channel::Yaw).unwrap()[0].abs() < 1e-12);
         let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
-        for said in ["1 sentences with a wrong", "1 sentences without a position", "the antenna"] {
+        for said in [
+            "1 sentences with a wrong",
+            "1 sentences without a position",
+            "the antenna",
+            "course over ground",
+        ] {
             assert!(notes.iter().any(|note| note.contains(said)), "{said}: {notes:?}");
         }
     }

@@ -12,7 +12,9 @@
 use std::path::Path;
 
 use crate::data::budget::MAX_TABLE_BYTES;
-use crate::data::formats::cdr::{MAX_BYTES, Report, Section, is_before_crash, is_report, number};
+use crate::data::formats::cdr::{
+    MAX_BYTES, Report, Section, column_name, is_before_crash, is_report, number,
+};
 use crate::data::spelling::{letters_and_digits, quantity_name, trailing_unit};
 use crate::data::text::read_text;
 use crate::data::{DataError, ReadSettings, Table};
@@ -187,20 +189,34 @@ impl RecorderRecord {
                 record.event
             ));
         }
+        let has_several = events.len() > 1;
         record.events = events;
-        let is_of_event = |section: &&Section| {
-            let of = event_of(&section.title);
-            of.is_none() || of == chosen
+        let is_of_none = |section: &&Section| {
+            let title = letters_and_digits(&section.title);
+            let words = ["precrash", "longitudinal", "lateral", "deltav"];
+            let is_record = words.iter().any(|word| title.starts_with(word)) && section.is_table();
+            has_several && is_record && event_of(&section.title).is_none()
         };
-        for section in report.sections.iter().filter(is_of_event) {
-            record.add_keys(section);
-            if section.is_table() {
-                let numbers = |idx: usize| section.column(idx);
-                let texts = |idx: usize| section.texts(idx);
-                let table = Table563 { header: section.header(), numbers: &numbers, texts: &texts };
-                record.add_table(&table, is_before_crash(section));
-            }
+        let n_of_none = report.sections.iter().filter(is_of_none).count();
+        if n_of_none > 0 {
+            record.doubts.push(format!(
+                "tables that do not say of which event they are: {n_of_none}; they are left out"
+            ));
         }
+        let is_of_event = |section: &&Section| match event_of(&section.title) {
+            Some(of) => chosen.as_ref() == Some(&of),
+            None => !has_several,
+        };
+        let sections: Vec<&Section> = report.sections.iter().filter(is_of_event).collect();
+        for section in sections.iter().filter(|section| section.is_table()) {
+            let numbers = |idx: usize| section.column(idx);
+            let texts = |idx: usize| section.texts(idx);
+            let table = Table563 { header: section.header(), numbers: &numbers, texts: &texts };
+            record.add_table(&table, is_before_crash(section));
+        }
+        // A record over time says more than its largest value.
+        sections.iter().for_each(|section| record.add_keys(section));
+        record.keep_one_end();
         Ok(record)
     }
 
@@ -219,7 +235,30 @@ impl RecorderRecord {
         let mut record =
             Self { description: "a table of an event data recorder".to_owned(), ..Self::default() };
         record.add_table(&Table563 { header, numbers: &numbers, texts: &texts }, true);
+        record.keep_one_end();
         record
+    }
+
+    /// Leaves out the smaller one of both changes of velocity if no common end holds for both. A record that no
+    /// longer changed at its end holds at any later one.
+    fn keep_one_end(&mut self) {
+        let (Some(ahead), Some(right)) = (self.delta_v_ahead, self.delta_v_right) else { return };
+        let end_s = |of: RecordedDeltaV| of.ends_s.unwrap_or(f64::INFINITY);
+        let last_s = end_s(ahead).max(end_s(right));
+        let is_lost = |of: &RecordedDeltaV| of.is_cut && last_s - end_s(*of) > SETTLED_S;
+        if ![ahead, right].iter().any(is_lost) {
+            return;
+        }
+        let is_ahead_smaller = ahead.delta_v_m_s.abs() < right.delta_v_m_s.abs();
+        let (slot, name) = match is_ahead_smaller {
+            true => (&mut self.delta_v_ahead, "ahead"),
+            false => (&mut self.delta_v_right, "to the right"),
+        };
+        *slot = None;
+        self.doubts.push(format!(
+            "the changes of velocity ahead and to the right end at different times, one of them before it was over; \
+             the one {name}, which is the smaller, is left out"
+        ));
     }
 
     /// Adds the largest changes of velocity that stand beside their names.
@@ -229,11 +268,13 @@ impl RecorderRecord {
             ("deltavlateral", &mut self.delta_v_right),
         ] {
             let Some((name, value)) = section.number(&format!("maximum{key}")) else { continue };
-            let Ok(Some(unit)) = trailing_unit(name, Quantity::Speed) else { continue };
+            let Ok(Some(unit)) = trailing_unit(&column_name(name), Quantity::Speed) else {
+                continue;
+            };
             let delta_v_m_s = unit.to_si(value);
             let time = section.number(&format!("timemaximum{key}"));
             let ends_s = time.and_then(|(name, value)| {
-                let unit = trailing_unit(name, Quantity::Time).ok().flatten()?;
+                let unit = trailing_unit(&column_name(name), Quantity::Time).ok().flatten()?;
                 Some(unit.to_si(value)).filter(|at_s| (0.0..LONGEST_S).contains(at_s))
             });
             if slot.is_none() && SPEED.contains(delta_v_m_s) {
@@ -263,18 +304,30 @@ impl RecorderRecord {
             let Some(values) = table.column(Quantity::Speed, &mut doubts, is_delta_v) else {
                 continue;
             };
-            let recorded = recorded_delta_v(&time_s, &values);
-            if recorded.is_some_and(|recorded| recorded.is_cut) {
+            let Some(recorded) = recorded_delta_v(&time_s, &values) else { continue };
+            if slot.is_some() {
+                doubts.push(format!(
+                    "the change of velocity {name} is recorded twice for the event; the first one is read"
+                ));
+                continue;
+            }
+            if recorded.is_cut {
                 doubts.push(format!(
                     "the change of velocity {name} still changes at the end of its record: the pulse is cut \
                      off there"
                 ));
             }
-            // A record over time says more than its largest value.
-            *slot = recorded.or(*slot);
+            *slot = Some(recorded);
         }
-        if has_controls && self.before.time_s.is_empty() {
-            self.add_controls(table, &time_s, &mut doubts);
+        match has_controls {
+            true if self.before.time_s.is_empty() => {
+                self.add_controls(table, &time_s, &mut doubts);
+            }
+            true => doubts.push(
+                "another table of the seconds before the crash is not read; open it as a table"
+                    .to_owned(),
+            ),
+            false => {}
         }
         self.doubts.extend(doubts);
     }
@@ -286,7 +339,8 @@ impl RecorderRecord {
         doubts: &mut Vec<String>,
     ) {
         let is_speed = |key: &str| {
-            let others = ["deltav", "change", "engine", "wheelspeed", "cruise"];
+            let others =
+                ["deltav", "change", "engine", "wheelspeed", "cruise", "setspeed", "limit"];
             key.contains("speed") && !others.iter().any(|other| key.contains(other))
         };
         let speed = table.column(Quantity::Speed, doubts, is_speed).unwrap_or_default();
@@ -390,12 +444,15 @@ impl Table563<'_> {
     }
 }
 
-/// The event in the parentheses at the end of the name of a section.
+/// The event in parentheses in the name of a section, without the number of one of its tables.
 fn event_of(title: &str) -> Option<String> {
-    let (_, rest) = title.rsplit_once('(')?;
-    let name = rest.split(')').next()?.trim();
-    let is_event = name.to_lowercase().contains("event") || name.to_lowercase().contains("record");
-    is_event.then(|| name.to_owned())
+    let groups = title.split('(').skip(1).filter_map(|rest| rest.split(')').next());
+    let mut names = groups.filter(|name| {
+        let lower = name.to_lowercase();
+        ["event", "record", "deployment"].iter().any(|word| lower.contains(word))
+    });
+    let name = names.next()?;
+    Some(name.split(" TABLE ").next()?.trim().to_owned())
 }
 
 /// The last change of velocity of a record after the recorder has woken up.
@@ -462,6 +519,42 @@ mod tests {
         assert!((lateral.delta_v_m_s - 5.0 * mph).abs() < 1e-9, "{lateral:?}");
         assert_eq!((lateral.ends_s, second.delta_v_ahead), (Some(0.15), None));
         assert!(read(REPORT, Some(3)).is_err());
+    }
+
+    #[test]
+    fn events_are_told_apart_and_their_tables_belong_together() {
+        for (title, event) in [
+            ("PRE-CRASH DATA (EVENT RECORD 1)", Some("EVENT RECORD 1")),
+            ("PRE-CRASH DATA (EVENT RECORD 1 TABLE 2 OF 2)", Some("EVENT RECORD 1")),
+            ("PRE-CRASH DATA (MOST RECENT EVENT) (TABLE 1 OF 2)", Some("MOST RECENT EVENT")),
+            ("DELTA-V LONGITUDINAL (NON-DEPLOYMENT)", Some("NON-DEPLOYMENT")),
+            ("PRE-CRASH DATA -5 TO 0 SEC (2 SAMPLES/SEC)", None),
+        ] {
+            assert_eq!(event_of(title).as_deref(), event, "{title}");
+        }
+        // Δv of a table without an event is that of none of two events.
+        let other = REPORT
+            .replace("\"DELTA-V, LONGITUDINAL (EVENT RECORD 1)\"", "\"DELTA-V, LONGITUDINAL\"");
+        let record = read(&other, None).unwrap();
+        assert_eq!(record.delta_v_ahead, None);
+        let said = |word: &str| record.doubts.iter().any(|doubt| doubt.contains(word));
+        assert!(said("of which event"), "{record:?}");
+    }
+
+    /// Δv ahead is cut off at 0.1 s, that to the right goes on to 0.25 s.
+    #[test]
+    fn changes_of_velocity_without_a_common_end_are_not_both_taken() {
+        let text = |end: &str| {
+            format!(
+                "Time [ms],Delta-V Longitudinal [km/h],Delta-V Lateral [km/h]\n\
+                 0,0,0\n50,-10,1\n80,-18,2\n100,{end},3\n200,,4\n250,,4\n"
+            )
+        };
+        let record = read(&text("-25"), None).unwrap();
+        assert!(record.delta_v_ahead.is_some() && record.delta_v_right.is_none(), "{record:?}");
+        assert!(record.doubts.iter().any(|doubt| doubt.contains("different times")), "{record:?}");
+        let settled = read(&text("-18"), None).unwrap();
+        assert!(settled.delta_v_ahead.is_some() && settled.delta_v_right.is_some(), "{settled:?}");
     }
 
     #[test]

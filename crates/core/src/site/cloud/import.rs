@@ -8,6 +8,7 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use crate::data::{Existing, MAX_RASTER_PIXELS, write_atomically};
 use crate::jobs::{Progress, ProgressCallback};
+use crate::site::cloud::las_unit::{CoordinateUnit, stated_unit};
 use crate::site::cloud::raster::{Raster, is_possible, size_px};
 use crate::site::cloud::source::{damaged, for_each_point, unit_m};
 use crate::site::parts::file_name;
@@ -80,6 +81,15 @@ pub fn import_cloud(
         }
     };
     let (first, second) = (halves(0), halves(1));
+    let stated = match format {
+        CloudFormat::Las => stated_unit(path),
+        CloudFormat::E57 => None,
+    };
+    if stated == Some(CoordinateUnit::Degrees) {
+        let why =
+            "its coordinates are longitude and latitude; bring it into a projected system first";
+        return Err(damaged(path, &why));
+    }
     let summary = survey_cloud(path, format, options.unit, &mut |of| report(first(of)))?;
     let [low_m, high_m] = options
         .within_m
@@ -106,7 +116,28 @@ pub fn import_cloud(
     let Some(heights_m) = raster.heights_m() else {
         return Err(damaged(path, &"it has no points within what is to be drawn"));
     };
-    write(path, (&summary, heights_m), &raster, folder)
+    let mut made = write(path, (&summary, heights_m), &raster, folder)?;
+    if format == CloudFormat::Las {
+        made.notes.extend(unit_note(options.unit, stated));
+    }
+    Ok(made)
+}
+
+/// What is said of the unit that the coordinates of LAS are taken in.
+fn unit_note(unit: LengthUnit, stated: Option<CoordinateUnit>) -> Option<String> {
+    let taken = unit.word();
+    match stated {
+        Some(CoordinateUnit::Length(stated)) if stated == unit => None,
+        Some(CoordinateUnit::Length(stated)) => Some(format!(
+            "its coordinate system is in {}, and its coordinates were taken as {taken}: if that was not on purpose, \
+             all lengths are wrong; say the unit (--unit {})",
+            stated.word(),
+            stated.word()
+        )),
+        _ => {
+            Some(format!("it does not say the unit of its coordinates; they were taken as {taken}"))
+        }
+    }
 }
 
 /// An empty raster, if it is not too large.

@@ -11,6 +11,7 @@ mod source;
 mod e57_points;
 mod las_check;
 mod las_points;
+mod las_unit;
 
 mod raster;
 

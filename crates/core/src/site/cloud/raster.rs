@@ -14,6 +14,8 @@ const MAX_SIDE: f64 = 65_535.0;
 pub(super) struct Raster {
     /// Left top corner: easting and northing, m.
     pub corner_m: [f64; 2],
+    /// Index of its column and of its row among all multiples of a pixel, to the east and to the north.
+    corner_px: [f64; 2],
     /// Side of a pixel, m.
     pub pixel_m: f64,
     /// Width and height, pixels.
@@ -53,13 +55,15 @@ impl Raster {
         let [left, top] = [extent_m[0][0], extent_m[1][1]].map(|side| (side / pixel_m).floor());
         let corner_m = [left * pixel_m, (top + 1.0) * pixel_m];
         let cells = vec![Cell::default(); width * height];
-        Self { corner_m, pixel_m, size_px, base_m, cells }
+        Self { corner_m, corner_px: [left, top], pixel_m, size_px, base_m, cells }
     }
 
     /// Takes a point, unless it lies outside.
     pub fn take(&mut self, [easting_m, northing_m, height_m]: [f64; 3], color: [f32; 3]) {
-        let column = ((easting_m - self.corner_m[0]) / self.pixel_m).floor();
-        let row = ((self.corner_m[1] - northing_m) / self.pixel_m).floor();
+        // Counted as the size is, so that no point on the border of the extent is lost.
+        let [left, top] = self.corner_px;
+        let column = (easting_m / self.pixel_m).floor() - left;
+        let row = top - (northing_m / self.pixel_m).floor();
         let [width, height] = self.size_px.map(f64::from);
         if !(0.0..width).contains(&column) || !(0.0..height).contains(&row) {
             return;
@@ -138,12 +142,27 @@ mod tests {
         for (height_m, color) in [(103.0, roof), (100.0, road), (100.1, [0.4; 3]), (104.0, roof)] {
             raster.take([0.1, 0.95, height_m], color);
         }
-        raster.take([-0.1, 0.0, 100.0], roof);
+        raster.take([-0.1, 0.2, 100.0], roof);
         raster.take([0.1, 9.0, 100.0], roof);
         let pixels = raster.rgba(|color, _| color);
         assert_eq!(pixels[..8], [77, 77, 77, 255, 255, 255, 255, 0], "the mean of two, and a hole");
         assert!((raster.filled() - 1.0 / 6.0).abs() < 1e-12);
         assert_eq!(raster.heights_m(), Some([100.0, 100.0]));
+    }
+
+    /// The lowest and the highest point of an extent are in its picture, wherever the lines of pixels lie.
+    #[test]
+    fn no_point_on_the_border_is_lost() {
+        for pixel_m in [0.05, 0.1, 0.03, 0.5] {
+            for low in [0.0, 0.3, 512_345.15, -17.4] {
+                let extent_m = [[low, low], [low + 1.2, low + 1.2]];
+                for at in extent_m {
+                    let mut raster = Raster::new(extent_m, pixel_m, 0.0);
+                    raster.take([at[0], at[1], 0.0], [0.5; 3]);
+                    assert!(raster.filled() > 0.0, "{at:?} with {pixel_m} m");
+                }
+            }
+        }
     }
 
     #[test]

@@ -111,6 +111,8 @@ fn a_cloud_becomes_an_orthophoto_in_its_place() {
     ] {
         let Imported { report, site, _folder } = import(&bytes, &coarse()).expect(name);
         assert_eq!(report.summary.n_points, 33, "{name}");
+        let is_unit_open = report.notes.iter().any(|note| note.contains("does not say the unit"));
+        assert_eq!(is_unit_open, name != "E57", "{name}: {:?}", report.notes);
         assert_eq!((report.size_px, report.filled), ([8, 4], 1.0), "{name}");
         let [low_m, high_m] = report.heights_m;
         let is_road = (low_m - 100.0).abs() < 1e-3 && (high_m - 100.07).abs() < 1e-3;

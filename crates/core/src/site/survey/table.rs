@@ -63,6 +63,8 @@ struct Columns {
     name: Option<usize>,
     code: Option<usize>,
     units: [Option<LengthUnit>; 3],
+    /// Whether the columns are called x and y, which some surveys count to the north and to the east.
+    is_xy: bool,
 }
 
 impl Columns {
@@ -94,6 +96,7 @@ impl Columns {
             name,
             code,
             units,
+            is_xy: is_plain,
         })
     }
 }
@@ -168,6 +171,13 @@ impl Columns {
         let mut notes = Vec::new();
         if options.unit.is_none() && self.units == [None; 3] {
             notes.push("no unit is said; coordinates are taken as metres".to_owned());
+        }
+        if self.is_xy {
+            notes.push(
+                "x is taken as easting and y as northing; a survey whose x counts to the north (as Hochwert) would be \
+                 mirrored: call its columns N and E"
+                    .to_owned(),
+            );
         }
         if self.code.is_none() {
             notes.push("there is no column of codes, so that all are points".to_owned());
@@ -252,6 +262,17 @@ mod tests {
         ] {
             assert!(!is_table(header), "{header}");
         }
+    }
+
+    #[test]
+    fn x_and_y_are_said_to_be_east_and_north() {
+        let notes = |header: &str| {
+            let text = format!("{header}\n1,2,3,4,TREE\n");
+            read(Path::new("points.csv"), &text, &SurveyOptions::default()).unwrap().notes
+        };
+        let is_said = |notes: Vec<String>| notes.iter().any(|note| note.contains("mirrored"));
+        assert!(is_said(notes("id,x,y,z,code")));
+        assert!(!is_said(notes("id,E,N,Z,code")));
     }
 
     #[test]

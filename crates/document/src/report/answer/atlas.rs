@@ -108,6 +108,9 @@ fn table(cell: &Cell, wording: &Wording) -> Table {
             None => wording.percent(value),
         };
         let (mean, error) = match told.mean {
+            Some(mean) if !told.is_sound() => {
+                (format!("{} ({})", shown(mean), words.atlas_doubtful), shown(told.error))
+            }
             Some(mean) => (shown(mean), shown(told.error)),
             None => (words.atlas_few.to_owned(), String::new()),
         };

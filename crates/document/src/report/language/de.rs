@@ -120,6 +120,7 @@ pub(super) const WORDS: Words = Words {
                     mehr",
     atlas_error: "Standardfehler",
     atlas_few: "zu wenige",
+    atlas_doubtful: "nicht verlässlich",
     after_second_contact: "Die Fahrzeuge berühren sich vor dem Ende erneut, und dieser Kontakt wird nicht berechnet: \
         wohin sie danach kommen, hat keine Wahrscheinlichkeit, und die Mediane sind die einer Bewegung ohne ihn.",
     forecast_yaw_picture: "Vorhersage: Gierwinkel des gestoßenen Fahrzeugs über der Zeit mit Bändern",

@@ -117,6 +117,7 @@ pub(super) const WORDS: Words = Words {
     atlas_picture: "The case in the atlas of the PIT manoeuvre, a model study: probability of a turn by 90° or more",
     atlas_error: "Standard error",
     atlas_few: "too few",
+    atlas_doubtful: "not to be relied upon",
     after_second_contact: "The vehicles meet again before the end, and that contact is not computed: where they go \
         after it has no probability, and the medians are those of a motion without it.",
     forecast_yaw_picture: "Forecast: heading of the struck vehicle over time with its bands",

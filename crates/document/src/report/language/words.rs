@@ -97,6 +97,7 @@ pub(in crate::report) struct Words {
     pub atlas_picture: &'static str,
     pub atlas_error: &'static str,
     pub atlas_few: &'static str,
+    pub atlas_doubtful: &'static str,
     pub forecast_yaw_picture: &'static str,
     pub meaning_hand: &'static str,
     pub meaning_posterior: &'static str,

@@ -48,7 +48,8 @@ struct Palette {
 }
 
 impl Palette {
-    /// The colours that are cut apart where they differ most, by median cut.
+    /// The colours that are cut apart where they differ most, in the middle: a few pixels of a colour of
+    /// their own, such as a line, keep it.
     fn of(pixels: &Pixels) -> Self {
         let mut counts: BTreeMap<Rgb, u64> = BTreeMap::new();
         for color in colors(pixels) {
@@ -99,20 +100,15 @@ impl Group {
         n.isqrt() * u64::from(width) * u64::from(width)
     }
 
-    /// The colours below and above the middle of the pixels, neither of them empty.
-    fn halves(mut self) -> [Self; 2] {
+    /// The colours below and above the middle of the widest component, neither of them empty.
+    fn halves(self) -> [Self; 2] {
         let (component, _) = self.widest();
-        self.colors.sort_by_key(|(color, _)| (color.get(component).copied(), *color));
-        let all: u64 = self.colors.iter().map(|(_, n)| n).sum();
-        let mut below = 0;
-        let is_below = |(_, n): &&(Rgb, u64)| {
-            below += n;
-            2 * below <= all
-        };
-        let n = self.colors.iter().take_while(is_below).count();
-        let n = n.clamp(1, self.colors.len().saturating_sub(1).max(1));
-        let above = self.colors.split_off(n.min(self.colors.len()));
-        [self, Self { colors: above }]
+        let of = |color: &Rgb| u16::from(color.get(component).copied().unwrap_or(0));
+        let values = || self.colors.iter().map(|(color, _)| of(color));
+        let ends = values().min().unwrap_or(0) + values().max().unwrap_or(0);
+        let is_below = |(color, _): &(Rgb, u64)| 2 * of(color) <= ends;
+        let (below, above) = self.colors.iter().copied().partition(is_below);
+        [Self { colors: below }, Self { colors: above }]
     }
 
     fn mean(&self) -> Rgb {

@@ -108,10 +108,16 @@ impl<'a> Chosen<'a> {
             What::Forces(parts) if parts.iter().any(|part| part.kind == Kind::Spring) => {
                 text += "; the force of a spring is in the axes of the spring";
             }
-            What::Forces(_) => {}
+            What::Forces(_) => {
+                text +=
+                    "; x and y are the axes of the model, taken as the plane of the road with z up";
+            }
             What::Node(_) | What::Axis(_) => {
                 text += "; the first node stands for the centre of gravity";
             }
+        }
+        if let Some(open) = self.open_sign().filter(|_| self.is_said) {
+            text += &format!("; {open}");
         }
         results.notes.iter().fold(text, |text, note| format!("{text}; {note}"))
     }
@@ -121,6 +127,7 @@ impl<'a> Chosen<'a> {
         let mut doubts = results.doubts.clone();
         if !self.is_said {
             doubts.extend(self.open_choice(results));
+            doubts.extend(self.open_sign());
         }
         if let Some((share, true)) = self.disagreement(results) {
             doubts.push(format!(
@@ -135,6 +142,7 @@ impl<'a> Chosen<'a> {
         if let What::Axis(nodes) = &self.what {
             doubts.extend(bent(nodes));
         }
+        doubts.extend(self.off_plane());
         doubts
     }
 
@@ -166,6 +174,37 @@ impl<'a> Chosen<'a> {
             )),
             What::Axis(_) => None,
         }
+    }
+
+    /// That a force acts on one of two sides, and the file says neither on which nor what acts on the other.
+    fn open_sign(&self) -> Option<String> {
+        let What::Forces(parts) = &self.what else { return None };
+        let part = parts.iter().find(|part| part.other_side.is_none())?;
+        Some(format!(
+            "on which of its two sides {} acts is not in the file; for the other one its columns take a minus in the \
+             map, fx=-2,fy=-3",
+            part.name
+        ))
+    }
+
+    /// That most of an impulse is along z, where it should be in the plane of the road.
+    fn off_plane(&self) -> Option<String> {
+        let What::Forces(parts) = &self.what else { return None };
+        let columns = sum(parts);
+        let time = parts.first()?.time.as_slice();
+        let impulse = |name: &str| {
+            let values = &columns.iter().find(|(of, ..)| *of == name)?.2;
+            let steps = time.windows(2).zip(values.windows(2));
+            let area = |(t, f): (&[f64], &[f64])| match (t, f) {
+                ([t0, t1], [f0, f1]) => (t1 - t0) * (f0 + f1) / 2.0,
+                _ => 0.0,
+            };
+            Some(steps.map(area).sum::<f64>())
+        };
+        let (x, y, z) = (impulse("fx")?, impulse("fy")?, impulse("fz")?);
+        (z.abs() > x.hypot(y)).then(|| {
+            "most of the impulse is along z: x and y may not be the plane of the road in this model".to_owned()
+        })
     }
 
     /// By how much both sides of a contact differ, as a share of the peak, and whether that is too much.

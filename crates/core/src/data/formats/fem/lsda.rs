@@ -21,6 +21,10 @@ use crate::data::{DataError, Place, open_file};
 /// Bytes of the header.
 const HEAD_BYTES: usize = 8;
 
+/// What an array takes beside its values, bytes: its name, and its place among others. A file may hold many that
+/// are empty.
+const ARRAY_BYTES: u64 = 128;
+
 /// Longest path of a folder, bytes.
 const MAX_PATH_BYTES: u64 = 4096;
 
@@ -255,7 +259,7 @@ impl Reader<'_> {
             let why = format!("{data_bytes} bytes of numbers of {width} bytes");
             return Err(self.damaged(start, why));
         }
-        let held = data_bytes / width as u64 * 8;
+        let held = ARRAY_BYTES + data_bytes / width as u64 * 8;
         *left = left.checked_sub(held).ok_or_else(|| {
             let (path, limit) = (self.path.to_owned(), MAX_TABLE_BYTES);
             DataError::TooLarge { path, bytes: limit + held, limit }
