@@ -57,21 +57,30 @@ fn drawings() {
 }
 
 #[test]
-fn surveys() {
-    for (name, file_name, format) in [
-        ("kml", "map.kml", SurveyFormat::Kml),
-        ("geojson", "map.geojson", SurveyFormat::GeoJson),
-        ("survey-table", "points.csv", SurveyFormat::Table),
-    ] {
-        text_format((name, 4_000), file_name, &|path| match Site::from_survey(
-            path,
-            format,
-            &SurveyOptions::default(),
-        ) {
+fn maps_in_kml() {
+    surveys_of("kml", "map.kml", SurveyFormat::Kml);
+}
+
+#[test]
+fn maps_in_geojson() {
+    surveys_of("geojson", "map.geojson", SurveyFormat::GeoJson);
+}
+
+#[test]
+fn surveyed_points() {
+    surveys_of("survey-table", "points.csv", SurveyFormat::Table);
+}
+
+fn surveys_of(name: &'static str, file_name: &'static str, format: SurveyFormat) {
+    let options = SurveyOptions::default();
+    text_format(
+        (name, 4_000),
+        file_name,
+        &|path| match Site::from_survey(path, format, &options) {
             Ok(site) => Answer::accepted(&(&site, site.contents(None))),
             Err(error) => Answer::refused(&error),
-        });
-    }
+        },
+    );
 }
 
 #[test]

@@ -110,6 +110,11 @@ impl CheckedHeader {
             return Err(format!("it says that it has {n} points in {bytes} bytes"));
         }
         let Some(table) = self.table_start() else { return Ok(()) };
+        if table > bytes {
+            return Err(format!(
+                "its table of chunks begins at byte {table}, the file has {bytes}"
+            ));
+        }
         let n_chunks = self.number_at(table).map_or(0, |number| number >> 32);
         match n_chunks > bytes / CHUNK_BYTES {
             true => Err(format!("it says that it has {n_chunks} chunks in {bytes} bytes")),
@@ -149,17 +154,26 @@ impl CheckedHeader {
         let end = self.table_start().unwrap_or(self.bytes).min(self.bytes);
         let mut at = u64::from(self.header.offset_to_point_data) + 8;
         let sizes_at = record + 4;
-        let mut sizes = vec![0; usize::try_from(4 * n_layers).unwrap_or(0)];
+        // The number of points of a chunk, and the sizes of its layers.
+        let mut sizes = vec![0; usize::try_from(4 + 4 * n_layers).unwrap_or(0)];
+        let mut n_points = 0;
         while at + sizes_at + 4 * n_layers <= end {
-            let read = self.read.seek(SeekFrom::Start(at + sizes_at));
+            let read = self.read.seek(SeekFrom::Start(at + record));
             read.and_then(|_| self.read.read_exact(&mut sizes)).map_err(|error| wrong(&error))?;
             let size =
                 |bytes: &[u8]| u64::from(u32::from_le_bytes(bytes.try_into().unwrap_or_default()));
-            let layers: u64 = sizes.chunks_exact(4).map(size).sum();
+            let mut sizes = sizes.chunks_exact(4).map(size);
+            n_points += sizes.next().unwrap_or(0);
+            let layers: u64 = sizes.sum();
             at += sizes_at + 4 * n_layers + layers;
             if layers > MAX_RECORD_BYTES || at > end {
                 return Err(wrong(&"the layers of a chunk are longer than the file"));
             }
+        }
+        if self.n_points > n_points {
+            let said = self.n_points;
+            let why = format!("it says that it has {said} points, its chunks have {n_points}");
+            return Err(wrong(&why));
         }
         Ok(())
     }
