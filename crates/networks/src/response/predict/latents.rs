@@ -104,7 +104,7 @@ pub struct Widths {
     pub widening: f64,
     /// Ratio of the wider to the narrower; 1 for a normal distribution.
     pub tail_ratio: f64,
-    /// Growth of the standard deviations of the strengths within [`GROWTH_S`]; 0 where they are constant.
+    /// Growth of the standard deviations of the strengths within 4 s; 0 where they are constant.
     pub growth: f64,
 }
 
