@@ -7,8 +7,8 @@ use crate::vehicle::path_batch::{CONTACT_STEP_S as ZONE_STEP_S, RATE_TIMES_STEP,
 use crate::vehicle::run::{Run, StepInputs};
 use crate::vehicle::tire::SLIP_ANGLE_SPEED_M_S;
 use crate::vehicle::{
-    CollisionForce, Integrator, Manoeuvre, Motion, N_ACCELERATION, N_STATE, SimulationError,
-    VehicleInput, VehicleParameters, VehicleState, WheelEffort,
+    CollisionForce, Integrator, Manoeuvre, Motion, N_ACCELERATION, N_STATE, OUTPUT_INTERVAL_S,
+    SimulationError, VehicleInput, VehicleParameters, VehicleState, WheelEffort,
 };
 
 /// Largest turn of a vehicle over a step, rad: the momentum of a body that moves freely, whose velocity is
@@ -19,6 +19,14 @@ const LARGEST_TURN_RAD: f64 = 0.02;
 /// stable up to λ h = 1: it then follows a rate λ h = 0.5.
 const PUSHED_SHARE: f64 = 0.35;
 
+/// Largest share of the energy that tires and resistance take from a vehicle which a residual acceleration
+/// gives back: what the equations of motion miss may halve how fast a vehicle slows down, and not drive it.
+const GIVEN_BACK_SHARE: f64 = 0.5;
+
+/// Time over which what may be given back is kept, s: noise, which gives and takes, is then not taken for a
+/// drive.
+const GIVEN_BACK_TIME_S: f64 = 1.0;
+
 /// A motion under a collision force that is held over steps. It stands at an output instant; the states
 /// within an output interval belong to the caller.
 pub(crate) struct HeldForceRun<'a> {
@@ -28,6 +36,8 @@ pub(crate) struct HeldForceRun<'a> {
     roll_step_s: f64,
     /// Time derivative in the middle of the step before, if a collision force acted.
     before: Option<[f64; N_STATE]>,
+    /// Energy that a residual acceleration may still give to the planar motion, J.
+    given_back_j: f64,
 }
 
 impl<'a> HeldForceRun<'a> {
@@ -46,6 +56,7 @@ impl<'a> HeldForceRun<'a> {
                 / (vehicle.tire_rate_at_rest_1_s() * SLIP_ANGLE_SPEED_M_S),
             roll_step_s: vehicle.roll_step_s(),
             before: None,
+            given_back_j: 0.0,
         })
     }
 
@@ -181,6 +192,36 @@ impl<'a> HeldForceRun<'a> {
             y_m: x.y_m + mean(old[1], new[1]),
         }
         .to_array()
+    }
+
+    /// A residual acceleration over the coming output interval, scaled back where it would drive a vehicle
+    /// that nothing drives. With the power P of tires and resistance at the beginning of each interval its
+    /// work W on the planar motion is bounded by an account E:
+    ///
+    /// ```text
+    /// W ≤ E + κ |P| h        E' = min(E + κ |P| h − W, κ |P| 1 s)        κ = 0.5
+    /// ```
+    pub fn bounded_residual(&mut self, residual: [f64; N_ACCELERATION]) -> [f64; N_ACCELERATION] {
+        let coming = VehicleInput { collision: None, ..self.run.coming() };
+        if coming.is_driven() || residual == [0.0; N_ACCELERATION] {
+            return residual;
+        }
+        let x = VehicleState::from_array(self.run.state);
+        let constants = &self.run.constants;
+        let work_j = constants.planar_power_w(&x, residual) * OUTPUT_INTERVAL_S;
+        let per_time_w = GIVEN_BACK_SHARE * constants.power_taken_w(&x, &coming);
+        let available_j = self.given_back_j + per_time_w * OUTPUT_INTERVAL_S;
+        let share = if work_j > available_j { available_j / work_j } else { 1.0 };
+        self.given_back_j = (available_j - share * work_j).min(per_time_w * GIVEN_BACK_TIME_S);
+        residual.map(|acceleration| share * acceleration)
+    }
+
+    /// Acceleration of the CG by tires and resistance at the output instant, m/s².
+    pub fn tire_acceleration_m_s2(&self) -> f64 {
+        let coming = VehicleInput { collision: None, ..self.run.coming() };
+        let x = VehicleState::from_array(self.run.state);
+        let [along, across] = self.run.constants.acceleration_by_tires_m_s2(&x, &coming).0;
+        along.hypot(across)
     }
 
     /// The state at the end of an output interval without a collision force, with the planar energy of

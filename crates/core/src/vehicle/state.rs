@@ -93,6 +93,18 @@ impl<T: Lanes> VehicleState<T> {
         self
     }
 
+    /// The same pose without any motion.
+    pub(crate) fn at_rest(self) -> Self {
+        let still = self.x_m.constant(0.0);
+        Self {
+            vx_body_m_s: still,
+            vy_body_m_s: still,
+            yaw_rate_rad_s: still,
+            roll_rate_rad_s: still,
+            ..self
+        }
+    }
+
     /// The components [X, Y, ψ, v_x, v_y, r] of the planar motion, by which trajectories are
     /// compared.
     pub fn planar(&self) -> [T; 6] {

@@ -23,6 +23,9 @@ const STRAIGHT_RAD: f64 = 0.01;
 /// Speed below which what the equations of motion miss fades, m/s.
 const SLOW_M_S: f64 = 5.0;
 
+/// Acceleration by the tires from which on a vehicle is taken to turn or slide, m/s².
+const SLIDING_M_S2: f64 = 2.0;
+
 /// Words by which the draws of both vehicles differ.
 const ROLES: [&str; 2] = ["struck", "striking"];
 
@@ -177,16 +180,17 @@ impl PairQuestion<'_> {
             conditions: self.conditions,
             missed: [[0.0; 3]; 2],
         };
-        self.simulate(&median, corrections)
+        self.simulate(&median, corrections, CoupledSettings::default())
     }
 
-    /// One draw by itself, without the motion at the medians. It depends on the question, the seed and
-    /// the scatter alone.
+    /// One draw by itself, without the motion at the medians, in the longer steps of motions of which none
+    /// is told by itself. It depends on the question, the seed and the scatter alone.
     ///
     /// # Errors
     /// [`PairError`] if it cannot be computed.
     pub fn single_draw(&self, settings: &PairSettings) -> Result<PairMotion, PairError> {
-        self.drawn_motion(0, &PairLatents::new(1, settings.seed), settings)
+        let steps = CoupledSettings { has_long_steps: true, ..CoupledSettings::default() };
+        self.drawn_motion(0, &PairLatents::new(1, settings.seed), settings, steps)
     }
 
     fn draw(
@@ -195,7 +199,7 @@ impl PairQuestion<'_> {
         latents: &PairLatents,
         settings: &PairSettings,
     ) -> Result<PairDraw, PairError> {
-        let motion = self.drawn_motion(draw, latents, settings)?;
+        let motion = self.drawn_motion(draw, latents, settings, CoupledSettings::default())?;
         Ok(PairDraw::from_motion(draw, motion))
     }
 
@@ -204,6 +208,7 @@ impl PairQuestion<'_> {
         draw: usize,
         latents: &PairLatents,
         settings: &PairSettings,
+        steps: CoupledSettings,
     ) -> Result<PairMotion, PairError> {
         let scatter = &settings.scatter;
         let own = [0, 1].map(|i| in_turn(self.drawn[i], draw));
@@ -233,13 +238,14 @@ impl PairQuestion<'_> {
             let predictor = own[i].map_or(self.predictors[i], |drawn| drawn.predictor.as_ref());
             Some(correcting(predictor)?.coupled_draw(settings.seed, ROLES[i], draw))
         });
-        self.simulate(&drawn, corrections)
+        self.simulate(&drawn, corrections, steps)
     }
 
     fn simulate(
         &self,
         drawn: &Drawn,
         mut corrections: [Option<CoupledDraw<'_>>; 2],
+        settings: CoupledSettings,
     ) -> Result<PairMotion, PairError> {
         let vehicle = |i: usize| PairVehicle {
             vehicle: &drawn.vehicles[i],
@@ -247,11 +253,7 @@ impl PairQuestion<'_> {
             body: ContactBody { outline: self.outlines[i], faces: drawn.faces[i] },
         };
         let vehicles = [vehicle(0), vehicle(1)];
-        let pair = VehiclePair {
-            vehicles,
-            conditions: drawn.conditions,
-            settings: CoupledSettings::default(),
-        };
+        let pair = VehiclePair { vehicles, conditions: drawn.conditions, settings };
         let mut run = PairRun::new(&pair)?;
         loop {
             let residuals = [0, 1].map(|i| {
@@ -287,7 +289,8 @@ fn residual(
 }
 
 /// What the equations of motion miss over the coming interval: nothing of a vehicle that drives straight
-/// on and has not been touched yet, and less and less of one that comes to rest.
+/// on and has not been touched yet, and less and less of one that comes to rest or rolls freely, whose
+/// resistance is drawn by itself.
 fn missed(run: &PairRun<'_>, vehicle: usize, drawn: [f64; 3]) -> [f64; 3] {
     let is_straight = || run.input(vehicle).steer_rad.abs() < STRAIGHT_RAD;
     if run.first_contact_s().is_none() && is_straight() {
@@ -295,7 +298,8 @@ fn missed(run: &PairRun<'_>, vehicle: usize, drawn: [f64; 3]) -> [f64; 3] {
     }
     let state = run.states()[vehicle];
     let speed_m_s = state.vx_body_m_s.hypot(state.vy_body_m_s);
-    drawn.map(|missed| missed * (speed_m_s / SLOW_M_S).min(1.0))
+    let by_tires = run.tire_acceleration_m_s2(vehicle) / SLIDING_M_S2;
+    drawn.map(|missed| missed * (speed_m_s / SLOW_M_S).min(by_tires).min(1.0))
 }
 
 impl PairDraw {

@@ -195,6 +195,13 @@ impl<'a> PairRun<'a> {
         self.moves.map(|moves| !moves)
     }
 
+    /// Acceleration of the CG of a vehicle by its tires and what resists its motion at this instant, m/s².
+    ///
+    /// - `vehicle`: 0 for the struck, 1 for the striking one.
+    pub fn tire_acceleration_m_s2(&self, vehicle: usize) -> f64 {
+        self.runs[vehicle].tire_acceleration_m_s2()
+    }
+
     /// When the vehicles first touched each other, s; `None` if they have not.
     pub fn first_contact_s(&self) -> Option<f64> {
         self.phases.first_s()
@@ -203,11 +210,13 @@ impl<'a> PairRun<'a> {
     /// Goes on to the next output instant and records this one, and says whether there is more to do.
     ///
     /// - `residuals`: accelerations of each vehicle that the equations of motion leave out, held over
-    ///   the interval: v̇_x, v̇_y in m/s², ṙ, φ̈ in rad/s².
+    ///   the interval: v̇_x, v̇_y in m/s², ṙ, φ̈ in rad/s². They are scaled back where they would give a
+    ///   vehicle that nothing drives more than half of what its tires and resistance take.
     ///
     /// # Errors
     /// [`PairError::Vehicle`] if a motion cannot be computed.
     pub fn goes_on(&mut self, residuals: &[[f64; N_ACCELERATION]; 2]) -> Result<bool, PairError> {
+        let residuals = &[0, 1].map(|i| self.runs[i].bounded_residual(residuals[i]));
         let mut states: States = [0, 1].map(|i| *self.runs[i].state());
         let mut sums = IntervalSums::default();
         let is_last = self.runs[0].is_last();
@@ -292,7 +301,7 @@ impl<'a> PairRun<'a> {
     }
 
     /// Takes one step of both vehicles under the contact force in its middle. A fixed object stays where it
-    /// is.
+    /// is, and a vehicle at rest does until it is pushed.
     fn step(
         &mut self,
         states: &States,
@@ -321,6 +330,10 @@ impl<'a> PairRun<'a> {
         let mut next = *states;
         for i in 0..2 {
             if self.pair.vehicles[i].vehicle.fixed.is_some() {
+                continue;
+            }
+            if force.is_none() && !self.moves[i] {
+                next[i] = VehicleState::from_array(next[i]).at_rest().to_array();
                 continue;
             }
             let collision = force.map(|force| self.collision_force(i, &force, &middle[i]));

@@ -343,6 +343,39 @@ fn long_steps_and_long_elements_change_a_pit_manoeuvre_by_less_than_a_car_width(
     }
 }
 
+/// Residual accelerations that would drive and spin a coasting car without end leave it at least half of
+/// what its tires take, and noise that gives as often as it takes is hardly changed.
+#[test]
+fn what_the_equations_miss_does_not_drive_a_vehicle() {
+    let mut cars = pit_manoeuvre(0.08);
+    cars[1].manoeuvre.initial.y_m = 30.0;
+    cars.iter_mut().for_each(|car| car.manoeuvre.duration_s = 12.0);
+    cars[0].manoeuvre.initial.yaw_rate_rad_s = 2.0;
+    let energy_j = |residual: &dyn Fn(usize) -> [f64; N_ACCELERATION]| {
+        let vehicles = [&cars[0], &cars[1]].map(TestCar::in_pair);
+        let (conditions, settings) = (ContactConditions::default(), CoupledSettings::default());
+        let pair = VehiclePair { vehicles, conditions, settings };
+        let mut run = PairRun::new(&pair).unwrap();
+        let mut instant = 0;
+        while run.goes_on(&[residual(instant), [0.0; N_ACCELERATION]]).unwrap() {
+            instant += 1;
+        }
+        cars[0].vehicle.energy_j(&last_state(&run.finish().unwrap().motions[0]))
+    };
+    let start_j = cars[0].vehicle.energy_j(&cars[0].manoeuvre.initial);
+    let lost_j = start_j - energy_j(&|_| [0.0; N_ACCELERATION]);
+    for driving in [[3.0, 0.0, 0.0, 0.0], [0.0, 0.0, 4.0, 0.0], [3.0, 2.0, -4.0, 0.0]] {
+        let driven_j = start_j - energy_j(&|_| driving);
+        assert!(driven_j > 0.3 * lost_j, "{driving:?}: {driven_j} J of {lost_j} J are lost");
+    }
+    let noisy_j = start_j
+        - energy_j(&|instant| {
+            let sign = if instant.is_multiple_of(2) { 0.2 } else { -0.2 };
+            [sign, sign, sign, 0.0]
+        });
+    assert!((noisy_j / lost_j - 1.0).abs() < 0.02, "{noisy_j} J of {lost_j} J");
+}
+
 #[test]
 fn vehicles_that_do_not_meet_move_as_by_themselves() {
     let mut cars = pit_manoeuvre(0.08);
