@@ -1,14 +1,15 @@
 //! The rows of a PIT: from the inputs of a row to its scenario.
 //!
 //! The lane is along the heading of the struck car in the scenario of the plan. What does not vary stays as
-//! the scenario has it.
+//! the scenario has it. Where the scenario does not say what the driver of the striking car does, he turns
+//! in, keeps the speed, and straightens and brakes once the struck car has turned, or after two seconds.
 
 use impactlab_core::collision::{ContactLocation, Scenario, Side};
 use impactlab_core::numerics::{latin_normals, random_stream};
 use impactlab_core::ranges::{CONTACT_OFFSET, ROAD_FRICTION, Range, SPEED, YAW_RATE};
 use impactlab_core::vehicle::{
-    Braking, Countersteer, DEFAULT_BRAKE_RISE_S, StabilityControl, VehicleParameters,
-    built_in_vehicle,
+    Braking, Countersteer, DEFAULT_BRAKE_RISE_S, Ending, PitDriver, PitEnd, StabilityControl,
+    TurnSide, VehicleParameters, built_in_vehicle,
 };
 use impactlab_study::{DEFAULT_STRIKING, DEFAULT_VEHICLE};
 use serde_json::Value;
@@ -56,6 +57,9 @@ pub enum PitInput {
 
 /// Median reaction of a driver who brakes, s, and braking force over what the road can hold.
 const BRAKING: [f64; 2] = [0.8, 0.8];
+
+/// Time after the first contact at which a driver ends the pushing of a car that does not turn, s.
+const LONGEST_PUSH_S: f64 = 2.0;
 
 impl PitInput {
     /// Its name in a plan and in a table.
@@ -229,6 +233,7 @@ impl PitRow {
             let middle_m = scenario.struck.cg_from_front_m - scenario.struck.length_m / 2.0;
             *offset_m = overlap_m - vehicles[0].geometry.cg_to_rear_axle_m - middle_m;
         }
+        scenario.striking_ending.get_or_insert_with(|| turning_in(side));
         let ending = scenario.ending.get_or_insert_default();
         if let Some(esc) = number(PitInput::Esc) {
             ending.esc = (esc > 0.5).then(StabilityControl::default);
@@ -255,6 +260,17 @@ impl PitRow {
         }
         self
     }
+}
+
+/// What the driver of a striking car does who turns to a side, 1 to the left and −1 to the right.
+fn turning_in(side: f64) -> Ending {
+    let driver = PitDriver {
+        side: if side > 0.0 { TurnSide::Left } else { TurnSide::Right },
+        end: Some(PitEnd::Brake),
+        longest_s: Some(LONGEST_PUSH_S),
+        ..PitDriver::default()
+    };
+    Ending { pit: Some(driver), ..Ending::default() }
 }
 
 /// Velocities and heading of both vehicles, in axes along the lane.
@@ -321,6 +337,8 @@ mod tests {
         assert!(row.vehicles.iter().all(|vehicle| vehicle.tires.friction == 0.5));
         let ending = scenario.ending.as_ref().unwrap();
         assert!(ending.esc.is_some() && ending.brake.is_some() && ending.countersteer.is_none());
+        let striking = scenario.striking_ending.as_ref().unwrap().pit.unwrap();
+        assert_eq!((striking.side, striking.end), (TurnSide::Left, Some(PitEnd::Brake)));
         let geometry = scenario.geometry().unwrap();
         let [x_m, y_m] = geometry.struck.body_from_world(geometry.contact_point_world_m);
         let slides = |input| match input {
