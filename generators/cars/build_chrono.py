@@ -1,11 +1,11 @@
-"""Builds the driver on the smallest part of Project Chrono that it needs, from a git clone of its source.
+"""Builds the drivers on the smallest part of Project Chrono that they need, from a git clone of its source.
 
     git clone https://github.com/projectchrono/chrono
     python3 build_chrono.py chrono OUT [--jobs 2]
 
-Makes OUT/drive_car, and OUT/chrono/data/vehicle, the descriptions of vehicles that run.py reads. Needs g++
-and the headers of Eigen 3 (libeigen3-dev). It compiles 180 files of Chrono, about 40 minutes on two cores,
-and goes on where it was stopped. No build system: the files follow from what the linker misses.
+Makes OUT/drive_car, OUT/drive_pair for pairs of cars, and OUT/chrono/data/vehicle, the descriptions of vehicles
+that run.py reads. Needs g++ and the headers of Eigen 3 (libeigen3-dev). It compiles 180 files of Chrono, 5 to 40
+minutes on two cores, and goes on where it was stopped. No build system: the files follow from what the linker misses.
 """
 
 import argparse
@@ -19,10 +19,13 @@ from pathlib import Path
 COMMIT = "7689fbc02d12c5419fa6acad8791100fd89979dd"
 SOURCE_FOLDERS = ("src/chrono", "src/chrono_vehicle", "src/chrono_thirdparty")
 DATA_FOLDER = "data/vehicle"
-DRIVER_FOLDER = Path(__file__).resolve().parent / "driver"
+GENERATORS = Path(__file__).resolve().parent.parent
+# Folders with the sources of each driver, that of its main.cpp first.
+CAR_SOURCES, PAIR_SOURCES = GENERATORS / "cars/driver", GENERATORS / "pairs/driver"
+DRIVERS = {"drive_car": (CAR_SOURCES,), "drive_pair": (PAIR_SOURCES, CAR_SOURCES)}
 EIGEN = "/usr/include/eigen3"
 
-# Parts of Chrono that the driver never calls. What refers to them stays open in the executable.
+# Parts of Chrono that the drivers never call. What refers to them stays open in the executable.
 NEVER_CALLED = ("/gpu", "/collision/bullet", "/collision/multicore", "/cosim", "/fmi", "/visualization",
                 "/multicore_math", "tracked_vehicle", "test_rig", "/fea")
 # Files that define something of another name than theirs, which a search by names does not find.
@@ -136,13 +139,13 @@ class Build:
         if not result.exists() or result.stat().st_mtime < self.header.stat().st_mtime:
             self._compile(["-x", "c++-header", str(self.header)], result)
 
-    def driver(self):
-        """Compiles the driver if one of its files is newer."""
-        result = self.out / "drive_car.o"
-        newest = max(path.stat().st_mtime for path in DRIVER_FOLDER.iterdir())
+    def driver(self, name):
+        """Compiles a driver if one of its files is newer."""
+        result = self.out / f"{name}.o"
+        newest = max(path.stat().st_mtime for folder in DRIVERS[name] for path in folder.iterdir())
         if not result.exists() or result.stat().st_mtime < newest:
-            self._compile(["-include", str(self.header), "-c", str(DRIVER_FOLDER / "main.cpp")], result)
-        return result
+            main = DRIVERS[name][0] / "main.cpp"
+            self._compile(["-include", str(self.header), "-c", str(main)], result)
 
     def part(self, path):
         """Compiles a file of Chrono; returns what the compiler says if it refuses it."""
@@ -165,16 +168,16 @@ class Build:
             print(f"  {path.stem}: {told}", flush=True)
         return {path.stem for path, refusal in refusals.items() if refusal}
 
-    def link(self, result, unresolved):
-        """Links all that is compiled. `unresolved`: "report-all" or "ignore-all"."""
+    def link(self, driver, result, unresolved):
+        """Links a driver with all that is compiled. `unresolved`: "report-all" or "ignore-all"."""
         objects = sorted(map(str, self.objects.glob("*.o")))
         command = ["g++", *LINKER_FLAGS, f"-Wl,--unresolved-symbols={unresolved}", "-Wl,--no-demangle",
-                   "-o", str(result), str(self.out / "drive_car.o"), *objects, "-lpthread"]
+                   "-o", str(result), str(self.out / f"{driver}.o"), *objects, "-lpthread"]
         return subprocess.run(command, capture_output=True, text=True, check=False)
 
     def missing(self):
         """Names that no compiled file defines, as they are written in C++."""
-        told = self.link("/dev/null", "report-all").stderr
+        told = "".join(self.link(driver, "/dev/null", "report-all").stderr for driver in DRIVERS)
         names = sorted(set(re.findall(r"undefined reference to `([^']+)'", told)))
         if not names:
             return []
@@ -252,13 +255,15 @@ def main():
     build = Build(args.out.resolve(), args.jobs)
     build.gather(Git(args.chrono))
     build.precompile()
-    build.driver()
+    for name in DRIVERS:
+        build.driver(name)
     still_open = close(build, Definitions(build.source))
     (build.out / "open.txt").write_text("\n".join(still_open) + "\n")
-    ended = build.link(build.out / "drive_car", "ignore-all")
-    if ended.returncode != 0:
-        sys.exit(ended.stderr[-3000:])
-    print(f"{build.out / 'drive_car'}; {len(still_open)} names that are never called stay open: open.txt")
+    for name in DRIVERS:
+        ended = build.link(name, build.out / name, "ignore-all")
+        if ended.returncode != 0:
+            sys.exit(ended.stderr[-3000:])
+    print(f"{', '.join(DRIVERS)} in {build.out}; {len(still_open)} names that are never called stay open: open.txt")
 
 
 if __name__ == "__main__":

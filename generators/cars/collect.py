@@ -9,8 +9,6 @@ finished. A car that DEST has already stays as it is until its motions are all t
 """
 
 import argparse
-import csv
-import hashlib
 import shutil
 from pathlib import Path
 
@@ -19,18 +17,15 @@ import numpy as np
 import cars
 import motions
 import records
-from run import read_json, refusal_of_car
+from preparation import read_json
+from run import refusal_of_car
+from tables import is_held_out, read_table, write_number, write_table
 
 # The driver writes 100 samples a second.
 EVERY = 2
 COLUMNS = {"time_s": 2, "x_m": 2, "y_m": 2, "yaw_rad": 4, "roll_rad": 4, "vx_m_s": 3, "vy_m_s": 3,
            "yaw_rate_rad_s": 4, "roll_rate_rad_s": 3, "fx_body_n": 1, "fy_body_n": 1, "steer_rad": 3}
 WHEEL_NAMES = ("FL", "FR", "RL", "RR")
-
-
-def is_held_out(name):
-    """Whether a car is kept for tests alone."""
-    return int(hashlib.sha256(f"0:{name}".encode()).hexdigest(), 16) % 4 == 0
 
 
 def is_finished(folder, names):
@@ -77,27 +72,12 @@ def row(motion, told, cut, steered_rad):
     }
 
 
-def write_number(value, digits):
-    text = f"{value:.{digits}f}"
-    text = text.rstrip("0").rstrip(".") if "." in text else text
-    return "0" if text in ("", "-0") else text
-
-
 def write_trajectory(record, path):
     record = records.thinned({**record, "steer_rad": records.front_angle(record)}, EVERY)
     with open(path, "w") as file:
         file.write(",".join(COLUMNS) + "\n")
         for values in zip(*(record[name] for name in COLUMNS)):
             file.write(",".join(map(write_number, values, COLUMNS.values())) + "\n")
-
-
-def write_table(rows, path):
-    with open(path, "w", newline="") as file:
-        table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        table.writeheader()
-        for of_row in rows:
-            table.writerow({name: f"{value:.6g}" if isinstance(value, float) else value
-                            for name, value in of_row.items()})
 
 
 def collect_car(sampled, source, destination):
@@ -170,13 +150,6 @@ def main():
     print(f"{len(table)} cars, {n_motions} motions collected now")
     for name, reason in left_out.items():
         print(f"left out: {name}: {reason}")
-
-
-def read_table(path):
-    if not path.exists():
-        return []
-    with open(path, newline="") as file:
-        return list(csv.DictReader(file))
 
 
 if __name__ == "__main__":

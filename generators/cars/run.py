@@ -12,20 +12,17 @@ than that of its file. Several runners may work in one WORK: a car belongs to on
 
 import argparse
 import fcntl
-import json
-import os
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict
 from pathlib import Path
 
 import cars
 import layouts
 import motions
 import records
-from description import build, save
-from measure import Tests, vehicle_toml
+from description import save
+from preparation import prepare, read_json, same
 from solver import drive
 
 # What a motion must keep: momentum that no force explains over the impulse; energy that no work explains over
@@ -67,16 +64,6 @@ def refusal_of_car(folder):
     return ", ".join(broken) or None
 
 
-def read_json(path):
-    """The content of a file; None where there is none."""
-    return json.loads(path.read_text()) if path.exists() else None
-
-
-def same(one, other):
-    """Whether two values are the same once they are written as JSON."""
-    return json.dumps(one) == json.dumps(other)
-
-
 class Work:
     """Where the cars are computed, and with what."""
 
@@ -98,12 +85,7 @@ class Work:
     def compute(self, car, report):
         """Builds, measures, drives and checks a car. A car that no data sheet describes is not driven."""
         folder = self.folder / car.name
-        built = read_json(folder / "build.json")
-        if not built or not same(built["parameters"], asdict(car)):
-            began = time.time()
-            built = build(car, folder, self.library, self.driver)
-            report(car.name, f"built in {time.time() - began:.0f} s")
-        self.measure(car, folder, built, report)
+        prepare(car, folder, self.library, self.driver, report)
         if not (folder / "vehicle.toml").exists():
             return
         table = read_json(folder / "car.json")["steering_table"]
@@ -112,23 +94,6 @@ class Work:
             self.motion(folder, name, request, report)
         if car.index % CHECKED_EVERY == 0:
             self.checks(car, folder, requests, report)
-
-    def measure(self, car, folder, built, report):
-        if (folder / "vehicle.toml").exists() or "refused" in (read_json(folder / "figures.json") or {}):
-            return
-        began = time.time()
-        try:
-            figures = Tests(car, folder, self.driver).run()
-        except ValueError as reason:
-            figures = {"refused": str(reason)}
-        if figures.get("understeer_rad_g", 1) <= 0:
-            figures["refused"] = "oversteers"
-        save(folder / "figures.json", figures)
-        if "refused" not in figures:
-            waiting = folder / "vehicle.toml.part"
-            waiting.write_text(vehicle_toml(car, built, figures))
-            os.replace(waiting, folder / "vehicle.toml")
-        report(car.name, f"measured in {time.time() - began:.0f} s: {figures.get('refused', 'sound')}")
 
     def motion(self, folder, name, request, report):
         record = folder / "motions" / f"{name}.csv"

@@ -12,7 +12,8 @@ class Stopped(Exception):
     """The driver was stopped from outside: what it computed is to be computed again."""
 
 
-def _run(driver, *arguments):
+def call(driver, *arguments):
+    """Runs the driver; raises RuntimeError with what it says where it fails."""
     command = [str(driver), *map(str, arguments)]
     try:
         ended = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST_WALL_S, check=False)
@@ -27,7 +28,7 @@ def _run(driver, *arguments):
 def solve(driver, command, folder):
     """The answer of the driver to `tune`, `inspect` or `steering` for the car of a folder."""
     answer = folder / f"{command}.json.part"
-    _run(driver, command, folder / "car.json", answer)
+    call(driver, command, folder / "car.json", answer)
     told = json.loads(answer.read_text())
     answer.unlink()
     return told
@@ -39,7 +40,7 @@ def drive(driver, car_folder, request, record):
     motion, waiting, answer = (record.with_suffix(ending) for ending in endings)
     record.parent.mkdir(parents=True, exist_ok=True)
     motion.write_text(json.dumps(request))
-    _run(driver, "drive", car_folder / "car.json", motion, waiting, answer)
+    call(driver, "drive", car_folder / "car.json", motion, waiting, answer)
     told = json.loads(answer.read_text())
     answer.unlink()
     motion.unlink()

@@ -268,6 +268,10 @@ class Resumption(unittest.TestCase):
 
 
 class Chrono(unittest.TestCase):
+    def test_every_driver_has_its_sources(self):
+        for folders in build_chrono.DRIVERS.values():
+            self.assertTrue((folders[0] / "main.cpp").exists(), folders[0])
+
     def test_options_of_the_build_system_are_off(self):
         template = "@CHRONO_VEHICLE@\n@CHRONO_FEA@\n#define CHRONO_VERSION \"@CHRONO_VERSION@\"\n"
         self.assertEqual(build_chrono.configured(template),

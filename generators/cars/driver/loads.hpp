@@ -31,6 +31,16 @@ struct Pose {
     }
     double forward(const chrono::ChVector3d& of) const { return of.x() * cos_yaw + of.y() * sin_yaw; }
     double left(const chrono::ChVector3d& of) const { return -of.x() * sin_yaw + of.y() * cos_yaw; }
+    double yaw_rate_rad_s() const { return turning_rad_s() / std::cos(pitch_rad); }
+    double roll_rate_rad_s() const {
+        return frame.GetAngVelLocal().x() + std::tan(pitch_rad) * turning_rad_s();
+    }
+
+  private:
+    double turning_rad_s() const {
+        const auto spin = frame.GetAngVelLocal();
+        return spin.y() * std::sin(roll_rad) + spin.z() * std::cos(roll_rad);
+    }
 };
 
 // What acts at a wheel in a step, axes of the world.
@@ -61,6 +71,12 @@ class Loads {
                 cg_in_chassis_m + chrono::ChVector3d(at.x(), at.y(), at.z() - cg_height_m));
             if (force.x_n != 0 || force.y_n != 0)
                 body.AccumulateForce(m_body_forces, pose.to_world(force.x_n, force.y_n), point, false);
+        }
+        const StepInputs& inputs = m_motion.inputs;
+        if (has_started && inputs.is_pushed) {
+            const auto point = pose.frame.TransformPointLocalToParent(inputs.push_point_m);
+            body.AccumulateForce(m_body_forces, inputs.push_n, point, false);
+            body.AccumulateTorque(m_body_forces, chrono::ChVector3d(0, 0, inputs.push_moment_n_m), false);
         }
         if (has_started && m_motion.roll_moment_n_m != 0 && time_s < m_motion.roll_moment_until_s)
             body.AccumulateTorque(m_body_forces, pose.to_world(m_motion.roll_moment_n_m, 0), false);
@@ -136,13 +152,15 @@ class Loads {
             const auto axis = corner.spindle->GetRotMat().GetAxisY();
             spin_rad_s[wheel] =
                 Vdot(axis, corner.spindle->GetAngVelParent() - corner.carrier->GetAngVelParent());
-            const double largest = m_motion.brakes.largest_torque_n_m(wheel, time_s);
+            const double largest =
+                m_motion.brakes.largest_torque_n_m(wheel, time_s) + m_motion.inputs.brake_n_m[wheel];
             const double inertia =
                 m_car.description().axles[axle_of(wheel)].wheel_spin_inertia_kg_m2 + kInertiaBesideWheelKg_m2;
             const double slow_rad_s = kReversalMargin * largest * m_motion.step_s / inertia;
             if (largest > 0)
                 torque_n_m[wheel] -=
                     largest * spin_rad_s[wheel] / std::max(std::abs(spin_rad_s[wheel]), slow_rad_s);
+            torque_n_m[wheel] += m_motion.inputs.drive_n_m[wheel];
         }
         const int driven = 2 * m_motion.engine.axle;
         if (m_motion.engine.torque_n_m > 0) {

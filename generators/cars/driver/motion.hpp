@@ -43,6 +43,17 @@ struct SteerHistory {
     }
 };
 
+// What is set anew before each step of a car whose driver reacts or that another car pushes.
+struct StepInputs {
+    // Torques at the wheels: of the brake, against their rotation, and of the engine.
+    std::array<double, 4> brake_n_m{0, 0, 0, 0}, drive_n_m{0, 0, 0, 0};
+    // Push on the body, axes of the world: a horizontal force at a point of the chassis and a moment about
+    // the vertical.
+    bool is_pushed = false;
+    chrono::ChVector3d push_n{0, 0, 0}, push_point_m{0, 0, 0};
+    double push_moment_n_m = 0;
+};
+
 struct Motion {
     double speed_m_s, friction;
     double longest_s = 8;
@@ -61,6 +72,7 @@ struct Motion {
     Brakes brakes;
     EngineDrag engine;
     SteerHistory steer;
+    StepInputs inputs;
 
     static Motion read(const std::string& path);
 };

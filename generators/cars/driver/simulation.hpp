@@ -58,6 +58,12 @@ class Simulation {
 
     Car& car() { return m_car; }
     const chrono::ChSystem& system() const { return m_system; }
+    Balances& balances() { return m_balances; }
+    Pose pose() { return Pose::of(*m_car.GetChassisBody(), m_cg_in_chassis_m); }
+    // After the run-in: a point of the chassis above or under the centre of gravity.
+    chrono::ChVector3d point_at_height(double above_road_m) const {
+        return m_cg_in_chassis_m + chrono::ChVector3d(0, 0, above_road_m - m_cg_height_m);
+    }
 
     // Drives straight until time 0.
     void run_in() {
@@ -132,8 +138,6 @@ class Simulation {
     void set_steering_input(double input) { m_inputs.m_steering = input; }
 
   private:
-    Pose pose() { return Pose::of(*m_car.GetChassisBody(), m_cg_in_chassis_m); }
-
     bool is_output(double time_s, int n_rows) const {
         return time_s >= n_rows * m_motion.output_interval_s - 0.25 * m_motion.step_s &&
                time_s < m_motion.longest_s - 0.25 * m_motion.output_interval_s;
@@ -142,8 +146,6 @@ class Simulation {
     RecordRow record_row(double time_s, const Pose& pose, double yaw_rad,
                          const std::array<double, 2>& front_angle_rad) {
         RecordRow row;
-        const auto spin = pose.frame.GetAngVelLocal();
-        const double turning = spin.y() * std::sin(pose.roll_rad) + spin.z() * std::cos(pose.roll_rad);
         row.time_s = time_s;
         row.x_m = pose.cg_m.x() - m_start_m.x();
         row.y_m = pose.cg_m.y() - m_start_m.y();
@@ -151,8 +153,8 @@ class Simulation {
         row.roll_rad = pose.roll_rad;
         row.forward_m_s = pose.forward(pose.velocity_m_s);
         row.left_m_s = pose.left(pose.velocity_m_s);
-        row.yaw_rate_rad_s = turning / std::cos(pose.pitch_rad);
-        row.roll_rate_rad_s = spin.x() + std::tan(pose.pitch_rad) * turning;
+        row.yaw_rate_rad_s = pose.yaw_rate_rad_s();
+        row.roll_rate_rad_s = pose.roll_rate_rad_s();
         row.mean_force = m_motion.force.mean(time_s, time_s + m_motion.output_interval_s);
         row.front_angle_rad = front_angle_rad;
         for (int wheel = 0; wheel < kWheels; wheel++)

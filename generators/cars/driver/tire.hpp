@@ -14,7 +14,7 @@
 
 // What a tire does in a step, wheel axes: force of the road on the wheel.
 struct TireState {
-    double longitudinal_n = 0, lateral_n = 0, load_n = 0;
+    double longitudinal_n = 0, lateral_n = 0, load_n = 0, slip_ratio = 0;
 };
 
 class Tire : public chrono::vehicle::ChTMeasyTire {
@@ -99,12 +99,15 @@ class Tire : public chrono::vehicle::ChTMeasyTire {
         const double aligning = AlignmentTorque(lateral_n) * std::tanh(forward_m_s);
         m_tireforce.force = chrono::ChVector3d(longitudinal_n, lateral_n, m_data.normal_force);
         m_tireforce.moment = chrono::ChVector3d(overturning, rolling_resistance, aligning);
-        m_state = {longitudinal_n, lateral_n, m_data.normal_force};
+        const double slip_ratio = -sliding_m_s / std::max(std::abs(forward_m_s), kLeastSpeedM_s);
+        m_state = {longitudinal_n, lateral_n, m_data.normal_force, slip_ratio};
     }
 
   private:
     // Speed that keeps the slip finite at standstill, m/s.
     static constexpr double kRegularisationM_s = 0.05;
+    // Speed under which the slip ratio is that at this speed, m/s.
+    static constexpr double kLeastSpeedM_s = 0.5;
     // Time in which the carcass of a wheel in the air springs back, s.
     static constexpr double kRelaxationInAirS = 0.01;
 
