@@ -101,3 +101,24 @@ fn the_force_of_a_log_is_read_with_its_map_and_the_hint_names_the_option() {
     let got_n_s = impulse[1].as_f64().unwrap();
     assert!((got_n_s / expected_n_s - 1.0).abs() < 0.01, "{got_n_s} {expected_n_s}");
 }
+
+#[test]
+fn check_shows_the_columns_of_the_part_that_the_map_names() {
+    let folder = TempDir::new().unwrap();
+    write(&folder, "a.mme", "Data format edition number  :1.6\nLaboratory name             :L\n");
+    for (file, code, interval) in
+        [("a.001", "11HEAD000000ACXP", "0.001"), ("a.002", "11CHST000000ACXP", "0.002")]
+    {
+        let text = format!(
+            "Channel code                :{code}\nReference channel           :implicit\n\
+             Sampling interval           :{interval}\nUnit                        :m/s^2\n1\n2\n3\n"
+        );
+        write(&folder, file, &text);
+    }
+    let test = folder.path().join("a.mme");
+    let checked = impactlab(&["check", text(&test), "--map", "sheet=2"]);
+    assert_eq!(checked.code, 1, "{}", checked.err);
+    let (_, columns) = checked.out.split_once("--map \"sheet=2,time=1").expect(&checked.out);
+    let shown = ["11HEAD000000ACXP", "11CHST000000ACXP"].map(|code| columns.contains(code));
+    assert_eq!(shown, [false, true], "{}", checked.out);
+}

@@ -111,8 +111,7 @@ fn clouds_of(
         seeds,
         mutate: if format == CloudFormat::E57 { resealed_bytes } else { changed_bytes },
         load: &|path| {
-            let read =
-                survey_cloud(path, format, LengthUnit::Metre, &mut |_| ControlFlow::Continue(()));
+            let read = survey_cloud(path, format, None, &mut |_| ControlFlow::Continue(()));
             match read {
                 Ok(summary) => Answer::accepted(&summary),
                 Err(error) => Answer::refused(&error),

@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use impactlab_core::data::{
-    Dataset, Loaded, Opened, Outcome, check_case, check_series, contact_interval, open,
-    propose_columns, read_force_file, read_motion_log, read_steer_file, read_trajectory_file,
+    Dataset, Loaded, Opened, Outcome, ReadSettings, check_case, check_series, contact_interval,
+    open, propose_columns, read_force_file, read_motion_log, read_steer_file, read_trajectory_file,
     read_wheels_file,
 };
 use impactlab_core::error_chain;
@@ -85,7 +85,7 @@ fn logs_of_motions() {
 fn files_of_unknown_kind() {
     text_format("any-series", SERIES, &|path| {
         let mut go_on = |_| ControlFlow::Continue(());
-        let proposed = propose_columns(path);
+        let proposed = propose_columns(path, &ReadSettings::default());
         match open(path, &mut go_on) {
             Ok(Outcome::Complete(Opened::File(loaded))) => series(&loaded).and(&proposed),
             Ok(other) => panic!("a file is opened as {other:?}"),

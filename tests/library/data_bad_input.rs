@@ -8,8 +8,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use impactlab_core::data::{
-    ColumnMap, DataError, Dataset, DatasetKind, open, propose_columns, read_any_series,
-    read_force_file, read_steer_file, read_trajectory_file,
+    ColumnMap, DataError, Dataset, DatasetKind, ReadSettings, open, propose_columns,
+    read_any_series, read_force_file, read_steer_file, read_trajectory_file,
 };
 use proptest::prelude::*;
 use tempfile::TempDir;
@@ -377,7 +377,7 @@ fn read_all_ways(bytes: &[u8]) {
     let path = folder.path().join("cases.csv");
     fs::write(&path, bytes).unwrap();
     let map: ColumnMap = "time=1,fx=2:kN,fy=3".parse().unwrap();
-    let _ = propose_columns(&path);
+    let _ = propose_columns(&path, &ReadSettings::default());
     let _ = read_force_file(&path, None);
     let _ = read_force_file(&path, Some(&map));
     let _ = read_any_series(&path, None);

@@ -7,7 +7,9 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use impactlab_core::data::{Dataset, MAX_CASES, Opened, open, propose_columns, read_force_file};
+use impactlab_core::data::{
+    Dataset, MAX_CASES, Opened, ReadSettings, open, propose_columns, read_force_file,
+};
 use tempfile::TempDir;
 
 /// Longest time to refuse or to read a file of less than a megabyte, on a machine that is busy. Each
@@ -27,7 +29,7 @@ fn force_file(content: &str) -> Result<Vec<String>, String> {
     let path = write(&folder, "f.csv", content);
     let started = Instant::now();
     let loaded = read_force_file(&path, None);
-    let _ = propose_columns(&path);
+    let _ = propose_columns(&path, &ReadSettings::default());
     let took = started.elapsed();
     assert!(took < PATIENCE, "{took:?} for {} bytes: {:.60}", content.len(), content);
     match loaded {

@@ -6,7 +6,7 @@ use std::fs;
 
 use approx::assert_relative_eq;
 use impactlab_core::data::{
-    Channel, ColumnMap, Existing, FileKind, Loaded, Note, Separator, TimeSeries,
+    Channel, ColumnMap, Existing, FileKind, Loaded, Note, ReadSettings, Separator, TimeSeries,
     map_from_proposals, propose_columns, read_any_series, read_force_file, write_series_csv,
 };
 use proptest::prelude::*;
@@ -133,7 +133,7 @@ fn a_dialog_is_shown_the_columns_and_can_take_the_guesses() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("f.csv");
     fs::write(&path, "Zeit [ms];Kraft 1;Fy [N]\n0;0,5;7\n1;1,5;8\n").unwrap();
-    let mut proposals = propose_columns(&path).unwrap();
+    let mut proposals = propose_columns(&path, &ReadSettings::default()).unwrap();
     let names: Vec<&str> = proposals.iter().map(|column| column.name.as_str()).collect();
     assert_eq!(names, ["Zeit [ms]", "Kraft 1", "Fy [N]"]);
     assert_eq!(proposals[1].samples, ["0,5", "1,5"]);

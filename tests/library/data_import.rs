@@ -286,6 +286,11 @@ fn what_is_recognised_but_not_read_is_said_by_its_name() {
             &b" n o d a l   f o r c e   g r o u p    o u t p u t\n"[..],
             "is an LS-DYNA nodfor file; export the force over time as CSV",
         ),
+        (
+            "runT01",
+            b"runT01 FORMAT\nZZZZZEOR    1I   72C\n 3040\nrunT01 FORMAT\n",
+            "is a time history of Radioss as text; have it written in binary",
+        ),
         ("in.k", b"*KEYWORD\n*TITLE\nrun\n", "is an LS-DYNA input deck; run it"),
         ("d3plot", b"a run\0\0", "is LS-DYNA results (d3plot); export"),
         (

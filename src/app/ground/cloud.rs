@@ -6,7 +6,9 @@ use impactlab_core::data::Existing;
 use impactlab_core::data::write::{FileDigest, OutputFolder, RunRecord};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
-use impactlab_core::site::{CloudFormat, CloudOptions, LengthUnit, SiteError, import_cloud};
+use impactlab_core::site::{
+    CloudFormat, CloudOptions, LengthUnit, SiteError, import_cloud, stated_cloud_unit,
+};
 
 /// How a point cloud becomes a ground.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,12 +33,13 @@ pub struct MadeGround {
 }
 
 impl CloudForm {
-    /// The usual choices, with a folder beside the cloud.
+    /// The usual choices, with the unit that the cloud states and a folder beside it.
     pub fn new(path: PathBuf) -> Self {
         let is_las = CloudFormat::from_path(&path) != Some(CloudFormat::E57);
         let folder = format!("{} ground", path.with_extension("").display());
         let pixel_m = CloudOptions::default().pixel_m;
-        Self { path, pixel_m, unit: is_las.then(LengthUnit::default), folder }
+        let unit = is_las.then(|| stated_cloud_unit(&path).unwrap_or_default());
+        Self { path, pixel_m, unit, folder }
     }
 }
 
@@ -54,8 +57,7 @@ pub(super) fn make_ground(
     let output = OutputFolder::begin(Path::new(folder.trim()), Existing::Refuse, &[])
         .and_then(|output| output.protecting(vec![path.clone()]))
         .map_err(|error| error_chain(&error))?;
-    let unit = unit.unwrap_or_default();
-    let options = CloudOptions { pixel_m: *pixel_m, unit, ..CloudOptions::default() };
+    let options = CloudOptions { pixel_m: *pixel_m, unit: *unit, ..CloudOptions::default() };
     let made = match import_cloud(path, format, &options, output.staging(), report) {
         Ok(made) => made,
         Err(SiteError::Cancelled) => return Ok(None),

@@ -142,7 +142,7 @@ fn import_points(
     let usual = CloudOptions::default();
     let options = CloudOptions {
         pixel_m: args.resolution.unwrap_or(usual.pixel_m),
-        unit: args.unit.unwrap_or_default(),
+        unit: args.unit,
         within_m: args.within.map(|[e0, n0, e1, n1]| [[e0, n0], [e1, n1]]),
         heights_m: args.heights,
     };

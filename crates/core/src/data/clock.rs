@@ -115,10 +115,36 @@ pub(super) fn times_of_day_s(table: &Table, column_idx: usize) -> Option<Result<
 }
 
 /// Seconds and period of a time of day: hours, minutes and seconds, or minutes and seconds, perhaps after
-/// a date.
+/// a date. One that says its distance from UTC is turned into UTC.
 fn time_of_day_s(text: &str) -> Option<(f64, f64)> {
     let text = text.trim().trim_end_matches(['Z', 'z']);
-    let time = text.rsplit(['T', ' ']).next()?.replace(',', ".");
+    let time = text.rsplit(['T', ' ']).next()?;
+    if let Some(at) = time.find(['+', '-']) {
+        let (clock, offset) = time.split_at_checked(at)?;
+        let (time_s, period_s) = plain_time_s(clock)?;
+        let in_utc_s = (time_s - offset_s(offset)?).rem_euclid(DAY_S);
+        return (period_s == DAY_S).then_some((in_utc_s, DAY_S));
+    }
+    plain_time_s(time)
+}
+
+/// Seconds of `+hh:mm`, `+hhmm` or `+hh`.
+fn offset_s(text: &str) -> Option<f64> {
+    let sign = if text.starts_with('-') { -1.0 } else { 1.0 };
+    let digits: String = text.get(1..)?.chars().filter(|c| *c != ':').collect();
+    let is_plain = digits.bytes().all(|byte| byte.is_ascii_digit());
+    let (hours, minutes) = digits.split_at_checked(2).filter(|_| is_plain)?;
+    let hours = hours.parse::<f64>().ok().filter(|hours| *hours < 24.0)?;
+    let minutes = match minutes.len() {
+        0 => 0.0,
+        2 => minutes.parse::<f64>().ok().filter(|minutes| *minutes < 60.0)?,
+        _ => return None,
+    };
+    Some(sign * (HOUR_S * hours + 60.0 * minutes))
+}
+
+fn plain_time_s(time: &str) -> Option<(f64, f64)> {
+    let time = time.replace(',', ".");
     let parts: Vec<&str> = time.split(':').collect();
     let (seconds, whole) = parts.split_last()?;
     let is_plain = |part: &&str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
@@ -297,7 +323,12 @@ mod tests {
             ("12:59:59.9", Some((46_799.9, DAY_S))),
             ("2026-11-25T00:00:01,5Z", Some((1.5, DAY_S))),
             ("25.11.2026 00:01:00", Some((60.0, DAY_S))),
+            ("2026-11-25T00:30:01.5+01:00", Some((84_601.5, DAY_S))),
+            ("12:00:00-0330", Some((55_800.0, DAY_S))),
             ("59:59.5", Some((3599.5, HOUR_S))),
+            ("59:59+01:00", None),
+            ("12:00:00+1:00:00", None),
+            ("12:00:00-", None),
             ("12:60:00", None),
             ("12:+5:00", None),
             ("1.5", None),

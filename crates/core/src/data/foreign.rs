@@ -120,7 +120,7 @@ fn is_drawing<'a>(mut lines: impl Iterator<Item = &'a str>) -> bool {
     next == Some("0") && lines.next().is_some_and(|name| name.eq_ignore_ascii_case("section"))
 }
 
-/// The output of LS-DYNA to which a line belongs, and what to do with it.
+/// The output of a solver to which a line belongs, and what to do with it.
 fn solver_output(line: &str) -> Option<(&'static str, &'static str)> {
     let line = line.to_lowercase();
     let closed: String = line.chars().filter(|c| !c.is_whitespace()).collect();
@@ -129,6 +129,7 @@ fn solver_output(line: &str) -> Option<(&'static str, &'static str)> {
         ("rigidbodymotionattime", "an LS-DYNA rbdout file", EXPORT_MOTION),
         ("rigidwallforces", "an LS-DYNA rwforc file", EXPORT_FORCE),
         ("dtofcyclecontrolledby", "an LS-DYNA glstat file", EXPORT),
+        ("zzzzzeor", "a time history of Radioss as text", "have it written in binary, as is usual"),
     ];
     // The titles are written with blanks between the letters.
     let title = titles.into_iter().find(|(title, ..)| closed.contains(title));

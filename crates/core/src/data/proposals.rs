@@ -6,7 +6,8 @@ use std::path::Path;
 use crate::data::columns::{is_summed, meanings, stated_unit, sum};
 use crate::data::spelling::{self, Meaning};
 use crate::data::{
-    Channel, ColumnMap, ColumnRef, ColumnSource, DataError, FormulaPart, Table, computed,
+    Channel, ColumnMap, ColumnRef, ColumnSource, DataError, FormulaPart, ReadSettings, Table,
+    computed,
 };
 use crate::units::{Quantity, Unit};
 
@@ -50,10 +51,15 @@ impl ColumnProposal {
 
 /// Reads a file and returns its columns, with the channel that each header suggests.
 ///
+/// - `settings`: where its columns stand, such as in which sheet.
+///
 /// # Errors
 /// [`DataError`] if the file cannot be read as a table.
-pub fn propose_columns(path: &Path) -> Result<Vec<ColumnProposal>, DataError> {
-    Ok(proposals(&Table::read(path)?))
+pub fn propose_columns(
+    path: &Path,
+    settings: &ReadSettings,
+) -> Result<Vec<ColumnProposal>, DataError> {
+    Ok(proposals(&Table::read_as(path, settings)?))
 }
 
 /// The columns of a table, with the channel that each header suggests.

@@ -2,6 +2,11 @@
 //!
 //! A VBO file has sections in brackets. Latitude and longitude are in minutes of arc, the latter positive
 //! to the west; the time is HHMMSS.ss, the heading a compass course and the velocity in km/h.
+//!
+//! `[channel units]` has a line for each channel that is not one of the logger itself, which may be empty; those
+//! of the channels of modules stand at the end of the list as their columns do at the end of a row. Columns that
+//! begin with an underscore are those of the receiver alone where the others are those of the logger with its
+//! inertial sensor.
 
 use crate::data::Separator;
 use crate::data::dialect::Dialect;
@@ -11,6 +16,47 @@ pub(super) const DESCRIPTION: &str = "a Racelogic VBO file: places from latitude
      the course over ground, v_x from the velocity along it";
 
 const DAY_S: f64 = 86_400.0;
+
+/// The unit of a channel for which the file has one that cannot be its own; no quantity has it, so that the column
+/// is left out until a map says its unit.
+const UNCLEAR: &str = "unit unclear";
+
+/// Channels of the logger itself, without signs between their letters, none of which has a unit in the list.
+const OWN_CHANNELS: [&str; 26] = [
+    "sats",
+    "satellites",
+    "time",
+    "lat",
+    "latitude",
+    "long",
+    "longitude",
+    "velocity",
+    "heading",
+    "height",
+    "vertvel",
+    "verticalvelocity",
+    "longacc",
+    "latacc",
+    "glonasssats",
+    "gpssats",
+    "beidousats",
+    "imukalmanfilterstatus",
+    "solutiontype",
+    "velocityquality",
+    "event1",
+    "event2",
+    "triggereventtime",
+    "avifileindex",
+    "avitime",
+    "avisynctime",
+];
+
+/// Parts of names of channels, with beginnings of the units that they can have.
+const KINDS: [(&[&str], &[&str]); 3] = [
+    (&["yawrate", "pitchrate", "rollrate"], &["°/s", "º/s", "deg/s", "rad/s"]),
+    (&["xaccel", "yaccel", "zaccel", "longacc", "latacc"], &["g", "m/s"]),
+    (&["wheelsp", "vehiclespeed"], &["km/h", "kmh", "kph", "m/s", "mph", "kn", "kt"]),
+];
 
 /// A column of the file: its kind, and the name and unit that it gets.
 enum Column {
@@ -29,24 +75,15 @@ pub(super) fn as_table(text: &str) -> Option<String> {
     let section = |name: &'static str| {
         let lines =
             text.lines().take(start).skip_while(move |line| !is_section(line, name)).skip(1);
-        lines
-            .map(str::trim)
-            .take_while(|line| !line.starts_with('['))
-            .filter(|line| !line.is_empty())
+        lines.map(str::trim).take_while(|line| !line.starts_with('['))
     };
     let names: Vec<&str> = section("[column names]").flat_map(str::split_whitespace).collect();
     if names.is_empty() {
         return None;
     }
-    let units: Vec<&str> = section("[channel units]").collect();
-    let n_plain = names.len().saturating_sub(units.len());
-    let columns: Vec<(Column, String)> = names
-        .iter()
-        .enumerate()
-        .map(|(idx, name)| {
-            column(name, idx.checked_sub(n_plain).and_then(|at| units.get(at).copied()))
-        })
-        .collect();
+    let units = units(&names, section("[channel units]").collect());
+    let columns: Vec<(Column, String)> =
+        names.iter().zip(units).map(|(name, unit)| column(name, unit)).collect();
     let header: Vec<&str> = columns.iter().map(|(_, name)| name.as_str()).collect();
     let mut table = "\n".repeat(start);
     table.push_str(&header.join("\t"));
@@ -79,6 +116,35 @@ pub(super) fn as_table(text: &str) -> Option<String> {
     Some(table)
 }
 
+/// The unit of each column, if it has one.
+///
+/// - `lines`: of the list of units, with empty ones.
+fn units<'a>(names: &[&str], mut lines: Vec<&'a str>) -> Vec<Option<&'a str>> {
+    // An empty line stands between the list and the next section.
+    lines.pop_if(|last| last.is_empty());
+    let plain = |name: &str| -> String {
+        name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+    };
+    let is_own = |name: &str| name.starts_with('_') || OWN_CHANNELS.contains(&plain(name).as_str());
+    let n_of_modules = names.iter().rev().take_while(|name| !is_own(name)).count();
+    let n_before = names.len() - n_of_modules;
+    let of_modules = lines.len().checked_sub(n_of_modules).and_then(|from| lines.get(from..));
+    let suits = |(name, unit): (&&str, &&str)| {
+        let (name, unit) = (plain(name), unit.to_lowercase());
+        let kind = KINDS.iter().find(|(words, _)| words.iter().any(|word| name.contains(word)));
+        kind.is_none_or(|(_, units)| units.iter().any(|of| unit.starts_with(of)))
+    };
+    let of_names = names.get(n_before..).unwrap_or_default();
+    let known = of_modules.filter(|units| of_names.iter().zip(*units).all(suits));
+    let of_module = |idx: usize| match known {
+        Some(units) => units.get(idx).copied().filter(|unit| !unit.is_empty()),
+        None if lines.is_empty() => None,
+        None => Some(UNCLEAR),
+    };
+    let before = std::iter::repeat_n(None, n_before);
+    before.chain((0..n_of_modules).map(of_module)).collect()
+}
+
 fn column(name: &str, unit: Option<&str>) -> (Column, String) {
     let named = |name: &str| name.to_owned();
     match name.to_lowercase().as_str() {
@@ -87,6 +153,7 @@ fn column(name: &str, unit: Option<&str>) -> (Column, String) {
         "long" | "longitude" => (Column::Longitude, named("longitude [deg]")),
         "heading" => (Column::Heading, named("yaw [deg]")),
         "velocity" => (Column::Other, named("vx [km/h]")),
+        own if own.starts_with('_') => (Column::Other, format!("receiver alone{name}")),
         _ => match unit {
             Some(unit) => (Column::Other, format!("{name} [{unit}]")),
             None => (Column::Other, named(name)),
@@ -123,5 +190,33 @@ mod tests {
         assert_eq!(lines[8], "011\t86400\t52.01\t1\t054.000\t90\t+17.2");
         assert_eq!(as_table("[data]\n1 2\n"), None);
         assert_eq!(as_table("t,fx\n1,2\n"), None);
+    }
+
+    #[test]
+    fn units_are_those_of_their_channels_or_unclear() {
+        let header = |units: &str, names: &str| {
+            let text = format!("[channel units]\n{units}\n[column names]\n{names}\n\n[data]\n1\n");
+            let table = as_table(&text).unwrap();
+            table.lines().find(|line| !line.is_empty()).unwrap().replace('\t', "|")
+        };
+        // A channel of the logger with a unit, an empty line, and modules of which one has an empty unit.
+        assert_eq!(
+            header(
+                "volts\n\n°/s\ng\n\nkm/h\n",
+                "sats AD1 GPS_Sats _lat YawRate X_Accel QF WheelSpeed"
+            ),
+            "sats|AD1|GPS_Sats|receiver alone_lat|YawRate [°/s]|X_Accel [g]|QF|WheelSpeed [km/h]"
+        );
+        // The list is one short.
+        assert_eq!(
+            header("g\nkm/h\n", "sats YawRate X_Accel WheelSpeed"),
+            "sats|YawRate [unit unclear]|X_Accel [unit unclear]|WheelSpeed [unit unclear]"
+        );
+        // It says of a yaw rate that it is in volts.
+        assert_eq!(
+            header("volts\nkm/h\n", "sats YawRate WheelSpeed"),
+            "sats|YawRate [unit unclear]|WheelSpeed [unit unclear]"
+        );
+        assert_eq!(header("", "sats YawRate"), "sats|YawRate");
     }
 }

@@ -7,6 +7,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 
 use dxf::entities::{Entity, EntityType};
 use dxf::enums::Units;
@@ -60,6 +61,24 @@ impl Drawing {
         let points = self.lines.iter().flat_map(|line| line.points_m.iter().copied());
         let (unit, n_lines) = (self.unit, self.lines.len());
         DrawingSummary { unit, n_lines, extent_m: extent_of(points) }
+    }
+
+    /// What of it is not drawn or may be drawn too much, in words.
+    ///
+    /// - `path`: of its file.
+    pub fn notes(&self, path: &Path) -> Vec<String> {
+        let counts: Vec<String> =
+            self.left_out.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
+        let left_out = (!counts.is_empty())
+            .then(|| format!("{}: not drawn: {}", path.display(), counts.join(", ")));
+        let unknown_frozen = self.has_unknown_frozen.then(|| {
+            format!(
+                "{}: which layers of a binary drawing are frozen is not read; they are drawn, too, unless \
+                 [dxf] names the layers",
+                path.display()
+            )
+        });
+        left_out.into_iter().chain(unknown_frozen).collect()
     }
 }
 

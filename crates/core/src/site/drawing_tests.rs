@@ -139,6 +139,8 @@ fn what_is_off_frozen_or_invisible_is_neither_drawn_nor_counted() {
     let ends: Vec<[f64; 2]> = read.lines.iter().map(|line| line.points_m[1]).collect();
     assert_eq!(ends, [[3.0, 1.0], [5.0, 0.0]], "{:?}", read.lines);
     assert_eq!(read.left_out.get("Text"), Some(&1), "{:?}", read.left_out);
+    let notes = read.notes(std::path::Path::new("survey.dxf"));
+    assert!(notes.iter().any(|note| note == "survey.dxf: not drawn: 1 Text"), "{notes:?}");
     file.layers = Some(vec!["FROZEN".to_owned()]);
     let chosen = read_drawing(&file, &SiteOrigin::default()).unwrap();
     assert_eq!(chosen.lines.len(), 1, "a layer that is asked for is drawn");

@@ -35,7 +35,10 @@ mod drawing_tests;
 #[cfg(test)]
 mod file_tests;
 
-pub use cloud::{CloudFormat, CloudOptions, CloudReport, CloudSummary, import_cloud, survey_cloud};
+pub use cloud::{
+    CloudFormat, CloudOptions, CloudReport, CloudSummary, import_cloud, stated_cloud_unit,
+    survey_cloud,
+};
 pub use drawing::{Drawing, DrawingSummary, DrawnLine, read_drawing};
 pub use error::SiteError;
 pub use origin::{GeographicFrame, SiteOrigin};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::scene::{GroundLineKind, GroundPicture, SceneGround};
 use impactlab_core::site::{
-    Drawing, DrawingSummary, PixelMap, Site, SiteError, extent_of, read_drawing, read_picture,
+    DrawingSummary, PixelMap, Site, SiteError, extent_of, read_drawing, read_picture,
 };
 
 /// A ground that was read.
@@ -48,21 +48,8 @@ impl LoadedGround {
                 orthophoto.file.display()
             ));
         }
-        if let (Some(drawing), Some(file)) = (&drawing, &site.drawing)
-            && !drawing.left_out.is_empty()
-        {
-            let counts: Vec<String> =
-                drawing.left_out.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
-            notes.push(format!("{}: not drawn: {}", file.file.display(), counts.join(", ")));
-        }
-        if let (Some(Drawing { has_unknown_frozen: true, .. }), Some(file)) =
-            (&drawing, &site.drawing)
-        {
-            notes.push(format!(
-                "{}: which layers of a binary drawing are frozen is not read; they are drawn, too, unless \
-                 [dxf] names the layers",
-                file.file.display()
-            ));
+        if let (Some(drawing), Some(file)) = (&drawing, &site.drawing) {
+            notes.extend(drawing.notes(&file.file));
         }
         let ground = Arc::new(SceneGround::new(&site, picture, drawing.as_ref()));
         let drawing = drawing.map(|drawing| drawing.summary());

@@ -7,8 +7,11 @@
 //! text      varint of its length, bytes
 //! list      u8: (size << 4) | type, or the size as a varint where it is 15
 //! footer    … metadata, u32 of its length, "PAR1"; field 2 of it is the list of the columns
-//! page      1 kind, 2 bytes unpacked, 3 bytes packed, 5/7/8 heads with the number of values in field 1
+//! page      1 kind, 2 bytes unpacked, 3 bytes packed, 4 CRC-32 of the packed bytes or nothing,
+//!           5/7/8 heads with the number of values in field 1
 //! ```
+
+use flate2::Crc;
 
 /// Depth of nested values and of nested columns.
 const MAX_DEPTH: usize = 24;
@@ -33,6 +36,8 @@ struct Compact<'a> {
 struct PageHead {
     unpacked: i64,
     packed: i64,
+    /// The checksum of the packed bytes, if one is stated.
+    crc: Option<i64>,
     n_values: i64,
     is_dictionary: bool,
 }
@@ -206,10 +211,22 @@ pub(super) fn pages(bytes: &[u8], start: i64, length: i64) -> Option<u64> {
         let is_good = (0..=MAX_PAGE_BYTES).contains(&head.unpacked)
             && head.n_values >= 0
             && (!head.is_dictionary || head.n_values <= head.unpacked / 4);
+        let start = compact.at;
         compact.pass(u64::try_from(head.packed).ok().filter(|_| is_good)?)?;
+        let packed = compact.bytes.get(start..compact.at)?;
+        if head.crc.is_some_and(|stated| !is_crc_of(packed, stated)) {
+            return None;
+        }
         unpacked += u64::try_from(head.unpacked).ok()?;
     }
     Some(unpacked)
+}
+
+/// Whether a checksum, which is stored as a number with a sign, is that of some bytes.
+fn is_crc_of(bytes: &[u8], stated: i64) -> bool {
+    let mut crc = Crc::new();
+    crc.update(bytes);
+    i32::try_from(stated).is_ok_and(|stated| stated.cast_unsigned() == crc.sum())
 }
 
 fn page_head(compact: &mut Compact<'_>) -> Option<PageHead> {
@@ -218,6 +235,7 @@ fn page_head(compact: &mut Compact<'_>) -> Option<PageHead> {
         match (id, kind) {
             (2, 4..=6) => head.unpacked = compact.integer()?,
             (3, 4..=6) => head.packed = compact.integer()?,
+            (4, 4..=6) => head.crc = Some(compact.integer()?),
             (5 | 7 | 8, STRUCT) => {
                 head.n_values = compact.number_in_struct(1)?.unwrap_or(0);
                 head.is_dictionary |= id == 7;
@@ -258,6 +276,18 @@ mod tests {
         for cut in 0..whole.len() {
             assert_eq!(footer(&whole[..cut]), None, "{cut}");
         }
+    }
+
+    #[test]
+    fn a_page_whose_checksum_is_wrong_is_refused() {
+        // Kind 0, 9 bytes unpacked and packed, and the CRC-32 of "123456789", 0xcbf43926, as a zigzag varint.
+        let head = [0x15, 0, 0x15, 18, 0x15, 18, 0x15, 0xb3, 0x9b, 0xde, 0xc0, 0x06, 0];
+        let read = |content: &[u8]| {
+            let page = [&head[..], content].concat();
+            pages(&page, 0, i64::try_from(page.len()).unwrap())
+        };
+        assert_eq!(read(b"123456789"), Some(9));
+        assert_eq!(read(b"123456780"), None);
     }
 
     #[test]

@@ -88,6 +88,8 @@ pub struct RecordedControls {
     pub yaw_rate_right_rad_s: Vec<f64>,
     /// Whether the service brake was on.
     pub is_braked: Vec<bool>,
+    /// Whether the anti-lock system was at work.
+    pub is_anti_lock_active: Vec<bool>,
 }
 
 /// The columns of a table: names with units, numbers and texts.
@@ -350,7 +352,10 @@ impl RecorderRecord {
         let is_brake = |key: &String| {
             key.contains("brake") && !["abs", "pressure"].iter().any(|other| key.contains(other))
         };
-        let brake = table.keys().iter().position(is_brake).map(|idx| (table.texts)(idx));
+        let is_anti_lock = |key: &String| {
+            let is_lamp = ["lamp", "warning", "indicator"].iter().any(|word| key.contains(word));
+            (key.starts_with("abs") || key.contains("antilock")) && !is_lamp
+        };
         let rows: Vec<usize> = time_s
             .iter()
             .enumerate()
@@ -390,16 +395,21 @@ impl RecorderRecord {
         };
         let steering = of(steering, STEERING_WHEEL_ANGLE, "angle of the steering wheel", doubts);
         let yaw_rate = of(yaw_rate, ANGULAR_VELOCITY_SAMPLE, "yaw rate", doubts);
-        let braked = brake.and_then(|texts| {
+        let keys = table.keys();
+        let switch = |column: Option<usize>| {
+            let texts = (table.texts)(column?);
             let on = |row: &usize| is_on(texts.get(*row)?);
             rows.iter().map(on).collect::<Option<Vec<bool>>>()
-        });
+        };
+        let braked = switch(keys.iter().position(is_brake));
+        let anti_lock = switch(keys.iter().position(is_anti_lock));
         self.before = RecordedControls {
             time_s,
             speed_m_s,
             steering_wheel_rad: steering.unwrap_or_default(),
             yaw_rate_right_rad_s: yaw_rate.unwrap_or_default(),
             is_braked: braked.unwrap_or_default(),
+            is_anti_lock_active: anti_lock.unwrap_or_default(),
         };
     }
 }
@@ -472,8 +482,10 @@ fn recorded_delta_v(time_s: &[Option<f64>], values: &[Option<f64>]) -> Option<Re
 /// Whether a switch is on; `None` if the cell does not say.
 fn is_on(cell: &str) -> Option<bool> {
     match letters_and_digits(cell).as_str() {
-        "on" | "yes" | "applied" | "active" | "true" => Some(true),
-        "off" | "no" | "notapplied" | "inactive" | "false" => Some(false),
+        "on" | "yes" | "applied" | "active" | "engaged" | "true" => Some(true),
+        "off" | "no" | "notapplied" | "inactive" | "false" | "nonengaged" | "notengaged" => {
+            Some(false)
+        }
         _ => number(cell).map(|number| number != 0.0),
     }
 }
@@ -563,6 +575,15 @@ mod tests {
         let record = read(&cut, None).unwrap();
         assert!(record.delta_v_ahead.unwrap().is_cut);
         assert!(record.doubts.iter().any(|doubt| doubt.contains("cut off")), "{record:?}");
+    }
+
+    #[test]
+    fn an_anti_lock_system_that_was_at_work_is_read() {
+        let text = "Time [s],Speed [mph],Service Brake,ABS Activity\n\
+            -1,31,Off,Non-Engaged\n-0.5,27,On,Engaged\n0,20,On,Engaged\n";
+        let before = read(text, None).unwrap().before;
+        assert_eq!(before.is_anti_lock_active, [false, true, true]);
+        assert_eq!(before.is_braked, [false, true, true]);
     }
 
     #[test]

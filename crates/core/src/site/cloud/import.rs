@@ -8,9 +8,9 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use crate::data::{Existing, MAX_RASTER_PIXELS, write_atomically};
 use crate::jobs::{Progress, ProgressCallback};
-use crate::site::cloud::las_unit::{CoordinateUnit, stated_unit};
+use crate::site::cloud::las_unit::CloudUnits;
 use crate::site::cloud::raster::{Raster, is_possible, size_px};
-use crate::site::cloud::source::{damaged, for_each_point, unit_m};
+use crate::site::cloud::source::{damaged, for_each_point};
 use crate::site::parts::file_name;
 use crate::site::{
     CloudFormat, CloudSummary, LengthUnit, Orthophoto, PixelMap, Site, SiteError, SiteOrigin,
@@ -28,8 +28,8 @@ const EIGHT_BITS: f32 = 255.0;
 pub struct CloudOptions {
     /// Side of a pixel, m, in the range [`PIXEL_SIZE`](crate::ranges::PIXEL_SIZE).
     pub pixel_m: f64,
-    /// Unit of the coordinates of LAS.
-    pub unit: LengthUnit,
+    /// Unit of the coordinates of LAS; what the file states, else metres, if `None`.
+    pub unit: Option<LengthUnit>,
     /// The part that is drawn: smallest and largest easting and northing, m; all, if `None`.
     pub within_m: Option<[[f64; 2]; 2]>,
     /// Points between these heights alone, m.
@@ -38,7 +38,7 @@ pub struct CloudOptions {
 
 impl Default for CloudOptions {
     fn default() -> Self {
-        Self { pixel_m: 0.05, unit: LengthUnit::Metre, within_m: None, heights_m: None }
+        Self { pixel_m: 0.05, unit: None, within_m: None, heights_m: None }
     }
 }
 
@@ -81,15 +81,6 @@ pub fn import_cloud(
         }
     };
     let (first, second) = (halves(0), halves(1));
-    let stated = match format {
-        CloudFormat::Las => stated_unit(path),
-        CloudFormat::E57 => None,
-    };
-    if stated == Some(CoordinateUnit::Degrees) {
-        let why =
-            "its coordinates are longitude and latitude; bring it into a projected system first";
-        return Err(damaged(path, &why));
-    }
     let summary = survey_cloud(path, format, options.unit, &mut |of| report(first(of)))?;
     let [low_m, high_m] = options
         .within_m
@@ -100,10 +91,11 @@ pub fn import_cloud(
         std::array::from_fn(|axis| high_m[axis].min(summary.high_m[axis])),
     ];
     let mut raster = new_raster(path, extent_m, options.pixel_m, summary.low_m[2])?;
-    let (scale, unit_m) = (color_scale(format, &summary), unit_m(format, options.unit));
+    let (scale, units) =
+        (color_scale(format, &summary), CloudUnits::of(path, format, options.unit)?);
     let heights_m = options.heights_m.unwrap_or([f64::MIN, f64::MAX]);
     for_each_point(path, format, &mut |of| report(second(of)), &mut |point| {
-        let at_m = point.at.map(|value| value * unit_m);
+        let at_m = units.in_metres(point.at);
         if (heights_m[0]..=heights_m[1]).contains(&at_m[2]) {
             let grey = point.intensity.map(|strength| [strength; 3]);
             let color = match summary.largest_color {
@@ -117,27 +109,8 @@ pub fn import_cloud(
         return Err(damaged(path, &"it has no points within what is to be drawn"));
     };
     let mut made = write(path, (&summary, heights_m), &raster, folder)?;
-    if format == CloudFormat::Las {
-        made.notes.extend(unit_note(options.unit, stated));
-    }
+    made.notes.extend(units.note);
     Ok(made)
-}
-
-/// What is said of the unit that the coordinates of LAS are taken in.
-fn unit_note(unit: LengthUnit, stated: Option<CoordinateUnit>) -> Option<String> {
-    let taken = unit.word();
-    match stated {
-        Some(CoordinateUnit::Length(stated)) if stated == unit => None,
-        Some(CoordinateUnit::Length(stated)) => Some(format!(
-            "its coordinate system is in {}, and its coordinates were taken as {taken}: if that was not on purpose, \
-             all lengths are wrong; say the unit (--unit {})",
-            stated.word(),
-            stated.word()
-        )),
-        _ => {
-            Some(format!("it does not say the unit of its coordinates; they were taken as {taken}"))
-        }
-    }
 }
 
 /// An empty raster, if it is not too large.

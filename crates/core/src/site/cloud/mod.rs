@@ -21,4 +21,5 @@ mod import;
 mod tests;
 
 pub use import::{CloudOptions, CloudReport, import_cloud};
+pub use las_unit::stated_cloud_unit;
 pub use source::{CloudFormat, CloudSummary, survey_cloud};

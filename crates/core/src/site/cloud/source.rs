@@ -8,6 +8,7 @@ use std::path::Path;
 use crate::data::{MAX_CLOUD_BYTES, open_file};
 use crate::jobs::{Progress, ProgressCallback};
 use crate::ranges::SURVEY_COORDINATE;
+use crate::site::cloud::las_unit::CloudUnits;
 use crate::site::cloud::{e57_points, las_points};
 use crate::site::{LengthUnit, SiteError};
 
@@ -65,6 +66,8 @@ pub struct CloudSummary {
     pub largest_color: Option<f32>,
     /// Largest strength of an echo; `None` for a cloud without.
     pub largest_intensity: Option<f32>,
+    /// In which unit its coordinates were taken and why, in words; `None` for metres beyond doubt.
+    pub unit_note: Option<String>,
 }
 
 impl CloudSummary {
@@ -87,17 +90,17 @@ impl CloudSummary {
 
 /// Reads all points and says what is there.
 ///
-/// - `unit`: of the coordinates of LAS; those of E57 are in metres.
+/// - `unit`: of the coordinates of LAS; what the file states, else metres, if `None`. Those of E57 are in metres.
 ///
 /// # Errors
 /// [`SiteError::Cloud`], [`SiteError::Data`], [`SiteError::Cancelled`].
 pub fn survey_cloud(
     path: &Path,
     format: CloudFormat,
-    unit: LengthUnit,
+    unit: Option<LengthUnit>,
     report: &mut ProgressCallback<'_>,
 ) -> Result<CloudSummary, SiteError> {
-    let unit_m = unit_m(format, unit);
+    let units = CloudUnits::of(path, format, unit)?;
     let mut summary = CloudSummary {
         n_points: 0,
         n_left_out: 0,
@@ -105,10 +108,11 @@ pub fn survey_cloud(
         high_m: [f64::MIN; 3],
         largest_color: None,
         largest_intensity: None,
+        unit_note: units.note.clone(),
     };
     let mut far = None;
     let n_left_out = for_each_point(path, format, report, &mut |point| {
-        let at_m = point.at.map(|value| value * unit_m);
+        let at_m = units.in_metres(point.at);
         if !at_m.iter().all(|value| value.is_finite()) {
             summary.n_left_out += 1;
             return;
@@ -139,14 +143,6 @@ pub fn survey_cloud(
         return Err(damaged(path, &"it has no points with a place"));
     }
     Ok(summary)
-}
-
-/// Length of the unit of the coordinates of a cloud, m.
-pub(super) fn unit_m(format: CloudFormat, unit: LengthUnit) -> f64 {
-    match format {
-        CloudFormat::Las => unit.length_m(),
-        CloudFormat::E57 => 1.0,
-    }
 }
 
 /// Hands every point of a cloud over that is not marked as noise or withdrawn, and whose place is not said

@@ -223,9 +223,9 @@ fn feet_are_turned_into_metres_and_work_is_stopped() {
     let survey =
         |path: &Path, unit, flow| survey_cloud(path, CloudFormat::Las, unit, &mut |_| flow);
     let go_on = ControlFlow::Continue(());
-    let metres = survey(&path, LengthUnit::Metre, go_on).unwrap();
-    let feet = survey(&path, LengthUnit::Foot, go_on).unwrap();
+    let metres = survey(&path, None, go_on).unwrap();
+    let feet = survey(&path, Some(LengthUnit::Foot), go_on).unwrap();
     assert!((feet.low_m[0] - 0.3048 * metres.low_m[0]).abs() < 1e-6);
-    let stopped = survey(&path, LengthUnit::Metre, ControlFlow::Break(()));
+    let stopped = survey(&path, None, ControlFlow::Break(()));
     assert!(matches!(stopped, Err(SiteError::Cancelled)), "{stopped:?}");
 }

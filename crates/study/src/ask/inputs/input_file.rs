@@ -16,8 +16,7 @@ use impactlab_core::data::{
 };
 use impactlab_core::error_chain;
 use impactlab_core::site::{
-    CloudFormat, CloudSummary, LengthUnit, Site, SiteError, read_drawing, read_picture,
-    survey_cloud,
+    CloudFormat, CloudSummary, Site, SiteError, read_drawing, read_picture, survey_cloud,
 };
 use impactlab_core::vehicle::VehicleParameters;
 use impactlab_networks::nn::kind_of_file;
@@ -204,10 +203,15 @@ impl InputFile {
                 let origin = site.origin.unwrap_or_default();
                 let drawing = site.drawing.as_ref().map(|drawing| read_drawing(drawing, &origin));
                 let drawing = drawing.transpose().map_err(|error| wrong(&error))?;
-                let contents = site.contents(drawing.map(|drawing| drawing.summary()).as_ref());
-                Ok(contents.into_iter().chain(site.notes.iter().cloned()).collect())
+                let summary = drawing.as_ref().map(|drawing| drawing.summary());
+                let of_drawing = drawing.iter().zip(&site.drawing);
+                let of_drawing = of_drawing.flat_map(|(drawing, file)| drawing.notes(&file.file));
+                let contents = site.contents(summary.as_ref()).into_iter().chain(of_drawing);
+                Ok(contents.chain(site.notes.iter().cloned()).collect())
             }
-            Self::Cloud(summary) => Ok(summary.contents()),
+            Self::Cloud(summary) => {
+                Ok(summary.contents().into_iter().chain(summary.unit_note.clone()).collect())
+            }
             Self::Network(kind) => Ok(vec![kind.clone()]),
             Self::Pairs(records) => pairs_contents(records, kind),
             Self::OfSweep => Ok(vec!["checked by its own command".to_owned()]),
@@ -238,7 +242,7 @@ fn pairs_contents(records: &PairRecords, kind: InputKind) -> Result<Vec<String>,
 /// Reads all points of a cloud.
 fn read_cloud(path: &Path) -> Result<CloudSummary, SiteError> {
     let format = CloudFormat::from_path(path).unwrap_or(CloudFormat::Las);
-    survey_cloud(path, format, LengthUnit::Metre, &mut |_| ControlFlow::Continue(()))
+    survey_cloud(path, format, None, &mut |_| ControlFlow::Continue(()))
 }
 
 /// Whether a file is JSON that has not what every comparison has.

@@ -7,8 +7,8 @@ use serde::{Serialize, Serializer};
 
 use crate::{InputKind, word};
 use impactlab_core::data::{
-    Case, Channel, ColumnProposal, ColumnUse, Dataset, Flag, ForceHistory, Loaded, Severity,
-    contact_interval, map_from_proposals,
+    Case, Channel, ColumnProposal, ColumnUse, Dataset, Flag, ForceHistory, Loaded, ReadSettings,
+    Severity, contact_interval, map_from_proposals,
 };
 use impactlab_core::error_chain;
 
@@ -318,9 +318,11 @@ impl ProposedColumn {
         }
     }
 
-    /// The mapping that takes what is recognised, if anything is.
-    pub fn map(columns: &[ColumnProposal]) -> Option<String> {
-        let map = map_from_proposals(columns).to_string();
+    /// The mapping that takes what is recognised, if anything is, from where the settings say.
+    pub fn map(columns: &[ColumnProposal], settings: &ReadSettings) -> Option<String> {
+        let mut map = map_from_proposals(columns);
+        *map.settings = settings.clone();
+        let map = map.to_string();
         (!map.is_empty()).then_some(map)
     }
 }

@@ -113,14 +113,17 @@ impl Question for CheckRequest {
                 Ok(Outcome::Cancelled) => return Ok(Outcome::Cancelled),
                 Ok(Outcome::Complete((items, problems))) => {
                     report.add(&items, self.all);
-                    let problems = problems.iter().map(|error| problem(path, kind, error));
+                    let map = self.map.as_ref();
+                    let problems = problems.iter().map(|error| problem(path, kind, error, map));
                     report.problems.extend(problems);
                     for pairs in pairs_within(path) {
                         report.add_input_file(&pairs, InputKind::Pairs);
                     }
                     all.extend(items);
                 }
-                Err(error) => report.problems.push(problem(path, kind, &error)),
+                Err(error) => {
+                    report.problems.push(problem(path, kind, &error, self.map.as_ref()));
+                }
             }
         }
         report.ok = !report.has_problems();
@@ -214,10 +217,18 @@ impl CheckReport {
 
 /// A path that cannot be read; if its columns are the reason, with what they look like. An open question
 /// comes with its answer instead.
-fn problem(path: &Path, kind: InputKind, error: &DataError) -> PathProblem {
+///
+/// - `map`: what says where the columns stand, such as in which sheet.
+fn problem(
+    path: &Path,
+    kind: InputKind,
+    error: &DataError,
+    map: Option<&ColumnMap>,
+) -> PathProblem {
     let is_about_columns = error.needs_mapping() || matches!(error, DataError::NoSuchColumn { .. });
     let is_about_columns = is_about_columns && error.answer().is_none();
-    let columns = is_about_columns.then(|| propose_columns(path).ok()).flatten();
+    let settings = map.map(|map| map.settings.as_ref().clone()).unwrap_or_default();
+    let columns = is_about_columns.then(|| propose_columns(path, &settings).ok()).flatten();
     PathProblem {
         path: path.to_owned(),
         kind,
@@ -227,7 +238,7 @@ fn problem(path: &Path, kind: InputKind, error: &DataError) -> PathProblem {
         },
         map: match error.answer() {
             Some(answer) => Some(answer.to_string()),
-            None => columns.as_deref().and_then(ProposedColumn::map),
+            None => columns.as_deref().and_then(|columns| ProposedColumn::map(columns, &settings)),
         },
         columns: columns.map(|columns| columns.iter().map(ProposedColumn::from_proposal).collect()),
     }
