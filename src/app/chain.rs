@@ -181,10 +181,12 @@ fn warnings(caveats: Option<&Caveats>, units: UnitSystem) -> Vec<String> {
 
 /// Draws the chain; a click on a link shows its panel. While a figure is awaited the chain keeps its height, so
 /// that nothing below it moves.
-pub fn chain_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+///
+/// - `links`: that of [`State::chain`].
+pub fn chain_ui(ui: &mut Ui, state: &State, links: &[Link], commands: &mut Vec<Command>) {
     let links = match state.project.subject() {
-        Some(_) => state.chain(),
-        None => Vec::new(),
+        Some(_) => links,
+        None => &[],
     };
     let is_late = links.iter().any(|link| link.is_late);
     Panel::top("chain").show(ui, |ui| {

@@ -1,5 +1,6 @@
 //! What the case consists of, as the tree at the left of the Case workspace shows it.
 
+use crate::app::chain::Link;
 use crate::app::command::Command;
 use crate::app::looks::Icon;
 use crate::app::model::{ModelStatus, file_name};
@@ -78,7 +79,9 @@ impl ContentsEntry {
 
 impl State {
     /// What the case consists of, part by part, with what is missing for the next answer.
-    pub fn contents(&self) -> Vec<ContentsEntry> {
+    ///
+    /// - `chain`: that of [`State::chain`].
+    pub fn contents(&self, chain: &[Link]) -> Vec<ContentsEntry> {
         let mut entries = Vec::new();
         entries.extend(self.vehicle_entries());
         entries.extend(self.scene_entries());
@@ -96,7 +99,7 @@ impl State {
         entries.extend(self.evidence_entry());
         entries.push(model_entry("Force network", &self.session.force.model));
         entries.push(model_entry("Response network", &self.session.response.model));
-        entries.extend(self.result_entries());
+        entries.extend(result_entries(chain));
         entries
     }
 
@@ -213,22 +216,20 @@ impl State {
         let show = Command::Show(Pane::Evidence);
         Some(ContentsEntry::new(Group::Data, "Evidence", detail, show).missing(problem))
     }
+}
 
-    /// The figures of the chain that were found, each with its warnings.
-    fn result_entries(&self) -> Vec<ContentsEntry> {
-        let links = self.chain().into_iter().filter(|link| link.title != "Scenario");
-        let entry = |link: crate::app::chain::Link| {
-            let (label, detail) = match (&link.figure, link.is_late) {
-                (_, true) => (link.title, "computing…".to_owned()),
-                (Some(figure), false) => (link.title, figure.clone()),
-                (None, false) => (link.title, link.source.clone()),
-            };
-            let missing = (!link.warnings.is_empty()).then(|| link.warnings.join("\n"));
-            let show = Command::Show(link.pane);
-            ContentsEntry::new(Group::Results, label, detail, show).missing(missing)
+/// The figures of the chain that were found, each with its warnings.
+fn result_entries(chain: &[Link]) -> impl Iterator<Item = ContentsEntry> {
+    chain.iter().filter(|link| link.title != "Scenario").map(|link| {
+        let (label, detail) = match (&link.figure, link.is_late) {
+            (_, true) => (link.title, "computing…".to_owned()),
+            (Some(figure), false) => (link.title, figure.clone()),
+            (None, false) => (link.title, link.source.clone()),
         };
-        links.map(entry).collect()
-    }
+        let missing = (!link.warnings.is_empty()).then(|| link.warnings.join("\n"));
+        let show = Command::Show(link.pane);
+        ContentsEntry::new(Group::Results, label, detail, show).missing(missing)
+    })
 }
 
 fn model_entry<M: TrainedModel>(label: &str, status: &ModelStatus<M>) -> ContentsEntry {

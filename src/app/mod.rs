@@ -312,10 +312,11 @@ impl eframe::App for App {
         };
         menu::menu_ui(ui, &mut self.state, history, &mut commands);
         case::case_bar_ui(ui, &mut self.state, &mut commands);
-        chain::chain_ui(ui, &self.state, &mut commands);
+        let chain = self.state.chain();
+        chain::chain_ui(ui, &self.state, &chain, &mut commands);
         offer::offer_ui(ui, &self.state, &mut commands);
         menu::status_ui(ui, &self.state, &mut commands);
-        self.panes_ui(ui, &mut commands);
+        self.panes_ui(ui, &chain, &mut commands);
         dialog::dialogs_ui(ui, &mut self.state, &mut commands);
         menu::drop_hint_ui(ui);
         for command in commands {
@@ -351,14 +352,15 @@ impl App {
         }
     }
 
-    fn panes_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+    /// - `chain`: that of [`State::chain`].
+    fn panes_ui(&mut self, ui: &mut Ui, chain: &[Link], commands: &mut Vec<Command>) {
         let frame = egui::Frame::new().fill(ui.visuals().panel_fill);
         let central = egui::CentralPanel::no_frame().frame(frame);
         if self.state.session.shows_doors {
             central.show(ui, |ui| panels::doors_ui(ui, &self.state.view.recent, commands));
             return;
         }
-        let (variants, contents) = (self.state.answered_variants(), self.state.contents());
+        let (variants, contents) = (self.state.answered_variants(), self.state.contents(chain));
         let State { project, view, session, .. } = &mut self.state;
         let shown = view.workspaces.shown;
         let empty = Tree::empty(egui::Id::unique("panes"));

@@ -106,6 +106,11 @@ impl State {
             }
             RecorderCommand::MakeEvidence { record, car } => {
                 let mut evidence = self.evidence().cloned().unwrap_or_else(Evidence::empty);
+                if evidence.is_single_car() {
+                    let text = "The evidence is of a single car, which has no record of a crash: add a \
+                                recorded speed, or begin with new evidence";
+                    return self.say(Severity::Error, text);
+                }
                 let slot = match car {
                     Role::Struck => &mut evidence.edr,
                     Role::Striking => &mut evidence.striking_edr,

@@ -166,6 +166,23 @@ pub enum CliError {
         /// The option.
         option: &'static str,
     },
+    /// The record of a recorder is for the evidence of a single car.
+    #[error(
+        "{name}: is the evidence of a single car, which has no record of a crash; give the speed as a \
+        [[recorded_speed]]"
+    )]
+    RecorderOfSingleCar {
+        /// The case.
+        name: String,
+    },
+    /// A figure of a collision is asked of a single car.
+    #[error("{name}: is of a single car, of which there is no {quantity}")]
+    NotOfSingleCar {
+        /// The case.
+        name: String,
+        /// What the figure should show.
+        quantity: &'static str,
+    },
     /// Nothing of what a figure shows is known.
     #[error("{name}: nothing is known of {channel} over time")]
     NothingToShow {

@@ -10,8 +10,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 use crate::cli::CliError;
 use crate::cli::commands::{
     app, ask, atlas, case, check, compare, condition, evaluate, export, fine_tune, hand, impact,
-    import, licences, predict, ranges, reconstruct, render, report, schema, simulate, stiffness,
-    sweep, train, vehicles,
+    import, licences, predict, ranges, reconstruct, render, replay, report, schema, simulate,
+    stiffness, sweep, train, vehicles,
 };
 use crate::cli::console::{Console, Escaped, Targets, Verdict, within_line};
 use impactlab_core::error_chain;
@@ -62,6 +62,7 @@ enum CliCommand {
     Render(render::RenderArgs),
     Export(export::ExportArgs),
     Import(Box<import::ImportArgs>),
+    Replay(Box<replay::ReplayArgs>),
     Report(report::ReportArgs),
     Vehicles(vehicles::VehiclesArgs),
     Stiffness(stiffness::StiffnessArgs),
@@ -142,6 +143,7 @@ impl Cli {
                 | CliCommand::Evaluate(_)
                 | CliCommand::Compare(_)
                 | CliCommand::Reconstruct(_)
+                | CliCommand::Replay(_)
                 | CliCommand::Report(_),
             ) => true,
         };
@@ -187,6 +189,7 @@ fn dispatch(command: Option<CliCommand>, console: &mut Console<'_>) -> Result<Ve
         Some(CliCommand::Render(args)) => render::run(&args, console),
         Some(CliCommand::Export(args)) => export::run(&args, console),
         Some(CliCommand::Import(args)) => import::run(&args, console),
+        Some(CliCommand::Replay(args)) => replay::run(&args, console),
         Some(CliCommand::Report(args)) => report::run(&args, console),
         Some(CliCommand::Vehicles(args)) => vehicles::run(&args, console),
         Some(CliCommand::Stiffness(args)) => stiffness::run(&args, console),

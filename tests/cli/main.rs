@@ -35,6 +35,8 @@ mod reconstruct;
 mod reconstruct_absurd;
 mod reconstruct_inline;
 mod reconstruct_killed;
+mod reconstruct_single_car;
+mod replay;
 mod replays;
 mod report;
 mod response;

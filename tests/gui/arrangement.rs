@@ -17,6 +17,11 @@ fn state<'a>(harness: &'a Harness<'_, App>) -> &'a impactlab::app::State {
     harness.state().state()
 }
 
+fn contents_of(harness: &Harness<'_, App>) -> Vec<impactlab::app::ContentsEntry> {
+    let state = state(harness);
+    state.contents(&state.chain())
+}
+
 fn is_forecast(state: &impactlab::app::State) -> bool {
     let forecast = &state.session.response.forecast;
     is_idle(state) && forecast.ok().is_some() && !forecast.is_waiting()
@@ -97,7 +102,7 @@ fn the_ways_to_begin_are_shown_at_the_first_start_alone() {
 fn the_contents_name_what_is_missing_and_lead_to_it() {
     let mut harness = open(&[SCENARIO]);
     step_until(&mut harness, "the forecast", is_forecast);
-    let contents = state(&harness).contents();
+    let contents = contents_of(&harness);
     for &group in Group::ALL {
         assert!(contents.iter().any(|entry| entry.group == group), "{group:?}");
     }
@@ -108,7 +113,7 @@ fn the_contents_name_what_is_missing_and_lead_to_it() {
     harness.get_by_label("Integration");
     harness.state_mut().state_mut().project.simulate.source = MotionSource::default();
     harness.run_steps(3);
-    let contents = state(&harness).contents();
+    let contents = contents_of(&harness);
     let impact = contents.iter().find(|entry| entry.group == Group::Impact).unwrap();
     assert!(impact.missing.as_ref().unwrap().contains("choose a scenario"), "{impact:?}");
 }

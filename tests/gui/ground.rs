@@ -59,7 +59,7 @@ fn a_site_file_is_opened_drawn_and_asked_with() {
     assert_eq!(request.site.as_deref(), Some(Path::new(SITE)));
     let report = &state.analysis().expect("an answer").analysis;
     assert_eq!(report.friction_zones.len(), 2, "the simulation knows the zones");
-    let entry = state.contents().into_iter().find(|entry| entry.label == "Ground");
+    let entry = state.contents(&state.chain()).into_iter().find(|entry| entry.label == "Ground");
     assert_eq!(entry.expect("in the tree").detail, "Country road, synthetic");
     save(&mut harness, "ground-above.png");
     let with = harness.render().expect("a picture");

@@ -102,6 +102,28 @@ fn the_question_what_happened_leads_to_a_form_for_what_was_found() {
     assert!(harness.query_by_label("Add evidence").is_some());
 }
 
+/// The window asked what the striking car was, and drew where the struck car was hit.
+#[test]
+fn a_single_car_is_run_without_anything_of_an_impact() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let path = root.join("docs/guide/examples/single_car.toml");
+    let mut harness = opened(&path, [1280.0, 720.0], 60);
+    for label in ["Damage of the struck car", "Striking car", "Struck car", "Ranges beforehand"] {
+        assert!(harness.query_by_label(label).is_none(), "{label}");
+    }
+    assert!(harness.query_by_label("Driver and wheels").is_some());
+    harness.get_by_label("Run").click();
+    harness.run_steps(4);
+    step_until(&mut harness, "the speed", is_answered);
+    harness.run_steps(4);
+    let answer = state(&harness).session.reconstruction.answer().expect("an answer");
+    assert!(answer.answer.posterior.is_of_single_car());
+    assert_eq!(answer.answer.report.quantities[0].name, "speed_m_s");
+    for label in ["Δv of the struck car", "closing speed", "speed of the striking car"] {
+        assert!(harness.query_by_label(label).is_none(), "{label}");
+    }
+}
+
 #[test]
 fn evidence_that_is_opened_is_run_edited_and_undone() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use impactlab_core::collision::Side;
 use impactlab_reconstruct::evidence::{
-    Bounds, Choice, Damage, Evidence, Field, Fields, Item, Items, PointsMut, Section, Sigma, Word,
+    Bounds, Choice, Damage, Evidence, EvidenceKind, Field, Fields, Item, Items, PointsMut, Section,
+    Sigma, Word,
 };
 
 /// Keys that the page tells in words and that no field has: the start of a mark once more.
@@ -90,6 +91,8 @@ fn the_page_on_the_evidence_file_has_every_key_and_no_other() {
         let damage = Damage { side, ..Damage::default() };
         Evidence { damage, ..Evidence::default() }.items(&mut keys);
     }
+    let kind = EvidenceKind::SingleCar;
+    Evidence { kind, ..Evidence::default() }.items(&mut keys);
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/guide/evidence-file.md");
     let told = told(&std::fs::read_to_string(page).expect("the page"));
     assert!(keys.0.len() > 10, "{:?}", keys.0.keys());

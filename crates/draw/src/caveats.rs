@@ -19,8 +19,12 @@ pub(crate) const LINE_HEIGHT: f32 = 15.0;
 const TITLE_SIZE: f32 = 15.0;
 /// Room between the line and the number of the others, points.
 const BETWEEN: f32 = 8.0;
-/// Narrowest line, as a number of letters, that stands beside the number of the others in words.
-const LEAST_LETTERS: f32 = 30.0;
+/// Narrowest line, as a number of letters, that stands beside the number of the others in words, and
+/// beside where they are listed.
+const LEAST_LETTERS: [f32; 2] = [30.0, 48.0];
+/// Largest share of the height of a picture that its legend takes, and height of a row of it, points.
+const LEGEND_SHARE: f32 = 0.3;
+const LEGEND_ROW_HEIGHT: f32 = 18.0;
 
 /// Size of the names in the legend of a picture, points: in a window there is less room for them.
 const LEGEND_SIZE: f32 = 11.5;
@@ -37,7 +41,9 @@ pub fn picture_ui(ui: &mut Ui, figure: &Figure) {
     let format = NumberFormat { language: figure.language, ..NumberFormat::default() };
     let line = RestrictionLine::new(&figure.caveats, &format);
     let height = line.as_ref().map(|_| ui.available_height() - LINE_HEIGHT);
-    figure_ui(ui, figure, &FigureOptions { height, ..FigureOptions::default() });
+    let legend_rows = (LEGEND_SHARE * ui.available_height() / LEGEND_ROW_HEIGHT).max(1.0) as usize;
+    let options = FigureOptions { height, legend_rows, ..FigureOptions::default() };
+    figure_ui(ui, figure, &options);
     if let Some(line) = line {
         let bottom = ui.max_rect().bottom();
         let left_top = pos2(ui.max_rect().left(), bottom - LINE_HEIGHT);
@@ -88,6 +94,19 @@ impl RestrictionLine {
         })
     }
 
+    /// How many others there are, in as many words as a line of a width has room for.
+    fn others(&self, width: f32) -> String {
+        let [in_words, with_place] = LEAST_LETTERS.map(|letters| letters * TEXT_SIZE);
+        match (self.n_others, self.language) {
+            (0, _) => String::new(),
+            (n, _) if width < in_words => format!("+{n}"),
+            (n, Language::En) if width < with_place => format!("and {n} more"),
+            (n, Language::De) if width < with_place => format!("und {n} weitere"),
+            (n, Language::En) => format!("and {n} more, listed with the answer"),
+            (n, Language::De) => format!("und {n} weitere, bei der Antwort aufgeführt"),
+        }
+    }
+
     /// Draws the line. The number of the others always stands there; the sentence ends with “…” where it
     /// is too long.
     pub(crate) fn ui(&self, ui: &mut Ui, rect: Rect) {
@@ -95,23 +114,29 @@ impl RestrictionLine {
         let (strong, weak) = (visuals.strong_text_color(), visuals.text_color());
         let color = theme::severity_color(self.severity, visuals.dark_mode);
         let format = |color| TextFormat::simple(FontId::proportional(TEXT_SIZE), color);
-        let others = match (self.n_others, rect.width() < LEAST_LETTERS * TEXT_SIZE) {
-            (0, _) => String::new(),
-            (n, true) => format!("+{n}"),
-            (n, false) => match self.language {
-                Language::En => format!("and {n} more, listed with the answer"),
-                Language::De => format!("und {n} weitere, bei der Antwort aufgeführt"),
-            },
-        };
+        let others = self.others(rect.width());
         let mut job = LayoutJob::single_section(others.clone(), format(weak));
         job.wrap = TextWrapping::truncate_at_width(rect.width());
         let others_galley = ui.painter().layout_job(job);
         let taken = if others.is_empty() { 0.0 } else { others_galley.size().x + BETWEEN };
-        let mut job = LayoutJob::default();
-        job.append(&self.label, 0.0, format(color));
-        job.append(&self.text, 0.0, format(strong));
-        job.wrap = TextWrapping::truncate_at_width((rect.width() - taken).max(0.0));
-        let galley = ui.painter().layout_job(job);
+        let line = |text: &str| {
+            let mut job = LayoutJob::default();
+            job.append(&self.label, 0.0, format(color));
+            job.append(text, 0.0, format(strong));
+            job.wrap = TextWrapping::truncate_at_width((rect.width() - taken).max(0.0));
+            ui.painter().layout_job(job)
+        };
+        let mut galley = line(&self.text);
+        let mut kept = self.text.as_str();
+        // A list is cut between its parts.
+        while galley.elided {
+            let Some((before, _)) = kept.rsplit_once("; ") else {
+                galley = line(&self.text);
+                break;
+            };
+            kept = before;
+            galley = line(&format!("{kept}; …"));
+        }
         let place = |x: f32, size: Vec2| pos2(x, rect.center().y - size.y / 2.0);
         let end = rect.left() + galley.size().x;
         ui.painter().galley(place(rect.left(), galley.size()), galley, strong);
@@ -145,6 +170,8 @@ mod tests {
         let english = NumberFormat::default();
         let line = RestrictionLine::new(&all, &english).unwrap();
         assert_eq!((line.label.as_str(), line.n_others), ("Warning: wheel lift: ", 2));
+        let others = [300.0, 340.0, 600.0].map(|width| line.others(width));
+        assert_eq!(others, ["+2", "and 2 more", "and 2 more, listed with the answer"]);
         let german = NumberFormat { language: Language::De, ..english };
         assert_eq!(
             RestrictionLine::new(&all, &german).unwrap().label,

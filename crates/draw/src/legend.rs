@@ -8,17 +8,22 @@ use crate::cell_map::scale_ui;
 use crate::theme;
 use impactlab_document::figure::{Figure, FigureElement};
 
+/// Width of the number of the names that a legend has no room for, points.
+const NUMBER_WIDTH: f32 = 30.0;
+
 /// Draws the names of a figure with their colours in rows. A click on a name hides what it names, or shows
 /// it again.
 ///
 /// - `hidden`: the names that are hidden.
-pub fn legend_ui(ui: &mut Ui, figure: &Figure, hidden: &mut BTreeSet<String>) {
+/// - `n_rows`: so many rows at most; names for which there is no room are counted.
+pub fn legend_ui(ui: &mut Ui, figure: &Figure, hidden: &mut BTreeSet<String>, n_rows: usize) {
     let (dark, named) = (ui.visuals().dark_mode, named(figure));
     if named.is_empty() {
         return;
     }
+    let (shown, others) = named.split_at(n_that_fit(ui, &named, n_rows));
     ui.horizontal_wrapped(|ui| {
-        for element in named {
+        for element in shown {
             let name = element.name();
             let color = theme::color(element.role(), dark);
             let color = match element {
@@ -38,7 +43,32 @@ pub fn legend_ui(ui: &mut Ui, figure: &Figure, hidden: &mut BTreeSet<String>) {
                 hidden.insert(name.to_owned());
             }
         }
+        if !others.is_empty() {
+            ui.add(Label::new(RichText::new(format!("+{}", others.len())).small()).extend());
+        }
     });
+}
+
+/// How many names have room in so many rows, with the number of the others behind them.
+fn n_that_fit(ui: &Ui, named: &[&FigureElement], n_rows: usize) -> usize {
+    let font = TextStyle::Small.resolve(ui.style());
+    let between = ui.spacing().item_spacing.x;
+    let (whole, mut row, mut used) = (ui.available_width(), 1, 0.0);
+    for (idx, element) in named.iter().enumerate() {
+        let name = element.name().to_owned();
+        let text = ui.painter().layout_no_wrap(name, font.clone(), Color32::PLACEHOLDER);
+        let needed = font.size + 2.0 * between + text.size().x;
+        let has_others = row == n_rows && idx + 1 < named.len();
+        let room = if has_others { whole - NUMBER_WIDTH } else { whole };
+        if used > 0.0 && used + needed > room {
+            (row, used) = (row + 1, 0.0);
+        }
+        if row > n_rows {
+            return idx;
+        }
+        used += needed;
+    }
+    named.len()
 }
 
 /// The first element of each name of a figure, in their order.
@@ -72,8 +102,12 @@ fn dot_ui(ui: &mut Ui, color: Color32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Canvas;
+    use crate::offscreen::shapes_offscreen;
     use impactlab_core::units::{Quantity, UnitSystem};
     use impactlab_document::figure::{Axis, Role};
+
+    const CANVAS: Canvas = Canvas { size_px: [1200, 300], scale: 1.0, dark: false };
 
     #[test]
     fn a_legend_has_a_name_once_and_none_for_what_has_no_name() {
@@ -88,5 +122,23 @@ mod tests {
         let figure = Figure::new("", [axis.clone(), axis], elements);
         let names: Vec<&str> = named(&figure).iter().map(|element| element.name()).collect();
         assert_eq!(names, ["line", "other"]);
+    }
+
+    /// Seven rows of names left no room for the plot below them.
+    #[test]
+    fn names_that_have_no_room_are_counted() {
+        let axis = Axis::shown("x", Quantity::Ratio, UnitSystem::Si);
+        let names = (0..20).map(|idx| format!("tire mark of the struck car {idx}"));
+        let line = |name| FigureElement::line(name, Role::Simulation, vec![[0.0, 1.0], [1.0, 0.0]]);
+        let elements = names.map(line).collect();
+        let figure = Figure::new("", [axis.clone(), axis], elements);
+        let named = named(&figure);
+        shapes_offscreen(CANVAS, |ui| {
+            ui.set_max_width(340.0);
+            let [one, two] = [1, 2].map(|n_rows| n_that_fit(ui, &named, n_rows));
+            assert!(0 < one && one < two && two < 20, "{one}, {two}");
+            assert_eq!(n_that_fit(ui, &named, usize::MAX), 20);
+        })
+        .unwrap();
     }
 }

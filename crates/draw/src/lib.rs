@@ -1,6 +1,7 @@
 //! Drawing of figures and scenes. One function draws a figure, and one a scene, both in the panel on
 //! screen and in a picture off screen.
 
+mod axis_label;
 mod caveats;
 mod cell_map;
 mod density;

@@ -9,6 +9,7 @@ use egui_plot::{
     PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
+use crate::axis_label::{label_that_fits, shortened};
 use crate::cell_map;
 use crate::legend::legend_ui;
 use crate::theme;
@@ -16,8 +17,8 @@ use crate::thin::thinned;
 use crate::ticks::{
     X_TICK_CELLS, Y_TICK_CELLS, grid, log_grid, log_tick_label, name_grid, name_label, tick_label,
 };
-use impactlab_core::units::significant;
-use impactlab_document::figure::{Axis, Figure, FigureElement, HeatMap, LineStyle, Path, Series};
+use impactlab_core::units::{NumberFormat, significant};
+use impactlab_document::figure::{Figure, FigureElement, HeatMap, LineStyle, Path, Series};
 
 /// Opacity of the largest value of a heat map.
 const HEAT_OPACITY: f32 = 0.85;
@@ -54,6 +55,8 @@ pub struct FigureOptions {
     pub view: Option<[[f64; 2]; 2]>,
     /// Whether a legend names the elements.
     pub legend: bool,
+    /// Rows that the legend has at most.
+    pub legend_rows: usize,
     /// Whether the primary pointer button moves the view of a figure seen from above.
     pub pans: bool,
 }
@@ -70,6 +73,7 @@ impl Default for FigureOptions {
             reset: false,
             view: None,
             legend: true,
+            legend_rows: usize::MAX,
             pans: true,
         }
     }
@@ -107,8 +111,9 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
     let top = ui.cursor().top();
     let hidden = if options.legend { hidden_ui(ui, figure, options) } else { BTreeSet::new() };
     let height = (all - (ui.cursor().top() - top)).max(LEAST_HEIGHT);
+    let x_label = shortened(ui, &figure.x, ui.available_width() - y_axis_width(figure));
     let y_label = label_that_fits(ui, &figure.y, height - X_AXIS_HEIGHT);
-    let mut plot = plot_with_axes(figure, options, y_label);
+    let mut plot = plot_with_axes(figure, options, [x_label, y_label]);
     if figure.equal_aspect {
         plot = plot.data_aspect(1.0);
     }
@@ -179,7 +184,7 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
 fn hidden_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> BTreeSet<String> {
     let id = Id::unique(("hidden in", options.plot_name(figure)));
     let mut hidden: BTreeSet<String> = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-    legend_ui(ui, figure, &mut hidden);
+    legend_ui(ui, figure, &mut hidden, options.legend_rows);
     ui.data_mut(|data| data.insert_temp(id, hidden.clone()));
     hidden
 }
@@ -202,9 +207,19 @@ fn zoom_by_wheel(plot: &mut PlotUi<'_>) {
     }
 }
 
+/// Smallest width of the labels of the vertical axis, points.
+fn y_axis_width(figure: &Figure) -> f32 {
+    let longest = figure.y.names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+    f32::max(LEAST_Y_AXIS_WIDTH, longest as f32 * CHARACTER_WIDTH)
+}
+
 /// A plot with the labels and ticks of the axes and the text shown on hovering.
-fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions, y_label: String) -> Plot<'a> {
+///
+/// - `labels`: of the horizontal and the vertical axis.
+fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions, labels: [String; 2]) -> Plot<'a> {
     let (x, y, log_y) = (figure.x.clone(), figure.y.clone(), figure.log_y);
+    let [x_label, y_label] = labels;
+    let format = NumberFormat { language: figure.language, ..NumberFormat::default() };
     let readout = move |name: &str, at: PlotPoint| {
         let head = if name.is_empty() { String::new() } else { format!("{name}\n") };
         let value = if log_y { 10.0_f64.powf(at.y) } else { at.y };
@@ -222,11 +237,10 @@ fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions, y_label: String)
     let (names, x_names) = (figure.y.names.clone(), figure.x.names.clone());
     let n_x_names = x_names.len();
     let n_names = names.len();
-    let longest = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
     Plot::new(options.plot_name(figure))
-        .x_axis_label(figure.x.text())
+        .x_axis_label(x_label)
         .y_axis_label(y_label)
-        .y_axis_min_width(f32::max(LEAST_Y_AXIS_WIDTH, longest as f32 * CHARACTER_WIDTH))
+        .y_axis_min_width(y_axis_width(figure))
         .label_formatter(move |position| {
             let (name, at) = match position {
                 egui_plot::HoverPosition::NearDataPoint { plot_name, position, .. } => {
@@ -247,28 +261,16 @@ fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions, y_label: String)
         })
         .grid_fade(0.9)
         .x_axis_formatter(move |mark, _| match x_names.is_empty() {
-            true => tick_label(mark),
+            true => format.local(&tick_label(mark)),
             false => name_label(mark, &x_names),
         })
         .y_axis_formatter(move |mark, _| match names.is_empty() {
-            true if log_y => log_tick_label(mark),
-            true => tick_label(mark),
+            true if log_y => format.local(&log_tick_label(mark)),
+            true => format.local(&tick_label(mark)),
             false => name_label(mark, &names),
         })
         .allow_scroll(false)
         .allow_drag(Vec2b::from(figure.equal_aspect && options.pans))
-}
-
-/// The text beside an upright axis; where it is longer than the plot is high, its unit alone, as the
-/// heading above the plot names the quantity.
-fn label_that_fits(ui: &Ui, axis: &Axis, room: f32) -> String {
-    let text = axis.text();
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    let length = ui.painter().layout_no_wrap(text.clone(), font, Color32::PLACEHOLDER).size().x;
-    match length > room && !axis.unit.symbol.is_empty() {
-        true => format!("[{}]", axis.unit.symbol),
-        false => text,
-    }
 }
 
 /// The texture of a heat map, which is kept from frame to frame, and the data from which it was

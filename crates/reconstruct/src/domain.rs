@@ -76,7 +76,11 @@ fn rear_load_kg(car: &VehicleParameters) -> f64 {
 /// - `zones`: parts of the ground with their own friction.
 pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) -> Vec<Caveat> {
     let road = road_caveat(evidence.road_friction());
-    vehicle_caveats(cars).into_iter().chain(road).chain(zone_caveats(zones)).collect()
+    let vehicles: Vec<Caveat> = match evidence.is_single_car() {
+        true => car_caveats("car", &cars.struck).collect(),
+        false => vehicle_caveats(cars),
+    };
+    vehicles.into_iter().chain(road).chain(zone_caveats(zones)).collect()
 }
 
 /// What of both vehicles lies outside of what rules and model are known to hold for.

@@ -1,6 +1,6 @@
 //! From the quantities of a particle to the motion of the cars: the planar impact, its impulse as a
-//! pulse on the struck car, and the 4DOF vehicle to rest. Where later contacts are followed
-//! (`later_contact.rs`), both cars go on together if they meet again.
+//! pulse on the struck car, and the 4DOF vehicle to rest; of a single car (`single_car.rs`) the 4DOF vehicle
+//! alone. Where later contacts are followed (`later_contact.rs`), both cars go on together if they meet again.
 //!
 //! World axes: origin at the CG of the struck car at first contact, X along its heading, Y to the left.
 //!
@@ -12,9 +12,10 @@
 use rayon::prelude::*;
 
 use crate::evidence::{Evidence, ends};
-use crate::held_wheels::{HeldWheels, wheels_near};
+use crate::held_wheels::{BLOCKED_FROM_S, HeldWheels, wheels_near};
 use crate::later_contact::{FollowedCar, Later, LaterContacts, ParticleContact};
 use crate::prior::towards;
+use crate::single_car::StartPlace;
 use crate::skid::Skid;
 use crate::{Cars, ImpactState, Latent, LatentValues, Prior};
 use impactlab_core::collision::{Pulse, PulseShape, Side};
@@ -34,6 +35,9 @@ pub(crate) const CONTACT_HEIGHT_M: f64 = 0.55;
 /// When the front wheels are turned, s after the first contact.
 const STEERED_FROM_S: f64 = 0.1;
 
+/// Time before the start from which on a single car is steered and its held wheels are, s.
+const HELD_BEFORE_S: f64 = 0.5;
+
 /// When the driver of the striking car who pushes begins to turn in, s after the first contact.
 const PUSH_STEERED_FROM_S: f64 = -0.5;
 
@@ -46,18 +50,18 @@ const LONGEST_LOCK_DELAY_S: f64 = 1.0;
 /// Samples of a pulse.
 const PULSE_SAMPLES: f64 = 16.0;
 
-/// A collision that was followed to rest.
+/// A collision, or the motion of a single car, that was followed to rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CollisionMotion {
     /// The quantities that it follows from.
     pub values: LatentValues,
-    /// The impact.
-    pub impact: ImpactState,
-    /// The struck car as it was simulated.
+    /// The impact; `None` of a single car.
+    pub impact: Option<ImpactState>,
+    /// The struck car, or the single one, as it was simulated.
     pub vehicle: VehicleParameters,
-    /// What was done to the struck car.
+    /// What was done to it.
     pub manoeuvre: Manoeuvre,
-    /// Path of the struck car.
+    /// Its path.
     pub path: Path,
     /// The striking car, where anything of it is evidence or later contacts are followed.
     pub striking: Option<StrikingMotion>,
@@ -87,6 +91,8 @@ pub struct ForwardModel {
     pub(super) restitution: Option<[f64; 2]>,
     /// Skids of the struck and of the striking car before the impact.
     pub(super) skids: [Option<Skid>; 2],
+    /// Where a single car is at the start; `None` for a collision.
+    start: Option<StartPlace>,
     follows_striking: bool,
     later: Later,
     zones: Vec<FrictionZone>,
@@ -96,7 +102,7 @@ pub struct ForwardModel {
 /// A car and what happens to it, before it is simulated.
 struct Prepared {
     values: LatentValues,
-    impact: ImpactState,
+    impact: Option<ImpactState>,
     vehicle: VehicleParameters,
     manoeuvre: Manoeuvre,
     striking: Option<(VehicleParameters, Manoeuvre)>,
@@ -107,9 +113,13 @@ impl ForwardModel {
     pub fn new(evidence: &Evidence, cars: Cars) -> Self {
         let prior = Prior::new(evidence, &cars);
         let side = evidence.damage.side;
+        let start = StartPlace::of(evidence, &cars);
+        let [from_x_m, from_y_m] = start.map_or([0.0; 2], |start| start.cg_m());
         let places = evidence.places();
         let points = places.iter().flat_map(|place| &place.points_m);
-        let farthest_m = points.map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
+        let distances_m = points.map(|[x, y]| (x - from_x_m).hypot(y - from_y_m));
+        let farthest_m = distances_m.fold(0.0, f64::max);
+        let held_from_s = if start.is_some() { -HELD_BEFORE_S } else { BLOCKED_FROM_S };
         // Without anything that says where the cars were, they are followed to rest.
         let distance_m = if farthest_m > 0.0 { 1.5 * farthest_m + 20.0 } else { f64::INFINITY };
         Self {
@@ -121,16 +131,19 @@ impl ForwardModel {
                     near: wheels_near(side, cars.is_hit_behind_cg(evidence)),
                     which: Latent::BlockedWheel,
                     drag: Latent::BlockedDrag,
+                    from_s: held_from_s,
                 },
                 HeldWheels {
                     after: evidence.striking_after.clone(),
                     near: wheels_near(Side::Front, false),
                     which: Latent::StrikingBlockedWheel,
                     drag: Latent::StrikingBlockedDrag,
+                    from_s: BLOCKED_FROM_S,
                 },
             ],
             restitution: ends(evidence.prior.restitution),
             skids: Skid::of_both_cars(evidence),
+            start,
             follows_striking: evidence.follows_striking_car(),
             later: Later::LeftOut,
             zones: Vec::new(),
@@ -187,6 +200,17 @@ impl ForwardModel {
     /// The prior of the case.
     pub fn prior(&self) -> &Prior {
         &self.prior
+    }
+
+    /// Whether it is that of a single car, which has no impact.
+    pub fn is_of_single_car(&self) -> bool {
+        self.start.is_some()
+    }
+
+    /// Speed that the case is asked for, m/s: that of the struck car before the impact, or that of a single
+    /// car at the start.
+    pub fn speed_m_s(&self, values: &LatentValues) -> f64 {
+        values.get(if self.is_of_single_car() { Latent::CarSpeed } else { Latent::StruckSpeed })
     }
 
     /// The vehicles of the case.
@@ -270,7 +294,7 @@ impl ForwardModel {
         let contact = ParticleContact {
             stiffness_factor: motion.values.get(Latent::ContactStiffnessFactor),
             friction: motion.values.get(Latent::ContactFriction),
-            normal_rad: motion.impact.normal_rad,
+            normal_rad: motion.impact.map_or(0.0, |impact| impact.normal_rad),
         };
         let striking = motion.striking.as_ref();
         let striking = striking.map(|(vehicle, manoeuvre)| SimulationRun { vehicle, manoeuvre });
@@ -284,8 +308,11 @@ impl ForwardModel {
     }
 
     /// Yaw rate of the struck car at the end of the contact, rad/s, of each point: that of the impulse less
-    /// what the tires take from it until then.
+    /// what the tires take from it until then. None of them is a number of a single car.
     pub fn yaw_rates_after_rad_s(&self, values: &[LatentValues]) -> Vec<f64> {
+        if self.is_of_single_car() {
+            return vec![f64::NAN; values.len()];
+        }
         let contact_only = |values: &LatentValues| {
             let mut prepared = self.prepared(*values);
             prepared.manoeuvre.duration_s = values.get(Latent::PulseDuration);
@@ -300,27 +327,34 @@ impl ForwardModel {
             let (motion, points) = (&prepared[idx], &path.points);
             let times: Vec<f64> = points.iter().map(|point| point.time_s).collect();
             let rates: Vec<f64> = points.iter().map(|point| point.yaw_rate_rad_s).collect();
-            let of_impulse = motion.impact.solution.struck.yaw_rate_rad_s;
+            let of_impulse = motion.impact.map(|impact| impact.solution.struck.yaw_rate_rad_s);
             // The last step may reach beyond the contact.
-            interpolate(&times, &rates, motion.manoeuvre.duration_s).unwrap_or(of_impulse)
+            let at_end = interpolate(&times, &rates, motion.manoeuvre.duration_s);
+            at_end.or(of_impulse).unwrap_or(f64::NAN)
         })
     }
 
     fn prepared(&self, values: LatentValues) -> Prepared {
-        let impact = self.impact(&values);
         let vehicle = self.vehicle(&values);
         let ending = self.ending(&values, &vehicle);
-        let [x_m, y_m] = impact.contact_m;
-        let load = contact_load(impact.solution.impulse_world_n_s, &values, [x_m, y_m]);
+        let impact = self.start.is_none().then(|| self.impact(&values));
+        let standing = VehicleState::default();
+        let start = self.start.map_or(standing, |start| start.state(&values));
+        let initial =
+            impact.map_or(start, |impact| VehicleState::driving_straight(impact.struck_speed_m_s));
+        let load = |impact: ImpactState| {
+            contact_load(impact.solution.impulse_world_n_s, &values, impact.contact_m)
+        };
         let manoeuvre = Manoeuvre {
-            initial: VehicleState::driving_straight(impact.struck_speed_m_s),
-            contact_load: Some(load),
+            initial,
+            contact_load: impact.map(load),
             controls: ending.controls(&vehicle),
             duration_s: LONGEST_MOTION_S,
             ends_at_rest: true,
             friction_zones: self.zones_under(&values, values.get(Latent::TireFrictionFactor)),
         };
-        let striking = self.follows_striking.then(|| self.striking(&values, &impact));
+        let followed = impact.filter(|_| self.follows_striking);
+        let striking = followed.map(|impact| self.striking(&values, &impact));
         Prepared { values, impact, vehicle, manoeuvre, striking }
     }
 
@@ -354,7 +388,7 @@ impl ForwardModel {
             let shift = values.get(Latent::FrontBrakeShift);
             Braking {
                 front_share: Some(brake.ideal_front_share(vehicle) + shift),
-                lock_delay_s: lock_delay_s(vehicle, &brake, values.get(Latent::StruckSpeed)),
+                lock_delay_s: lock_delay_s(vehicle, &brake, self.speed_m_s(values)),
                 ..brake
             }
         });
@@ -363,7 +397,7 @@ impl ForwardModel {
             axle: DrivenAxle::All,
         });
         let steer = HeldSteer {
-            start_s: STEERED_FROM_S,
+            start_s: if self.is_of_single_car() { -HELD_BEFORE_S } else { STEERED_FROM_S },
             rise_s: DEFAULT_BRAKE_RISE_S,
             road_wheel_rad: values.get(Latent::SteerAngle),
         };

@@ -85,7 +85,7 @@ fn a_particle_moves_as_the_simulation_of_its_car() {
         // The last step may end within an interval of 10 ms of the reference.
         let moved_m = 0.01 * last.vx_body_m_s.hypot(last.vy_body_m_s);
         assert!(off_m < 0.1 + moved_m, "particle {i}: {off_m} m off at {} s", last.time_s);
-        let momentum = motion.impact.solution.impulse_world_n_s[1];
+        let momentum = motion.impact.unwrap().solution.impulse_world_n_s[1];
         assert!(momentum >= 0.0, "particle {i}: pushed out of the struck side");
     }
 }
@@ -238,7 +238,7 @@ fn cars_that_draw_apart_are_no_explanation_of_damage() {
     let idx = components.iter().position(inwards).unwrap();
     let mut z = vec![vec![0.0; components.len()]; 2];
     z[1][idx] = -3.0; // The striking car moves away from the struck side.
-    let is_collision = target.model().motions(&z, |motion| motion.impact.is_collision());
+    let is_collision = target.model().motions(&z, |motion| motion.impact.unwrap().is_collision());
     assert_eq!(is_collision, [true, false]);
     let [of_hit, of_miss] = target.log_likelihoods(&z)[..] else { panic!("two motions") };
     assert!(of_hit.is_finite() && of_miss == f64::NEG_INFINITY, "{of_hit} {of_miss}");
@@ -312,7 +312,8 @@ fn the_yaw_rate_after_the_impact_is_that_of_the_simulation_at_the_end_of_the_con
         let expected = interpolate(simulated.time_s(), yaw_rates, end_s).unwrap();
         assert!((rate - expected).abs() < 0.01, "{rate} {expected}");
     }
-    let of_impulse = motions.iter().map(|motion| motion.impact.solution.struck.yaw_rate_rad_s);
+    let of_impulse =
+        motions.iter().map(|motion| motion.impact.unwrap().solution.struck.yaw_rate_rad_s);
     let changed = rates
         .iter()
         .zip(of_impulse)

@@ -5,8 +5,8 @@ use crate::{Latent, LatentValues};
 use impactlab_core::collision::Side;
 use impactlab_core::vehicle::{DamagedWheel, Wheel};
 
-/// When a blocked wheel is caught, s after the first contact.
-const BLOCKED_FROM_S: f64 = 0.03;
+/// When a wheel that an impact blocks is caught, s after the first contact.
+pub(crate) const BLOCKED_FROM_S: f64 = 0.03;
 
 /// Wheels of a car that damage holds or may hold.
 #[derive(Debug, Clone)]
@@ -15,13 +15,15 @@ pub(crate) struct HeldWheels {
     pub near: [Wheel; 2],
     pub which: Latent,
     pub drag: Latent,
+    /// When a held wheel is caught, s.
+    pub from_s: f64,
 }
 
 impl HeldWheels {
     /// The wheels that are held in the motion of a particle.
     pub fn damage(&self, values: &LatentValues) -> Vec<DamagedWheel> {
         let locked =
-            |wheel| DamagedWheel { wheel, start_s: BLOCKED_FROM_S, drag_share_of_friction: None };
+            |wheel| DamagedWheel { wheel, start_s: self.from_s, drag_share_of_friction: None };
         let drag = values.get(self.drag);
         let dragged = |wheel| DamagedWheel {
             drag_share_of_friction: (drag < 1.0).then_some(drag),

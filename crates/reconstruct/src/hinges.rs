@@ -15,7 +15,7 @@ use crate::{Latent, Posterior, ReconstructedQuantity};
 use impactlab_core::units::Quantity;
 
 /// The quantities, and how much larger each one is taken to be.
-const STEPS: [(Latent, f64); 15] = [
+const STEPS: [(Latent, f64); 16] = [
     (Latent::RoadFriction, 0.1),
     (Latent::ZoneFrictionFactor, 0.1),
     (Latent::TireFrictionFactor, 0.1),
@@ -31,6 +31,7 @@ const STEPS: [(Latent, f64); 15] = [
     (Latent::BrakeStart, 0.5),
     (Latent::BrakeShare, 0.1),
     (Latent::StrikingBrakeShare, 0.1),
+    (Latent::CarSideslip, 0.05),
 ];
 
 /// Number of standard errors beyond which a slope is no chance: one of 400 slopes that are none is.
@@ -46,12 +47,12 @@ pub struct SpeedHinge {
     pub input: Latent,
     /// By how much it is larger, in its SI unit.
     pub step: f64,
-    /// By how much the speed of the struck car is larger then, m/s.
+    /// By how much the speed of the struck car, or of a single one, is larger then, m/s.
     #[serde(rename = "target_speed")]
     pub struck_speed: SpeedChange,
-    /// The same of the striking car.
-    #[serde(rename = "bullet_speed")]
-    pub striking_speed: SpeedChange,
+    /// The same of the striking car, where there is one.
+    #[serde(rename = "bullet_speed", skip_serializing_if = "Option::is_none")]
+    pub striking_speed: Option<SpeedChange>,
 }
 
 /// A change of a speed with its standard error.
@@ -73,11 +74,12 @@ impl SpeedHinge {
     fn is_clear(&self) -> bool {
         let is_clear =
             |change: SpeedChange| change.change_m_s.abs() > CLEAR * change.standard_error_m_s;
-        is_clear(self.struck_speed) || is_clear(self.striking_speed)
+        is_clear(self.struck_speed) || self.striking_speed.is_some_and(is_clear)
     }
 
     fn largest_m_s(&self) -> f64 {
-        self.struck_speed.change_m_s.abs().max(self.striking_speed.change_m_s.abs())
+        let striking_m_s = self.striking_speed.map_or(0.0, |of| of.change_m_s.abs());
+        self.struck_speed.change_m_s.abs().max(striking_m_s)
     }
 }
 
@@ -88,16 +90,17 @@ impl Posterior {
         if !self.has_intervals() {
             return Vec::new();
         }
-        let speeds = [ReconstructedQuantity::StruckSpeed, ReconstructedQuantity::StrikingSpeed]
-            .map(|quantity| self.values(quantity));
+        let struck_m_s = self.values(self.speed());
+        let of_striking = ReconstructedQuantity::StrikingSpeed;
+        let striking_m_s = (!self.is_of_single_car()).then(|| self.values(of_striking));
         let hinge = |&(input, step): &(Latent, f64)| {
             let x: Vec<f64> = self.values.iter().map(|values| values.get(input)).collect();
-            let [struck, striking] = speeds.each_ref().map(|v| slope(&x, v, self.ess));
-            let change = |[slope, error]: [f64; 2]| SpeedChange {
-                change_m_s: slope * step,
-                standard_error_m_s: error * step,
+            let change = |speeds_m_s: &[f64]| {
+                let [slope, error] = slope(&x, speeds_m_s, self.ess)?;
+                Some(SpeedChange { change_m_s: slope * step, standard_error_m_s: error * step })
             };
-            let (struck_speed, striking_speed) = (change(struck?), change(striking?));
+            let struck_speed = change(&struck_m_s)?;
+            let striking_speed = striking_m_s.as_deref().and_then(change);
             Some(SpeedHinge { input, step, struck_speed, striking_speed })
         };
         let all: Vec<SpeedHinge> = STEPS.iter().filter_map(hinge).collect();
@@ -174,6 +177,7 @@ mod tests {
         let mut posterior = Posterior::from_points(&model, &z);
         // Draws of the prior, in which speeds depend on nothing else: they are made to hinge on friction.
         for (values, impact) in posterior.values.iter().zip(&mut posterior.impacts) {
+            let impact = impact.as_mut().unwrap();
             impact.struck_speed_m_s = 20.0 * values.get(Latent::RoadFriction);
         }
         let hinges = posterior.hinges();

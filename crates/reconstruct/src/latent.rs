@@ -166,6 +166,23 @@ latents! {
     /// Its drag factor, where it is known of this skid.
     #[serde(rename = "bullet_skid_drag")]
     StrikingSkidDrag: "bullet_skid_drag", "", "drag of the skid of the striking car";
+    /// Speed of a single car at the start, m/s.
+    #[serde(rename = "speed")]
+    CarSpeed: "speed_m_s", "m/s", "speed of the car at the start";
+    /// Direction of motion of its CG against its heading there, rad, positive to the left.
+    #[serde(rename = "sideslip")]
+    CarSideslip: "sideslip_rad", "rad", "sideslip angle at the start";
+    /// Its yaw rate there, rad/s, positive to the left.
+    #[serde(rename = "yaw_rate")]
+    CarYawRate: "yaw_rate_rad_s", "rad/s", "yaw rate at the start";
+    /// X of the place by which its start is known, m.
+    StartX: "start_x_m", "m", "X of the start";
+    /// Y of it, m.
+    StartY: "start_y_m", "m", "Y of the start";
+    /// Heading at the start, rad, where it is stated.
+    StartHeading: "start_heading_rad", "rad", "heading at the start";
+    /// Direction of motion at the start, rad, where the heading is not stated.
+    StartCourse: "start_course_rad", "rad", "course at the start";
     /// Friction of the zones of the ground over that which the site says, in all of them alike.
     ZoneFrictionFactor: "zone_friction_factor", "", "friction of the zones over that of the site";
 }

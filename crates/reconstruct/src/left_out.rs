@@ -11,9 +11,7 @@ use crate::posterior::LEAST_ESS_FOR_INTERVALS;
 use crate::sampler::{
     LeftOutParticles, Particles, SamplerReport, SamplerSettings, Target, sample_from,
 };
-use crate::{
-    EvidenceTerm, Posterior, QuantityEstimate, ReconstructedQuantity, ReconstructionTarget,
-};
+use crate::{EvidenceTerm, Posterior, QuantityEstimate, ReconstructionTarget};
 use impactlab_core::numerics::{normal_cdf, wrap_angle_rad};
 
 /// Independent draws below which nothing is said.
@@ -34,7 +32,7 @@ pub struct LeftOut {
     pub ess: f64,
     /// Motions that were computed for it alone.
     pub n_simulations: usize,
-    /// Speed of the struck car without it; `None` with too few draws, and without intervals where they
+    /// Speed of the struck or single car without it; `None` with too few draws, and without intervals where they
     /// are too few for these.
     pub struck_speed: Option<QuantityEstimate>,
     /// Probability that the others expect the part as far off as it is, or farther; `None` with too few
@@ -113,10 +111,12 @@ impl LeftOut {
             true => &[0.5, 0.9][..],
             false => &[],
         };
-        let speed = ReconstructedQuantity::StruckSpeed;
-        let speeds = || Posterior::from_points(target.model(), &left.z).values(speed);
-        let struck_speed =
-            is_enough.then(|| QuantityEstimate::from_values(speed, speeds(), levels)).flatten();
+        let estimated = || {
+            let posterior = Posterior::from_points(target.model(), &left.z);
+            let speed = posterior.speed();
+            QuantityEstimate::from_values(speed, posterior.values(speed), levels)
+        };
+        let struck_speed = is_enough.then(estimated).flatten();
         let least = Self::CONTRADICTED_BELOW / n_parts as f64;
         Self {
             evidence: name.to_owned(),

@@ -9,7 +9,8 @@
 //! - [`domain`]: vehicles, roads and damage that a reconstruction is not made for;
 //! - `latent`: the quantities that the motion depends on;
 //! - `prior`: every quantity that the motion depends on, as a transformation of one component of z;
-//! - `forward`: from z to the motion of both cars; `later_contact`: where they meet again;
+//! - `forward`: from z to the motion of both cars, or of a `single_car`; `later_contact`: where they meet
+//!   again;
 //! - `likelihood`: how well a motion goes with the evidence;
 //! - [`sampler`]: draws from the posterior;
 //! - [`hand`]: what one computes by hand: methods that are asked, the baseline, independent checks;
@@ -39,6 +40,7 @@ mod modes;
 mod posterior;
 mod prior;
 mod quantity;
+mod single_car;
 mod skid;
 
 pub use budget::Narrowing;

@@ -40,7 +40,7 @@ pub struct BudgetItem {
     pub known: &'static str,
     /// How well, one standard deviation in that unit.
     pub sigma: f64,
-    /// Half the width of the 90 % interval of the struck car's speed now, m/s.
+    /// Half the width of the 90 % interval of the speed that the case is asked for now, m/s.
     pub now_m_s: f64,
     /// The same on the average with the measurement, m/s.
     pub then_m_s: f64,
@@ -55,9 +55,9 @@ pub struct BudgetItem {
 pub struct Posterior {
     /// The quantities of each particle.
     pub values: Vec<LatentValues>,
-    /// The impact of each particle.
-    pub impacts: Vec<ImpactState>,
-    /// Yaw rate of the struck car of each particle at the end of the contact, rad/s.
+    /// The impact of each particle; `None` of a single car.
+    pub impacts: Vec<Option<ImpactState>>,
+    /// Yaw rate of the struck car of each particle at the end of the contact, rad/s; NaN of a single car.
     pub yaw_rates_after_rad_s: Vec<f64>,
     /// Independent particles that all of them are worth; none if the run was stopped before it had some
     /// of the posterior.
@@ -83,7 +83,9 @@ impl Posterior {
     /// - `z`: standard normal variables of each point, `[n][dim]`.
     pub fn from_points(model: &ForwardModel, z: &[Vec<f64>]) -> Self {
         let values: Vec<LatentValues> = z.iter().map(|z| model.prior().values(z)).collect();
-        let impacts = values.iter().map(|values| model.impact(values)).collect();
+        let is_collision = !model.is_of_single_car();
+        let impact = |values: &LatentValues| is_collision.then(|| model.impact(values));
+        let impacts = values.iter().map(impact).collect();
         let yaw_rates_after_rad_s = model.yaw_rates_after_rad_s(&values);
         Self { ess: values.len() as f64, values, impacts, yaw_rates_after_rad_s }
     }
@@ -98,8 +100,26 @@ impl Posterior {
         self.points().map(|point| quantity.value(&point)).collect()
     }
 
-    /// The quantities that the case is asked for: those of every case, and the speeds before its skids.
+    /// Whether it is that of a single car, which has no impact.
+    pub fn is_of_single_car(&self) -> bool {
+        self.impacts.iter().all(Option::is_none)
+    }
+
+    /// The speed that the case is asked for: that of the struck car before the impact, or that of a single
+    /// car at the start.
+    pub fn speed(&self) -> ReconstructedQuantity {
+        match self.is_of_single_car() {
+            true => ReconstructedQuantity::CarSpeed,
+            false => ReconstructedQuantity::StruckSpeed,
+        }
+    }
+
+    /// The quantities that the case is asked for: those of every collision and the speeds before its skids,
+    /// or those of a single car.
     pub fn asked(&self) -> Vec<ReconstructedQuantity> {
+        if self.is_of_single_car() {
+            return ReconstructedQuantity::SINGLE_CAR.to_vec();
+        }
         let has = |quantity: &&ReconstructedQuantity| {
             self.values(**quantity).iter().all(|value| !value.is_nan())
         };
@@ -111,7 +131,7 @@ impl Posterior {
         let points = self.values.iter().zip(&self.impacts).zip(&self.yaw_rates_after_rad_s);
         points.map(|((values, impact), yaw_rate_after_rad_s)| PosteriorPoint {
             values,
-            impact,
+            impact: impact.as_ref(),
             yaw_rate_after_rad_s: *yaw_rate_after_rad_s,
         })
     }
@@ -128,7 +148,7 @@ impl Posterior {
         ends.iter().all(|end| end.is_finite()).then_some(ends)
     }
 
-    /// The particle whose speed of the struck car is nearest to a median, among some of them.
+    /// The particle whose speed is nearest to a median, among some of them.
     ///
     /// - `members`: numbers of these particles;
     /// - `quantities`: their quantities, with the median.
@@ -137,7 +157,7 @@ impl Posterior {
         members: &[usize],
         quantities: &[QuantityEstimate],
     ) -> Option<usize> {
-        let speed = ReconstructedQuantity::StruckSpeed;
+        let speed = self.speed();
         let median =
             quantities.iter().find(|quantity| quantity.name == speed.key())?.estimate.median;
         let speeds = self.values(speed);
@@ -164,7 +184,7 @@ impl Posterior {
     /// The kinds of courses of events, the most probable one first; none of particles that are not of the
     /// posterior.
     ///
-    /// - `turned_rad`: by how much the struck car of each particle has turned at rest, rad.
+    /// - `turned_rad`: by how much the struck or single car of each particle has turned at rest, rad.
     pub fn modes(&self, particles: &Particles, turned_rad: &[f64]) -> Vec<Mode> {
         let name = |idx: usize| match (self.values.get(idx), turned_rad.get(idx)) {
             (Some(values), Some(turned)) => mode_name(values, *turned),
@@ -193,10 +213,17 @@ impl Posterior {
         if !self.has_intervals() {
             return Vec::new();
         }
-        let speeds = self.values(ReconstructedQuantity::StruckSpeed);
+        let speeds = self.values(self.speed());
         let latent = |latent: Latent| self.values.iter().map(|v| v.get(latent)).collect::<Vec<_>>();
         let quantity = |quantity: ReconstructedQuantity| self.values(quantity);
-        [
+        let of_single_car = [
+            ("road_friction", 0.02, latent(Latent::RoadFriction)),
+            ("tire_friction_factor", 0.02, latent(Latent::TireFrictionFactor)),
+            ("brake_start_s", 0.1, latent(Latent::BrakeStart)),
+            ("steer_angle_rad", 0.01, latent(Latent::SteerAngle)),
+            ("speed_m_s", 0.9, speeds.clone()),
+        ];
+        let of_collision = [
             ("road_friction", 0.02, latent(Latent::RoadFriction)),
             ("tire_friction_factor", 0.02, latent(Latent::TireFrictionFactor)),
             ("target_mass_kg", 20.0, latent(Latent::StruckMass)),
@@ -206,23 +233,29 @@ impl Posterior {
             ("delta_v_target_m_s", 0.1, quantity(ReconstructedQuantity::DeltaVStruck)),
             ("heading_difference_rad", 0.05, quantity(ReconstructedQuantity::HeadingDifference)),
             ("target_speed_m_s", 0.9, speeds.clone()),
-        ]
-        .into_iter()
-        .filter_map(|(known, sigma, x)| {
-            if !x.iter().all(|x| x.is_finite()) {
-                return None; // The quantity is not open.
-            }
-            let narrowing = Narrowing::by(&speeds, (&x, sigma), self.ess, seed)?;
-            Some(BudgetItem {
-                known,
-                sigma,
-                now_m_s: narrowing.width_90_now / 2.0,
-                then_m_s: narrowing.width_90_then / 2.0,
-                ess: narrowing.ess,
-                believable: narrowing.believable(),
+        ];
+        let known = match self.is_of_single_car() {
+            true => Vec::from(of_single_car),
+            false => Vec::from(of_collision),
+        };
+        known
+            .into_iter()
+            .filter_map(|(known, sigma, x)| {
+                let is_fixed = x.iter().all(|value| Some(value) == x.first());
+                if is_fixed || !x.iter().all(|x| x.is_finite()) {
+                    return None; // The quantity is not open.
+                }
+                let narrowing = Narrowing::by(&speeds, (&x, sigma), self.ess, seed)?;
+                Some(BudgetItem {
+                    known,
+                    sigma,
+                    now_m_s: narrowing.width_90_now / 2.0,
+                    then_m_s: narrowing.width_90_then / 2.0,
+                    ess: narrowing.ess,
+                    believable: narrowing.believable(),
+                })
             })
-        })
-        .collect()
+            .collect()
     }
 }
 
@@ -238,7 +271,8 @@ impl BudgetItem {
             "brake_start_s" => "braking timed",
             "delta_v_target_m_s" => "Δv recorded",
             "heading_difference_rad" => "angle measured",
-            "target_speed_m_s" => "speed recorded",
+            "target_speed_m_s" | "speed_m_s" => "speed recorded",
+            "steer_angle_rad" => "steering recorded",
             other => other,
         }
     }
@@ -246,7 +280,7 @@ impl BudgetItem {
     /// What kind of quantity it is.
     pub fn quantity(&self) -> Quantity {
         let reconstructed =
-            ReconstructedQuantity::ALL.iter().find(|quantity| quantity.key() == self.known);
+            ReconstructedQuantity::EVERY.iter().find(|quantity| quantity.key() == self.known);
         let open = Latent::ALL.iter().find(|latent| latent.key() == self.known);
         let open = open.map_or(Quantity::Ratio, |latent| latent.quantity());
         reconstructed.map_or(open, |quantity| quantity.quantity())
@@ -270,12 +304,14 @@ impl ReconstructionTarget {
         Some(meet.iter().filter(|meet| **meet).count() as f64 / meet.len().max(1) as f64)
     }
 
-    /// How well the posterior explains each item of the evidence, and by how much the struck car of
-    /// each particle has turned at rest, rad.
+    /// How well the posterior explains each item of the evidence, and by how much the struck or
+    /// single car of each particle has turned at rest, rad.
     pub fn fit(&self, particles: &Particles) -> (Vec<EvidenceFit>, Vec<f64>) {
         let every = particles.z.len().div_ceil(FIT_PARTICLES).max(1);
         let evaluated = self.model().motions(&particles.z, |motion| {
-            let turned = motion.path.points.last().map_or(f64::NAN, |last| last.yaw_rad);
+            let points = &motion.path.points;
+            let ends = points.first().zip(points.last());
+            let turned = ends.map_or(f64::NAN, |(first, last)| last.yaw_rad - first.yaw_rad);
             (self.terms(&motion), turned)
         });
         let turned = evaluated.iter().map(|(_, turned)| *turned).collect();
@@ -287,7 +323,9 @@ impl ReconstructionTarget {
 /// What sets the course of events of a particle apart.
 fn mode_name(values: &LatentValues, turned_rad: f64) -> String {
     let halves = (turned_rad / std::f64::consts::PI).round().abs();
+    let is_single_car = !values.get(Latent::CarSpeed).is_nan();
     let spin = match (halves as i64, turned_rad > 0.0) {
+        (0, _) if is_single_car => "keeps its direction".to_owned(),
         (0, _) => "recovers".to_owned(),
         (halves, true) => format!("turns left by about {}°", 180 * halves),
         (halves, false) => format!("turns right by about {}°", 180 * halves),

@@ -4,7 +4,8 @@
 //! What was measured by itself (friction, masses, the place of the first contact) enters here with its
 //! standard deviation; what follows from the motion enters the likelihood.
 //!
-//! Defaults where the evidence file gives nothing, each with its source:
+//! Defaults where the evidence file of a collision gives nothing, each with its source; those of a single car
+//! stand in `single_car`:
 //!
 //! | quantity | default | source |
 //! | --- | --- | --- |
@@ -38,6 +39,8 @@
 //! | … for | log-normal, 0.5 s, factor 2 | PIT manoeuvre |
 //! | friction of the zones of a site over that which the site says, in all zones alike | log-normal, 1, factor 1.16 | assumed: grass, gravel and wet patches are known less well than the road |
 //! | yaw inertia, tire curves, sliding friction, rolling resistance | the rules of the data sheet with their scatter | [`DataSheet`](impactlab_core::vehicle::DataSheet) |
+
+mod single_car;
 
 use std::f64::consts::PI;
 
@@ -122,11 +125,16 @@ const FRICTION_SIGMA_BY_DRAG: f64 = 0.2;
 impl Prior {
     /// The prior of a case.
     pub fn new(evidence: &Evidence, cars: &Cars) -> Self {
+        if evidence.is_single_car() {
+            return Self::of_single_car(evidence, cars);
+        }
         let is_pit = cars.is_hit_behind_cg(evidence);
         let mut prior = Self { components: Vec::new(), fixed: LatentValues::NONE, is_pit };
         prior.add_speeds(evidence);
         prior.add_contact(evidence, cars);
-        prior.add_cars(evidence, cars);
+        prior.add_road(evidence);
+        prior.add_masses(evidence, cars);
+        prior.add_struck_car(cars);
         prior.add_ending(evidence);
         prior.add_skids(evidence);
         prior
@@ -293,7 +301,8 @@ impl Prior {
         self.assume(Latent::PulseDuration, log_normal(0.12, 0.30, 0.04, 0.30));
     }
 
-    fn add_cars(&mut self, evidence: &Evidence, cars: &Cars) {
+    /// Friction of the road and of the tires of the struck car on it.
+    fn add_road(&mut self, evidence: &Evidence) {
         let usual = Measured { value: DEFAULT_FRICTION, sigma: DEFAULT_FRICTION_SIGMA };
         let (source, friction) = match (evidence.road_friction(), evidence.drag_factor()) {
             (Some(measured), _) => (PriorSource::Measured, measured),
@@ -309,6 +318,9 @@ impl Prior {
             Latent::LongitudinalFrictionRatio,
             log_normal(LONGITUDINAL_FRICTION_RATIO, LONGITUDINAL_FRICTION_SCATTER, 0.8, 1.5),
         );
+    }
+
+    fn add_masses(&mut self, evidence: &Evidence, cars: &Cars) {
         for (latent, measured, vehicle) in [
             (Latent::StruckMass, evidence.struck_car.mass(), &cars.struck),
             (Latent::StrikingMass, evidence.striking_car.mass(), &cars.striking),
@@ -321,6 +333,10 @@ impl Prior {
             let scale = log_normal(1.0, sigma, 1.0 / reach, reach);
             self.add(Latent::MassScaleFactor, PriorSource::Given, scale);
         }
+    }
+
+    /// What a data sheet leaves open of the struck car beside its mass.
+    fn add_struck_car(&mut self, cars: &Cars) {
         for (latent, quantity) in [
             (Latent::YawInertiaFactor, SheetQuantity::YawInertia),
             (Latent::FrontCorneringFactor, SheetQuantity::FrontCornering),

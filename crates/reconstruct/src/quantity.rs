@@ -11,6 +11,7 @@ macro_rules! quantities {
     (
         $($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $value:expr;)+
         --- $($late:ident),+
+        --- $($single:ident),+
     ) => {
         /// A quantity that a reconstruction asks for.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,12 +24,18 @@ macro_rules! quantities {
             /// Every one of them.
             pub const EVERY: &'static [Self] = &[$(Self::$name),+];
 
-            /// Those that only a case with a skid before the impact has: the last ones.
+            /// Those that only a collision with a skid before the impact has.
             pub const BEFORE_SKID: &'static [Self] = &[$(Self::$late),+];
 
-            /// Those that every case has.
-            pub const ALL: &'static [Self] =
-                Self::EVERY.split_at(Self::EVERY.len() - Self::BEFORE_SKID.len()).0;
+            /// Those that only a single car has: the last ones, after those of a skid.
+            const OF_SINGLE_CAR: &'static [Self] = &[$(Self::$single),+];
+
+            /// Those that every collision has.
+            pub const ALL: &'static [Self] = Self::EVERY
+                .split_at(
+                    Self::EVERY.len() - Self::BEFORE_SKID.len() - Self::OF_SINGLE_CAR.len(),
+                )
+                .0;
 
             /// Name with its unit.
             pub const fn key(self) -> &'static str {
@@ -51,29 +58,45 @@ macro_rules! quantities {
 
 quantities! {
     /// Speed of the struck car before the impact, m/s.
-    StruckSpeed: "target_speed_m_s", "m/s", |point| point.impact.struck_speed_m_s;
+    StruckSpeed: "target_speed_m_s", "m/s",
+        |point| point.of_impact(|impact| impact.struck_speed_m_s);
     /// Speed of the striking car before the impact, m/s.
-    StrikingSpeed: "bullet_speed_m_s", "m/s", |point| point.impact.striking_speed_m_s;
+    StrikingSpeed: "bullet_speed_m_s", "m/s",
+        |point| point.of_impact(|impact| impact.striking_speed_m_s);
     /// Size of the difference of both velocities, m/s.
-    ClosingSpeed: "closing_speed_m_s", "m/s", |point| point.impact.closing_speed_m_s;
+    ClosingSpeed: "closing_speed_m_s", "m/s",
+        |point| point.of_impact(|impact| impact.closing_speed_m_s);
     /// Heading of the striking car against that of the struck car at first contact, rad.
-    HeadingDifference: "heading_difference_rad", "rad", |point| point.impact.heading_difference_rad;
+    HeadingDifference: "heading_difference_rad", "rad",
+        |point| point.of_impact(|impact| impact.heading_difference_rad);
     /// Peak friction of the road.
     RoadFriction: "road_friction", "", |point| point.values.get(Latent::RoadFriction);
     /// Change of velocity of the struck car by the contact, m/s.
-    DeltaVStruck: "delta_v_target_m_s", "m/s", |point| point.impact.delta_v_struck_m_s();
+    DeltaVStruck: "delta_v_target_m_s", "m/s",
+        |point| point.of_impact(ImpactState::delta_v_struck_m_s);
     /// Yaw rate of the struck car at the end of the contact, over which the tires act as well, rad/s.
     StruckYawRate: "target_yaw_rate_after_rad_s", "rad/s", |point| point.yaw_rate_after_rad_s;
     /// Speed of the struck car before a skid that ended at the impact, m/s.
     StruckSpeedBeforeSkid: "target_speed_before_skid_m_s", "m/s",
-        |point| point.impact.speeds_before_skid_m_s[0].unwrap_or(f64::NAN);
+        |point| point.of_impact(|impact| impact.speeds_before_skid_m_s[0].unwrap_or(f64::NAN));
     /// The same of the striking car, m/s.
     StrikingSpeedBeforeSkid: "bullet_speed_before_skid_m_s", "m/s",
-        |point| point.impact.speeds_before_skid_m_s[1].unwrap_or(f64::NAN);
+        |point| point.of_impact(|impact| impact.speeds_before_skid_m_s[1].unwrap_or(f64::NAN));
+    /// Speed of a single car at the start, m/s.
+    CarSpeed: "speed_m_s", "m/s", |point| point.values.get(Latent::CarSpeed);
+    /// Direction of motion of its CG against its heading there, rad.
+    CarSideslip: "sideslip_rad", "rad", |point| point.values.get(Latent::CarSideslip);
+    /// Its yaw rate there, rad/s.
+    CarYawRate: "yaw_rate_rad_s", "rad/s", |point| point.values.get(Latent::CarYawRate);
     --- StruckSpeedBeforeSkid, StrikingSpeedBeforeSkid
+    --- CarSpeed, CarSideslip, CarYawRate
 }
 
 impl ReconstructedQuantity {
+    /// Those that a single car has.
+    pub const SINGLE_CAR: &'static [Self] =
+        &[Self::CarSpeed, Self::CarSideslip, Self::CarYawRate, Self::RoadFriction];
+
     /// What it is called.
     pub fn label(self) -> &'static str {
         match self {
@@ -86,6 +109,9 @@ impl ReconstructedQuantity {
             Self::StruckYawRate => "yaw rate after the impact",
             Self::StruckSpeedBeforeSkid => "speed of the struck car before its skid",
             Self::StrikingSpeedBeforeSkid => "speed of the striking car before its skid",
+            Self::CarSpeed => "speed of the car at the start",
+            Self::CarSideslip => "sideslip angle at the start",
+            Self::CarYawRate => "yaw rate at the start",
         }
     }
 
@@ -97,10 +123,11 @@ impl ReconstructedQuantity {
             | Self::ClosingSpeed
             | Self::DeltaVStruck
             | Self::StruckSpeedBeforeSkid
-            | Self::StrikingSpeedBeforeSkid => Quantity::Speed,
-            Self::HeadingDifference => Quantity::Angle,
+            | Self::StrikingSpeedBeforeSkid
+            | Self::CarSpeed => Quantity::Speed,
+            Self::HeadingDifference | Self::CarSideslip => Quantity::Angle,
             Self::RoadFriction => Quantity::Ratio,
-            Self::StruckYawRate => Quantity::AngularVelocity,
+            Self::StruckYawRate | Self::CarYawRate => Quantity::AngularVelocity,
         }
     }
 }
@@ -158,8 +185,15 @@ impl From<QuantityEstimate> for WrittenEstimate {
 /// What a quantity of a particle follows from.
 pub(crate) struct PosteriorPoint<'a> {
     pub(crate) values: &'a LatentValues,
-    pub(crate) impact: &'a ImpactState,
+    pub(crate) impact: Option<&'a ImpactState>,
     pub(crate) yaw_rate_after_rad_s: f64,
+}
+
+impl PosteriorPoint<'_> {
+    /// A quantity of the impact; NaN of a single car.
+    fn of_impact(&self, quantity: impl Fn(&ImpactState) -> f64) -> f64 {
+        self.impact.map_or(f64::NAN, quantity)
+    }
 }
 
 impl QuantityEstimate {

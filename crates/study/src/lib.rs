@@ -90,6 +90,11 @@ pub use questions::reconstruct::paths::{NamedPath, ReconstructedPaths};
 pub use questions::reconstruct::request::{
     EvidenceChoice, ReconstructAnswer, ReconstructReport, ReconstructRequest,
 };
+pub use questions::replay::report::{
+    ContactPose, ContactState, ReplayAnswer, ReplayPoint, ReplayReport, ReplaySample, StartPose,
+    Travelled, YawRateCheck,
+};
+pub use questions::replay::request::{DEFAULT_REPLAY_DRAWS, ReplayRequest};
 pub use questions::simulate::dataset::{
     ReplayedCaseReport, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest,
 };

@@ -16,8 +16,10 @@ pub struct LiveParticles {
     pub paths: ReconstructedPaths,
     /// Power of the likelihood that they have reached, 0 to 1.
     pub temperature: f64,
-    /// The middle 90 % of their speeds of the struck car, m/s.
+    /// The middle 90 % of their speeds of the struck or single car, m/s.
     pub speeds_m_s: Option<[f64; 2]>,
+    /// Whether they are of a single car.
+    pub is_of_single_car: bool,
 }
 
 /// Watches a run, and sends its particles every now and then.
@@ -37,10 +39,7 @@ pub(super) fn watch(sender: Sender<LiveParticles>) -> impl FnMut(&Event<'_>) + S
 fn particles(sampling: &Sampling<'_>) -> LiveParticles {
     let Sampling { target, temperature, z } = *sampling;
     let model = target.model();
-    let speed = |z: &Vec<f64>| {
-        let values = model.prior().values(z);
-        model.impact(&values).struck_speed_m_s
-    };
+    let speed = |z: &Vec<f64>| model.speed_m_s(&model.prior().values(z));
     let mut speeds: Vec<f64> = z.iter().map(speed).collect();
     speeds.sort_by(f64::total_cmp);
     let ends = [0.05, 0.95].map(|share| quantile_of_sorted(&speeds, share));
@@ -49,5 +48,6 @@ fn particles(sampling: &Sampling<'_>) -> LiveParticles {
         _ => None,
     };
     let paths = ReconstructedPaths::from_particles(target, z);
-    LiveParticles { paths, temperature, speeds_m_s }
+    let is_of_single_car = model.is_of_single_car();
+    LiveParticles { paths, temperature, speeds_m_s, is_of_single_car }
 }

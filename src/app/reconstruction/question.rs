@@ -50,7 +50,9 @@ pub struct PreparedReconstruction {
     paths: ReconstructedPaths,
     /// The same of each course of events.
     mode_paths: Vec<ReconstructedPaths>,
-    /// Values of each quantity before the evidence, in the order of [`ReconstructedQuantity::ALL`].
+    /// The quantities that can be drawn: those that every case of its kind has.
+    quantities: &'static [ReconstructedQuantity],
+    /// Values of each of them before the evidence, in their order.
     priors: Vec<Vec<f64>>,
     /// Ends of the 90 % interval of each component of the prior after the evidence.
     pub intervals_90: Vec<Option<[f64; 2]>>,
@@ -70,9 +72,14 @@ impl PreparedReconstruction {
         several.map(ReconstructedPaths::course_title).zip(&self.mode_paths).collect()
     }
 
+    /// The quantities that can be drawn.
+    pub fn quantities(&self) -> &'static [ReconstructedQuantity] {
+        self.quantities
+    }
+
     /// Values of a quantity before the evidence: draws, of which those of a number belong together.
     pub fn prior_of(&self, quantity: ReconstructedQuantity) -> &[f64] {
-        let idx = ReconstructedQuantity::ALL.iter().position(|of| *of == quantity);
+        let idx = self.quantities.iter().position(|of| *of == quantity);
         idx.and_then(|idx| self.priors.get(idx)).map_or(&[], Vec::as_slice)
     }
 }
@@ -98,14 +105,18 @@ impl Question for ReconstructionQuestion {
         let answered = self.sampled(library, observer)?;
         Ok(answered.map(|answer| {
             let modes = answer.report.modes.iter();
-            let quantities = ReconstructedQuantity::ALL.iter();
+            let quantities = match answer.posterior.is_of_single_car() {
+                true => ReconstructedQuantity::SINGLE_CAR,
+                false => ReconstructedQuantity::ALL,
+            };
             let components = answer.target.model().prior().components().iter();
             PreparedReconstruction {
                 paths: ReconstructedPaths::from_answer(&answer),
                 mode_paths: modes
                     .map(|mode| ReconstructedPaths::from_mode(&answer, mode))
                     .collect(),
-                priors: quantities.map(|of| prior_values(&answer.target, *of)).collect(),
+                quantities,
+                priors: quantities.iter().map(|of| prior_values(&answer.target, *of)).collect(),
                 intervals_90: components
                     .map(|component| answer.posterior.interval_90_of(component.latent))
                     .collect(),

@@ -124,6 +124,9 @@ fn place(subject: CaveatSubject) -> Place {
         | CaveatSubject::RoadFriction => {
             ("State it in a copy of the vehicle: Edit a copy", Pane::Vehicle)
         }
-        CaveatSubject::StartOfRecord | CaveatSubject::Steer => return None,
+        CaveatSubject::StartOfRecord
+        | CaveatSubject::Steer
+        | CaveatSubject::Start
+        | CaveatSubject::Wheels => return None,
     })
 }

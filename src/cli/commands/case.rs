@@ -253,6 +253,7 @@ fn print_question(
     match (&answer.report, &answer.error) {
         (Some(Report::Impact(report)), _) => print_answer(out, &**report, units),
         (Some(Report::Hand(report)), _) => print_answer(out, &**report, units),
+        (Some(Report::Replay(report)), _) => print_answer(out, &**report, units),
         (Some(Report::Simulate(report)), _) => print_answer(out, &**report, units),
         (Some(Report::PredictForce(report)), _) => print_answer(out, &**report, units),
         (Some(Report::PredictMotion(report)), _) => print_answer(out, &**report, units),

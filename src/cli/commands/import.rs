@@ -170,6 +170,9 @@ fn import_recorder(args: &ImportArgs, staging: &Path) -> Result<Imported, CliErr
             Evidence { case: name.to_string_lossy().into_owned(), ..Evidence::default() }
         }
     };
+    if evidence.is_single_car() {
+        return Err(CliError::RecorderOfSingleCar { name: evidence.case });
+    }
     let edr = Edr::from_record(&record);
     let before = match args.car {
         RecorderCar::Struck => evidence.edr.replace(edr),

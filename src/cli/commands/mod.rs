@@ -32,6 +32,7 @@ mod render_film;
 mod render_forecast;
 mod render_reconstruction;
 mod render_scene;
+pub(super) mod replay;
 pub(super) mod report;
 pub(super) mod schema;
 pub(super) mod simulate;

@@ -12,7 +12,7 @@ use crate::cli::options::{EvidenceArgs, OverwriteArg, UnitsArg};
 use crate::cli::text::print_answer;
 use impactlab_study::{Answer, ReconstructReport, ReconstructRequest};
 
-/// From the evidence to the speeds before the impact, as a distribution
+/// From the evidence to the speeds before the impact, or of a single car at the start, as a distribution
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct ReconstructArgs {
@@ -38,7 +38,8 @@ const EXAMPLES: &str = "\
 Example:
   impactlab reconstruct case.toml --out case-result
 
-World axes: origin at the CG of the struck car at first contact, X along its heading, Y to the left.
+World axes: origin at the CG of the struck car at first contact, X along its heading, Y to the left;
+those of a single car (kind = \"single_car\") are free.
 A site file has the same axes; its friction is known within 15 %, in all zones alike.
 How often the intervals hold was tried on simulated collisions only: docs/guide/limits.md.
 Whoever hit a flank behind the CG is taken to have matched the speed, as in a PIT manoeuvre; [prior] in

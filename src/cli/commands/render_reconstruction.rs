@@ -41,8 +41,8 @@ enum PlotArg {
     CarsAbove,
     /// The same in perspective
     CarsPerspective,
-    /// The speed of the struck car before and after the evidence
-    #[value(name = "target-speed")]
+    /// The speed of the struck car, or of a single one, before and after the evidence
+    #[value(name = "target-speed", alias = "speed")]
     StruckSpeed,
     /// The speed of the striking car
     #[value(name = "bullet-speed")]
@@ -83,6 +83,7 @@ pub(super) fn figure(
     let (mut cars, mut notes) = (None, of.notes(units));
     let figure = match (args.plot.quantity(), args.plot) {
         (Some(quantity), _) => {
+            let quantity = of.asked(quantity)?;
             let prior = prior_values(&answer.target, quantity);
             marginal_figure(answer, quantity, &prior, caveats, units)
         }
@@ -163,6 +164,22 @@ impl Reconstructed {
         let ground = site.map(|site| console.ground(site)).transpose()?;
         let answer = console.answer(request)?;
         Ok(Self { answer, ground })
+    }
+
+    /// The quantity of the case: the speed at the start of a single car for that of a struck one.
+    fn asked(&self, quantity: ReconstructedQuantity) -> Result<ReconstructedQuantity, CliError> {
+        let posterior = &self.answer.posterior;
+        let of_case = match quantity {
+            ReconstructedQuantity::StruckSpeed => posterior.speed(),
+            other => other,
+        };
+        match posterior.asked().contains(&of_case) {
+            true => Ok(of_case),
+            false => Err(CliError::NotOfSingleCar {
+                name: self.answer.report.case.clone(),
+                quantity: of_case.label(),
+            }),
+        }
     }
 
     fn notes(&self, units: UnitSystem) -> Vec<String> {

@@ -10,7 +10,7 @@ use impactlab_study::facts::{FactTable, FactWriter};
 use impactlab_study::{
     Answer, CheckReport, CompareReport, EvaluatePairsReport, EvaluateReconstructionReport,
     ForceEvaluation, HandReport, ImpactReport, PredictForceReport, PredictMotionReport,
-    ReconstructReport, ResponseTrainingReport, SimulateDatasetReport, SimulateReport,
+    ReconstructReport, ReplayReport, ResponseTrainingReport, SimulateDatasetReport, SimulateReport,
     TrainForceReport,
 };
 
@@ -45,6 +45,7 @@ answers! {
     PredictForceReport: of => of.scenario.clone();
     PredictMotionReport: of => of.scenario.clone();
     ReconstructReport: of => of.case.clone();
+    ReplayReport: of => of.name.clone();
     SimulateReport: of => of.name.clone();
     SimulateDatasetReport: of => of.dataset.display().to_string();
     CheckReport: of => String::new();

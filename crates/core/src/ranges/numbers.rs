@@ -58,6 +58,8 @@ ranges! {
         "how fast the front wheels turn to an angle";
     STEERING_RATIO: "steering ratio" = real(Quantity::Ratio, [1.0, 40.0]),
         "angle of the steering wheel over that of the road wheels; 12 to 20 in cars";
+    STEERING_RATIO_SIGMA: "uncertainty of the steering ratio" = real(Quantity::Ratio, [0.0, 10.0]),
+        "standard deviation of the steering ratio; 0 if it is known exactly";
     BRAKE_SHARE: "braking" = real(Quantity::Ratio, [0.0, 3.0]),
         "braking force over the largest that the road can hold; more than 1 locks the wheels";
     BRAKE_FRONT_SHARE: "front share of the braking" = real(Quantity::Ratio, [0.0, 1.0]),
@@ -126,6 +128,8 @@ ranges! {
         "instant on the clock of a file; some clocks count the seconds since 1970";
     TIME_STEP: "time step" = real(Quantity::Time, [1e-9, 1e6]),
         "time between two samples of a file";
+    REPLAY_START: "start of a replay" = real(Quantity::Time, [-60.0, -0.1]),
+        "instant on the clock of a recorder from which on its samples are followed";
     SIMULATED_DURATION: "duration" = real(Quantity::Time, [0.01, 3600.0]),
         "duration of a simulation";
     FORECAST_DURATION: "duration of a forecast" = real(Quantity::Time, [0.1, 60.0]),
@@ -277,6 +281,8 @@ ranges! {
     DRAWS: "draws" = whole([1, 10_000]), "force histories that are drawn for a forecast";
     VEHICLE_DRAWS: "vehicle draws" = whole([0, 10_000]),
         "vehicles that are drawn from the estimates of a data sheet; 0 takes their medians";
+    REPLAY_DRAWS: "draws of a replay" = whole([50, 5000]),
+        "draws from which the interval of a replay follows";
     SAMPLES: "samples" = whole([0, 10_000]), "whole force curves that are drawn";
     FOLDS: "folds" = whole([2, 1000]),
         "parts of a cross-validation, at most as many as there are cases";
@@ -312,6 +318,8 @@ ranges! {
         "error that two masses share, as a share of them";
     FRICTION_SIGMA: "standard deviation of friction" = real(Quantity::Ratio, [0.001, 1.0]),
         "how well the friction of the road is known";
+    RECORDED_SPEED_SIGMA: "uncertainty of a recorded speed" = real(Quantity::Ratio, [0.0, 0.5]),
+        "standard deviation of the speed of a recorder, as a share of it";
     SKID_LENGTH: "length of a skid" = real(Quantity::Length, [0.1, 500.0]),
         "distance over which a car skidded to the first contact";
     EVIDENCE_TIME: "time of evidence" = real(Quantity::Time, [0.0, 60.0]),

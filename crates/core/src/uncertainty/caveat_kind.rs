@@ -123,6 +123,10 @@ pub enum CaveatSubject {
     FirstTouch,
     /// Restitution and friction between the vehicles.
     Restitution,
+    /// How a single car moves where its motion begins.
+    Start,
+    /// What driver and wheels of a single car do.
+    Wheels,
 }
 
 impl CaveatKind {
@@ -229,6 +233,8 @@ impl CaveatSubject {
             Self::Steer => "steer angle",
             Self::FirstTouch => "first contact",
             Self::Restitution => "restitution and friction",
+            Self::Start => "start of the motion",
+            Self::Wheels => "driver and wheels",
         }
     }
 
@@ -251,6 +257,8 @@ impl CaveatSubject {
             Self::Steer => "Lenkwinkel",
             Self::FirstTouch => "erster Kontakt",
             Self::Restitution => "Stoßziffer und Reibbeiwert",
+            Self::Start => "Beginn der Bewegung",
+            Self::Wheels => "Fahrer und Räder",
         }
     }
 

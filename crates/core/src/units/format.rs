@@ -97,7 +97,7 @@ impl NumberFormat {
         let number = self.local(number);
         match (symbol, self.language) {
             ("", _) => number,
-            ("deg", Language::De) => format!("{number}°"),
+            ("deg" | "°", Language::De) => format!("{number}°"),
             (symbol, _) => format!("{number} {}", self.symbol(symbol)),
         }
     }
@@ -177,7 +177,10 @@ impl NumberFormat {
         let unit = quantity.display_unit(self.units);
         let [px, py] = [x, y].map(|si| self.number(unit.from_si(si)));
         let [first, second] = names;
-        format!("{} ({first} {px}, {second} {py})", self.value(quantity, x.hypot(y)))
+        // A comma is the decimal sign of German.
+        let between = if self.language == Language::De { ";" } else { "," };
+        let length = self.value(quantity, x.hypot(y));
+        format!("{length} ({first} {px}{between} {second} {py})")
     }
 
     /// A median with its intervals. The interval of 90 %, or the widest if there is none, decides the
@@ -347,6 +350,11 @@ mod tests {
         assert_eq!(
             EN.vector(Quantity::Length, [3.0, 4.0], ["x", "y"]),
             "5.000 m (x 3.000, y 4.000)"
+        );
+        let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
+        assert_eq!(
+            german.vector(Quantity::Length, [3.0, 4.0], ["x", "y"]),
+            "5,000 m (x 3,000; y 4,000)"
         );
     }
 

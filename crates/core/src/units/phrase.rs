@@ -54,12 +54,29 @@ impl Phrase {
     ///
     /// - `term`: a label of the program in the language of the format.
     pub fn say_with(&self, format: &NumberFormat, term: &dyn Fn(&str) -> String) -> String {
+        let is_canonical = *format == NumberFormat::default();
+        self.written(format, term, is_canonical)
+    }
+
+    /// The same with the units in which numbers are shown also in English with SI units: `28.4 km/h` for
+    /// `7.9 m/s`.
+    pub fn say_shown(&self, format: &NumberFormat, term: &dyn Fn(&str) -> String) -> String {
+        self.written(format, term, false)
+    }
+
+    /// - `is_canonical`: whether numbers have the units of the phrase, and not those of the reader.
+    pub(super) fn written(
+        &self,
+        format: &NumberFormat,
+        term: &dyn Fn(&str) -> String,
+        is_canonical: bool,
+    ) -> String {
         let template = match format.language {
             Language::En => &self.en,
             Language::De => &self.de,
         };
-        let values: Vec<String> = self.values.iter().map(|it| it.say(format, term)).collect();
-        filled(template, &values)
+        let values = self.values.iter().map(|it| it.say(format, term, is_canonical));
+        filled(template, &values.collect::<Vec<String>>())
     }
 
     /// Whether every number is finite.
@@ -107,6 +124,7 @@ mod tests {
         let expected =
             ["12.3 m/s after 1.50 s", "27.6 mph after 1.50 s", "nach 1,50 s noch 44,4 km/h"];
         assert_eq!(said(&phrase), expected);
+        assert_eq!(phrase.say_shown(&EN, &str::to_owned), "44.4 km/h after 1.50 s");
         let mass = Phrase::of(PhraseValue::three_digits(Quantity::Mass, 1500.0));
         assert_eq!(said(&mass), ["1500 kg", "3307 lb", "1500 kg"]);
         let roll = Phrase::of(PhraseValue::fixed(Quantity::Angle, 0.6, 1).in_unit("deg"));
@@ -130,6 +148,7 @@ mod tests {
         let term =
             |text: &str| if text == "speed at the end" { "v".to_owned() } else { text.into() };
         assert_eq!(phrase.say_with(&DE, &term), "v [km/h] ist 36,00");
+        assert_eq!(phrase.say_shown(&EN, &str::to_owned), "speed at the end [km/h] is 36.00");
         let odd = PhraseValue::of_named("roll gradient [rad/g]", 0.1);
         assert_eq!(Phrase::of(odd).say(&DE), "0,1000");
     }

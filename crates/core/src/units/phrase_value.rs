@@ -144,16 +144,22 @@ impl PhraseValue {
         Self::Number(PhraseNumber { quantity, value, unit, digits, is_bare: false })
     }
 
-    pub(super) fn say(&self, format: &NumberFormat, term: &dyn Fn(&str) -> String) -> String {
+    /// - `is_canonical`: whether numbers have the units of the phrase, and not those of the reader.
+    pub(super) fn say(
+        &self,
+        format: &NumberFormat,
+        term: &dyn Fn(&str) -> String,
+        is_canonical: bool,
+    ) -> String {
         match self {
             Self::Name(name) => name.clone(),
             Self::Term(label) => term(label),
-            Self::Heading(name) => heading(name, format, term),
+            Self::Heading(name) => heading(name, format, term, is_canonical),
             Self::English(text) => match format.language {
                 Language::En => text.clone(),
                 Language::De => format!("„{text}“"),
             },
-            Self::Number(number) => number.say(format),
+            Self::Number(number) => number.say(format, is_canonical),
             Self::Share(share) => format.local(&percent(*share)),
             Self::Chance { share, error } => format.chance(*share, *error),
             Self::Estimate { quantity, median, ninety } => {
@@ -164,8 +170,8 @@ impl PhraseValue {
                 format.estimate_in_words(*quantity, &estimate)
             }
             Self::Phrases { of, between } => {
-                let said: Vec<String> = of.iter().map(|it| it.say_with(format, term)).collect();
-                said.join(between)
+                let said = of.iter().map(|it| it.written(format, term, is_canonical));
+                said.collect::<Vec<String>>().join(between)
             }
         }
     }
@@ -185,11 +191,11 @@ impl PhraseValue {
 }
 
 impl PhraseNumber {
-    fn say(&self, format: &NumberFormat) -> String {
+    fn say(&self, format: &NumberFormat, is_canonical: bool) -> String {
         let units = self.quantity.units();
         let named = units.iter().find(|unit| unit.symbol == self.unit);
         let of_phrase = named.copied().unwrap_or(self.quantity.si_unit());
-        let is_of_phrase = *format == NumberFormat::default() || self.quantity == Quantity::Ratio;
+        let is_of_phrase = is_canonical || self.quantity == Quantity::Ratio;
         let unit = match is_of_phrase {
             true => of_phrase,
             false => self.quantity.display_unit(format.units),
@@ -225,9 +231,14 @@ pub fn named_unit(name: &str) -> Option<(&str, &str)> {
     name.strip_suffix(']').and_then(|name| name.rsplit_once(" ["))
 }
 
-fn heading(name: &str, format: &NumberFormat, term: &dyn Fn(&str) -> String) -> String {
+fn heading(
+    name: &str,
+    format: &NumberFormat,
+    term: &dyn Fn(&str) -> String,
+    is_canonical: bool,
+) -> String {
     let Some((bare, symbol)) = named_unit(name) else { return term(name) };
-    let shown = Quantity::from_si_symbol(symbol).filter(|_| *format != NumberFormat::default());
+    let shown = Quantity::from_si_symbol(symbol).filter(|_| !is_canonical);
     let symbol = shown.map_or(symbol, |quantity| quantity.display_unit(format.units).symbol);
     format!("{} [{}]", term(bare), format.symbol(symbol))
 }

@@ -41,6 +41,8 @@ mod stability;
 mod batch;
 mod path_batch;
 
+mod recorded_drive;
+
 mod tire_marks;
 
 pub use as_printed::Equations;
@@ -51,8 +53,8 @@ pub use controls::{BRAKE_TORQUES, Controls, DRIVE_TORQUES, SteerHistory, WheelHi
 pub use crush::{CrushFace, CrushParameters, CrushStiffness};
 pub use draws::{ROAD_FRICTION_SPREAD, RoadDraws, Sensitivity, VehicleDraws};
 pub use drivers::{
-    AntiLock, ClosedLoop, Countersteer, Market, PitDriver, PitEnd, StabilityControl, TurnSide,
-    esc_is_standard,
+    AntiLock, ClosedLoop, Countersteer, FollowedSpeed, Market, PitDriver, PitEnd, StabilityControl,
+    TurnSide, esc_is_standard,
 };
 pub use ending::{
     Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
@@ -70,6 +72,7 @@ pub use pace::{Pace, rest_instant};
 pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
 pub use path_batch::{MAX_PATH_STEP_S, Path, PathEnd, PathLimit, PathPoint, simulate_paths};
 pub use preset::{BuiltInVehicle, Preset, built_in_vehicle};
+pub use recorded_drive::{RecordedDrive, RecordedMotion};
 pub use rest::RestWatch;
 pub use rest::{REST_DURATION_S, REST_ON_SLOPE_S, REST_SPEED_M_S, REST_YAW_RATE_RAD_S};
 pub use road_slope::{RoadSlope, USUAL_SLOPE};

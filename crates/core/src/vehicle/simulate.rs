@@ -124,6 +124,19 @@ pub enum MotionFlag {
 }
 
 impl MotionFlag {
+    /// The same on a clock that shows another time.
+    ///
+    /// - `shift_s`: what it shows at the start of the motion.
+    #[must_use]
+    pub fn later_by(mut self, shift_s: f64) -> Self {
+        match &mut self {
+            Self::WheelLift { time_s, .. }
+            | Self::RollLimit { time_s, .. }
+            | Self::EnergyGain { time_s } => *time_s += shift_s,
+        }
+        self
+    }
+
     /// What it says of the motion.
     pub fn phrase(&self) -> Phrase {
         let at = |time_s: f64| PhraseValue::fixed(Quantity::Time, time_s, 2);

@@ -44,8 +44,8 @@ pub use motion_forecast::{
 };
 pub use reconstruction::{budget_figure, marginal_figure, pair_figure, prior_values};
 pub use reconstruction_scene::{
-    FollowedPath, ReconstructionScene, STRIKING_AT_REST, STRUCK_AT_REST,
-    reconstruction_scene_figure,
+    FollowedPath, ReconstructionScene, STRIKING_AT_REST, reconstruction_scene_figure,
+    struck_at_rest,
 };
 pub use scene::{SceneFigure, SceneVehicle, pose_at, scene_figure, vehicle_outline};
 pub use statistics::{CurveStatistics, curve_statistics};

@@ -168,10 +168,14 @@ pub fn pair_figure(
     Figure::new(title, axes, elements).with_caveats(&caveats.in_units(units))
 }
 
-/// How much narrower the speed of the struck car would be with each further measurement: a bar for half
+/// How much narrower the speed of the struck or single car would be with each further measurement: a bar for half
 /// the width of its 90 % interval then, and a line for the same now.
 pub fn budget_figure(answer: &ReconstructAnswer, caveats: &Caveats, units: UnitSystem) -> Figure {
-    let x = Axis::shown("± speed of the struck car, 90 %", Quantity::Speed, units);
+    let label = match answer.report.kind.is_collision() {
+        true => "± speed of the struck car, 90 %",
+        false => "± speed of the car, 90 %",
+    };
+    let x = Axis::shown(label, Quantity::Speed, units);
     let believable = answer.report.budget.iter().filter(|item| item.believable);
     let mut items: Vec<_> = believable.collect();
     items.sort_by(|a, b| b.then_m_s.total_cmp(&a.then_m_s));

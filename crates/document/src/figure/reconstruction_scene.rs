@@ -11,8 +11,13 @@ use impactlab_reconstruct::Cars;
 use impactlab_reconstruct::evidence::{Evidence, Measured};
 use impactlab_study::{NamedPath, ReconstructAnswer, ReconstructedPaths};
 
-/// Name of the struck car at rest in the legend.
-pub const STRUCK_AT_REST: &str = "struck car at rest, 90 % ellipse";
+/// Name of the struck or single car at rest in the legend.
+pub fn struck_at_rest(evidence: &Evidence) -> &'static str {
+    match evidence.is_single_car() {
+        true => "car at rest, 90 % ellipse",
+        false => "struck car at rest, 90 % ellipse",
+    }
+}
 /// Name of the striking car at rest in the legend.
 pub const STRIKING_AT_REST: &str = "striking car at rest, 90 % ellipse";
 
@@ -64,14 +69,21 @@ impl<'a> ReconstructionScene<'a> {
     }
 }
 
-/// The paths of the struck car from above, over what was found.
+/// The paths of the struck or single car from above, over what was found.
 pub fn reconstruction_scene_figure(
     scene: &ReconstructionScene<'_>,
     caveats: &Caveats,
     units: UnitSystem,
 ) -> Figure {
-    let x = Axis::shown("X, along the heading before the impact", Quantity::Length, units);
-    let y = Axis::shown("Y, to the left", Quantity::Length, units);
+    let (x, y, title) = match scene.evidence.is_single_car() {
+        true => ("X", "Y", "where the car went"),
+        false => (
+            "X, along the heading before the impact",
+            "Y, to the left",
+            "where the struck car went",
+        ),
+    };
+    let [x, y] = [x, y].map(|label| Axis::shown(label, Quantity::Length, units));
     let shown = |[px, py]: [f64; 2]| [x.unit.from_si(px), y.unit.from_si(py)];
     let path = |name: &str, role: Role, path: &VehiclePath| {
         let seen = |point: &PathPoint| shown([point.x_m, point.y_m]);
@@ -88,7 +100,9 @@ pub fn reconstruction_scene_figure(
     };
     let drawn = scene.drawn.iter().map(|drawn| path("particles", Role::Muted, drawn));
     let mut elements: Vec<FigureElement> = drawn.collect();
-    elements.extend(contact_elements(scene, &shown, units));
+    if !scene.evidence.is_single_car() {
+        elements.extend(contact_elements(scene, &shown, units));
+    }
     elements.extend(scene.marks.iter().map(|mark| {
         let points = mark.points.iter().map(|point| shown(point.place_m)).collect();
         FigureElement::line("tire marks, computed", Role::Simulation, points)
@@ -106,7 +120,7 @@ pub fn reconstruction_scene_figure(
             elements.extend(vehicle_outline(name, role, style, &footprint, &pose, x.unit));
         }
     }
-    let title = format!("{}: where the struck car went", scene.evidence.case);
+    let title = format!("{}: {title}", scene.evidence.case);
     Figure::new(title, [x, y], elements).plan().with_caveats(&caveats.in_units(units))
 }
 
@@ -172,7 +186,7 @@ fn evidence_elements(
     }
     for (rest, car, name) in [
         (&evidence.striking_rest, &cars.striking, STRIKING_AT_REST),
-        (&evidence.rest, &cars.struck, STRUCK_AT_REST),
+        (&evidence.rest, &cars.struck, struck_at_rest(evidence)),
     ] {
         let Some(rest) = rest else { continue };
         let ellipse = rest.ellipse_90_m().into_iter().map(shown).collect();

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use crate::report::language::phrase_of;
 use crate::report::numbers::Wording;
-use crate::report::{Block, Table};
+use crate::report::{Block, Language, Table};
 use impactlab_core::bibliography as sources;
 
 /// By what an answer is computed.
@@ -21,6 +22,8 @@ pub(super) enum Method {
     ResponseNetwork,
     /// From the evidence to the speeds.
     Reconstruction,
+    /// From the evidence of a single car to its speed.
+    SingleCar,
     /// What a data sheet leaves open, by rule.
     DataSheet,
 }
@@ -36,6 +39,7 @@ impl Method {
             Self::ForceNetwork => words.method_force,
             Self::ResponseNetwork => words.method_response,
             Self::Reconstruction => words.method_reconstruction,
+            Self::SingleCar => words.method_single_car,
             Self::DataSheet => words.method_sheet,
         }
     }
@@ -50,6 +54,7 @@ impl Method {
             Self::ForceNetwork => words.method_force_text,
             Self::ResponseNetwork => words.method_response_text,
             Self::Reconstruction => words.method_reconstruction_text,
+            Self::SingleCar => words.method_single_car_text,
             Self::DataSheet => words.method_sheet_text,
         }
     }
@@ -64,6 +69,7 @@ impl Method {
             Self::ForceNetwork => words.limits_force,
             Self::ResponseNetwork => words.limits_response,
             Self::Reconstruction => words.limits_reconstruction,
+            Self::SingleCar => words.limits_single_car,
             Self::DataSheet => words.limits_sheet,
         }
     }
@@ -83,7 +89,7 @@ impl Method {
                 &[sources::PitPinnPaper::TEXT, sources::RasmussenWilliams2006::TEXT]
             }
             Self::ResponseNetwork => &[sources::PitPinnPaper::TEXT],
-            Self::Reconstruction => &[
+            Self::Reconstruction | Self::SingleCar => &[
                 sources::DelMoral2006::TEXT,
                 sources::Jasra2011::TEXT,
                 sources::OwenZhou2000::TEXT,
@@ -124,7 +130,9 @@ pub(super) fn method_blocks(methods: &BTreeSet<Method>, wording: &Wording) -> Ve
         blocks.push(Block::paragraph(format!("{text} {}: {}.", words.sources, numbers.join(", "))));
     }
     if !cited.is_empty() {
-        let row = |(idx, text): (usize, &&str)| [format!("[{}]", idx + 1), numbered(text, &cited)];
+        let row = |(idx, text): (usize, &&str)| {
+            [format!("[{}]", idx + 1), numbered(text, &cited, wording)]
+        };
         let rows = cited.iter().enumerate().map(row).collect();
         let columns = [words.number, words.source_title];
         blocks.push(Block::Table(Table::new(words.sources, columns, rows)));
@@ -133,8 +141,11 @@ pub(super) fn method_blocks(methods: &BTreeSet<Method>, wording: &Wording) -> Ve
 }
 
 /// A citation in which other sources are told by their numbers.
-fn numbered(text: &str, cited: &[&'static str]) -> String {
-    let mut told = citation(text);
+fn numbered(text: &str, cited: &[&'static str], wording: &Wording) -> String {
+    let mut told = match wording.language {
+        Language::En => first_paragraph(text).replace('*', ""),
+        Language::De => in_german(&first_paragraph(text), wording),
+    };
     for (key, name, source) in NAMED {
         let number = cited.iter().position(|known| known == source);
         let number = number.map_or_else(|| (*name).to_owned(), |idx| format!("[{}]", idx + 1));
@@ -150,19 +161,88 @@ const NAMED: &[(&str, &str, &str)] = &[
     ("KktseInertia2020", "kktse.github.io 2020", sources::KktseInertia2020::TEXT),
 ];
 
-/// The first paragraph of the documentation of a source, without marks of Markdown.
-fn citation(text: &str) -> String {
+/// The first paragraph of the documentation of a source, without marks of Markdown but those of titles.
+fn first_paragraph(text: &str) -> String {
     let first = text.lines().map(str::trim).take_while(|line| !line.is_empty());
     let joined = first.collect::<Vec<_>>().join(" ");
-    joined.chars().filter(|c| !matches!(c, '*' | '`' | '[' | ']')).collect()
+    joined.chars().filter(|c| !matches!(c, '`' | '[' | ']')).collect()
+}
+
+/// A citation with its titles in quotation marks, as they were published, and German words around them.
+///
+/// - `citation`: with titles between asterisks.
+fn in_german(citation: &str, wording: &Wording) -> String {
+    let pieces: Vec<&str> = citation.split('*').collect();
+    let mut told = String::new();
+    for (idx, piece) in pieces.iter().enumerate() {
+        if idx % 2 == 1 {
+            told.push_str(&format!("„{piece}“"));
+        } else if idx + 1 < pieces.len() {
+            told.push_str(&piece.replace(" and ", " und "));
+        } else {
+            let [publication, between, remark] = behind_title(piece);
+            let known =
+                |part: &str| phrase_of(Language::De, part).unwrap_or_else(|| part.to_owned());
+            let publication: Vec<String> = publication.split(", ").map(known).collect();
+            told.push_str(&format!("{}{between}{}", publication.join(", "), wording.term(remark)));
+        }
+    }
+    told
+}
+
+/// What stands behind the last title of a citation: the publication, and what it is cited for.
+fn behind_title(text: &str) -> [&str; 3] {
+    if let Some(remark) = text.strip_prefix(": ") {
+        return ["", ": ", remark];
+    }
+    let parts = text.split_once(". ");
+    parts.map_or([text, "", ""], |(publication, remark)| [publication, ". ", remark])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::{Paper, ReportDate, ReportSettings};
+    use impactlab_core::units::UnitSystem;
+
+    const ALL: [Method; 8] = [
+        Method::Impact,
+        Method::FourDof,
+        Method::ContactLaw,
+        Method::ForceNetwork,
+        Method::ResponseNetwork,
+        Method::Reconstruction,
+        Method::SingleCar,
+        Method::DataSheet,
+    ];
+
+    /// What a source is cited for stood in English in a German report.
+    #[test]
+    fn a_german_citation_has_its_title_as_published_and_german_words_around_it() {
+        for source in ALL.iter().flat_map(|method| method.sources()) {
+            let citation = first_paragraph(source);
+            let [.., remark] = behind_title(citation.rsplit('*').next().unwrap_or_default());
+            assert!(phrase_of(Language::De, remark).is_some(), "{remark}");
+        }
+        let wording = Wording::new(&ReportSettings {
+            language: Language::De,
+            units: UnitSystem::Si,
+            paper: Paper::A4,
+            date: ReportDate::new(2026, 1, 2).unwrap(),
+        });
+        assert_eq!(
+            numbered(sources::Brach2011::TEXT, &[], &wording),
+            "R. M. Brach, R. M. Brach, „Vehicle Accident Analysis and Reconstruction Methods“, 2. Aufl., \
+             SAE International, 2011. Ebene Stoßmechanik, Stoßziffer und Impulsverhältnis."
+        );
+        let edsmac = numbered(sources::EdsmacManual::TEXT, &[], &wording);
+        assert!(edsmac.contains("Collisions“ und „EDSMAC4“, Programmhandbücher"), "{edsmac}");
+    }
 
     #[test]
     fn a_citation_has_authors_title_and_year_and_no_marks() {
+        let english = Wording::english(UnitSystem::Si);
+        let citation = |text| numbered(text, &[], &english);
         let text = citation(sources::OwenZhou2000::TEXT);
         assert!(
             text.starts_with("A. Owen, Y. Zhou, Safe and effective importance sampling"),
@@ -176,18 +256,11 @@ mod tests {
     #[test]
     fn sources_are_named_by_their_numbers_and_not_by_keys_of_the_program() {
         let cited = [sources::Heydinger1999::TEXT, sources::KktseInertia2020::TEXT];
-        assert!(numbered(cited[0], &cited).contains("[2]"), "{}", numbered(cited[0], &cited));
-        let all = [
-            Method::Impact,
-            Method::FourDof,
-            Method::ContactLaw,
-            Method::ForceNetwork,
-            Method::ResponseNetwork,
-            Method::Reconstruction,
-            Method::DataSheet,
-        ];
-        for source in all.iter().flat_map(|method| method.sources()) {
-            let told = numbered(source, &[]);
+        let english = Wording::english(UnitSystem::Si);
+        let first = numbered(cited[0], &cited, &english);
+        assert!(first.contains("[2]"), "{first}");
+        for source in ALL.iter().flat_map(|method| method.sources()) {
+            let told = numbered(source, &[], &english);
             let mut words = told.split(|c: char| !c.is_alphanumeric());
             let is_key = |word: &str| {
                 let name = word.trim_end_matches(|c: char| c.is_ascii_digit());

@@ -3,7 +3,7 @@
 use std::ops::Deref;
 
 use crate::report::language::{Words, phrase_of, words_of};
-use crate::report::{Language, ReportSettings};
+use crate::report::{Language, ReportDate, ReportSettings};
 use impactlab_core::uncertainty::Caveat;
 use impactlab_core::units::{NumberFormat, Phrase, Quantity, UnitSystem, significant, trimmed};
 
@@ -103,26 +103,50 @@ impl Wording {
     }
 
     /// What a caveat says, in the units of the report; as [`Wording::quoted`] if in English alone.
-    /// Options of the command line mean nothing to the reader of a report.
+    /// Options of the command line and files of the program mean nothing to the reader of a report.
     pub fn caveat_text(&self, caveat: &Caveat) -> String {
         let text = self.said(caveat.text_phrase.as_ref(), &caveat.text);
-        without_options(&text)
+        without_options(&text).replace(LIMITS_FILE, self.words.at_validation)
     }
 
     /// A phrase in the language and the units of the report; else the English text.
     fn said(&self, phrase: Option<&Phrase>, text: &str) -> String {
         match phrase {
-            Some(phrase) => phrase.say_with(&self.format, &|label| self.label(label)),
+            Some(phrase) => phrase.say_shown(&self.format, &|label| self.label(label)),
             None => self.note(text),
         }
     }
 
-    /// A note, a rule or a source of the program in the language of the report, part by part; as
-    /// [`Wording::quoted`] where a part has no translation.
+    /// A note, a rule or a source of the program in the language and the units of the report, part by part;
+    /// as [`Wording::quoted`] where a part has no translation.
     pub fn note(&self, text: &str) -> String {
-        let parts: Option<Vec<String>> =
-            text.split("; ").map(|part| phrase_of(self.language, part)).collect();
+        let said = text.split("; ").map(|part| {
+            let before = part.strip_prefix(SAID_INSTEAD);
+            let before = before.and_then(|value| self.in_units(value));
+            before.map_or_else(|| part.to_owned(), |value| format!("{SAID_INSTEAD}{value}"))
+        });
+        let parts: Option<Vec<String>> = said.map(|part| phrase_of(self.language, &part)).collect();
         parts.map_or_else(|| self.quoted(text), |parts| self.local(&parts.join("; ")))
+    }
+
+    /// A number with its SI unit, as notes of vehicle data have it, in the units of the report.
+    fn in_units(&self, value: &str) -> Option<String> {
+        let (number, symbol) = value.split_once(' ')?;
+        let quantity = Quantity::from_si_symbol(symbol)?;
+        Some(self.given(quantity, number.parse().ok()?))
+    }
+
+    /// A day of the calendar, as YYYY-MM-DD; as it is if it is none.
+    pub fn day(&self, day: &str) -> String {
+        let day_of = |day: ReportDate| day.written(self.language);
+        day.parse().map_or_else(|_| day.to_owned(), day_of)
+    }
+
+    /// A time in UTC, as YYYY-MM-DDThh:mm:ssZ; as it is if it is none.
+    pub fn moment(&self, time: &str) -> String {
+        let parts = time.split_once('T');
+        let parts = parts.and_then(|(day, clock)| Some((day, clock.strip_suffix('Z')?)));
+        parts.map_or_else(|| time.to_owned(), |(day, clock)| format!("{} {clock}", self.day(day)))
     }
 
     /// The same of why something was assumed or is not used.
@@ -143,6 +167,12 @@ impl Wording {
         parts.map_or_else(|| self.quoted(text), |parts| self.local(&parts.join(", ")))
     }
 }
+
+/// Where the guide says how often intervals held, as section 7 of a report does.
+const LIMITS_FILE: &str = "docs/guide/limits.md";
+
+/// How the note of a value begins that a collision states in place of that of the vehicle.
+const SAID_INSTEAD: &str = "said with the collision, instead of ";
 
 /// Words of what names nothing but an option or a key of a file, such as “another one: --vehicle”.
 const WORDS_OF_OPTION: usize = 3;
@@ -235,6 +265,18 @@ mod tests {
         let unknown = Caveat::not_used("what", "why");
         let told = [german.caveat_text(&unknown), german.caveat_reason(&unknown)];
         assert_eq!(told, ["„what“", "„why“"]);
+    }
+
+    /// The value before was in SI units where all else was in those of the United States.
+    #[test]
+    fn what_a_collision_replaces_is_in_the_units_of_the_report() {
+        let note = "said with the collision, instead of 1000 kg; dry asphalt";
+        let told = Wording::english(UnitSystem::Us).note(note);
+        assert_eq!(told, "said with the collision, instead of 2205 lb; dry asphalt");
+        let format = NumberFormat { units: UnitSystem::Si, language: Language::De };
+        let german = Wording { format, words: words_of(Language::De) };
+        let told = german.note("said with the collision, instead of 2.0468 m");
+        assert_eq!(told, "mit der Kollision angegeben, statt 2,0468 m");
     }
 
     /// “another one: --vehicle” stood in an opinion that is read in court.

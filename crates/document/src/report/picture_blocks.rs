@@ -103,10 +103,20 @@ fn shown_content(content: &PictureContent, wording: &Wording) -> PictureContent 
             for axis in [&mut figure.x, &mut figure.y] {
                 name(&mut axis.label);
                 axis.names.iter_mut().for_each(name);
+                axis.unit.symbol = unit_symbol(axis.unit.symbol, wording.language);
             }
             PictureContent::Figure(figure)
         }
         PictureContent::Scene(still) => PictureContent::Scene(shown_still(still, wording)),
+    }
+}
+
+/// The symbol of a unit in a language.
+fn unit_symbol(symbol: &'static str, language: Language) -> &'static str {
+    match (language, symbol) {
+        (Language::De, "deg") => "°",
+        (Language::De, "deg/s") => "°/s",
+        _ => symbol,
     }
 }
 
@@ -133,11 +143,8 @@ fn shown_still(still: &SceneStill, wording: &Wording) -> SceneStill {
     SceneStill { scene: scene.into(), ..still.clone() }
 }
 
-/// Caveats with their sentences in the language of the report; those of an English one are so already.
+/// Caveats with their sentences in the language and the units of the report.
 fn told(caveats: &Caveats, wording: &Wording) -> Caveats {
-    if wording.language == Language::En {
-        return caveats.clone();
-    }
     let told = |caveat: &Caveat| Caveat { text: wording.caveat_text(caveat), ..caveat.clone() };
     caveats.iter().map(told).collect()
 }
@@ -212,5 +219,7 @@ mod tests {
         assert_eq!([&*figure.x.label, &*figure.y.label], ["Zeit", "Kraft"]);
         assert_eq!(figure.elements[0].name(), "stoßendes Fahrzeug");
         assert!(picture.alt.contains("stoßendes Fahrzeug"), "{}", picture.alt);
+        assert_eq!(unit_symbol("deg/s", Language::De), "°/s");
+        assert_eq!(unit_symbol("deg/s", Language::En), "deg/s");
     }
 }

@@ -3,7 +3,7 @@
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::PartProvenance;
 use crate::report::paths::ShownPaths;
-use crate::report::{Block, Table};
+use crate::report::{Block, Language, Table};
 use impactlab_study::case_file::{CaseFile, CaseOnDisk, CaseReport, Change, UsedFile, UsedModel};
 
 /// What has changed since the case was saved, as one notice; none if nothing has.
@@ -18,7 +18,9 @@ pub(super) fn change_notice(
         Change::Changed { path } => fill(words.change_changed, &[("path", &paths.name(path))]),
         Change::Case { path } => fill(words.change_case, &[("path", &paths.name(path))]),
         Change::Model { network, name } => {
-            fill(words.change_model, &[("network", network), ("name", &paths.shown(name))])
+            let network = network_name(network, wording);
+            let name = wording.name(&paths.shown(name));
+            fill(words.change_model, &[("network", &network), ("name", &name)])
         }
     };
     let what: Vec<String> = changes.iter().map(text).collect();
@@ -125,7 +127,8 @@ fn models(report: &CaseReport, wording: &Wording, paths: &ShownPaths) -> Block {
     let words = wording.words;
     let models = report.models();
     let row = |model: &UsedModel| {
-        [wording.key(&model.network), paths.shown(&model.name), model.sha256.clone()]
+        let name = wording.name(&paths.shown(&model.name));
+        [network_name(&model.network, wording), name, model.sha256.clone()]
     };
     let rows: Vec<_> = models.iter().map(row).collect();
     if rows.is_empty() {
@@ -135,13 +138,91 @@ fn models(report: &CaseReport, wording: &Wording, paths: &ShownPaths) -> Block {
     Block::Table(Table::new(words.models_caption, columns, rows))
 }
 
+/// What a network of a case is called.
+fn network_name(network: &str, wording: &Wording) -> String {
+    match network {
+        "force" => wording.words.force_network.to_owned(),
+        "response" => wording.words.response_network.to_owned(),
+        other => wording.key(other),
+    }
+}
+
+/// An entry of the log. Names of variants stay as they are, also where they are words of the program.
+fn event_text(event: &str, wording: &Wording) -> String {
+    if wording.language == Language::En {
+        return event.to_owned();
+    }
+    let pieces: Vec<&str> = event.split('"').collect();
+    match pieces[..] {
+        ["variant ", name, " copied from ", of, ""] => {
+            format!("Variante „{name}“ aus „{of}“ kopiert")
+        }
+        ["variant ", before, " renamed to ", name, ""] => {
+            format!("Variante „{before}“ in „{name}“ umbenannt")
+        }
+        ["variant ", name, " removed"] => format!("Variante „{name}“ entfernt"),
+        ["saved"] => "gespeichert".to_owned(),
+        ["opened"] => "geöffnet".to_owned(),
+        ["opened; edited since it was saved"] => {
+            "geöffnet; seit dem Speichern bearbeitet".to_owned()
+        }
+        ["packed; edited since it was saved"] => {
+            "gepackt; seit dem Speichern bearbeitet".to_owned()
+        }
+        _ => match event.strip_prefix("packed into ") {
+            Some(path) => format!("gepackt in {path}"),
+            None => wording.quoted(event),
+        },
+    }
+}
+
 /// What was done and when.
 pub(super) fn log_blocks(case: &CaseFile, wording: &Wording) -> Vec<Block> {
     let words = wording.words;
     if case.log.is_empty() {
         return vec![Block::paragraph(words.no_log)];
     }
-    let rows = case.log.iter().map(|entry| [entry.time.clone(), wording.quoted(&entry.event)]);
+    let rows = case
+        .log
+        .iter()
+        .map(|entry| [wording.moment(&entry.time), event_text(&entry.event, wording)]);
     let table = Table::new(words.log_caption, [words.time, words.event], rows.collect());
     vec![Block::Table(table)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::{Paper, ReportDate, ReportSettings};
+    use impactlab_core::units::UnitSystem;
+
+    /// The log of a German report was English.
+    #[test]
+    fn the_log_is_in_the_language_of_the_report_and_names_stay() {
+        let settings = |language| ReportSettings {
+            language,
+            units: UnitSystem::Si,
+            paper: Paper::A4,
+            date: ReportDate::new(2026, 1, 2).unwrap(),
+        };
+        let german = Wording::new(&settings(Language::De));
+        for (event, told) in [
+            (r#"variant "left" renamed to "mass""#, "Variante „left“ in „mass“ umbenannt"),
+            (r#"variant "b" copied from "a""#, "Variante „b“ aus „a“ kopiert"),
+            (r#"variant "b" removed"#, "Variante „b“ entfernt"),
+            ("packed into case.zip", "gepackt in case.zip"),
+            ("saved", "gespeichert"),
+            (r#"variant "a \"b\"" removed"#, r#"„variant "a \"b\"" removed“"#),
+        ] {
+            assert_eq!(event_text(event, &german), told);
+        }
+        assert_eq!(german.moment("2026-11-28T13:03:46Z"), "28.11.2026 13:03:46");
+        let english = Wording::new(&settings(Language::En));
+        assert_eq!(event_text("saved", &english), "saved");
+        assert_eq!(english.moment("2026-11-28T13:03:46Z"), "2026-11-28 13:03:46");
+        assert_eq!(english.moment("noon"), "noon");
+        let network = |wording| ["force", "response"].map(|name| network_name(name, wording));
+        assert_eq!(network(&german), ["Kraftnetz", "Bewegungsnetz"]);
+        assert_eq!(network(&english), ["force network", "response network"]);
+    }
 }

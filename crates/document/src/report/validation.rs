@@ -29,6 +29,7 @@ pub(super) fn validation_blocks(
         Method::ForceNetwork => words.validation_force,
         Method::ResponseNetwork => words.validation_response,
         Method::Reconstruction => words.validation_reconstruction,
+        Method::SingleCar => words.validation_single_car,
         Method::DataSheet => words.validation_sheet,
     };
     let captions: &[(Measured, &str)] = match method {
@@ -45,7 +46,7 @@ pub(super) fn validation_blocks(
             (Measured::ReconstructionWithoutEdr, words.table_without_recorder),
             (Measured::ReconstructionOfRest, words.table_rest_alone),
         ],
-        Method::DataSheet => &[],
+        Method::SingleCar | Method::DataSheet => &[],
     };
     if !opinion.is_empty() && !opinion.contains(&method) {
         return vec![Block::paragraph(format!("{}: {text}", method.name(wording)))];
@@ -55,7 +56,8 @@ pub(super) fn validation_blocks(
         let earlier = captions[..idx].iter().filter(|(other, _)| other == subject).count();
         let measurement = Measurement::shipped(*subject)?;
         let published = measurement.tables.get(earlier)?;
-        let caption = format!("{caption} ({} {})", words.measured_on, measurement.date);
+        let day = wording.day(&measurement.date);
+        let caption = format!("{caption} ({} {day})", words.measured_on);
         Some(Block::Table(table(&caption, published, wording)))
     });
     [heading, Block::paragraph(text)].into_iter().chain(tables).collect()

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::report::answer::capitalized;
 use crate::report::build::{VariantParts, parts_of};
 use crate::report::holders::AnswerNames;
 use crate::report::method::Method;
@@ -10,7 +11,7 @@ use crate::report::opinion::considered_methods;
 use crate::report::parts::Part;
 use crate::report::{Block, Table};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatQuantity};
-use impactlab_core::units::significant;
+use impactlab_core::units::{significant, trimmed};
 
 /// The limits of each method, how far networks apply, and every restriction once.
 pub(super) fn validity_blocks(
@@ -121,17 +122,18 @@ fn sentence(caveat: &Caveat, wording: &Wording) -> String {
     if let Some(CaveatQuantity { name, unit, value, range }) = caveat.quantity_in(wording)
         && !caveat.value.is_some_and(is_in_text)
     {
+        let number = |value: f64| wording.local(&trimmed(significant(value)));
         let range = match range {
             Some([Some(low), Some(high)]) => {
-                format!("{} {} {}", wording.number(low), words.to, wording.number(high))
+                format!("{} {} {}", number(low), words.to, number(high))
             }
-            Some([Some(low), None]) => fill(words.at_least, &[("low", &wording.number(low))]),
-            Some([None, Some(high)]) => fill(words.at_most, &[("high", &wording.number(high))]),
+            Some([Some(low), None]) => fill(words.at_least, &[("low", &number(low))]),
+            Some([None, Some(high)]) => fill(words.at_most, &[("high", &number(high))]),
             _ => return text,
         };
-        let quantity = format!("{}{unit}", wording.label(name));
-        let values =
-            [("quantity", &*quantity), ("value", &*wording.number(value)), ("range", &*range)];
+        let quantity = capitalized(&format!("{}{unit}", wording.label(name)));
+        let value = number(value);
+        let values = [("quantity", &*quantity), ("value", &*value), ("range", &*range)];
         text = format!("{text}. {}.", fill(words.allowed_range, &values));
     }
     text

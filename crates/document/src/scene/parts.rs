@@ -269,6 +269,12 @@ impl Scene {
         }
     }
 
+    /// The same without the view, for a narrow picture.
+    pub fn heading_without_view(&self, time_s: f64) -> String {
+        let text = format!("{}{}", self.title, self.after(time_s));
+        text.trim_start_matches(", ").to_owned()
+    }
+
     /// What a heading adds once the vehicles have met again.
     fn after(&self, time_s: f64) -> &'static str {
         let met = self.crosses.iter().any(|cross| cross.time_s <= time_s);

@@ -82,13 +82,17 @@ pub fn reconstruction_scene(input: &ReconstructionParts<'_>) -> Scene {
     }));
     add_marks(&mut scene, input.marks);
     add_found(&mut scene, evidence);
+    let (driven, struck_at_rest) = match evidence.is_single_car() {
+        true => ("car", ["car at rest, 90 % ellipse", "car, found"]),
+        false => ("struck", ["struck car at rest, 90 % ellipse", "struck, found"]),
+    };
     for (rest, shape, [name, tag]) in [
         (
             &evidence.striking_rest,
             shape_of(&cars.striking.parameters),
             ["striking car at rest, 90 % ellipse", "striking, found"],
         ),
-        (&evidence.rest, Arc::clone(&shape), ["struck car at rest, 90 % ellipse", "struck, found"]),
+        (&evidence.rest, Arc::clone(&shape), struck_at_rest),
     ] {
         if let Some(rest) = rest {
             add_rest(&mut scene, rest, &shape, [name, tag]);
@@ -96,11 +100,11 @@ pub fn reconstruction_scene(input: &ReconstructionParts<'_>) -> Scene {
     }
     for (idx, NamedPath { name, path }) in input.others.iter().enumerate() {
         let (motion, role) = (motion_of(path, &shape.body), SceneRole::Variant(idx + 1));
-        add(&mut scene, [name, "struck"], role, CarLook::Ghost, &shape, motion);
+        add(&mut scene, [name, driven], role, CarLook::Ghost, &shape, motion);
     }
     if let Some((name, path)) = input.followed {
         let motion = motion_of(path, &shape.body);
-        let named = [name, "struck"];
+        let named = [name, driven];
         add(&mut scene, named, SceneRole::Simulated, CarLook::Solid, &shape, motion);
     }
     let driving = scene.cars.iter().filter(|car| car.role != SceneRole::Evidence);

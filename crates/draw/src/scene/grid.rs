@@ -70,21 +70,22 @@ impl Grid {
     }
 
     /// How far fine and coarse lines across an axis cover a pixel, 0 to 1.
+    #[inline(always)]
     pub fn cover(&self, axis: usize, map: &RowMap, spot: &Spot) -> [f32; 2] {
         let (at, change) = (spot.place[axis] + self.phase_m[axis], map.change(spot, axis));
-        self.steps_m.map(|step_m| line_cover(at, change, step_m))
+        let [fine_m, coarse_m] = self.steps_m;
+        [line_cover(at, change, fine_m), line_cover(at, change, coarse_m)]
     }
 }
 
 /// How far a line of the grid covers a pixel, 0 to 1.
 ///
 /// - `at`: coordinate of the pixel, m; `change`: by how much it changes over a pixel, m, more than 0.
+#[inline(always)]
 pub fn line_cover(at: f32, change: f32, step_m: f32) -> f32 {
     let (cell, per) = (at / step_m, step_m / change);
     let distance = (cell - cell.round()).abs() * per;
-    if distance >= 1.0 {
-        return 0.0;
-    }
     let [full, gone] = FADING_PIXELS;
-    (1.0 - distance) * ((per - gone) / (full - gone)).clamp(0.0, 1.0)
+    let cover = (1.0 - distance) * ((per - gone) / (full - gone)).clamp(0.0, 1.0);
+    if distance >= 1.0 { 0.0 } else { cover }
 }

@@ -6,6 +6,7 @@ use crate::scene::grid::Grid;
 use crate::scene::lines::{Rows, Stroke, over};
 use crate::scene::row_map::RowMap;
 use crate::scene::shade::{grid_colors, ground_color, mixed, role_color, sky_color};
+use crate::scene::span::{SPAN, Span};
 use crate::scene::underlay::{Underlay, ground_strokes};
 use crate::scene::{Projection, camera::NEAR_M};
 use impactlab_document::scene::{Scene, SceneDensity, SceneLine, SceneRole};
@@ -75,30 +76,36 @@ impl Ground<'_> {
     ///
     /// - `columns`: that of [`Ground::covered_columns`].
     fn fill_row(&self, row: &mut [Color32], map: &RowMap, columns: &[[f32; 2]], grid: &Grid) {
-        let (sky, lines) = (sky_color(self.dark), grid_colors(self.dark));
-        let is_parallel = self.projection.is_parallel();
-        let opacity = self.grid_opacity();
-        let Grid { eye_m, haze_m, density_m, .. } = grid;
         let first = map.at(0).map_or([0.0; 2], |spot| grid.cover(1, map, &spot));
+        let mut span = Span::default();
+        for (idx, pixels) in row.chunks_mut(SPAN).enumerate() {
+            let from = idx * SPAN;
+            span.look(map, grid, from);
+            if self.projection.is_parallel() {
+                span.set_parallel(columns.get(from..).unwrap_or_default(), first);
+            }
+            self.fill_span(pixels, &span, grid);
+        }
+    }
+
+    /// Draws grid, density, haze and sky over pixels that lie side by side.
+    fn fill_span(&self, pixels: &mut [Color32], span: &Span, grid: &Grid) {
+        let (sky, colors) = (sky_color(self.dark), grid_colors(self.dark));
         let role = role_color(SceneRole::Forecast, self.dark);
-        for (column, pixel) in row.iter_mut().enumerate() {
-            let Some(spot) = map.at(column) else {
+        let opacity = self.grid_opacity();
+        for (pixel, ground) in pixels.iter_mut().zip(span.pixels()) {
+            if ground.is_sky {
                 *pixel = sky;
                 continue;
-            };
-            let [x, y] = spot.place;
-            let [across_x, across_y] = match columns.get(column) {
-                Some(cover) => [*cover, first],
-                None => [0, 1].map(|axis| grid.cover(axis, map, &spot)),
-            };
+            }
             let mut color = *pixel;
-            for (i, line) in lines.into_iter().enumerate() {
-                let share = across_x[i].max(across_y[i]);
+            for (line, share) in colors.into_iter().zip(ground.lines) {
                 if share > 0.0 {
                     color = over(color, line, opacity * share);
                 }
             }
-            if let (Some(density), Some([low, high])) = (&self.scene.density, density_m)
+            let [x, y] = ground.place;
+            if let (Some(density), Some([low, high])) = (&self.scene.density, grid.density_m)
                 && (low[0]..high[0]).contains(&x)
                 && (low[1]..high[1]).contains(&y)
             {
@@ -107,13 +114,8 @@ impl Ground<'_> {
                     color = over(color, role, DENSITY_OPACITY * share);
                 }
             }
-            if !is_parallel {
-                let (dx, dy) = (x - eye_m[0], y - eye_m[1]);
-                let far_m = (dx * dx + dy * dy).sqrt();
-                if far_m > haze_m[0] {
-                    let haze = (far_m - haze_m[0]) / (haze_m[1] - haze_m[0]);
-                    color = over(color, sky, haze.clamp(0.0, 1.0));
-                }
+            if ground.haze > 0.0 {
+                color = over(color, sky, ground.haze);
             }
             *pixel = color;
         }

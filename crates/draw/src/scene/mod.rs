@@ -21,6 +21,7 @@ mod raster;
 mod row_map;
 mod shade;
 mod shadow;
+mod span;
 mod underlay;
 #[cfg(test)]
 mod underlay_tests;

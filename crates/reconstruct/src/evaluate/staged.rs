@@ -142,7 +142,10 @@ impl TrueQuantities {
             ReconstructedQuantity::StruckYawRate => self.yaw_rate_after_rad_s,
             ReconstructedQuantity::RoadFriction
             | ReconstructedQuantity::StruckSpeedBeforeSkid
-            | ReconstructedQuantity::StrikingSpeedBeforeSkid => None,
+            | ReconstructedQuantity::StrikingSpeedBeforeSkid
+            | ReconstructedQuantity::CarSpeed
+            | ReconstructedQuantity::CarSideslip
+            | ReconstructedQuantity::CarYawRate => None,
         }
     }
 }

@@ -18,6 +18,8 @@ pub const STRUCK: Section = Section {
 /// What happened to the striking car, likewise.
 pub const STRIKING: Section =
     Section { key: "striking_after", title: "striking car after the impact", ..STRUCK };
+/// What driver and wheels of a single car did from the start to rest, likewise.
+pub const SINGLE: Section = Section { key: "wheels", title: "driver and wheels", ..STRUCK };
 
 const DRIVER_BRAKED: Choice =
     Choice { key: "driver_braked", label: "driver braked", is_required: false, none: "" };

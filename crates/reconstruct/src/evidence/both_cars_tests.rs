@@ -51,7 +51,10 @@ fn left_behind(own: &CollisionMotion) -> [(&'static str, Evidence); 3] {
         track.recorded_delta_v_m_s([0.0; 2], own.values.get(Latent::PulseDuration)).unwrap();
     let about = |value: f64| -> Option<Bounds> { Some([Some(value - 0.05), Some(value + 0.05)]) };
     let edr = Edr {
-        speed_before_m_s: Some(Stated { value: Some(own.impact.striking_speed_m_s), sigma: None }),
+        speed_before_m_s: Some(Stated {
+            value: Some(own.impact.unwrap().striking_speed_m_s),
+            sigma: None,
+        }),
         delta_v_x_m_s: about(x),
         delta_v_y_m_s: about(y),
         ..Edr::default()

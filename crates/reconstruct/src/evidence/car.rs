@@ -25,6 +25,8 @@ pub const STRUCK: Section = Section {
 };
 /// The striking car, likewise.
 pub const STRIKING: Section = Section { key: "striking_car", title: "striking car", ..STRUCK };
+/// A single car, likewise.
+pub const SINGLE: Section = Section { key: "car", title: "car", ..STRUCK };
 
 const MASS: Field = Field::new("mass", "mass", VEHICLE_MASS);
 const SIGMA: Sigma = Sigma::share(

@@ -4,12 +4,28 @@ use crate::evidence::{
     Bounds, Choice, Evidence, Field, Fields, Item, Items, PointsMut, Section, Sigma, Word,
 };
 
+/// What a single car lacks of which nobody says where it was.
+const START_LACKS: &str =
+    "car at the start: X and Y have not been entered: type them, or add a tire mark";
+
 impl Evidence {
     /// What lacks although nothing can stand in for it, and what to do; `None` if the evidence is complete.
     pub fn missing(&self) -> Option<String> {
+        if let Some(title) = self.foreign() {
+            let why = match self.is_single_car() {
+                true => "a single car strikes nothing and is struck by nothing",
+                false => "only the evidence of a single car has it",
+            };
+            return Some(format!("{title}: {why}: remove it"));
+        }
         let mut search = Search(None);
         self.clone().items(&mut search);
-        search.0
+        search.0.or_else(|| self.lacks_start().then(|| START_LACKS.to_owned()))
+    }
+
+    /// Whether nothing says where a single car was.
+    pub(super) fn lacks_start(&self) -> bool {
+        self.is_single_car() && self.start.place_m().is_none() && self.marks.is_empty()
     }
 }
 

@@ -108,7 +108,8 @@ impl Damage {
     pub(super) fn compare(&self, comparison: &mut Comparison<'_>) {
         let along_m = comparison.value(Latent::ContactAlong);
         comparison.tell_measured("damage along the side", "m", self.along(), along_m);
-        let angle_rad = comparison.motion.impact.heading_difference_rad;
+        let Some(impact) = &comparison.motion.impact else { return };
+        let angle_rad = impact.heading_difference_rad;
         comparison.tell_measured("angle of the damage", "rad", self.angle(), angle_rad);
     }
 }

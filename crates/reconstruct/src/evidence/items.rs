@@ -1,16 +1,16 @@
 //! The evidence with its items, in SI units.
 //!
 //! World axes: origin at the CG of the struck car at first contact, X along its heading before the
-//! impact, Y to the left.
+//! impact, Y to the left. Those of a single car are free: everything found is in the same ones.
 
 use impactlab_core::vehicle::RoadSlope;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::evidence::{
-    After, CarEvidence, Damage, DriverBraked, Edr, Item, Items, Mark, Measured, PriorRanges,
-    RestPose, Road, SkidBefore, VideoPosition, Weighing, after, car, damage, mark, position,
-    prior_ranges, recorder, rest, road, skid, weighing,
+    After, CarEvidence, Damage, DriverBraked, Edr, EvidenceKind, Item, Items, Mark, Measured,
+    PriorRanges, RecordedSpeed, RestPose, Road, SkidBefore, Start, VideoPosition, Weighing, after,
+    car, damage, mark, position, prior_ranges, recorder, rest, road, skid, speed, start, weighing,
 };
 use crate::likelihood::{Compared, ComparedCar, Comparison, Discrepancy, PathResidual, Track};
 use crate::{CollisionMotion, StrikingMotion};
@@ -22,16 +22,22 @@ use crate::{CollisionMotion, StrikingMotion};
 pub struct Evidence {
     /// Name of the case.
     pub case: String,
+    /// What it is of. A single car has the items `struck_car`, `rest`, `after`, `marks` and `positions` of a
+    /// struck one, and none of the impact or of another car.
+    #[serde(default, skip_serializing_if = "EvidenceKind::is_collision")]
+    pub kind: EvidenceKind,
     /// Peak friction of the road, where it was measured.
     pub friction: Option<Road>,
-    /// The car that was struck.
+    /// The car that was struck, or the single one.
     pub struck_car: CarEvidence,
     /// The car that struck it.
+    #[serde(default)]
     pub striking_car: CarEvidence,
     /// The one scale that weighed both cars; `None` if they were not weighed on one.
     #[serde(default, rename = "shared_scale_sigma")]
     pub weighing: Option<Weighing>,
     /// Where the struck car was hit.
+    #[serde(default)]
     pub damage: Damage,
     /// Skid of the struck car that ended at the first contact.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -61,8 +67,18 @@ pub struct Evidence {
     pub striking_edr: Option<Edr>,
     /// Positions of the struck car from a video.
     pub positions: Vec<VideoPosition>,
+    /// Where a single car was at the start, with ranges of how it moved there.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub start: Start,
+    /// Speeds of a single car at times.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub speeds: Vec<RecordedSpeed>,
     /// Ranges that the user gives to what is asked for.
     pub prior: PriorRanges,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// A recorder; `None` for one that recorded nothing, as which cases of earlier versions have none.
@@ -72,10 +88,31 @@ fn with_record<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Edr>
 }
 
 impl Evidence {
-    /// Shows every item. The evidence is taken apart without `..`, so that none is left out.
+    /// Shows every item that evidence of this kind has.
     pub fn items(&mut self, visitor: &mut impl Items) {
+        match self.kind {
+            EvidenceKind::Collision => self.items_of_collision(visitor),
+            EvidenceKind::SingleCar => self.items_of_single_car(visitor),
+        }
+    }
+
+    /// The items of a single car.
+    fn items_of_single_car(&mut self, visitor: &mut impl Items) {
+        visitor.optional(&road::SECTION, &mut self.friction);
+        visitor.item(&car::SINGLE, None, &mut self.struck_car);
+        visitor.item(&start::SECTION, None, &mut self.start);
+        visitor.optional(&rest::SINGLE, &mut self.rest);
+        visitor.many(&mark::STRUCK, &mut self.marks);
+        visitor.many(&speed::SECTION, &mut self.speeds);
+        visitor.many(&position::SECTION, &mut self.positions);
+        visitor.item(&after::SINGLE, None, &mut self.after);
+    }
+
+    /// The items of a collision. The evidence is taken apart without `..`, so that none is left out.
+    fn items_of_collision(&mut self, visitor: &mut impl Items) {
         let Self {
             case: _,
+            kind: _,
             friction,
             struck_car,
             striking_car,
@@ -92,6 +129,8 @@ impl Evidence {
             edr,
             striking_edr,
             positions,
+            start: _,
+            speeds: _,
             prior,
         } = self;
         visitor.optional(&road::SECTION, friction);
@@ -125,6 +164,7 @@ impl Evidence {
     ) -> Compared {
         let Self {
             case: _,
+            kind,
             friction,
             struck_car,
             striking_car,
@@ -144,6 +184,9 @@ impl Evidence {
             edr,
             striking_edr,
             positions,
+            // Where a single car is at the start is a part of the prior.
+            start: _,
+            speeds,
             prior: _,
         } = self;
         let Some(track) = Track::from_path(&motion.path) else { return Compared::impossible() };
@@ -157,6 +200,7 @@ impl Evidence {
         }
         marks.iter().for_each(|mark| mark.compare(marks.len(), &mut comparison));
         edr.iter().for_each(|edr| edr.compare(&mut comparison));
+        speeds.iter().for_each(|speed| speed.compare(&mut comparison));
         comparison.add_path();
         if self.follows_striking_car() {
             let striking = motion.striking.as_ref();
@@ -176,6 +220,8 @@ impl Evidence {
         friction.iter().for_each(|road| road.compare_drag(&mut comparison));
         if wants_terms {
             friction.iter().for_each(|road| road.compare(&mut comparison));
+        }
+        if wants_terms && kind.is_collision() {
             struck_car.compare_struck(&mut comparison);
             striking_car.compare_striking(&mut comparison);
             damage.compare(&mut comparison);
@@ -195,6 +241,37 @@ impl Evidence {
         self.rest.iter().for_each(|rest| rest.compare(&mut comparison));
         self.positions.iter().for_each(|position| position.compare(&mut comparison));
         Some((comparison.path, track.whole_m()))
+    }
+
+    /// Whether it is of a single car.
+    pub fn is_single_car(&self) -> bool {
+        self.kind == EvidenceKind::SingleCar
+    }
+
+    /// The title of the first item that is entered although evidence of this kind does not have it.
+    pub(super) fn foreign(&self) -> Option<&'static str> {
+        let of_single = [
+            (self.start != Start::default(), start::SECTION.title),
+            (!self.speeds.is_empty(), speed::SECTION.title),
+        ];
+        let of_collision = [
+            (self.striking_car != CarEvidence::default(), car::STRIKING.title),
+            (self.weighing.is_some(), weighing::SECTION.title),
+            (self.damage != Damage::default(), damage::SECTION.title),
+            (self.skid_before.is_some(), skid::STRUCK.title),
+            (self.striking_skid_before.is_some(), skid::STRIKING.title),
+            (self.striking_rest.is_some(), rest::STRIKING.title),
+            (self.striking_after != After::default(), after::STRIKING.title),
+            (!self.striking_marks.is_empty(), mark::STRIKING.title),
+            (self.edr.is_some(), recorder::STRUCK.title),
+            (self.striking_edr.is_some(), recorder::STRIKING.title),
+            (self.prior != PriorRanges::default(), prior_ranges::SECTION.title),
+        ];
+        let foreign = match self.kind {
+            EvidenceKind::Collision => &of_single[..],
+            EvidenceKind::SingleCar => &of_collision[..],
+        };
+        foreign.iter().find(|(is_entered, _)| *is_entered).map(|(_, title)| *title)
     }
 
     /// An empty form: a car that was hit and came to rest, of which nothing has been entered.
@@ -228,9 +305,10 @@ impl Evidence {
 
     /// Whether anything of the striking car is evidence of how it moved, so that it is followed.
     pub fn follows_striking_car(&self) -> bool {
-        self.striking_rest.is_some()
+        let is_found = self.striking_rest.is_some()
             || !self.striking_marks.is_empty()
-            || self.striking_edr.is_some()
+            || self.striking_edr.is_some();
+        is_found && !self.is_single_car()
     }
 
     /// Whether somebody says what the driver of the striking car did after the impact, or that its wheels
@@ -265,7 +343,7 @@ impl Evidence {
 /// The struck car of a motion.
 fn struck_car_of<'a>(motion: &'a CollisionMotion, track: &'a Track) -> ComparedCar<'a> {
     let CollisionMotion { vehicle, manoeuvre, impact, .. } = motion;
-    let speed_before_m_s = impact.struck_speed_m_s;
+    let speed_before_m_s = impact.map_or(f64::NAN, |impact| impact.struck_speed_m_s);
     ComparedCar { vehicle, manoeuvre, track, speed_before_m_s, prefix: "" }
 }
 
@@ -275,7 +353,7 @@ fn striking_car_of<'a>(
     StrikingMotion { vehicle, manoeuvre, path: _ }: &'a StrikingMotion,
     track: &'a Track,
 ) -> ComparedCar<'a> {
-    let speed_before_m_s = motion.impact.striking_speed_m_s;
+    let speed_before_m_s = motion.impact.map_or(f64::NAN, |impact| impact.striking_speed_m_s);
     ComparedCar { vehicle, manoeuvre, track, speed_before_m_s, prefix: "striking car " }
 }
 

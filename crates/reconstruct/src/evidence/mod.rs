@@ -11,6 +11,7 @@ mod damage;
 pub(crate) mod examples;
 mod field;
 mod items;
+mod kind;
 mod mark;
 mod mirror;
 mod places;
@@ -21,15 +22,21 @@ mod recorder;
 mod rest;
 mod road;
 mod skid;
+mod speed;
+mod start;
 mod visit;
 mod weighing;
 mod write;
 
 pub use after::{After, DriverBraked};
-pub use car::{CarEvidence, DEFAULT_MASS_SHARE, STRIKING as STRIKING_CAR, STRUCK as STRUCK_CAR};
+pub use car::{
+    CarEvidence, DEFAULT_MASS_SHARE, SINGLE as SINGLE_CAR, STRIKING as STRIKING_CAR,
+    STRUCK as STRUCK_CAR,
+};
 pub use damage::Damage;
 pub use field::{Bounds, Choice, Field, Measured, Sigma, Stated, Word, ends};
 pub use items::Evidence;
+pub use kind::EvidenceKind;
 pub use mark::{Mark, MarkKind};
 pub use places::FoundPlace;
 pub use position::VideoPosition;
@@ -38,5 +45,7 @@ pub use recorder::Edr;
 pub use rest::RestPose;
 pub use road::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Road};
 pub use skid::SkidBefore;
+pub use speed::RecordedSpeed;
+pub use start::Start;
 pub use visit::{Fields, Group, Item, Items, PlaceMut, PointsMut, Section};
 pub use weighing::Weighing;

@@ -72,15 +72,62 @@
 //! target_speed_m_s = [5, 45]
 //! bullet_brake_start_s = [0, 0.1]   # and brake_start_s, brake_share, bullet_brake_share
 //! ```
+//!
+//! A single car that struck nothing has `[car]` for `[struck_car]`, `[wheels]` for `[after]`, nothing of an
+//! impact or of another car, and
+//!
+//! ```toml
+//! kind = "single_car"
+//!
+//! [start]                           # time 0; by the mark that begins first if not given
+//! x_m = 0.0
+//! y_m = 0.0
+//! heading_deg = 0
+//! speed_m_s = [5, 45]               # ranges: and sideslip_deg, yaw_rate_deg_s, road_wheel_deg,
+//! brake_start_s = [0, 0.1]          # brake_share
+//!
+//! [[recorded_speed]]
+//! time_s = 0.0                      # after the start
+//! speed_km_h = 92
+//! ```
 
 use std::path::Path;
 
 use impactlab_core::data::{TomlError, TomlFile, TomlTable};
 
 use crate::evidence::complete::lack_of;
+use crate::evidence::start;
 use crate::evidence::{
-    Bounds, Choice, Evidence, Field, Fields, Item, Items, PointsMut, Section, Sigma, Word,
+    Bounds, Choice, Evidence, EvidenceKind, Field, Fields, Item, Items, PointsMut, Section, Sigma,
+    Word,
 };
+
+/// What stands in place of an item of a collision in the evidence of a single car.
+const NOT_OF_SINGLE_CAR: [(&str, &str); 13] = [
+    ("struck_car", "[car]"),
+    ("after", "[wheels]"),
+    ("prior", "[start], which has the ranges of a single car"),
+    ("edr", "[[recorded_speed]] for a speed, and no Δv without an impact"),
+    ("striking_edr", NOTHING),
+    ("damage", NOTHING),
+    ("striking_car", NOTHING),
+    ("weighing", NOTHING),
+    ("skid_before", "[[mark]], [rest] and [wheels], since there is no impact to end the skid"),
+    ("striking_skid_before", NOTHING),
+    ("striking_rest", NOTHING),
+    ("striking_after", NOTHING),
+    ("striking_mark", NOTHING),
+];
+const NOTHING: &str = "nothing: a single car strikes nothing and is struck by nothing";
+
+/// The same of an item of a single car in the evidence of a collision.
+const NOT_OF_COLLISION: [(&str, &str); 4] = [
+    ("car", "[struck_car], or kind = \"single_car\" at the top of the file"),
+    ("start", ONLY_SINGLE),
+    ("wheels", "[after], or kind = \"single_car\" at the top of the file"),
+    ("recorded_speed", ONLY_SINGLE),
+];
+const ONLY_SINGLE: &str = "it with kind = \"single_car\" at the top of the file only";
 
 /// Distance from the first point of a mark within which its start may be repeated, m.
 const START_REACH_M: f64 = 0.5;
@@ -103,10 +150,38 @@ impl Evidence {
         let root = file.parse()?;
         let mut top = TomlTable::root(file, &root);
         let case = top.string("case")?.unwrap_or_else(|| file.path.display().to_string());
-        let mut evidence = Self { case, ..Self::default() };
+        let kind = kind_of(file, &mut top)?;
+        let mut evidence = Self { case, kind, ..Self::default() };
         let mut reader = Reader { table: top, error: None };
         evidence.items(&mut reader);
-        reader.end()?.finish().map(|()| evidence)
+        let top = reader.end()?;
+        if evidence.lacks_start() {
+            return Err(top.missing(&format!("{}.x_m", start::SECTION.key)));
+        }
+        top.finish().map(|()| evidence)
+    }
+}
+
+/// What the evidence is of.
+///
+/// # Errors
+/// That of a table which evidence of that kind does not have.
+fn kind_of(file: TomlFile<'_>, top: &mut TomlTable<'_>) -> Result<EvidenceKind, TomlError> {
+    let words = EvidenceKind::ALL.map(EvidenceKind::word);
+    let chosen = top.choice("kind", &words)?.and_then(|idx| EvidenceKind::ALL.get(idx).copied());
+    let kind = chosen.unwrap_or_default();
+    let foreign = match kind {
+        EvidenceKind::Collision => &NOT_OF_COLLISION[..],
+        EvidenceKind::SingleCar => &NOT_OF_SINGLE_CAR[..],
+    };
+    let keys = file.top_level_keys();
+    match foreign.iter().find(|(key, _)| keys.iter().any(|of| of == key)) {
+        Some((key, expected)) => {
+            // Whatever it is, it is the value that was read last.
+            let _ = top.optional_table(key);
+            Err(top.refuse_last(expected))
+        }
+        None => Ok(kind),
     }
 }
 

@@ -194,3 +194,56 @@ fn evidence_in_json_of_an_earlier_version_is_read() {
     assert_eq!(found.edr, None);
     assert_eq!((found.striking_marks, found.striking_edr), (Vec::new(), None));
 }
+
+const SINGLE: &str = "kind = \"single_car\"\n[car]\nmass_kg = 1500\n";
+
+#[test]
+fn a_single_car_has_nothing_of_an_impact_and_says_where_it_was() {
+    let error = |rest: &str| {
+        let text = format!("{SINGLE}{rest}");
+        let file = TomlFile { path: Path::new("case.toml"), text: &text };
+        Evidence::from_toml(file).unwrap_err().to_string()
+    };
+    let mark = "[[mark]]\nwheel = \"FL\"\npoints_m = [[0, 0], [9, 0]]\n";
+    let edr = format!("{mark}[edr]\ndelta_v_x_min_m_s = 1\ndelta_v_x_max_m_s = 2\n");
+    for (rest, parts) in [
+        (edr.as_str(), ["case.toml:", "edr", "no Δv without an impact"]),
+        ("[damage]\nside = \"left\"\nx_m = 0\n", ["case.toml:", "damage", "strikes nothing"]),
+        ("[striking_car]\nmass_kg = 1500\n", ["case.toml:", "striking_car", "strikes nothing"]),
+        ("[[striking_mark]]\nwheel = \"FL\"\n", ["case.toml:", "striking_mark", "strikes nothing"]),
+        ("[struck_car]\n", ["case.toml:", "struck_car", "[car]"]),
+        ("[after]\n", ["case.toml:", "after", "[wheels]"]),
+        ("[prior]\n", ["case.toml:", "prior", "[start]"]),
+        ("[rest]\nx_m = 9\ny_m = 0\n", ["case.toml:", "start.x_m", "missing"]),
+        ("[start]\nx_m = 0\n", ["case.toml:", "start.y_m", "missing"]),
+    ] {
+        let error = error(rest);
+        assert!(parts.iter().all(|part| error.contains(part)), "{rest}: {error}");
+    }
+    let evidence = read(&format!("{SINGLE}{mark}")).unwrap();
+    assert!(evidence.is_single_car() && evidence.missing().is_none());
+    assert_eq!(read(&evidence.to_toml()).unwrap(), evidence, "{}", evidence.to_toml());
+    // What no file says is refused, too.
+    let with_damage = Evidence { damage: read(CASE).unwrap().damage, ..evidence.clone() };
+    let lack = with_damage.missing().unwrap_or_default();
+    assert!(
+        lack.contains("damage of the struck car") && lack.contains("strikes nothing"),
+        "{lack}"
+    );
+    let with_record = Evidence { edr: read(CASE).unwrap().edr, ..evidence };
+    let lack = with_record.missing().unwrap_or_default();
+    assert!(lack.contains("event data recorder"), "{lack}");
+}
+
+#[test]
+fn a_collision_has_nothing_of_a_single_car() {
+    for (table, hint) in [("start", "single_car"), ("wheels", "[after]"), ("car", "[struck_car]")] {
+        let text = format!("{CASE}\n[{table}]\n");
+        let file = TomlFile { path: Path::new("case.toml"), text: &text };
+        let error = Evidence::from_toml(file).unwrap_err().to_string();
+        assert!(error.contains(table) && error.contains(hint), "{error}");
+    }
+    let start = crate::evidence::Start { x_m: Some(0.0), y_m: Some(0.0), ..Default::default() };
+    let lack = Evidence { start, ..read(CASE).unwrap() }.missing().unwrap_or_default();
+    assert!(lack.contains("car at the start"), "{lack}");
+}

@@ -28,6 +28,8 @@ pub const STRUCK: Section = Section {
 /// The striking car at rest, likewise.
 pub const STRIKING: Section =
     Section { key: "striking_rest", title: "striking car at rest", ..STRUCK };
+/// A single car at rest, likewise.
+pub const SINGLE: Section = Section { title: "car at rest", ..STRUCK };
 
 const X: Field = Field::new("x", "X of the CG", EVIDENCE_POSITION).required();
 const Y: Field = Field::new("y", "Y of the CG", EVIDENCE_POSITION).required().turned();

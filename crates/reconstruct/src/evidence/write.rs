@@ -14,6 +14,7 @@ impl Evidence {
     pub fn to_toml(&self) -> String {
         let mut top = Writer(Table::new());
         top.set("case", Some(self.case.as_str()));
+        top.set("kind", Some(self.kind.word()).filter(|_| self.is_single_car()));
         self.clone().items(&mut top);
         top.0.to_string()
     }
@@ -99,6 +100,7 @@ mod tests {
         let others = [
             "docs/guide/examples/position_alone.toml",
             "docs/guide/examples/contradictory.toml",
+            "docs/guide/examples/single_car.toml",
             "assets/examples/reconstruction.toml",
             "tests/data/evidence/spin.toml",
         ];

@@ -25,6 +25,7 @@ use crate::Cars;
 use crate::evidence::{After, DriverBraked, Evidence, Mark, MarkKind, Measured, RestPose, ends};
 use crate::hand::momentum::{LEAST_ANGLE_RAD, speed_in_line, speeds_at_angles};
 use crate::hand::slide::{LEAST_SPIN_RAD, SPIN_DRAG, SPIN_DRAG_SIGMA, slide_speed_m_s};
+use crate::single_car::StartPlace;
 use impactlab_core::collision::Side;
 use impactlab_core::numerics::wrap_angle_rad;
 use impactlab_core::vehicle::{FrictionZone, Wheel};
@@ -71,6 +72,8 @@ pub enum HandSpeed {
     Struck,
     /// The striking car before the impact.
     Striking,
+    /// A single car at the start.
+    AtStart,
 }
 
 impl HandSpeed {
@@ -81,6 +84,7 @@ impl HandSpeed {
             Self::StrikingAfter => "striking car after the impact",
             Self::Struck => "struck car before the impact",
             Self::Striking => "striking car before the impact",
+            Self::AtStart => "car at the start",
         }
     }
 }
@@ -105,7 +109,11 @@ impl HandCheck {
         }
         let struck = slide(evidence, evidence.rest.as_ref(), Which::Struck, cars);
         let striking = slide(evidence, evidence.striking_rest.as_ref(), Which::Striking, cars);
-        let after = [(HandSpeed::StruckAfter, struck), (HandSpeed::StrikingAfter, striking)];
+        let of_struck = match evidence.is_single_car() {
+            true => HandSpeed::AtStart,
+            false => HandSpeed::StruckAfter,
+        };
+        let after = [(of_struck, struck), (HandSpeed::StrikingAfter, striking)];
         let mut checks: Vec<Self> = after
             .into_iter()
             .filter_map(|(speed, after)| {
@@ -140,7 +148,7 @@ fn slide(
     let rest = rest?;
     let [x_m, y_m] = rest.place_m()?;
     let [from_x_m, from_y_m] = match which {
-        Which::Struck => [0.0, 0.0],
+        Which::Struck => StartPlace::of(evidence, cars).map_or([0.0; 2], |start| start.cg_m()),
         Which::Striking => striking_at_contact_m(evidence, cars)?,
     };
     let way_m = [x_m - from_x_m, y_m - from_y_m];
@@ -191,7 +199,14 @@ fn drag(
         && start_s.is_some_and(|[_, last]| last <= AT_ONCE_S)
         && share.is_some_and(|[least, _]| least > 1.0);
     if after.is_all_locked() || has_four_locked_marks(marks, way_m) {
-        return locked.map(|drag| (drag, "way to rest; all wheels were locked from the impact on"));
+        let holds = match evidence.is_single_car() {
+            true => "way to rest; all wheels were locked from the start on",
+            false => "way to rest; all wheels were locked from the impact on",
+        };
+        return locked.map(|drag| (drag, holds));
+    }
+    if evidence.is_single_car() {
+        return None;
     }
     if is_braked_hard {
         return locked.map(|drag| (drag, "way to rest; the brakes locked all wheels at once"));

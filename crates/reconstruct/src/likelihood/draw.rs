@@ -5,7 +5,7 @@ use rand_distr::{ChiSquared, Distribution, StandardNormal};
 
 use crate::CollisionMotion;
 use crate::evidence::{Evidence, Measured};
-use crate::likelihood::ReconstructionTarget;
+use crate::likelihood::{ReconstructionTarget, Track};
 
 impl ReconstructionTarget {
     /// Evidence of the kind and the accuracy of that of this case, of another motion: rest pose and
@@ -17,7 +17,7 @@ impl ReconstructionTarget {
     ///
     /// - returns `None` for a motion that could not be computed, and for cars that draw apart.
     pub fn drawn(&self, motion: &CollisionMotion, rng: &mut impl Rng) -> Option<Evidence> {
-        if !motion.impact.is_collision() {
+        if motion.impact.is_some_and(|impact| !impact.is_collision()) {
             return None;
         }
         let mut evidence = self.evidence().clone();
@@ -38,16 +38,24 @@ impl ReconstructionTarget {
         for found in &mut evidence.positions {
             found.x_m.iter_mut().chain(&mut found.y_m).for_each(&mut add);
         }
-        for (edr, speed_m_s) in [
-            (&mut evidence.edr, motion.impact.struck_speed_m_s),
-            (&mut evidence.striking_edr, motion.impact.striking_speed_m_s),
-        ] {
+        let speeds_m_s = motion.impact.map(|of| [of.struck_speed_m_s, of.striking_speed_m_s]);
+        let recorders = [&mut evidence.edr, &mut evidence.striking_edr];
+        for (edr, speed_m_s) in recorders.into_iter().zip(speeds_m_s.into_iter().flatten()) {
             if let Some(edr) = edr
                 && let Some(Measured { sigma, .. }) = edr.speed_before()
             {
                 let error: f64 = StandardNormal.sample(rng);
                 let value = speed_m_s + sigma * error;
                 edr.speed_before_m_s = Some(Measured { value, sigma }.into());
+            }
+        }
+        let track = Track::from_path(&motion.path)?;
+        for found in &mut evidence.speeds {
+            let at = track.at_time(found.time_s.unwrap_or(0.0));
+            if let (Some(Measured { sigma, .. }), Some((_, at))) = (found.speed(), at) {
+                let error: f64 = StandardNormal.sample(rng);
+                let value = at.vx_body_m_s.hypot(at.vy_body_m_s) + sigma * error;
+                found.speed_m_s = Some(Measured { value, sigma }.into());
             }
         }
         Some(evidence)
@@ -81,6 +89,7 @@ mod tests {
         let target = ReconstructionTarget::new(evidence.clone(), model, discrepancy);
         let (expected, _) = evidence.path_residuals(&discrepancy, &motion).unwrap();
 
+        let true_m_s = motion.impact.unwrap().struck_speed_m_s;
         let mut rng = ChaCha8Rng::seed_from_u64(3);
         let n = 4000;
         let (mut squares, mut both, mut speeds) = (vec![0.0; expected.len()], 0.0, 0.0);
@@ -90,7 +99,7 @@ mod tests {
             squares.iter_mut().zip(&found).for_each(|(sum, at)| *sum += at.residual.powi(2));
             both += found[3].residual * found[5].residual;
             let speed = drawn.recorder().speed_before().unwrap().value;
-            speeds += ((speed - motion.impact.struck_speed_m_s) / 0.8_f64).powi(2);
+            speeds += ((speed - true_m_s) / 0.8_f64).powi(2);
         }
         // The variance of a Student distribution of ν degrees of freedom is ν/(ν − 2) of its scale.
         let freedom = discrepancy.degrees_of_freedom;

@@ -44,7 +44,7 @@ impl ReconstructionTarget {
     ///
     /// - `wants_terms`: whether its terms are wanted, too.
     pub(crate) fn compared(&self, motion: &CollisionMotion, wants_terms: bool) -> Compared {
-        if !motion.impact.is_collision() {
+        if motion.impact.is_some_and(|impact| !impact.is_collision()) {
             return Compared::impossible();
         }
         self.evidence.compared(&self.discrepancy, motion, wants_terms)

@@ -11,9 +11,9 @@ use crate::{
     EvaluateResponseRequest, FineTuneRequest, ForceEvaluation, HandReport, HandRequest,
     ImpactReport, ImpactRequest, Library, Observer, PredictForceReport, PredictForceRequest,
     PredictMotionReport, PredictMotionRequest, Provenance, Question, ReconstructReport,
-    ReconstructRequest, ResponseTrainingReport, SimulateDatasetReport, SimulateDatasetRequest,
-    SimulateReport, SimulateRequest, StudyError, TrainForceReport, TrainForceRequest,
-    TrainResponseRequest,
+    ReconstructRequest, ReplayReport, ReplayRequest, ResponseTrainingReport, SimulateDatasetReport,
+    SimulateDatasetRequest, SimulateReport, SimulateRequest, StudyError, TrainForceReport,
+    TrainForceRequest, TrainResponseRequest,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::uncertainty::Caveats;
@@ -148,6 +148,8 @@ questions! {
     Reconstruct(ReconstructRequest) -> ReconstructReport;
     /// What a method by hand gives.
     Hand(HandRequest) -> HandReport;
+    /// What a vehicle did up to the first contact, from its event data recorder.
+    Replay(ReplayRequest) -> ReplayReport;
     /// A training of the force network.
     TrainForce(TrainForceRequest) -> TrainForceReport;
     /// A pre-training of the response network.

@@ -141,7 +141,7 @@ impl StrikingReport {
     /// How the motion of the striking vehicle ends.
     pub(super) fn table(&self) -> FactTable {
         let outcome = &self.outcome;
-        let mut facts = vec![Fact::new(Term::Vehicle, Value::Text(self.vehicle.clone()))];
+        let mut facts = vec![Fact::new(Term::Vehicle, Value::Name(self.vehicle.clone()))];
         match &self.rest {
             Some(rest) => facts.extend([
                 Fact::new(Term::Followed, Value::Term(Term::UntilStruckRests)),

@@ -25,6 +25,7 @@ mod impulse_rival;
 mod predict_force;
 mod predict_motion;
 mod reconstruct;
+mod replay;
 mod simulate;
 mod simulate_dataset;
 mod training;

@@ -172,7 +172,7 @@ impl PredictMotionReport {
     fn motion(&self) -> Vec<Fact> {
         let outcome = &self.outcome;
         let mut facts = vec![
-            Fact::new(Term::Vehicle, Value::Text(self.vehicle.clone())),
+            Fact::new(Term::Vehicle, Value::Name(self.vehicle.clone())),
             match self.force_model {
                 Some(_) => Fact::new(Term::ForcesDrawn, Value::Count(self.n_forces)),
                 None => Fact::new(Term::MovedBy, Value::Term(Term::GivenForce)),

@@ -32,12 +32,12 @@ impl ReconstructReport {
     }
 
     /// How often such intervals held; none where there are no intervals, and of cars that were followed
-    /// through later contacts, on which it was not measured.
+    /// through later contacts, and of a single car, on which it was not measured.
     pub fn held_table(&self) -> Option<FactTable> {
         if self.later_contacts.is_some_and(|later| later.are_followed) {
             return None;
         }
-        let measured = Measurement::shipped(Measured::reconstruction_of(self.known))?;
+        let measured = Measurement::shipped(Measured::reconstruction_of(self.known?))?;
         self.has_intervals().then(|| measured.held_table()).flatten()
     }
 
@@ -56,7 +56,17 @@ impl ReconstructReport {
             Fact::new(Term::Particles, Value::Count(self.n_particles)),
             Fact::new(Term::EffectiveSamples, Value::Fixed(self.ess, 0)),
         ]);
-        FactTable::new(Term::Speeds, facts).with_levels(RECONSTRUCTED)
+        FactTable::new(self.speeds_title(), facts).with_levels(RECONSTRUCTED)
+    }
+
+    /// What the table of quantities is called.
+    fn speeds_title(&self) -> Term {
+        if self.kind.is_collision() { Term::Speeds } else { Term::SpeedAtStart }
+    }
+
+    /// The car whose speed is asked for, as a heading.
+    fn asked_car(&self) -> Term {
+        if self.kind.is_collision() { Term::StruckCar } else { Term::SingleCar }
     }
 
     /// By how much the speeds move if one quantity is larger, by the particles; none with too few of them.
@@ -67,19 +77,22 @@ impl ReconstructReport {
             let change = |of: SpeedChange| {
                 Value::Measured(Quantity::Speed, of.change_m_s, of.standard_error_m_s)
             };
-            let values = vec![change(hinge.struck_speed), change(hinge.striking_speed)];
-            Fact::row(Value::Joined(name, " + "), values)
+            let speeds = std::iter::once(hinge.struck_speed).chain(hinge.striking_speed);
+            Fact::row(Value::Joined(name, " + "), speeds.map(change).collect())
         };
         let rows = self.hinges.iter().map(row).collect();
-        let columns = [Term::StruckCar, Term::StrikingCar];
-        FactTable::new(Term::Hinges, rows).with_columns(&columns).unless_empty()
+        let columns = match self.kind.is_collision() {
+            true => &[Term::StruckCar, Term::StrikingCar][..],
+            false => &[Term::SingleCar],
+        };
+        FactTable::new(Term::Hinges, rows).with_columns(columns).unless_empty()
     }
 
     /// What one computes by hand, each number from its own part of the evidence; none if nothing holds.
     pub fn hand_table(&self) -> Option<FactTable> {
         let row = |check: &HandCheck| {
             let speed = Value::Measured(Quantity::Speed, check.value_m_s, check.sigma_m_s);
-            let values = vec![speed, Value::English(check.holds.to_owned())];
+            let values = vec![speed, Value::Phrase(check.holds.to_owned())];
             Fact::row(Value::Phrase(check.speed.label().to_owned()), values)
         };
         let rows = self.by_hand.iter().map(row).collect();
@@ -99,7 +112,7 @@ impl ReconstructReport {
             ];
             Fact::row(Value::Phrase(mode.name.clone()), values)
         };
-        let columns = [Term::Probability, Term::StandardError, Term::StruckCar];
+        let columns = [Term::Probability, Term::StandardError, self.asked_car()];
         let rows = self.modes.iter().map(row).collect();
         let table = FactTable::new(Term::Courses, rows).with_rows(Term::Course);
         table.with_levels(PREDICTED).with_columns(&columns)
@@ -110,7 +123,7 @@ impl ReconstructReport {
         let table = |mode: &Mode| {
             let title = vec![Value::Term(Term::IfThis), Value::Phrase(mode.name.clone())];
             let facts = mode.quantities.iter().map(quantity_fact).collect();
-            let table = FactTable::new(Term::Speeds, facts).with_levels(RECONSTRUCTED);
+            let table = FactTable::new(self.speeds_title(), facts).with_levels(RECONSTRUCTED);
             FactTable { title: Value::Joined(title, ": "), ..table }
         };
         let several = self.modes.iter().filter(|_| self.modes.len() > 1);
@@ -124,7 +137,7 @@ impl ReconstructReport {
         table.with_rows(Term::EvidenceItem).with_columns(&columns)
     }
 
-    /// The speed of the struck car without each part of the evidence, and whether the part goes with the
+    /// The speed that is asked for without each part of the evidence, and whether the part goes with the
     /// others; none if there is one part only.
     pub fn left_out_table(&self) -> Option<FactTable> {
         let row = |part: &LeftOut| {
@@ -147,7 +160,7 @@ impl ReconstructReport {
         };
         let rows = self.left_out.iter().map(row).collect();
         let columns =
-            [Term::TailProbability, Term::IndependentDraws, Term::Verdict, Term::StruckCar];
+            [Term::TailProbability, Term::IndependentDraws, Term::Verdict, self.asked_car()];
         FactTable::new(Term::LeftOutEvidence, rows)
             .with_rows(Term::WithoutPart)
             .with_levels(PREDICTED)

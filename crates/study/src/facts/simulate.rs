@@ -36,7 +36,7 @@ impl SimulateReport {
 
     fn motion(&self) -> Vec<Fact> {
         let mut facts = vec![
-            Fact::new(Term::Vehicle, Value::Text(self.vehicle.clone())),
+            Fact::new(Term::Vehicle, Value::Name(self.vehicle.clone())),
             Fact::new(Term::Equations, Value::Phrase(self.equations.clone())),
             Fact::new(Term::Integration, Value::Phrase(self.integrator.clone())),
             Fact::new(Term::RoadFriction, Value::Given(Quantity::Ratio, self.friction)),

@@ -13,7 +13,9 @@ pub enum Value {
     Term(Term),
     /// A label of the program, which a report translates.
     Phrase(String),
-    /// A name or a text that stays as it is.
+    /// A name, which a report translates if it is one of the program.
+    Name(String),
+    /// A text that stays as it is.
     Text(String),
     /// A text that the program has in English only.
     English(String),
@@ -117,6 +119,8 @@ pub struct FactWriter<'a> {
     pub format: NumberFormat,
     /// A label of the program in the language.
     pub phrase: &'a dyn Fn(&str) -> String,
+    /// A name in the language; as it is where it is none of the program.
+    pub name: &'a dyn Fn(&str) -> String,
     /// A text that the program has in English only, in the language.
     pub english: &'a dyn Fn(&str) -> String,
     /// What a file is called.
@@ -344,6 +348,7 @@ impl FactWriter<'static> {
         Self {
             format: NumberFormat::english(units),
             phrase: &<str as ToOwned>::to_owned,
+            name: &<str as ToOwned>::to_owned,
             english: &<str as ToOwned>::to_owned,
             file: &|path| path.display().to_string(),
         }
@@ -364,6 +369,7 @@ impl FactWriter<'_> {
         match value {
             Value::Term(term) => term.label(format.language).to_owned(),
             Value::Phrase(text) => (self.phrase)(text),
+            Value::Name(name) => (self.name)(name),
             Value::Text(text) => text.clone(),
             Value::English(text) => (self.english)(text),
             Value::File(path) => (self.file)(path),

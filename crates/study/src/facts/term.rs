@@ -192,7 +192,7 @@ terms! {
     Agreement: "Do the methods agree?", "Stimmen die Verfahren überein?";
     MethodsVerdict: "the two methods", "die beiden Verfahren";
     MethodsAgree: "agree: each ends within what the other allows",
-        "stimmen überein: jedes endet in dem, was das andere zulässt";
+        "stimmen überein: jedes endet im Bereich, den das andere zulässt";
     AgreeInRegion: "agree in part: the other ends in the 90 % region, but further away than it is known to err",
         "stimmen teilweise überein: das andere endet in der Fläche von 90 %, aber weiter weg, als es bekanntlich irrt";
     AgreeWithinError: "agree in part: no further apart than the other is known to err, but it ends outside the 90 % region",
@@ -206,7 +206,7 @@ terms! {
     RivalMomentum: "the 4DOF model without a network, under the impulse of the momentum solution",
         "das 4DOF-Modell ohne Netz unter dem Impuls der Impulslösung";
     ImpulsesAgree: "agree: each lies in the 90 % intervals of the other",
-        "stimmen überein: jedes liegt in den 90-%-Intervallen des anderen";
+        "stimmen überein: jedes Ergebnis liegt in den 90-%-Intervallen des anderen";
     AgreeInNetwork: "agree in part: the momentum solution lies in the 90 % intervals of the force network, which lies further away than the momentum solution is known to err",
         "stimmen teilweise überein: die Impulslösung liegt in den 90-%-Intervallen des Kraftnetzes, dieses aber weiter weg, als die Impulslösung bekanntlich irrt";
     AgreeInMomentum: "agree in part: no further apart than the momentum solution is known to err, but that lies outside the 90 % intervals of the force network",
@@ -297,12 +297,12 @@ terms! {
     Phase: "phase", "Phase";
     PhaseStart: "begins at", "beginnt bei";
     PhaseDuration: "lasts", "dauert";
-    PhaseStruckDeltaV: "Δv, struck", "Δv, gestoßenes",
+    PhaseStruckDeltaV: "Δv, struck", "Δv, gestoßenes Fzg.",
         "By the contact force alone, as an event data recorder integrates it";
-    PhaseStruckPdof: "PDOF, struck", "PDOF, gestoßenes", "Clockwise from the heading";
-    PhaseStrikingDeltaV: "Δv, striking", "Δv, stoßendes",
+    PhaseStruckPdof: "PDOF, struck", "PDOF, gestoßenes Fzg.", "Clockwise from the heading";
+    PhaseStrikingDeltaV: "Δv, striking", "Δv, stoßendes Fzg.",
         "By the contact force alone, as an event data recorder integrates it";
-    PhaseStrikingPdof: "PDOF, striking", "PDOF, stoßendes", "Clockwise from the heading";
+    PhaseStrikingPdof: "PDOF, striking", "PDOF, stoßendes Fzg.", "Clockwise from the heading";
     ToTheEnd: "to the end", "bis zum Ende";
     NoImpulse: "–", "–";
     Followed: "followed", "verfolgt";
@@ -364,6 +364,8 @@ terms! {
     // The reconstruction.
     Speeds: "What the evidence says of the speeds, before the impact unless said otherwise",
         "Was die Spuren über die Geschwindigkeiten sagen, vor dem Aufprall, wenn nicht anders gesagt";
+    SpeedAtStart: "What the evidence says of the speed at the start",
+        "Was die Spuren über die Geschwindigkeit am Anfang sagen";
     ByHand: "By hand, each number from its own part of the evidence",
         "Von Hand gerechnet, jede Zahl aus einem eigenen Teil der Spuren";
     Hinges: "What the speeds hinge on: by how much they move if one quantity is larger",
@@ -379,6 +381,7 @@ terms! {
     StandardError: "standard error", "Standardfehler", "By the number of particles";
     StruckCar: "struck car", "gestoßenes Fzg.", "Its speed before the impact";
     StrikingCar: "striking car", "stoßendes Fzg.", "Its speed before the impact";
+    SingleCar: "car", "Fahrzeug", "Its speed at the start";
     Fit: "Items of the evidence: found and expected", "Spuren: vorgefunden und erwartet";
     Found: "found", "gefunden", "What was found, or how far it lies off";
     Expected: "expected", "erwartet", "Median over the particles of what would be found";
@@ -618,6 +621,36 @@ terms! {
     HandFormula: "How the method works", "Wie das Verfahren rechnet";
     HandEquation: "equation", "Gleichung";
     HandHolds: "holds if", "gilt, wenn";
+    // The replay of a recorder.
+    RecorderAtContact: "The car at the first contact", "Der Wagen beim ersten Kontakt";
+    RecorderSpeed: "speed at the first contact", "Geschwindigkeit beim ersten Kontakt";
+    RecorderSideslip: "sideslip at the first contact", "Schwimmwinkel beim ersten Kontakt",
+        "From the heading to the velocity of the CG, positive to the left";
+    RecorderYawRateAtContact: "yaw rate at the first contact", "Gierrate beim ersten Kontakt";
+    RecorderWay: "From the first sample to the first contact",
+        "Vom ersten Abtastwert bis zum ersten Kontakt";
+    RecorderAhead: "way ahead", "Weg nach vorn", "In the axes of the car at the first sample";
+    RecorderLeft: "way to the left", "Weg nach links", "In the axes of the car at the first sample";
+    RecorderTurn: "turn to the left", "Drehung nach links";
+    RecorderLength: "way along the path", "Weg entlang der Bahn";
+    RecorderFrictionUse: "share of the friction that is used at most", "höchste Nutzung der Reibung";
+    RecorderStart: "Where it was at the first sample", "Wo er beim ersten Abtastwert war";
+    RecorderStartX: "X of the first sample", "X des ersten Abtastwerts";
+    RecorderStartY: "Y of the first sample", "Y des ersten Abtastwerts";
+    RecorderStartHeading: "heading of the first sample", "Richtung beim ersten Abtastwert";
+    RecorderSamples: "Recorded samples beside the computed motion",
+        "Aufgezeichnete Werte neben der berechneten Bewegung";
+    RecorderTime: "time on the recorder's clock", "Zeit auf der Uhr des Datenspeichers";
+    RecorderRecordedSpeed: "speed, recorded", "Geschwindigkeit, aufgezeichnet";
+    RecorderRecordedYawRate: "yaw rate, recorded", "Gierrate, aufgezeichnet";
+    RecorderComputedYawRate: "yaw rate, computed", "Gierrate, berechnet";
+    RecorderYawCheck: "Recorded yaw rate against the computed one",
+        "Aufgezeichnete Gierrate gegen die berechnete";
+    RecorderYawDifference: "difference (root mean square)", "Unterschied (quadratisches Mittel)";
+    RecorderYawDeviations: "difference in standard deviations", "Unterschied in Standardabweichungen";
+    RecorderYawFactor: "recorded over computed", "aufgezeichnet durch berechnet";
+    RecorderYawRatio: "steering ratio with which they would be alike",
+        "Lenkübersetzung, mit der beide gleich wären";
     // The check of files.
     Checked: "What was checked", "Geprüft";
     DataSets: "data sets", "Datensätze";

@@ -7,5 +7,6 @@ pub(crate) mod impact;
 pub(crate) mod predict;
 pub(crate) mod reconstruct;
 pub(crate) mod recorded_pair;
+pub(crate) mod replay;
 pub(crate) mod simulate;
 pub(crate) mod train;

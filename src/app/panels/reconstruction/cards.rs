@@ -11,7 +11,7 @@ use crate::app::reconstruction::{MarkKey, ReconstructionCommand};
 use crate::app::widgets::vehicle_label;
 use impactlab_core::units::UnitSystem;
 use impactlab_reconstruct::evidence::{
-    Damage, Evidence, Group, Item, Items, STRIKING_CAR, STRUCK_CAR, Section,
+    Damage, Evidence, Group, Item, Items, SINGLE_CAR, STRIKING_CAR, STRUCK_CAR, Section,
 };
 use impactlab_study::VehicleChoice;
 
@@ -56,10 +56,10 @@ fn icon(section: &Section) -> Icon {
         "rest" | "striking_rest" => Icon::Flag,
         "mark" | "striking_mark" => Icon::Route,
         "damage" => Icon::Hammer,
-        "edr" | "striking_edr" => Icon::Cpu,
+        "edr" | "striking_edr" | "recorded_speed" => Icon::Cpu,
         "position" => Icon::Video,
-        "struck_car" | "striking_car" => Icon::Car,
-        "after" => Icon::CarFront,
+        "struck_car" | "striking_car" | "car" => Icon::Car,
+        "after" | "wheels" => Icon::CarFront,
         _ => Icon::Ruler,
     }
 }
@@ -89,8 +89,11 @@ impl Cards<'_, '_> {
         let title = sentence_case(&format!("{}{number}", section.title));
         let Self { units, adds_to, sheets, command, .. } = self;
         let [struck, striking] = &mut sheets.chosen;
-        let cars = [(STRUCK_CAR, struck), (STRIKING_CAR, striking)];
-        let chosen = cars.into_iter().find(|(car, _)| car == section).map(|(_, sheet)| sheet);
+        let chosen = match section.key {
+            key if [STRUCK_CAR.key, SINGLE_CAR.key].contains(&key) => Some(struck),
+            key if key == STRIKING_CAR.key => Some(striking),
+            _ => None,
+        };
         let mut is_removed = false;
         egui::Frame::group(self.ui.style()).show(self.ui, |ui| {
             ui.set_width(ui.available_width());

@@ -39,7 +39,9 @@ pub fn evidence_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let command = cards_ui(ui, &mut evidence, sheets, session.adds_to, view.units);
         commands.extend(command.map(Command::Reconstruct));
         ui.add_space(looks::PART);
-        prior_ranges_ui(ui, &mut evidence.prior, view.units);
+        if !evidence.is_single_car() {
+            prior_ranges_ui(ui, &mut evidence.prior, view.units);
+        }
         priors_ui(ui, preview, request, session, view.units);
         if evidence != preview.evidence {
             request.evidence = EvidenceChoice::Inline(Box::new(evidence));

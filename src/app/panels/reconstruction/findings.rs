@@ -36,7 +36,8 @@ pub fn modes_ui(
             ui.strong(chance).on_hover_text("One standard error");
             if let Some(speed) = mode.quantities.first() {
                 let text = format.estimate_in_words(speed.quantity(), &speed.estimate);
-                ui.label(format!("struck car {text}")).on_hover_text("Median and 90 %");
+                let car = if report.kind.is_collision() { "struck car" } else { "car" };
+                ui.label(format!("{car} {text}")).on_hover_text("Median and 90 %");
             }
         });
         let is_shown = shown == Some(idx);
@@ -70,13 +71,11 @@ pub fn budget_ui(
         height: Some(AXIS_HEIGHT + BAR_HEIGHT * items.len() as f32),
         ..FigureOptions::default()
     };
-    figure_frame(
-        ui,
-        "Half of the 90 % interval of the struck car's speed",
-        &figure,
-        &options,
-        commands,
-    );
+    let title = match answer.report.kind.is_collision() {
+        true => "Half of the 90 % interval of the struck car's speed",
+        false => "Half of the 90 % interval of the speed",
+    };
+    figure_frame(ui, title, &figure, &options, commands);
     facts_ui(ui, "budget", answer.report.budget_table().as_slice(), units);
 }
 

@@ -290,7 +290,8 @@ fn live_ui(ui: &mut Ui, live: &LiveParticles, units: UnitSystem) {
     let speeds = live.speeds_m_s.map(|ends| {
         let unit = Quantity::Speed.display_unit(units);
         let [low, high] = ends.map(|end| unit.from_si(end));
-        format!("; struck car {low:.0} to {high:.0} {}", unit.symbol)
+        let car = if live.is_of_single_car { "car" } else { "struck car" };
+        format!("; {car} {low:.0} to {high:.0} {}", unit.symbol)
     });
     let text = format!("Not the answer yet: {reached}{}", speeds.unwrap_or_default());
     notice_ui(ui, Severity::Info, &text);

@@ -6,7 +6,7 @@ use crate::app::reconstruction::MarkKey;
 use impactlab_core::collision::Footprint;
 use impactlab_core::ranges::{EVIDENCE_HEADING, EVIDENCE_POSITION};
 use impactlab_core::units::Unit;
-use impactlab_document::figure::{FigureElement, Role, STRIKING_AT_REST, STRUCK_AT_REST};
+use impactlab_document::figure::{FigureElement, Role, STRIKING_AT_REST, struck_at_rest};
 use impactlab_draw::FigureResponse;
 use impactlab_reconstruct::Cars;
 use impactlab_reconstruct::evidence::{
@@ -96,7 +96,7 @@ impl SceneEdit {
     /// The dots by which the cars at rest are dragged.
     pub fn handles(&self, evidence: &Evidence, unit: Unit) -> Vec<FigureElement> {
         let dot = |(is_struck, _, place): (bool, Handle, [f64; 2])| {
-            let name = if is_struck { STRUCK_AT_REST } else { STRIKING_AT_REST };
+            let name = if is_struck { struck_at_rest(evidence) } else { STRIKING_AT_REST };
             let at = place.map(|value| unit.from_si(value));
             FigureElement::points(name, Role::Reference, vec![at])
         };

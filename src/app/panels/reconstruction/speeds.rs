@@ -106,35 +106,43 @@ fn plots_ui(
     commands: &mut Vec<Command>,
 ) {
     ui.add_space(looks::PART);
-    quantity_ui(ui, "Distribution of", &mut view.quantity);
-    let figure = marginal_figure(
-        &answer.answer,
-        view.quantity,
-        answer.prior_of(view.quantity),
-        caveats,
-        units,
-    );
+    let quantity = quantity_ui(ui, "Distribution of", answer, &mut view.quantity);
+    let prior = answer.prior_of(quantity);
+    let figure = marginal_figure(&answer.answer, quantity, prior, caveats, units);
     figure_frame(ui, "Before and after the evidence", &figure, &marginal, commands);
     ui.add_space(looks::PART);
-    quantity_ui(ui, "The same over", &mut view.against);
-    let quantities = [view.against, view.quantity];
+    let against = quantity_ui(ui, "The same over", answer, &mut view.against);
+    let quantities = [against, quantity];
     let priors = quantities.map(|of| answer.prior_of(of));
     let figure = pair_figure(&answer.answer, quantities, priors, caveats, units);
     figure_frame(ui, "Two quantities of each particle", &figure, &pair, commands);
 }
 
-fn quantity_ui(ui: &mut Ui, label: &str, chosen: &mut ReconstructedQuantity) {
+/// Draws the choice of a quantity of the answer; returns it, or the speed where a quantity of another kind
+/// of case was chosen.
+fn quantity_ui(
+    ui: &mut Ui,
+    label: &str,
+    answer: &PreparedReconstruction,
+    chosen: &mut ReconstructedQuantity,
+) -> ReconstructedQuantity {
+    let quantities = answer.quantities();
+    let speed = answer.answer.posterior.speed();
+    let mut shown = if quantities.contains(chosen) { *chosen } else { speed };
     ui.horizontal(|ui| {
         let name = ui.label(label);
         ComboBox::from_id_salt(label)
-            .selected_text(chosen.label())
+            .selected_text(shown.label())
             .width(220.0)
             .show_ui(ui, |ui| {
-                for quantity in ReconstructedQuantity::ALL {
-                    ui.selectable_value(chosen, *quantity, quantity.label());
+                for quantity in quantities {
+                    if ui.selectable_value(&mut shown, *quantity, quantity.label()).clicked() {
+                        *chosen = *quantity;
+                    }
                 }
             })
             .response
             .labelled_by(name.id);
     });
+    shown
 }

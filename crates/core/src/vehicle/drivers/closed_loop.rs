@@ -2,7 +2,7 @@
 //!
 //! [`Controls`]: crate::vehicle::Controls
 
-use crate::vehicle::drivers::{AntiLock, Countersteer, PitDriver, StabilityControl};
+use crate::vehicle::drivers::{AntiLock, Countersteer, FollowedSpeed, PitDriver, StabilityControl};
 use crate::vehicle::{Braking, Ending};
 
 /// Drivers and systems that act by what they see of the motion.
@@ -19,6 +19,8 @@ pub struct ClosedLoop {
     /// The driver carries out a PIT. He steers until the wheels are straight again; then the one who
     /// countersteers may.
     pub pit: Option<PitDriver>,
+    /// The driver keeps a speed that is known over time.
+    pub followed_speed: Option<FollowedSpeed>,
 }
 
 impl ClosedLoop {
@@ -32,6 +34,7 @@ impl ClosedLoop {
             brake: ending.brake.filter(|_| abs.is_some()),
             countersteer: ending.countersteer,
             pit: ending.pit,
+            followed_speed: None,
         };
         let acts = closed_loop.acts_on_wheels() || closed_loop.steers();
         acts.then_some(closed_loop)
@@ -39,7 +42,7 @@ impl ClosedLoop {
 
     /// Whether it brakes or drives wheels.
     pub fn acts_on_wheels(&self) -> bool {
-        self.esc.is_some() || self.brake.is_some() || self.pit.is_some()
+        self.esc.is_some() || self.brake.is_some() || self.drives()
     }
 
     /// Whether it steers.
@@ -49,7 +52,7 @@ impl ClosedLoop {
 
     /// Whether it drives wheels.
     pub fn drives(&self) -> bool {
-        self.pit.is_some()
+        self.pit.is_some() || self.followed_speed.is_some()
     }
 
     /// Standard normal variables that [`ClosedLoop::drawn`] takes.
@@ -72,6 +75,7 @@ impl ClosedLoop {
             brake: self.brake,
             countersteer: self.countersteer.map(|driver| driver.drawn(countersteer_z)),
             pit: self.pit.map(|driver| driver.drawn(pit_z)),
+            followed_speed: self.followed_speed.clone(),
         }
     }
 
@@ -94,7 +98,8 @@ impl ClosedLoop {
         let brake = self.brake.map(|brake| brake.start_s + brake.rise_s);
         let reaction = self.countersteer.map(|driver| driver.acting().delay_s);
         let pit = self.pit.and_then(|driver| driver.longest_s);
-        [brake, reaction, pit].into_iter().flatten().fold(0.0, f64::max)
+        let followed = self.followed_speed.as_ref().and_then(FollowedSpeed::last_change_s);
+        [brake, reaction, pit, followed].into_iter().flatten().fold(0.0, f64::max)
     }
 }
 

@@ -109,6 +109,16 @@ impl<'a> ClosedLoopRun<'a> {
             let by_pedal_n = self.abs.map_or(pedal_n, allowed_n);
             self.braking_n[idx] = by_esc.map_or(by_pedal_n, |by_esc| by_pedal_n.max(by_esc[idx]));
         }
+        if let Some(followed) = &self.closed_loop.followed_speed {
+            let free = VehicleInput { steer_rad, ..*histories };
+            let free_m_s2 = constants.evaluate(x, &free).derivative.vx_body_m_s;
+            let speed_m_s = x.vx_body_m_s;
+            let demand = followed.demand(self.vehicle, time_s, speed_m_s, free_m_s2, &holds);
+            self.drive_n = demand.drive_n;
+            for (own_n, asked_n) in self.braking_n.iter_mut().zip(demand.braking_n) {
+                *own_n = own_n.max(asked_n);
+            }
+        }
     }
 
     /// The forces that a stability control asks for, limited by the slip at which it holds the wheels, N.

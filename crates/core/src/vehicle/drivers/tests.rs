@@ -331,7 +331,7 @@ fn what_is_stated_of_a_driver_is_not_drawn() {
         pit: Some(pit),
         countersteer: Some(countersteer),
         abs: Some(abs),
-        brake: None,
+        ..ClosedLoop::default()
     };
     let drawn = stated.drawn(z);
     let (of_esc, of_pit) = (drawn.esc.unwrap(), drawn.pit.unwrap());

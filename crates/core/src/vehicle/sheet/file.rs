@@ -22,10 +22,11 @@
 //! friction = 0.75                  # peak friction of the road
 //! ```
 //!
-//! and `front_overhang_…`, `roll_yaw_product_kg_m2`, `sprung_mass_…`, `roll_axis_height_…`,
-//! `roll_damping_ratio` or `roll_damping_n_m_s_rad`, `front_roll_stiffness_share`,
-//! `cornering_coefficient_front_per_rad`, `cornering_coefficient_rear_per_rad`,
-//! `sliding_friction_ratio`, `rolling_resistance`, `drag_area_m2`.
+//! and `front_overhang_…`, `roll_yaw_product_kg_m2`, `sprung_mass_…`, `wheel_inertia_kg_m2`,
+//! `roll_axis_height_…`, `roll_damping_ratio` or `roll_damping_n_m_s_rad`,
+//! `front_roll_stiffness_share`, `cornering_coefficient_front_per_rad`,
+//! `cornering_coefficient_rear_per_rad`, `sliding_friction_ratio`, `rolling_resistance`,
+//! `drag_area_m2`.
 //! The section `[crush]` beside it says how stiff faces are (`vehicle/crush.rs`).
 //! A sheet has at least the class, or mass, length and width.
 
@@ -120,6 +121,11 @@ impl DataSheet {
             let radius_m = tire_radius_m(&size).filter(|&m| Q::WheelRadius.range().contains(m));
             let expected = "a size such as \"205/55R16\"";
             self.set(Q::WheelRadius, radius_m.ok_or_else(|| table.refuse_last(expected))?);
+        }
+        // As files of earlier versions have it.
+        if let Some(inertia_kg_m2) = table.plain("wheel_inertia", &Q::WheelInertia.range())? {
+            self.refuse_second(table, Q::WheelInertia)?;
+            self.set(Q::WheelInertia, inertia_kg_m2);
         }
         if let Some(factor) = table.number("static_stability_factor", &STATIC_STABILITY_FACTOR)? {
             self.refuse_second(table, Q::CgHeight)?;
@@ -258,6 +264,18 @@ mod tests {
         assert!(!roll.estimates.contains_key("suspension.roll_stiffness_n_m_rad"));
         assert!((tire_radius_m("205/55R16").unwrap() - 0.3064).abs() < 1e-3);
         assert_eq!(tire_radius_m("P205/55 R16 91V"), tire_radius_m("205/55R16"));
+    }
+
+    #[test]
+    fn the_key_of_the_inertia_of_a_wheel_has_its_unit() {
+        let size = "mass_kg = 1500\nlength_m = 4.5\nwidth_m = 1.8\n";
+        let vehicle = read(&format!("{size}wheel_inertia_kg_m2 = 1.1")).unwrap();
+        assert_eq!(vehicle.tires.wheel_inertia_kg_m2, 1.1);
+        assert!(!vehicle.estimates.contains_key("tires.wheel_inertia_kg_m2"));
+        let written = DataSheet::from_parameters(&vehicle).unwrap().to_toml();
+        assert!(written.contains("\nwheel_inertia_kg_m2 = 1.1\n"), "{written}");
+        let earlier = read(&format!("{size}wheel_inertia = 1.1")).unwrap();
+        assert_eq!(earlier.tires, vehicle.tires);
     }
 
     #[test]

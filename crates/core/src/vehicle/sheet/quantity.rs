@@ -139,7 +139,7 @@ quantities! {
     /// Rolling radius of the wheels, m: height of the CG of the unsprung mass.
     WheelRadius: "wheel_radius", "m", "wheel radius", WHEEL_RADIUS, [];
     /// Moment of inertia of a wheel with its tire about its axis, kg m².
-    WheelInertia: "wheel_inertia", "kg m²", "inertia of a wheel", WHEEL_INERTIA,
+    WheelInertia: "wheel_inertia_kg_m2", "kg m²", "inertia of a wheel", WHEEL_INERTIA,
         ["tires.wheel_inertia_kg_m2"];
     /// Height of the roll axis above the ground at the CG, m.
     RollAxisHeight: "roll_axis_height", "m", "height of the roll axis", ROLL_AXIS_HEIGHT,

@@ -70,7 +70,7 @@ fn of_case(
     let mut blocks = vec![Block::heading(3, words.atlas_heading)];
     let outside = place.outside(atlas, wording.units);
     if !outside.is_empty() {
-        let list = wording.quoted(&outside.join("; "));
+        let list = wording.note(&outside.join("; "));
         blocks.push(Block::paragraph(fill(words.atlas_outside, &[("list", &list)])));
         return InAtlas { blocks, picture: None };
     }
@@ -123,6 +123,8 @@ fn table(cell: &Cell, wording: &Wording) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::language::phrase_of;
+    use crate::report::{Language, Paper, ReportDate, ReportSettings};
     use impactlab_core::units::UnitSystem;
     use impactlab_core::vehicle::Preset;
     use impactlab_sweep::atlas::Axis;
@@ -158,6 +160,26 @@ mod tests {
             meta: RowsMeta::default(),
         };
         Atlas::from_rows(&rows, vec![axis(AXES[0], speeds), axis(AXES[1], closing)]).unwrap()
+    }
+
+    #[test]
+    fn what_the_atlas_says_is_german_in_a_german_report() {
+        for label in TOLD.map(Measure::label) {
+            assert!(phrase_of(Language::De, label).is_some(), "{label}");
+        }
+        let (scenario, struck) = (Scenario::example(), Preset::Reference.parameters());
+        let wording = Wording::new(&ReportSettings {
+            language: Language::De,
+            units: UnitSystem::Si,
+            paper: Paper::A4,
+            date: ReportDate::new(2026, 1, 2).unwrap(),
+        });
+        let mut narrow = atlas([20.0, 30.0]);
+        narrow.axes[0].label = "Speed of the struck car".to_owned();
+        let told = format!("{:?}", of_case(&narrow, &scenario, &struck, &wording).blocks);
+        let expected =
+            "Geschwindigkeit des gestoßenen Fahrzeugs: 54,00 km/h, der Atlas reicht von 72,00 km/h";
+        assert!(told.contains(expected) && !told.contains("the map"), "{told}");
     }
 
     #[test]

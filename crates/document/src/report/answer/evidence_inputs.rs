@@ -28,10 +28,12 @@ pub(super) fn evidence_rows(
     let evidence = answer.target.evidence();
     let mut rows = stated_rows(evidence, wording);
     rows.extend(zone_rows(answer.target.model().zones(), wording));
-    for (found, choice, group) in [
-        (&evidence.struck_car, &request.vehicle, words.struck_vehicle),
-        (&evidence.striking_car, &request.striking, words.striking_vehicle),
-    ] {
+    let single_car = wording.term("car");
+    let struck: &str = if evidence.is_single_car() { &single_car } else { words.struck_vehicle };
+    let striking = (&evidence.striking_car, &request.striking, words.striking_vehicle);
+    let striking = (!evidence.is_single_car()).then_some(striking);
+    let struck = (&evidence.struck_car, &request.vehicle, struck);
+    for (found, choice, group) in std::iter::once(struck).chain(striking) {
         // The answer is there, so that the vehicles could be read.
         let chosen = choice.chosen().ok().flatten();
         let estimates = Car::estimates_of(found, chosen.as_ref());

@@ -38,6 +38,7 @@ pub(in crate::report) fn with_writer<T>(
             let whole = phrase_of(wording.language, text);
             whole.unwrap_or_else(|| wording.phrase(text))
         },
+        name: &|text: &str| wording.name(text),
         english: &|text: &str| wording.quoted(text),
         file: &|path: &Path| paths.name(path),
     })
@@ -76,8 +77,11 @@ impl From<TextTable> for Table {
     }
 }
 
-/// A text that begins with a capital letter.
+/// A text that begins with a capital letter; a symbol, such as p, stays as it is.
 pub(in crate::report) fn capitalized(title: &str) -> String {
+    if title.chars().count() == 1 {
+        return title.to_owned();
+    }
     let mut chars = title.chars();
     let first = chars.next().map(|first| first.to_uppercase().collect::<String>());
     first.unwrap_or_default() + chars.as_str()

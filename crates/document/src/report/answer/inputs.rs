@@ -11,11 +11,11 @@ use crate::report::paths::ShownPaths;
 use impactlab_core::uncertainty::Caveat;
 use impactlab_study::{
     HandRequest, ImpactRequest, PredictForceRequest, PredictMotionRequest, ReconstructRequest,
-    Request, SimulateRequest,
+    ReplayRequest, Request, SimulateRequest,
 };
 
 /// What a question is about; everything else in it is a setting.
-const SUBJECTS: [&str; 5] = ["scenario", "source", "collision", "force", "evidence"];
+const SUBJECTS: [&str; 6] = ["scenario", "source", "collision", "force", "evidence", "recorder"];
 
 /// What a value is in; what stands in the question itself belongs to that.
 fn group_or(group: String, kind: &str) -> String {
@@ -28,6 +28,7 @@ fn default_settings(request: &Request) -> Value {
     let settings = match request {
         Request::Impact(asked) => serde_json::to_value(ImpactRequest::new(asked.scenario.clone())),
         Request::Hand(asked) => serde_json::to_value(HandRequest::new(asked.method)),
+        Request::Replay(asked) => serde_json::to_value(ReplayRequest::new(asked.recorder.clone())),
         Request::Simulate(asked) => {
             serde_json::to_value(SimulateRequest::new(asked.source.clone()))
         }
@@ -77,7 +78,7 @@ pub(in crate::report) fn given_rows(
     }
     let defaults = flatten(&default_settings(request), wording, paths);
     let given = |row: FlatRow| {
-        let is_file = row.key == "file" || row.key == "path" || row.key == "dataset";
+        let is_file = ["file", "path", "dataset", "recorder"].contains(&row.key.as_str());
         let (class, source) = match !is_subject(&row) && defaults.contains(&row) {
             true => (InputClass::Assumed, words.source_program),
             false if is_file => (InputClass::Given, words.source_file),

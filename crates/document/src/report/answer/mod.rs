@@ -24,6 +24,8 @@ mod predict_motion;
 
 mod reconstruct;
 
+mod replay;
+
 mod evidence;
 
 mod evidence_inputs;
@@ -60,6 +62,7 @@ pub(super) fn part_of(request: &Request, answer: &AnyAnswer, context: Context<'_
     let part = match (request, answer) {
         (_, AnyAnswer::Impact(answer)) => impact::part(answer, context),
         (_, AnyAnswer::Hand(answer)) => hand::part(&answer.report, context),
+        (_, AnyAnswer::Replay(answer)) => replay::part(&answer.report, context),
         (Request::Simulate(request), AnyAnswer::Simulate(answer)) => {
             simulate::part(request, answer, context)
         }

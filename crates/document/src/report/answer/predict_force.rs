@@ -37,6 +37,8 @@ pub(super) fn part(answer: &PredictForceAnswer, context: Context<'_>) -> Part {
 /// How far a network applies.
 pub(super) fn applicability(network: &str, share: f64, wording: &Wording) -> String {
     let share = wording.percent(share);
+    // Of a network that applies throughout no decimals are told.
+    let share = if share.starts_with("100") { "100 %".to_owned() } else { share };
     fill(wording.words.applicability, &[("network", network), ("share", &share)])
 }
 

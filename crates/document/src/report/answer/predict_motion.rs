@@ -15,7 +15,6 @@ use crate::report::numbers::{Wording, fill};
 use crate::report::opinion::opinion_of_forecast;
 use crate::report::parts::{Part, PartPicture};
 use impactlab_core::data::Channel;
-use impactlab_core::units::Quantity;
 use impactlab_study::analysis::{DensityTask, MotionBands};
 use impactlab_study::{PredictMotionAnswer, PredictMotionReport, PredictMotionRequest};
 
@@ -30,7 +29,8 @@ pub(super) fn part(
 ) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
-    let names = [("name", &*report.scenario), ("vehicle", &*report.vehicle)];
+    let vehicle = wording.name(&report.vehicle);
+    let names = [("name", &*report.scenario), ("vehicle", &vehicle)];
     let question = fill(words.ask_motion, &names);
     let mut blocks = vec![Block::paragraph(question.clone())];
     blocks.extend(report.course_table().iter().map(|table| facts_table(table, context)));
@@ -80,7 +80,7 @@ pub(super) fn part(
 
 fn domain(report: &PredictMotionReport, wording: &Wording) -> Vec<String> {
     let words = wording.words;
-    let learned = wording.value(Quantity::Time, report.learned_duration_s);
+    let learned = wording.with_unit(&wording.fixed(report.learned_duration_s, 1), "s");
     let force = report.force_applicability;
     let mut lines = vec![applicability(words.response_network, report.applicability, wording)];
     lines.extend(force.map(|share| applicability(words.force_network, share, wording)));

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::figure::{
-    ReconstructionScene, budget_figure, marginal_figure, prior_values, reconstruction_scene_figure,
+    ReconstructionScene, marginal_figure, prior_values, reconstruction_scene_figure,
 };
 use crate::report::Block;
 use crate::report::answer::Context;
@@ -19,9 +19,12 @@ use impactlab_core::uncertainty::CaveatKind;
 use impactlab_reconstruct::ReconstructedQuantity;
 use impactlab_study::{ReconstructAnswer, ReconstructRequest, ReconstructedPaths};
 
-/// Quantities whose distribution is drawn.
+/// Quantities of a collision whose distribution is drawn.
 const DRAWN: [ReconstructedQuantity; 2] =
     [ReconstructedQuantity::StruckSpeed, ReconstructedQuantity::ClosingSpeed];
+/// Those of a single car.
+const DRAWN_OF_SINGLE_CAR: [ReconstructedQuantity; 2] =
+    [ReconstructedQuantity::CarSpeed, ReconstructedQuantity::CarSideslip];
 
 /// Restrictions with which an interval is no answer.
 const DOUBTS: [CaveatKind; 2] = [CaveatKind::EvidenceUnexplained, CaveatKind::FewParticles];
@@ -35,7 +38,9 @@ pub(super) fn part(
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
     let ess = wording.fixed(report.ess, 0);
-    let question = fill(words.ask_reconstruct, &[("name", &report.case)]);
+    let is_collision = report.kind.is_collision();
+    let ask = if is_collision { words.ask_reconstruct } else { words.ask_single_car };
+    let question = fill(ask, &[("name", &report.case)]);
     let mut blocks = vec![Block::paragraph(question.clone())];
     if report.modes.len() > 1 {
         blocks.push(Block::paragraph(words.several_courses));
@@ -85,8 +90,12 @@ pub(super) fn part(
             .collect(),
         caveats: report.caveats.clone(),
         provenance: provenance_of(&report.provenance, &draws, wording),
-        methods: [Method::Reconstruction, Method::Impact, Method::FourDof, Method::DataSheet]
-            .into(),
+        methods: match is_collision {
+            true => {
+                [Method::Reconstruction, Method::Impact, Method::FourDof, Method::DataSheet].into()
+            }
+            false => [Method::SingleCar, Method::FourDof, Method::DataSheet].into(),
+        },
         ..Part::default()
     }
 }
@@ -107,18 +116,13 @@ fn pictures(
     );
     let still = reconstruction_still(answer, &paths, site, caveats, context);
     let mut pictures: Vec<PartPicture> = still.into_iter().chain([plan]).collect();
-    for quantity in DRAWN {
+    let drawn = if report.kind.is_collision() { DRAWN } else { DRAWN_OF_SINGLE_CAR };
+    for quantity in drawn {
         let prior = prior_values(&answer.target, quantity);
         let label = wording.term(quantity.label());
         pictures.push(PartPicture::figure(
             fill(words.marginal_picture, &[("quantity", &label)]),
             marginal_figure(answer, quantity, &prior, caveats, units),
-        ));
-    }
-    if report.budget.iter().any(|item| item.believable) {
-        pictures.push(PartPicture::figure(
-            words.budget_picture.to_owned(),
-            budget_figure(answer, caveats, units),
         ));
     }
     pictures

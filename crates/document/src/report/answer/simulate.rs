@@ -26,7 +26,8 @@ pub(super) fn part(
 ) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
-    let names = [("name", &*report.name), ("vehicle", &*report.vehicle)];
+    let vehicle = wording.name(&report.vehicle);
+    let names = [("name", &*report.name), ("vehicle", &vehicle)];
     let question = fill(words.ask_simulate, &names);
     let mut blocks = vec![Block::paragraph(question.clone())];
     blocks.extend(facts_with_meaning(&report.motion_table(), "", context));

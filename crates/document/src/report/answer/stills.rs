@@ -102,7 +102,12 @@ pub(super) fn reconstruction_still(
     let scene = reconstruction_scene(&parts);
     let (scene, note) = on_ground(scene, site, context);
     let time_s = scene.end_s;
-    let caption = format!("{}{note}", wording.words.reconstruction_cars);
+    let words = wording.words;
+    let caption = match answer.report.kind.is_collision() {
+        true => words.reconstruction_cars,
+        false => words.single_car,
+    };
+    let caption = format!("{caption}{note}");
     Some(PartPicture::still(caption, from_above(scene, time_s)))
 }
 

@@ -111,7 +111,7 @@ mod tests {
     use super::*;
     use crate::report::{Language, Paper, ReportDate, ReportSettings};
     use impactlab_core::units::UnitSystem;
-    use impactlab_core::vehicle::{CrushStiffness, Preset};
+    use impactlab_core::vehicle::{BuiltInVehicle, CrushStiffness, Preset};
 
     #[test]
     fn how_stiff_a_face_is_has_its_face_and_its_unit() {
@@ -132,6 +132,24 @@ mod tests {
             for (label, value) in expected {
                 let row = rows.iter().find(|row| row.label == label);
                 assert_eq!(row.map(|row| &*row.value), Some(value), "{label}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_vehicle_of_the_program_is_told_in_german() {
+        let date = ReportDate::new(2026, 1, 2).unwrap();
+        let (language, units, paper) = (Language::De, UnitSystem::Si, Paper::A4);
+        let wording = Wording::new(&ReportSettings { language, units, paper, date });
+        let english =
+            ["the", "of", "and", "with", "from", "by", "as", "measured", "class", "times"];
+        for vehicle in BuiltInVehicle::all() {
+            for row in vehicle_rows(&vehicle.parameters, "Fahrzeug", &wording) {
+                let text = format!("{}; {}; {}", row.label, row.value, row.source);
+                let text = text.replace("„unsprung and links“", "");
+                let mut words = text.split(|c: char| !c.is_alphabetic());
+                assert!(!words.any(|word| english.contains(&word)), "{}: {text}", vehicle.id);
+                assert!(!text.contains('„'), "{}: {text}", vehicle.id);
             }
         }
     }

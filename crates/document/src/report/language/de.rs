@@ -16,15 +16,15 @@ pub(super) const WORDS: Words = Words {
         wurde aus dem Fall und den Dateien berechnet, die er nennt.",
     units_si: "Einheiten: m, km/h, Grad, kN, kJ, kg. Winkel und Gierraten sind nach links positiv.",
     units_us: "Einheiten: ft, mph, Grad, lbf, ft lbf, lb. Winkel und Gierraten sind nach links positiv.",
-    language_note: "Texte in Anführungszeichen gibt das Programm nur auf Englisch aus: einzelne \
-        Quellen von Fahrzeugdaten, einzelne Hinweise und Fehlermeldungen. Auch was zu Literaturangaben gesagt wird, ist englisch.",
+    language_note: "Titel von Veröffentlichungen stehen in Anführungszeichen, wie sie erschienen sind; ebenso Namen \
+        aus dem Fall und Fehlermeldungen, die das Programm nur auf Englisch ausgibt.",
     notes: "Bemerkungen des Bearbeiters",
     changed_notice: "Seit dem Speichern des Falls hat sich etwas geändert: {what}. Die Antworten gelten für \
         den jetzigen Stand und können von den damaligen abweichen.",
     change_missing: "die Datei {path} fehlt",
     change_changed: "die Datei {path} wurde geändert",
     change_case: "die Falldatei {path} selbst wurde ohne das Programm bearbeitet",
-    change_model: "das {network}-Netz „{name}“ ist ein anderes",
+    change_model: "das {network} „{name}“ ist ein anderes",
     unanswered_notice: "{n} von {all} Fragen sind unbeantwortet; die Gründe stehen unten.",
     no_answer: "Keine Antwort: {error}",
     no_answer_of: "{name}: keine Antwort: {error}",
@@ -47,6 +47,7 @@ pub(super) const WORDS: Words = Words {
     section_method: "Verfahren",
     section_validity: "Gültigkeit und Einschränkungen",
     section_validation: "Validierung der Modelle",
+    at_validation: "Abschnitt 7",
     section_sensitivity: "Empfindlichkeit",
     section_provenance: "Versionen, Startwerte, Dateien",
     section_log: "Protokoll des Falls",
@@ -76,6 +77,8 @@ pub(super) const WORDS: Words = Words {
         nach dem Bewegungsnetz, und wie sicher ist das?",
     ask_reconstruct: "Frage: Wie schnell waren beide Fahrzeuge bei dem Zusammenstoß „{name}“ vor dem Aufprall, \
         nach den vorgefundenen Spuren?",
+    ask_single_car: "Frage: Wie schnell war das Fahrzeug im Fall „{name}“ am Anfang der Bewegung, nach den \
+        vorgefundenen Spuren?",
     ask_other: "Frage: {kind}.",
     other_caption: "Alles, was die Antwort enthält",
     struck_vehicle: "gestoßenes Fahrzeug",
@@ -124,6 +127,12 @@ pub(super) const WORDS: Words = Words {
     after_second_contact: "Die Fahrzeuge berühren sich vor dem Ende erneut, und dieser Kontakt wird nicht berechnet: \
         wohin sie danach kommen, hat keine Wahrscheinlichkeit, und die Mediane sind die einer Bewegung ohne ihn.",
     forecast_yaw_picture: "Vorhersage: Gierwinkel des gestoßenen Fahrzeugs über der Zeit mit Bändern",
+    ask_replay: "Frage: Wie bewegte sich {vehicle} bis zum ersten Kontakt, nach Geschwindigkeit und Lenkung ihres \
+        Unfalldatenspeichers ({name})?",
+    meaning_replay: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, wenn die Aufzeichnung \
+        die dieser Bewegung ist und ihre Fehler so sind, wie sie gezogen wurden; wie oft solche Bereiche \
+        zutreffen, hat niemand gemessen.",
+    draws_replay: "Ziehungen der Aufzeichnung:",
     meaning_hand: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, wenn das Verfahren gilt und die \
                    Eingaben so unsicher sind wie angegeben und nicht voneinander abhängen.",
     meaning_posterior: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach den vorgefundenen Spuren, \
@@ -138,9 +147,10 @@ pub(super) const WORDS: Words = Words {
     log_evidence: "logarithmierte Evidenz:",
     reconstruction_cars: "Rekonstruktion von oben: eine Bewegung mit mittlerer Geschwindigkeit und ihren Reifenspuren, \
         das gestoßene Fahrzeug an deren Ende, über den vorgefundenen Spuren",
+    single_car: "Rekonstruktion von oben: eine Bewegung mit mittlerer Geschwindigkeit und ihren Reifenspuren, das \
+        Fahrzeug an deren Ende, über den vorgefundenen Spuren",
     reconstruction_picture: "Rekonstruktion von oben: mögliche Bahnen über den vorgefundenen Spuren",
     marginal_picture: "{quantity}: wie wahrscheinlich sie ohne die Spuren ist und mit ihnen",
-    budget_picture: "Was weitere Messungen brächten",
     fit_text: "p ist die Wahrscheinlichkeit, dass Messung und Modell stärker abweichen als hier; unter \
         {level} gilt eine Spur als nicht erklärt.",
     left_out_text: "Die Geschwindigkeit ohne je einen Teil der Spuren. p ist die Wahrscheinlichkeit, dass die übrigen \
@@ -180,8 +190,8 @@ pub(super) const WORDS: Words = Words {
     follows_from_sheet: "Datenblatt, oder folgt aus den Schätzwerten unten",
     inputs_text: "„Vorgegeben“ ist, was die Frage oder die Spuren ohne Standardabweichung nennen, auch \
         Einstellungen der Rechnung; „gemessen“ hat eine Standardabweichung (±) oder ist die \
-        Grenze einer Aufzeichnung; „nach Regel geschätzt“ folgt aus anderen Werten nach einer \
-        Regel mit bekannter Streuung; „angenommen“ ist, was niemand gesagt hat.",
+        Grenze einer Aufzeichnung; „nach Regel“ folgt aus anderen Werten nach einer \
+        Regel mit bekannter Streuung; „angenommen“ ist, was niemand angegeben hat.",
     inputs_caption: "{name}: {group}",
     inputs_said: "{caption}; laut Frage",
     inputs_assumed: "was niemand angegeben hat",
@@ -297,6 +307,18 @@ pub(super) const WORDS: Words = Words {
     limits_reconstruction: "Stoß nach der Impulslösung mit Stoßziffer und Reibung, Bewegung nach dem 4DOF-Modell; \
         die Netze sind nicht beteiligt. Geschwindigkeit und Richtung des stoßenden Fahrzeugs \
         beruhen großenteils auf Annahmen. Eine Bewegung wird 40 s lang verfolgt.",
+    method_single_car: "Rekonstruktion eines einzelnen Fahrzeugs",
+    method_single_car_text: "Alles Unbekannte (Geschwindigkeit, Schwimmwinkel und Gierrate am Anfang, Reibung, Bremsung, \
+        Lenkung, …) hat eine vorab angenommene Verteilung. Für jeden gezogenen Satz von Werten wird die Bewegung vom \
+        Anfang bis zum Stillstand berechnet und danach gewichtet, wie gut sie zu den Spuren passt, mit der \
+        Standardabweichung jeder Messung und einem Modellfehler, der längs der Bahn wächst. Ein sequentielles \
+        Monte-Carlo-Verfahren zieht aus der Vorabverteilung, dann aus Mischungen von Normalverteilungen, die den \
+        Spuren schrittweise folgen, und gewichtet jeden Zug nach der Dichte, aus der er stammt.",
+    limits_single_car: "Bewegung nach dem 4DOF-Modell mit Vorderrädern, die mit einem Winkel gehalten werden; die \
+        Netze sind nicht beteiligt. Ein Fahrer, der hin und her lenkt, bleibt außer Betracht. Eine Bewegung wird \
+        40 s lang verfolgt.",
+    validation_single_car: "Fahrzeuge, die dieses Programm mit seinen eigenen Bewegungsgleichungen berechnet hat. Kein \
+        reales wurde geprüft.",
     method_sheet: "Fahrzeugdaten nach Regel",
     method_sheet_text: "Was ein Datenblatt nicht nennt, folgt aus dem Übrigen nach Regeln mit einer Streuung, \
         jede mit ihrer Quelle in Abschnitt 3. Wo Fahrzeuge gezogen werden, wird jede offene \

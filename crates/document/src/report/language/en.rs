@@ -23,7 +23,7 @@ pub(super) const WORDS: Words = Words {
     change_missing: "the file {path} is missing",
     change_changed: "the file {path} has changed",
     change_case: "the case file {path} itself was edited without the program",
-    change_model: "the {network} network “{name}” is another one",
+    change_model: "the {network} “{name}” is another one",
     unanswered_notice: "{n} of {all} questions have no answer; why is said below.",
     no_answer: "No answer: {error}",
     no_answer_of: "{name}: no answer: {error}",
@@ -46,6 +46,7 @@ pub(super) const WORDS: Words = Words {
     section_method: "Method",
     section_validity: "Validity and restrictions",
     section_validation: "Validation of the models",
+    at_validation: "section 7",
     section_sensitivity: "Sensitivity",
     section_provenance: "Versions, seeds, files",
     section_log: "Log of the case",
@@ -75,6 +76,7 @@ pub(super) const WORDS: Words = Words {
         response network, and how sure is that?",
     ask_reconstruct: "Question: how fast were both cars in the collision “{name}” before the impact, by what \
         was found?",
+    ask_single_car: "Question: how fast was the car of “{name}” at the start of the motion, by what was found?",
     ask_other: "Question: {kind}.",
     other_caption: "All that the answer says",
     struck_vehicle: "struck vehicle",
@@ -121,6 +123,11 @@ pub(super) const WORDS: Words = Words {
     after_second_contact: "The vehicles meet again before the end, and that contact is not computed: where they go \
         after it has no probability, and the medians are those of a motion without it.",
     forecast_yaw_picture: "Forecast: heading of the struck vehicle over time with its bands",
+    ask_replay: "Question: how did {vehicle} move up to the first contact, by speed and steering of its event data \
+        recorder ({name})?",
+    meaning_replay: "Each value lies in its interval of 90 % with that probability if the record is of this motion and \
+        its errors are as they were drawn; nobody has measured how often such intervals hold.",
+    draws_replay: "draws of the record:",
     meaning_hand: "Each value lies in its interval of 90 % with that probability if the method holds, the inputs are as \
                    uncertain as they say, and do not depend on each other.",
     meaning_posterior: "Each value lies in its interval of 90 % with that probability, given the evidence, if the assumptions \
@@ -135,9 +142,10 @@ pub(super) const WORDS: Words = Words {
     log_evidence: "log evidence:",
     reconstruction_cars: "Reconstruction from above: a motion of median speed with its tire marks, the struck car at \
         its end, over what was found",
+    single_car: "Reconstruction from above: a motion of median speed with its tire marks, the car at its end, over \
+        what was found",
     reconstruction_picture: "Reconstruction from above: possible paths over what was found",
     marginal_picture: "{quantity}: how likely it is without the evidence and with it",
-    budget_picture: "What further evidence would bring",
     fit_text: "p is the probability that measurement and model err by more than they do here; an item \
         below {level} counts as unexplained.",
     left_out_text: "The speed without each part of the evidence in turn. p is the probability that the other parts \
@@ -288,6 +296,16 @@ pub(super) const WORDS: Words = Words {
     limits_reconstruction: "Impact by momentum with restitution and friction, motion by the 4DOF model; the networks \
         take no part in it. Speed and heading of the striking car rest largely on what is \
         assumed of them. A motion is followed for 40 s.",
+    method_single_car: "Reconstruction of a single car",
+    method_single_car_text: "Everything that is not known (speed, sideslip angle and yaw rate at the start, friction, \
+        braking, steering, …) has a distribution that was taken to be likely before. For each drawn set of values \
+        the motion from the start to rest is computed, and weighed by how well it goes with what was found, with \
+        the standard deviation of each measurement and an error of the model that grows along the path. A \
+        sequential Monte Carlo sampler draws from the prior, then from mixtures of normals that follow the evidence \
+        step by step, and weighs every draw by the density that it came from.",
+    limits_single_car: "Motion by the 4DOF model with front wheels that are held at one angle; the networks take no \
+        part in it. A driver who steers to and fro is left out. A motion is followed for 40 s.",
+    validation_single_car: "Cars that this program simulated with its own equations of motion. No real one was tried.",
     method_sheet: "Vehicle data by rule",
     method_sheet_text: "What a data sheet does not state follows from the rest by rules with a scatter, each \
         named with its source in section 3. Where vehicles are drawn, each open quantity is \

@@ -2,7 +2,7 @@
 
 use crate::report::Language;
 use crate::report::language::words::Words;
-use crate::report::language::{de, de_terms, en};
+use crate::report::language::{de, de_sources, de_terms, en};
 use impactlab_core::uncertainty::{CaveatKind, CaveatSubject};
 
 /// The texts of the report itself.
@@ -18,23 +18,44 @@ pub(in crate::report) fn phrase_of(language: Language, text: &str) -> Option<Str
     if language == Language::En || text.is_empty() {
         return Some(text.to_owned());
     }
-    if let Some((_, term)) = de_terms::TERMS.iter().find(|(english, _)| *english == text) {
+    if let Some((_, term)) = terms().find(|(english, _)| *english == text) {
         return Some((*term).to_owned());
     }
     if let Some(label) = caveat_label(language, text) {
         return Some(label.to_owned());
     }
-    let mut found = de_terms::TEMPLATES.iter().filter_map(|(english, german)| {
-        let told =
-            |rest: &str| phrase_of(language, rest).unwrap_or_else(|| rest.replace("deg", "°"));
-        let rests = rests(english, text)?;
-        Some(
-            rests
-                .into_iter()
-                .fold((*german).to_owned(), |german, rest| german.replacen("{}", &told(rest), 1)),
-        )
+    let filled = templates().find_map(|(english, german)| {
+        let rests = rests(english, text)?.into_iter().map(|rest| rest_of(language, rest));
+        let rests = rests.collect::<Option<Vec<String>>>()?;
+        let fill = |german: String, rest: &String| german.replacen("{}", rest, 1);
+        Some(rests.iter().fold((*german).to_owned(), fill))
     });
-    found.next()
+    filled.or_else(|| {
+        // A rule with its source.
+        let (rule, source) = text.strip_suffix(')')?.split_once(" (")?;
+        Some(format!("{} ({})", phrase_of(language, rule)?, phrase_of(language, source)?))
+    })
+}
+
+fn terms() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
+    de_terms::TERMS.iter().chain(de_sources::TERMS)
+}
+
+fn templates() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
+    de_terms::TEMPLATES.iter().chain(de_sources::TEMPLATES)
+}
+
+/// What stands in a template: a label, a list of labels, or a name or number. Of a list every part must be
+/// known, since one that is not, as in “turns right by about 180°, the driver brakes”, is of another label.
+fn rest_of(language: Language, rest: &str) -> Option<String> {
+    if let Some(known) = phrase_of(language, rest) {
+        return Some(known);
+    }
+    if !rest.contains(", ") {
+        return Some(rest.replace("deg/", "°/").replace(" deg", "°"));
+    }
+    let parts = rest.split(", ").map(|part| phrase_of(language, part));
+    Some(parts.collect::<Option<Vec<String>>>()?.join(", "))
 }
 
 /// What stands in a text where a template has `{}`; `None` if it is not made from it.
@@ -65,6 +86,7 @@ mod tests {
     use super::*;
     use crate::figure::WheelInput;
     use impactlab_core::vehicle::sheet::{DataSheet, SheetQuantity, VehicleClass};
+    use impactlab_core::vehicle::{BuiltInVehicle, built_in_vehicle};
     use impactlab_reconstruct::hand::HandMethod;
     use impactlab_reconstruct::{Latent, ReconstructedQuantity};
     use impactlab_study::Measurements;
@@ -124,11 +146,45 @@ mod tests {
         }
     }
 
+    /// Sources of the vehicles that come with the program stood in English in a German report.
+    #[test]
+    fn name_source_and_rules_of_every_vehicle_are_translated() {
+        for vehicle in BuiltInVehicle::all() {
+            let car = &vehicle.parameters;
+            let notes = car.estimates.values().chain(car.stated.values()).chain([&car.source]);
+            for part in notes.flat_map(|note| note.split("; ")) {
+                let german = phrase_of(Language::De, part);
+                assert!(german.is_some(), "{}: {part}", vehicle.id);
+            }
+        }
+        let german = |id: &str| phrase_of(Language::De, &built_in_vehicle(id).unwrap().name);
+        let reference = "Referenzfahrzeug (Mehrkörpermodell, 2000 kg)";
+        assert_eq!(german("reference-2000").as_deref(), Some(reference));
+        let unknown = "gewöhnlicher Pkw, Modell unbekannt";
+        assert_eq!(german("generic-car").as_deref(), Some(unknown));
+    }
+
+    #[test]
+    fn a_list_in_brackets_is_translated_part_by_part() {
+        let source = "NHTSA NCAP 2004 rollover measurements, with a driver's weight (mass, CG)";
+        let expected =
+            "NHTSA NCAP 2004, Kippversuche, mit dem Gewicht eines Fahrers (Masse, Schwerpunkt)";
+        assert_eq!(phrase_of(Language::De, source).as_deref(), Some(expected));
+    }
+
+    /// “turns right by about 180°, the driver brakes” lost its direction and kept its English end.
+    #[test]
+    fn a_template_takes_no_other_label_in() {
+        for text in ["turns right by about 180°, the driver brakes", "mark 1, unheard of"] {
+            assert_eq!(phrase_of(Language::De, text), None, "{text}");
+        }
+    }
+
     #[test]
     fn no_label_is_translated_twice() {
-        for (idx, (english, _)) in de_terms::TERMS.iter().enumerate() {
-            let others = &de_terms::TERMS[idx + 1..];
-            assert!(others.iter().all(|(other, _)| other != english), "{english}");
+        let all: Vec<&str> = terms().map(|(english, _)| *english).collect();
+        for (idx, english) in all.iter().enumerate() {
+            assert!(!all[idx + 1..].contains(english), "{english}");
         }
     }
 }

@@ -8,6 +8,8 @@ mod de;
 
 mod de_terms;
 
+mod de_sources;
+
 mod look_up;
 
 pub(super) use look_up::{phrase_of, words_of};

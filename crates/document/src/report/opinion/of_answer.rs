@@ -261,6 +261,7 @@ fn hinge_sentences(table: &FactTable, words: &OpinionWords, context: Context<'_>
             words.speed_hinges,
             &[("name", name), ("struck", struck), ("striking", striking)],
         )),
+        [name, speed] => Some(fill(words.car_hinges, &[("name", name), ("speed", speed)])),
         _ => None,
     };
     rows.into_iter().filter_map(|row| sentence(row.cells)).collect()

@@ -52,6 +52,7 @@ pub(super) struct OpinionWords {
     pub force_hinges: &'static str,
     pub impact_hinges: &'static str,
     pub speed_hinges: &'static str,
+    pub car_hinges: &'static str,
     pub share_hinges: &'static str,
 }
 
@@ -86,7 +87,7 @@ const EN: OpinionWords = OpinionWords {
     hinges: "What the answer hinges on",
     warnings: "Warnings",
     no_warnings: "The program warns of nothing.",
-    warnings_told: "Section 6 says what each of them means and what can be done.",
+    warnings_told: "What this means and what can be done is in section 6.",
     not_considered: "What was not considered",
     who: "Expert, instruction and materials",
     expert: "Expert: {text}",
@@ -99,7 +100,8 @@ const EN: OpinionWords = OpinionWords {
     traced: "Every figure of this opinion is traced in the annex, sections 1 to 10.",
     turns: "At the end the struck vehicle is turned by 90° or more with a probability of {quarter}, and by 180° or \
         more with a probability of {half}.",
-    turns_of_courses: "Courses of events count the largest turn on the way, the probabilities above and below that at the end.",
+    turns_of_courses: "Courses of events are told apart by the largest turn on the way, the other probabilities of a turn are those \
+        at the end.",
     comes_to_rest: "It comes to rest within {limit} in {share} of the draws, after a path of {distance}.",
     lower_bounds: "Since less than 95 % of the draws come to rest in that time, upper ends of times and distances are \
         lower bounds.",
@@ -120,6 +122,7 @@ const EN: OpinionWords = OpinionWords {
     impact_hinges: "The impulse follows from masses, velocities, place of contact, restitution and friction of \
         section 3; how much it changes with each of them was not computed.",
     speed_hinges: "{name}: speed of the struck car {struck}, of the striking car {striking}.",
+    car_hinges: "{name}: speed of the car {speed}.",
     share_hinges: "{name}: {place} of the variance of the place at the end, {heading} of that of the heading.",
 };
 
@@ -147,7 +150,7 @@ const DE: OpinionWords = OpinionWords {
     hinges: "Wovon die Antwort abhängt",
     warnings: "Warnungen",
     no_warnings: "Das Programm warnt vor nichts.",
-    warnings_told: "Was sie bedeuten und was zu tun ist, steht in Abschnitt 6.",
+    warnings_told: "Was das bedeutet und was zu tun ist, steht in Abschnitt 6.",
     not_considered: "Was nicht berücksichtigt wurde",
     who: "Sachverständiger, Auftrag und Anknüpfungstatsachen",
     expert: "Sachverständiger: {text}",
@@ -160,7 +163,8 @@ const DE: OpinionWords = OpinionWords {
     traced: "Jede Zahl dieses Gutachtens ist im Anhang, Abschnitte 1 bis 10, nachzuvollziehen.",
     turns: "Am Ende ist das gestoßene Fahrzeug mit einer Wahrscheinlichkeit von {quarter} um 90° oder mehr gedreht, mit \
         einer Wahrscheinlichkeit von {half} um 180° oder mehr.",
-    turns_of_courses: "Die Geschehensabläufe zählen die größte Drehung unterwegs, die Wahrscheinlichkeiten darüber und darunter die am Ende.",
+    turns_of_courses: "Die Geschehensabläufe sind nach der größten Drehung während der Bewegung unterschieden, die übrigen \
+        Wahrscheinlichkeiten einer Drehung gelten für das Ende.",
     comes_to_rest: "Es kommt in {share} der Ziehungen innerhalb von {limit} zum Stillstand, nach einem Weg von \
         {distance}.",
     lower_bounds: "Da in dieser Zeit weniger als 95 % der Ziehungen zum Stillstand kommen, sind die oberen Enden von \
@@ -182,5 +186,6 @@ const DE: OpinionWords = OpinionWords {
     impact_hinges: "Der Impuls folgt aus Massen, Geschwindigkeiten, Kontaktort, Stoßziffer und Reibbeiwert in Abschnitt \
         3; wie stark er sich mit jedem davon ändert, wurde nicht berechnet.",
     speed_hinges: "{name}: Geschwindigkeit des gestoßenen Fahrzeugs {struck}, des stoßenden {striking}.",
+    car_hinges: "{name}: Geschwindigkeit des Fahrzeugs {speed}.",
     share_hinges: "{name}: {place} der Varianz des Endorts, {heading} der des Endwinkels.",
 };

@@ -107,6 +107,10 @@ impl Request {
                 files.site(request.site.as_deref());
             }
             Self::Hand(_) => {}
+            Self::Replay(request) => {
+                files.path(&request.recorder);
+                files.vehicle(&request.vehicle);
+            }
             Self::TrainForce(request) => {
                 files.paths(std::iter::once(&request.data).chain(&request.extra));
                 files.training(&request.training);

@@ -1,6 +1,7 @@
 //! What the evidence leaves open and the program fills: every distribution of the prior that nobody stated,
 //! with the key that states it.
 
+use crate::questions::reconstruct::single_car;
 use impactlab_core::uncertainty::{Caveat, CaveatSubject};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_reconstruct::evidence::{After, DriverBraked, Evidence};
@@ -13,11 +14,11 @@ use impactlab_reconstruct::{
 const Z_95: f64 = 1.645;
 
 /// Quantities of the prior that are assumed together.
-struct Group {
-    subject: CaveatSubject,
-    latents: &'static [Latent],
+pub(super) struct Group {
+    pub subject: CaveatSubject,
+    pub latents: &'static [Latent],
     /// Why, in English and in German.
-    reason: [&'static str; 2],
+    pub reason: [&'static str; 2],
 }
 
 /// What is assumed of everything that nobody stated. A quantity stands in one group only.
@@ -188,11 +189,15 @@ const GROUPS: &[Group] = &[
 /// What the evidence leaves open and the defaults of the prior fill.
 pub(super) fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Caveat> {
     let (cars, prior) = (model.cars(), model.prior());
-    let mut all: Vec<Caveat> = GROUPS.iter().filter_map(|group| group.caveat(prior)).collect();
+    let is_single_car = evidence.is_single_car();
+    let is_common = |group: &&Group| group.subject == CaveatSubject::RoadFriction || !is_single_car;
+    let own = if is_single_car { single_car::GROUPS } else { &[] };
+    let groups = own.iter().chain(GROUPS.iter().filter(is_common));
+    let mut all: Vec<Caveat> = groups.filter_map(|group| group.caveat(prior)).collect();
     let mut add = |subject, value: Phrase, [en, de]: [&str; 2]| {
         all.push(Caveat::assumed(subject, value, Phrase::new(en, de)));
     };
-    if evidence.prior.restitution.is_none() {
+    if evidence.prior.restitution.is_none() && !is_single_car {
         let reason = [
             "finite-element runs; otherwise: [prior] restitution",
             "Finite-Elemente-Rechnungen; sonst: [prior] restitution",
@@ -226,7 +231,7 @@ pub(super) fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Cave
         add(CaveatSubject::VehicleParameter, value, reason);
     }
     let estimated = cars.striking.estimated().count();
-    if estimated > 0 {
+    if estimated > 0 && !is_single_car {
         let value = Phrase::new(
             "{0} estimated from the rest, at their medians",
             "{0} aus den übrigen geschätzt, mit ihren Medianen",

@@ -5,7 +5,9 @@ use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::FrictionZone;
 use impactlab_reconstruct::sampler::Particles;
-use impactlab_reconstruct::{EvidenceFit, LEAST_ESS_FOR_INTERVALS, LeftOut, Mode};
+use impactlab_reconstruct::{
+    EvidenceFit, LEAST_ESS_FOR_INTERVALS, LeftOut, Mode, ReconstructedQuantity,
+};
 
 /// Effective sample size below which intervals may be too narrow.
 const LEAST_ESS: f64 = 400.0;
@@ -99,7 +101,7 @@ fn few(particles: &Particles) -> Option<Caveat> {
         let text = Phrase::new(
             "the sample is equivalent to {0} independent draws, expected {1}: {2}; more \
              particles: --particles",
-            "Die Stichprobe entspricht {0} unabhängigen Ziehungen, verlangt sind {1}. {2}. Mehr Partikel: \
+            "Die Stichprobe entspricht {0} unabhängigen Ziehungen, verlangt sind {1}. {2}; mehr Partikel: \
              --particles",
         )
         .with(PhraseValue::fixed(Quantity::Ratio, particles.ess, 0))
@@ -137,11 +139,15 @@ pub(super) fn of_left_out(left_out: &[LeftOut]) -> Vec<Caveat> {
         .filter_map(|part| Some((part, part.p?)))
         .map(|(part, p)| {
             let without = part.struck_speed.as_ref().map(|speed| {
-                Phrase::new(
-                    "; without it the struck car had {0}",
-                    ". Ohne sie fuhr das gestoßene Fahrzeug {0}",
-                )
-                .with(PhraseValue::estimate(Quantity::Speed, &speed.estimate))
+                let of_single_car = speed.name == ReconstructedQuantity::CarSpeed.key();
+                let [en, de] = match of_single_car {
+                    true => ["; without it the car had {0}", ". Ohne sie fuhr das Fahrzeug {0}"],
+                    false => [
+                        "; without it the struck car had {0}",
+                        ". Ohne sie fuhr das gestoßene Fahrzeug {0}",
+                    ],
+                };
+                Phrase::new(en, de).with(PhraseValue::estimate(Quantity::Speed, &speed.estimate))
             });
             let text = Phrase::new(
                 "{0} does not go with the rest of the evidence: one of them is wrong or misread{1}",

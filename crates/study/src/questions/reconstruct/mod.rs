@@ -6,3 +6,4 @@ pub(crate) mod later_contacts;
 mod particle_columns;
 pub(crate) mod paths;
 pub(crate) mod request;
+mod single_car;

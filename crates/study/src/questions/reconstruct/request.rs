@@ -1,4 +1,5 @@
-//! From the evidence of a collision to the speeds before it: `reconstruct`.
+//! From the evidence of a collision to the speeds before it, and from that of a single car to its speed at
+//! the start: `reconstruct`.
 
 use std::ffi::OsString;
 use std::ops::ControlFlow;
@@ -14,6 +15,7 @@ use crate::questions::reconstruct::badges::{
     of_fit, of_left_out, of_particles, of_validation, several_courses,
 };
 use crate::questions::reconstruct::later_contacts::{LaterContactsReport, WhyNot, not_looked_for};
+use crate::questions::reconstruct::single_car;
 use crate::{
     Answer, Event, FrictionZoneReport, InputKind, Library, Observer, Provenance, Question,
     Sampling, StudyError, VehicleChoice,
@@ -27,7 +29,7 @@ use impactlab_core::site::Site;
 use impactlab_core::uncertainty::Caveats;
 use impactlab_reconstruct::domain::{check_damage, outside_domain};
 use impactlab_reconstruct::evaluate::KnownEvidence;
-use impactlab_reconstruct::evidence::Evidence;
+use impactlab_reconstruct::evidence::{Evidence, EvidenceKind};
 use impactlab_reconstruct::sampler::{
     Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, SamplerStart, sample_from,
 };
@@ -43,12 +45,12 @@ const EVALUATIONS_PER_PARTICLE: usize = 150;
 /// The same of motions through later contacts, which take fifty times as long.
 const FOLLOWED_PER_PARTICLE: usize = 20;
 
-/// Asks how fast both cars were.
+/// Asks how fast both cars were, or a single one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReconstructRequest {
     /// What was found.
     pub evidence: EvidenceChoice,
-    /// The struck car, where the evidence leaves it open.
+    /// The struck or single car, where the evidence leaves it open.
     #[serde(default)]
     pub vehicle: VehicleChoice,
     /// The striking car, likewise.
@@ -93,6 +95,9 @@ pub enum EvidenceChoice {
 pub struct ReconstructReport {
     /// Name of the case.
     pub case: String,
+    /// What the evidence is of; a collision where it is not written.
+    #[serde(skip_serializing_if = "EvidenceKind::is_collision")]
+    pub kind: EvidenceKind,
     /// The quantities with their intervals, which are left out where the particles are worth less than
     /// 100 independent ones or are not of the posterior.
     pub quantities: Vec<QuantityEstimate>,
@@ -123,14 +128,18 @@ pub struct ReconstructReport {
     pub log_evidence: f64,
     /// Speeds by hand, each from its own part of the evidence, where one holds.
     pub by_hand: Vec<HandCheck>,
-    /// That of the struck car before the impact, m/s, and its standard deviation.
+    /// That of the struck car before the impact, or of a single one at the start, m/s, and its standard
+    /// deviation.
     pub by_hand_m_s: Option<[f64; 2]>,
     /// The parts of the ground with their own friction.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub friction_zones: Vec<FrictionZoneReport>,
-    /// What the evidence is alike among the staged collisions that reconstructions were measured on.
-    pub known: KnownEvidence,
-    /// Whether the cars meet again, and what was made of it; none where sampling was stopped before.
+    /// What the evidence is alike among the staged collisions that reconstructions were measured on; none
+    /// of a single car.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub known: Option<KnownEvidence>,
+    /// Whether the cars meet again, and what was made of it; none where sampling was stopped before, and of
+    /// a single car.
     pub later_contacts: Option<LaterContactsReport>,
     /// What was taken to be likely before.
     pub priors: Vec<PriorComponent>,
@@ -375,7 +384,8 @@ impl Question for ReconstructRequest {
         let (mut target, mut particles, flow) = self.sampled(&evidence, model, None, observer)?;
         let why_not = WhyNot::of(self.one_contact, &evidence, target.model(), flow.is_break());
         // Where the impact alone does not explain the evidence, later contacts may be why.
-        let share = target.meet_again_share(&particles);
+        let is_single_car = evidence.is_single_car();
+        let share = if is_single_car { None } else { target.meet_again_share(&particles) };
         let later_contacts = share.map(|share| LaterContactsReport::new(share, why_not));
         let are_followed = later_contacts.is_some_and(|later| later.are_followed);
         if are_followed {
@@ -384,7 +394,10 @@ impl Question for ReconstructRequest {
             (target, particles, _) = self.sampled(&evidence, model, start, observer)?;
         }
         let mut assumptions = assumptions(&evidence, target.model());
-        assumptions.extend(unused(&evidence, are_followed));
+        assumptions.extend(match is_single_car {
+            true => single_car::unused(self, &evidence),
+            false => unused(&evidence, are_followed),
+        });
         let posterior = Posterior::new(&target, &particles);
         let (fit, turned_rad) = target.fit(&particles);
         let ground = target.model().zones();
@@ -392,10 +405,13 @@ impl Question for ReconstructRequest {
         let mut by_hand = HandCheck::all(target.evidence(), cars, ground);
         // They know no slope.
         by_hand.retain(|_| cars.struck.parameters.slope.is_level());
-        let before = by_hand.iter().find(|check| check.speed == HandSpeed::Struck);
+        let before = [HandSpeed::Struck, HandSpeed::AtStart];
+        let before = by_hand.iter().find(|check| before.contains(&check.speed));
         let by_hand_m_s = before.map(|check| [check.value_m_s, check.sigma_m_s]);
         let mut caveats = Caveats::from(of_particles(&particles));
-        caveats.extend(later_contacts.map_or_else(not_looked_for, |later| later.caveat()));
+        if !is_single_car {
+            caveats.extend(later_contacts.map_or_else(not_looked_for, |later| later.caveat()));
+        }
         let modes = posterior.modes(&particles, &turned_rad);
         caveats.extend(several_courses(&modes));
         caveats.extend(outside);
@@ -404,12 +420,16 @@ impl Question for ReconstructRequest {
         let left_out = self.left_out(&target, &particles, &fit, observer);
         let alone = left_out.iter().map(|part| part.n_simulations).sum::<usize>();
         caveats.extend(of_left_out(&left_out));
-        caveats.push(of_validation(target.model().zones()));
+        caveats.push(match is_single_car {
+            true => single_car::of_validation(),
+            false => of_validation(target.model().zones()),
+        });
         caveats.extend(assumptions);
         let quantities = posterior.quantities();
         let report = ReconstructReport {
             case: target.evidence().case.clone(),
-            known: KnownEvidence::like(target.evidence()),
+            kind: evidence.kind,
+            known: (!is_single_car).then(|| KnownEvidence::like(target.evidence())),
             marks: compared_marks(&target, &particles, &posterior, &quantities, &modes),
             quantities,
             hinges: posterior.hinges(),

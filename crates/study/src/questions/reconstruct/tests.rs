@@ -158,7 +158,7 @@ fn a_way_over_ice_is_no_sign_of_a_high_speed() {
     };
     let (known, report) =
         speed(&ReconstructRequest { evidence: inline(&evidence), ..on_site.clone() });
-    let true_m_s = truth.impact.struck_speed_m_s;
+    let true_m_s = truth.impact.unwrap().struck_speed_m_s;
     assert!((known.estimate.median / true_m_s - 1.0).abs() < 0.25, "{true_m_s} m/s, {known:?}");
     assert_eq!(report.friction_zones[0].name, "ice");
     for part in ["friction of the zone \"ice\" is 0.15", "all of which stood on one friction"] {

@@ -1,0 +1,29 @@
+//! The replay of an event data recorder in a report.
+
+use crate::report::Block;
+use crate::report::answer::Context;
+use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
+use crate::report::numbers::fill;
+use crate::report::parts::Part;
+use impactlab_study::{Answer, ReplayReport};
+
+/// What the replay of a recorder contributes.
+pub(super) fn part(answer: &Answer<ReplayReport>, context: Context<'_>) -> Part {
+    let wording = context.wording;
+    let words = wording.words;
+    let name = [("name", answer.name.as_str()), ("vehicle", answer.vehicle.as_str())];
+    let mut blocks = vec![Block::paragraph(fill(words.ask_replay, &name))];
+    blocks.extend(facts_with_meaning(&answer.contact_table(), words.meaning_replay, context));
+    let tables = [Some(answer.way_table()), Some(answer.start_table()), answer.yaw_table()];
+    let tables = tables.into_iter().flatten().chain([answer.sample_table()]);
+    blocks.extend(tables.map(|table| facts_table(&table, context)));
+    let draws = [(words.draws_replay, answer.draws.to_string())];
+    Part {
+        kind: wording.key("replay"),
+        title: format!("{}: {}", wording.key("replay"), answer.name),
+        answer: blocks,
+        caveats: answer.caveats.clone(),
+        provenance: provenance_of(&answer.provenance, &draws, wording),
+        ..Part::default()
+    }
+}

@@ -1,0 +1,107 @@
+//! What is taken to be likely of a single car.
+//!
+//! | quantity | default | source |
+//! | --- | --- | --- |
+//! | speed at the start | uniform, 0 to 60 m/s | nothing is known |
+//! | sideslip angle at the start | normal, 0° ± 9° | marks begin at a few degrees; assumed |
+//! | yaw rate at the start | normal, 0 ± 0.4 rad/s | a curve at the limit of friction has 0.2 to 0.6; assumed |
+//! | place at the start | where the earliest mark begins, ± 0.3 m and that of its points | a faint start |
+//! | course at the start | along the first piece of that mark, ± 9°, else towards rest, ± 23° | assumed |
+//! | front wheels held at | normal, 0 ± 5° | a bend or an evasion; assumed |
+//! | driver brakes | 3 of 4 | assumed |
+//! | … from | normal, −0.2 ± 0.7 s about the start | marks begin where somebody brakes; assumed |
+//! | wheels | those that somebody found locked or dragged are so from the start on | |
+//!
+//! Four locked wheels leave no part for brakes, engine and steering. The mass is that which is stated: friction,
+//! inertia and cornering stiffness go with it, so that the motion hardly depends on it.
+
+use crate::cars::Cars;
+use crate::evidence::{DriverBraked, Evidence, Measured};
+use crate::prior::{HIGHEST_SPEED_M_S, Prior, PriorSource, log_normal, normal};
+use crate::single_car::StartPlace;
+use crate::{Distribution, Latent, LatentValues};
+use std::f64::consts::PI;
+
+impl Prior {
+    /// The prior of a single car.
+    pub(super) fn of_single_car(evidence: &Evidence, cars: &Cars) -> Self {
+        let mut prior = Self { components: Vec::new(), fixed: LatentValues::NONE, is_pit: false };
+        prior.add_start(evidence, cars);
+        prior.add_road(evidence);
+        let weighed_kg = evidence.struck_car.mass().map(|mass| mass.value);
+        let mass_kg = weighed_kg.unwrap_or(cars.struck.parameters.mass.mass_kg);
+        prior.fixed.set(Latent::StruckMass, mass_kg);
+        prior.add_struck_car(cars);
+        prior.add_wheels(evidence);
+        prior
+    }
+
+    fn add_start(&mut self, evidence: &Evidence, cars: &Cars) {
+        let ranges = &evidence.start;
+        let assumed = |distribution| (PriorSource::Assumed, distribution);
+        let any = Distribution::Uniform { low: 0.0, high: HIGHEST_SPEED_M_S };
+        self.open(Latent::CarSpeed, ranges.speed_m_s, assumed(any));
+        let sideslip = normal(0.0, 0.15, -1.2, 1.2);
+        self.open(Latent::CarSideslip, ranges.sideslip_rad, assumed(sideslip));
+        let yaw_rate = normal(0.0, 0.4, -3.0, 3.0);
+        self.open(Latent::CarYawRate, ranges.yaw_rate_rad_s, assumed(yaw_rate));
+        let Some(start) = StartPlace::of(evidence, cars) else { return };
+        for (latent, value) in [Latent::StartX, Latent::StartY].into_iter().zip(start.place_m) {
+            let reach_m = 4.0 * start.sigma_m;
+            let place = normal(value, start.sigma_m, value - reach_m, value + reach_m);
+            self.add(latent, PriorSource::Measured, place);
+        }
+        match ranges.heading() {
+            Some(Measured { value, sigma }) => {
+                let heading = normal(value, sigma, value - PI, value + PI);
+                self.add(Latent::StartHeading, PriorSource::Measured, heading);
+            }
+            None => {
+                let (mean, sigma) = (start.course_rad, start.course_sigma_rad);
+                self.assume(Latent::StartCourse, normal(mean, sigma, mean - PI, mean + PI));
+            }
+        }
+    }
+
+    /// What driver and wheels do.
+    fn add_wheels(&mut self, evidence: &Evidence) {
+        let (after, ranges) = (&evidence.after, &evidence.start);
+        if after.is_all_locked() {
+            // By the brakes, and not by a force that could turn a wheel.
+            for (latent, value) in [
+                (Latent::BrakeDecision, 0.0),
+                (Latent::BrakeStart, -2.0),
+                (Latent::BrakeRise, 1.0),
+                (Latent::FrontBrakeShift, 0.0),
+                (Latent::BrakeShare, 0.0),
+                (Latent::EngineBraking, 0.0),
+                (Latent::SteerAngle, 0.0),
+            ] {
+                self.fixed.set(latent, value);
+            }
+            return;
+        }
+        let assumed = |distribution| (PriorSource::Assumed, distribution);
+        match after.driver_braked {
+            DriverBraked::Unknown => {
+                self.assume(Latent::BrakeDecision, Distribution::Uniform { low: 0.0, high: 1.0 });
+            }
+            DriverBraked::Yes => self.fixed.set(Latent::BrakeDecision, 0.0),
+            DriverBraked::No => self.fixed.set(Latent::BrakeDecision, 1.0),
+        }
+        if after.driver_braked != DriverBraked::No {
+            let start = normal(-0.2, 0.7, -1.5, 6.0);
+            self.open(Latent::BrakeStart, ranges.brake_start_s, assumed(start));
+            self.assume(Latent::BrakeRise, log_normal(0.4, 0.5, 0.1, 1.5));
+            self.assume(Latent::FrontBrakeShift, normal(0.0, 0.05, -0.2, 0.2));
+            let share = log_normal(0.8, 0.79, 0.05, 3.0);
+            self.open(Latent::BrakeShare, ranges.brake_share, assumed(share));
+        }
+        self.assume(Latent::EngineBraking, Distribution::Uniform { low: 0.0, high: 0.8 });
+        let steer = normal(0.0, 0.087, -0.6, 0.6);
+        self.open(Latent::SteerAngle, ranges.road_wheel_rad, assumed(steer));
+        if after.wheels_are_known() {
+            self.add_held_wheels(after, [Latent::BlockedWheel, Latent::BlockedDrag]);
+        }
+    }
+}

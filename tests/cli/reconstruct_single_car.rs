@@ -1,0 +1,79 @@
+//! `reconstruct` of a single car that struck nothing.
+
+use std::fs;
+
+use tempfile::TempDir;
+
+use crate::program::{answer, ok, program, text};
+
+const EVIDENCE: &str = "docs/guide/examples/single_car.toml";
+
+/// What only a collision has.
+const OF_IMPACTS: [&str; 6] = ["striking", "bullet", "closing", "delta_v", "Δv", "impulse"];
+
+fn without(told: &str, words: &[&str]) {
+    for word in words {
+        let line = told.lines().find(|line| line.contains(word));
+        assert_eq!(line, None, "{word}");
+    }
+}
+
+#[test]
+fn a_single_car_has_a_speed_at_the_start_and_nothing_of_an_impact() {
+    let args = ["reconstruct", EVIDENCE, "--particles", "150"];
+    let told = ok(program().args(args).output().unwrap());
+    without(&told, &OF_IMPACTS);
+    without(&told, &["struck car"]);
+    assert!(told.contains("speed of the car at the start"), "{told}");
+
+    let report = answer(&args);
+    without(&serde_json::to_string_pretty(&report).unwrap(), &OF_IMPACTS[1..]);
+    assert_eq!(report["kind"], "single_car");
+    let names: Vec<&str> = report["quantities"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|of| of["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["speed_m_s", "sideslip_rad", "yaw_rate_rad_s", "road_friction"]);
+    let expected_m_s = (2.0 * 0.66 * 9.80665 * 31.5_f64).sqrt();
+    let [low, high] = [0, 1].map(|i| report["quantities"][0]["interval_90"][i].as_f64().unwrap());
+    assert!(low < expected_m_s && expected_m_s < high, "{low} to {high}, {expected_m_s} m/s");
+    let by_hand = report["by_hand_m_s"][0].as_f64().unwrap();
+    assert!((by_hand - expected_m_s).abs() < 0.01, "{by_hand} {expected_m_s} m/s");
+    assert_eq!(report["by_hand"][0]["speed"], "at_start");
+}
+
+#[test]
+fn a_recorded_change_of_velocity_and_a_dent_are_refused_by_name() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("case.toml");
+    let evidence = fs::read_to_string(EVIDENCE).unwrap();
+    for (table, reason) in [
+        ("[edr]\ndelta_v_x_min_m_s = -3\ndelta_v_x_max_m_s = -2\n", "no Δv without an impact"),
+        ("[damage]\nside = \"front\"\ny_m = 0\n", "strikes nothing"),
+    ] {
+        fs::write(&path, format!("{evidence}\n{table}")).unwrap();
+        let output = program().args(["reconstruct", text(&path)]).output().unwrap();
+        assert!(!output.status.success());
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(error.contains(reason) && error.contains("case.toml:"), "{error}");
+    }
+}
+
+#[test]
+fn a_figure_of_a_collision_is_refused_and_the_speed_is_drawn() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("speed.csv");
+    let draw = |plot: &str| {
+        let mut command = program();
+        command.args(["render", "reconstruction", EVIDENCE, "--particles", "60", "--plot", plot]);
+        command.args(["--out", text(&out)]).output().unwrap()
+    };
+    let refused = draw("delta-v");
+    assert!(!refused.status.success() && !out.exists());
+    let error = String::from_utf8(refused.stderr).unwrap();
+    assert!(error.contains("is of a single car"), "{error}");
+    ok(draw("target-speed"));
+    assert!(fs::read_to_string(&out).unwrap().contains("speed of the car at the start"));
+}

@@ -1,0 +1,98 @@
+//! The replay of a recorder on the command line: from the file to the path.
+
+#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
+
+use std::fs;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::answers::write;
+use crate::commands::impactlab;
+use crate::program::{answer, json, ok, program, text};
+
+const REPORT: &str = "CDR FILE INFORMATION\nEDR Device Type,Module 7\nComplete File Recorded,Yes\n\
+    PRE-CRASH DATA -5 TO 0 SEC [2 SAMPLES/SEC] (EVENT RECORD 1)\n\
+    Times (sec),\"Speed, Vehicle Indicated (MPH [km/h])\",Steering Input (deg),Service Brake\n\
+    -2.0,40 [64],0,Off\n-1.5,40 [64],10,Off\n-1.0,40 [64],20,Off\n-0.5,36 [58],20,On\n\
+    0.0,31 [50],10,On\n";
+
+fn median(report: &Value, place: &str) -> f64 {
+    report.pointer(&format!("{place}/median")).unwrap().as_f64().unwrap()
+}
+
+/// A report of a recorder becomes a state at the contact, a path as a file, and the same by its question.
+#[test]
+fn a_report_becomes_a_state_at_the_contact_and_a_path() {
+    let folder = TempDir::new().unwrap();
+    let file = write(&folder, "report.csv", REPORT);
+    let path = folder.path().join("path.csv");
+    let args =
+        ["replay", text(&file), "--vehicle", "toyota-camry-2018", "--steering-ratio", "14.5"];
+    let options = ["--draws", "60", "--x", "12", "--heading", "20deg", "--write", text(&path)];
+    let args: Vec<&str> = args.into_iter().chain(options).collect();
+    let report = answer(&args);
+    let speed = median(&report, "/at_contact/speed_m_s");
+    assert!((9.0..14.0).contains(&speed), "{speed}");
+    assert!(median(&report, "/travelled/turn_rad") > 0.02, "{report}");
+    let last = report["path"].as_array().unwrap().last().unwrap();
+    assert!((last["x_m"].as_f64().unwrap() - 12.0).abs() < 1e-9, "{last}");
+    assert!((last["yaw_rad"].as_f64().unwrap() - 20_f64.to_radians()).abs() < 1e-9, "{last}");
+    let written = fs::read_to_string(&path).unwrap();
+    assert!(written.lines().count() > 200, "{written}");
+    assert!(impactlab(&args).err.contains("path.csv"), "it is there already");
+    fs::remove_file(&path).unwrap();
+
+    let asked = program().args(&args).arg("--print-request").output().unwrap();
+    let question = json(&ok(asked));
+    assert_eq!(question["question"], "replay");
+    assert!(!path.exists(), "a question alone writes nothing");
+    let question = write(&folder, "question.json", &question.to_string());
+    let again = json(&ok(program().args(["ask", text(&question)]).output().unwrap()));
+    assert_eq!(again["at_contact"], report["at_contact"]);
+}
+
+#[test]
+fn what_is_assumed_and_what_is_missing_is_said() {
+    let folder = TempDir::new().unwrap();
+    let file = write(&folder, "report.csv", REPORT);
+    let ran = impactlab(&["replay", text(&file), "--draws", "60"]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    for words in
+        ["steering ratio 16 ± 2", "no yaw rate is recorded", "sideslip at the first contact"]
+    {
+        assert!(ran.out.contains(words), "{words}: {}", ran.out);
+    }
+    let without = REPORT.replace("Steering Input (deg)", "Engine Throttle (%)");
+    let file = write(&folder, "without.csv", &without);
+    let ran = impactlab(&["replay", text(&file)]);
+    let error = ran.error_line();
+    assert!(
+        error.contains("without.csv") && error.contains("Steering Wheel Angle [deg]"),
+        "{error}"
+    );
+    let ran = impactlab(&["replay", text(&file), "--steering-ratio", "100"]);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+}
+
+/// What the import writes is followed, with its own side of the yaw rate.
+#[test]
+fn the_controls_of_an_import_are_followed() {
+    let folder = TempDir::new().unwrap();
+    let turning = "Time [s],Speed [km/h],Steering Wheel Angle [deg],Yaw Rate [deg/s]\n\
+        -3,50,60,-16\n-2,50,60,-16\n-1,50,60,-16\n0,50,60,-16\n";
+    let file = write(&folder, "edr.csv", turning);
+    let out = folder.path().join("record");
+    ok(program()
+        .args(["import", text(&file), "--recorder", "--out", text(&out)])
+        .output()
+        .unwrap());
+    let controls = out.join("controls.csv");
+    let of = |file: &str, side: &str| {
+        answer(&["replay", file, "--steering-ratio", "15", "--draws", "60", "--yaw-rate", side])
+    };
+    let [imported, direct] = [of(text(&controls), "left"), of(text(&file), "right")];
+    assert_eq!(imported["yaw_rate"], direct["yaw_rate"]);
+    assert_eq!(imported["at_contact"], direct["at_contact"]);
+    assert!(imported["samples"][0]["recorded_yaw_rate_rad_s"].as_f64().unwrap() > 0.0);
+}
