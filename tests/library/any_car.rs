@@ -140,12 +140,12 @@ proptest! {
         }
         let of = predictor.applicability(&initial, &inputs);
         prop_assert_eq!(of.value < 1.0, !of.outside.is_empty());
-        let is_slick = friction < 0.25;
+        let is_slick = friction < 0.19;
         let is_named = |name: &str| of.outside.iter().any(|outside| outside.quantity == name);
         prop_assert!(!is_slick || is_named("friction"), "{of:?}");
-        prop_assert!(speed_m_s < 40.0 || is_named("speed [m/s]"), "{of:?}");
+        prop_assert!(speed_m_s < 47.0 || is_named("speed [m/s]"), "{of:?}");
         prop_assert!(mass_kg < 3000.0 || is_named("mass [kg]"), "{of:?}");
-        prop_assert!(push_m_s < 8.0 || is_named("velocity change by the impact [m/s]"), "{of:?}");
+        prop_assert!(push_m_s < 12.0 || is_named("velocity change by the impact [m/s]"), "{of:?}");
         // Far outside the bands are as wide as what a tenth of the grip, or of the impulse, does.
         if of.value < 0.05 {
             let end_of = |vehicle: &VehicleParameters, share: f64| {
@@ -173,7 +173,7 @@ fn far_outside_only_the_physics_is_left_and_the_bands_are_wider() {
     let model = shipped();
     let initial = VehicleState::driving_straight(20.0);
     let known = car(1500.0, 0.7);
-    let slick = car(1500.0, 0.05);
+    let slick = car(4000.0, 0.05);
     let [near, far] = [&known, &slick].map(|vehicle| {
         let inputs = struck([0.5, 2.0], vehicle, 300);
         let (area, _) = end(&model, (vehicle, &initial, &inputs));
@@ -183,7 +183,7 @@ fn far_outside_only_the_physics_is_left_and_the_bands_are_wider() {
     });
     assert!(far.1 < 0.1, "{} m from the 4DOF model", far.1);
     assert!(near.1 > 0.2, "{} m from the 4DOF model", near.1);
-    // On ice the tires hardly matter; of a heavy car nothing is known of them.
+    // On ice the tires hardly matter; of a heavy car nothing is known of them on any road.
     let of = |mass_kg: f64| {
         let vehicle = car(mass_kg, 0.7);
         let inputs = struck([0.5, 2.0], &vehicle, 300);

@@ -279,7 +279,7 @@ mod tests {
     fn the_axes_of_the_shipped_atlas_are_axes() {
         let axes = Axis::pit().unwrap();
         let n_cells: usize = axes.iter().map(Axis::n_bins).product();
-        // A million rows have about forty in each cell.
+        // Few rows are in a cell by itself; maps average over most axes.
         assert!((10_000..=40_000).contains(&n_cells), "{n_cells}");
     }
 }
