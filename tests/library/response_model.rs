@@ -166,7 +166,7 @@ fn nothing_is_learned_from_nothing() {
 fn the_shipped_model_keeps_its_word() {
     let model = ResponseModel::load(Path::new("assets/models/response.safetensors")).unwrap();
     let mut inside = [0.0; 2];
-    for (data, most_m) in [("trajectories-fea", 0.2), ("trajectories-pulse", 0.25)] {
+    for (data, most_m) in [("trajectories-fea", 0.24), ("trajectories-pulse", 0.26)] {
         let path = Path::new("datasets").join(data);
         let mut go_on = |_| ControlFlow::Continue(());
         let cases = ResponseCase::load_all(&path, None, &mut go_on).unwrap().complete().unwrap();
@@ -183,7 +183,7 @@ fn the_shipped_model_keeps_its_word() {
         assert_eq!(metrics.violations, 0);
         let coverage = metrics.coverage.as_ref().unwrap();
         let shares = [coverage.path_90, coverage.end_90];
-        assert!(shares.iter().all(|share| (0.8..=0.99).contains(share)), "{data}: {coverage:?}");
+        assert!(shares.iter().all(|share| (0.78..=0.99).contains(share)), "{data}: {coverage:?}");
         inside.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share / 2.0);
     }
     assert!(inside.iter().all(|share| (0.85..=0.95).contains(share)), "{inside:?}");

@@ -214,7 +214,11 @@ impl ReconstructReport {
         };
         let rows = items.iter().map(row).collect();
         let columns = [Term::Now, Term::Then];
-        FactTable::new(Term::Budget, rows).with_columns(&columns).unless_empty()
+        let title = match self.kind.is_collision() {
+            true => Term::Budget,
+            false => Term::BudgetAtStart,
+        };
+        FactTable::new(title, rows).with_columns(&columns).unless_empty()
     }
 }
 

@@ -397,6 +397,10 @@ terms! {
     MeanDistance: "mean distance", "mittlerer Abstand";
     LargestDistance: "largest distance", "größter Abstand";
     NoMark: "no mark", "keine Spur";
+    BudgetAtStart: "Half the width of the 90 % interval of the speed at the start, now and with a \
+        further measurement",
+        "Halbe Breite des 90-%-Intervalls der Geschwindigkeit am Anfang, jetzt und mit einer weiteren \
+         Messung";
     Budget: "Half the width of the 90 % interval of the struck car’s speed, now and with a further \
         measurement",
         "Halbe Breite des 90-%-Intervalls der Geschwindigkeit des gestoßenen Fahrzeugs, jetzt und mit \
