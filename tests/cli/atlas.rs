@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use impactlab_core::numerics::random_stream;
 use impactlab_sweep::{Column, Outcome, Rows, RowsMeta, rows_bytes};

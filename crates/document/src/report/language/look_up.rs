@@ -32,8 +32,12 @@ pub(in crate::report) fn phrase_of(language: Language, text: &str) -> Option<Str
     });
     filled.or_else(|| {
         // A rule with its source.
-        let (rule, source) = text.strip_suffix(')')?.split_once(" (")?;
-        Some(format!("{} ({})", phrase_of(language, rule)?, phrase_of(language, source)?))
+        let inner = text.strip_suffix(')')?;
+        inner.match_indices(" (").find_map(|(at, between)| {
+            let (rule, source) = (inner.get(..at)?, inner.get(at + between.len()..)?);
+            let [rule, source] = [rule, source].map(|part| phrase_of(language, part));
+            Some(format!("{} ({})", rule?, source?))
+        })
     })
 }
 
