@@ -99,14 +99,9 @@ fn the_way_that_was_driven_is_in_the_interval_and_the_yaw_rate_agrees() {
 #[test]
 fn a_wrong_steering_ratio_and_a_wrong_side_are_seen_in_the_yaw_rate() {
     let truth = truth();
-    let with_ratio =
-        |ratio: f64| replayed(&table(&truth, 1.0), |of| of.steering_ratio = Some(ratio)).unwrap();
-    let answer = with_ratio(8.0);
+    let answer = replayed(&table(&truth, 1.0), |of| of.steering_ratio = Some(8.0)).unwrap();
     let check = answer.yaw_rate.unwrap();
     assert!(check.disagrees && answer.caveats.has(CaveatKind::Disagreement), "{check:?}");
-    // Where the car would not slide with it, the ratio that it has is seen.
-    let implied = with_ratio(11.0).yaw_rate.unwrap().implied_steering_ratio.unwrap();
-    assert!((implied / RATIO - 1.0).abs() < 0.3, "{implied}");
     let turned = table(&truth, -1.0);
     let answer = replayed(&turned, |_| {}).unwrap();
     let check = answer.yaw_rate.unwrap();
