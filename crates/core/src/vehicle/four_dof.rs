@@ -42,7 +42,7 @@ use crate::vehicle::constants::{BodyConstants, VehicleConstants};
 use crate::vehicle::frames::Heading;
 use crate::vehicle::loads::{LoadTransfer, vertical_loads_n};
 use crate::vehicle::tire::{WheelEffort, WheelHold, WheelSlip};
-use crate::vehicle::{Equations, N_ACCELERATION, N_STATE, VehicleParameters, VehicleState};
+use crate::vehicle::{Equations, N_STATE, VehicleParameters, VehicleState};
 
 /// Number of fixed-point passes by which vertical loads and tire forces are made consistent.
 pub(super) const LOAD_PASSES: usize = 2;
@@ -199,42 +199,6 @@ impl VehicleConstants<f64> {
     ) -> [WheelHold; 4] {
         let slips = self.wheel_slips(x, &Steer::new(u.steer_rad), u.friction_share.as_ref());
         slips.holds(self.evaluate(x, u).vertical_loads_n)
-    }
-}
-
-impl VehicleConstants<f64> {
-    /// Power of accelerations v̇_x, v̇_y, m/s², ṙ, rad/s², on the planar motion, W.
-    pub(super) fn planar_power_w(
-        &self,
-        x: &VehicleState<f64>,
-        [ax, ay, yaw, _]: [f64; N_ACCELERATION],
-    ) -> f64 {
-        let along = x.vx_body_m_s * ax + x.vy_body_m_s * ay;
-        2.0 * (self.body.half_mass_kg * along
-            + self.body.half_yaw_inertia_kg_m2 * x.yaw_rate_rad_s * yaw)
-    }
-
-    /// Accelerations by everything except the weight along a slope: of the CG along the body's axes,
-    /// m/s², and in yaw, rad/s².
-    ///
-    /// - `u`: the input, without a collision force.
-    pub(super) fn acceleration_by_tires_m_s2(
-        &self,
-        x: &VehicleState<f64>,
-        u: &VehicleInput<f64>,
-    ) -> ([f64; 2], f64) {
-        let now = self.evaluate(x, u);
-        let [down_x, down_y] = self.with_weight_along(Heading::new(x.yaw_rad), [0.0; 2]);
-        let [ax, ay] = now.acceleration_body_m_s2;
-        ([ax - down_x, ay - down_y], now.derivative.yaw_rate_rad_s)
-    }
-
-    /// Power that tires and resistance take from the planar motion, W; 0 where they give.
-    ///
-    /// - `u`: the input, without a collision force.
-    pub(super) fn power_taken_w(&self, x: &VehicleState<f64>, u: &VehicleInput<f64>) -> f64 {
-        let ([ax, ay], yaw) = self.acceleration_by_tires_m_s2(x, u);
-        (-self.planar_power_w(x, [ax, ay, yaw, 0.0])).max(0.0)
     }
 }
 

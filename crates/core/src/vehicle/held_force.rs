@@ -4,11 +4,12 @@
 use crate::numerics::{Stage, rk4_step};
 use crate::vehicle::frames::Heading;
 use crate::vehicle::path_batch::{CONTACT_STEP_S as ZONE_STEP_S, RATE_TIMES_STEP, YAW_ARM_M};
+use crate::vehicle::residual_bound::ResidualBound;
 use crate::vehicle::run::{Run, StepInputs};
 use crate::vehicle::tire::SLIP_ANGLE_SPEED_M_S;
 use crate::vehicle::{
-    CollisionForce, Integrator, Manoeuvre, Motion, N_ACCELERATION, N_STATE, OUTPUT_INTERVAL_S,
-    SimulationError, VehicleInput, VehicleParameters, VehicleState, WheelEffort,
+    CollisionForce, Integrator, Manoeuvre, Motion, N_ACCELERATION, N_STATE, RestWatch,
+    SimulationError, VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState, WheelEffort,
 };
 
 /// Largest turn of a vehicle over a step, rad: the momentum of a body that moves freely, whose velocity is
@@ -19,25 +20,26 @@ const LARGEST_TURN_RAD: f64 = 0.02;
 /// stable up to λ h = 1: it then follows a rate λ h = 0.5.
 const PUSHED_SHARE: f64 = 0.35;
 
-/// Largest share of the energy that tires and resistance take from a vehicle which a residual acceleration
-/// gives back: what the equations of motion miss may halve how fast a vehicle slows down, and not drive it.
-const GIVEN_BACK_SHARE: f64 = 0.5;
-
-/// Time over which what may be given back is kept, s: noise, which gives and takes, is then not taken for a
-/// drive.
-const GIVEN_BACK_TIME_S: f64 = 1.0;
-
 /// A motion under a collision force that is held over steps. It stands at an output instant; the states
 /// within an output interval belong to the caller.
 pub(crate) struct HeldForceRun<'a> {
     run: Run<'a>,
+    /// Input over the coming output interval, without a collision force.
+    coming: VehicleInput<f64>,
+    /// What the equations of motion say under it at the output instant.
+    now: VehicleEvaluation<f64>,
     /// K/(λ₀ ε) of [`Self::longest_step_s`], s²/m.
     step_per_speed_s2_m: f64,
     roll_step_s: f64,
     /// Time derivative in the middle of the step before, if a collision force acted.
     before: Option<[f64; N_STATE]>,
-    /// Energy that a residual acceleration may still give to the planar motion, J.
-    given_back_j: f64,
+    bound: ResidualBound,
+}
+
+/// Input over the coming output interval without a collision force, and the equations of motion under it.
+fn untouched(run: &Run<'_>) -> (VehicleInput<f64>, VehicleEvaluation<f64>) {
+    let coming = VehicleInput { collision: None, ..run.coming() };
+    (coming, run.constants.evaluate(&VehicleState::from_array(run.state), &coming))
 }
 
 impl<'a> HeldForceRun<'a> {
@@ -50,13 +52,17 @@ impl<'a> HeldForceRun<'a> {
         vehicle: &'a VehicleParameters,
         manoeuvre: &'a Manoeuvre,
     ) -> Result<Self, SimulationError> {
+        let run = Run::new(vehicle, manoeuvre, Integrator::Rk4)?;
+        let (coming, now) = untouched(&run);
         Ok(Self {
-            run: Run::new(vehicle, manoeuvre, Integrator::Rk4)?,
+            run,
+            coming,
+            now,
             step_per_speed_s2_m: RATE_TIMES_STEP
                 / (vehicle.tire_rate_at_rest_1_s() * SLIP_ANGLE_SPEED_M_S),
             roll_step_s: vehicle.roll_step_s(),
             before: None,
-            given_back_j: 0.0,
+            bound: ResidualBound::default(),
         })
     }
 
@@ -85,7 +91,14 @@ impl<'a> HeldForceRun<'a> {
 
     /// Input over the coming output interval, without a collision force.
     pub fn coming(&self) -> VehicleInput<f64> {
-        self.run.coming()
+        self.coming
+    }
+
+    /// Whether a vehicle that has come to rest stays where it is while nothing pushes it.
+    ///
+    /// - `state`: of the vehicle, in the order of `eq:state_vector`.
+    pub fn stays(&self, state: &[f64; N_STATE]) -> bool {
+        !self.coming.is_driven() && RestWatch::is_slow(&VehicleState::from_array(*state))
     }
 
     /// Longest step that follows the tires at the speed of a state and the roll, s, as along
@@ -195,32 +208,23 @@ impl<'a> HeldForceRun<'a> {
     }
 
     /// A residual acceleration over the coming output interval, scaled back where it would drive a vehicle
-    /// that nothing drives. With the power P of tires and resistance at the beginning of each interval its
-    /// work W on the planar motion is bounded by an account E:
-    ///
-    /// ```text
-    /// W ≤ E + κ |P| h        E' = min(E + κ |P| h − W, κ |P| 1 s)        κ = 0.5
-    /// ```
+    /// that nothing drives.
     pub fn bounded_residual(&mut self, residual: [f64; N_ACCELERATION]) -> [f64; N_ACCELERATION] {
-        let coming = VehicleInput { collision: None, ..self.run.coming() };
-        if coming.is_driven() || residual == [0.0; N_ACCELERATION] {
+        if self.coming.is_driven() || residual == [0.0; N_ACCELERATION] {
             return residual;
         }
         let x = VehicleState::from_array(self.run.state);
         let constants = &self.run.constants;
-        let work_j = constants.planar_power_w(&x, residual) * OUTPUT_INTERVAL_S;
-        let per_time_w = GIVEN_BACK_SHARE * constants.power_taken_w(&x, &coming);
-        let available_j = self.given_back_j + per_time_w * OUTPUT_INTERVAL_S;
-        let share = if work_j > available_j { available_j / work_j } else { 1.0 };
-        self.given_back_j = (available_j - share * work_j).min(per_time_w * GIVEN_BACK_TIME_S);
+        let given_w = constants.planar_power_w(&x, residual);
+        let taken_w = -constants.planar_power_w(&x, constants.acceleration_by_tires(&x, &self.now));
+        let share = self.bound.share(given_w, taken_w.max(0.0));
         residual.map(|acceleration| share * acceleration)
     }
 
     /// Acceleration of the CG by tires and resistance at the output instant, m/s².
     pub fn tire_acceleration_m_s2(&self) -> f64 {
-        let coming = VehicleInput { collision: None, ..self.run.coming() };
         let x = VehicleState::from_array(self.run.state);
-        let [along, across] = self.run.constants.acceleration_by_tires_m_s2(&x, &coming).0;
+        let [along, across, ..] = self.run.constants.acceleration_by_tires(&x, &self.now);
         along.hypot(across)
     }
 
@@ -228,7 +232,7 @@ impl<'a> HeldForceRun<'a> {
     /// its beginning, and what the weight has given on a slope, where a residual acceleration has made it
     /// grow.
     pub fn without_energy_gain(&self, state: [f64; N_STATE]) -> [f64; N_STATE] {
-        if self.run.coming().is_driven() {
+        if self.coming.is_driven() {
             return state;
         }
         let mut after = VehicleState::from_array(state);
@@ -269,17 +273,21 @@ impl<'a> HeldForceRun<'a> {
         mean: Option<CollisionForce<f64>>,
         was_pushed: bool,
     ) -> Result<bool, SimulationError> {
-        let mut coming = self.run.coming();
-        coming.collision = mean;
-        let now = VehicleState::from_array(self.run.state);
-        let forces = self.run.constants.evaluate(&now, &coming).into();
+        let coming = VehicleInput { collision: mean, ..self.coming };
+        let forces = match mean {
+            None => self.now,
+            Some(_) => {
+                self.run.constants.evaluate(&VehicleState::from_array(self.run.state), &coming)
+            }
+        };
         let is_pushed = was_pushed || mean.is_some() || coming.is_driven();
-        self.run.record_pushed(&coming, &forces, is_pushed)
+        self.run.record_pushed(&coming, &forces.into(), is_pushed)
     }
 
     /// Goes on to the next output instant.
     pub fn advanced_to(&mut self, state: [f64; N_STATE]) {
         self.run.advanced_to(state);
+        (self.coming, self.now) = untouched(&self.run);
     }
 
     /// The recorded motion.

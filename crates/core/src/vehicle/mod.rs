@@ -33,6 +33,7 @@ mod ending_file;
 mod fishhook;
 mod held_force;
 mod recorder;
+mod residual_bound;
 mod run;
 mod simulate;
 mod sine_with_dwell;
@@ -40,6 +41,7 @@ mod stability;
 
 mod batch;
 mod path_batch;
+mod path_point;
 
 mod recorded_drive;
 
@@ -70,7 +72,8 @@ pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;
 pub use pace::{Pace, rest_instant};
 pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
-pub use path_batch::{MAX_PATH_STEP_S, Path, PathEnd, PathLimit, PathPoint, simulate_paths};
+pub use path_batch::{MAX_PATH_STEP_S, Path, PathEnd, PathLimit, simulate_paths};
+pub use path_point::PathPoint;
 pub use preset::{BuiltInVehicle, Preset, built_in_vehicle};
 pub use recorded_drive::{RecordedDrive, RecordedMotion};
 pub use rest::RestWatch;

@@ -26,7 +26,7 @@ use crate::vehicle::ground::Ground;
 use crate::vehicle::run::{Inputs, StepInputs};
 use crate::vehicle::tire::SLIP_ANGLE_SPEED_M_S;
 use crate::vehicle::{
-    Integrator, N_STATE, OUTPUT_INTERVAL_S, RestWatch, SimulationRun, VehicleConstants,
+    Integrator, N_STATE, OUTPUT_INTERVAL_S, PathPoint, RestWatch, SimulationRun, VehicleConstants,
     VehicleInput, VehicleState, WheelEffort,
 };
 
@@ -51,25 +51,6 @@ pub(super) const YAW_ARM_M: f64 = 1.5;
 
 /// Runs that one task takes over.
 const RUNS_PER_TASK: usize = 64;
-
-/// State of a vehicle on its path.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PathPoint {
-    /// Time after the start, s.
-    pub time_s: f64,
-    /// X of the CG in world axes, m.
-    pub x_m: f64,
-    /// Y of the CG in world axes, m.
-    pub y_m: f64,
-    /// Heading, rad, counted over whole turns.
-    pub yaw_rad: f64,
-    /// Velocity along the x axis of the vehicle, m/s.
-    pub vx_body_m_s: f64,
-    /// Velocity along the y axis of the vehicle, m/s.
-    pub vy_body_m_s: f64,
-    /// Yaw rate, rad/s.
-    pub yaw_rate_rad_s: f64,
-}
 
 /// Why a path ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

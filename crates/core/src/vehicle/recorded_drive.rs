@@ -19,7 +19,7 @@ const SETTLING_S: f64 = 2.0;
 pub struct RecordedDrive {
     /// Times of the samples, s, strictly rising, the last one 0.
     pub time_s: Vec<f64>,
-    /// Velocity v_x along the vehicle, m/s.
+    /// Velocity v_x along the vehicle, m/s, not backwards.
     pub speed_m_s: Vec<f64>,
     /// Steer angle of the front road wheels, rad, positive to the left.
     pub steer_rad: Vec<f64>,
@@ -30,8 +30,9 @@ pub struct RecordedDrive {
 pub struct RecordedMotion {
     /// States every 10 ms, the last one at the first contact, time 0.
     pub points: Vec<PathPoint>,
-    /// Largest horizontal acceleration along the record over what the friction of the road allows.
-    pub friction_use: f64,
+    /// Largest horizontal acceleration from the beginning of the record up to each of them over what the
+    /// friction of the road allows.
+    friction_use: Vec<f64>,
 }
 
 impl RecordedDrive {
@@ -62,31 +63,22 @@ impl RecordedDrive {
         vehicle: &VehicleParameters,
         motion: &Motion,
     ) -> Result<RecordedMotion, SeriesError> {
-        let of = |channel| motion.series.require(channel);
-        let [x, y, yaw] = [of(Channel::X)?, of(Channel::Y)?, of(Channel::Yaw)?];
-        let [vx, vy, yaw_rate] = [of(Channel::Vx)?, of(Channel::Vy)?, of(Channel::YawRate)?];
-        let [ax, ay] = [of(Channel::Ax)?, of(Channel::Ay)?];
-        let [contact_s, start_s] = [self.contact_s(), self.start_s()];
-        let n = motion.series.n_samples();
-        let mut points = Vec::with_capacity(n);
-        let mut largest_m_s2 = 0.0_f64;
-        for (idx, time_s) in motion.series.time_s().iter().enumerate() {
-            let at = |column: &[f64]| column.get(idx).copied().unwrap_or(f64::NAN);
-            let time_s = if idx + 1 == n { 0.0 } else { time_s - contact_s };
-            if time_s >= start_s {
-                largest_m_s2 = largest_m_s2.max(at(ax).hypot(at(ay)));
-            }
-            points.push(PathPoint {
-                time_s,
-                x_m: at(x),
-                y_m: at(y),
-                yaw_rad: at(yaw),
-                vx_body_m_s: at(vx),
-                vy_body_m_s: at(vy),
-                yaw_rate_rad_s: at(yaw_rate),
-            });
+        let mut points = PathPoint::of_series(&motion.series)?;
+        let contact_s = self.contact_s();
+        points.iter_mut().for_each(|point| point.time_s -= contact_s);
+        if let Some(last) = points.last_mut() {
+            last.time_s = 0.0;
         }
-        let friction_use = largest_m_s2 / (vehicle.tires.friction * STANDARD_GRAVITY_M_S2);
+        let [ax, ay] = [motion.series.require(Channel::Ax)?, motion.series.require(Channel::Ay)?];
+        let limit_m_s2 = vehicle.tires.friction * STANDARD_GRAVITY_M_S2;
+        let mut largest = 0.0_f64;
+        let up_to = |(point, (ax, ay)): (&PathPoint, (&f64, &f64))| {
+            if point.time_s >= self.start_s() {
+                largest = largest.max(ax.hypot(*ay) / limit_m_s2);
+            }
+            largest
+        };
+        let friction_use = points.iter().zip(ax.iter().zip(ay)).map(up_to).collect();
         Ok(RecordedMotion { points, friction_use })
     }
 
@@ -123,24 +115,17 @@ impl RecordedMotion {
     /// motion without any.
     pub fn at(&self, time_s: f64) -> Option<PathPoint> {
         let after = self.points.partition_point(|point| point.time_s <= time_s);
-        let last = self.points.len().checked_sub(1)?;
-        let from = *self.points.get(after.saturating_sub(1))?;
-        let to = *self.points.get(after.min(last))?;
-        let span_s = to.time_s - from.time_s;
-        let share = match span_s > 0.0 {
-            true => ((time_s - from.time_s) / span_s).clamp(0.0, 1.0),
-            false => 0.0,
-        };
-        let mix = |of: fn(&PathPoint) -> f64| of(&from) + (of(&to) - of(&from)) * share;
-        Some(PathPoint {
-            time_s,
-            x_m: mix(|point| point.x_m),
-            y_m: mix(|point| point.y_m),
-            yaw_rad: mix(|point| point.yaw_rad),
-            vx_body_m_s: mix(|point| point.vx_body_m_s),
-            vy_body_m_s: mix(|point| point.vy_body_m_s),
-            yaw_rate_rad_s: mix(|point| point.yaw_rate_rad_s),
-        })
+        let from = self.points.get(after.saturating_sub(1))?;
+        let to = self.points.get(after).unwrap_or(from);
+        Some(from.towards(to, time_s))
+    }
+
+    /// Largest horizontal acceleration from the beginning of the record up to a time over what the friction of
+    /// the road allows.
+    pub fn friction_use_until(&self, time_s: f64) -> f64 {
+        let after = self.points.partition_point(|point| point.time_s <= time_s);
+        let last = after.checked_sub(1).and_then(|idx| self.friction_use.get(idx));
+        last.copied().unwrap_or(0.0)
     }
 }
 
@@ -171,7 +156,8 @@ mod tests {
         let length_m = motion.at(0.0).unwrap().x_m - motion.at(-8.0).unwrap().x_m;
         let integral_m = 34.0 + 38.0 + 34.5 + 2.0;
         assert!((length_m - integral_m).abs() < 0.05, "{length_m}");
-        assert!(motion.friction_use < 0.7, "{}", motion.friction_use);
+        let [at_first, whole] = [-8.0, 0.0].map(|time_s| motion.friction_use_until(time_s));
+        assert!(at_first < whole && whole < 0.7, "{at_first} {whole}");
     }
 
     /// With a constant angle it turns steadily from the beginning, as the linear bicycle model does.
@@ -197,7 +183,8 @@ mod tests {
         let motion = driven(vec![-2.0, -1.0, 0.0], vec![20.0, 20.0, 0.0], vec![0.0; 3]);
         let end = motion.at(0.0).unwrap();
         assert!(end.vx_body_m_s > 8.0, "{end:?}");
-        assert!(motion.friction_use > 0.85 && motion.friction_use < 1.05, "{motion:?}");
+        let friction_use = motion.friction_use_until(0.0);
+        assert!(friction_use > 0.85 && friction_use < 1.05, "{friction_use}");
     }
 
     #[test]

@@ -332,7 +332,7 @@ impl<'a> PairRun<'a> {
             if self.pair.vehicles[i].vehicle.fixed.is_some() {
                 continue;
             }
-            if force.is_none() && !self.moves[i] {
+            if force.is_none() && !self.moves[i] && self.runs[i].stays(&states[i]) {
                 next[i] = VehicleState::from_array(next[i]).at_rest().to_array();
                 continue;
             }
@@ -484,6 +484,10 @@ fn work_j(force: &ContactForce, from: &States, to: &States) -> f64 {
 #[cfg(test)]
 #[path = "coupled_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "coupled_rest_tests.rs"]
+mod rest_tests;
 
 #[cfg(test)]
 #[path = "edsmac_tests.rs"]

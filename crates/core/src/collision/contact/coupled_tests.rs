@@ -7,14 +7,12 @@ use super::*;
 use crate::collision::Footprint;
 use crate::collision::contact::CoupledSettings;
 use crate::collision::contact::test_pairs::{
-    TestCar, alike, free_body, last_state, mirrored, on_level_tires, simulate, state_at,
+    TestCar, alike, free_body, last_state, mirrored, on_level_tires, pit_manoeuvre, simulate,
+    state_at,
 };
 use crate::collision::contact::{FaceLaw, FaceLaws, FaceParameters, Recovery};
 use crate::data::Channel;
-use crate::vehicle::{
-    Braking, DrivenAxle, Driving, Ending, HeldSteer, Integrator, LibraryVehicle, Manoeuvre,
-    SimulationError,
-};
+use crate::vehicle::{DrivenAxle, Driving, Ending, Integrator, Manoeuvre, SimulationError};
 
 const UNDAMPED: ContactConditions =
     ContactConditions { friction: 0.4, damping_s_m: 0.0, height_m: 0.5 };
@@ -264,26 +262,6 @@ proptest! {
     }
 }
 
-/// A car that drives at 20 m/s and one beside its rear, which turns into it, for 1.5 s.
-fn pit_manoeuvre(longest_element_m: f64) -> [TestCar; 2] {
-    let car = |id, x_m, y_m, yaw_deg: f64, speed_m_s| {
-        let vehicle = LibraryVehicle::from_id(id).unwrap().parameters();
-        let faces = FaceLaws::by_class(&vehicle).unwrap();
-        let yaw_rad = yaw_deg.to_radians();
-        let initial =
-            VehicleState { x_m, y_m, yaw_rad, ..VehicleState::driving_straight(speed_m_s) };
-        let mut car = TestCar::new(vehicle, [0.25, longest_element_m], faces, initial);
-        car.manoeuvre.duration_s = 1.5;
-        car
-    };
-    let struck = car("toyota-camry-2018", 0.0, 0.0, 0.0, 20.0);
-    let mut striking = car("ford-explorer-2020", -3.6, 2.3, -8.0, 21.0);
-    let steer = HeldSteer { start_s: 0.0, rise_s: 0.3, road_wheel_rad: 0.03 };
-    let ending = Ending { steer: Some(steer), ..Ending::default() };
-    striking.manoeuvre.controls = ending.controls(&striking.vehicle);
-    [struck, striking]
-}
-
 /// Largest distance of both cars between two motions, m, and of the headings, rad.
 fn difference(a: &PairMotion, b: &PairMotion) -> [f64; 2] {
     let mut largest = [0.0_f64; 2];
@@ -341,39 +319,6 @@ fn long_steps_and_long_elements_change_a_pit_manoeuvre_by_less_than_a_car_width(
             "{label}: {off:?} m, rad"
         );
     }
-}
-
-/// Residual accelerations that would drive and spin a coasting car without end leave it at least half of
-/// what its tires take, and noise that gives as often as it takes is hardly changed.
-#[test]
-fn what_the_equations_miss_does_not_drive_a_vehicle() {
-    let mut cars = pit_manoeuvre(0.08);
-    cars[1].manoeuvre.initial.y_m = 30.0;
-    cars.iter_mut().for_each(|car| car.manoeuvre.duration_s = 12.0);
-    cars[0].manoeuvre.initial.yaw_rate_rad_s = 2.0;
-    let energy_j = |residual: &dyn Fn(usize) -> [f64; N_ACCELERATION]| {
-        let vehicles = [&cars[0], &cars[1]].map(TestCar::in_pair);
-        let (conditions, settings) = (ContactConditions::default(), CoupledSettings::default());
-        let pair = VehiclePair { vehicles, conditions, settings };
-        let mut run = PairRun::new(&pair).unwrap();
-        let mut instant = 0;
-        while run.goes_on(&[residual(instant), [0.0; N_ACCELERATION]]).unwrap() {
-            instant += 1;
-        }
-        cars[0].vehicle.energy_j(&last_state(&run.finish().unwrap().motions[0]))
-    };
-    let start_j = cars[0].vehicle.energy_j(&cars[0].manoeuvre.initial);
-    let lost_j = start_j - energy_j(&|_| [0.0; N_ACCELERATION]);
-    for driving in [[3.0, 0.0, 0.0, 0.0], [0.0, 0.0, 4.0, 0.0], [3.0, 2.0, -4.0, 0.0]] {
-        let driven_j = start_j - energy_j(&|_| driving);
-        assert!(driven_j > 0.2 * lost_j, "{driving:?}: {driven_j} J of {lost_j} J are lost");
-    }
-    let noisy_j = start_j
-        - energy_j(&|instant| {
-            let sign = if instant.is_multiple_of(2) { 0.2 } else { -0.2 };
-            [sign, sign, sign, 0.0]
-        });
-    assert!((noisy_j / lost_j - 1.0).abs() < 0.02, "{noisy_j} J of {lost_j} J");
 }
 
 #[test]
@@ -454,28 +399,4 @@ fn what_does_not_go_together_is_refused() {
         }
         other => panic!("{other:?}"),
     }
-}
-
-/// A car that stands is not at rest as long as another one comes towards it.
-#[test]
-fn the_motion_ends_where_both_cars_have_come_to_rest() {
-    let mut cars = pit_manoeuvre(0.08);
-    cars[0].manoeuvre.initial.vx_body_m_s = 0.0;
-    cars[1].manoeuvre.initial =
-        VehicleState { x_m: -14.0, y_m: 0.4, ..VehicleState::driving_straight(10.0) };
-    for (car, start_s) in cars.iter_mut().zip([0.0, 1.2]) {
-        let brake = Some(Braking::new(start_s, 0.7, 0.2));
-        car.manoeuvre.controls = Ending { brake, ..Ending::default() }.controls(&car.vehicle);
-        (car.manoeuvre.duration_s, car.manoeuvre.ends_at_rest) = (20.0, true);
-    }
-    let motion = simulate([&cars[0], &cars[1]], ContactConditions::default(), 1).unwrap();
-    let [first, ..] = motion.phases[..] else { panic!("no contact") };
-    assert!((0.5..1.2).contains(&first.start_s), "{first:?}");
-    let [struck, striking] = &motion.motions;
-    let ends_s = [struck, striking].map(|motion| *motion.series.time_s().last().unwrap());
-    assert_eq!(ends_s[0], ends_s[1]);
-    assert!(ends_s[0] > first.start_s + 0.5 && ends_s[0] < 6.0, "{ends_s:?}");
-    assert!(struck.rest_s.is_some() && striking.rest_s.is_some(), "{ends_s:?}");
-    let pushed_m = last_state(struck).x_m;
-    assert!(pushed_m > 1.0, "pushed by {pushed_m} m");
 }

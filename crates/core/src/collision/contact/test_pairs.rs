@@ -6,7 +6,9 @@ use crate::collision::contact::{
     PairMotion, PairVehicle, VehiclePair,
 };
 use crate::data::Channel;
-use crate::vehicle::{Manoeuvre, Motion, Preset, VehicleParameters, VehicleState};
+use crate::vehicle::{
+    Ending, HeldSteer, LibraryVehicle, Manoeuvre, Motion, Preset, VehicleParameters, VehicleState,
+};
 
 /// A vehicle with its outline, its faces and what it does.
 #[derive(Debug)]
@@ -111,6 +113,26 @@ pub fn simulate(
     let conditions = ContactConditions { height_m, ..conditions };
     let settings = CoupledSettings { step_divisor, ..CoupledSettings::default() };
     VehiclePair { vehicles, conditions, settings }.simulate()
+}
+
+/// A car that drives at 20 m/s and one beside its rear, which turns into it, for 1.5 s.
+pub fn pit_manoeuvre(longest_element_m: f64) -> [TestCar; 2] {
+    let car = |id, x_m, y_m, yaw_deg: f64, speed_m_s| {
+        let vehicle = LibraryVehicle::from_id(id).unwrap().parameters();
+        let faces = FaceLaws::by_class(&vehicle).unwrap();
+        let yaw_rad = yaw_deg.to_radians();
+        let initial =
+            VehicleState { x_m, y_m, yaw_rad, ..VehicleState::driving_straight(speed_m_s) };
+        let mut car = TestCar::new(vehicle, [0.25, longest_element_m], faces, initial);
+        car.manoeuvre.duration_s = 1.5;
+        car
+    };
+    let struck = car("toyota-camry-2018", 0.0, 0.0, 0.0, 20.0);
+    let mut striking = car("ford-explorer-2020", -3.6, 2.3, -8.0, 21.0);
+    let steer = HeldSteer { start_s: 0.0, rise_s: 0.3, road_wheel_rad: 0.03 };
+    let ending = Ending { steer: Some(steer), ..Ending::default() };
+    striking.manoeuvre.controls = ending.controls(&striking.vehicle);
+    [struck, striking]
 }
 
 /// State at a sample of a motion.

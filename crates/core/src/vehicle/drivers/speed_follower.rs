@@ -24,7 +24,7 @@ const LARGEST_SHARE: f64 = 0.95;
 pub struct FollowedSpeed {
     /// Times of the samples, s, strictly rising.
     pub time_s: Vec<f64>,
-    /// Velocity v_x along the vehicle at these times, m/s.
+    /// Velocity v_x along the vehicle at these times, m/s, not backwards.
     pub speed_m_s: Vec<f64>,
     /// The axle that is driven.
     pub axle: DrivenAxle,
