@@ -73,14 +73,17 @@ fn what_is_assumed_and_what_is_missing_is_said() {
     );
     let ran = impactlab(&["replay", text(&file), "--steering-ratio", "100"]);
     assert_eq!(ran.code, 2, "{}", ran.err);
+    let table = write(&folder, "table.csv", "Time [s],Speed [km/h]\n-1,50\n-0.5,50\n0,50\n");
+    let ran = impactlab(&["replay", text(&table), "--event", "7"]);
+    assert!(ran.error_line().contains("event 7"), "{}", ran.err);
 }
 
 /// What the import writes is followed, with its own side of the yaw rate.
 #[test]
 fn the_controls_of_an_import_are_followed() {
     let folder = TempDir::new().unwrap();
-    let turning = "Time [s],Speed [km/h],Steering Wheel Angle [deg],Yaw Rate [deg/s]\n\
-        -3,50,60,-16\n-2,50,60,-16\n-1,50,60,-16\n0,50,60,-16\n";
+    let turning = "Time [s],Speed [km/h],Steering Wheel Angle [deg],Yaw Rate [deg/s],ABS Activity\n\
+        -3,50,60,-16,Off\n-2,50,60,-16,Off\n-1,50,60,-16,Off\n0,50,60,-16,On\n";
     let file = write(&folder, "edr.csv", turning);
     let out = folder.path().join("record");
     ok(program()
@@ -94,5 +97,6 @@ fn the_controls_of_an_import_are_followed() {
     let [imported, direct] = [of(text(&controls), "left"), of(text(&file), "right")];
     assert_eq!(imported["yaw_rate"], direct["yaw_rate"]);
     assert_eq!(imported["at_contact"], direct["at_contact"]);
+    assert!(imported["caveats"].to_string().contains("anti-lock system was at work"), "{imported}");
     assert!(imported["samples"][0]["recorded_yaw_rate_rad_s"].as_f64().unwrap() > 0.0);
 }

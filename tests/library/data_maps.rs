@@ -237,3 +237,50 @@ fn a_heading_that_a_recorder_keeps_within_a_turn_is_read_without_jumps() {
     // This one counts its turns: a fast spin, seldom recorded.
     assert_eq!(yaw_deg(rows([0.0, 200.0, 400.0, 600.0])), [0.0, 200.0, 400.0, 600.0]);
 }
+
+/// A car stands, where the course of its receiver goes round, and drives a bend to the right. Its sensor counts a
+/// yaw rate clockwise.
+#[test]
+fn a_racelogic_yaw_rate_is_mirrored_by_the_map_that_is_offered() {
+    let mut text =
+        "File created on 25/11/2026\n\n[header]\nvelocity knots\n\n[channel units]\ndeg/s\n\n\
+        [column names]\nsats time lat long velocity heading YawRate\n\n[data]\n"
+            .to_owned();
+    let (mut east_m, mut north_m, mut course_rad) = (0.0, 0.0, 0.0_f64);
+    for i in 0..700_i32 {
+        let (speed_m_s, rate_rad_s) = if i < 300 { (0.0, 0.0) } else { (15.0, 0.4) };
+        course_rad += 0.01 * rate_rad_s;
+        east_m += 0.01 * speed_m_s * course_rad.sin();
+        north_m += 0.01 * speed_m_s * course_rad.cos();
+        let course_deg = if i < 300 { f64::from(137 * i % 360) } else { course_rad.to_degrees() };
+        text += &format!(
+            "011 {:.2} {:.8} {:.8} {:.4} {course_deg:.3} {:.4}\n",
+            100_000.0 + 0.01 * f64::from(i),
+            3120.0 + north_m / 1854.6,
+            60.0 - east_m / 1145.2,
+            speed_m_s * 3600.0 / 1852.0,
+            f64::to_degrees(rate_rad_s)
+        );
+    }
+    let said = |loaded: &Loaded| -> String {
+        loaded.notes.iter().map(|note| format!("{note}\n")).collect()
+    };
+    let loaded = read(&text, "").unwrap();
+    let notes = said(&loaded);
+    assert!(notes.contains("one of them is clockwise; map yaw_rate=-7:deg/s"), "{notes}");
+    assert!(notes.contains("300 of 700 rows are slower than 1 m/s"), "{notes}");
+    assert!(loaded.notes.iter().any(Note::is_contradiction), "{notes}");
+    let loaded = read(&text, "yaw_rate=-7:deg/s").unwrap();
+    assert!(!loaded.notes.iter().any(Note::is_contradiction), "{}", said(&loaded));
+    assert!((values(&loaded, Channel::Vx)[699] - 15.0).abs() < 1e-3);
+    assert!((values(&loaded, Channel::YawRate)[699] + 0.4).abs() < 1e-4);
+}
+
+#[test]
+fn a_gap_of_days_between_two_dated_rows_is_kept() {
+    let text = "time,x [m],y [m]\n2026-11-25 10:00:00,0,0\n2026-11-26 11:00:00,5,0\n\
+        2026-11-29 12:00:00,6,0\n";
+    let loaded = read(text, "").unwrap();
+    assert_eq!(values(&loaded, Channel::X).len(), 3);
+    assert_eq!(loaded.series.time_s(), [36_000.0, 126_000.0, 388_800.0]);
+}

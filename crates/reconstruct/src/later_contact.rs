@@ -17,7 +17,7 @@ use impactlab_core::collision::contact::{
     ContactBody, ContactConditions, ContactOutline, CoupledSettings, FaceLaws, PairMotion, PairRun,
     PairVehicle, VehiclePair, way_to_touch_m,
 };
-use impactlab_core::data::{Channel, ForceHistory, Sampling};
+use impactlab_core::data::{ForceHistory, Sampling};
 use impactlab_core::vehicle::{
     ContactLoad, ContactPoint, Manoeuvre, Motion, Path, PathEnd, PathLimit, PathPoint,
     SimulationRun,
@@ -105,7 +105,7 @@ impl FollowedCar {
         let contact = ContactPoint { x_body_m: 0.0, y_body_m: 0.0, height_m: CONTACT_HEIGHT_M };
         let contact_load = Some(ContactLoad { force, contact, recorded_moment: true });
         let manoeuvre = Manoeuvre { contact_load, ..manoeuvre.clone() };
-        Some(Self::new(manoeuvre, path(motion, is_far)))
+        Some(Self::new(manoeuvre, path(motion, is_far)?))
     }
 }
 
@@ -234,24 +234,16 @@ impl LaterContacts {
 }
 
 /// The path of a recorded motion.
-fn path(motion: &Motion, is_far: bool) -> Path {
-    use Channel as C;
-    let column = |channel| motion.series.get(channel).unwrap_or(&[]);
-    let columns = [C::X, C::Y, C::Yaw, C::Vx, C::Vy, C::YawRate].map(column);
-    let times_s = motion.series.time_s();
-    let point = |i: usize, time_s: f64| {
-        let [x_m, y_m, yaw_rad, vx_body_m_s, vy_body_m_s, yaw_rate_rad_s] =
-            columns.map(|column| column.get(i).copied().unwrap_or(f64::NAN));
-        PathPoint { time_s, x_m, y_m, yaw_rad, vx_body_m_s, vy_body_m_s, yaw_rate_rad_s }
-    };
+fn path(motion: &Motion, is_far: bool) -> Option<Path> {
+    let mut points = PathPoint::of_series(&motion.series).ok()?;
     let rest_s = motion.rest_s.unwrap_or(f64::INFINITY);
-    let moving = times_s.iter().enumerate().filter(|(_, time_s)| **time_s <= rest_s);
+    points.retain(|point| point.time_s <= rest_s);
     let end = match motion.rest_s {
         Some(_) => PathEnd::Rest,
         None if is_far => PathEnd::Far,
         None => PathEnd::Time,
     };
-    Path { points: moving.map(|(i, time_s)| point(i, *time_s)).collect(), end }
+    Some(Path { points, end })
 }
 
 /// A place on a path that goes on with time.
@@ -287,6 +279,7 @@ mod tests {
     use super::*;
     use crate::evidence::examples::{SPIN, read};
     use crate::{CollisionMotion, ForwardModel};
+    use impactlab_core::data::Channel;
     use impactlab_core::vehicle::Integrator;
 
     /// Particles that differ in every component, most of all in how much faster the striking car is.

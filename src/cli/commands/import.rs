@@ -224,13 +224,16 @@ fn import_recorder(args: &ImportArgs, staging: &Path) -> Result<Imported, CliErr
 fn write_controls(path: &Path, before: &RecordedControls) -> Result<(), CliError> {
     let to_left = |rate: &f64| 0.0 - rate;
     let yaw_rate: Vec<f64> = before.yaw_rate_right_rad_s.iter().map(to_left).collect();
-    let braked: Vec<f64> = before.is_braked.iter().map(|on| f64::from(u8::from(*on))).collect();
+    let switch =
+        |on: &[bool]| -> Vec<f64> { on.iter().map(|on| f64::from(u8::from(*on))).collect() };
+    let (braked, anti_lock) = (switch(&before.is_braked), switch(&before.is_anti_lock_active));
     let columns = [
         ("time_s", &before.time_s),
         ("speed_m_s", &before.speed_m_s),
         ("steering_wheel_rad", &before.steering_wheel_rad),
         ("yaw_rate_rad_s", &yaw_rate),
         ("service brake on", &braked),
+        ("abs activity", &anti_lock),
     ];
     let columns: Vec<_> = columns.into_iter().filter(|(_, values)| !values.is_empty()).collect();
     let header: Vec<String> = columns.iter().map(|(name, _)| (*name).to_owned()).collect();

@@ -1,17 +1,15 @@
-//! The clocks of files: times of day, seconds with a second column for their fraction, and seconds since
-//! 1970.
+//! The clocks of files: seconds with a second column for their fraction, and seconds since 1970. Times of day
+//! have a [module of their own](super::time_of_day).
 
 use crate::data::columns::{ColumnUse, Term, open_question};
 use crate::data::spelling::{self, letters_and_digits};
+use crate::data::time_of_day::{DAY_S, HOUR_S};
 use crate::data::{
     Channel, ColumnMap, ColumnRef, ColumnSource, Correction, DataError, FileKind, Note, Table,
     TimeSeries,
 };
 use crate::numerics::quantile_of_sorted;
 use crate::units::Quantity;
-
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 86_400.0;
 
 /// Seconds since 1970 in the years 2001 to 2096, by which such a clock is known.
 const UNIX_S: std::ops::Range<f64> = 1e9..4e9;
@@ -90,77 +88,6 @@ fn divided(key: &str) -> Option<(String, &'static str)> {
             is_known.then(|| (stem.to_owned(), *symbol))
         })
     })
-}
-
-/// The times of day in a column, such as `12:59:59.9`, in seconds; they go on over midnight, and over the
-/// hour where no hours are given. `None` if the first cell is no such time.
-///
-/// # Errors
-/// The index of the first row that holds something else.
-pub(super) fn times_of_day_s(table: &Table, column_idx: usize) -> Option<Result<Vec<f64>, usize>> {
-    let (_, period_s) = time_of_day_s(&table.cell(0, column_idx))?;
-    let mut values: Vec<f64> = Vec::with_capacity(table.n_rows());
-    let mut turns_s = 0.0;
-    for row_idx in 0..table.n_rows() {
-        let Some((time_s, _)) = time_of_day_s(&table.cell(row_idx, column_idx)) else {
-            return Some(Err(row_idx));
-        };
-        let last_s = values.last().copied().unwrap_or(time_s);
-        if time_s + turns_s < last_s - period_s / 2.0 {
-            turns_s += period_s;
-        }
-        values.push(time_s + turns_s);
-    }
-    Some(Ok(values))
-}
-
-/// Seconds and period of a time of day: hours, minutes and seconds, or minutes and seconds, perhaps after
-/// a date. One that says its distance from UTC is turned into UTC.
-fn time_of_day_s(text: &str) -> Option<(f64, f64)> {
-    let text = text.trim().trim_end_matches(['Z', 'z']);
-    let time = text.rsplit(['T', ' ']).next()?;
-    if let Some(at) = time.find(['+', '-']) {
-        let (clock, offset) = time.split_at_checked(at)?;
-        let (time_s, period_s) = plain_time_s(clock)?;
-        let in_utc_s = (time_s - offset_s(offset)?).rem_euclid(DAY_S);
-        return (period_s == DAY_S).then_some((in_utc_s, DAY_S));
-    }
-    plain_time_s(time)
-}
-
-/// Seconds of `+hh:mm`, `+hhmm` or `+hh`.
-fn offset_s(text: &str) -> Option<f64> {
-    let sign = if text.starts_with('-') { -1.0 } else { 1.0 };
-    let digits: String = text.get(1..)?.chars().filter(|c| *c != ':').collect();
-    let is_plain = digits.bytes().all(|byte| byte.is_ascii_digit());
-    let (hours, minutes) = digits.split_at_checked(2).filter(|_| is_plain)?;
-    let hours = hours.parse::<f64>().ok().filter(|hours| *hours < 24.0)?;
-    let minutes = match minutes.len() {
-        0 => 0.0,
-        2 => minutes.parse::<f64>().ok().filter(|minutes| *minutes < 60.0)?,
-        _ => return None,
-    };
-    Some(sign * (HOUR_S * hours + 60.0 * minutes))
-}
-
-fn plain_time_s(time: &str) -> Option<(f64, f64)> {
-    let time = time.replace(',', ".");
-    let parts: Vec<&str> = time.split(':').collect();
-    let (seconds, whole) = parts.split_last()?;
-    let is_plain = |part: &&str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
-    let is_second = seconds.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
-    let seconds: f64 = seconds.parse().ok().filter(|s| is_second && (0.0..61.0).contains(s))?;
-    let whole: Vec<f64> = whole
-        .iter()
-        .map(|part| part.parse().ok().filter(|_| is_plain(part)))
-        .collect::<Option<_>>()?;
-    match whole[..] {
-        [minutes] if minutes < 60.0 => Some((60.0 * minutes + seconds, HOUR_S)),
-        [hours, minutes] if hours < 24.0 && minutes < 60.0 => {
-            Some((HOUR_S * hours + 60.0 * minutes + seconds, DAY_S))
-        }
-        _ => None,
-    }
 }
 
 /// Seconds after which a clock of plain numbers begins again at 0: at the minute, the hour and midnight.
@@ -314,27 +241,6 @@ mod tests {
             let before = unknown.clone();
             assert_eq!(go_on(&mut unknown), None);
             assert_eq!(unknown, before);
-        }
-    }
-
-    #[test]
-    fn times_of_day_are_read() {
-        for (text, seconds) in [
-            ("12:59:59.9", Some((46_799.9, DAY_S))),
-            ("2026-11-25T00:00:01,5Z", Some((1.5, DAY_S))),
-            ("25.11.2026 00:01:00", Some((60.0, DAY_S))),
-            ("2026-11-25T00:30:01.5+01:00", Some((84_601.5, DAY_S))),
-            ("12:00:00-0330", Some((55_800.0, DAY_S))),
-            ("59:59.5", Some((3599.5, HOUR_S))),
-            ("59:59+01:00", None),
-            ("12:00:00+1:00:00", None),
-            ("12:00:00-", None),
-            ("12:60:00", None),
-            ("12:+5:00", None),
-            ("1.5", None),
-            ("a:b", None),
-        ] {
-            assert_eq!(time_of_day_s(text), seconds, "{text}");
         }
     }
 }

@@ -16,18 +16,12 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
+use crate::data::yaw_rate::{MOVING_M_S, against_yaw_rate, speed_m_s};
 use crate::data::{Channel, TimeSeries};
 use crate::numerics::{continued_rad, wrap_angle_rad};
 
 /// Windows into which a motion is divided.
 const N_WINDOWS: usize = 24;
-/// Difference of the yaw angle and the integral of the yaw rate up to which they go together, rad: noise and
-/// drift of a gyroscope over some seconds.
-const DRIFT_RAD: f64 = 0.1;
-/// The same as a share of the turn: a gyroscope with a scale error, a yaw that is smoothed.
-const FITTING: f64 = 0.2;
-/// Share of the turn that may remain when a factor is taken out, so that there is one at all.
-const EXPLAINED: f64 = 0.35;
 /// Deviation of a slope from a known factor.
 pub(super) const FACTOR_REACH: f64 = 0.15;
 /// Speed from which the direction of motion is known from positions, m/s.
@@ -99,54 +93,16 @@ fn windows(n_samples: usize) -> Option<impl Iterator<Item = (usize, usize)>> {
     Some((0..N_WINDOWS).map(move |i| (i * n_steps / N_WINDOWS, (i + 1) * n_steps / N_WINDOWS)))
 }
 
-/// Compares the yaw angle with the integral of the yaw rate, both about their means, so that neither noise of
-/// single samples nor where the integral begins matters.
-fn against_yaw_rate(series: &TimeSeries) -> Option<Contradiction> {
-    let (time_s, rate) = (series.time_s(), series.get(Channel::YawRate)?);
-    let yaw_rad = continued_rad(series.get(Channel::Yaw)?);
-    let mut turned_rad = 0.0;
-    let mut integral = vec![0.0];
-    for i in 1..time_s.len() {
-        turned_rad += (time_s[i] - time_s[i - 1]) * (rate[i - 1] + rate[i]) / 2.0;
-        integral.push(turned_rad);
-    }
-    let [yaw, by_rate] = [centred(&yaw_rad), centred(&integral)];
-    let off = |slope: f64| rms(yaw.iter().zip(&by_rate).map(|(yaw, rate)| yaw - slope * rate));
-    let [yaw_size, rate_size] = [&yaw, &by_rate].map(|values| rms(values.iter().copied()));
-    // What a gyroscope drifts by, and a scale error.
-    if off(1.0) <= DRIFT_RAD.max(FITTING * yaw_size) {
-        return None;
-    }
-    let slope = match rate_size > 0.0 {
-        true => {
-            let product: f64 = yaw.iter().zip(&by_rate).map(|(yaw, rate)| yaw * rate).sum();
-            product / (rate_size * rate_size * yaw.len() as f64)
-        }
-        false => 0.0,
-    };
-    Some(match off(slope) <= EXPLAINED * yaw_size {
-        true => Contradiction::YawRate { factor: slope },
-        false => Contradiction::YawRateUnrelated,
-    })
-}
-
-fn centred(values: &[f64]) -> Vec<f64> {
-    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-    values.iter().map(|value| value - mean).collect()
-}
-
-fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let n = values.len().max(1) as f64;
-    (values.map(|value| value * value).sum::<f64>() / n).sqrt()
-}
-
 /// Course and heading in the middle of each window in which the vehicle drives.
 fn courses(series: &TimeSeries) -> Option<Vec<(f64, f64)>> {
     let time_s = series.time_s();
     let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
     let yaw_rad = continued_rad(series.get(Channel::Yaw)?);
+    let speed = speed_m_s(series);
+    let is_moving = |i: usize| speed.as_ref().is_none_or(|speed| speed[i] >= MOVING_M_S);
     let mut pairs = Vec::new();
-    for (from, to) in windows(time_s.len())? {
+    for (from, to) in windows(time_s.len())?.filter(|(from, to)| is_moving(*from) && is_moving(*to))
+    {
         let moved_m = [x[to] - x[from], y[to] - y[from]];
         let duration_s = time_s[to] - time_s[from];
         if moved_m[0].hypot(moved_m[1]) < DRIVING_M_S * duration_s {

@@ -131,6 +131,15 @@ pub enum DataError {
         /// What to do, in words.
         remedy: &'static str,
     },
+    /// Nothing of a record of an event data recorder can be used.
+    #[error("{}: is no record of an event data recorder that can be used{}; it has columns such as Time [s], Speed [km/h], Steering Wheel Angle [deg], Delta-V, Longitudinal [km/h], with times that increase",
+        path.display(), in_brackets(doubts))]
+    NoRecord {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with what was found; none if nothing was.
+        doubts: Vec<String>,
+    },
     /// A workbook is damaged, or protected by a password.
     #[error("{}: the workbook cannot be read ({why}); save it again as .xlsx or as CSV", path.display())]
     Workbook {
@@ -631,6 +640,17 @@ fn column_letters(mut number: usize) -> String {
 
 /// Number of names that a message lists; of further names it states the count.
 const LISTED: usize = 12;
+
+/// Number of sentences that a message has in brackets.
+const SENTENCES: usize = 4;
+
+/// The first sentences of several, after the end of another one.
+fn in_brackets(sentences: &[String]) -> String {
+    match sentences.get(..SENTENCES).unwrap_or(sentences) {
+        [] => String::new(),
+        first => format!(" ({})", first.join("; ")),
+    }
+}
 
 fn list(names: &[String]) -> String {
     let mut text: Vec<String> = names.iter().take(LISTED).map(|name| quoted(name)).collect();

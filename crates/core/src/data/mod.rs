@@ -56,12 +56,14 @@ mod si_values;
 mod spelling;
 mod table;
 mod text;
+mod time_of_day;
 mod toml_file;
 mod toml_table;
 mod vbo;
 mod velocity_fit;
 mod workbook;
 pub mod write;
+mod yaw_rate;
 
 pub use attributes::{Attributes, Value};
 pub use budget::{

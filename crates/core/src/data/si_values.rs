@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use crate::data::time_of_day::times_of_day_s;
 use crate::data::{
     Channel, ColumnUse, DataError, Formula, Note, ReadSettings, Table, Term, clock, impulse,
 };
@@ -163,9 +164,15 @@ fn term_values(
 ) -> Result<Vec<f64>, DataError> {
     let idx = term.number.saturating_sub(1);
     if column.channel == Channel::Time
-        && let Some(times) = clock::times_of_day_s(table, idx)
+        && let Some(times) = times_of_day_s(table, idx)
     {
-        return times.map_err(|row_idx| table.cell_error(row_idx, idx, "a time of day"));
+        return times.map_err(|row_idx| {
+            table.cell_error(
+                row_idx,
+                idx,
+                "a time of day, and a date that can be read where the day changes",
+            )
+        });
     }
     let mut values = table.numbers(idx, term.unit.symbol)?;
     values.iter_mut().for_each(|value| *value = term.sign * term.unit.to_si(*value));

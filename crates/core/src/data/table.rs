@@ -86,13 +86,7 @@ impl Table {
             let (path, wanted, found) = (path.to_owned(), sheet.to_string(), Vec::new());
             return Err(DataError::NoSheet { path, wanted, found });
         }
-        if let Some(rows) = vbo::as_table(&text.text) {
-            let said = Said {
-                description: vbo::DESCRIPTION.to_owned(),
-                keeps_lines: true,
-                ..Said::default()
-            };
-            let converted = Converted { text: rows, said };
+        if let Some(converted) = vbo::as_table(&text.text) {
             return Self::of_format(path, converted, text.encoding, settings);
         }
         refuse_known_text(path, &text.text)?;

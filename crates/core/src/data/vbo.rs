@@ -1,7 +1,8 @@
 //! Reads the files of Racelogic's data loggers (VBO) as tables.
 //!
 //! A VBO file has sections in brackets. Latitude and longitude are in minutes of arc, the latter positive
-//! to the west; the time is HHMMSS.ss, the heading a compass course and the velocity in km/h.
+//! to the west; the time is HHMMSS.ss, the heading a compass course and the velocity in the unit that `[header]` says,
+//! usually km/h.
 //!
 //! `[channel units]` has a line for each channel that is not one of the logger itself, which may be empty; those
 //! of the channels of modules stand at the end of the list as their columns do at the end of a row. Columns that
@@ -10,12 +11,20 @@
 
 use crate::data::Separator;
 use crate::data::dialect::Dialect;
+use crate::data::formats::{Converted, NAUTICAL_MILE_M, OF_COURSE, Said};
+use crate::data::spelling;
+use crate::data::time_of_day::DAY_S;
+use crate::data::yaw_rate::{MOVING_M_S, tells_sides};
+use crate::numerics::wrap_angle_rad;
+use crate::units::Quantity;
 
 /// What a remark says of such a file.
-pub(super) const DESCRIPTION: &str = "a Racelogic VBO file: places from latitude and longitude, yaw from \
-     the course over ground, v_x from the velocity along it";
+const DESCRIPTION: &str = "a Racelogic VBO file: places from latitude and longitude, yaw from the course over \
+     ground, v_x from the velocity along it";
 
-const DAY_S: f64 = 86_400.0;
+/// What is said of a yaw rate that the course cannot confirm.
+const OPEN_SIDE: &str = "the sign of the yaw rate could not be compared with the course, as the car hardly turns \
+     where it drives; by the type of the sensor it is positive clockwise or counterclockwise";
 
 /// The unit of a channel for which the file has one that cannot be its own; no quantity has it, so that the column
 /// is left out until a map says its unit.
@@ -58,18 +67,72 @@ const KINDS: [(&[&str], &[&str]); 3] = [
     (&["wheelsp", "vehiclespeed"], &["km/h", "kmh", "kph", "m/s", "mph", "kn", "kt"]),
 ];
 
+/// Words for knots, which are turned into km/h.
+const KNOTS: [&str; 6] = ["knots", "knot", "kts", "kt", "kn", "kns"];
+
 /// A column of the file: its kind, and the name and unit that it gets.
 enum Column {
     Time,
     Latitude,
     Longitude,
     Heading,
+    Velocity,
     Other,
+}
+
+/// The unit of the velocities.
+struct Velocity {
+    /// The header of their column.
+    name: String,
+    /// By what knots are multiplied; `None` for numbers that stay as they are.
+    km_h_per_knot: Option<f64>,
+    /// Metres per second in the unit of the header; `None` if it is none that is known.
+    unit_m_s: Option<f64>,
+}
+
+/// The course over ground of the rows in which the car drives.
+#[derive(Default)]
+struct Course {
+    n_rows: usize,
+    n_slow: usize,
+    last_rad: Option<f64>,
+    /// How far it has turned, row by row.
+    turned_rad: Vec<f64>,
+}
+
+impl Course {
+    fn take(&mut self, speed_m_s: Option<f64>, course_rad: Option<f64>) {
+        let (Some(speed_m_s), Some(course_rad)) = (speed_m_s, course_rad) else { return };
+        self.n_rows += 1;
+        if speed_m_s < MOVING_M_S {
+            self.n_slow += 1;
+            self.last_rad = None;
+            return;
+        }
+        let step_rad = self.last_rad.map_or(0.0, |last_rad| wrap_angle_rad(course_rad - last_rad));
+        self.turned_rad.push(self.turned_rad.last().copied().unwrap_or_default() + step_rad);
+        self.last_rad = Some(course_rad);
+    }
+
+    /// What of it is in doubt, in words.
+    fn doubts(&self, names: &[&str]) -> Vec<String> {
+        let has = |part: &str| names.iter().any(|name| plain(name).contains(part));
+        let slow = (self.n_slow > 0).then(|| {
+            format!(
+                "{} of {} rows are slower than {MOVING_M_S} m/s: their course over ground is noise, and so is \
+                 the yaw angle that is made of it",
+                self.n_slow, self.n_rows
+            )
+        });
+        let side = (has("yawrate") && !tells_sides(&self.turned_rad)).then(|| OPEN_SIDE.to_owned());
+        let course = has("heading").then(|| OF_COURSE.to_owned());
+        course.into_iter().chain(slow).chain(side).collect()
+    }
 }
 
 /// The text as a table whose fields are separated by tabs, with every row in the line in which it stands;
 /// `None` if it is no VBO file.
-pub(super) fn as_table(text: &str) -> Option<String> {
+pub(super) fn as_table(text: &str) -> Option<Converted> {
     let is_section = |line: &str, name: &'static str| line.trim().eq_ignore_ascii_case(name);
     let start = text.lines().position(|line| is_section(line, "[data]"))?;
     let section = |name: &'static str| {
@@ -82,15 +145,17 @@ pub(super) fn as_table(text: &str) -> Option<String> {
         return None;
     }
     let units = units(&names, section("[channel units]").collect());
+    let velocity = velocity(section("[header]"));
     let columns: Vec<(Column, String)> =
-        names.iter().zip(units).map(|(name, unit)| column(name, unit)).collect();
+        names.iter().zip(units).map(|(name, unit)| column(name, unit, &velocity)).collect();
     let header: Vec<&str> = columns.iter().map(|(_, name)| name.as_str()).collect();
     let mut table = "\n".repeat(start);
     table.push_str(&header.join("\t"));
-    let (mut last_s, mut days_s) = (0.0, 0.0);
+    let (mut last_s, mut days_s, mut course) = (0.0, 0.0, Course::default());
     for line in text.lines().skip(start + 1) {
         table.push('\n');
         let mut cells = Vec::new();
+        let (mut speed_m_s, mut course_rad) = (None, None);
         for (idx, cell) in line.split_whitespace().enumerate() {
             let (separator, decimal_comma, thousands) = (Separator::Blanks, false, None);
             let plain = Dialect { separator, decimal_comma, thousands };
@@ -105,15 +170,56 @@ pub(super) fn as_table(text: &str) -> Option<String> {
                 }),
                 (Some(Column::Latitude), Some(minutes)) => Some(minutes / 60.0),
                 (Some(Column::Longitude), Some(minutes)) => Some(0.0 - minutes / 60.0),
-                (Some(Column::Heading), Some(heading_deg)) => Some(90.0 - heading_deg),
+                (Some(Column::Heading), Some(heading_deg)) => {
+                    course_rad = Some(heading_deg.to_radians());
+                    Some(90.0 - heading_deg)
+                }
+                (Some(Column::Velocity), Some(number)) => {
+                    let converted = velocity.km_h_per_knot.map(|factor| factor * number);
+                    let size = converted.unwrap_or(number).abs();
+                    speed_m_s = velocity.unit_m_s.map(|unit_m_s| size * unit_m_s);
+                    converted
+                }
                 _ => None,
             };
             cells.push(converted.map_or_else(|| cell.to_owned(), |number| number.to_string()));
         }
         table.push_str(&cells.join("\t"));
+        course.take(speed_m_s, course_rad);
     }
     table.push('\n');
-    Some(table)
+    let said = Said {
+        description: DESCRIPTION.to_owned(),
+        doubts: course.doubts(&names),
+        keeps_lines: true,
+        ..Said::default()
+    };
+    Some(Converted { text: table, said })
+}
+
+/// The letters and digits of a name, small.
+fn plain(name: &str) -> String {
+    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
+/// The unit of the velocities.
+///
+/// - `lines`: of the list of channels, such as `velocity kmh`.
+fn velocity<'a>(mut lines: impl Iterator<Item = &'a str>) -> Velocity {
+    let word = lines.find_map(|line| {
+        let (name, unit) = line.split_at_checked("velocity".len())?;
+        let is_it = name.eq_ignore_ascii_case("velocity") && plain(unit) != "quality";
+        is_it.then(|| unit.trim().to_lowercase())
+    });
+    let word = word.filter(|word| !word.is_empty()).unwrap_or_else(|| "km/h".to_owned());
+    let is_knots = KNOTS.contains(&word.as_str());
+    let unit = if is_knots { "km/h" } else { word.as_str() };
+    let known = spelling::unit(Quantity::Speed, unit);
+    Velocity {
+        name: format!("vx [{}]", known.map_or(unit, |unit| unit.symbol)),
+        km_h_per_knot: is_knots.then_some(NAUTICAL_MILE_M / 1000.0),
+        unit_m_s: known.map(|unit| unit.si_per_unit),
+    }
 }
 
 /// The unit of each column, if it has one.
@@ -122,9 +228,6 @@ pub(super) fn as_table(text: &str) -> Option<String> {
 fn units<'a>(names: &[&str], mut lines: Vec<&'a str>) -> Vec<Option<&'a str>> {
     // An empty line stands between the list and the next section.
     lines.pop_if(|last| last.is_empty());
-    let plain = |name: &str| -> String {
-        name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
-    };
     let is_own = |name: &str| name.starts_with('_') || OWN_CHANNELS.contains(&plain(name).as_str());
     let n_of_modules = names.iter().rev().take_while(|name| !is_own(name)).count();
     let n_before = names.len() - n_of_modules;
@@ -145,14 +248,14 @@ fn units<'a>(names: &[&str], mut lines: Vec<&'a str>) -> Vec<Option<&'a str>> {
     before.chain((0..n_of_modules).map(of_module)).collect()
 }
 
-fn column(name: &str, unit: Option<&str>) -> (Column, String) {
+fn column(name: &str, unit: Option<&str>, velocity: &Velocity) -> (Column, String) {
     let named = |name: &str| name.to_owned();
     match name.to_lowercase().as_str() {
         "time" => (Column::Time, named("time [s]")),
         "lat" | "latitude" => (Column::Latitude, named("latitude [deg]")),
         "long" | "longitude" => (Column::Longitude, named("longitude [deg]")),
         "heading" => (Column::Heading, named("yaw [deg]")),
-        "velocity" => (Column::Other, named("vx [km/h]")),
+        "velocity" => (Column::Velocity, velocity.name.clone()),
         own if own.starts_with('_') => (Column::Other, format!("receiver alone{name}")),
         _ => match unit {
             Some(unit) => (Column::Other, format!("{name} [{unit}]")),
@@ -180,7 +283,7 @@ mod tests {
             sats time lat long velocity heading Yaw_Rate\n[data]\n\
             011 235959.90 +03120.0 +00060.0 054.000 090.00 +17.2\n\
             011 000000.00 +03120.6 -00060.0 054.000 000.00 +17.2\n";
-        let table = as_table(text).unwrap();
+        let table = as_table(text).unwrap().text;
         let lines: Vec<&str> = table.lines().collect();
         assert_eq!(
             lines[6],
@@ -188,15 +291,15 @@ mod tests {
         );
         assert_eq!(lines[7], "011\t86399.9\t52\t-1\t054.000\t0\t+17.2");
         assert_eq!(lines[8], "011\t86400\t52.01\t1\t054.000\t90\t+17.2");
-        assert_eq!(as_table("[data]\n1 2\n"), None);
-        assert_eq!(as_table("t,fx\n1,2\n"), None);
+        assert!(as_table("[data]\n1 2\n").is_none());
+        assert!(as_table("t,fx\n1,2\n").is_none());
     }
 
     #[test]
     fn units_are_those_of_their_channels_or_unclear() {
         let header = |units: &str, names: &str| {
             let text = format!("[channel units]\n{units}\n[column names]\n{names}\n\n[data]\n1\n");
-            let table = as_table(&text).unwrap();
+            let table = as_table(&text).unwrap().text;
             table.lines().find(|line| !line.is_empty()).unwrap().replace('\t', "|")
         };
         // A channel of the logger with a unit, an empty line, and modules of which one has an empty unit.
@@ -218,5 +321,51 @@ mod tests {
             "sats|YawRate [unit unclear]|WheelSpeed [unit unclear]"
         );
         assert_eq!(header("", "sats YawRate"), "sats|YawRate");
+    }
+
+    #[test]
+    fn velocities_have_the_unit_of_the_list_of_channels() {
+        let read = |line: &str| {
+            let text = format!(
+                "[header]\nVelocity Quality\n{line}\nvertical velocity m/s\n\n[column names]\n\
+                 time velocity\n\n[data]\n100000.00 010.000\n"
+            );
+            let table = as_table(&text).unwrap().text;
+            let lines: Vec<String> =
+                table.lines().filter(|line| !line.is_empty()).map(str::to_owned).collect();
+            lines.iter().map(|line| line.split_once('\t').unwrap().1.to_owned()).collect::<Vec<_>>()
+        };
+        for (line, expected) in [
+            ("velocity kmh", ["vx [km/h]", "010.000"]),
+            ("velocity", ["vx [km/h]", "010.000"]),
+            ("Velocity mph", ["vx [mph]", "010.000"]),
+            ("velocity m/s", ["vx [m/s]", "010.000"]),
+            ("velocity knots", ["vx [km/h]", "18.52"]),
+            ("velocity furlongs", ["vx [furlongs]", "010.000"]),
+            ("", ["vx [km/h]", "010.000"]),
+        ] {
+            assert_eq!(read(line), expected, "{line}");
+        }
+    }
+
+    #[test]
+    fn a_course_at_rest_and_a_yaw_rate_without_a_turn_are_in_doubt() {
+        let doubts = |rows: &str| {
+            let names = "time velocity heading YawRate";
+            let text = format!("[column names]\n{names}\n\n[data]\n{rows}");
+            as_table(&text).unwrap().said.doubts.join("\n")
+        };
+        let row = |i: u32, speed: u32, course: u32| format!("10000{i}.00 {speed} {course} 0.1\n");
+        let bend: String = (0..9).map(|i| row(i, 54, (355 + 5 * i) % 360)).collect();
+        let turned = doubts(&bend);
+        assert!(turned.contains("slides or spins") && !turned.contains("noise"), "{turned}");
+        assert!(!turned.contains("sign of the yaw rate"), "{turned}");
+        let straight: String = (0..9).map(|i| row(i, 54, 90)).collect();
+        assert!(doubts(&straight).contains("sign of the yaw rate"), "{}", doubts(&straight));
+        // At rest the course goes round, which tells nothing.
+        let at_rest: String = (0..9).map(|i| row(i, 54 * (i / 8), (130 * i) % 360)).collect();
+        let at_rest = doubts(&at_rest);
+        assert!(at_rest.contains("8 of 9 rows are slower than 1 m/s"), "{at_rest}");
+        assert!(at_rest.contains("sign of the yaw rate"), "{at_rest}");
     }
 }

@@ -123,22 +123,12 @@ impl<'a> RecordedCar<'a> {
     /// record.
     fn series(&self) -> Result<TimeSeries, SeriesError> {
         let points = &self.path.points;
-        let time_s: Vec<f64> = points.iter().map(|point| point.time_s + self.first_s).collect();
-        let mut series = TimeSeries::new(time_s.clone())?;
-        let of = |value: fn(&PathPoint) -> f64| points.iter().map(value).collect::<Vec<f64>>();
-        for (channel, values) in COLUMNS.into_iter().zip([
-            of(|at| at.x_m),
-            of(|at| at.y_m),
-            of(|at| at.yaw_rad),
-            of(|at| at.vx_body_m_s),
-            of(|at| at.vy_body_m_s),
-            of(|at| at.yaw_rate_rad_s),
-        ]) {
-            series.insert(channel, values)?;
-        }
+        let later = |at: &PathPoint| PathPoint { time_s: at.time_s + self.first_s, ..*at };
+        let mut series = PathPoint::series(&points.iter().map(later).collect::<Vec<_>>())?;
         if let Some(steer) = &self.controls.steer {
             let at = |time_s: &f64| interpolate(&steer.time_s, &steer.steer_rad, *time_s);
-            let steer_rad: Vec<f64> = time_s.iter().map(|it| at(it).unwrap_or(0.0)).collect();
+            let times_s = series.time_s().iter();
+            let steer_rad: Vec<f64> = times_s.map(|it| at(it).unwrap_or(0.0)).collect();
             series.insert(Channel::SteerFl, steer_rad.clone())?;
             series.insert(Channel::SteerFr, steer_rad)?;
         }

@@ -104,20 +104,7 @@ impl Track {
         let before = after.saturating_sub(1);
         let (from, to) = (self.points.get(before)?, self.points.get(after));
         let Some(to) = to else { return Some((before, *from)) };
-        let share = (time_s - from.time_s) / (to.time_s - from.time_s);
-        let mix = |a: f64, b: f64| a + (b - a) * share.clamp(0.0, 1.0);
-        Some((
-            before,
-            PathPoint {
-                time_s,
-                x_m: mix(from.x_m, to.x_m),
-                y_m: mix(from.y_m, to.y_m),
-                yaw_rad: mix(from.yaw_rad, to.yaw_rad),
-                vx_body_m_s: mix(from.vx_body_m_s, to.vx_body_m_s),
-                vy_body_m_s: mix(from.vy_body_m_s, to.vy_body_m_s),
-                yaw_rate_rad_s: mix(from.yaw_rate_rad_s, to.yaw_rate_rad_s),
-            },
-        ))
+        Some((before, from.towards(to, time_s)))
     }
 
     /// Change of velocity of a point of the car in its heading axes up to a time, m/s: the integral of

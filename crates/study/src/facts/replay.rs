@@ -4,7 +4,7 @@ use impactlab_core::units::Quantity;
 
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
-use crate::{ReplayReport, ReplaySample, YawRateCheck};
+use crate::{ReplayReport, ReplaySample};
 
 impl ReplayReport {
     /// What the answer says: the car at the contact, its way, where it came from, and the recorded yaw rate.
@@ -54,26 +54,23 @@ impl ReplayReport {
 
     /// The recorded yaw rate against the computed one; none if none was recorded.
     pub fn yaw_table(&self) -> Option<FactTable> {
-        let YawRateCheck {
-            difference_rad_s,
-            deviations,
-            factor,
-            implied_steering_ratio,
-            disagrees,
-            ..
-        } = self.yaw_rate?;
-        let difference = Value::Number(Quantity::AngularVelocity, difference_rad_s);
+        let check = self.yaw_rate.as_ref()?;
+        let difference = Value::Number(Quantity::AngularVelocity, check.difference_rad_s);
         let mut facts = vec![
             Fact::new(Term::RecorderYawDifference, difference),
-            Fact::new(Term::RecorderYawDeviations, Value::Fixed(deviations, 1)),
+            Fact::new(Term::RecorderYawDeviations, Value::Fixed(check.deviations, 1)),
         ];
-        let fixed = |term, value| Fact::new(term, Value::Fixed(value, 2));
-        facts.extend(factor.map(|factor| fixed(Term::RecorderYawFactor, factor)));
-        facts.extend(implied_steering_ratio.map(|ratio| fixed(Term::RecorderYawRatio, ratio)));
-        if disagrees {
+        for (term, estimate) in [
+            (Term::RecorderYawFactor, &check.factor),
+            (Term::RecorderYawRatio, &check.implied_steering_ratio),
+        ] {
+            let estimate = estimate.as_ref();
+            facts.extend(estimate.map(|of| Fact::estimate(term, Quantity::Ratio, of)));
+        }
+        if check.disagrees {
             facts.iter_mut().for_each(|fact| fact.is_warning = true);
         }
-        Some(FactTable::new(Term::RecorderYawCheck, facts))
+        Some(FactTable::new(Term::RecorderYawCheck, facts).with_levels(PREDICTED))
     }
 
     /// The recorded samples beside the computed motion.

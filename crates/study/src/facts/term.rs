@@ -652,9 +652,11 @@ terms! {
         "Aufgezeichnete Gierrate gegen die berechnete";
     RecorderYawDifference: "difference (root mean square)", "Unterschied (quadratisches Mittel)";
     RecorderYawDeviations: "difference in standard deviations", "Unterschied in Standardabweichungen";
-    RecorderYawFactor: "recorded over computed", "aufgezeichnet durch berechnet";
+    RecorderYawFactor: "recorded over computed", "aufgezeichnet durch berechnet",
+        "Over the samples before the tires come near their limit";
     RecorderYawRatio: "steering ratio with which they would be alike",
-        "Lenkübersetzung, mit der beide gleich wären";
+        "Lenkübersetzung, mit der beide gleich wären",
+        "Over the samples before the tires come near their limit, if nothing else is wrong";
     // The check of files.
     Checked: "What was checked", "Geprüft";
     DataSets: "data sets", "Datensätze";

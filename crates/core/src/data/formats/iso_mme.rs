@@ -18,6 +18,8 @@
 //! characters of the place, the dimension (`AC`, `FO`, `VE` …), the axis and the filter class; places and axes
 //! differ from laboratory to laboratory, so that columns are named by their codes and mapped. Values are read as
 //! recorded; a channel of another time than the first one is a part of its own.
+//!
+//! The file is long because a test is read whole: its channels, their times and what is in doubt of each.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

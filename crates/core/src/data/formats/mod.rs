@@ -18,6 +18,7 @@ mod parquet_check;
 mod parquet_file;
 mod positions;
 mod recorder;
+mod recorder_table;
 mod tdms;
 mod tdms_file;
 
@@ -30,6 +31,7 @@ pub use fem::DeckUnits;
 pub(super) use fem::OpenUnits;
 pub use nhtsa::{CrashTest, TestChannel, TestVehicle};
 pub use nhtsa_curves::{BarrierForce, BarrierMomentum};
+pub(super) use positions::{NAUTICAL_MILE_M, OF_COURSE};
 pub use recorder::{RecordedControls, RecordedDeltaV, RecordedSpeed, RecorderRecord};
 
 /// Bytes at the beginning of a file by which a binary format is known.

@@ -17,7 +17,7 @@ use crate::data::formats::{Converted, Said, chosen_part, number_text};
 use crate::data::{DataError, ReadSettings, Sheet};
 
 /// Metres in a nautical mile.
-const NAUTICAL_MILE_M: f64 = 1852.0;
+pub(in crate::data) const NAUTICAL_MILE_M: f64 = 1852.0;
 
 /// Lines at the beginning by which a log is known.
 const EXAMINED_LINES: usize = 40;
@@ -29,8 +29,8 @@ const MAX_TRACKS: usize = 1000;
 const OF_ANTENNA: &str = "positions are those of the antenna: where it is not at the centre of gravity, the \
      path and a turn of the car mix; say where it was mounted (antenna=x,y from the CG)";
 
-/// What is said of the yaw angle of sentences `RMC`.
-const OF_COURSE: &str = "the yaw angle is the course over ground: of a car that slides or spins it is not the \
+/// What is said of a yaw angle that is a course over ground.
+pub(in crate::data) const OF_COURSE: &str = "the yaw angle is the course over ground: of a car that slides or spins it is not the \
      heading";
 
 /// Columns of sentences `RMC`.
@@ -67,6 +67,11 @@ pub(super) fn as_table(
     let Some(track) = tracks.get(chosen_part(path, &all, 0, settings)?) else {
         return Err(DataError::Empty { path: path.to_owned() });
     };
+    if track.rows.lines().all(|row| row.starts_with('\t')) {
+        let remedy =
+            "its points have no times, so that they are no motion; record a track with times";
+        return Err(DataError::OtherFormat { path: path.to_owned(), format, remedy });
+    }
     if settings.antenna_m.is_none() {
         doubts.push(OF_ANTENNA.to_owned());
     }
@@ -282,6 +287,9 @@ mod tests {
         assert!((x[1] - 68.68).abs() < 0.05 && x[0] == 0.0, "{x:?}");
         assert_eq!(loaded.series.time_s(), [36_000.0, 36_005.0]);
         assert!(read("a.gpx", "<?xml version=\"1.0\"?>\n<gpx></gpx>").is_err());
+        let timeless = text.replace("<time>", "<cmt>").replace("</time>", "</cmt>");
+        let error = read("a.gpx", &timeless).unwrap_err().to_string();
+        assert!(error.contains("its points have no times"), "{error}");
     }
 
     #[test]

@@ -18,6 +18,8 @@
 //! A segment without metadata, or without a new list, goes on with the objects of the one before. A file is
 //! passed through twice, first for its objects, then for the values that are wanted; nothing is set aside by
 //! what the file says of its sizes.
+//!
+//! The file is long because both passes walk the same segments: objects, values and the walk share its terms.
 
 use std::collections::BTreeMap;
 

@@ -18,6 +18,9 @@ use crate::site::cloud::source::damaged;
 /// Largest records beside the points, and largest layers of a chunk, bytes.
 const MAX_RECORD_BYTES: u64 = 64 << 20;
 
+/// Fewest bytes of a header, those of version 1.0.
+const HEADER_BYTES: u64 = 227;
+
 /// Bytes of the head of a record, and of one behind the points.
 const RECORD_HEAD: u64 = 54;
 const LATE_RECORD_HEAD: u64 = 60;
@@ -44,6 +47,10 @@ impl CheckedHeader {
     pub fn read(path: &Path) -> Result<Self, SiteError> {
         let wrong = |error: &dyn std::fmt::Display| damaged(path, error);
         let (file, bytes) = open_file(path, MAX_CLOUD_BYTES)?;
+        if bytes < HEADER_BYTES {
+            let why = format!("it has {bytes} bytes, fewer than the {HEADER_BYTES} of a header");
+            return Err(wrong(&why));
+        }
         let mut read = BufReader::new(file);
         let header = raw::Header::read_from(&mut read).map_err(|error| wrong(&error))?;
         let n_large = header.large_file.map(|large| large.number_of_point_records);

@@ -10,6 +10,7 @@ mod source;
 
 mod e57_points;
 mod las_check;
+mod las_crs;
 mod las_points;
 mod las_unit;
 

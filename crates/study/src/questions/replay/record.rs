@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::questions::replay::unknowns::SPEED_ROUNDING_M_S;
 use crate::{ReplayRequest, StudyError};
 use impactlab_core::data::{RecordedControls, RecorderRecord};
 use impactlab_core::ranges::STEER_ANGLE;
@@ -15,15 +16,26 @@ const LATEST_SAMPLE_S: f64 = -5.0;
 /// Shortest time between two samples, s.
 const SHORTEST_STEP_S: f64 = 1e-3;
 
+/// Longest time between two samples, s: what happened between them is not to be known from either.
+const LONGEST_STEP_S: f64 = 1.05;
+
+/// Fewest samples of a record: from two nothing is known of how the values change between them.
+const MIN_SAMPLES: usize = 3;
+
 /// Most samples of a record.
 const MAX_SAMPLES: usize = 5000;
 
 /// A record of which every sample can be followed.
 #[derive(Debug, Clone)]
 pub(super) struct Record {
-    /// What the recorder has kept of the event.
-    pub record: RecorderRecord,
-    /// The samples that are followed, with the angle of the steering wheel positive to the left.
+    /// What the file is.
+    pub description: String,
+    /// The event of several; empty if the file says none.
+    pub event: String,
+    /// What a person should look at before the record is used.
+    pub doubts: Vec<String>,
+    /// The samples that are followed, with the angle of the steering wheel positive to the left and without the
+    /// yaw rate.
     pub samples: RecordedControls,
     /// The yaw rate, rad/s, positive to the left; empty without one.
     pub yaw_rate_rad_s: Vec<f64>,
@@ -43,10 +55,10 @@ impl ReplayRequest {
             record.turn_yaw_rate();
         }
         let from_s = self.from_s.unwrap_or(EARLIEST_S);
-        let all = &record.before;
-        let n_earlier = all.time_s.partition_point(|time_s| *time_s < from_s - 1e-9);
-        let mut samples = without_first(all, n_earlier);
-        check(path, &record, &samples)?;
+        let RecorderRecord { description, event, doubts, before, .. } = record;
+        let n_earlier = before.time_s.partition_point(|time_s| *time_s < from_s - 1e-9);
+        let mut samples = without_first(before, n_earlier);
+        check(path, &doubts, &samples)?;
         if self.steering_right {
             samples
                 .steering_wheel_rad
@@ -61,9 +73,9 @@ impl ReplayRequest {
                 source,
             })?;
         }
-        let to_left = |rate: &f64| 0.0 - rate;
-        let yaw_rate_rad_s = samples.yaw_rate_right_rad_s.iter().map(to_left).collect();
-        Ok(Record { record, samples, yaw_rate_rad_s, n_earlier })
+        let to_right = std::mem::take(&mut samples.yaw_rate_right_rad_s);
+        let yaw_rate_rad_s = to_right.into_iter().map(|rate| 0.0 - rate).collect();
+        Ok(Record { description, event, doubts, samples, yaw_rate_rad_s, n_earlier })
     }
 }
 
@@ -114,65 +126,85 @@ impl Record {
     }
 }
 
-fn without_first(all: &RecordedControls, n: usize) -> RecordedControls {
-    fn rest<T: Clone>(values: &[T], n: usize) -> Vec<T> {
-        values.get(n..).map(<[T]>::to_vec).unwrap_or_default()
+fn without_first(mut all: RecordedControls, n: usize) -> RecordedControls {
+    fn cut<T>(values: &mut Vec<T>, n: usize) {
+        values.drain(..n.min(values.len()));
     }
-    RecordedControls {
-        time_s: rest(&all.time_s, n),
-        speed_m_s: rest(&all.speed_m_s, n),
-        steering_wheel_rad: rest(&all.steering_wheel_rad, n),
-        yaw_rate_right_rad_s: rest(&all.yaw_rate_right_rad_s, n),
-        is_braked: rest(&all.is_braked, n),
-        is_anti_lock_active: rest(&all.is_anti_lock_active, n),
+    for values in [
+        &mut all.time_s,
+        &mut all.speed_m_s,
+        &mut all.steering_wheel_rad,
+        &mut all.yaw_rate_right_rad_s,
+    ] {
+        cut(values, n);
     }
+    cut(&mut all.is_braked, n);
+    cut(&mut all.is_anti_lock_active, n);
+    all
 }
 
 /// Refuses a record that cannot be followed, and says what is missing.
-fn check(
-    path: &Path,
-    record: &RecorderRecord,
-    samples: &RecordedControls,
-) -> Result<(), StudyError> {
-    let refuse = |got: String, expected| {
-        let got = match record.doubts.is_empty() {
-            true => got,
-            false => format!("{got} ({})", record.doubts.join("; ")),
-        };
-        Err(StudyError::WrongKind { path: path.to_owned(), got, expected })
+fn check(path: &Path, doubts: &[String], samples: &RecordedControls) -> Result<(), StudyError> {
+    let Some((got, expected)) = fault(samples) else { return Ok(()) };
+    let got = match doubts {
+        [] => got,
+        doubts => format!("{got} ({})", doubts.join("; ")),
     };
+    Err(StudyError::WrongKind { path: path.to_owned(), got, expected })
+}
+
+/// What of the samples cannot be followed, and what is expected.
+fn fault(samples: &RecordedControls) -> Option<(String, &'static str)> {
     let time_s = &samples.time_s;
-    if time_s.len() < 2 {
-        return refuse(
-            "fewer than two samples of the speed before the crash".to_owned(),
+    let n_samples = time_s.len();
+    let (Some(last_s), MIN_SAMPLES..) = (time_s.last(), n_samples) else {
+        return Some((
+            "fewer than three samples of the speed before the crash".to_owned(),
             "a record with columns such as Time [s], Speed [km/h] and Steering Wheel Angle [deg], and a start \
              (--from) before its last samples",
-        );
-    }
-    if samples.steering_wheel_rad.len() != time_s.len() {
-        return refuse(
+        ));
+    };
+    if samples.steering_wheel_rad.len() != n_samples {
+        return Some((
             "no angle of the steering wheel at every sample".to_owned(),
             "a column such as Steering Wheel Angle [deg] with a number in every row; for a car that went \
              straight, one of zeros",
-        );
+        ));
     }
-    if time_s.len() > MAX_SAMPLES {
-        return refuse(
-            format!("{} samples", time_s.len()),
+    if n_samples > MAX_SAMPLES {
+        return Some((
+            format!("{n_samples} samples"),
             "at most 5000; begin later (--from) or take every tenth sample",
-        );
+        ));
     }
-    if time_s.windows(2).any(|pair| pair[1] - pair[0] < SHORTEST_STEP_S) {
-        return refuse(
-            "two samples within a millisecond".to_owned(),
-            "samples at least 1 ms apart; recorders have 2 to 10 in a second",
-        );
+    if let Some(speed_m_s) = samples.speed_m_s.iter().find(|speed| **speed < -SPEED_ROUNDING_M_S) {
+        return Some((
+            format!("a speed of {speed_m_s:.1} m/s, backwards"),
+            "a car that goes ahead; one that goes backwards is not followed",
+        ));
     }
-    match time_s.last() {
-        Some(last_s) if *last_s < LATEST_SAMPLE_S => refuse(
+    let steps = time_s.windows(2).filter_map(|pair| match pair {
+        [from_s, to_s] => Some((*from_s, to_s - from_s)),
+        _ => None,
+    });
+    for (from_s, step_s) in steps {
+        if step_s < SHORTEST_STEP_S {
+            return Some((
+                "two samples within a millisecond".to_owned(),
+                "samples at least 1 ms apart; recorders have 2 to 10 in a second",
+            ));
+        }
+        if step_s > LONGEST_STEP_S {
+            return Some((
+                format!("no sample for {step_s:.1} s after {from_s} s"),
+                "samples at most 1 s apart; begin later (--from) to leave out what is before a gap",
+            ));
+        }
+    }
+    (*last_s < LATEST_SAMPLE_S).then(|| {
+        (
             format!("nothing after {last_s} s"),
             "a last sample within 5 s before the crash, which is time 0",
-        ),
-        _ => Ok(()),
-    }
+        )
+    })
 }

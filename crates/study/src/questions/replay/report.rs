@@ -171,30 +171,46 @@ pub(super) struct DrawnMotion {
     pub end: PathPoint,
     pub start: PathPoint,
     pub length_m: f64,
-    pub friction_use: f64,
     /// X, Y and heading at the times of the path.
     pub poses: Vec<[f64; 3]>,
-    /// Velocity along the vehicle and yaw rate at the samples.
-    pub at_samples: Vec<[f64; 2]>,
+    /// The vehicle at the samples.
+    pub at_samples: Vec<DrawnSample>,
+    /// Largest share of the friction that is used.
+    pub friction_use: f64,
+    pub steering_ratio: f64,
+    /// Standard normal error of the recorded yaw rate as a factor of the computed one.
+    pub yaw_rate_error: f64,
+}
+
+/// The vehicle of a draw at a sample of the recorder.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct DrawnSample {
+    pub vx_body_m_s: f64,
+    pub yaw_rate_rad_s: f64,
+    /// Largest share of the friction that was used from the first sample on.
+    pub friction_use: f64,
 }
 
 impl DrawnMotion {
     /// - `start_s`: when the first sample was taken in this draw;
     /// - `path_s`: times of the path;
-    /// - `samples_s`: when each sample was taken in this draw.
+    /// - `samples_s`: when each sample was taken in this draw;
+    /// - `steering_ratio`, `yaw_rate_error`: those of this draw.
     pub fn new(
         motion: &RecordedMotion,
         start_s: f64,
         path_s: &[f64],
         samples_s: impl Iterator<Item = f64>,
+        [steering_ratio, yaw_rate_error]: [f64; 2],
     ) -> Option<Self> {
         let pose = |time_s: &f64| {
             let point = motion.at(*time_s)?;
             Some([point.x_m, point.y_m, point.yaw_rad])
         };
         let sample = |time_s: f64| {
-            let point = motion.at(time_s)?;
-            Some([point.vx_body_m_s, point.yaw_rate_rad_s])
+            let PathPoint { vx_body_m_s, yaw_rate_rad_s, .. } = motion.at(time_s)?;
+            let friction_use = motion.friction_use_until(time_s);
+            Some(DrawnSample { vx_body_m_s, yaw_rate_rad_s, friction_use })
         };
         let from_start = motion.points.iter().filter(|point| point.time_s >= start_s);
         let start = motion.at(start_s)?;
@@ -209,9 +225,11 @@ impl DrawnMotion {
             end: motion.points.last().copied()?,
             start,
             length_m: places.windows(2).map(step_m).sum(),
-            friction_use: motion.friction_use,
             poses: path_s.iter().map(pose).collect::<Option<_>>()?,
             at_samples: samples_s.map(sample).collect::<Option<_>>()?,
+            friction_use: motion.friction_use_until(0.0),
+            steering_ratio,
+            yaw_rate_error,
         })
     }
 }

@@ -12,13 +12,13 @@ use crate::ask::inputs::{OpenVehicle, struck_vehicle};
 use crate::caveats::assumed;
 use crate::questions::replay::record::Record;
 use crate::questions::replay::report::{
-    ContactPose, ContactState, DrawnMotion, ReplayAnswer, ReplayPoint, ReplayReport, ReplaySample,
-    StartPose, Travelled, YawRateCheck, estimate, path_times_s,
+    ContactPose, ContactState, DrawnMotion, DrawnSample, ReplayAnswer, ReplayPoint, ReplayReport,
+    ReplaySample, StartPose, Travelled, YawRateCheck, estimate, path_times_s,
 };
 use crate::questions::replay::restrictions::{self, CentralMotion};
 use crate::questions::replay::unknowns::{Known, Unknowns};
 use crate::{Answer, Event, Library, Observer, Provenance, Question, StudyError, VehicleChoice};
-use impactlab_core::data::{Channel, Outcome, SeriesError, TimeSeries};
+use impactlab_core::data::{Outcome, SeriesError, TimeSeries};
 use impactlab_core::jobs::Progress;
 use impactlab_core::ranges::{
     HEADING, POSITION, RECORDED_SPEED_SIGMA, REPLAY_DRAWS, REPLAY_START, ROAD_FRICTION,
@@ -234,7 +234,9 @@ impl ReplayRequest {
                 let [_, last_s] = record.ends_s();
                 let shift_s = last_s + unknowns.gap_s(record);
                 let samples_s = record.samples.time_s.iter().map(|time_s| time_s - shift_s);
-                drawn.extend(DrawnMotion::new(&motion, drive.start_s(), path_s, samples_s));
+                let of_draw = [unknowns.steering_ratio(&known), unknowns.yaw_rate_error];
+                let motion = DrawnMotion::new(&motion, drive.start_s(), path_s, samples_s, of_draw);
+                drawn.extend(motion);
             }
         }
         Outcome::Complete(drawn)
@@ -252,8 +254,8 @@ impl ReplayRequest {
         let samples = samples(record, draws);
         ReplayReport {
             name: self.name(),
-            description: record.record.description.clone(),
-            event: record.record.event.clone(),
+            description: record.description.clone(),
+            event: record.event.clone(),
             vehicle: vehicle.name.clone(),
             steering_ratio,
             steering_ratio_sigma,
@@ -266,7 +268,7 @@ impl ReplayRequest {
             contact: self.contact,
             start: StartPose::of(draws),
             path: ReplayPoint::path(&central.motion, path_s, draws),
-            yaw_rate: YawRateCheck::new(&samples, steering_ratio),
+            yaw_rate: YawRateCheck::new(&samples, draws),
             samples,
             friction_use: estimate(draws, |draw| draw.friction_use),
             draws: self.draws,
@@ -279,8 +281,8 @@ impl ReplayRequest {
 fn samples(record: &Record, draws: &[DrawnMotion]) -> Vec<ReplaySample> {
     let of = |values: &[f64], idx: usize| values.get(idx).copied();
     let sample = |(idx, time_s): (usize, &f64)| {
-        let computed = |axis: usize| {
-            let value = |draw: &DrawnMotion| draw.at_samples.get(idx).map(|at| at[axis]);
+        let computed = |of: fn(&DrawnSample) -> f64| {
+            let value = |draw: &DrawnMotion| draw.at_samples.get(idx).map(of);
             Estimate::from_draws(draws.iter().filter_map(value).collect())
         };
         let controls = &record.samples;
@@ -289,8 +291,8 @@ fn samples(record: &Record, draws: &[DrawnMotion]) -> Vec<ReplaySample> {
             recorded_speed_m_s: of(&controls.speed_m_s, idx)?,
             steering_wheel_rad: of(&controls.steering_wheel_rad, idx)?,
             recorded_yaw_rate_rad_s: of(&record.yaw_rate_rad_s, idx),
-            vx_body_m_s: computed(0),
-            yaw_rate_rad_s: computed(1),
+            vx_body_m_s: computed(|at| at.vx_body_m_s),
+            yaw_rate_rad_s: computed(|at| at.yaw_rate_rad_s),
         })
     };
     record.samples.time_s.iter().enumerate().filter_map(sample).collect()
@@ -301,16 +303,7 @@ fn series(central: &CentralMotion) -> Result<TimeSeries, SeriesError> {
     let start = central.motion.at(central.start_s);
     let is_later = |point: &&PathPoint| point.time_s > central.start_s + 1e-6;
     let later = central.motion.points.iter().filter(is_later).copied();
-    let points: Vec<PathPoint> = start.into_iter().chain(later).collect();
-    let column = |of: fn(&PathPoint) -> f64| points.iter().map(of).collect::<Vec<f64>>();
-    let mut series = TimeSeries::new(column(|point| point.time_s))?;
-    series.insert(Channel::X, column(|point| point.x_m))?;
-    series.insert(Channel::Y, column(|point| point.y_m))?;
-    series.insert(Channel::Yaw, column(|point| point.yaw_rad))?;
-    series.insert(Channel::Vx, column(|point| point.vx_body_m_s))?;
-    series.insert(Channel::Vy, column(|point| point.vy_body_m_s))?;
-    series.insert(Channel::YawRate, column(|point| point.yaw_rate_rad_s))?;
-    Ok(series)
+    PathPoint::series(&start.into_iter().chain(later).collect::<Vec<_>>())
 }
 
 impl Question for ReplayRequest {

@@ -3,7 +3,7 @@
 use crate::questions::replay::record::Record;
 use crate::questions::replay::unknowns::{FULL_BRAKING, SPEED_ROUNDING_M_S};
 use crate::questions::replay::yaw_rate::YawRateCheck;
-use crate::{FlagReport, ReplayReport, ReplayRequest};
+use crate::{FlagReport, ReplayReport, ReplayRequest, ReplaySample};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity, STANDARD_GRAVITY_M_S2};
 use impactlab_core::vehicle::{MotionFlag, RecordedMotion, RoadDraws, VehicleParameters};
@@ -16,6 +16,9 @@ const HARD_BRAKING: f64 = 0.5;
 
 /// Share of μ g from which a driven wheel spins: one of two axles carries it.
 const HARD_DRIVING: f64 = 0.6;
+
+/// Difference of computed and recorded speed beyond which the record is not followed, m/s.
+const LARGEST_SPEED_DIFFERENCE_M_S: f64 = 1.0;
 
 /// Share of the friction from which the path rests on what the tires do at their limit.
 const FRICTION_LIMIT: f64 = 0.9;
@@ -87,11 +90,12 @@ pub(super) fn all(
     vehicle: &VehicleParameters,
 ) -> Vec<Caveat> {
     let limit_m_s2 = report.friction * STANDARD_GRAVITY_M_S2;
-    let doubts = record.record.doubts.iter();
+    let doubts = record.doubts.iter();
     let doubts = doubts.map(|doubt| Caveat::new(CaveatKind::DoubtfulData, doubt));
     let flags = central.flags.iter().map(|flag| FlagReport::from(flag).caveat);
     doubts
         .chain(wheel_speed(record, limit_m_s2))
+        .chain(not_followed(report))
         .chain(lateral(record, report, limit_m_s2))
         .chain(disagreement(report.yaw_rate.as_ref()))
         .chain(flags)
@@ -118,7 +122,7 @@ fn changes(record: &Record) -> Vec<Change> {
     let change = |(from, from_s): (usize, &f64)| {
         let to = time_s.iter().position(|to_s| to_s - from_s >= SHORTEST_CHANGE_S)?;
         let to_s = *time_s.get(to)?;
-        let speed = |idx: usize| samples.speed_m_s.get(idx).map(|speed| speed.abs());
+        let speed = |idx: usize| samples.speed_m_s.get(idx).copied();
         let duration_s = to_s - from_s;
         Some(Change {
             from_s: *from_s,
@@ -144,10 +148,11 @@ fn wheel_speed(record: &Record, limit_m_s2: f64) -> Vec<Caveat> {
         let text = Phrase::new(
             "between {0} and {1} the recorded speed falls by {2}, and the road holds {3}: wheels locked or \
              slipped, so that it is not the speed over ground; the motion slows down by what the road holds, and \
-             is then faster than recorded",
+             is then faster than recorded; locked wheels hold less, with which it would be faster still",
             "Zwischen {0} und {1} fällt die aufgezeichnete Geschwindigkeit mit {2}, die Straße hält {3}: Räder \
              haben blockiert oder gerutscht, sie ist also nicht die Geschwindigkeit über Grund; die Bewegung wird \
-             so langsamer, wie die Straße hält, und ist dann schneller als aufgezeichnet",
+             so langsamer, wie die Straße hält, und ist dann schneller als aufgezeichnet; blockierte Räder halten \
+             weniger, mit ihnen wäre sie noch schneller",
         );
         doubtful(text, &change, limit_m_s2)
     });
@@ -190,6 +195,28 @@ fn doubtful(text: Phrase, change: &Change, limit_m_s2: f64) -> Caveat {
         .with_range([-limit_m_s2, limit_m_s2])
 }
 
+/// A recorded speed that the motion does not have.
+fn not_followed(report: &ReplayReport) -> Option<Caveat> {
+    let off_m_s = |of: &ReplaySample| of.vx_body_m_s.median - of.recorded_speed_m_s;
+    let by = |a: &&ReplaySample, b: &&ReplaySample| off_m_s(a).abs().total_cmp(&off_m_s(b).abs());
+    let worst = report.samples.iter().max_by(by)?;
+    let is_off = off_m_s(worst).abs() > LARGEST_SPEED_DIFFERENCE_M_S;
+    let speed = |value| PhraseValue::fixed(Quantity::Speed, value, 1);
+    let text = Phrase::new(
+        "the motion does not keep the recorded speed: {0} before the recorder's time 0 it has {1} along the car, the \
+         record {2}",
+        "Die Bewegung hält die aufgezeichnete Geschwindigkeit nicht: {0} vor der Zeit 0 des Datenspeichers hat sie \
+         {1} entlang des Wagens, die Aufzeichnung {2}",
+    )
+    .with(PhraseValue::fixed(Quantity::Time, 0.0 - worst.recorder_time_s, 2))
+    .with(speed(worst.vx_body_m_s.median))
+    .with(speed(worst.recorded_speed_m_s));
+    is_off.then(|| {
+        Caveat::new(CaveatKind::DoubtfulData, text)
+            .with_value("computed less recorded speed [m/s]", off_m_s(worst))
+    })
+}
+
 /// A motion that asks for more than the road holds, by the record or as it is computed.
 fn lateral(record: &Record, report: &ReplayReport, limit_m_s2: f64) -> Vec<Caveat> {
     let speeds = record.samples.speed_m_s.iter();
@@ -230,19 +257,19 @@ fn lateral(record: &Record, report: &ReplayReport, limit_m_s2: f64) -> Vec<Cavea
 /// A recorded yaw rate that is not the computed one.
 fn disagreement(check: Option<&YawRateCheck>) -> Option<Caveat> {
     let check = check.filter(|check| check.disagrees)?;
-    let cause = match (check.is_opposite(), check.implied_steering_ratio) {
+    let cause = match (check.is_opposite(), &check.implied_steering_ratio) {
         (true, _) => Phrase::new(
             "it is to the other side: say --yaw-rate left or --steering right if the record counts so",
             "sie geht zur anderen Seite: --yaw-rate left oder --steering right angeben, wenn die Aufzeichnung so \
              zählt",
         ),
         (false, Some(ratio)) => Phrase::new(
-            "with a steering ratio of {0} they would be the same on the average, else the car slid, or the \
-             recorded speed is not that over ground",
-            "mit einer Lenkübersetzung von {0} wären sie im Mittel gleich, sonst rutschte der Wagen, oder die \
-             aufgezeichnete Geschwindigkeit ist nicht die über Grund",
+            "with a steering ratio of {0} they would be the same where tires are not near their limit, else the \
+             car slid, or the recorded speed is not that over ground",
+            "mit einer Lenkübersetzung von {0} wären sie gleich, wo die Reifen nicht nah an ihrer Grenze sind, \
+             sonst rutschte der Wagen, oder die aufgezeichnete Geschwindigkeit ist nicht die über Grund",
         )
-        .with(PhraseValue::three_digits(Quantity::Ratio, ratio)),
+        .with(PhraseValue::estimate(Quantity::Ratio, ratio)),
         (false, None) => Phrase::new(
             "the car slid, its speed over ground is not the recorded one, or steering or yaw rate are not those \
              of this motion",

@@ -4,6 +4,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::ReplaySample;
+use crate::questions::replay::report::DrawnMotion;
+use impactlab_core::ranges::STEERING_RATIO;
+use impactlab_core::units::Estimate;
 
 /// Standard deviation of a recorded yaw rate, rad/s: 2 deg/s for rounding, and for channels that are not
 /// sampled at the same moment.
@@ -15,11 +18,17 @@ const LARGEST_DEVIATIONS: [f64; 2] = [1.5, 4.0];
 /// Computed yaw rate from which on both are compared as a factor, rad/s, in the root of the mean square.
 const LEAST_YAW_RATE_RAD_S: f64 = 3.0 * std::f64::consts::PI / 180.0;
 
+/// Share of the friction up to which the yaw rate is about proportional to the steer angle.
+const PROPORTIONAL_FRICTION_USE: f64 = 0.7;
+
+/// Share of the draws that have to turn so that both are compared as a factor.
+const TURNING_SHARE: f64 = 0.9;
+
 /// Standard deviations over the width of an interval of 90 %.
 const SIGMAS_OF_NINETY: f64 = 3.29;
 
 /// How the recorded yaw rate goes with the computed one.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct YawRateCheck {
     /// Root of the mean square of their difference, rad/s.
     pub difference_rad_s: f64,
@@ -27,18 +36,19 @@ pub struct YawRateCheck {
     pub deviations: f64,
     /// The largest difference at a sample, in standard deviations.
     pub largest_deviations: f64,
-    /// The recorded yaw rate over the computed one by least squares; none where the vehicle hardly turns.
-    pub factor: Option<f64>,
-    /// Steering ratio with which both would be the same, if nothing else is wrong; none without a factor, or
-    /// where it is that of no car.
-    pub implied_steering_ratio: Option<f64>,
+    /// The recorded yaw rate over the computed one by least squares, over the samples before 70 % of the
+    /// friction is used; none where the vehicle hardly turns there.
+    pub factor: Option<Estimate>,
+    /// Steering ratio with which both would be the same over these samples, if nothing else is wrong; none
+    /// without a factor, or where 90 % of it are not those of vehicles.
+    pub implied_steering_ratio: Option<Estimate>,
     /// Whether they disagree.
     pub disagrees: bool,
 }
 
 impl YawRateCheck {
     /// Compares both; none if no yaw rate was recorded.
-    pub(super) fn new(samples: &[ReplaySample], steering_ratio: f64) -> Option<Self> {
+    pub(super) fn new(samples: &[ReplaySample], draws: &[DrawnMotion]) -> Option<Self> {
         let pairs: Vec<[f64; 3]> = samples.iter().filter_map(compared).collect();
         if pairs.is_empty() {
             return None;
@@ -49,24 +59,31 @@ impl YawRateCheck {
         let difference_rad_s = mean(&|pair| (pair[0] - pair[1]).powi(2)).sqrt();
         let deviations = mean(&|pair| in_sigmas(pair).powi(2)).sqrt();
         let largest = pairs.iter().map(|pair| in_sigmas(pair).abs()).fold(0.0, f64::max);
-        let square = mean(&|pair| pair[1] * pair[1]);
-        let turns = square.sqrt() > LEAST_YAW_RATE_RAD_S;
-        let factor = turns.then(|| mean(&|pair| pair[0] * pair[1]) / square);
-        let of_car = |factor: &f64| (0.4..2.5).contains(factor);
+        let with_ratio = |draw: &DrawnMotion| {
+            let factor = factor(draw, samples)?;
+            Some([factor, draw.steering_ratio / factor])
+        };
+        let factors: Vec<[f64; 2]> = draws.iter().filter_map(with_ratio).collect();
+        let turns = factors.len() as f64 >= TURNING_SHARE * draws.len() as f64;
+        let of = |idx: usize| {
+            turns.then(|| Estimate::from_draws(factors.iter().map(|of| of[idx]).collect()))
+        };
+        let is_of_vehicle =
+            |ratio: &Estimate| ratio.ninety().iter().all(|end| STEERING_RATIO.contains(*end));
         let [of_all, of_one] = LARGEST_DEVIATIONS;
         Some(Self {
             difference_rad_s,
             deviations,
             largest_deviations: largest,
-            factor,
-            implied_steering_ratio: factor.filter(of_car).map(|factor| steering_ratio / factor),
+            factor: of(0),
+            implied_steering_ratio: of(1).filter(is_of_vehicle),
             disagrees: deviations > of_all || largest > of_one,
         })
     }
 
     /// Whether the recorded yaw rate is to the other side.
     pub fn is_opposite(&self) -> bool {
-        self.factor.is_some_and(|factor| factor < -0.3)
+        self.factor.as_ref().is_some_and(|factor| factor.ninety()[1] < 0.0)
     }
 }
 
@@ -76,4 +93,26 @@ fn compared(sample: &ReplaySample) -> Option<[f64; 3]> {
     let [low, high] = sample.yaw_rate_rad_s.ninety();
     let scatter = (high - low) / SIGMAS_OF_NINETY;
     Some([recorded, sample.yaw_rate_rad_s.median, scatter.hypot(YAW_RATE_SIGMA_RAD_S)])
+}
+
+/// The recorded yaw rate over that of a draw:
+///
+/// ```text
+/// Σ r̂ r/Σ r² + z σ/√(Σ r²)
+/// ```
+///
+/// None where the vehicle hardly turns before the tires come near their limit.
+fn factor(draw: &DrawnMotion, samples: &[ReplaySample]) -> Option<f64> {
+    let [mut n, mut product, mut square] = [0.0; 3];
+    for (at, sample) in draw.at_samples.iter().zip(samples) {
+        if at.friction_use > PROPORTIONAL_FRICTION_USE {
+            break;
+        }
+        n += 1.0;
+        product += sample.recorded_yaw_rate_rad_s? * at.yaw_rate_rad_s;
+        square += at.yaw_rate_rad_s * at.yaw_rate_rad_s;
+    }
+    let turns = square > LEAST_YAW_RATE_RAD_S * LEAST_YAW_RATE_RAD_S * n;
+    let error = draw.yaw_rate_error * YAW_RATE_SIGMA_RAD_S;
+    turns.then(|| product / square + error / square.sqrt())
 }

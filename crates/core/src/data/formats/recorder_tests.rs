@@ -1,0 +1,128 @@
+//! Records of recorders, as reports and as tables.
+
+use super::*;
+
+fn read(text: &str, event: Option<usize>) -> Result<RecorderRecord, DataError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("edr.csv");
+    std::fs::write(&path, text).unwrap();
+    RecorderRecord::read(&path, event)
+}
+
+const REPORT: &str = "CDR FILE INFORMATION\nEDR Device Type,Module 7\n\
+    Complete File Recorded,Yes\nPRE-CRASH DATA [2 SAMPLES/SEC] (EVENT RECORD 1)\n\
+    Times (sec),\"Speed, Vehicle Indicated (MPH [km/h])\",Steering Input (deg),Service Brake\n\
+    -1.0,40 [64],0,Off\n-0.5,36 [58],10,On\n0,30 [48],20,On\n\
+    \"DELTA-V, LONGITUDINAL (EVENT RECORD 1)\"\n\
+    Time (msec),\"Delta-V, Longitudinal (MPH [km/h])\"\n\
+    0,0\n50,-10\n80,-19\n100,-20\n120,-20\n\
+    SYSTEM STATUS AT EVENT (EVENT RECORD 2)\n\
+    \"Maximum Delta-V, Lateral (MPH [km/h])\",5.0 [8]\n\
+    \"Time, Maximum Delta-V, Lateral (msec)\",150\n";
+
+#[test]
+fn a_report_gives_evidence_and_controls() {
+    let record = read(REPORT, None).unwrap();
+    assert_eq!(record.event, "EVENT RECORD 1");
+    let mph = 0.447_04;
+    let delta_v = record.delta_v_ahead.unwrap();
+    assert!((delta_v.delta_v_m_s + 20.0 * mph).abs() < 1e-9, "{delta_v:?}");
+    assert_eq!((delta_v.ends_s, delta_v.is_cut), (Some(0.12), false));
+    let speed = record.speed_before.unwrap();
+    assert!((speed.speed_m_s - 30.0 * mph).abs() < 1e-9 && speed.at_s == 0.0, "{speed:?}");
+    assert_eq!(record.before.time_s, [-1.0, -0.5, 0.0]);
+    assert!((record.before.steering_wheel_rad[2] - 20_f64.to_radians()).abs() < 1e-12);
+    assert_eq!(record.before.is_braked, [false, true, true]);
+    assert!(record.doubts.iter().any(|doubt| doubt.starts_with("2 events")), "{record:?}");
+    let second = read(REPORT, Some(2)).unwrap();
+    let lateral = second.delta_v_right.unwrap();
+    assert!((lateral.delta_v_m_s - 5.0 * mph).abs() < 1e-9, "{lateral:?}");
+    assert_eq!((lateral.ends_s, second.delta_v_ahead), (Some(0.15), None));
+    assert!(read(REPORT, Some(3)).is_err());
+}
+
+#[test]
+fn events_are_told_apart_and_their_tables_belong_together() {
+    for (title, event) in [
+        ("PRE-CRASH DATA (EVENT RECORD 1)", Some("EVENT RECORD 1")),
+        ("PRE-CRASH DATA (EVENT RECORD 1 TABLE 2 OF 2)", Some("EVENT RECORD 1")),
+        ("PRE-CRASH DATA (MOST RECENT EVENT) (TABLE 1 OF 2)", Some("MOST RECENT EVENT")),
+        ("DELTA-V LONGITUDINAL (NON-DEPLOYMENT)", Some("NON-DEPLOYMENT")),
+        ("PRE-CRASH DATA -5 TO 0 SEC (2 SAMPLES/SEC)", None),
+    ] {
+        assert_eq!(event_of(title).as_deref(), event, "{title}");
+    }
+    // Δv of a table without an event is that of none of two events.
+    let other =
+        REPORT.replace("\"DELTA-V, LONGITUDINAL (EVENT RECORD 1)\"", "\"DELTA-V, LONGITUDINAL\"");
+    let record = read(&other, None).unwrap();
+    assert_eq!(record.delta_v_ahead, None);
+    let said = |word: &str| record.doubts.iter().any(|doubt| doubt.contains(word));
+    assert!(said("of which event"), "{record:?}");
+}
+
+/// Δv ahead is cut off at 0.1 s, that to the right goes on to 0.25 s.
+#[test]
+fn changes_of_velocity_without_a_common_end_are_not_both_taken() {
+    let text = |end: &str| {
+        format!(
+            "Time [ms],Delta-V Longitudinal [km/h],Delta-V Lateral [km/h]\n\
+             0,0,0\n50,-10,1\n80,-18,2\n100,{end},3\n200,,4\n250,,4\n"
+        )
+    };
+    let record = read(&text("-25"), None).unwrap();
+    assert!(record.delta_v_ahead.is_some() && record.delta_v_right.is_none(), "{record:?}");
+    assert!(record.doubts.iter().any(|doubt| doubt.contains("different times")), "{record:?}");
+    let settled = read(&text("-18"), None).unwrap();
+    assert!(settled.delta_v_ahead.is_some() && settled.delta_v_right.is_some(), "{settled:?}");
+}
+
+#[test]
+fn a_pulse_that_is_cut_off_is_said_so() {
+    let cut = REPORT.replace("100,-20\n120,-20\n", "100,-24\n");
+    let record = read(&cut, None).unwrap();
+    assert!(record.delta_v_ahead.unwrap().is_cut);
+    assert!(record.doubts.iter().any(|doubt| doubt.contains("cut off")), "{record:?}");
+}
+
+#[test]
+fn an_anti_lock_system_that_was_at_work_is_read() {
+    let text = "Time [s],Speed [mph],Service Brake,ABS Activity\n\
+        -1,31,Off,Non-Engaged\n-0.5,27,On,Engaged\n0,20,On,Engaged\n";
+    let before = read(text, None).unwrap().before;
+    assert_eq!(before.is_anti_lock_active, [false, true, true]);
+    assert_eq!(before.is_braked, [false, true, true]);
+}
+
+#[test]
+fn a_table_needs_units() {
+    let text = "Time [s],Speed [mph],Yaw Rate [deg/s],Steering Wheel Angle [deg]\n\
+        -1,31,0,0\n-0.5,27,-2,-10\n0,26,0,0\n";
+    let record = read(text, None).unwrap();
+    assert!((record.speed_before.unwrap().speed_m_s - 26.0 * 0.447_04).abs() < 1e-9);
+    assert_eq!(record.before.yaw_rate_right_rad_s.len(), 3);
+    let without = "Time [s],Speed,Steering Wheel Angle [deg]\n-1,31,0\n0,26,1\n";
+    let error = read(without, None).unwrap_err().to_string();
+    assert!(error.contains("no record of an event data recorder"), "{error}");
+}
+
+#[test]
+fn a_table_has_one_event_and_times_that_increase() {
+    let text = "Time [s],Speed [mph]\n-1,31\n-0.5,27\n0,26\n";
+    assert!(read(text, Some(1)).is_ok());
+    let error = read(text, Some(2)).unwrap_err().to_string();
+    assert!(error.contains("edr.csv") && error.contains("event 2"), "{error}");
+    for text in ["Time [s],Speed [mph]\n0,26\n-1,31\n", "Time [s],Speed [mph]\n-1,31\n-1,31\n"] {
+        let error = read(text, None).unwrap_err().to_string();
+        assert!(error.contains("do not increase") && error.contains("edr.csv"), "{error}");
+    }
+}
+
+#[test]
+fn rows_without_a_speed_between_others_are_counted() {
+    let text = "Time [s],Speed [mph]\n-2,\n-1.5,31\n-1,\n-0.5,27\n0,\n";
+    let record = read(text, None).unwrap();
+    assert_eq!(record.before.time_s, [-1.5, -0.5]);
+    let doubt = record.doubts.iter().find(|doubt| doubt.contains("have no speed")).unwrap();
+    assert!(doubt.contains(": 1;"), "{doubt}");
+}

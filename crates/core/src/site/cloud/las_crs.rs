@@ -1,0 +1,225 @@
+//! What the coordinate system of a LAS file says of its units: as WKT, or as keys of GeoTIFF. Heights may have another
+//! unit than easting and northing.
+
+use las::crs::GeoTiffData;
+
+use crate::site::LengthUnit;
+
+/// Keys of GeoTIFF: the kind of the system, its number, the unit of its lengths, the number of the system of heights,
+/// and their unit.
+const MODEL_TYPE: u16 = 1024;
+const SYSTEM: u16 = 3072;
+const LENGTH_UNIT: u16 = 3076;
+const HEIGHT_SYSTEM: u16 = 4096;
+const HEIGHT_UNIT: u16 = 4099;
+
+/// Model types of coordinates that are none in the plane: longitude and latitude, and geocentric ones.
+const OFF_PLANE: std::ops::RangeInclusive<u16> = 2..=3;
+
+/// Numbers of GeoTIFF that stand for nothing, and for what other keys describe.
+const UNDEFINED: u16 = 0;
+const USER_DEFINED: u16 = 32_767;
+
+/// EPSG numbers of UTM over WGS 84, ETRS89 and NAD 83, which are in metres.
+const UTM: [std::ops::RangeInclusive<u16>; 4] =
+    [32_601..=32_660, 32_701..=32_760, 25_828..=25_838, 26_901..=26_923];
+
+/// EPSG numbers of systems of heights: NAVD 88 in metres and both feet, and NGVD 29.
+const HEIGHT_SYSTEMS: [(u16, LengthUnit); 4] = [
+    (5703, LengthUnit::Metre),
+    (8228, LengthUnit::Foot),
+    (6360, LengthUnit::SurveyFoot),
+    (5702, LengthUnit::SurveyFoot),
+];
+
+/// Characters of WKT that are examined.
+const EXAMINED_BYTES: usize = 64 << 10;
+
+/// Deviation of a factor of WKT from a length of a unit up to which it is that of the unit: the two feet differ by
+/// 2e-6.
+const FACTOR_REACH: f64 = 1e-7;
+
+/// A unit that a file states.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum StatedUnit {
+    /// One of length.
+    Length(LengthUnit),
+    /// A unit of length that is not known here.
+    Other,
+    /// None of length: the coordinates are longitude and latitude, or geocentric.
+    OffPlane,
+}
+
+/// What a file states; `None` where it states nothing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Stated {
+    /// Of easting and northing.
+    pub plane: Option<StatedUnit>,
+    /// Of the heights.
+    pub height: Option<StatedUnit>,
+    /// The EPSG number of a system whose unit it does not state.
+    pub system: Option<u16>,
+}
+
+/// What a header states; `None` if it has no coordinate system.
+pub(super) fn of_header(header: &las::Header) -> Option<Stated> {
+    if let Some(wkt) = header.get_wkt_crs_bytes() {
+        return Some(of_wkt(&String::from_utf8_lossy(wkt.get(..EXAMINED_BYTES).unwrap_or(wkt))));
+    }
+    let keys = header.get_geotiff_crs().ok()??;
+    let value = |id: u16| {
+        keys.entries.iter().find(|entry| entry.id == id).and_then(|entry| match entry.data {
+            GeoTiffData::U16(value) => Some(value),
+            _ => None,
+        })
+    };
+    Some(of_keys(value))
+}
+
+/// - `value`: of a key of GeoTIFF.
+fn of_keys(value: impl Fn(u16) -> Option<u16>) -> Stated {
+    let length = |id: u16| {
+        Some(match value(id)? {
+            9001 => StatedUnit::Length(LengthUnit::Metre),
+            9002 => StatedUnit::Length(LengthUnit::Foot),
+            9003 => StatedUnit::Length(LengthUnit::SurveyFoot),
+            UNDEFINED => return None,
+            _ => StatedUnit::Other,
+        })
+    };
+    let system = value(SYSTEM).filter(|system| ![UNDEFINED, USER_DEFINED].contains(system));
+    let is_utm = system.is_some_and(|system| UTM.iter().any(|zones| zones.contains(&system)));
+    let plane = match value(MODEL_TYPE) {
+        Some(kind) if OFF_PLANE.contains(&kind) => Some(StatedUnit::OffPlane),
+        _ => {
+            length(LENGTH_UNIT).or_else(|| is_utm.then_some(StatedUnit::Length(LengthUnit::Metre)))
+        }
+    };
+    let of_system = |system: u16| {
+        let known = HEIGHT_SYSTEMS.iter().find(|(number, _)| *number == system);
+        known.map(|(_, unit)| StatedUnit::Length(*unit))
+    };
+    let height = length(HEIGHT_UNIT).or_else(|| of_system(value(HEIGHT_SYSTEM)?));
+    Stated { plane, height, system: system.filter(|_| plane.is_none()) }
+}
+
+/// The last unit of the part in the plane, where that of its axes stands behind those of what it is made of, and
+/// the last one of the part of the heights.
+fn of_wkt(text: &str) -> Stated {
+    let lower = text.to_lowercase();
+    let has = |text: &str, words: &[&str]| words.iter().any(|word| text.contains(word));
+    let words = ["vert_cs", "vertcs", "vertcrs", "verticalcrs"];
+    let vertical = words.iter().filter_map(|word| lower.find(word)).min();
+    let (plane, vertical) = lower.split_at(vertical.unwrap_or(lower.len()));
+    let is_off =
+        has(plane, &["geogcs", "geogcrs", "geographiccrs", "geodcrs", "geodeticcrs", "geoccs"])
+            && !has(plane, &["projcs", "projcrs", "projectedcrs"]);
+    let plane = if is_off { Some(StatedUnit::OffPlane) } else { last_unit(plane) };
+    Stated { plane, height: last_unit(vertical), system: None }
+}
+
+/// The last unit in a part of WKT, by its name, else by the metres that it has.
+fn last_unit(text: &str) -> Option<StatedUnit> {
+    let (_, last) = text.rsplit_once("unit[\"")?;
+    let (name, rest) = last.split_once('"')?;
+    let name: String = name.chars().filter(|c| c.is_alphabetic()).collect();
+    let by_name = match name.as_str() {
+        "metre" | "meter" | "m" => Some(LengthUnit::Metre),
+        "foot" | "internationalfoot" | "ft" | "feet" => Some(LengthUnit::Foot),
+        name if name.contains("us") && (name.contains("foot") || name.contains("ft")) => {
+            Some(LengthUnit::SurveyFoot)
+        }
+        _ => None,
+    };
+    let factor = rest.trim_start_matches([',', ' ']).split([',', ']']).next();
+    let factor: Option<f64> = factor.and_then(|factor| factor.trim().parse().ok());
+    let (_, all) = LengthUnit::OF_WORLD_FILES;
+    let is_of = |unit: &LengthUnit| {
+        factor.is_some_and(|factor| (factor / unit.length_m() - 1.0).abs() < FACTOR_REACH)
+    };
+    let unit = by_name.or_else(|| all.into_iter().find(is_of));
+    Some(unit.map_or(StatedUnit::Other, StatedUnit::Length))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FEET: LengthUnit = LengthUnit::Foot;
+    const SURVEY_FEET: LengthUnit = LengthUnit::SurveyFoot;
+    const METRES: LengthUnit = LengthUnit::Metre;
+
+    fn of(plane: Option<StatedUnit>, height: Option<StatedUnit>) -> Stated {
+        Stated { plane, height, system: None }
+    }
+
+    fn length(unit: LengthUnit) -> Option<StatedUnit> {
+        Some(StatedUnit::Length(unit))
+    }
+
+    /// - `plane`, `height`: name and metres of a unit.
+    fn projected(plane: &str, height: &str) -> String {
+        format!(
+            "COMPD_CS[\"a\",PROJCS[\"b\",GEOGCS[\"c\",UNIT[\"degree\",0.0174532925199433]],\
+             PROJECTION[\"Lambert\"],UNIT[{plane}],AXIS[\"X\",EAST]],\
+             VERT_CS[\"d\",UNIT[{height}]]]"
+        )
+    }
+
+    const IN_METRES: &str = "\"metre\",1";
+    const IN_SURVEY_FEET: &str = "\"US survey foot\",0.3048006096012192";
+
+    #[test]
+    fn the_units_of_plane_and_heights_are_found() {
+        for (name, unit) in [
+            (IN_METRES, METRES),
+            (IN_SURVEY_FEET, SURVEY_FEET),
+            ("\"US survey foot\",1.0", SURVEY_FEET),
+            ("\"Foot_US\",0.3048006096012192", SURVEY_FEET),
+            ("\"foot\",0.3048", FEET),
+            // Names that are not known, with metres that are.
+            ("\"Foot (International)\",0.3048", FEET),
+            ("\"fot\", 0.30480060960121924,AUTHORITY[\"EPSG\",\"9003\"]", SURVEY_FEET),
+        ] {
+            let stated = of_wkt(&projected(name, IN_METRES));
+            assert_eq!(stated, of(length(unit), length(METRES)), "{name}");
+            let stated = of_wkt(&projected(IN_METRES, name));
+            assert_eq!(stated, of(length(METRES), length(unit)), "{name}");
+        }
+        let link = "\"link\",0.201168";
+        let other = Some(StatedUnit::Other);
+        assert_eq!(of_wkt(&projected(link, link)), of(other, other));
+        let off_plane = Some(StatedUnit::OffPlane);
+        for system in [
+            "GEOGCS[\"WGS 84\",UNIT[\"degree\",0.0174532925199433]]",
+            "GEOCCS[\"WGS 84\",UNIT[\"metre\",1]]",
+        ] {
+            assert_eq!(of_wkt(system), of(off_plane, None), "{system}");
+        }
+        assert_eq!(of_wkt(""), Stated::default());
+        // Heights behind the system in the plane, as ArcGIS writes them, and within it.
+        for system in [
+            "PROJCS[\"b\",UNIT[\"Meter\",1.0]],VERTCS[\"d\",UNIT[\"Foot_US\",0.3048006096012192]]",
+            "PROJCS[\"b\",UNIT[\"Meter\",1.0],VERTCS[\"d\",UNIT[\"US survey foot\",1.0]]]",
+        ] {
+            assert_eq!(of_wkt(system), of(length(METRES), length(SURVEY_FEET)), "{system}");
+        }
+    }
+
+    #[test]
+    fn keys_of_geotiff_say_units_and_systems() {
+        let stated = |keys: &[(u16, u16)]| {
+            let keys = keys.to_vec();
+            of_keys(move |id| keys.iter().find(|(key, _)| *key == id).map(|(_, value)| *value))
+        };
+        let feet = stated(&[(MODEL_TYPE, 1), (LENGTH_UNIT, 9003), (HEIGHT_UNIT, 9002)]);
+        assert_eq!(feet, of(length(SURVEY_FEET), length(FEET)));
+        assert_eq!(stated(&[(MODEL_TYPE, 2)]), of(Some(StatedUnit::OffPlane), None));
+        assert_eq!(stated(&[(LENGTH_UNIT, 9005)]), of(Some(StatedUnit::Other), None));
+        let utm = stated(&[(SYSTEM, 26_913), (HEIGHT_SYSTEM, 6360)]);
+        assert_eq!(utm, of(length(METRES), length(SURVEY_FEET)));
+        let by_number = stated(&[(MODEL_TYPE, 1), (SYSTEM, 2225)]);
+        assert_eq!(by_number, Stated { plane: None, height: None, system: Some(2225) });
+        assert_eq!(stated(&[(SYSTEM, USER_DEFINED)]), Stated::default());
+    }
+}
