@@ -77,3 +77,43 @@ fn a_figure_of_a_collision_is_refused_and_the_speed_is_drawn() {
     ok(draw("target-speed"));
     assert!(fs::read_to_string(&out).unwrap().contains("speed of the car at the start"));
 }
+
+/// The axes, the 4DOF model, the known error and the settings were told of a struck car.
+#[test]
+fn a_report_of_a_single_car_speaks_of_no_collision() {
+    const SOURCES: &str = "Precision Immobilization";
+    let folder = TempDir::new().unwrap();
+    for (language, words) in [
+        ("en", &["truck", "triking", "ollision", "mpact", "irst contact", "both vehicles"][..]),
+        (
+            "de",
+            &["estoßen", "toßend", "ollision", "ufprall", "Anstoß", "rster Kontakt", "Unfall"][..],
+        ),
+    ] {
+        let out = folder.path().join(format!("{language}.md"));
+        let mut command = program();
+        command.args(["report", EVIDENCE, "--particles", "60", "--date", "2026-01-01"]);
+        ok(command.args(["--language", language, "--out", text(&out)]).output().unwrap());
+        let told = fs::read_to_string(&out).unwrap().replace("impactlab", "");
+        let told: Vec<&str> = told.lines().filter(|line| !line.contains(SOURCES)).collect();
+        // What the models were measured on is told in section 7.
+        let end = told.iter().position(|line| line.starts_with("## 7 ")).unwrap();
+        assert!(end > 50);
+        without(&told[..end].join("\n"), words);
+    }
+}
+
+#[test]
+fn marks_without_a_place_of_rest_are_warned_of() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("case.toml");
+    let evidence = fs::read_to_string(EVIDENCE).unwrap();
+    let rest = "[rest]\nx_m = 31.5\ny_m = 0.0\nheading_deg = 0\n";
+    assert!(evidence.contains(rest));
+    fs::write(&path, evidence.replace(rest, "")).unwrap();
+    let told = |path: &str| {
+        ok(program().args(["reconstruct", path, "--particles", "60"]).output().unwrap())
+    };
+    let warning = "no place of rest is stated";
+    assert!(told(text(&path)).contains(warning) && !told(EVIDENCE).contains(warning));
+}

@@ -102,6 +102,20 @@ fn the_question_what_happened_leads_to_a_form_for_what_was_found() {
     assert!(harness.query_by_label("Add evidence").is_some());
 }
 
+/// A single car could be opened from a file only.
+#[test]
+fn a_form_of_a_single_car_is_begun_in_the_window() {
+    let mut harness = open(&[]);
+    harness.run_steps(3);
+    harness.get_by_label("Reconstruct a collision").click();
+    harness.run_steps(4);
+    harness.get_by_label("New evidence of a single car").click();
+    harness.run_steps(4);
+    assert!(evidence(&harness).is_single_car() && evidence(&harness).missing().is_some());
+    assert!(harness.query_by_label("Car at the start").is_some());
+    assert!(harness.query_by_label("Damage of the struck car").is_none());
+}
+
 /// The window asked what the striking car was, and drew where the struck car was hit.
 #[test]
 fn a_single_car_is_run_without_anything_of_an_impact() {

@@ -62,6 +62,7 @@ pub struct Posterior {
     /// Independent particles that all of them are worth; none if the run was stopped before it had some
     /// of the posterior.
     pub ess: f64,
+    is_of_single_car: bool,
 }
 
 /// Smallest probability of a mode that is told.
@@ -83,11 +84,12 @@ impl Posterior {
     /// - `z`: standard normal variables of each point, `[n][dim]`.
     pub fn from_points(model: &ForwardModel, z: &[Vec<f64>]) -> Self {
         let values: Vec<LatentValues> = z.iter().map(|z| model.prior().values(z)).collect();
-        let is_collision = !model.is_of_single_car();
-        let impact = |values: &LatentValues| is_collision.then(|| model.impact(values));
+        let is_of_single_car = model.is_of_single_car();
+        let impact = |values: &LatentValues| (!is_of_single_car).then(|| model.impact(values));
         let impacts = values.iter().map(impact).collect();
         let yaw_rates_after_rad_s = model.yaw_rates_after_rad_s(&values);
-        Self { ess: values.len() as f64, values, impacts, yaw_rates_after_rad_s }
+        let ess = values.len() as f64;
+        Self { values, impacts, yaw_rates_after_rad_s, ess, is_of_single_car }
     }
 
     /// Whether there are enough particles for intervals.
@@ -102,7 +104,7 @@ impl Posterior {
 
     /// Whether it is that of a single car, which has no impact.
     pub fn is_of_single_car(&self) -> bool {
-        self.impacts.iter().all(Option::is_none)
+        self.is_of_single_car
     }
 
     /// The speed that the case is asked for: that of the struck car before the impact, or that of a single

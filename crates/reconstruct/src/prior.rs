@@ -94,6 +94,9 @@ pub struct Prior {
 /// Highest speed that the prior takes to be possible, m/s.
 const HIGHEST_SPEED_M_S: f64 = 60.0;
 
+/// Peak friction of a road that is taken to be possible where none higher was measured.
+const HIGHEST_FRICTION: f64 = 1.6;
+
 /// Friction of a tire over that which was measured on the road, and its scatter: other tires differ.
 const TIRE_FRICTION_FACTOR: f64 = 1.02;
 const TIRE_FRICTION_SCATTER: f64 = 0.09;
@@ -309,7 +312,8 @@ impl Prior {
             (None, Some(drag)) => (PriorSource::Measured, friction_by_drag(drag)),
             (None, None) => (PriorSource::Assumed, usual),
         };
-        self.add(Latent::RoadFriction, source, normal(friction.value, friction.sigma, 0.03, 1.6));
+        let high = HIGHEST_FRICTION.max(friction.value + 4.0 * friction.sigma);
+        self.add(Latent::RoadFriction, source, normal(friction.value, friction.sigma, 0.03, high));
         self.assume(
             Latent::TireFrictionFactor,
             log_normal(TIRE_FRICTION_FACTOR, TIRE_FRICTION_SCATTER, 0.7, 1.4),

@@ -8,7 +8,7 @@ use super::*;
 use crate::evidence::examples::read;
 use crate::sampler::{Particles, SamplerSettings, sample, standard_normals};
 use crate::{
-    CollisionMotion, Discrepancy, ForwardModel, HandCheck, HandSpeed, Posterior,
+    CollisionMotion, Discrepancy, ForwardModel, HandCheck, HandSpeed, Posterior, Prior,
     ReconstructedQuantity, ReconstructionTarget,
 };
 use impactlab_core::numerics::{quantile_of_sorted, random_stream};
@@ -226,4 +226,42 @@ fn a_recorded_speed_is_compared_with_that_of_its_time() {
     assert!((first - later - decelerated_m_s).abs() < 0.2, "{first} {later} {decelerated_m_s}");
     let words = ["struck", "striking", "delta-v", "damage", "mass"];
     assert!(terms.iter().all(|term| words.iter().all(|word| !term.name.contains(word))));
+}
+
+/// Ten speeds of one recorder, which may be wrong by 4 % together, were ten witnesses.
+#[test]
+fn speeds_of_one_device_count_as_one() {
+    let log_likelihood = |n: usize| {
+        let speeds = "[[recorded_speed]]\nspeed_m_s = 21\n".repeat(n);
+        let target = target(&read(&format!("{SKID}{speeds}")));
+        let z = vec![0.0; target.model().prior().components().len()];
+        target.model().motions(&[z], |motion| target.log_likelihood(&motion)).pop().unwrap()
+    };
+    let [none, one, ten] = [0, 1, 10].map(log_likelihood);
+    assert!((one - none).abs() > 0.1, "{none} {one}");
+    assert!((ten - one).abs() < 1e-9, "{one} {ten}");
+}
+
+/// A place at the start says nothing of when the driver braked; the begin of a mark does.
+#[test]
+fn braking_may_begin_long_after_a_stated_place() {
+    let latest_s = |start: &str| {
+        let mark = "[[mark]]\nwheel = \"FL\"\npoints_m = [[0, 0], [9, 0]]\n";
+        let evidence = read(&format!("kind = \"single_car\"\n[car]\n{start}{mark}"));
+        let prior = Prior::new(&evidence, &Cars::new(&evidence, None, None));
+        let brakes = prior.components().iter().find(|of| of.latent == Latent::BrakeStart).unwrap();
+        brakes.distribution.at(1.645)
+    };
+    assert!(latest_s("") < 1.1 && latest_s("[start]\nx_m = 0\ny_m = 0\n") > 3.0);
+}
+
+/// A friction that was measured was cut off at 1.6.
+#[test]
+fn a_friction_that_was_measured_is_possible() {
+    let road = "[road]\nfriction = 1.9\nfriction_sigma = 0.05\n";
+    let start = "[start]\nx_m = 0\ny_m = 0\n";
+    let evidence = read(&format!("kind = \"single_car\"\n{road}[car]\n{start}"));
+    let prior = Prior::new(&evidence, &Cars::new(&evidence, None, None));
+    let road = prior.components().iter().find(|of| of.latent == Latent::RoadFriction).unwrap();
+    assert!((road.distribution.at(0.0) - 1.9).abs() < 0.01, "{road:?}");
 }

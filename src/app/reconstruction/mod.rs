@@ -27,7 +27,7 @@ use impactlab_study::{NamedPath, ReconstructRequest, ReconstructedPaths};
 /// A path that is followed in the scene.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum FollowedParticle {
-    /// A particle of median speed of the struck car.
+    /// A particle of median speed.
     #[default]
     Median,
     /// One of those that are drawn, by its number.
@@ -37,8 +37,10 @@ pub enum FollowedParticle {
 /// An action on the reconstruction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ReconstructionCommand {
-    /// Begin with an empty form.
+    /// Begin with an empty form of a collision.
     New,
+    /// Begin with an empty form of a single car.
+    NewSingleCar,
     /// Take the evidence of the shipped example.
     Example,
     /// Reconstruct from the evidence.
@@ -47,7 +49,7 @@ pub enum ReconstructionCommand {
     Cancel,
     /// Show the particles of one course of events alone, by its number; `None` shows all.
     ShowMode(Option<usize>),
-    /// Follow a particle from the impact on.
+    /// Follow a particle from the start on.
     Play(FollowedParticle),
     /// Let clicks in the scene add points to a mark.
     AddPoints(Option<MarkKey>),

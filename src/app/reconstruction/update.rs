@@ -149,6 +149,10 @@ impl State {
             ReconstructionCommand::New => {
                 self.take_evidence(EvidenceChoice::Inline(Box::new(Evidence::empty())));
             }
+            ReconstructionCommand::NewSingleCar => {
+                let evidence = Box::new(Evidence::empty_single_car());
+                self.take_evidence(EvidenceChoice::Inline(evidence));
+            }
             ReconstructionCommand::Example => {
                 let path = Path::new("example");
                 match Evidence::from_toml(TomlFile { path, text: EXAMPLE }) {

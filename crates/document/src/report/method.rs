@@ -14,6 +14,8 @@ pub(super) enum Method {
     Impact,
     /// The 4DOF model of the struck vehicle.
     FourDof,
+    /// The 4DOF model of a single car.
+    FourDofAlone,
     /// The contact law of two outlines.
     ContactLaw,
     /// The force network.
@@ -35,6 +37,7 @@ impl Method {
         match self {
             Self::Impact => words.method_impact,
             Self::FourDof => words.method_four_dof,
+            Self::FourDofAlone => words.method_four_dof_alone,
             Self::ContactLaw => words.method_contact,
             Self::ForceNetwork => words.method_force,
             Self::ResponseNetwork => words.method_response,
@@ -50,6 +53,7 @@ impl Method {
         match self {
             Self::Impact => words.method_impact_text,
             Self::FourDof => words.method_four_dof_text,
+            Self::FourDofAlone => words.method_four_dof_alone_text,
             Self::ContactLaw => words.method_contact_text,
             Self::ForceNetwork => words.method_force_text,
             Self::ResponseNetwork => words.method_response_text,
@@ -65,6 +69,7 @@ impl Method {
         match self {
             Self::Impact => words.limits_impact,
             Self::FourDof => words.limits_four_dof,
+            Self::FourDofAlone => words.limits_four_dof_alone,
             Self::ContactLaw => words.limits_contact,
             Self::ForceNetwork => words.limits_force,
             Self::ResponseNetwork => words.limits_response,
@@ -83,7 +88,9 @@ impl Method {
                 sources::Brach2011::TEXT,
                 sources::CarpenterWelcher2019::TEXT,
             ],
-            Self::FourDof => &[sources::PitPinnPaper::TEXT, sources::Gillespie1992::TEXT],
+            Self::FourDof | Self::FourDofAlone => {
+                &[sources::PitPinnPaper::TEXT, sources::Gillespie1992::TEXT]
+            }
             Self::ContactLaw => &[sources::EdsmacManual::TEXT, sources::Campbell1974::TEXT],
             Self::ForceNetwork => {
                 &[sources::PitPinnPaper::TEXT, sources::RasmussenWilliams2006::TEXT]
@@ -107,11 +114,25 @@ impl Method {
     }
 }
 
+/// Of two texts that of collisions, that of a single car, or both, by what the methods answer.
+pub(super) fn of_kinds(
+    methods: &BTreeSet<Method>,
+    [collision, single_car]: [&'static str; 2],
+) -> impl Iterator<Item = &'static str> {
+    const OF_SINGLE_CAR: [Method; 3] = [Method::FourDofAlone, Method::SingleCar, Method::DataSheet];
+    let is_single_car = methods.contains(&Method::SingleCar);
+    let is_collision =
+        !is_single_car || methods.iter().any(|method| !OF_SINGLE_CAR.contains(method));
+    let told = [is_collision.then_some(collision), is_single_car.then_some(single_car)];
+    told.into_iter().flatten()
+}
+
 /// A paragraph for each method, and the sources of all, numbered.
 pub(super) fn method_blocks(methods: &BTreeSet<Method>, wording: &Wording) -> Vec<Block> {
     let words = wording.words;
     let mut cited: Vec<&'static str> = Vec::new();
-    let mut blocks = vec![Block::paragraph(words.axes_text)];
+    let axes = of_kinds(methods, [words.axes_text, words.axes_single_car_text]);
+    let mut blocks: Vec<Block> = axes.map(Block::paragraph).collect();
     for method in methods {
         let numbers: Vec<String> = method
             .sources()
@@ -205,9 +226,10 @@ mod tests {
     use crate::report::{Paper, ReportDate, ReportSettings};
     use impactlab_core::units::UnitSystem;
 
-    const ALL: [Method; 8] = [
+    const ALL: [Method; 9] = [
         Method::Impact,
         Method::FourDof,
+        Method::FourDofAlone,
         Method::ContactLaw,
         Method::ForceNetwork,
         Method::ResponseNetwork,

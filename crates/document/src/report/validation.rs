@@ -24,7 +24,7 @@ pub(super) fn validation_blocks(
     let words = wording.words;
     let text = match method {
         Method::Impact => words.validation_impact,
-        Method::FourDof => words.validation_four_dof,
+        Method::FourDof | Method::FourDofAlone => words.validation_four_dof,
         Method::ContactLaw => words.validation_contact,
         Method::ForceNetwork => words.validation_force,
         Method::ResponseNetwork => words.validation_response,
@@ -34,7 +34,7 @@ pub(super) fn validation_blocks(
     };
     let captions: &[(Measured, &str)] = match method {
         Method::Impact => &[(Measured::Impact, words.table_impact)],
-        Method::FourDof => &[(Measured::FourDof, words.table_four_dof)],
+        Method::FourDof | Method::FourDofAlone => &[(Measured::FourDof, words.table_four_dof)],
         Method::ContactLaw => &[(Measured::Pairs, words.table_contact)],
         Method::ForceNetwork => &[
             (Measured::ForceNetwork, words.table_force),

@@ -200,7 +200,7 @@ impl Evidence {
         }
         marks.iter().for_each(|mark| mark.compare(marks.len(), &mut comparison));
         edr.iter().for_each(|edr| edr.compare(&mut comparison));
-        speeds.iter().for_each(|speed| speed.compare(&mut comparison));
+        speeds.iter().for_each(|speed| speed.compare(speeds.len(), &mut comparison));
         comparison.add_path();
         if self.follows_striking_car() {
             let striking = motion.striking.as_ref();
@@ -281,6 +281,11 @@ impl Evidence {
             rest: Some(RestPose::default()),
             ..Self::default()
         }
+    }
+
+    /// An empty form of a single car that came to rest.
+    pub fn empty_single_car() -> Self {
+        Self { kind: EvidenceKind::SingleCar, ..Self::empty() }
     }
 
     /// Peak friction of the road, where it was measured.

@@ -51,7 +51,8 @@ impl RecordedSpeed {
         SIGMA.resolve(self.speed_m_s)
     }
 
-    pub(super) fn compare(&self, comparison: &mut Comparison<'_>) {
+    /// - `n_speeds`: number of speeds, which one device records with one error: all together count as one.
+    pub(super) fn compare(&self, n_speeds: usize, comparison: &mut Comparison<'_>) {
         let Some(Measured { value, sigma }) = self.speed() else { return };
         let time_s = self.time_s.unwrap_or(0.0);
         let Some((_, at)) = comparison.car.track.at_time(time_s) else { return };
@@ -59,7 +60,7 @@ impl RecordedSpeed {
         let name = format!("recorded speed at {time_s} s");
         comparison.part(&name, |comparison| {
             let distance = ((value - expected) / sigma).powi(2);
-            comparison.log_likelihood -= distance / 2.0;
+            comparison.log_likelihood -= distance / 2.0 / n_speeds as f64;
             comparison.tell(&name, "m/s", [expected, value], distance);
         });
     }

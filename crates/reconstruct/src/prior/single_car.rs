@@ -9,7 +9,8 @@
 //! | course at the start | along the first piece of that mark, ± 9°, else towards rest, ± 23° | assumed |
 //! | front wheels held at | normal, 0 ± 5° | a bend or an evasion; assumed |
 //! | driver brakes | 3 of 4 | assumed |
-//! | … from | normal, −0.2 ± 0.7 s about the start | marks begin where somebody brakes; assumed |
+//! | … from | normal, −0.2 ± 0.7 s about a start by a mark | marks begin where somebody brakes; assumed |
+//! | … | uniform, −1.5 to 4 s about a stated start | a place says nothing of the driver; assumed |
 //! | wheels | those that somebody found locked or dragged are so from the start on | |
 //!
 //! Four locked wheels leave no part for brakes, engine and steering. The mass is that which is stated: friction,
@@ -90,7 +91,10 @@ impl Prior {
             DriverBraked::No => self.fixed.set(Latent::BrakeDecision, 1.0),
         }
         if after.driver_braked != DriverBraked::No {
-            let start = normal(-0.2, 0.7, -1.5, 6.0);
+            let start = match ranges.place_m() {
+                Some(_) => Distribution::Uniform { low: -1.5, high: 4.0 },
+                None => normal(-0.2, 0.7, -1.5, 6.0),
+            };
             self.open(Latent::BrakeStart, ranges.brake_start_s, assumed(start));
             self.assume(Latent::BrakeRise, log_normal(0.4, 0.5, 0.1, 1.5));
             self.assume(Latent::FrontBrakeShift, normal(0.0, 0.05, -0.2, 0.2));

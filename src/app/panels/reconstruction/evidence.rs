@@ -66,7 +66,8 @@ fn start_ui(
     ui.strong("How fast were the cars?");
     ui.label(
         "From what was found after a collision (rest position, tire marks, damage, recorder, friction, \
-         masses) back to the speeds before it, as a distribution.",
+         masses) back to the speeds before it, or from the marks and the rest of a single car to its speed at \
+         their start, as a distribution.",
     );
     ui.add_space(looks::PART);
     for (icon, label, hint, command) in [
@@ -87,6 +88,12 @@ fn start_ui(
             "New evidence",
             "An empty form, with the car at rest to be dragged in the scene",
             Command::Reconstruct(ReconstructionCommand::New),
+        ),
+        (
+            Icon::Car,
+            "New evidence of a single car",
+            "An empty form of a car that struck nothing: it left marks and came to rest",
+            Command::Reconstruct(ReconstructionCommand::NewSingleCar),
         ),
     ] {
         if ui.add(icon_button(icon, label)).on_hover_text(hint).clicked() {

@@ -1,4 +1,4 @@
-//! The “Speeds” pane: what the evidence says of the speeds before the impact.
+//! The “Speeds” pane: what the evidence says of the speeds.
 
 use egui::{ComboBox, ScrollArea, Ui};
 use impactlab_core::uncertainty::Caveats;
@@ -35,7 +35,7 @@ pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 true => {
                     "The speeds stand here when the run has ended; its particles are in the scene."
                 }
-                false => "The speeds before the impact, once the evidence has been run.",
+                false => "What the evidence says of the speeds, once it has been run.",
             });
             return;
         };

@@ -5,6 +5,7 @@ use serde_json::Value;
 use crate::report::InputClass;
 use crate::report::answer::Context;
 use crate::report::flatten::{FlatRow, flatten};
+use crate::report::method::Method;
 use crate::report::numbers::Wording;
 use crate::report::parts::{InputRow, Part};
 use crate::report::paths::ShownPaths;
@@ -95,6 +96,16 @@ pub(in crate::report) fn given_rows(
     flatten(&question, wording, paths).into_iter().map(given).collect()
 }
 
+/// Leaves out the settings of a collision that nobody changed, and names the one car.
+fn of_single_car(rows: &mut Vec<InputRow>, wording: &Wording) {
+    let foreign = ["striking", "one_contact"].map(|key| wording.key(key));
+    rows.retain(|row| row.class != InputClass::Assumed || !foreign.contains(&row.label));
+    let struck = wording.key("vehicle");
+    for row in rows.iter_mut().filter(|row| row.label == struck) {
+        row.label = wording.term("car");
+    }
+}
+
 /// Adds what the question says, in front of what the answer found out.
 pub(super) fn with_request(mut part: Part, request: &Request, context: Context<'_>) -> Part {
     let Context { wording, paths, .. } = context;
@@ -111,6 +122,9 @@ pub(super) fn with_request(mut part: Part, request: &Request, context: Context<'
         source: wording.caveat_reason(assumption),
     });
     let mut rows = given_rows(request, &part.kind, wording, paths);
+    if part.methods.contains(&Method::SingleCar) {
+        of_single_car(&mut rows, wording);
+    }
     rows.append(&mut part.inputs);
     rows.extend(assumed);
     Part { inputs: rows, ..part }

@@ -94,7 +94,7 @@ pub(super) fn part(
             true => {
                 [Method::Reconstruction, Method::Impact, Method::FourDof, Method::DataSheet].into()
             }
-            false => [Method::SingleCar, Method::FourDof, Method::DataSheet].into(),
+            false => [Method::SingleCar, Method::FourDofAlone, Method::DataSheet].into(),
         },
         ..Part::default()
     }

@@ -117,10 +117,17 @@ pub(super) const WORDS: Words = Words {
     atlas_text: "Der Atlas ist eine Modellstudie: {all} berechnete Manöver, an keinem gemessenen PIT geprüft. Er \
                  sagt, wie oft etwas unter diesen vorkommt; er belegt nicht, was hier geschehen ist, und nennt keine \
                  Geschwindigkeit sicher. Die Tabelle gilt für {rows} von {all}, die in denselben Zellen liegen wie der \
-                 Fall nach: {like}; über alles andere ist gemittelt. In {inside} davon gelten beide Netze.",
+                 Fall: {like}. Gemittelt ist über: {averaged}. In {inside} davon gelten beide Netze. In allen lenkt der \
+                 Fahrer des stoßenden Fahrzeugs weiter ein, hält das Tempo und bremst, sobald sich das gestoßene \
+                 gedreht hat.",
     atlas_outside: "Der Fall liegt außerhalb des Atlas, der nichts über ihn sagt: {list}.",
     atlas_picture: "Der Fall im Atlas des PIT-Manövers, einer Modellstudie: Wahrscheinlichkeit einer Drehung um 90° oder \
-                    mehr",
+                    mehr. Waagerecht: {x}; senkrecht: {y}; festgehalten: {held}",
+    atlas_table: "Ausgang der berechneten Manöver in den Zellen des Falls",
+    atlas_other_networks: "Der Atlas wurde mit anderen Netzen berechnet als denen, die hier geantwortet haben ({list}): \
+                           Er und die Vorhersage können sich allein deshalb unterscheiden.",
+    atlas_rest: "alles, was keine Achse des Atlas ist",
+    atlas_nothing: "nichts",
     atlas_error: "Standardfehler",
     atlas_few: "zu wenige",
     atlas_doubtful: "nicht verlässlich",
@@ -244,6 +251,9 @@ pub(super) const WORDS: Words = Words {
         des gestoßenen Fahrzeugs beim ersten Kontakt, X längs seiner Fahrtrichtung. \
         Hauptstoßrichtungen zählen in Grad im Uhrzeigersinn von geradeaus, dorthin, woher die \
         Kraft kommt. Intervalle lassen unten so viel weg wie oben.",
+    axes_single_car_text: "Achsen nach ISO 8855: x nach vorn, y nach links, Gierwinkel nach links positiv. Weltachsen \
+        der Rekonstruktion eines einzelnen Fahrzeugs sind die, in denen die Spuren vermessen wurden. Intervalle \
+        lassen unten so viel weg wie oben.",
     method_impact: "Ebener Stoß",
     method_impact_text: "Beide Fahrzeuge sind starre Körper in der Ebene, die an einem Kontaktpunkt in unendlich \
         kurzer Zeit einen Impuls austauschen. Impuls und Drall bleiben erhalten; die \
@@ -264,6 +274,14 @@ pub(super) const WORDS: Words = Words {
         eben; ein Rad hat den Reibbeiwert der Fahrbahn oder der Zone, in der es steht. Ein abhebendes Rad oder ein \
         Wankwinkel über 15° wird gemeldet; ein Überschlag wird nicht simuliert. Wo ein Fahrzeug \
         für sich allein verfolgt wird, wird ein zweiter Kontakt gemeldet und nicht berechnet.",
+    method_four_dof_alone: "4DOF-Fahrzeugmodell eines einzelnen Fahrzeugs",
+    method_four_dof_alone_text: "Das Fahrzeug bewegt sich längs, quer, im Gieren und im Wanken. Die Seitenkraft jedes \
+        Reifens sättigt mit dem Schräglaufwinkel und fällt darüber auf die Gleitreibung; die Radlasten verlagern sich \
+        mit den Beschleunigungen; Räder rollen frei, drehen gegen eine Bremse oder sind blockiert. Integriert wird \
+        nach Runge–Kutta mit fester Schrittweite, die für Fahrzeuge mit schnelleren Eigenformen geteilt wird.",
+    limits_four_dof_alone: "Nicken, Hub, Reifeneinlauf, Rückstellmomente und Achskinematik fehlen; die Fahrbahn hat \
+        eine Neigung; ein Rad hat den Reibbeiwert der Fahrbahn oder der Zone, in der es steht. Ein Überschlag wird \
+        nicht simuliert.",
     method_contact: "Kontakt zweier Umrisse",
     method_contact_text: "Beide Fahrzeuge werden gemeinsam verfolgt. Ihre Umrisse, Rechtecke mit gerundeten Ecken, sind in \
         Elemente von 8 cm geteilt; wo sie sich überdecken, werden die Elemente beider in Reihe zusammengedrückt. Die Last \
@@ -292,7 +310,7 @@ pub(super) const WORDS: Words = Words {
         Fahrzeug mit der Unscented-Transformation längs der Bahn fortgepflanzt, und die \
         Verteilungen werden gemischt. Außerhalb des Gelernten tritt das 4DOF-Modell mit seinen \
         gemessenen Fehlern an seine Stelle.",
-    limits_response: "Es hat aus simulierten Bewegungen von dreizehn Fahrzeugen von bis zu 8 s gelernt. Die \
+    limits_response: "Es hat aus simulierten Bewegungen von 57 Fahrzeugen von bis zu 12 s gelernt. Die \
         Auslaufstrecke wurde mit keiner Aufzeichnung verglichen.",
     method_reconstruction: "Rekonstruktion aus Spuren",
     method_reconstruction_text: "Alles Unbekannte (Geschwindigkeiten, Winkel, Kontakt, Reibung, Massen, Bremsung, …) hat \
@@ -315,8 +333,8 @@ pub(super) const WORDS: Words = Words {
         Monte-Carlo-Verfahren zieht aus der Vorabverteilung, dann aus Mischungen von Normalverteilungen, die den \
         Spuren schrittweise folgen, und gewichtet jeden Zug nach der Dichte, aus der er stammt.",
     limits_single_car: "Bewegung nach dem 4DOF-Modell mit Vorderrädern, die mit einem Winkel gehalten werden; die \
-        Netze sind nicht beteiligt. Ein Fahrer, der hin und her lenkt, bleibt außer Betracht. Eine Bewegung wird \
-        40 s lang verfolgt.",
+        Netze sind nicht beteiligt. Ein Fahrer, der hin und her lenkt oder die Bremse löst, und ein \
+        Antiblockiersystem bleiben außer Betracht. Eine Bewegung wird 40 s lang verfolgt.",
     validation_single_car: "Fahrzeuge, die dieses Programm mit seinen eigenen Bewegungsgleichungen berechnet hat. Kein \
         reales wurde geprüft.",
     method_sheet: "Fahrzeugdaten nach Regel",
@@ -340,8 +358,8 @@ pub(super) const WORDS: Words = Words {
     table_force: "Fehler, Median (Mittel), %",
     table_force_coverage: "Anteil der wahren Werte in den Intervallen, %, ± Standardfehler",
     validation_response: "Gegen simulierte Bewegungen von zwölf Fahrzeugen, jeweils mit einem Netz, das das \
-        Fahrzeug nicht kennt: mittlerer Fehler über 4 s und der Endlage in m, Mittel (Median); \
-        Anteil der Lagen in den Bereichen.",
+        Fahrzeug nicht kennt und aus weniger Fahrzeugen gelernt hat als das mitgelieferte: mittlerer \
+        Fehler über 4 s und der Endlage in m, Mittel (Median); Anteil der Lagen in den Bereichen.",
     validation_contact: "95 simulierte Paare von Mehrkörperfahrzeugen, 84 davon PIT-Manöver; an die Hälfte ist das Gesetz \
         angepasst. Kein realer Unfall wurde geprüft.",
     table_contact: "Fehler über 4 s und am Ende, m, richtige Drehungen und Anteile der Zeitpunkte und Enden in den Flächen",

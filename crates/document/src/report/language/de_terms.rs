@@ -25,6 +25,11 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("Striking car and struck car", "stoßendes und gestoßenes Fahrzeug"),
     ("Stability control of the struck car", "Stabilitätsprogramm des gestoßenen Fahrzeugs"),
     ("Driver of the struck car", "Fahrer des gestoßenen Fahrzeugs"),
+    ("without ESC", "ohne ESC"),
+    ("with ESC", "mit ESC"),
+    ("does nothing", "tut nichts"),
+    ("countersteers", "lenkt gegen"),
+    ("brakes", "bremst"),
     ("this case", "dieser Fall"),
     // Kinds of answers, and where values belong.
     ("bullet", "stoßendes Fahrzeug"),

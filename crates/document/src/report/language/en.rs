@@ -113,10 +113,17 @@ pub(super) const WORDS: Words = Words {
     atlas_heading: "The case in the atlas of the PIT manoeuvre",
     atlas_text: "The atlas is a model study: {all} computed manoeuvres, checked against no measured PIT. It says how \
                  often something happens among those, is no evidence of what happened here, and calls no speed safe. \
-                 The table is of {rows} of the {all}, which lie in the same cells as the case of: {like}; \
-                 over all else they are averaged. In {inside} of them both networks apply.",
+                 The table is of {rows} of the {all}, which lie in the same cells as the case: {like}. They are \
+                 averaged over: {averaged}. In {inside} of them both networks apply. In all of them the driver of the \
+                 striking car turns in further, keeps the speed, and brakes once the struck car has turned.",
     atlas_outside: "The case lies outside of the atlas, which says nothing of it: {list}.",
-    atlas_picture: "The case in the atlas of the PIT manoeuvre, a model study: probability of a turn by 90° or more",
+    atlas_picture: "The case in the atlas of the PIT manoeuvre, a model study: probability of a turn by 90° or \
+                    more. Across: {x}; up: {y}; held: {held}",
+    atlas_table: "Outcomes of the computed manoeuvres in the cells of the case",
+    atlas_other_networks: "The atlas was computed with other networks than those that answered here ({list}): what it \
+                           says and the prediction may differ for that reason alone.",
+    atlas_rest: "everything that is no axis of the atlas",
+    atlas_nothing: "nothing",
     atlas_error: "Standard error",
     atlas_few: "too few",
     atlas_doubtful: "not to be relied upon",
@@ -237,6 +244,9 @@ pub(super) const WORDS: Words = Words {
         at first contact, X along its heading. Principal directions of force are degrees \
         clockwise from straight ahead, where the force comes from. Intervals leave out as much \
         below as above.",
+    axes_single_car_text: "Axes are those of ISO 8855: x forward, y to the left, yaw positive to the left. World \
+        axes of the reconstruction of a single car are those in which the evidence was measured. Intervals leave \
+        out as much below as above.",
     method_impact: "Planar impact",
     method_impact_text: "Both vehicles are rigid bodies in the plane that exchange one impulse at one contact \
         point, in no time. Momentum and angular momentum are conserved; the normal component \
@@ -257,6 +267,14 @@ pub(super) const WORDS: Words = Words {
         the road is flat; a wheel has the friction of the road, or that of the zone it is in. A lifted wheel or a roll beyond 15° \
         is flagged; a rollover is not simulated. Where one vehicle is followed by itself, a second contact \
         is flagged and not computed.",
+    method_four_dof_alone: "4DOF vehicle model of a single car",
+    method_four_dof_alone_text: "The car moves along, across, in yaw and in roll. The lateral force of each tire \
+        saturates with the slip angle and falls to sliding friction beyond it; vertical loads shift with the \
+        accelerations; wheels roll freely, turn against a brake or are locked. Equations are integrated by the \
+        Runge–Kutta method with a fixed step, which is divided for vehicles with faster modes.",
+    limits_four_dof_alone: "Pitch, heave, tire relaxation, aligning moments and suspension kinematics are left out; \
+        the road has one slope; a wheel has the friction of the road, or that of the zone it is in. A rollover is \
+        not simulated.",
     method_contact: "Contact of two outlines",
     method_contact_text: "Both vehicles are followed together. Their outlines, rectangles with rounded corners, are cut \
         into elements of 8 cm; where they overlap, the elements of both are pressed together in series. The load of an \
@@ -282,7 +300,7 @@ pub(super) const WORDS: Words = Words {
         Uncertainty is carried along the path by the unscented transform for each force and \
         vehicle that was drawn, and the distributions are mixed. Outside of what it learned \
         from, the 4DOF model with its measured errors takes its place.",
-    limits_response: "It learned from simulated motions of thirteen cars of up to 8 s. The distance over which \
+    limits_response: "It learned from simulated motions of 57 cars of up to 12 s. The distance over which \
         a car rolls out has not been compared with a record.",
     method_reconstruction: "Reconstruction from evidence",
     method_reconstruction_text: "Everything that is not known (speeds, heading, contact, friction, masses, braking, …) \
@@ -304,7 +322,8 @@ pub(super) const WORDS: Words = Words {
         sequential Monte Carlo sampler draws from the prior, then from mixtures of normals that follow the evidence \
         step by step, and weighs every draw by the density that it came from.",
     limits_single_car: "Motion by the 4DOF model with front wheels that are held at one angle; the networks take no \
-        part in it. A driver who steers to and fro is left out. A motion is followed for 40 s.",
+        part in it. A driver who steers to and fro or lets the brake go, and an anti-lock system, are left out. A \
+        motion is followed for 40 s.",
     validation_single_car: "Cars that this program simulated with its own equations of motion. No real one was tried.",
     method_sheet: "Vehicle data by rule",
     method_sheet_text: "What a data sheet does not state follows from the rest by rules with a scatter, each \
@@ -325,8 +344,8 @@ pub(super) const WORDS: Words = Words {
     table_force: "Errors, median (mean), %",
     table_force_coverage: "Share of the true values inside the intervals, %, ± standard error",
     validation_response: "Against simulated motions of twelve cars, each asked about by a network that has not \
-        seen the car: mean error over 4 s and of the rest position in m, mean (median); share of \
-        positions inside the regions.",
+        seen the car and knows fewer cars than the shipped one: mean error over 4 s and of the rest \
+        position in m, mean (median); share of positions inside the regions.",
     validation_contact: "95 simulated pairs of multibody cars, 84 of them PIT manoeuvres; the law was fitted to half of \
         them. No real collision was tried.",
     table_contact: "Error over 4 s and at the end, m, turns that were right, and shares of instants and ends inside the \

@@ -31,14 +31,24 @@ pub(in crate::report) fn phrase_of(language: Language, text: &str) -> Option<Str
         Some(rests.iter().fold((*german).to_owned(), fill))
     });
     filled.or_else(|| {
-        // A rule with its source.
-        let inner = text.strip_suffix(')')?;
-        inner.match_indices(" (").find_map(|(at, between)| {
-            let (rule, source) = (inner.get(..at)?, inner.get(at + between.len()..)?);
-            let [rule, source] = [rule, source].map(|part| phrase_of(language, part));
-            Some(format!("{} ({})", rule?, source?))
-        })
+        let (rule, source) = rule_with_source(text)?;
+        Some(format!("{} ({})", phrase_of(language, rule)?, phrase_of(language, source)?))
     })
+}
+
+/// A rule, and its source in the brackets behind it.
+fn rule_with_source(text: &str) -> Option<(&str, &str)> {
+    let inner = text.strip_suffix(')')?;
+    let mut n_open = 1_usize;
+    let opens = inner.char_indices().rev().find_map(|(at, letter)| {
+        match letter {
+            ')' => n_open += 1,
+            '(' => n_open -= 1,
+            _ => {}
+        }
+        (n_open == 0).then_some(at)
+    })?;
+    Some((inner.get(..opens)?.strip_suffix(' ')?, inner.get(opens + 1..)?))
 }
 
 fn terms() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
@@ -94,6 +104,15 @@ mod tests {
     use impactlab_reconstruct::hand::HandMethod;
     use impactlab_reconstruct::{Latent, ReconstructedQuantity};
     use impactlab_study::Measurements;
+
+    #[test]
+    fn a_source_is_what_the_last_bracket_holds() {
+        let parts = rule_with_source("a rule (by class) of two (a source (1999))");
+        assert_eq!(parts, Some(("a rule (by class) of two", "a source (1999)")));
+        assert_eq!(["a) b)", "a(b)", "a (b"].map(rule_with_source), [None; 3]);
+        // Each bracket of a name that was tried as that of a source doubled the work.
+        assert_eq!(phrase_of(Language::De, &format!("qqq{}", " (qq)".repeat(60))), None);
+    }
 
     #[test]
     fn every_label_of_the_program_has_a_german_one() {

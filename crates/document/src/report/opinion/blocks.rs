@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::report::Block;
 use crate::report::beside::{NamedRows, beside};
 use crate::report::build::{VariantParts, parts_of};
-use crate::report::method::Method;
+use crate::report::method::{Method, of_kinds};
 use crate::report::numbers::{Wording, fill};
 use crate::report::opinion::differences::differences;
 use crate::report::opinion::part::{PartOpinion, Rank};
@@ -177,7 +177,8 @@ fn held(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     if blocks.is_empty() {
         blocks.push(Block::paragraph(words.not_counted));
     }
-    blocks.push(Block::paragraph(words.known_error));
+    let errors = [words.known_error, words.known_error_single_car];
+    blocks.extend(of_kinds(&methods_of(spoken), errors).map(Block::paragraph));
     blocks
 }
 

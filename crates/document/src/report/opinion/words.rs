@@ -21,6 +21,7 @@ pub(super) struct OpinionWords {
     pub how_sure: &'static str,
     pub not_counted: &'static str,
     pub known_error: &'static str,
+    pub known_error_single_car: &'static str,
     pub hinges: &'static str,
     pub warnings: &'static str,
     pub no_warnings: &'static str,
@@ -84,6 +85,8 @@ const EN: OpinionWords = OpinionWords {
     known_error: "The intervals were tried on computed collisions whose outcome was known; the known errors are in \
         section 7. The method was not validated against real collisions. The bounds are those of 95 % \
         confidence.",
+    known_error_single_car: "The method was tried on single cars that the program simulated itself, and was not \
+        validated against real ones; what is known of its model stands in section 7.",
     hinges: "What the answer hinges on",
     warnings: "Warnings",
     no_warnings: "The program warns of nothing.",
@@ -147,6 +150,8 @@ const DE: OpinionWords = OpinionWords {
     known_error: "Die Bereiche wurden an berechneten Zusammenstößen geprüft, deren Ausgang bekannt war; die bekannten \
         Fehler stehen in Abschnitt 7. Das Verfahren ist nicht an realen Unfällen validiert. Die Grenzen gelten \
         mit einer Sicherheit von 95 %.",
+    known_error_single_car: "Das Verfahren wurde an einzelnen Fahrzeugen geprüft, die das Programm selbst berechnet \
+        hat, und ist nicht an realen validiert; was von seinem Modell bekannt ist, steht in Abschnitt 7.",
     hinges: "Wovon die Antwort abhängt",
     warnings: "Warnungen",
     no_warnings: "Das Programm warnt vor nichts.",

@@ -420,9 +420,9 @@ impl Question for ReconstructRequest {
         let left_out = self.left_out(&target, &particles, &fit, observer);
         let alone = left_out.iter().map(|part| part.n_simulations).sum::<usize>();
         caveats.extend(of_left_out(&left_out));
-        caveats.push(match is_single_car {
-            true => single_car::of_validation(),
-            false => of_validation(target.model().zones()),
+        caveats.extend(match is_single_car {
+            true => single_car::restrictions(&evidence),
+            false => vec![of_validation(target.model().zones())],
         });
         caveats.extend(assumptions);
         let quantities = posterior.quantities();

@@ -106,13 +106,32 @@ pub(super) fn unused(request: &ReconstructRequest, evidence: &Evidence) -> Vec<C
     stated.map(|(_, what, why)| caveat(what, why)).collect()
 }
 
+/// What the intervals do not allow for.
+pub(super) fn restrictions(evidence: &Evidence) -> Vec<Caveat> {
+    end_open(evidence).into_iter().chain([of_validation()]).collect()
+}
+
+/// That the end of the marks stands for the place of rest where nobody says this.
+fn end_open(evidence: &Evidence) -> Option<Caveat> {
+    let text = Phrase::new(
+        "no place of rest is stated: a car that brakes is taken to brake until it stops, so that the end of its \
+         marks tells where that is; one that let the brake go, left the road or was stopped by something there \
+         was faster",
+        "Ein Ort des Stillstands ist nicht angegeben: Ein Fahrzeug, das bremst, gilt als bis zum Stillstand \
+         gebremst, und das Ende seiner Spuren sagt, wo es steht. Wurde dort die Bremse gelöst, die Fahrbahn \
+         verlassen oder das Fahrzeug aufgehalten, war es schneller",
+    );
+    evidence.rest.is_none().then(|| Caveat::new(CaveatKind::DriverOpen, text))
+}
+
 /// What the intervals have been tried on.
-pub(super) fn of_validation() -> Caveat {
+fn of_validation() -> Caveat {
     let text = Phrase::new(
         "intervals of a single car were tried on cars that this program simulated with its own equations of \
-         motion, and on no real one",
+         motion, and on no real one; marks of a car with an anti-lock system are taken for those of locked wheels",
         "Die Intervalle eines einzelnen Fahrzeugs wurden an Fahrzeugen geprüft, die dieses Programm mit seinen \
-         eigenen Bewegungsgleichungen berechnet hat, und an keinem realen",
+         eigenen Bewegungsgleichungen berechnet hat, und an keinem realen. Spuren eines Fahrzeugs mit \
+         Antiblockiersystem gelten als die blockierter Räder",
     );
     Caveat::new(CaveatKind::HardlyValidated, text)
 }
