@@ -155,7 +155,11 @@ fn is_close(value: &Value, expected: f64, tolerance: f64) -> bool {
 fn an_atlas_says_what_it_is_and_what_its_cells_hold() {
     let made = Made::new();
     let described = made.answer(&[]);
-    assert!(described["note"].as_str().unwrap().contains("model study"));
+    let note = described["note"].as_str().unwrap();
+    assert!(
+        note.contains("model study") && note.ends_with("this program: force, response"),
+        "{note}"
+    );
     assert_eq!(described["axes"][2]["labels"][1], "with ESC");
     assert_eq!(described["has_sensitivity"], false);
     let printed = made.printed(&[]);
@@ -284,6 +288,17 @@ fn the_shipped_atlas_is_of_the_shipped_plans_and_networks() {
     // Of the middle of the speeds, everything else averaged over.
     let cell = answer(&["atlas", "cell", "--set", "speed=52mph"]);
     assert!(cell["n_rows"].as_u64().unwrap() > 1000, "{cell}");
+    assert!(!cell["note"].as_str().unwrap().contains("other networks"), "{cell}");
+    // It was told as “too few rows”.
+    let corridor = &cell["corridor"];
+    assert_eq!(
+        (&corridor["width_m"], &corridor["width_more_than_m"]),
+        (&Value::Null, &60.0.into())
+    );
+    assert_eq!(corridor["length_more_than_m"], Value::Null);
+    let output = program().args(["atlas", "cell", "--set", "speed=52mph"]).output().unwrap();
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert!(printed.contains("more than 60.00 m") && !printed.contains("too few"), "{printed}");
 }
 
 #[test]

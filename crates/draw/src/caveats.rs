@@ -128,14 +128,14 @@ impl RestrictionLine {
         };
         let mut galley = line(&self.text);
         let mut kept = self.text.as_str();
-        // A list is cut between its parts.
+        // A list is cut between its parts, and a text between its sentences.
         while galley.elided {
-            let Some((before, _)) = kept.rsplit_once("; ") else {
+            let Some(before) = without_last_part(kept) else {
                 galley = line(&self.text);
                 break;
             };
             kept = before;
-            galley = line(&format!("{kept}; …"));
+            galley = line(&format!("{kept} …"));
         }
         let place = |x: f32, size: Vec2| pos2(x, rect.center().y - size.y / 2.0);
         let end = rect.left() + galley.size().x;
@@ -155,10 +155,26 @@ fn capitalised(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
+/// A text without its last part or sentence; `None` if it has one alone.
+fn without_last_part(text: &str) -> Option<&str> {
+    let end = text.rfind("; ").max(text.rfind(". "))?;
+    text.get(..=end)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
+
+    /// “no speed in it is a safe speed” was cut from below every map, as a long sentence stood behind it.
+    #[test]
+    fn a_text_is_cut_between_parts_and_sentences() {
+        let text = "a study; no speed of 4.5 m/s is safe. Hatched: few rows";
+        let shorter = without_last_part(text);
+        assert_eq!(shorter, Some("a study; no speed of 4.5 m/s is safe."));
+        assert_eq!(shorter.and_then(without_last_part), Some("a study;"));
+        assert_eq!(without_last_part("a study;"), None);
+    }
 
     #[test]
     fn a_warning_comes_first_and_the_others_are_counted() {

@@ -51,6 +51,9 @@ pub fn legend_ui(ui: &mut Ui, figure: &Figure, hidden: &mut BTreeSet<String>, n_
 
 /// How many names have room in so many rows, with the number of the others behind them.
 fn n_that_fit(ui: &Ui, named: &[&FigureElement], n_rows: usize) -> usize {
+    if n_rows >= named.len() {
+        return named.len();
+    }
     let font = TextStyle::Small.resolve(ui.style());
     let between = ui.spacing().item_spacing.x;
     let (whole, mut row, mut used) = (ui.available_width(), 1, 0.0);

@@ -3,7 +3,7 @@
 use crate::app::atlas::AtlasSession;
 use crate::app::atlas::view::MapChoice;
 use crate::app::atlas::words::cell_text;
-use impactlab_core::units::UnitSystem;
+use impactlab_core::units::{NumberFormat, UnitSystem};
 use impactlab_document::figure::{self, AtlasFigure, Figure, FigureElement, atlas_figure};
 use impactlab_sweep::atlas::{Atlas, Axis, CasePlace, Slice};
 
@@ -115,6 +115,7 @@ impl AtlasSession {
             return vec!["The case at hand does not say both axes of this map.".to_owned()];
         };
         let mut lines = vec![format!("The case at hand: {}", map.text(cell, units))];
+        lines.extend(place.other_driver().map(|text| text.say(&NumberFormat::english(units))));
         let others = map.elsewhere(atlas, &case.bins);
         if !others.is_empty() {
             let others = others.join(", ");

@@ -13,6 +13,8 @@ pub struct ReadAtlas {
     pub file: Option<PathBuf>,
     /// The atlas, or why there is none.
     pub atlas: Result<Arc<Atlas>, String>,
+    /// The networks of the program that are not those that computed it.
+    pub other_networks: Vec<String>,
 }
 
 /// The atlas that is shown with its maps.
@@ -40,6 +42,18 @@ impl AtlasSession {
         self.read.as_ref()?.atlas.as_ref().err().map(String::as_str)
     }
 
+    /// That the atlas was computed with other networks than those of the program, where it was.
+    pub fn warning(&self) -> Option<String> {
+        let others = &self.read.as_ref()?.other_networks;
+        (!others.is_empty()).then(|| {
+            let others = others.join(", ");
+            format!(
+                "This atlas was computed with other networks than those of this version ({others}): \
+                 its numbers and a prediction may differ for that reason alone."
+            )
+        })
+    }
+
     /// The maps that are shown, from left to right.
     pub fn maps(&self) -> &[ShownMap] {
         &self.maps
@@ -49,5 +63,22 @@ impl AtlasSession {
     /// it.
     pub fn bins_of_case(&self) -> &[Option<usize>] {
         self.made_of.as_ref().map_or(&[], |of| of.case.bins.as_slice())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_atlas_of_other_networks_has_a_warning() {
+        let mut session = AtlasSession::default();
+        assert_eq!(session.warning(), None);
+        let read =
+            |other_networks| ReadAtlas { file: None, atlas: Err(String::new()), other_networks };
+        session.read = Some(read(Vec::new()));
+        assert_eq!(session.warning(), None);
+        session.read = Some(read(vec!["response".to_owned()]));
+        assert!(session.warning().unwrap().contains("(response)"));
     }
 }

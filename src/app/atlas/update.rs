@@ -12,6 +12,7 @@ use crate::app::state::State;
 use crate::app::tasks::TaskKey;
 use crate::app::workspaces::Workspace;
 use impactlab_core::error_chain;
+use impactlab_study::Library;
 use impactlab_sweep::atlas::Atlas;
 
 impl State {
@@ -77,11 +78,16 @@ impl State {
         }
         session.reading = Some(wanted.clone());
         let (file, of) = (wanted.clone(), wanted.clone());
+        let library = Arc::clone(&self.session.library);
         self.session.tasks.start(
             TaskKey::ReadAtlas,
-            move |_| read(file),
-            |atlas| {
-                let atlas = ReadAtlas { file: of, atlas };
+            move |_| read(file, &library),
+            |found| {
+                let (atlas, other_networks) = match found {
+                    Ok((atlas, others)) => (Ok(atlas), others),
+                    Err(why) => (Err(why), Vec::new()),
+                };
+                let atlas = ReadAtlas { file: of, atlas, other_networks };
                 Command::Atlas(AtlasCommand::Read(Found::new(atlas)))
             },
         );
@@ -100,15 +106,17 @@ impl State {
     }
 }
 
-/// Reads an atlas.
+/// Reads an atlas, and which networks of the program are not those that computed it.
 ///
 /// - `file`: its file; `None` for the one that comes with the program.
-fn read(file: Option<PathBuf>) -> Result<Arc<Atlas>, String> {
-    match file {
-        Some(file) => Atlas::read(&file).map(Arc::new).map_err(|error| error_chain(&error)),
+fn read(file: Option<PathBuf>, library: &Library) -> Result<(Arc<Atlas>, Vec<String>), String> {
+    let atlas = match file {
+        Some(file) => Arc::new(Atlas::read(&file).map_err(|error| error_chain(&error))?),
         None => match Atlas::shipped() {
-            Some(atlas) => Ok(Arc::new(atlas.clone())),
-            None => Err("no atlas comes with this version".to_owned()),
+            Some(atlas) => Arc::new(atlas.clone()),
+            None => return Err("no atlas comes with this version".to_owned()),
         },
-    }
+    };
+    let others = atlas.other_networks_in(library).map_err(|error| error_chain(&error))?;
+    Ok((atlas, others))
 }

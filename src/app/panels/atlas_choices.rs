@@ -17,6 +17,9 @@ use impactlab_sweep::atlas::{Atlas, Axis, Measure};
 /// Largest width of a closed list, points.
 const LIST_WIDTH: f32 = 220.0;
 
+/// Least width of the names of the inputs, so that no word is broken, points.
+const LABEL_WIDTH: f32 = 100.0;
+
 /// Draws the choices; without an atlas, how to get one.
 pub fn atlas_choices_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { view, session, commands, .. } = pane;
@@ -152,7 +155,7 @@ fn held_form(
 ) {
     let beside = view.beside(atlas);
     let is_free = |idx: &usize| !choice.axes.contains(idx) && beside != Some(*idx);
-    Grid::new("atlas inputs").num_columns(2).show(ui, |ui| {
+    Grid::new("atlas inputs").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
         for (idx, axis) in atlas.axes.iter().enumerate().filter(|(idx, _)| is_free(idx)) {
             let name = ui.add(Label::new(&axis.label).wrap());
             let mut held = choice.held.get(idx).copied().flatten();

@@ -13,7 +13,7 @@ use impactlab_draw::FigureOptions;
 use impactlab_sweep::atlas::Atlas;
 
 /// Height of the lines below the maps, points.
-const READOUT_HEIGHT: f32 = 64.0;
+const READOUT_HEIGHT: f32 = 96.0;
 /// Width of the text of the empty pane, points.
 const TEXT_WIDTH: f32 = 560.0;
 
@@ -27,6 +27,10 @@ pub fn atlas_map_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         return no_atlas_ui(ui, &session.atlas, commands);
     };
     ui.add(Label::new(RichText::new(LEGEND).weak()).wrap());
+    if let Some(warning) = session.atlas.warning() {
+        let color = ui.visuals().warn_fg_color;
+        ui.add(Label::new(RichText::new(warning).color(color)).wrap());
+    }
     let maps = session.atlas.maps();
     let height = (ui.available_height() - TITLE_HEIGHT - READOUT_HEIGHT).max(MIN_PLOT_HEIGHT);
     let mut pointed = None;

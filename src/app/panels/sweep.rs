@@ -70,7 +70,7 @@ fn open_ui(ui: &mut Ui, is_enabled: bool, commands: &mut Vec<Command>) {
                 commands.push(Command::Ask(Purpose::OpenPlan));
             }
             let save = ui.button("Save an example plan…");
-            let hint = "The plan of the shipped atlas, to be changed: it has a million rows";
+            let hint = "The plan of the shipped atlas, to be changed: it has 32 768 rows";
             if save.on_hover_text(hint).clicked() {
                 commands.push(Command::Ask(Purpose::Save(Output::ExamplePlan)));
             }

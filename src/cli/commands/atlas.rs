@@ -17,8 +17,7 @@ use impactlab_sweep::Outcome;
 use impactlab_sweep::atlas::{Atlas, Axis, Corridor, Measure, Sensitivity, SliceCell};
 
 /// What every answer of the atlas says of itself.
-pub(super) const NOTE: &str =
-    "a model study, checked against no measured PIT; no speed in it is a safe speed";
+const NOTE: &str = "a model study, checked against no measured PIT; no speed in it is a safe speed";
 
 /// Read the atlas of the PIT manoeuvre: what it leads to over speed, angle, contact, friction and cars
 ///
@@ -52,14 +51,15 @@ Examples:\n  impactlab atlas cell --set speed=45mph --set closing=6mph --set fri
 impactlab atlas cell --set esc=1 --json\n\n\
 An axis that is not set is averaged over, as often as the plan has each of its values.\n\n\
 JSON: {note, held [{axis, bin, text}], n_rows, n_failed, inside, outcomes [{name, unit, mean, standard_error, \
-n_applies, is_sound}], corridor {length_m {value, error}, width_m {value, error}}}")]
+n_applies, is_sound}], corridor {length_m {value, error}, length_more_than_m, width_m {value, error}, \
+width_more_than_m}}; a corridor beyond what is counted has no value, and what it is more than")]
     Cell(CellArgs),
     /// A map over two axes, as a table, a picture or CSV
     #[command(after_help = "\
 Examples:\n  impactlab atlas slice --x speed --y closing --outcome turns_90 --out map.png\n  \
 impactlab atlas slice --x speed --y overlap --outcome corridor_length_m --set esc=1 --out map.csv\n\n\
-JSON: {note, out, outcome, unit, held [{axis, bin, text}], x, y, cells [{n_rows, n_failed, n_applies, mean, error, \
-inside, at_rest}], row by row from the lowest y; x and y as in `impactlab atlas --json`}")]
+JSON: {note, out, outcome, unit, held [{axis, bin, text}], x, y, cells [{n_rows, n_failed, n_applies, mean, \
+more_than, error, inside, at_rest}], row by row from the lowest y; x and y as in `impactlab atlas --json`}")]
     Slice(SliceArgs),
     /// Which input moves an outcome: Sobol indices, alone and with the others
     #[command(after_help = "\
@@ -119,20 +119,33 @@ pub(in crate::cli) fn run(
         }
         None => Cow::Borrowed(Atlas::shipped().ok_or(CliError::NoAtlas)?),
     };
+    let note = note_of(&atlas, console)?;
     match &args.command {
-        None | Some(AtlasCommand::Make(_)) => describe(&atlas, console)?,
-        Some(AtlasCommand::Cell(args)) => cell(&atlas, args, console)?,
+        None | Some(AtlasCommand::Make(_)) => describe(&atlas, &note, console)?,
+        Some(AtlasCommand::Cell(args)) => cell(&atlas, &note, args, console)?,
         Some(AtlasCommand::Slice(of)) => {
-            atlas_slice::run(&atlas, args.atlas.as_deref(), of, console)?;
+            atlas_slice::run((&*atlas, note.as_str()), args.atlas.as_deref(), of, console)?;
         }
-        Some(AtlasCommand::Sensitivity(args)) => sensitivity(&atlas, args, console)?,
+        Some(AtlasCommand::Sensitivity(args)) => sensitivity(&atlas, &note, args, console)?,
     }
     Ok(Verdict::Clean)
 }
 
+/// What the atlas is, and by which networks it was not computed.
+fn note_of(atlas: &Atlas, console: &Console<'_>) -> Result<String, CliError> {
+    let others = atlas.other_networks_in(&console.library)?;
+    Ok(match others.is_empty() {
+        true => NOTE.to_owned(),
+        false => {
+            let others = others.join(", ");
+            format!("{NOTE}; computed with other networks than those of this program: {others}")
+        }
+    })
+}
+
 #[derive(Debug, Serialize)]
 struct Described<'a> {
-    note: &'static str,
+    note: &'a str,
     n_rows: u64,
     n_failed: u64,
     n_outside: u64,
@@ -153,7 +166,7 @@ struct DescribedOutcome {
     is_probability: bool,
 }
 
-fn describe(atlas: &Atlas, console: &mut Console<'_>) -> Result<(), CliError> {
+fn describe(atlas: &Atlas, note: &str, console: &mut Console<'_>) -> Result<(), CliError> {
     let outcome = |measure: Measure| DescribedOutcome {
         name: measure.name(),
         label: measure.label(),
@@ -161,7 +174,7 @@ fn describe(atlas: &Atlas, console: &mut Console<'_>) -> Result<(), CliError> {
         is_probability: measure.is_probability(),
     };
     let described = Described {
-        note: NOTE,
+        note,
         n_rows: atlas.n_rows,
         n_failed: atlas.n_failed,
         n_outside: atlas.n_outside,
@@ -174,7 +187,7 @@ fn describe(atlas: &Atlas, console: &mut Console<'_>) -> Result<(), CliError> {
         has_sensitivity: !atlas.sensitivity.is_empty(),
     };
     console.print(&described, |out| {
-        writeln!(out, "{} rows in {} cells: {NOTE}", described.n_rows, described.n_cells)?;
+        writeln!(out, "{} rows in {} cells: {note}", described.n_rows, described.n_cells)?;
         if described.n_failed + described.n_outside > 0 {
             let (failed, outside) = (described.n_failed, described.n_outside);
             writeln!(out, "{failed} rows have no answer, {outside} lie outside of the axes")?;
@@ -284,7 +297,11 @@ pub(super) fn measure_of(name: &str) -> Result<Measure, CliError> {
 
 /// A measure of a cell for a person: `62.3 % ± 1.4 %`, `31.2 m ± 0.6 m`.
 pub(super) fn measure_text(measure: Measure, cell: &SliceCell, units: UnitSystem) -> String {
-    let Some(mean) = cell.mean else { return "too few rows".to_owned() };
+    let Some(mean) = cell.mean else {
+        let limit = cell.more_than.zip(Quantity::from_si_symbol(measure.unit()));
+        let told = limit.map(|(limit, of)| format!("more than {}", of.shown(limit, units)));
+        return told.unwrap_or_else(|| "too few rows".to_owned());
+    };
     let Some(quantity) = Quantity::from_si_symbol(measure.unit()) else {
         return format!("{} ± {}", percent(mean), percent(cell.error));
     };
@@ -298,12 +315,12 @@ pub(super) fn measure_text(measure: Measure, cell: &SliceCell, units: UnitSystem
 
 /// What is said of a number that maps hatch.
 pub(super) fn doubt_text(cell: &SliceCell) -> &'static str {
-    if cell.mean.is_some() && !cell.is_sound() { "not to be relied upon" } else { "" }
+    if cell.is_told() && !cell.is_sound() { "not to be relied upon" } else { "" }
 }
 
 #[derive(Debug, Serialize)]
-struct PrintedCell {
-    note: &'static str,
+struct PrintedCell<'a> {
+    note: &'a str,
     held: Vec<Held>,
     n_rows: u64,
     n_failed: u64,
@@ -322,7 +339,12 @@ struct PrintedOutcome {
     is_sound: bool,
 }
 
-fn cell(atlas: &Atlas, args: &CellArgs, console: &mut Console<'_>) -> Result<(), CliError> {
+fn cell(
+    atlas: &Atlas,
+    note: &str,
+    args: &CellArgs,
+    console: &mut Console<'_>,
+) -> Result<(), CliError> {
     let (bins, units) = (args.held.bins(atlas)?, args.units.into());
     let cell = atlas.cell(&bins);
     let outcome = |measure: Measure| {
@@ -337,7 +359,7 @@ fn cell(atlas: &Atlas, args: &CellArgs, console: &mut Console<'_>) -> Result<(),
         }
     };
     let printed = PrintedCell {
-        note: NOTE,
+        note,
         held: listed(atlas, &bins, units),
         n_rows: cell.n_rows(),
         n_failed: cell.n_failed(),
@@ -346,7 +368,7 @@ fn cell(atlas: &Atlas, args: &CellArgs, console: &mut Console<'_>) -> Result<(),
         corridor: cell.corridor(),
     };
     console.print(&printed, |out| {
-        writeln!(out, "{NOTE}")?;
+        writeln!(out, "{note}")?;
         print_held(out, &printed.held)?;
         let (rows, failed) = (printed.n_rows, printed.n_failed);
         let inside = percent(printed.inside);
@@ -369,8 +391,8 @@ fn cell(atlas: &Atlas, args: &CellArgs, console: &mut Console<'_>) -> Result<(),
 }
 
 #[derive(Debug, Serialize)]
-struct PrintedSensitivity {
-    note: &'static str,
+struct PrintedSensitivity<'a> {
+    note: &'a str,
     outcomes: Vec<OutcomeIndices>,
 }
 
@@ -384,6 +406,7 @@ struct OutcomeIndices {
 
 fn sensitivity(
     atlas: &Atlas,
+    note: &str,
     args: &SensitivityArgs,
     console: &mut Console<'_>,
 ) -> Result<(), CliError> {
@@ -398,9 +421,9 @@ fn sensitivity(
     if outcomes.is_empty() {
         return Err(CliError::NoIndices);
     }
-    let printed = PrintedSensitivity { note: NOTE, outcomes };
+    let printed = PrintedSensitivity { note, outcomes };
     console.print(&printed, |out| {
-        writeln!(out, "{NOTE}")?;
+        writeln!(out, "{note}")?;
         for of in &printed.outcomes {
             writeln!(out, "\n{}", of.label)?;
             let row = |index: &Sensitivity| {

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::commands::atlas::{
-    Held, HeldArgs, NOTE, axis_idx, doubt_text, listed, measure_of, measure_text, print_held,
+    Held, HeldArgs, axis_idx, doubt_text, listed, measure_of, measure_text, print_held,
 };
 use crate::cli::console::{Console, print_table, shown_path};
 use crate::cli::options::{OverwriteArg, UnitsArg, size_px};
@@ -49,7 +49,7 @@ pub(super) struct SliceArgs {
 
 #[derive(Debug, Serialize)]
 struct PrintedSlice<'a> {
-    note: &'static str,
+    note: &'a str,
     out: Option<&'a Path>,
     outcome: &'static str,
     unit: &'static str,
@@ -74,9 +74,10 @@ fn is_picture(path: &Path) -> Result<bool, CliError> {
 
 /// Makes the map.
 ///
+/// - `atlas`: with what it is;
 /// - `file`: where the atlas was read, if it is not the shipped one.
 pub(super) fn run(
-    atlas: &Atlas,
+    (atlas, note): (&Atlas, &str),
     file: Option<&Path>,
     args: &SliceArgs,
     console: &mut Console<'_>,
@@ -106,7 +107,7 @@ pub(super) fn run(
     }
     let units = args.units.into();
     let printed = PrintedSlice {
-        note: NOTE,
+        note,
         out: args.out.as_deref(),
         outcome: measure.name(),
         unit: measure.unit(),
@@ -118,9 +119,9 @@ pub(super) fn run(
     console.print(&printed, |out| {
         if let Some(path) = printed.out {
             writeln!(out, "{}: {}", shown_path(path), measure.label())?;
-            return writeln!(out, "note: {NOTE}");
+            return writeln!(out, "note: {note}");
         }
-        writeln!(out, "{}\n{NOTE}", measure.label())?;
+        writeln!(out, "{}\n{note}", measure.label())?;
         print_held(out, &printed.held)?;
         writeln!(out)?;
         let [x, y] = [&slice.x.label, &slice.y.label].map(String::as_str);

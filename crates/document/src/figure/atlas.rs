@@ -120,10 +120,15 @@ fn cell_map(slice: &Slice, measure: Measure, axes: [&Axis; 2], units: UnitSystem
         name: measure.label().to_owned(),
         edges: [edges(&slice.x, axes[0]), edges(&slice.y, axes[1])],
         values,
-        is_hatched: slice.cells.iter().map(|cell| !cell.is_sound()).collect(),
+        is_hatched: slice.cells.iter().map(is_hatched).collect(),
         scale,
         unit,
     }
+}
+
+/// Whether a cell has no colour, or one that is not to be relied upon.
+fn is_hatched(cell: &SliceCell) -> bool {
+    cell.mean.is_none() || !cell.is_sound()
 }
 
 /// Lines of equal value through the middles of the cells, up to the edge of the map.
@@ -257,7 +262,7 @@ pub fn write_slice_csv(
             cell.n_applies.to_string(),
             cell.n_failed.to_string(),
             cell.inside.to_string(),
-            (!cell.is_sound()).to_string(),
+            is_hatched(cell).to_string(),
         ];
         csv.write_record(&row)?;
     }
@@ -283,8 +288,8 @@ mod tests {
 
     fn cell(mean: Option<f64>, inside: f64) -> SliceCell {
         let error = if mean.is_some() { 0.01 } else { f64::INFINITY };
-        let (n_rows, n_failed, n_applies, at_rest) = (100, 0, 100, 1.0);
-        SliceCell { n_rows, n_failed, n_applies, mean, error, inside, at_rest }
+        let (n_rows, n_failed, n_applies, at_rest, more_than) = (100, 0, 100, 1.0, None);
+        SliceCell { n_rows, n_failed, n_applies, mean, more_than, error, inside, at_rest }
     }
 
     fn slice() -> Slice {

@@ -143,9 +143,13 @@ fn shown_still(still: &SceneStill, wording: &Wording) -> SceneStill {
     SceneStill { scene: scene.into(), ..still.clone() }
 }
 
-/// Caveats with their sentences in the language and the units of the report.
+/// Caveats with their sentences in the language and the units of the report, and without what a picture
+/// would make others from.
 fn told(caveats: &Caveats, wording: &Wording) -> Caveats {
-    let told = |caveat: &Caveat| Caveat { text: wording.caveat_text(caveat), ..caveat.clone() };
+    let told = |caveat: &Caveat| {
+        let text = wording.caveat_text(caveat);
+        Caveat { text, text_phrase: None, ..caveat.clone() }
+    };
     caveats.iter().map(told).collect()
 }
 

@@ -139,7 +139,7 @@ fn models(report: &CaseReport, wording: &Wording, paths: &ShownPaths) -> Block {
 }
 
 /// What a network of a case is called.
-fn network_name(network: &str, wording: &Wording) -> String {
+pub(super) fn network_name(network: &str, wording: &Wording) -> String {
     match network {
         "force" => wording.words.force_network.to_owned(),
         "response" => wording.words.response_network.to_owned(),

@@ -6,8 +6,8 @@ use crate::PitInput;
 use crate::atlas::Atlas;
 use impactlab_core::collision::Scenario;
 use impactlab_core::numerics::wrap_angle_rad;
-use impactlab_core::units::{Quantity, UnitSystem};
-use impactlab_core::vehicle::{Ending, VehicleParameters};
+use impactlab_core::units::{Phrase, Quantity, UnitSystem};
+use impactlab_core::vehicle::{Ending, PitEnd, VehicleParameters};
 
 /// Masses of the cars of the plan, kg, and by how much the striking car is faster along the lane in it, m/s:
 /// what the cells are averaged over, and beyond which they say nothing of a case.
@@ -24,6 +24,8 @@ pub struct CasePlace {
     pub values: Vec<(PitInput, f64)>,
     /// Masses of the struck and the striking car, kg.
     pub masses_kg: [f64; 2],
+    /// Whether the driver of the striking car turns in and brakes at the end, as in every row of the plan.
+    pub turns_in: bool,
 }
 
 /// The inputs of a case; `None` if it is no PIT: a touch of the side behind the CG of the struck car by
@@ -66,7 +68,9 @@ pub fn place_of_case(scenario: &Scenario, struck: &VehicleParameters) -> Option<
     ];
     values.extend(driver(&ending).map(|driver| (PitInput::Driver, driver)));
     let masses_kg = [scenario.struck.mass_kg, scenario.striking.mass_kg];
-    Some(CasePlace { values, masses_kg })
+    let striking = scenario.striking_ending.as_ref().and_then(|ending| ending.pit);
+    let turns_in = striking.is_some_and(|driver| driver.end == Some(PitEnd::Brake));
+    Some(CasePlace { values, masses_kg, turns_in })
 }
 
 /// What the driver does, as the plan counts it; `None` for what is in none of its rows.
@@ -95,6 +99,19 @@ impl CasePlace {
         let values: Vec<(&str, f64)> =
             self.values.iter().map(|(input, value)| (input.name(), *value)).collect();
         atlas.locate(&values)
+    }
+
+    /// That the driver of the striking car does something else than in the map, if he does.
+    pub fn other_driver(&self) -> Option<Phrase> {
+        let text = || {
+            Phrase::new(
+                "The driver of the striking car does something else in this case than in the atlas: it is \
+                 another manoeuvre, which may end otherwise.",
+                "Der Fahrer des stoßenden Fahrzeugs tut in diesem Fall etwas anderes als im Atlas: Es ist ein \
+                 anderes Manöver, das anders ausgehen kann.",
+            )
+        };
+        (!self.turns_in).then(text)
     }
 
     /// What of the case lies outside of the map, a phrase each; empty if nothing does.
@@ -130,7 +147,7 @@ impl CasePlace {
 mod tests {
     use super::*;
     use crate::atlas::Axis;
-    use impactlab_core::vehicle::{Countersteer, Preset, built_in_vehicle};
+    use impactlab_core::vehicle::{Countersteer, PitDriver, Preset, built_in_vehicle};
 
     #[test]
     fn the_example_is_a_pit_with_the_values_of_its_file() {
@@ -143,6 +160,12 @@ mod tests {
         assert!((value(PitInput::Angle) - 18_f64.to_radians()).abs() < 1e-9);
         assert!(value(PitInput::Slip).abs() < 1e-9, "it drives where it points");
         assert_eq!((value(PitInput::Esc), value(PitInput::Driver)), (0.0, 0.0));
+        assert!(place.other_driver().is_some(), "the striking car coasts");
+        let driver = PitDriver { end: Some(PitEnd::Brake), ..PitDriver::default() };
+        let ending = Ending { pit: Some(driver), ..Ending::default() };
+        let scenario = Scenario { striking_ending: Some(ending), ..scenario };
+        let place = place_of_case(&scenario, &struck).unwrap();
+        assert_eq!(place.other_driver(), None);
         assert!(value(PitInput::Overlap).abs() < 0.6, "{place:?}");
     }
 

@@ -151,6 +151,8 @@ pub struct SliceCell {
     /// The measure, in its SI unit; `None` where fewer than [`MIN_ROWS`] rows have it, or a quantile
     /// lies beyond the histogram.
     pub mean: Option<f64>,
+    /// What a quantile beyond the histogram is greater than, in the SI unit of the measure.
+    pub more_than: Option<f64>,
     /// Its Monte Carlo standard error, of a probability with the most by which rows without an answer could
     /// move it; infinite (null in JSON) where there is no mean.
     pub error: f64,
@@ -175,16 +177,25 @@ pub struct Quantile {
 pub struct Corridor {
     /// Distance forward along the lane, m.
     pub length_m: Option<Quantile>,
+    /// What the distance forward is greater than where it lies beyond the histogram, m.
+    pub length_more_than_m: Option<f64>,
     /// Distance to one side, m.
     pub width_m: Option<Quantile>,
+    /// What the distance to one side is greater than where it lies beyond the histogram, m.
+    pub width_more_than_m: Option<f64>,
 }
 
 impl SliceCell {
-    /// Whether the measure may be shown without hatching: there are enough rows, nearly all have an answer
-    /// and, where it matters, come to rest, and in most of them both networks apply.
+    /// Whether there is a number: the measure, or what it is more than.
+    pub fn is_told(&self) -> bool {
+        self.mean.or(self.more_than).is_some()
+    }
+
+    /// Whether the measure, or what it is more than, may be relied upon: there are enough rows, nearly all
+    /// have an answer and, where it matters, come to rest, and in most of them both networks apply.
     pub fn is_sound(&self) -> bool {
         let all = (self.n_rows + self.n_failed) as f64;
-        self.mean.is_some()
+        self.is_told()
             && self.inside >= LEAST_INSIDE
             && self.at_rest >= LEAST_AT_REST
             && self.n_rows as f64 >= LEAST_ANSWERED * all
@@ -290,6 +301,7 @@ impl Cell {
             n_failed: self.n_failed,
             n_applies: moments.n,
             mean: estimate.map(|estimate| estimate.value),
+            more_than: histogram.and_then(|kind| self.beyond(kind, CORRIDOR)),
             error: estimate.map_or(f64::INFINITY, |estimate| estimate.error),
             inside: self.inside(),
             at_rest: if measure.needs_rest() { self.share(n_at_rest) } else { 1.0 },
@@ -301,16 +313,29 @@ impl Cell {
     ///
     /// - `p`: its probability, 0 to 1.
     pub fn quantile(&self, kind: HistogramKind, p: f64) -> Option<Quantile> {
+        kind.quantile(self.enough_counts(kind)?, p)
+    }
+
+    /// The end of the histogram, where a quantile lies beyond it.
+    fn beyond(&self, kind: HistogramKind, p: f64) -> Option<f64> {
+        let counts = self.enough_counts(kind)?;
+        kind.quantile(counts, p).is_none().then(|| kind.end())
+    }
+
+    /// The counts of an outcome; `None` with fewer than [`MIN_ROWS`] rows that have it.
+    fn enough_counts(&self, kind: HistogramKind) -> Option<&[u32]> {
         let counts = self.histograms.get(kind as usize)?;
         let n: u64 = counts.iter().map(|count| u64::from(*count)).sum();
-        if n < MIN_ROWS { None } else { kind.quantile(counts, p) }
+        (n >= MIN_ROWS).then_some(counts.as_slice())
     }
 
     /// What 90 % of the rows stay within.
     pub fn corridor(&self) -> Corridor {
         Corridor {
             length_m: self.quantile(HistogramKind::Reach, CORRIDOR),
+            length_more_than_m: self.beyond(HistogramKind::Reach, CORRIDOR),
             width_m: self.quantile(HistogramKind::Offset, CORRIDOR),
+            width_more_than_m: self.beyond(HistogramKind::Offset, CORRIDOR),
         }
     }
 }
@@ -396,6 +421,26 @@ mod tests {
         cell.n_failed = MIN_ROWS;
         assert!(!cell.measure(Outcome::ContactS).is_sound());
         assert_eq!(cell.measure(Outcome::ReachM).mean, None);
+    }
+
+    /// A corridor wider than the histogram was told as “too few rows”, of 361 rows.
+    #[test]
+    fn a_corridor_beyond_the_histogram_is_more_than_its_end() {
+        let kind = HistogramKind::Offset;
+        let mut cell = Cell { n_rows: 100, n_inside: 100, ..Cell::default() };
+        for i in 0..100 {
+            let offset = if i < 80 { 5.0 } else { 90.0 };
+            cell.moments[Outcome::OffsetM as usize].add(offset);
+            cell.moments[Outcome::RestTimeS as usize].add(9.0);
+            cell.histograms[kind as usize][kind.bin(offset)] += 1;
+        }
+        let told = cell.measure(Measure::CorridorWidth);
+        assert_eq!((told.mean, told.more_than), (None, Some(kind.end())));
+        assert!(told.is_told() && told.is_sound(), "{told:?}");
+        assert_eq!(cell.corridor().width_more_than_m, Some(60.0));
+        // Of the other corridor there are no rows.
+        let other = cell.measure(Measure::CorridorLength);
+        assert_eq!((other.mean, other.more_than, other.is_told()), (None, None, false));
     }
 
     /// A cell of 100 rows, of which some come to rest.

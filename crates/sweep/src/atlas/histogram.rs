@@ -51,6 +51,11 @@ impl HistogramKind {
         edges
     }
 
+    /// The end of the last bin that is not open.
+    pub(super) fn end(self) -> f64 {
+        self.steps().iter().map(|(n, width)| *n as f64 * width).sum()
+    }
+
     /// Number of bins, with the open one.
     pub fn n_bins(self) -> usize {
         self.steps().iter().map(|(n, _)| n).sum::<usize>() + 1
@@ -132,6 +137,7 @@ mod tests {
         for kind in HistogramKind::ALL {
             let edges = kind.edges();
             assert_eq!(edges.len(), kind.n_bins(), "{kind:?}");
+            assert!((edges[edges.len() - 1] - kind.end()).abs() < 1e-9, "{kind:?}");
             assert!(edges.windows(2).all(|pair| pair[0] < pair[1]), "{kind:?}");
             for i in 0..4000 {
                 let value = 0.123 * f64::from(i);

@@ -21,6 +21,8 @@ mod cell;
 
 mod model;
 
+mod hold;
+
 mod make;
 
 mod npy;

@@ -5,8 +5,10 @@ use std::sync::LazyLock;
 
 use serde::Serialize;
 
-use crate::Outcome;
 use crate::atlas::{Axis, Cell, Measure, OutcomeSensitivity, Sensitivity, SliceCell};
+use crate::plan::networks;
+use crate::{Outcome, SweepError};
+use impactlab_study::Library;
 
 /// The cells of the shipped atlas; empty as long as none is shipped.
 const SHIPPED: &[u8] = include_bytes!("../../../../assets/atlas/pit.atlas");
@@ -151,6 +153,29 @@ impl Atlas {
         all
     }
 
+    /// The networks that are not those that computed it.
+    ///
+    /// - `present`: names of networks with the SHA-256 of their files.
+    pub fn other_networks<'a>(
+        &self,
+        present: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Vec<&'a str> {
+        let is_other = |(name, sha256): &(&str, &str)| {
+            self.networks.get(*name).is_none_or(|computed| computed != sha256)
+        };
+        present.into_iter().filter(is_other).map(|(name, _)| name).collect()
+    }
+
+    /// The networks of the program that are not those that computed it.
+    ///
+    /// # Errors
+    /// [`SweepError::Study`] if they cannot be read.
+    pub fn other_networks_in(&self, library: &Library) -> Result<Vec<String>, SweepError> {
+        let present = networks(library)?;
+        let present = present.iter().map(|(name, sha256)| (name.as_str(), sha256.as_str()));
+        Ok(self.other_networks(present).into_iter().map(str::to_owned).collect())
+    }
+
     /// The Sobol indices of an outcome, the greatest total one first; `None` if it has none.
     pub fn sensitivity(&self, outcome: Outcome) -> Option<Vec<Sensitivity>> {
         let found = self.sensitivity.iter().find(|of| of.outcome == outcome.name())?;
@@ -160,7 +185,7 @@ impl Atlas {
     }
 
     /// The bin along every axis of a cell.
-    fn bins(&self, number: u32) -> Vec<usize> {
+    pub(super) fn bins(&self, number: u32) -> Vec<usize> {
         let mut rest = number as usize;
         let mut bins: Vec<usize> = Vec::with_capacity(self.axes.len());
         for axis in self.axes.iter().rev() {
@@ -174,7 +199,7 @@ impl Atlas {
 }
 
 /// Whether a cell is one of those that are chosen.
-fn is_held(at: &[usize], held: &[Option<usize>]) -> bool {
+pub(super) fn is_held(at: &[usize], held: &[Option<usize>]) -> bool {
     at.iter().zip(held).all(|(bin, held)| held.is_none_or(|held| held == *bin))
 }
 
@@ -200,6 +225,8 @@ mod tests {
             let atlas = Atlas::from_bytes(SHIPPED).unwrap();
             assert_eq!(atlas.axes, Axis::pit().unwrap());
             assert!(SHIPPED.len() <= 5 << 20, "{} bytes", SHIPPED.len());
+            let others = atlas.other_networks_in(&Library::default()).unwrap();
+            assert_eq!(others, Vec::<String>::new());
         }
     }
 
@@ -238,6 +265,15 @@ mod tests {
         let located = atlas.locate(&[("speed", 22.0), ("esc", 1.0)]);
         assert_eq!(located, [Some(0), Some(1)]);
         assert_eq!(atlas.locate(&[("speed", 1.0)]), [None, None]);
+    }
+
+    #[test]
+    fn networks_that_did_not_compute_an_atlas_are_named() {
+        let mut atlas = Atlas::from_rows(&rows(100), axes(1)).unwrap();
+        atlas.networks = BTreeMap::from([("force".to_owned(), "ab".to_owned())]);
+        assert_eq!(atlas.other_networks([("force", "ab")]), [""; 0]);
+        let other = atlas.other_networks([("force", "cd"), ("response", "ef")]);
+        assert_eq!(other, ["force", "response"]);
     }
 
     #[test]

@@ -5,19 +5,21 @@ use crate::figure::{AtlasFigure, atlas_figure};
 use crate::report::answer::Context;
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::PartPicture;
+use crate::report::provenance::network_name;
 use crate::report::{Block, Table};
 use impactlab_core::collision::Scenario;
+use impactlab_core::data::write::ModelDigest;
 use impactlab_core::units::Quantity;
 use impactlab_core::vehicle::VehicleParameters;
 use impactlab_study::{MotionSource, PredictMotionAnswer, PredictMotionRequest};
-use impactlab_sweep::atlas::{Atlas, Cell, Measure, place_of_case};
+use impactlab_sweep::atlas::{Atlas, Axis, CasePlace, Cell, Measure, place_of_case};
 use impactlab_sweep::{Outcome, PitInput};
 
 /// The axes of the map.
 const AXES: [PitInput; 2] = [PitInput::TargetSpeed, PitInput::Closing];
 
-/// What the map shows.
-const SHOWN: Measure = Measure::Mean(Outcome::Turns90);
+/// What the map shows, and by which the axes that are held are chosen.
+const SHOWN: Outcome = Outcome::Turns90;
 
 /// What is told of the cell of the case.
 const TOLD: [Measure; 10] = [
@@ -55,7 +57,21 @@ pub(super) fn in_atlas(
     let (Some(atlas), Ok(scenario)) = (Atlas::shipped(), scenario.load()) else {
         return InAtlas::default();
     };
-    of_case(atlas, &scenario, &answer.analysis.vehicle, context.wording)
+    let mut told = of_case(atlas, &scenario, &answer.analysis.vehicle, context.wording);
+    if !told.blocks.is_empty() {
+        let digests = &answer.report.provenance.model_digests;
+        told.blocks.extend(other_networks(atlas, digests, context.wording));
+    }
+    told
+}
+
+/// A notice of the networks that answered and are not those of the atlas.
+fn other_networks(atlas: &Atlas, answered: &[ModelDigest], wording: &Wording) -> Option<Block> {
+    let answered = answered.iter().map(|of| (&*of.network, &*of.sha256));
+    let others = atlas.other_networks(answered).into_iter().map(|it| network_name(it, wording));
+    let list = others.collect::<Vec<_>>().join(", ");
+    let text = wording.words.atlas_other_networks;
+    (!list.is_empty()).then(|| Block::Notice { text: fill(text, &[("list", &list)]) })
 }
 
 /// What an atlas says of a scenario.
@@ -74,29 +90,63 @@ fn of_case(
         blocks.push(Block::paragraph(fill(words.atlas_outside, &[("list", &list)])));
         return InAtlas { blocks, picture: None };
     }
-    let held = place.bins(atlas);
+    let held = atlas.held_in_cell(&place.bins(atlas), SHOWN);
     let cell = atlas.cell(&held);
     let (all, rows) = (atlas.n_rows.to_string(), cell.n_rows().to_string());
-    let like = atlas.axes.iter().zip(&held).filter(|(_, bin)| bin.is_some());
-    let like: Vec<String> = like.map(|(axis, _)| wording.name(&axis.label)).collect();
+    let (like, averaged) = (held_list(atlas, &held, wording), averaged(atlas, &held, wording));
     let inside = wording.percent(cell.inside());
-    let values =
-        [("all", &*all), ("rows", &*rows), ("inside", &*inside), ("like", &*like.join(", "))];
+    let values = [
+        ("all", &*all),
+        ("rows", &*rows),
+        ("inside", &*inside),
+        ("like", &*like),
+        ("averaged", &*averaged),
+    ];
     blocks.push(Block::paragraph(fill(words.atlas_text, &values)));
+    let other_driver = place.other_driver().map(|text| text.say(wording));
+    blocks.extend(other_driver.map(|text| Block::Notice { text }));
     blocks.push(Block::Table(table(&cell, wording)));
+    InAtlas { blocks, picture: map(atlas, &place, wording) }
+}
+
+/// The map with the case in it; nothing without both axes.
+fn map(atlas: &Atlas, place: &CasePlace, wording: &Wording) -> Option<PartPicture> {
     let [x, y] = AXES.map(|input| atlas.axis(input.name()).zip(place.value(input.name())));
-    let picture = x.zip(y).map(|((x, at_x), (y, at_y))| {
-        let input = AtlasFigure {
-            atlas,
-            axes: [x, y],
-            held: &held,
-            measure: SHOWN,
-            case: Some([at_x, at_y]),
-            units: wording.units,
-        };
-        PartPicture::figure(words.atlas_picture.to_owned(), atlas_figure(&input))
+    let ((x, at_x), (y, at_y)) = x.zip(y)?;
+    let held = atlas.held_in_map([x, y], &place.bins(atlas), SHOWN);
+    let figure = atlas_figure(&AtlasFigure {
+        atlas,
+        axes: [x, y],
+        held: &held,
+        measure: SHOWN.into(),
+        case: Some([at_x, at_y]),
+        units: wording.units,
     });
-    InAtlas { blocks, picture }
+    let [x, y] = [x, y].map(|axis| atlas.axes.get(axis).map(|axis| wording.name(&axis.label)));
+    let (x, y, held) = (x?, y?, held_list(atlas, &held, wording));
+    let values = [("x", &*x), ("y", &*y), ("held", &*held)];
+    Some(PartPicture::figure(fill(wording.words.atlas_picture, &values), figure))
+}
+
+/// The axes that are held, each with its bin.
+fn held_list(atlas: &Atlas, held: &[Option<usize>], wording: &Wording) -> String {
+    let bin_text = |axis: &Axis, bin: usize| match (axis.labels.get(bin), axis.ends(bin)) {
+        (Some(label), _) => wording.name(label),
+        (None, Some(ends)) => wording.given_range(axis.quantity(), ends),
+        (None, None) => String::new(),
+    };
+    let text = |(axis, bin): (&Axis, &Option<usize>)| {
+        Some(format!("{} ({})", wording.name(&axis.label), bin_text(axis, (*bin)?)))
+    };
+    let list: Vec<String> = atlas.axes.iter().zip(held).filter_map(text).collect();
+    if list.is_empty() { wording.words.atlas_nothing.to_owned() } else { list.join(", ") }
+}
+
+/// What the rows of a cell are averaged over.
+fn averaged(atlas: &Atlas, held: &[Option<usize>], wording: &Wording) -> String {
+    let axes = atlas.axes.iter().zip(held).filter(|(_, bin)| bin.is_none());
+    let labels = axes.map(|(axis, _)| wording.name(&axis.label));
+    labels.chain([wording.words.atlas_rest.to_owned()]).collect::<Vec<_>>().join(", ")
 }
 
 fn table(cell: &Cell, wording: &Wording) -> Table {
@@ -107,17 +157,19 @@ fn table(cell: &Cell, wording: &Wording) -> Table {
             Some(quantity) => wording.value(quantity, value),
             None => wording.percent(value),
         };
-        let (mean, error) = match told.mean {
-            Some(mean) if !told.is_sound() => {
-                (format!("{} ({})", shown(mean), words.atlas_doubtful), shown(told.error))
-            }
-            Some(mean) => (shown(mean), shown(told.error)),
-            None => (words.atlas_few.to_owned(), String::new()),
+        let (value, error) = match (told.mean, told.more_than) {
+            (Some(mean), _) => (shown(mean), shown(told.error)),
+            (None, Some(limit)) => (format!("> {}", shown(limit)), String::new()),
+            (None, None) => (words.atlas_few.to_owned(), String::new()),
         };
-        [wording.name(measure.label()), mean, error]
+        let value = match told.is_told() && !told.is_sound() {
+            true => format!("{value} ({})", words.atlas_doubtful),
+            false => value,
+        };
+        [wording.name(measure.label()), value, error]
     };
     let columns = [words.quantity, words.value, words.atlas_error];
-    Table::new(words.atlas_heading, columns, TOLD.into_iter().map(row).collect())
+    Table::new(words.atlas_table, columns, TOLD.into_iter().map(row).collect())
 }
 
 #[cfg(test)]
@@ -127,7 +179,6 @@ mod tests {
     use crate::report::{Language, Paper, ReportDate, ReportSettings};
     use impactlab_core::units::UnitSystem;
     use impactlab_core::vehicle::Preset;
-    use impactlab_sweep::atlas::Axis;
     use impactlab_sweep::{Column, Rows, RowsMeta};
 
     /// An atlas over speed and closing speed of rows that lie evenly between their ends and all turn.
@@ -167,6 +218,14 @@ mod tests {
         for label in TOLD.map(Measure::label) {
             assert!(phrase_of(Language::De, label).is_some(), "{label}");
         }
+        for axis in Axis::pit().unwrap() {
+            assert!(phrase_of(Language::De, &axis.label).is_some(), "{}", axis.label);
+            // The pairs are names.
+            let labels = axis.labels.iter().filter(|_| axis.name != PitInput::Pair.name());
+            for label in labels {
+                assert!(phrase_of(Language::De, label).is_some(), "{label}");
+            }
+        }
         let (scenario, struck) = (Scenario::example(), Preset::Reference.parameters());
         let wording = Wording::new(&ReportSettings {
             language: Language::De,
@@ -182,6 +241,48 @@ mod tests {
         assert!(told.contains(expected) && !told.contains("the map"), "{told}");
     }
 
+    /// It held every axis, and every row of the table was “too few”.
+    #[test]
+    fn the_shipped_atlas_says_something_of_a_pit_within_it() {
+        let struck = Preset::Reference.parameters();
+        let mut scenario = Scenario::example();
+        for state in [&mut scenario.struck, &mut scenario.striking] {
+            state.vx_world_m_s += 10.0;
+        }
+        let wording = Wording::english(UnitSystem::Si);
+        let told = of_case(Atlas::shipped().unwrap(), &scenario, &struck, &wording);
+        let text = format!("{:?}", told.blocks);
+        assert!(!text.contains("outside") && text.contains("another manoeuvre"), "{text}");
+        for part in ["(88.51 km/h to 96.57 km/h)", "Striking car and struck car, "] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        let table = told.blocks.iter().find_map(|block| match block {
+            Block::Table(table) => Some(table),
+            _ => None,
+        });
+        let table = table.unwrap();
+        let probabilities: Vec<&str> = table.rows[..6].iter().map(|row| &*row[1]).collect();
+        let has_number = |text: &&str| text.contains(" %");
+        assert!(probabilities.iter().all(has_number), "{probabilities:?}");
+        assert!(told.picture.is_some());
+    }
+
+    #[test]
+    fn an_atlas_of_other_networks_says_so() {
+        let wording = Wording::english(UnitSystem::Si);
+        let mut atlas = atlas([10.0, 30.0]);
+        atlas.networks.insert("force".to_owned(), "ab".to_owned());
+        let digest = |sha256: &str| ModelDigest {
+            network: "force".into(),
+            name: "shipped".to_owned(),
+            sha256: sha256.to_owned(),
+        };
+        assert_eq!(other_networks(&atlas, &[digest("ab")], &wording), None);
+        let told = other_networks(&atlas, &[digest("cd")], &wording);
+        let text = format!("{told:?}");
+        assert!(text.contains("Notice") && text.contains("force network"), "{text}");
+    }
+
     #[test]
     fn a_pit_is_placed_in_the_map_and_said_to_be_outside_where_it_is() {
         let (scenario, struck) = (Scenario::example(), Preset::Reference.parameters());
@@ -189,7 +290,9 @@ mod tests {
         let inside = of_case(&atlas([10.0, 30.0]), &scenario, &struck, &wording);
         assert!(inside.picture.is_some());
         let text = format!("{:?}", inside.blocks);
-        assert!(text.contains("200 of the 200") && text.contains("model study"), "{text}");
+        for part in ["200 of the 200", "model study", "turns in further"] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
         assert!(text.contains("100.0 %"), "{text}");
         let outside = of_case(&atlas([20.0, 30.0]), &scenario, &struck, &wording);
         assert_eq!(outside.picture, None);
