@@ -35,21 +35,12 @@ struct CrushLaw {
     double dent_slope;
 
     static CrushLaw read(const json::Value& object) {
-        CrushLaw law;
-        law.side_n_m2 = json::number(object, "side_n_m2");
-        law.front_n_m2 = json::number(object, "front_n_m2");
-        law.rear_n_m2 = json::number(object, "rear_n_m2");
-        law.skin_share = json::number(object, "skin_share");
-        law.side_skin_m = json::number(object, "side_skin_m");
-        law.end_skin_m = json::number(object, "end_skin_m");
-        law.arch_skin_m = json::number(object, "arch_skin_m");
-        law.first_force_n_m = json::number(object, "first_force_n_m");
-        law.largest_force_n_m = json::number(object, "largest_force_n_m");
-        law.arch_factor = json::number(object, "arch_factor");
-        law.pillar_factor = json::number(object, "pillar_factor");
-        law.door_factor = json::number(object, "door_factor");
-        law.dent_slope = json::number(object, "dent_slope");
-        return law;
+        const auto number = [&](const char* key) { return json::number(object, key); };
+        return {number("side_n_m2"),   number("front_n_m2"),      number("rear_n_m2"),
+                number("skin_share"),  number("side_skin_m"),     number("end_skin_m"),
+                number("arch_skin_m"), number("first_force_n_m"), number("largest_force_n_m"),
+                number("arch_factor"), number("pillar_factor"),   number("door_factor"),
+                number("dent_slope")};
     }
 };
 

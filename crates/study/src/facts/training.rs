@@ -184,9 +184,23 @@ fn differences(name: String, value: &Json, usual: Option<&Json>, found: &mut Vec
 
 /// Data, seed and program of a training.
 fn origin<E, T>(record: &TrainingRecord<E, T>) -> [Fact; 3] {
-    let seed = record.seed.to_string();
-    [(Term::Seed, &seed), (Term::Program, &record.version), (Term::Data, &record.data)]
+    let (seed, data) = (record.seed.to_string(), in_short(&record.data));
+    [(Term::Seed, &seed), (Term::Program, &record.version), (Term::Data, &data)]
         .map(|(term, text)| Fact::new(term, Value::Text(text.clone())))
+}
+
+/// Most data sets that are all named.
+const MOST_NAMED: usize = 4;
+
+/// Names of the data sets of a training, of many the first ones and how many more there are.
+fn in_short(data: &str) -> String {
+    let names: Vec<&str> = data.split(" and ").collect();
+    match names.split_at_checked(MOST_NAMED - 1) {
+        Some((first, others)) if names.len() > MOST_NAMED => {
+            format!("{} + {}", first.join(", "), others.len())
+        }
+        _ => data.to_owned(),
+    }
 }
 
 /// What the standard deviations of the latent factors come from.
@@ -242,6 +256,13 @@ mod tests {
             validation: Some(validation),
             left_out: vec!["c007: no force".to_owned()],
         }
+    }
+
+    #[test]
+    fn of_many_data_sets_the_first_are_named() {
+        assert_eq!(in_short("fea and pulse"), "fea and pulse");
+        assert_eq!(in_short("a and b and c and d"), "a and b and c and d");
+        assert_eq!(in_short("a and b and c and d and e"), "a, b, c + 2");
     }
 
     #[test]
