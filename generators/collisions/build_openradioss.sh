@@ -17,6 +17,11 @@ jobs=${2:-$(nproc)}
 libraries=/usr/lib/$(gcc -print-multiarch)
 cd "$source_folder"
 
+for needed in "$libraries"/{libz.a,libmd.a,libmetis.so,libboost_filesystem.so,lapack/liblapack.a,blas/libblas.a} \
+              /usr/include/{zlib.h,md5.h,boost/version.hpp}; do
+  [ -e "$needed" ] || { echo "$needed is not there: install the packages that this script names" >&2; exit 1; }
+done
+
 external=extlib
 mkdir -p $external/{zlib/linux64/include,zlib/linux64/lib,lapack-3.10.0/lib_linux64_gf,metis/linux64} \
          $external/{md5/include,md5/linux64,h3d/includes,exprtk,license,boost/boost_1_70_0}

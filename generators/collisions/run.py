@@ -35,6 +35,7 @@ CONTACT_FORCE_N = 100.0
 # A run that takes longer is given up, s of wall time.
 LONGEST_WALL_S = 2400
 LOOK_EVERY_S = 4
+STARTER, ENGINE = PROGRAMS = ("starter_linux64_gf", "engine_linux64_gf_smp")
 
 
 def is_separated(path):
@@ -61,11 +62,11 @@ def solve(folder, name, solver):
         return ["bash", "-c", f'ulimit -s unlimited; exec "$0" "$@"', str(exe / program), "-i", deck]
 
     with open(folder / "run.log", "w") as log:
-        subprocess.run(command("starter_linux64_gf", f"{name}_0000.rad") + ["-np", "1"], cwd=folder, env=environment,
+        subprocess.run(command(STARTER, f"{name}_0000.rad") + ["-np", "1"], cwd=folder, env=environment,
                        stdout=log, stderr=subprocess.STDOUT, timeout=600, check=False)
         if not (folder / f"{name}_0000_0001.rst").exists():
             raise RuntimeError(f"{name}: the starter refuses the deck, see {folder / (name + '_0000.out')}")
-        engine = subprocess.Popen(command("engine_linux64_gf_smp", f"{name}_0001.rad"), cwd=folder, env=environment, stdout=log,
+        engine = subprocess.Popen(command(ENGINE, f"{name}_0001.rad"), cwd=folder, env=environment, stdout=log,
                                   stderr=subprocess.STDOUT)
         while engine.poll() is None:
             try:
@@ -113,6 +114,9 @@ def main():
     parser.add_argument("--only", nargs="*", help="names of cases")
     parser.add_argument("--have", type=Path, nargs="*", default=[], help="data sets whose cases are not computed again")
     args = parser.parse_args()
+    for program in PROGRAMS:
+        if not (args.solver / "exec" / program).is_file():
+            parser.error(f"{args.solver / 'exec' / program} is not there; build_openradioss.sh compiles it")
     cases = scenarios.sample(args.cases, args.seed, args.prefix)
     finished = {name for dataset in args.have for name in present(dataset, cases)}
     cases = [case for case in cases if case.name not in finished]
