@@ -5,6 +5,7 @@
 
 mod any_car;
 mod case_file;
+mod cost_growth;
 mod data_bad_input;
 mod data_budgets;
 mod data_corrections;
