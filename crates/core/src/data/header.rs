@@ -60,7 +60,8 @@ impl<'a> SplitLine<'a> {
     fn from_cells(line: Line<'a>, cells: Vec<String>, dialect: Dialect) -> Self {
         let n_numbers = cells.iter().filter(|cell| dialect.number(cell).is_some()).count();
         let n_names = || cells.iter().filter(|cell| is_name(cell)).count();
-        let is_text = n_numbers == 0 || n_names() > n_numbers;
+        // Names are looked up where there may be more of them than numbers: not in rows of numbers.
+        let is_text = n_numbers == 0 || (n_numbers < cells.len() && n_names() > n_numbers);
         Self { line, cells, is_text }
     }
 
