@@ -284,7 +284,7 @@ fn print_four_dof(cases: &[ResponseCase]) {
     let mut scores = Scores::default();
     for case in cases {
         let Some(initial) = case.states.first() else { continue };
-        let path = rollout(&case.vehicle, *initial, &case.inputs, |_, _| [0.0; N_RESIDUAL]);
+        let path = rollout(&case.vehicle, *initial, &case.inputs, [0.0; N_RESIDUAL]);
         scores.errors_m.push(average_error_m(&path, &case.states));
     }
     scores.print("4DOF model, untuned", None);

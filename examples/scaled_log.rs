@@ -151,7 +151,7 @@ fn next_case(truth: &VehicleParameters, rng: &mut ChaCha8Rng) -> Answer<Response
     let manoeuvre =
         Manoeuvre { initial, contact_load: Some(load), duration_s: 4.0, ..Manoeuvre::default() };
     let inputs = manoeuvre.inputs(STEP_S, 400);
-    let states = rollout(truth, initial, &inputs, |_, _| [0.0; N_RESIDUAL]);
+    let states = rollout(truth, initial, &inputs, [0.0; N_RESIDUAL]);
     let data_sheet = Preset::ScaledStruck.parameters();
     Ok(ResponseCase::from_motion("next".to_owned(), data_sheet, states, inputs))
 }
@@ -169,7 +169,7 @@ fn errors_of_model(model: &ResponseModel, cases: &[ResponseCase]) -> Answer<Vec<
 fn errors_of_tuning(tuning: &Tuning, cases: &[ResponseCase]) -> Vec<f64> {
     let of = |case: &ResponseCase| {
         let vehicle = tuning.apply(&case.vehicle);
-        let path = rollout(&vehicle, case.states[0], &case.inputs, |_, _| [0.0; N_RESIDUAL]);
+        let path = rollout(&vehicle, case.states[0], &case.inputs, [0.0; N_RESIDUAL]);
         average_error_m(&path, &case.states)
     };
     cases.iter().map(of).collect()
@@ -239,7 +239,8 @@ fn main() -> Answer<()> {
                 write(&arguments.out, &name, &series)?;
                 let log = MotionLog { path: arguments.out.join(name), series };
                 let vehicle = Preset::ScaledStruck.parameters();
-                let settings = LogSettings { vehicle, impact_s: None, duration_s: 4.0 };
+                let settings =
+                    LogSettings { vehicle, has_impact: true, impact_s: None, duration_s: 4.0 };
                 for (of, load) in [("measured", Some(struck.1.clone())), ("estimated", None)] {
                     let name = format!("{hz} Hz, {channels}, force {of}");
                     let found = LoggedImpact::from_log(&log, load, &settings)?;

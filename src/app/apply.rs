@@ -64,7 +64,7 @@ impl State {
             Command::Ground(command) => self.change_ground(command),
             Command::Reconstruct(command) => self.reconstruct(command, context),
             Command::CrashTest(command) => self.take_crash_test(command),
-            Command::Recorder(command) => self.take_recorder(command),
+            Command::Recorder(command) => self.take_recorder(command, context),
             Command::Report(command) => self.report(command),
             Command::Atlas(command) => self.change_atlas(command),
             Command::Sweep(command) => self.sweep(command),

@@ -131,7 +131,11 @@ fn force_link(
 fn motion_link(motion: Option<&MotionAnswer>) -> Link {
     let figure = motion.map(|motion| {
         let share = motion.answer.report.applicability;
-        format!("network {}, physics the rest", percent(share))
+        match percent(share).as_str() {
+            "100.0 %" => "network alone".to_owned(),
+            "0.0 %" => "physics alone".to_owned(),
+            share => format!("network {share}, physics the rest"),
+        }
     });
     let source = match motion {
         Some(motion) => format!("response network {}", motion.answer.report.response_model),
@@ -153,7 +157,7 @@ fn outcome_link(
             let report = &motion.answer.report;
             let outcome = &report.outcome;
             let format = NumberFormat::english(units);
-            let shown = |end: &Estimate| format.estimate_in_words(Quantity::Length, end);
+            let shown = |end: &Estimate| format.drawn_in_words(Quantity::Length, end);
             let figure = format!("X {}, Y {}", shown(&outcome.x_m), shown(&outcome.y_m));
             let when = match report.known_until_s() < outcome.time_s {
                 true => "after a second contact, which is not computed: no intervals".to_owned(),

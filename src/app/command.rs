@@ -93,7 +93,7 @@ pub enum Command {
     PredictScenario,
     /// Use the model in this file; `None` is the shipped model.
     UseModel(Network, Option<PathBuf>),
-    /// Use the model of a cancelled training, which has been set aside.
+    /// Use the model of the last training, which has been set aside.
     UseTrained(Network),
     /// Start, pause or cancel the training of a network.
     Train(Network, TrainingCommand),

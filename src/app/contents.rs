@@ -5,12 +5,14 @@ use crate::app::command::Command;
 use crate::app::looks::Icon;
 use crate::app::model::{ModelStatus, file_name};
 use crate::app::network::TrainedModel;
+use crate::app::panels::ending_in_words;
 use crate::app::panes::Pane;
 use crate::app::source::{Content, Source};
 use crate::app::state::{State, Subject};
 use crate::app::widgets::{vehicle_label, vehicle_name};
 use impactlab_core::collision::Role;
 use impactlab_core::units::Quantity;
+use impactlab_core::vehicle::FixedObject;
 use impactlab_study::{DEFAULT_STRIKING, DEFAULT_VEHICLE};
 
 /// A part of the case.
@@ -110,10 +112,20 @@ impl State {
         ];
         of.map(|(label, role, default)| {
             let assumed = format!("left open (else {})", vehicle_name(default.id()));
-            let detail = vehicle_label(&self.project.chosen_vehicle(role), &assumed);
+            let detail = match self.fixed_object(role) {
+                Some(object) => object.word().to_owned(),
+                None => vehicle_label(&self.project.chosen_vehicle(role), &assumed),
+            };
             let show = Command::Show(Pane::Vehicle);
             ContentsEntry::new(Group::Vehicles, label, detail, show)
         })
+    }
+
+    /// The object that the scenario has in place of a vehicle.
+    fn fixed_object(&self, role: Role) -> Option<FixedObject> {
+        let is_striking = role == Role::Striking;
+        let is_scenario = self.project.subject() == Some(Subject::Scenario);
+        self.project.scenario().filter(|_| is_striking && is_scenario)?.striking.fixed
     }
 
     fn scene_entries(&self) -> [ContentsEntry; 2] {
@@ -125,21 +137,16 @@ impl State {
         };
         let subject = self.project.subject();
         let ending = match &subject {
-            Some(Subject::Scenario) => {
-                self.project.scenario().is_some_and(|of| of.ending.is_some())
-            }
-            _ => self.project.simulate.ending.is_some(),
+            Some(Subject::Scenario) => self.project.scenario().and_then(|of| of.ending.as_ref()),
+            _ => self.project.simulate.ending.as_ref(),
         };
-        let after = match ending {
-            true => format!("{until}, wheels as entered"),
-            false => format!("{until}, coasting"),
-        };
+        let after = format!("{}, {until}", ending_in_words(ending));
         let pane = match subject {
             Some(Subject::Scenario) => Pane::Scenario,
             _ => Pane::Vehicle,
         };
         [
-            ContentsEntry::new(Group::Scene, "Road", road, Command::Show(Pane::Vehicle)),
+            ContentsEntry::new(Group::Scene, "Road", road, Command::Show(pane)),
             ContentsEntry::new(Group::Scene, "After the impact", after, Command::Show(pane)),
         ]
     }

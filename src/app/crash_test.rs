@@ -1,14 +1,18 @@
-//! A crash test that was opened: the stiffness that it gives to the front of a vehicle.
+//! A crash test that was opened: the stiffness that it gives to the front of a vehicle, and its crush energy by
+//! hand.
 
 use std::path::{Path, PathBuf};
 
 use crate::app::dialog::Dialog;
+use crate::app::panes::Pane;
 use crate::app::state::State;
 use impactlab_core::collision::Role;
 use impactlab_core::collision::contact::{BarrierTest, FaceStiffness};
-use impactlab_core::data::{CrashTest, Severity};
+use impactlab_core::data::{BarrierMomentum, CrashTest, Severity};
 use impactlab_core::vehicle::{CrushStiffness, DataSheet};
-use impactlab_study::VehicleChoice;
+use impactlab_reconstruct::evidence::Stated;
+use impactlab_reconstruct::hand::HandMethod;
+use impactlab_study::{HandRequest, VehicleChoice};
 
 /// Ratio of the masses of two cars from which they are hardly the same.
 const OTHER_MASS: f64 = 1.15;
@@ -24,8 +28,14 @@ pub struct CrashTestForm {
     pub test: BarrierTest,
     /// A and B of the front.
     pub found: FaceStiffness,
+    /// Impulse of the barrier and momentum of the car, if the barrier was measured.
+    pub momentum: Option<BarrierMomentum>,
+    /// What is wrong with the record of the barrier, in words.
+    pub doubts: Vec<String>,
     /// The vehicle that gets them.
     pub role: Role,
+    /// The vehicles whose data can be edited.
+    pub editable: Vec<Role>,
 }
 
 /// An action on a crash test that was opened.
@@ -33,6 +43,8 @@ pub struct CrashTestForm {
 pub enum CrashTestCommand {
     /// Take the stiffness into the data of a vehicle.
     TakeStiffness(Box<CrashTestForm>),
+    /// Compute its crush energy by hand.
+    CheckByHand(Box<CrashTestForm>),
     /// Open the force of the barrier as a series.
     OpenForce(PathBuf),
 }
@@ -44,8 +56,36 @@ impl CrashTestForm {
         let read = CrashTest::read(path).map_err(|error| error.to_string())?;
         let test = BarrierTest::from_crash_test(&read)?;
         let found = test.stiffness().map_err(|error| error.to_string())?;
+        let force = read.barrier_force().map_err(|error| error.to_string());
+        let (momentum, doubts) = match &force {
+            Ok(Some(force)) => (read.momentum(force), read.barrier_doubts(force)),
+            Ok(None) => (None, Vec::new()),
+            Err(error) => (None, vec![error.clone()]),
+        };
         let (path, title, role) = (path.to_owned(), read.title, Role::Striking);
-        Ok(Self { path, title, test, found, role })
+        Ok(Self { path, title, test, found, momentum, doubts, role, editable: Vec::new() })
+    }
+
+    /// The question of its crush energy.
+    fn by_hand(&self) -> HandRequest {
+        let Self { test, found, .. } = self;
+        let [c1, c2, c3, c4, c5, c6] = test.crush_m;
+        let mut request = HandRequest::new(HandMethod::CrushEnergy);
+        for (key, value) in [
+            ("mass_1_kg", test.mass_kg),
+            ("stiffness_a_n_per_m", found.onset_n_per_m),
+            ("stiffness_b_n_per_m2", found.stiffness_n_per_m2),
+            ("width_m", test.width_m),
+            ("c1_m", c1),
+            ("c2_m", c2),
+            ("c3_m", c3),
+            ("c4_m", c4),
+            ("c5_m", c5),
+            ("c6_m", c6),
+        ] {
+            request.inputs.insert(key.to_owned(), Stated { value: Some(value), sigma: None });
+        }
+        request
     }
 }
 
@@ -58,7 +98,13 @@ impl State {
             return self.load(path, None);
         }
         match CrashTestForm::read(&path) {
-            Ok(form) => self.session.dialogs.open(Dialog::CrashTest(Box::new(form))),
+            Ok(mut form) => {
+                let is_editable = |role: &Role| self.editable_sheet(*role).is_some();
+                form.editable =
+                    [Role::Striking, Role::Struck].into_iter().filter(is_editable).collect();
+                form.role = form.editable.first().copied().unwrap_or(form.role);
+                self.session.dialogs.open(Dialog::CrashTest(Box::new(form)));
+            }
             Err(why) => {
                 self.say(Severity::Info, format!("no stiffness follows from this test: {why}"));
                 self.load(path, None);
@@ -75,20 +121,29 @@ impl State {
                 self.load(path, None);
             }
             CrashTestCommand::TakeStiffness(form) => self.take_stiffness(&form),
+            CrashTestCommand::CheckByHand(form) => {
+                self.project.hand = Some(form.by_hand());
+                self.session.shows_doors = false;
+                self.view.workspaces.show_pane(Pane::Hand);
+            }
         }
     }
 
-    fn take_stiffness(&mut self, form: &CrashTestForm) {
-        let label = form.role.label();
-        let choice = self.project.chosen_vehicle(form.role).into_owned();
-        let sheet = match &choice {
+    /// The data of a vehicle of the project, if one is chosen whose data can be edited.
+    fn editable_sheet(&self, role: Role) -> Option<DataSheet> {
+        let choice = self.project.chosen_vehicle(role);
+        match &*choice {
             VehicleChoice::Sheet(sheet) => Some((**sheet).clone()),
             choice => {
                 let vehicle = choice.chosen().ok().flatten();
                 vehicle.and_then(|vehicle| DataSheet::from_parameters(&vehicle))
             }
-        };
-        let Some(mut sheet) = sheet else {
+        }
+    }
+
+    fn take_stiffness(&mut self, form: &CrashTestForm) {
+        let label = form.role.label();
+        let Some(mut sheet) = self.editable_sheet(form.role) else {
             let text = format!("choose the {label} first, one whose data can be edited");
             return self.say(Severity::Warning, text);
         };

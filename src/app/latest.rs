@@ -140,8 +140,13 @@ impl<Q: Question> Latest<Q> {
     /// older answer that is still shown has to be marked then. What is shown of the latest question is
     /// not marked, though a part of it is still to come.
     pub fn is_late(&self) -> bool {
-        let is_awaited = self.is_waiting() && self.n_in_part != self.n_questions;
-        is_awaited && self.question_at.is_some_and(|at| at.elapsed() > SEEN)
+        self.is_unfinished() && self.n_in_part != self.n_questions
+    }
+
+    /// Whether all of the answer to the latest question has not arrived for so long that a person sees
+    /// it: what is asked only after it, and is still shown, is not of what is asked any more.
+    pub fn is_unfinished(&self) -> bool {
+        self.is_waiting() && self.question_at.is_some_and(|at| at.elapsed() > SEEN)
     }
 
     /// The coarse answer that there is until the question is answered in full, and whether it is to the
@@ -311,7 +316,7 @@ mod tests {
         assert_eq!(latest.ok().map(|answer| **answer), Some(70));
         assert!(latest.is_waiting() && latest.coarse().is_none());
         std::thread::sleep(2 * SEEN);
-        assert!(!latest.is_late());
+        assert!(!latest.is_late() && latest.is_unfinished());
         for _ in 0..1000 {
             latest.poll();
             if !latest.is_waiting() {
@@ -320,6 +325,7 @@ mod tests {
             std::thread::sleep(Duration::from_millis(2));
         }
         assert_eq!(latest.ok().map(|answer| **answer), Some(73));
+        assert!(!latest.is_unfinished());
     }
 
     fn ask(latest: &mut Latest<Halve>, number: i32) {

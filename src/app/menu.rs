@@ -282,7 +282,8 @@ fn jobs_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         && state.view.workspaces.shown != Workspace::Reconstruct
     {
         let cancel = Command::Reconstruct(ReconstructionCommand::Cancel);
-        job_ui(ui, "Reconstructing", job, cancel, commands);
+        let left = state.session.reconstruction.time_left();
+        progress_ui(ui, "Reconstructing", job.progress(), left, cancel, commands);
     }
     if let Some((progress, left)) = tasks.progress(&TaskKey::Report)
         && state.view.workspaces.shown != Workspace::Report
@@ -374,7 +375,11 @@ fn training_job_ui<M: TrainedModel>(
         commands.push(Command::ShowTraining(M::NETWORK));
     }
     let paused = if status.run.is_paused() { ", paused" } else { "" };
-    let part = if status.is_fitting() { ", fits before the epochs" } else { "" };
+    let part = match status.fit() {
+        Some(fit) if fit.is_after_epochs => ", fits after the epochs",
+        Some(_) => ", fits before the epochs",
+        None => "",
+    };
     let what = format!("{}{paused}{part}", M::NETWORK.label());
     match status.progress() {
         (Some(fraction), left) => {

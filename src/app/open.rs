@@ -253,7 +253,7 @@ impl State {
         }
     }
 
-    /// Puts the model of a cancelled training, which was set aside, into use.
+    /// Puts the model of the last training, which was set aside, into use.
     pub(super) fn use_trained(&mut self, network: Network) {
         match network {
             Network::Force => {

@@ -35,6 +35,8 @@ pub enum Pane {
     Speeds,
     /// A calculation by hand.
     Hand,
+    /// The replay of an event data recorder.
+    Replay,
     /// The variants of the case side by side.
     Variants,
     /// Models in use, work under way, and what has been finished.

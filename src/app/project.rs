@@ -15,8 +15,8 @@ use impactlab_study::analysis::PulseSetup;
 use impactlab_study::case_file::Variant;
 use impactlab_study::{
     Drive, ForceQuestion, ForceSource, HandRequest, ImpactRequest, ModelChoice, MotionSource,
-    PredictForceRequest, PredictMotionRequest, ReconstructRequest, Request, ScenarioChoice,
-    SeriesFile, SimulateRequest,
+    PredictForceRequest, PredictMotionRequest, ReconstructRequest, ReplayRequest, Request,
+    ScenarioChoice, SeriesFile, SimulateRequest,
 };
 
 /// What the user works on. The questions are those that the case stores and the command line asks;
@@ -39,6 +39,9 @@ pub struct Project {
     /// The calculation by hand; `None` if the variant asks for none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hand: Option<HandRequest>,
+    /// The replay of a recorder; `None` if the variant asks for none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub replay: Option<ReplayRequest>,
     /// Questions of the variant for which there is no panel.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub others: Vec<Request>,
@@ -107,6 +110,7 @@ impl Default for Project {
             simulate,
             reconstruct: None,
             hand: None,
+            replay: None,
             others: Vec::new(),
             beside: Beside::default(),
             networks: NetworkQuestions::default(),
@@ -291,6 +295,7 @@ impl Project {
         }
         variant.questions.extend(self.reconstruct.clone().map(Request::from));
         variant.questions.extend(self.hand.clone().map(Request::from));
+        variant.questions.extend(self.replay.clone().map(Request::from));
         variant.questions.extend(self.others.iter().cloned());
         if self.beside != start.beside {
             variant.view = serde_json::to_value(&self.beside).unwrap_or_default();
@@ -362,6 +367,7 @@ struct FoundQuestions {
     predict_motion: Option<PredictMotionRequest>,
     reconstruct: Option<ReconstructRequest>,
     hand: Option<HandRequest>,
+    replay: Option<ReplayRequest>,
 }
 
 impl FoundQuestions {
@@ -378,6 +384,7 @@ impl FoundQuestions {
             }
             Request::Reconstruct(of) if self.reconstruct.is_none() => self.reconstruct = Some(*of),
             Request::Hand(of) if self.hand.is_none() => self.hand = Some(*of),
+            Request::Replay(of) if self.replay.is_none() => self.replay = Some(*of),
             other => return Some(other),
         }
         None
@@ -386,7 +393,8 @@ impl FoundQuestions {
     /// Puts the questions into a project. One that is not there is like the others where it has something
     /// in common with them.
     fn fill_in(self, project: &mut Project) {
-        let Self { impact, simulate, predict_force, predict_motion, reconstruct, hand } = self;
+        let Self { impact, simulate, predict_force, predict_motion, reconstruct, hand, replay } =
+            self;
         let of_motion = || {
             let motion = predict_motion.as_ref()?.motion.clone();
             Some(SimulateRequest { vehicle_draws: None, ..motion })
@@ -426,6 +434,7 @@ impl FoundQuestions {
         }
         project.reconstruct = reconstruct;
         project.hand = hand;
+        project.replay = replay;
         project.keep_in_step();
     }
 }

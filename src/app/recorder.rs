@@ -2,13 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
+use egui::Context;
+
+use crate::app::command::wake;
 use crate::app::dialog::Dialog;
 use crate::app::model::file_name;
-use crate::app::state::State;
+use crate::app::panes::Pane;
+use crate::app::question_job::QuestionJob;
+use crate::app::state::{Session, State};
 use impactlab_core::collision::Role;
 use impactlab_core::data::{DataError, RecorderRecord, Severity};
 use impactlab_reconstruct::evidence::{Edr, Evidence};
-use impactlab_study::EvidenceChoice;
+use impactlab_study::{EvidenceChoice, ReplayRequest};
 
 /// Events of a report that are offered.
 const MAX_EVENTS: usize = 32;
@@ -40,6 +45,20 @@ pub enum RecorderCommand {
     },
     /// Open the controls before the crash as a series.
     OpenControls(PathBuf),
+    /// Ask for the replay of a file with a vehicle of the project, and run it.
+    Replay {
+        /// The recorder's file.
+        path: PathBuf,
+        /// Which event of several, counted from 1; if not given the one that was asked for of this file, else
+        /// the first one.
+        event: Option<usize>,
+        /// The car in which the recorder was.
+        car: Role,
+    },
+    /// Run the replay that is asked for.
+    RunReplay,
+    /// Stop the replay that is running.
+    CancelReplay,
 }
 
 impl RecorderForm {
@@ -80,6 +99,13 @@ impl RecorderForm {
         }
         Some(record)
     }
+
+    /// The number of the chosen event, counted from 1; none if the file has one alone.
+    pub fn event_number(&self) -> Option<usize> {
+        let record = self.records.get(self.event).filter(|record| record.events.len() > 1)?;
+        let idx = record.events.iter().position(|event| *event == record.event)?;
+        Some(idx + 1)
+    }
 }
 
 impl State {
@@ -97,13 +123,27 @@ impl State {
     }
 
     /// Carries out what was chosen of a recorder.
-    pub(super) fn take_recorder(&mut self, command: RecorderCommand) {
+    pub(super) fn take_recorder(&mut self, command: RecorderCommand, context: &Context) {
         self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Recorder(_)));
         match command {
             RecorderCommand::OpenControls(path) => {
                 self.session.shows_doors = false;
                 self.load(path, None);
             }
+            RecorderCommand::Replay { path, event, car } => {
+                let vehicle = self.project.chosen_vehicle(car).into_owned();
+                // What was said of the same file stays.
+                let before = self.project.replay.take().filter(|before| before.recorder == path);
+                let asked = before.unwrap_or_else(|| ReplayRequest::new(path));
+                let event = event.or(asked.event);
+                self.project.replay = Some(ReplayRequest { event, vehicle, ..asked });
+                self.session.recorder_replay = QuestionJob::default();
+                self.session.shows_doors = false;
+                self.view.workspaces.show_pane(Pane::Replay);
+                self.run_recorder_replay(context);
+            }
+            RecorderCommand::RunReplay => self.run_recorder_replay(context),
+            RecorderCommand::CancelReplay => self.session.recorder_replay.cancel(),
             RecorderCommand::MakeEvidence { record, car } => {
                 let mut evidence = self.evidence().cloned().unwrap_or_else(Evidence::empty);
                 if evidence.is_single_car() {
@@ -131,6 +171,27 @@ impl State {
                     self.say(Severity::Warning, doubt.clone());
                 }
             }
+        }
+    }
+}
+
+impl State {
+    fn run_recorder_replay(&mut self, context: &Context) {
+        let Some(request) = self.project.replay.clone() else {
+            return self.say(Severity::Warning, "there is no recorder's file to be replayed");
+        };
+        let Session { recorder_replay, library, .. } = &mut self.session;
+        if let Err(error) = recorder_replay.start(request, library, wake(context)) {
+            self.say(Severity::Error, error.to_string());
+        }
+    }
+
+    /// Receives the replay of a recorder, and drops one that nobody asks for any more.
+    pub(super) fn update_recorder_replay(&mut self) {
+        if self.project.replay.is_none() {
+            self.session.recorder_replay = QuestionJob::default();
+        } else if self.session.recorder_replay.poll() {
+            self.session.fit_plots = true;
         }
     }
 }

@@ -218,10 +218,13 @@ impl State {
     /// The log that the response network is to learn from instead of a data set; `None` if none is
     /// chosen, or if its file is not open any more.
     fn log_to_learn_from(&self) -> Option<MotionLogs> {
-        let NetworkQuestions { mode, log, log_force, .. } = &self.project.networks;
+        let networks = &self.project.networks;
+        let NetworkQuestions { mode, log, log_force, .. } = networks;
         let log =
             log.as_ref().filter(|_| mode.takes_log()).and_then(|path| self.open_source(path))?;
-        let force = log_force.as_ref().and_then(|path| self.open_source(path));
+        let without_impact = networks.log_is_without_impact;
+        let force = log_force.as_ref().filter(|_| !without_impact);
+        let force = force.and_then(|path| self.open_source(path));
         Some(MotionLogs {
             logs: vec![log.path.clone()],
             forces: force.map(|source| source.path.clone()).into_iter().collect(),
@@ -229,6 +232,8 @@ impl State {
             force_map: force.and_then(|source| source.map.clone()),
             contact: force.and(self.project.start().contact),
             impact_s: None,
+            without_impact,
+            steering_ratio: networks.log_steering_ratio,
             duration_s: DEFAULT_LOG_DURATION_S,
         })
     }

@@ -10,7 +10,7 @@ use crate::app::training::{TrainingEnd, TrainingSlot, time_left};
 use crate::app::unfinished::{TrainingDiary, training_options};
 use crate::app::widgets::duration_text;
 use impactlab_core::jobs::{Progress, TimeLeft};
-use impactlab_networks::learning::{EpochSummary, TrainingReport};
+use impactlab_networks::learning::{EpochSummary, FitReport, TrainingReport};
 use impactlab_study::{Library, Question, Request};
 
 /// The training of a model of type `M`, running or finished.
@@ -26,9 +26,11 @@ pub struct TrainingStatus<M: TrainedModel> {
     /// Whether the training has ended.
     pub is_over: bool,
     /// Summaries of the epochs of the model itself so far, without those of the calibration's
-    /// trainings. Once the training is over, they are all epochs of the model, including those
-    /// before it was resumed.
+    /// trainings. Once the training is over, they include those before it was resumed; those of the
+    /// model from which it started never belong to them.
     pub history: Vec<EpochSummary>,
+    /// Epochs of the model from which the training started; `None` before its first epoch.
+    n_before: Option<usize>,
     /// The epoch with the best weights so far, from 1; `None` for a network that keeps the last
     /// weights.
     pub best_epoch: Option<usize>,
@@ -36,7 +38,8 @@ pub struct TrainingStatus<M: TrainedModel> {
     seconds: Vec<f64>,
     /// When the training began.
     started: Instant,
-    /// The time that the fits before the first epoch still take, as of the latest of their reports.
+    /// The time that the fits before the first epoch or after the last one still take, as of the latest
+    /// of their reports.
     fits_left: (TimeLeft, Duration),
     /// The reason why the training gave no model.
     pub problem: Option<String>,
@@ -55,6 +58,7 @@ impl<M: TrainedModel> Default for TrainingStatus<M> {
             latest: None,
             is_over: false,
             history: Vec::new(),
+            n_before: None,
             best_epoch: None,
             seconds: Vec::new(),
             started: Instant::now(),
@@ -103,10 +107,7 @@ impl<M: TrainedModel> TrainingStatus<M> {
         match end {
             TrainingEnd::Complete(answer) | TrainingEnd::Cancelled(Some(answer)) => {
                 let (model, report) = M::from_answer(answer);
-                // The reports lack the epochs before a training was resumed; the model has all of
-                // them.
-                self.history = model.history();
-                self.best_epoch = model.best_epoch();
+                self.take_epochs_of(&model);
                 self.report = Some(report);
                 Some(Ok((model, is_complete)))
             }
@@ -118,16 +119,25 @@ impl<M: TrainedModel> TrainingStatus<M> {
         }
     }
 
+    /// Takes the epochs of this training from its model: the reports lack those before it was resumed.
+    fn take_epochs_of(&mut self, model: &M) {
+        let Some(n_before) = self.n_before else { return };
+        self.history = model.history();
+        self.history.retain(|summary| summary.epoch > n_before);
+        self.best_epoch = model.best_epoch();
+    }
+
     fn take(&mut self, report: TrainingReport) {
         match &report {
-            TrainingReport::Fit { done, n_fits, .. } => {
+            TrainingReport::Fit(fit) => {
                 let (left, at) = &mut self.fits_left;
                 *at = self.started.elapsed();
-                left.take(*at, &Progress::new(*done as u64, *n_fits as u64, ""));
+                left.take(*at, &steps_of(fit));
             }
             TrainingReport::Epoch(epoch) => {
                 self.seconds.extend(epoch.summary.seconds);
                 if epoch.training_idx == 0 {
+                    self.n_before = Some(epoch.n_before);
                     self.best_epoch = epoch.best_epoch;
                     self.history.push(epoch.summary.clone());
                 }
@@ -155,20 +165,23 @@ impl<M: TrainedModel> TrainingStatus<M> {
         Some(entry)
     }
 
-    /// Whether something is being fitted before the first epoch.
-    pub fn is_fitting(&self) -> bool {
-        !self.is_over && matches!(self.latest, Some(TrainingReport::Fit { .. }))
+    /// What is being fitted before the first epoch or after the last one.
+    pub fn fit(&self) -> Option<&FitReport> {
+        match &self.latest {
+            Some(TrainingReport::Fit(fit)) if !self.is_over => Some(fit),
+            _ => None,
+        }
     }
 
     /// Returns the share that is done, 0 to 1, and the remaining time: of the fits before the first
-    /// epoch, then of the epochs at the pace of the latest ones; `None` for both before the first fit
-    /// or epoch and after the end.
+    /// epoch, then of the epochs at the pace of the latest ones, then of the fits after them; `None` for
+    /// both before the first fit or epoch and after the end.
     pub fn progress(&self) -> (Option<f32>, Option<Duration>) {
         match self.latest.as_ref().filter(|_| !self.is_over) {
             None => (None, None),
-            Some(TrainingReport::Fit { done, n_fits, .. }) => {
+            Some(TrainingReport::Fit(fit)) => {
                 let (left, at) = &self.fits_left;
-                (Progress::new(*done as u64, *n_fits as u64, "").fraction(), left.at(*at))
+                (steps_of(fit).fraction(), left.at(*at))
             }
             Some(TrainingReport::Epoch(epoch)) => {
                 let (done, total) = epoch.progress();
@@ -183,7 +196,7 @@ impl<M: TrainedModel> TrainingStatus<M> {
         let what = match &self.latest {
             _ if self.run.is_cancelled() => "ending".to_owned(),
             None => "preparing".to_owned(),
-            Some(TrainingReport::Fit { what, .. }) => format!("before the epochs: {what}"),
+            Some(TrainingReport::Fit(fit)) => fit.to_string(),
             Some(TrainingReport::Epoch(epoch)) => {
                 let part = epoch.part().map_or(String::new(), |part| format!("{part}, "));
                 let (done, n_epochs) = (epoch.epoch_in_training(), epoch.n_in_training());
@@ -194,21 +207,56 @@ impl<M: TrainedModel> TrainingStatus<M> {
     }
 }
 
+fn steps_of(fit: &FitReport) -> Progress {
+    Progress::new(fit.done as u64, fit.n_steps as u64, "")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use impactlab_networks::force::ForceModel;
+    use impactlab_networks::learning::EpochReport;
+    use impactlab_networks::shipped::ModelSource;
 
     #[test]
-    fn fits_before_the_epochs_have_a_share_and_a_time_left() {
+    fn fits_before_and_after_the_epochs_have_a_share_and_a_time_left() {
         let mut status = TrainingStatus::<ForceModel>::default();
         assert_eq!(status.progress(), (None, None));
-        let what = "fitting crush law".to_owned();
-        status.take(TrainingReport::Fit { what: what.clone(), done: 0, n_fits: 5 });
+        let what = "fitting crush law 1 of 5".to_owned();
+        let mut fit = FitReport { what, n_steps: 50, ..FitReport::default() };
+        status.take(TrainingReport::Fit(fit.clone()));
         assert_eq!(status.progress(), (Some(0.0), None));
-        status.take(TrainingReport::Fit { what, done: 2, n_fits: 5 });
+        fit.done = 20;
+        status.take(TrainingReport::Fit(fit.clone()));
         let (share, left) = status.progress();
-        assert!(share == Some(0.4) && left.is_some() && status.is_fitting(), "{share:?} {left:?}");
-        assert_eq!(status.doing(), "before the epochs: fitting crush law");
+        assert!(share == Some(0.4) && left.is_some(), "{share:?} {left:?}");
+        assert!(status.fit().is_some_and(|fit| !fit.is_after_epochs));
+        assert_eq!(status.doing(), "before the epochs: fitting crush law 1 of 5");
+        fit = FitReport { is_after_epochs: true, done: 0, n_steps: 900, ..fit };
+        status.take(TrainingReport::Fit(fit));
+        assert_eq!(status.progress(), (Some(0.0), None));
+        assert!(status.doing().starts_with("after the epochs: "));
+    }
+
+    /// Those of the shipped network stood under the name of a log that was learned from.
+    #[test]
+    fn epochs_of_the_model_from_which_a_training_starts_are_not_its_own() {
+        let model = ModelSource::Shipped.force_model().unwrap();
+        let all = model.history();
+        let last = all.last().unwrap().clone();
+        let mut status = TrainingStatus::<ForceModel>::default();
+        status.take_epochs_of(&model);
+        assert!(status.history.is_empty());
+        status.take(TrainingReport::Epoch(EpochReport {
+            summary: last.clone(),
+            n_before: all.len() - 2,
+            n_epochs: all.len(),
+            best_epoch: None,
+            training_idx: 0,
+            n_trainings: 1,
+        }));
+        assert_eq!(status.history, std::slice::from_ref(&last));
+        status.take_epochs_of(&model);
+        assert_eq!(status.history, all[all.len() - 2..]);
     }
 }

@@ -37,6 +37,7 @@ impl State {
         self.update_ground();
         self.update_simulation(context);
         self.update_hand(context);
+        self.update_recorder_replay();
         self.update_force(context);
         self.update_response(context);
         self.update_scene(context);

@@ -88,11 +88,12 @@ impl State {
     /// Chooses a vehicle, and lets the scenario take over its mass, yaw inertia and outline. One that is left
     /// open leaves the scenario as it is.
     pub(super) fn choose_vehicle(&mut self, role: Role, choice: VehicleChoice) {
+        let units = self.view.units;
         let taken = self.project.scenario_mut().map(|scenario| {
             if choice == VehicleChoice::Automatic {
                 scenario.name_vehicle(role, None);
             }
-            take_vehicle(scenario, role, &choice)
+            take_vehicle(scenario, role, &choice, units)
         });
         *self.project.vehicle_mut(role) = choice;
         match taken {

@@ -210,7 +210,7 @@ fn reconstruct_layout() -> Layout {
     let mut build = Builder(Tiles::default());
     let evidence = build.tabs(&[Pane::Evidence]);
     let scene = build.tabs(&[Pane::ReconstructedScene]);
-    let speeds = build.tabs(&[Pane::Speeds, Pane::Hand]);
+    let speeds = build.tabs(&[Pane::Speeds, Pane::Hand, Pane::Replay]);
     let parts = [(evidence, 0.24), (scene, 0.34), (speeds, 0.42)];
     let root = build.linear(LinearDir::Horizontal, &parts);
     build.layout("reconstruction panes", root)

@@ -56,6 +56,18 @@ pub enum CliError {
     /// The scenario is not said.
     #[error("nothing to predict: say which scenario with --scenario FILE")]
     NothingToPredict,
+    /// A force is given, and not what it acts on.
+    #[error(
+        "{}: a force alone does not say which vehicle it acts on and how fast that is: name the collision whose \
+         force it replaces with --scenario FILE, or with --dataset DIR and --case NAME, or a recorded motion \
+         with --trajectory FILE.csv; for one vehicle under this force: impactlab simulate --force {} --speed 72km/h",
+        path.display(),
+        path.display()
+    )]
+    ForceAlone {
+        /// The file of the force.
+        path: PathBuf,
+    },
     /// Nothing of a file can be used.
     #[error("{}: nothing of it can be used: {why}", path.display())]
     NothingImported {

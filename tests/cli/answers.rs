@@ -69,7 +69,7 @@ fn a_vehicle_that_still_rolls_at_the_end_is_said_to_move() {
         ["predict", "--scenario", SCENARIO, "--given-force", "--duration", "0.5", "--overwrite"];
     let output = program().args(args).arg("--out").arg(&out).output().unwrap();
     let printed = ok(output);
-    assert!(printed.contains("still moving after") && printed.contains("0.5000 s"), "{printed}");
+    assert!(printed.contains("still moving after") && printed.contains(" 0.5 s"), "{printed}");
     assert_eq!(
         answer(&[&args[..], &["--out", text(&out)]].concat())["outcome"]["is_at_rest"],
         false

@@ -194,7 +194,7 @@ fn a_map_is_a_table_a_picture_and_numbers() {
     assert_eq!((cells.len(), &map["outcome"]), (6, &Value::from("turns_90")));
     assert!(cells.iter().all(|cell| is_close(&cell["mean"], 0.75, 0.1)), "{map}");
     let printed = made.printed(&slice);
-    assert!(printed.contains("held: esc, without ESC"), "{printed}");
+    assert!(printed.contains("Stability control: without ESC"), "{printed}");
     // The networks apply nowhere above 50 mph.
     assert_eq!(printed.matches("not to be relied upon").count(), 2, "{printed}");
 

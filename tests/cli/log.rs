@@ -10,7 +10,8 @@ use std::process::Command;
 use impactlab_core::collision::{Pulse, PulseShape};
 use impactlab_core::data::{Channel, Existing, TimeSeries, write_series_csv};
 use impactlab_core::vehicle::{
-    ContactLoad, ContactPoint, Integrator, Manoeuvre, Preset, VehicleParameters, VehicleState,
+    ContactLoad, ContactPoint, Controls, Integrator, Manoeuvre, Preset, SteerHistory,
+    VehicleParameters, VehicleState, built_in_vehicle,
 };
 use impactlab_networks::learning::ModelFile;
 use impactlab_networks::response::{N_RESIDUAL, ResponseModel, STEP_S, average_error_m, rollout};
@@ -118,8 +119,7 @@ fn errors_m(model: &Path) -> [f64; 2] {
     for (speed_m_s, impulse_n_s) in next {
         let manoeuvre = manoeuvre(speed_m_s, impulse_n_s, 0.0);
         let inputs = manoeuvre.inputs(STEP_S, 400);
-        let drive =
-            |vehicle| rollout(vehicle, manoeuvre.initial, &inputs, |_, _| [0.0; N_RESIDUAL]);
+        let drive = |vehicle| rollout(vehicle, manoeuvre.initial, &inputs, [0.0; N_RESIDUAL]);
         let truth = truth();
         let reference = drive(&truth);
         sums[0] += average_error_m(&drive(&data_sheet), &reference);
@@ -166,6 +166,13 @@ fn without_a_force_the_impulse_is_estimated_and_two_logs_are_calibrated_on() {
         (&report["latents"]["n_calibrated"], &report["keeps_latents"]),
         (&2.into(), &false.into())
     );
+    let is_of_force = |caveat: &&serde_json::Value| {
+        caveat["reason"].as_str().is_some_and(|reason| reason.contains("log_1.csv has no force"))
+    };
+    let of_force = report["caveats"].as_array().unwrap().iter().find(is_of_force).unwrap();
+    // What is estimated is not told to seventeen digits.
+    let impulse = of_force["text"].as_str().unwrap().split(' ').next().unwrap();
+    assert!(impulse.len() <= 5, "{of_force}");
     for facts in report["logs"].as_array().unwrap() {
         assert_eq!(facts["force"], "estimated");
         let impulse_n_s = facts["impulse_n_s"][1].as_f64().unwrap();
@@ -213,4 +220,64 @@ fn what_is_wrong_with_a_log_is_said_with_its_place() {
     let both = ["--vehicle", VEHICLE, "--data", TRAJECTORIES, "--log"];
     let text = error(fine_tune(folder.path()).args(both).arg(&log));
     assert!(text.contains("cannot be used with"), "{text}");
+}
+
+/// A test drive has no impact to look for, and is steered by the column that says how.
+#[test]
+fn a_test_drive_is_learned_from_with_its_steering_and_without_a_force() {
+    let folder = TempDir::new().unwrap();
+    let amplitude_rad = 0.03;
+    let time_s: Vec<f64> = (0..=400).map(|i| f64::from(i) * 0.01).collect();
+    let steer_rad: Vec<f64> = time_s.iter().map(|t| amplitude_rad * (3.0 * t).sin()).collect();
+    let steer = SteerHistory { time_s, steer_rad };
+    let manoeuvre = Manoeuvre {
+        initial: VehicleState::driving_straight(15.0),
+        controls: Controls { steer: Some(steer), ..Controls::default() },
+        duration_s: 4.0,
+        ..Manoeuvre::default()
+    };
+    let car = built_in_vehicle("toyota-camry-2018").unwrap();
+    let motion = car.simulate(&manoeuvre, Integrator::Rk4).unwrap().series;
+    let mut series = TimeSeries::new(motion.time_s().to_vec()).unwrap();
+    for channel in [Channel::X, Channel::Y, Channel::Yaw, Channel::YawRate] {
+        series.insert(channel, motion.get(channel).unwrap().to_vec()).unwrap();
+    }
+    let straight = folder.path().join("straight.csv");
+    write_series_csv(&straight, Existing::Refuse, &series).unwrap();
+    let angles = motion.time_s().iter().map(|t| 15.0 * amplitude_rad * (3.0 * t).sin());
+    series.insert(Channel::SteeringWheel, angles.collect()).unwrap();
+    let drive = folder.path().join("drive.csv");
+    write_series_csv(&drive, Existing::Refuse, &series).unwrap();
+
+    let condition = |log: &Path, more: &[&str]| {
+        let mut command = program();
+        command.current_dir(folder.path()).args([
+            "condition",
+            "response",
+            "--json",
+            "--out",
+            "model",
+        ]);
+        command
+            .args(["--overwrite", "--vehicle", "toyota-camry-2018", "--log"])
+            .arg(log)
+            .args(more);
+        command
+    };
+    let text = error(&mut condition(&drive, &["--no-impact"]));
+    assert!(text.contains("drive.csv") && text.contains("--steering-ratio"), "{text}");
+    let report = |log: &Path, more: &[&str]| json(&ok(condition(log, more).output().unwrap()));
+    let known = report(&drive, &["--no-impact", "--steering-ratio", "15"]);
+    assert_eq!(
+        (&known["logs"][0]["force"], &known["logs"][0]["n_samples"]),
+        (&"none".into(), &401.into())
+    );
+    for part in ["has no steering", "has no force"] {
+        assert!(!known["caveats"].to_string().contains(part), "{known}");
+    }
+    // What steers the car is not found in the motion: it is said that nothing was taken to.
+    let unknown = report(&straight, &["--no-impact"]);
+    assert!(unknown["caveats"].to_string().contains("straight.csv has no steering"), "{unknown}");
+    let both = error(&mut condition(&drive, &["--no-impact", "--impact", "1"]));
+    assert!(both.contains("cannot be used with"), "{both}");
 }

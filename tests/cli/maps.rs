@@ -103,6 +103,22 @@ fn the_force_of_a_log_is_read_with_its_map_and_the_hint_names_the_option() {
 }
 
 #[test]
+fn a_force_without_a_collision_is_told_what_it_lacks() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    for with in [&[][..], &["--out", text(&out)]] {
+        let ran = impactlab(&[&["predict", "--force", FORCE], with].concat());
+        assert_ne!(ran.code, 0, "{}", ran.out);
+        for word in ["a force alone", "--scenario FILE", "impactlab simulate --force"] {
+            assert!(ran.error_line().contains(word), "{}", ran.err);
+        }
+    }
+    assert!(!out.exists(), "nothing was predicted");
+    let without_folder = impactlab(&["predict", "--force", FORCE, "--scenario", "pit-right-rear"]);
+    assert!(without_folder.err.contains("--out <DIR>"), "{}", without_folder.err);
+}
+
+#[test]
 fn check_shows_the_columns_of_the_part_that_the_map_names() {
     let folder = TempDir::new().unwrap();
     write(&folder, "a.mme", "Data format edition number  :1.6\nLaboratory name             :L\n");

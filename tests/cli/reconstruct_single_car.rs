@@ -25,6 +25,9 @@ fn a_single_car_has_a_speed_at_the_start_and_nothing_of_an_impact() {
     without(&told, &OF_IMPACTS);
     without(&told, &["struck car"]);
     assert!(told.contains("speed of the car at the start"), "{told}");
+    // Places are told to the centimetre that they are measured to, and no further.
+    let rest = told.lines().find(|line| line.starts_with("rest y")).unwrap();
+    assert!(rest.contains("0.00 m"), "{rest}");
 
     let report = answer(&args);
     without(&serde_json::to_string_pretty(&report).unwrap(), &OF_IMPACTS[1..]);
@@ -100,6 +103,30 @@ fn a_report_of_a_single_car_speaks_of_no_collision() {
         let end = told.iter().position(|line| line.starts_with("## 7 ")).unwrap();
         assert!(end > 50);
         without(&told[..end].join("\n"), words);
+    }
+}
+
+/// A car that is driven and touches nothing was called struck, and was asked about after an impact.
+#[test]
+fn a_report_of_a_driven_car_speaks_of_no_collision() {
+    let drive = ["simulate", "--vehicle", "reference-2000", "--speed", "54km/h", "--brake", "0.8"];
+    let request = ok(program().args(drive).arg("--print-request").output().unwrap());
+    let folder = TempDir::new().unwrap();
+    let case = folder.path().join("drive.impactlab");
+    let head = r#"{"format": "impactlab case", "version": 2, "program": "0", "name": "drive","#;
+    let variant = format!(r#"{{"name": "a", "questions": [{request}]}}"#);
+    fs::write(&case, format!(r#"{head} "notes": "", "shown": "a", "variants": [{variant}]}}"#))
+        .unwrap();
+    for (language, words) in [
+        ("en", &["truck", "triking", "ollision", "mpact", "ontact"][..]),
+        ("de", &["estoßen", "toßend", "ollision", "ufprall", "Anstoß", "Kontakt", "Unfall"][..]),
+    ] {
+        let out = folder.path().join(format!("{language}.md"));
+        let args = ["report", text(&case), "--date", "2026-01-01", "--language", language];
+        ok(program().args(args).args(["--out", text(&out)]).output().unwrap());
+        let told = fs::read_to_string(&out).unwrap().replace("impactlab", "");
+        let (told, _) = told.split_once("\n## 2 ").expect("scenes and curves");
+        without(told, words);
     }
 }
 

@@ -53,6 +53,29 @@ fn a_report_becomes_a_state_at_the_contact_and_a_path() {
 }
 
 #[test]
+fn the_path_and_what_was_recorded_become_figures() {
+    let folder = TempDir::new().unwrap();
+    let file = write(&folder, "report.csv", REPORT);
+    for (plot, words) in [
+        ("path", &["Y, to the left [m]", "replayed", "90 % band", "first contact"][..]),
+        ("speed", &["Speed [km/h]", "recorded", "replayed", "90 % band (low)"]),
+        ("yaw-rate", &["Yaw rate [deg/s]", "replayed", "90 % band (high)"]),
+        ("steering", &["Steer angle of the road wheels [deg]", "recorded", "replayed"]),
+    ] {
+        let out = folder.path().join(format!("{plot}.csv"));
+        let ratio = ["--steering-ratio", "14.5", "--draws", "60"];
+        let render = ["render", "replay", text(&file), "--plot", plot, "--out", text(&out)];
+        let report = answer(&render.into_iter().chain(ratio).collect::<Vec<_>>());
+        assert!(report["title"].as_str().unwrap().starts_with("report.csv: "), "{report}");
+        let numbers = fs::read_to_string(&out).unwrap();
+        for word in words {
+            assert!(numbers.contains(word), "{plot}: {word}: {numbers}");
+        }
+        assert!(numbers.contains("driver open"), "what restricts it goes with it: {numbers}");
+    }
+}
+
+#[test]
 fn what_is_assumed_and_what_is_missing_is_said() {
     let folder = TempDir::new().unwrap();
     let file = write(&folder, "report.csv", REPORT);
@@ -99,4 +122,22 @@ fn the_controls_of_an_import_are_followed() {
     assert_eq!(imported["at_contact"], direct["at_contact"]);
     assert!(imported["caveats"].to_string().contains("anti-lock system was at work"), "{imported}");
     assert!(imported["samples"][0]["recorded_yaw_rate_rad_s"].as_f64().unwrap() > 0.0);
+}
+
+/// A note, such as that of another steering ratio, stood in the answer and not in the report.
+#[test]
+fn a_report_of_a_replay_has_its_notes() {
+    let folder = TempDir::new().unwrap();
+    let file = write(&folder, "report.csv", REPORT);
+    let asked = ["replay", text(&file), "--steering-ratio", "14.5", "--draws", "60"];
+    let request = ok(program().args(asked).arg("--print-request").output().unwrap());
+    let head = r#"{"format": "impactlab case", "version": 2, "program": "0", "name": "replay","#;
+    let variant = format!(r#"{{"name": "a", "questions": [{request}]}}"#);
+    let case = format!(r#"{head} "notes": "", "shown": "a", "variants": [{variant}]}}"#);
+    let case = write(&folder, "replay.impactlab", &case);
+    let out = folder.path().join("de.md");
+    let args = ["report", text(&case), "--date", "2026-01-01", "--language", "de", "--out"];
+    ok(program().args(args).arg(&out).output().unwrap());
+    let told = fs::read_to_string(&out).unwrap();
+    assert!(told.contains("Hinweis: Es ist keine Gierrate aufgezeichnet"), "{told}");
 }

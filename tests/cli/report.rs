@@ -73,7 +73,7 @@ fn evidence_by_itself_gives_the_report_of_a_case_that_asks_for_its_reconstructio
     let of_case = written(text(&case), &args[..2], "case.md", folder.path());
     // Only one of them stands in a file, which the opinion names among its materials.
     let [of_evidence, of_case] = [of_evidence, of_case].map(|of| String::from_utf8(of).unwrap());
-    let in_no_file = "- The case as it is here stands in no file.";
+    let in_no_file = "- The case itself was not saved to a file.";
     let of_file = of_case.lines().find(|line| line.starts_with("- Case file case.impactlab: "));
     assert_eq!(of_evidence, of_case.replace(of_file.unwrap(), in_no_file));
     let out = folder.path().join("other.md");
@@ -82,6 +82,21 @@ fn evidence_by_itself_gives_the_report_of_a_case_that_asks_for_its_reconstructio
     let wrong = wrong.unwrap();
     assert!(!wrong.status.success() && !out.exists());
     assert!(String::from_utf8(wrong.stderr).unwrap().contains("case.impactlab: is a case"));
+}
+
+#[test]
+fn pages_go_with_the_units_unless_they_are_chosen() {
+    let folder = TempDir::new().unwrap();
+    let width_pt = |args: &[&str], name: &str| {
+        let args = [&VARIANT[..], &["--units", "us"], args].concat();
+        let read = lopdf::Document::load_mem(&written(PIT, &args, name, folder.path())).unwrap();
+        let page = *read.get_pages().values().next().unwrap();
+        let page = read.get_dictionary(page).unwrap();
+        let media = page.get(b"MediaBox").and_then(|of| of.as_array()).unwrap();
+        media[2].as_float().unwrap().round()
+    };
+    assert_eq!(width_pt(&[], "us.pdf"), 612.0);
+    assert_eq!(width_pt(&["--paper", "a4"], "a4.pdf"), 595.0);
 }
 
 #[test]

@@ -9,6 +9,7 @@ use impactlab_core::site::{
     CloudFormat, DrawingFile, LengthUnit, PixelMap, Site, SiteOrigin, SurveyFormat, SurveyOptions,
     WorldFile, picture_size_px, read_drawing, read_picture, survey_cloud,
 };
+use impactlab_core::units::UnitSystem;
 
 use crate::harness::{Answer, Format, run};
 use crate::mutation::Mutator;
@@ -25,7 +26,9 @@ fn text_format(
 #[test]
 fn site_files() {
     text_format(("site", 8_000), "site.toml", &|path| match Site::load(path) {
-        Ok(site) => Answer::accepted(&(&site, site.north_rad(), site.contents(None))),
+        Ok(site) => {
+            Answer::accepted(&(&site, site.north_rad(), site.contents(None, UnitSystem::Si)))
+        }
         Err(error) => Answer::refused(&error),
     });
 }
@@ -77,7 +80,7 @@ fn surveys_of(name: &'static str, file_name: &'static str, format: SurveyFormat)
         (name, 4_000),
         file_name,
         &|path| match Site::from_survey(path, format, &options) {
-            Ok(site) => Answer::accepted(&(&site, site.contents(None))),
+            Ok(site) => Answer::accepted(&(&site, site.contents(None, UnitSystem::Si))),
             Err(error) => Answer::refused(&error),
         },
     );

@@ -4,7 +4,7 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Group, Output, Pane, Subject, VariantCommand, Workspace};
-use impactlab_core::vehicle::{DataSheet, LibraryVehicle, SheetQuantity};
+use impactlab_core::vehicle::{Braking, DataSheet, Ending, LibraryVehicle, SheetQuantity};
 use impactlab_study::{MotionSource, VehicleChoice};
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
@@ -53,6 +53,9 @@ fn a_newcomer_gets_to_a_forecast_by_each_of_the_three_doors() {
     assert!(!state(&harness).is_case_changed(), "the example is as it was opened");
     apply(&mut harness, Command::Show(Pane::Variants));
     harness.run_steps(3);
+    // The answer stands before what it was made from.
+    let left = |label: &str| harness.get_by_label(label).rect().left();
+    assert!(left("Forecast: X (90 %)") < left("Δv with tires"));
     save(&mut harness, "variants.png");
 
     apply(&mut harness, Command::ShowDoors);
@@ -111,11 +114,34 @@ fn the_contents_name_what_is_missing_and_lead_to_it() {
     harness.get_by_label_contains("Struck: left open").click();
     harness.run_steps(3);
     harness.get_by_label("Integration");
+    // What a scenario says itself is not asked for a second time.
+    assert!(harness.query_by_label("For single files").is_none());
+    let of = |label: &str| contents.iter().find(|entry| entry.label == label).unwrap();
+    assert!(of("After the impact").detail.starts_with("coasts, "), "{:?}", of("After the impact"));
+    assert!(matches!(of("Road").command, Command::Show(Pane::Scenario)), "{:?}", of("Road"));
     harness.state_mut().state_mut().project.simulate.source = MotionSource::default();
     harness.run_steps(3);
     let contents = contents_of(&harness);
     let impact = contents.iter().find(|entry| entry.group == Group::Impact).unwrap();
     assert!(impact.missing.as_ref().unwrap().contains("choose a scenario"), "{impact:?}");
+}
+
+/// A line that came with the answer pushed them away from the pointer.
+#[test]
+fn the_tools_of_the_scene_stay_where_they_are_when_an_answer_comes() {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the forecast", is_forecast);
+    let top = |harness: &Harness<'_, App>| harness.get_by_label("Measure").rect().top();
+    let before = top(&harness);
+    let project = &mut harness.state_mut().state_mut().project;
+    (project.simulate.until_rest, project.simulate.duration_s) = (true, 30.0);
+    let brake = Some(Braking::new(0.5, 0.8, 0.2));
+    project.scenario_mut().expect("a scenario").ending =
+        Some(Ending { brake, ..Ending::default() });
+    harness.run_steps(2);
+    step_until(&mut harness, "the forecast to rest", is_forecast);
+    assert!(harness.query_by_label_contains("At rest after").is_some());
+    assert!((top(&harness) - before).abs() < 0.5, "{before} {}", top(&harness));
 }
 
 #[test]
@@ -262,4 +288,20 @@ fn two_cursors_give_the_numbers_between_them() {
     assert!(end > start && start >= 0.0, "{start} to {end}");
     assert!(harness.query_all_by_label("Integral").next().is_some());
     save(&mut harness, "two-cursors.png");
+}
+
+#[test]
+fn an_object_that_a_car_strikes_stands_in_the_contents_by_its_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("wall.toml");
+    let text = "name = \"wall\"\n[target]\nvehicle = \"toyota-camry-2018\"\nheading_deg = 0\n\
+        speed_km_h = 40\n[bullet]\nfixed = \"wall\"\n[contact]\nfrom = \"side\"\nside = \"front\"\n\
+        offset_m = 0\n";
+    std::fs::write(&path, text).expect("a file");
+    let mut harness = open(&[path.to_str().expect("a plain name")]);
+    harness.run_steps(3);
+    assert_eq!(state(&harness).project.subject(), Some(Subject::Scenario));
+    let contents = contents_of(&harness);
+    let striking = contents.iter().find(|entry| entry.label == "Striking").expect("a line");
+    assert_eq!(striking.detail, "wall");
 }

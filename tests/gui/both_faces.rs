@@ -8,7 +8,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{
     App, Command, ComparisonCommand, Latest, Network, Pane, QuestionJob, ReconstructionCommand,
-    State, Subject, TrainingCommand, TrainingMode,
+    RecorderCommand, State, Subject, TrainingCommand, TrainingMode,
 };
 use impactlab_core::collision::Role;
 use impactlab_study::{
@@ -19,6 +19,7 @@ use serde_json::Value;
 
 use crate::harness::{apply, is_idle, open, step_until};
 use crate::reconstruct::evidence_in;
+use crate::recorder::BEFORE;
 use crate::settings::{QUICK_CRUSH, SMALL_FORCE, SMALL_RESPONSE};
 
 const FORCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea");
@@ -369,6 +370,28 @@ fn a_motion_is_predicted_alike() {
     few_draws(&mut harness);
     let of_record = [&["predict", "--trajectory", record, "--given-force"][..], &drawn].concat();
     compare_motion(&mut harness, ForceSource::Given, CommandLine::new(&of_record));
+}
+
+#[test]
+fn a_recorder_is_replayed_alike() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = write(folder.path(), "report.csv", BEFORE);
+    let mut harness = open(&[]);
+    let command =
+        RecorderCommand::Replay { path: file.clone().into(), event: None, car: Role::Striking };
+    apply(&mut harness, Command::Recorder(command));
+    let asked = harness.state_mut().state_mut().project.replay.as_mut().expect("a question");
+    (asked.steering_ratio, asked.draws, asked.seed) = (Some(14.5), 60, 3);
+    (asked.vehicle, asked.contact.x_m) = (VehicleChoice::named("toyota-camry-2018"), 12.0);
+    apply(&mut harness, Command::Recorder(RecorderCommand::RunReplay));
+    step_until(&mut harness, "the replay", |state| {
+        let run = &state.session.recorder_replay;
+        !run.is_running() && run.ok().is_some()
+    });
+    let (request, answer) = finished(&state(&harness).session.recorder_replay);
+    let car = ["--vehicle", "toyota-camry-2018", "--steering-ratio", "14.5", "--x", "12"];
+    let args = [&["replay", &file][..], &car, &["--draws", "60", "--seed", "3"]].concat();
+    CommandLine::new(&args).compare(request, &answer.report);
 }
 
 fn train(harness: &mut Harness<'_, App>, network: Network) {

@@ -279,6 +279,35 @@ fn a_running_training_learns_from_the_data_in_use_and_shows_its_own_losses_alone
     step_until(&mut harness, "the end", |state| !state.session.force.training.run.is_running());
 }
 
+/// A trial of a few epochs took the place of the shipped network in the variant, and its answer moved.
+#[test]
+fn a_training_changes_no_answer_about_a_scenario_until_it_is_put_into_use() {
+    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
+    step_until(&mut harness, "the data", is_idle);
+    apply(&mut harness, Command::Select(Subject::Scenario));
+    apply(&mut harness, Command::Show(Pane::Training));
+    step_until(&mut harness, "the scenario", is_idle);
+    let asked = state(&harness).project.predict_force.model.clone();
+    let form = &mut harness.state_mut().state_mut().project.networks.train_force;
+    form.epochs = Some(2);
+    form.training.config = ConfigChoice::File(small().config());
+    apply(&mut harness, Command::Train(Network::Force, TrainingCommand::Start));
+    step_until(&mut harness, "the end", |state| {
+        let force = &state.session.force;
+        !force.training.run.is_running() && force.model.set_aside.is_some()
+    });
+    assert_eq!(state(&harness).project.predict_force.model, asked);
+    let is_said = |state: &State| {
+        let mut messages = state.session.messages.iter();
+        messages.any(|message| message.text.contains("changes no answer about the scenario"))
+    };
+    assert!(is_said(state(&harness)));
+    harness.run_steps(2);
+    harness.get_by_label("Use it").click();
+    harness.run_steps(2);
+    assert_ne!(state(&harness).project.predict_force.model, asked);
+}
+
 #[test]
 fn a_bad_model_and_bad_settings_say_what_is_wrong() {
     let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);

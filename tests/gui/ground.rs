@@ -242,6 +242,12 @@ fn a_reconstruction_stands_on_the_zones_of_the_ground() {
     assert!(is_outdated(&harness), "the speeds are those without the zones");
     assert_eq!(n_priors(&harness), Some(without + 1));
     assert!(harness.query_by_label_contains("friction zones of site.toml").is_some());
+    step_until(&mut harness, "the ground", |state| state.session.ground.shown().is_some());
+    harness.get_by_label("Show the ground").click();
+    harness.run_steps(4);
+    assert!(harness.query_by_label("Picture of the scene").is_some());
+    apply(&mut harness, Command::Show(Pane::Evidence));
+    harness.run_steps(4);
 
     // Another ground, which cannot be read, leaves none of the zones of this one.
     let torn = folder.path().join("torn.png");

@@ -48,6 +48,40 @@ fn a_point_cloud_asks_how_and_becomes_a_ground() {
     assert!(!state.session.dialogs.is_any_open(), "the dialog is closed");
 }
 
+/// The scene stayed empty until a case was chosen.
+#[test]
+fn a_ground_is_seen_before_anything_is_chosen_that_moves_on_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cloud = folder.path().join("scan.las");
+    std::fs::write(&cloud, scan()).expect("a file");
+    let mut harness = open(&[]);
+    apply(&mut harness, Command::Show(Pane::Scene));
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Picture of the scene").is_none());
+    apply(&mut harness, Command::Open(vec![cloud]));
+    harness.run_steps(4);
+    harness.get_by_label("Make ground").click();
+    step_until(&mut harness, "the ground", |state| state.session.ground.shown().is_some());
+    let state = harness.state().state();
+    assert!(state.project.subject().is_none(), "no case is chosen");
+    let ground = state.session.ground.shown().expect("a ground");
+    let [low_m, high_m] = ground.ground.extent_m().expect("an extent");
+    let picture = harness.get_by_label("Picture of the scene").rect();
+    let [low, high] = [low_m, high_m].map(|at_m| {
+        let at = state.session.scene.view.on_screen(at_m).expect("before the camera");
+        assert!(picture.contains(at), "{at_m:?} m is at {at:?} of {picture:?}");
+        at
+    });
+    assert!(low.distance(high) > 20.0, "{low:?} {high:?}");
+    // A scenario takes the place of the empty road.
+    apply(&mut harness, Command::Open(vec![SCENARIO.into()]));
+    step_until(&mut harness, "the motion", |state| is_idle(state) && state.analysis().is_some());
+    apply(&mut harness, Command::Show(Pane::Scene));
+    harness.run_steps(4);
+    let title = harness.query_all_by_label_contains("scene from above at").next();
+    assert!(title.is_some(), "the heading of the motion");
+}
+
 /// A square metre of road.
 fn scan() -> Vec<u8> {
     let mut builder = las::Builder::from((1, 2));

@@ -46,3 +46,60 @@ fn a_calculation_by_hand_is_answered_and_kept() {
     let read = state.project.with_variant(&variant).expect("it is read");
     assert_eq!(read.hand, state.project.hand);
 }
+
+/// A crash test asks for its crush energy with one click, and the energy is that of the test.
+#[test]
+fn the_crush_energy_of_a_crash_test_is_checked_by_hand() {
+    const TEST: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fuzz/corpus/ev5/v1.EV5");
+    let mut harness = open(&[]);
+    apply(&mut harness, Command::Open(vec![TEST.into()]));
+    harness.run_steps(4);
+    // No vehicle is chosen that could get the stiffness, which is said before a click.
+    assert!(harness.query_all_by_label_contains("whose data can be edited").next().is_some());
+    harness.get_by_label("Crush energy by hand").click();
+    harness.run_steps(2);
+    step_until(&mut harness, "the answer", |state| state.session.hand.ok().is_some());
+    let state = harness.state().state();
+    assert!(!state.session.dialogs.is_any_open());
+    let report = &state.session.hand.ok().expect("an answer").report;
+    let energy =
+        report.results.iter().find(|result| result.key == "energy_1_j").expect("an energy");
+    // ½ · 1000 kg · (10 m/s)²; the crush is the same all over the width.
+    assert!((energy.value - 50_000.0).abs() < 1.0, "{}", energy.value);
+}
+
+/// The points of a mark that were clicked in the plan are those of the calculation.
+#[test]
+fn a_yaw_mark_of_the_evidence_gives_its_points() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("yaw.toml");
+    let spin = std::fs::read_to_string("tests/data/evidence/spin.toml").expect("evidence");
+    // On a circle of 50 m.
+    let points: Vec<String> = (0..5)
+        .map(|i| {
+            let angle = 0.08 * f64::from(i);
+            format!("[{:.3}, {:.3}]", 50.0 * angle.sin(), 50.0 * (1.0 - angle.cos()))
+        })
+        .collect();
+    let mark = format!("[[mark]]\nwheel = \"RR\"\npoints_m = [{}]\n", points.join(", "));
+    std::fs::write(&path, format!("{spin}\n{mark}")).expect("a file");
+    let mut harness = open(&[path.to_str().expect("a plain name")]);
+    harness.run_steps(4);
+    let mut request = HandRequest::new(HandMethod::YawMark);
+    let chord = Stated { value: Some(20.0), sigma: None };
+    request.inputs.insert("chord_m".to_owned(), chord);
+    let friction = Stated { value: Some(0.7), sigma: Some(0.05) };
+    request.inputs.insert("friction".to_owned(), friction);
+    harness.state_mut().state_mut().project.hand = Some(request);
+    apply(&mut harness, Command::Show(Pane::Hand));
+    harness.run_steps(2);
+    harness.get_by_label("Take mark 1").click();
+    harness.run_steps(2);
+    step_until(&mut harness, "the answer", |state| {
+        state.session.hand.ok().is_some_and(|answer| answer.report.n_points == 5)
+    });
+    let report = &harness.state().state().session.hand.ok().expect("an answer").report;
+    let radius = report.results.iter().find(|of| of.key == "radius_m").expect("a radius");
+    // Half a track less is that of the path of the CG.
+    assert!((radius.value - 49.25).abs() < 0.2, "{}", radius.value);
+}

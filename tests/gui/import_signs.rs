@@ -73,6 +73,22 @@ fn a_separator_is_chosen_and_all_units_become_si_at_once() {
     assert_eq!(map(&harness), "separator=semicolon,time=1:s,fx=2:N,fy=3:N");
 }
 
+/// Its nanoseconds were taken for seconds.
+#[test]
+fn all_si_leaves_a_stamp_in_nanoseconds_what_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let row = |i: u64| format!("{},{},0,0\n", 1_700_000_000_000_000_000 + i * 10_000_000, i);
+    let rows: String = (0..20).map(row).collect();
+    let (_, name) = write(folder.path(), "log.csv", &format!("time,x,y,yaw\n{rows}"));
+    let mut harness = open(&[&name]);
+    settle(&mut harness);
+    harness.get_by_label("All SI").click();
+    harness.run_steps(2);
+    settle(&mut harness);
+    let found = map(&harness);
+    assert!(found.contains("time=1:ns") && found.contains("x=2:m,y=3:m"), "{found}");
+}
+
 /// Such a log opened without a word, and nothing that begins at 0 could use it.
 #[test]
 fn a_clock_since_1970_is_set_to_zero_by_a_click() {

@@ -1,6 +1,7 @@
 //! Whether the window can be read in a small window and on a dense screen.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use egui::{Id, Rect, Shape};
 use egui_kittest::Harness;
@@ -129,6 +130,34 @@ fn the_data_workspace_shows_a_screenful_of_cases_in_a_small_window() {
     assert!(harness.query_by_label("c008").is_some());
     let legend = harness.get_by_label("F_x").rect();
     assert!(legend.bottom() < 720.0 && legend.right() < 1280.0, "{legend:?}");
+}
+
+/// A data set that was opened stood below the end of the list.
+#[test]
+fn the_list_of_data_scrolls_to_the_set_that_is_listed() {
+    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets");
+    let mut harness = open_at(([1280.0, 720.0], 1.0), &[data], None);
+    step_until(&mut harness, "the shipped data", is_idle);
+    apply(&mut harness, Command::ShowWorkspace(Workspace::Data));
+    let mut top_of_first = |listed: &str| {
+        apply(&mut harness, Command::List(Path::new(data).join(listed)));
+        harness.run_steps(60);
+        harness.get_by_label("fea · 100 force curves").rect().top()
+    };
+    let scrolled = top_of_first("trajectories-pulse");
+    assert!(scrolled < top_of_first("fea"), "{scrolled}");
+}
+
+/// Badges and legend left it a strip.
+#[test]
+fn the_scene_has_room_in_a_small_window() {
+    let scenario = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/pit_right_rear.toml");
+    let mut harness = open_at(([1280.0, 720.0], 1.0), &[scenario], None);
+    step_until(&mut harness, "the simulation", is_idle);
+    apply(&mut harness, Command::ShowWorkspace(Workspace::Data));
+    harness.run_steps(4);
+    let scene = harness.get_by_label("Picture of the scene").rect();
+    assert!(scene.height() > 100.0, "{scene:?}");
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod film_camera;
 mod force_network;
 mod ground;
 mod ground_import;
+mod guide;
 mod hand;
 mod harness;
 mod import;

@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{Command, Dialog, RecorderCommand};
+use impactlab::app::{Command, Dialog, Pane, RecorderCommand};
 use impactlab_core::collision::Role;
 use impactlab_core::collision::contact::BarrierTest;
 use impactlab_core::data::{CrashTest, RecorderRecord, Severity};
+use impactlab_core::units::UnitSystem;
 use impactlab_study::{EvidenceChoice, VehicleChoice};
 
 use crate::harness::{apply, open, step_until};
@@ -50,6 +51,101 @@ fn a_record_of_the_other_car_leaves_the_evidence_that_is_there() {
     assert!(after.striking_edr.is_some());
     after.striking_edr = before.striking_edr;
     assert_eq!(after, before);
+}
+
+/// Seconds before a crash in which the driver turns to the left and brakes.
+pub const BEFORE: &str = "CDR FILE INFORMATION\nEDR Device Type,Module 7\nComplete File Recorded,Yes\n\
+    PRE-CRASH DATA -5 TO 0 SEC [2 SAMPLES/SEC] (EVENT RECORD 1)\n\
+    Times (sec),\"Speed, Vehicle Indicated (MPH [km/h])\",Steering Input (deg),Service Brake\n\
+    -2.0,40 [64],0,Off\n-1.5,40 [64],10,Off\n-1.0,40 [64],20,Off\n-0.5,36 [58],20,On\n\
+    0.0,31 [50],10,On\n";
+
+#[test]
+fn a_recorder_is_replayed_with_the_car_and_the_case_keeps_the_question() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("report.csv");
+    std::fs::write(&path, BEFORE).expect("a file");
+    let mut harness = open(&[]);
+    apply(&mut harness, Command::Show(Pane::Replay));
+    harness.run_steps(2);
+    assert!(harness.query_by_label("What did a car do before the contact?").is_some());
+    assert!(harness.query_by_label_contains("Steering Wheel Angle [deg]").is_some());
+    let car = VehicleChoice::Preset("toyota-camry-2018".to_owned());
+    apply(&mut harness, Command::ChooseVehicle(Role::Struck, Box::new(car.clone())));
+    harness.run_steps(80);
+    apply(&mut harness, Command::Open(vec![path.clone()]));
+    harness.run_steps(4);
+    harness.get_by_label("Replay it with this car").click();
+    step_until(&mut harness, "the replay", |state| state.session.recorder_replay.ok().is_some());
+    let state = harness.state().state();
+    assert!(!state.session.dialogs.is_any_open());
+    let request = state.project.replay.clone().expect("a question");
+    assert_eq!((&request.recorder, &request.vehicle, request.event), (&path, &car, None));
+    for label in ["speed at the first contact", "steering ratio", "driver open", "From above"] {
+        assert!(harness.query_all_by_label_contains(label).next().is_some(), "{label}");
+    }
+    let state = harness.state().state();
+    let variant = state.project.to_variant("replay");
+    assert!(variant.questions.contains(&request.clone().into()));
+    let read = state.project.with_variant(&variant).expect("it is read");
+    assert_eq!((read.replay.as_ref(), read.others.len()), (Some(&request), 0));
+    crate::pictures::save(&mut harness, "window-replay.png");
+
+    // An answer to other settings is marked, and asked again by a person alone.
+    let asked = harness.state_mut().state_mut().project.replay.as_mut().expect("a question");
+    (asked.steering_ratio, asked.event) = (Some(14.5), Some(1));
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("Replay again").is_some());
+    let command = Command::Recorder(RecorderCommand::RunReplay);
+    apply(&mut harness, command.clone());
+    step_until(&mut harness, "the other replay", |state| {
+        let latest = state.session.recorder_replay.latest.as_ref();
+        latest.is_some_and(|latest| latest.question.steering_ratio == Some(14.5))
+    });
+    assert!(harness.query_by_label_contains("Replay again").is_none());
+
+    // One that is cancelled leaves the answer that was there.
+    apply(&mut harness, command);
+    apply(&mut harness, Command::Recorder(RecorderCommand::CancelReplay));
+    step_until(&mut harness, "the end", |state| !state.session.recorder_replay.is_running());
+    assert!(harness.state().state().session.recorder_replay.ok().is_some());
+
+    // Asked for again, the same file keeps what was said of it.
+    let again = RecorderCommand::Replay { path, event: None, car: Role::Struck };
+    apply(&mut harness, Command::Recorder(again));
+    let request = harness.state().state().project.replay.clone().expect("a question");
+    assert_eq!((request.steering_ratio, request.event), (Some(14.5), Some(1)));
+    assert_eq!(request.vehicle, car);
+}
+
+#[test]
+fn what_keeps_a_recorder_from_being_replayed_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("report.csv");
+    std::fs::write(&path, BEFORE.replace("Steering Input", "Engine Throttle")).expect("a file");
+    let mut harness = open(&[]);
+    let command = RecorderCommand::Replay { path, event: None, car: Role::Struck };
+    apply(&mut harness, Command::Recorder(command));
+    step_until(&mut harness, "why", |state| state.session.recorder_replay.problem().is_some());
+    let problem = harness.query_all_by_label_contains("Not replayed: ").next();
+    assert!(problem.is_some());
+}
+
+#[test]
+fn the_form_of_a_recorder_has_the_units_of_the_window() {
+    for (units, symbol, other) in [(UnitSystem::Si, "km/h", "mph"), (UnitSystem::Us, "mph", "km/h")]
+    {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("report.csv");
+        std::fs::write(&path, BEFORE).expect("a file");
+        let mut harness = open(&[]);
+        harness.state_mut().state_mut().view.units = units;
+        apply(&mut harness, Command::Open(vec![path]));
+        harness.run_steps(4);
+        let is_shown =
+            |of: &str| harness.query_all_by_label_contains(&format!(" {of} at ")).next().is_some();
+        assert!(is_shown(symbol) && !is_shown(other) && !is_shown("m/s"), "{symbol}");
+    }
 }
 
 fn is_recorder(dialog: &Dialog) -> bool {

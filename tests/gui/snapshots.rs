@@ -13,7 +13,8 @@ use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::{Braking, Ending, Integrator, Preset};
 use impactlab_document::figure::{
-    Figure, analysis_force_figure, analysis_motion_figure, analysis_scene_figure, impact_figure,
+    Figure, ReplayCurve, analysis_force_figure, analysis_motion_figure, analysis_scene_figure,
+    impact_figure, replay_curve_figure, replay_path_figure,
 };
 use impactlab_document::scene::{Scene, SimulationScene, simulation_scene};
 use impactlab_draw::scene::{
@@ -21,6 +22,7 @@ use impactlab_draw::scene::{
 };
 use impactlab_draw::{Canvas, figure_image};
 use impactlab_study::analysis::{Analysis, PulseSetup, Settings, analyse_case, analyse_scenario};
+use impactlab_study::{Library, Question, ReplayRequest};
 
 fn analysis(dataset: &str, case: &str) -> Analysis {
     let mut report = |_| ControlFlow::Continue(());
@@ -200,6 +202,25 @@ fn what_was_measured_is_in_the_picture() {
     let (without, with) = (pixels(&plain), pixels(&measured));
     let n_changed = without.chunks(4).zip(with.chunks(4)).filter(|(a, b)| a != b).count();
     assert!((200..8000).contains(&n_changed), "{n_changed} pixels");
+}
+
+/// A turn to the left by a recorder, from above and its yaw rate beside the recorded one.
+#[test]
+fn replay() {
+    const TURN: &str = "Time [s],Speed [km/h],Steering Wheel Angle [deg],Yaw Rate [deg/s]\n\
+        -2,50,30,-6\n-1.5,50,60,-12\n-1,48,60,-12\n-0.5,44,30,-6\n0,40,0,0\n";
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("edr.csv");
+    std::fs::write(&file, TURN).expect("a file");
+    let request =
+        ReplayRequest { steering_ratio: Some(15.0), draws: 60, ..ReplayRequest::new(file) };
+    let mut go_on = |_: impactlab_study::Event<'_>| ControlFlow::Continue(());
+    let answer = request.answer(&Library::default(), &mut go_on).expect("an answer");
+    let mut report = answer.complete().expect("nobody cancelled").report;
+    report.caveats = Caveats::default();
+    check(&replay_path_figure(&report, UnitSystem::Si), false, "replay_path");
+    let yaw_rate = replay_curve_figure(&report, ReplayCurve::YawRate, UnitSystem::Si);
+    check(&yaw_rate, true, "replay_yaw_rate");
 }
 
 #[test]

@@ -4,6 +4,7 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{App, Command, Output, Pane, State};
+use impactlab_core::collision::Role as CarRole;
 use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::{CrushFace, CrushStiffness, DataSheet, built_in_vehicle};
@@ -106,6 +107,18 @@ fn a_car_that_is_chosen_is_the_car_of_the_scenario() {
         (&now.simulate.vehicle, now.scenario()),
         (&before.simulate.vehicle, before.scenario())
     );
+}
+
+#[test]
+fn what_a_chosen_car_replaces_is_told_in_the_units_of_the_case() {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the scenario", is_idle);
+    harness.state_mut().state_mut().view.units = UnitSystem::Us;
+    let car = Box::new(VehicleChoice::named("toyota-corolla-2020"));
+    apply(&mut harness, Command::ChooseVehicle(CarRole::Struck, car));
+    let said = state(&harness).session.messages.last().expect("what was replaced");
+    assert!(said.text.contains(" lb instead of 4409"), "{}", said.text);
+    assert!(!said.text.contains(" kg"), "{}", said.text);
 }
 
 /// The list took the focus back before it asked whether its search was entered.

@@ -153,7 +153,7 @@ proptest! {
                 for collision in inputs.iter_mut().filter_map(|input| input.collision.as_mut()) {
                     collision.force_n = collision.force_n.map(|force_n| force_n * share);
                 }
-                let states = rollout(vehicle, initial, &inputs, |_, _| [0.0; 4]);
+                let states = rollout(vehicle, initial, &inputs, [0.0; 4]);
                 states.last().map(|x| [x.x_m, x.y_m]).expect("an end")
             };
             let here = end_of(&vehicle, 1.0);
@@ -178,7 +178,7 @@ fn far_outside_only_the_physics_is_left_and_the_bands_are_wider() {
         let inputs = struck([0.5, 2.0], vehicle, 300);
         let (area, _) = end(&model, (vehicle, &initial, &inputs));
         let path = model.predictor(vehicle).unwrap().central_path(&initial, &inputs);
-        let physics = rollout(vehicle, initial, &inputs, |_, _| [0.0; 4]);
+        let physics = rollout(vehicle, initial, &inputs, [0.0; 4]);
         (area, average_error_m(&path, &physics))
     });
     assert!(far.1 < 0.1, "{} m from the 4DOF model", far.1);
@@ -235,7 +235,7 @@ fn slippery_car(mass_kg: f64, grip: f64) -> Vec<ResponseCase> {
     let motion = |yaw_rate_rad_s: f64| {
         let initial = VehicleState { yaw_rate_rad_s, ..VehicleState::driving_straight(20.0) };
         let inputs = struck([0.0, 2.5], &vehicle, 200);
-        let states = rollout(&truth, initial, &inputs, |_, _| [0.0; 4]);
+        let states = rollout(&truth, initial, &inputs, [0.0; 4]);
         ResponseCase::from_motion(yaw_rate_rad_s.to_string(), vehicle.clone(), states, inputs)
     };
     [0.3, -0.6, 0.9].map(motion).into()
@@ -267,15 +267,37 @@ fn a_fleet_is_learned_from_saved_and_read_again() {
     };
     let start = fine_tune(None, &set, &settings, &mut go_on).expect("a start");
     trainings.clear();
+    let mut fits = Vec::new();
     let mut go_on = |conditioned: &TrainingReport| {
-        if let TrainingReport::Epoch(epoch) = conditioned {
-            trainings.push([epoch.training_idx, epoch.n_trainings]);
+        match conditioned {
+            TrainingReport::Epoch(epoch) => {
+                trainings.push([epoch.training_idx, epoch.n_trainings]);
+            }
+            TrainingReport::Fit(fit) => fits.push(fit.clone()),
         }
         ControlFlow::Continue(())
     };
     let model = train_fleet(&start, &set, &settings, &mut go_on).expect("a model");
     trainings.dedup();
     assert_eq!(trainings, [[0, 5], [1, 5], [2, 5], [3, 5], [4, 5]]);
+    assert!(fits.iter().all(|fit| fit.is_after_epochs && !fit.what.is_empty()), "{fits:?}");
+    assert!(fits.is_sorted_by_key(|fit| fit.done), "{fits:?}");
+    let last = fits.last().expect("what is learned after the epochs");
+    assert!(fits.len() > 40 && last.done == last.n_steps, "{last:?} of {} reports", fits.len());
+    // Broken off at any of these, it is the network of the last epoch, which knows one kind of car.
+    for n_before in [0, 6, fits.len() - 1] {
+        let mut n_fits = 0;
+        let mut cut = |progress: &TrainingReport| match progress {
+            TrainingReport::Fit(_) if n_fits == n_before => ControlFlow::Break(()),
+            TrainingReport::Fit(_) => {
+                n_fits += 1;
+                ControlFlow::Continue(())
+            }
+            TrainingReport::Epoch(_) => ControlFlow::Continue(()),
+        };
+        let ended = train_fleet(&start, &set, &settings, &mut cut).expect("a model");
+        assert!(n_fits == n_before && ended.population().is_none(), "{n_fits} of {n_before}");
+    }
     let population = model.population().expect("how cars differ");
     assert_eq!(population.cars().len(), 4);
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("any_car");
@@ -297,7 +319,7 @@ fn a_fleet_is_learned_from_saved_and_read_again() {
             &fifth[2].states,
         )
     };
-    let physics = rollout(&fifth[2].vehicle, fifth[2].states[0], &fifth[2].inputs, |_, _| [0.0; 4]);
+    let physics = rollout(&fifth[2].vehicle, fifth[2].states[0], &fifth[2].inputs, [0.0; 4]);
     let physics_m = average_error_m(&physics, &fifth[2].states);
     let two = TrainingSet { train: fifth[..2].to_vec(), ..set.clone() };
     let conditioned = condition(&model, &two).expect("a conditioned model");

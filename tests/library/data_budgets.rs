@@ -254,7 +254,7 @@ fn a_motion_or_a_log_of_ten_days_is_refused() {
     assert_eq!(message, "case FE_c001: lasts 900000 s, expected 3600 s or less; check its time");
     let series = read_motion_log(&path, None).unwrap().series;
     let log = MotionLog { path, series };
-    let settings = LogSettings { vehicle, impact_s: None, duration_s: 4.0 };
+    let settings = LogSettings { vehicle, has_impact: true, impact_s: None, duration_s: 4.0 };
     let error = LoggedImpact::from_log(&log, None, &settings).unwrap_err();
     let message = error.to_string();
     assert!(

@@ -201,6 +201,49 @@ fn places_and_headings_follow_from_several_columns() {
 }
 
 #[test]
+fn a_pose_of_ros_is_read_without_a_map() {
+    let header = "time_s,field.child_frame_id,field.pose.pose.position.x,field.pose.pose.position.y,\
+        field.pose.pose.orientation.x,field.pose.pose.orientation.y,field.pose.pose.orientation.z,\
+        field.pose.pose.orientation.w,field.twist.twist.linear.x,field.twist.twist.linear.y,\
+        field.twist.twist.angular.z";
+    let row = |t: f64, x: f64| {
+        format!(
+            "{t},base_link,{},{},0,0,{},{},15,0,0",
+            x * 0.6,
+            x * 0.8,
+            0.2_f64.sqrt(),
+            0.8_f64.sqrt()
+        )
+    };
+    let loaded = read(&drive(header, row), "").unwrap();
+    assert!((values(&loaded, Channel::X)[59] - 0.6 * 17.7).abs() < 0.02);
+    assert!((values(&loaded, Channel::Y)[59] - 0.8 * 17.7).abs() < 0.02);
+    assert!((values(&loaded, Channel::Yaw)[0] - 0.8_f64.atan2(0.6)).abs() < 1e-9);
+    assert!((values(&loaded, Channel::Vx)[0] - 15.0).abs() < 1e-9);
+    assert!(values(&loaded, Channel::YawRate)[0].abs() < 1e-9);
+    // The poses of two messages: a map says which is the car's.
+    let two = drive(&format!("{header},other.pose.position.x,other.pose.position.y"), |t, x| {
+        format!("{},1,2", row(t, x))
+    });
+    let error = read(&two, "").unwrap_err().to_string();
+    assert!(error.contains("no column"), "{error}");
+    let map = "x=field.pose.pose.position.x:m,y=field.pose.pose.position.y:m";
+    assert_eq!(read(&two, map).unwrap().series, loaded.series);
+    // Nor is the orientation of one put beside the place of the other.
+    let orientation = ["x", "y", "z", "w"].map(|part| format!("other.orientation.{part}"));
+    let two = drive(&format!("{header},{}", orientation.join(",")), |t, x| {
+        format!("{},0,0,0,1", row(t, x))
+    });
+    let error = read(&two, "").unwrap_err().to_string();
+    assert!(error.contains("no column"), "{error}");
+    // A unit in a header counts.
+    let degrees = header.replace("angular.z", "angular.z [deg/s]");
+    let turning = drive(&degrees, |t, x| row(t, x).replace(",15,0,0", ",15,0,1"));
+    let rate = values(&read(&turning, "").unwrap(), Channel::YawRate)[0];
+    assert!((rate - 1_f64.to_radians()).abs() < 1e-9, "{rate}");
+}
+
+#[test]
 fn a_racelogic_file_is_read_and_a_crash_report_is_named() {
     let header = "File created on 25/11/2026\n\n[header]\ntime\n\n[column names]\n\
         sats time lat long velocity heading\n\n[data]";

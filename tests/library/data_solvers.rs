@@ -3,13 +3,15 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use impactlab_core::data::{
     Channel, ColumnMap, DataError, Existing, FileKind, Loaded, Table, parts_beside, read_any_series,
 };
+use impactlab_core::uncertainty::{Caveat, CaveatSubject};
 use impactlab_study::case_file::{CaseFile, Variant, pack, unpack};
-use impactlab_study::{Drive, MotionSource, SeriesFile, SimulateRequest};
+use impactlab_study::{Drive, Event, Library, MotionSource, Question, SeriesFile, SimulateRequest};
 use tempfile::TempDir;
 
 /// Instants of a collision, ms, and the force on the slave side along x, kN: units of kg, mm and ms.
@@ -283,6 +285,82 @@ fn a_binout_in_three_parts_is_one_force_that_its_momenta_confirm() {
     fs::rename(&expected[1], folder.path().join("binout0000%002")).unwrap();
     let error = read_any_series(&path, Some(&map(DECK))).unwrap_err().to_string();
     assert!(error.contains("binout0000%002: the part before it is not in the folder"), "{error}");
+}
+
+/// The speed at the start of a car under the force of a map, m/s, and what is said of it, or the error.
+fn speed_of(path: &Path, text: &str) -> Result<(f64, String), String> {
+    let file = SeriesFile { map: Some(map(text)), ..SeriesFile::new(path.to_owned()) };
+    let request = SimulateRequest {
+        vehicle_draws: Some(0),
+        duration_s: 1.0,
+        ..SimulateRequest::new(MotionSource::Drive(Drive { force: Some(file), ..Drive::default() }))
+    };
+    let mut go_on = |_: Event<'_>| ControlFlow::Continue(());
+    let answer = request.answer(&Library::default(), &mut go_on);
+    let answer = answer.map_err(|error| impactlab_core::error_chain(&error))?.complete().unwrap();
+    let of_speed = |caveat: &&Caveat| caveat.subject == Some(CaveatSubject::Speed);
+    let said: Vec<String> =
+        answer.report.caveats.iter().filter(of_speed).map(ToString::to_string).collect();
+    let series = &answer.analysis.simulation.unwrap().series;
+    Ok((series.require(Channel::Vx).unwrap()[0], said.join("; ")))
+}
+
+#[test]
+fn the_car_of_a_binout_drives_as_its_parts_begin() {
+    let folder = TempDir::new().unwrap();
+    let path = binout(&folder, 1.0);
+    let begins = |text: &str| {
+        let start = read(&path, text).model_start.unwrap();
+        (start.of_force_m_s, start.all_m_s.len())
+    };
+    let [slave, master] = ["slave", "master"].map(|side| format!("{DECK},sheet=contact 3 {side}"));
+    assert_eq!(begins(&slave), (Some([0.0, 0.0]), 2));
+    let (of_master, _) = begins(&master);
+    assert!((of_master.unwrap()[0] - 9.0).abs() < 1e-5, "{of_master:?}");
+    let (speed_m_s, said) = speed_of(&path, &master).unwrap();
+    assert!((speed_m_s - 9.0).abs() < 1e-5, "{speed_m_s} m/s");
+    assert!(said.contains("in binout0000") && said.contains("by their momenta"), "{said}");
+    assert_eq!(speed_of(&path, &slave).unwrap().0, 0.0, "it stands, and does not drive 72 km/h");
+    // The other car under this force is not the one of which the momenta speak.
+    let turned = format!("{slave},fx=-2,fy=-3");
+    assert_eq!(read(&path, &turned).model_start, None);
+    let (speed_m_s, said) = speed_of(&path, &turned).unwrap();
+    assert!(speed_m_s == 20.0 && said.contains("is not known"), "{said}");
+    // Momenta that do not go with the force leave open which car it is.
+    let lost = binout(&folder, 0.7);
+    assert_eq!(read(&lost, &slave).model_start.unwrap().of_force_m_s, None);
+    let (_, said) = speed_of(&lost, &slave).unwrap();
+    assert!(said.contains("which parts of the model"), "{said}");
+}
+
+#[test]
+fn a_car_of_a_model_that_does_not_drive_along_x_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let path = binout(&folder, 1.0);
+    // The second car drives against x, and the first one is pushed that way.
+    for name in ["binout0000", "binout0000%001", "binout0001"] {
+        let path = folder.path().join(name);
+        let bytes = fs::read(&path).unwrap();
+        fs::write(&path, turned_around(&bytes)).unwrap();
+    }
+    let master = format!("{DECK},sheet=contact 3 master");
+    let error = speed_of(&path, &master).unwrap_err();
+    assert!(error.contains("(-9.00, ") && error.contains("fx=-2,fy=-3"), "{error}");
+}
+
+/// A binout with the signs of all forces, momenta and velocities turned.
+fn turned_around(bytes: &[u8]) -> Vec<u8> {
+    let mut turned = bytes.to_vec();
+    for name in ["x_force", "x_momentum", "x_rbvelocity"] {
+        let found = |at: &usize| bytes[*at..].starts_with(name.as_bytes());
+        for at in (0..bytes.len()).filter(found) {
+            for value in 0..2 {
+                // Numbers of four bytes, the lowest first: the sign is in the last one.
+                turned[at + name.len() + 4 * value + 3] ^= 0x80;
+            }
+        }
+    }
+    turned
 }
 
 #[test]

@@ -195,7 +195,7 @@ fn restrictions_are_in_the_units_of_the_reader_and_coordinates_in_metres() {
         [drawing, animation].map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
     };
     for (units, said) in
-        [(UnitSystem::Us, "learned up to 100 mph"), (UnitSystem::Si, "learned up to 44.7 m/s")]
+        [(UnitSystem::Us, "learned up to 100 mph"), (UnitSystem::Si, "learned up to 161 km/h")]
     {
         let [drawing, animation] = written(units);
         assert!(drawing.contains(said), "{units:?}: {said}");

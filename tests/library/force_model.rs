@@ -11,7 +11,7 @@ use impactlab_core::data::Existing;
 use impactlab_core::error_chain;
 use impactlab_networks::force::{
     Centre, ForceCase, ForceConfig, ForceModel, ForcePrediction, ForceScenario, ForceTrainSettings,
-    ForceTrainingSet, train,
+    ForceTrainingSet, fit_physics, train,
 };
 use impactlab_networks::learning::{ModelFile, TrainingReport};
 use impactlab_networks::nn::{Checkpoint, ModelKind};
@@ -84,6 +84,26 @@ fn losses(model: &ForceModel) -> Vec<String> {
 
 fn scenario() -> ForceScenario {
     set().train[0].scenario.clone()
+}
+
+#[test]
+fn the_fits_before_the_epochs_report_every_step() {
+    let mut fits = Vec::new();
+    let physics = fit_physics(set(), &settings(None), &mut |report| {
+        if let TrainingReport::Fit(fit) = report {
+            fits.push(fit.clone());
+        }
+        ControlFlow::Continue(())
+    });
+    physics.expect("the physics can be fitted");
+    // Two laws of two steps each, and three regressions.
+    assert!(fits.iter().all(|fit| fit.n_steps == 7 && !fit.is_after_epochs), "{fits:?}");
+    assert!(fits.is_sorted_by_key(|fit| fit.done), "{fits:?}");
+    let of_first = fits.iter().filter(|fit| fit.what == "fitting crush law 1 of 2");
+    assert!(of_first.clone().count() >= 1 && of_first.clone().all(|fit| fit.cost.is_some()));
+    let done: Vec<usize> =
+        fits.iter().filter(|fit| fit.what.contains("regression")).map(|fit| fit.done).collect();
+    assert_eq!(done, [4, 5, 6]);
 }
 
 #[test]

@@ -401,7 +401,7 @@ fn numbers_of_things_in_questions_are_checked() {
             training: TrainingOptions::default(),
         })
     });
-    let log = |impact_s, duration_s| {
+    let log = |impact_s, steering_ratio, duration_s| {
         let logs = MotionLogs {
             logs: Vec::new(),
             forces: Vec::new(),
@@ -409,12 +409,15 @@ fn numbers_of_things_in_questions_are_checked() {
             force_map: None,
             contact: None,
             impact_s,
+            without_impact: false,
+            steering_ratio,
             duration_s,
         };
         checked(&FineTuneRequest { logs: Some(logs), ..FineTuneRequest::default() })
     };
-    probe("first contact of a log", &INSTANT, |impact_s| log(Some(impact_s), 4.0));
-    probe("duration of a log", &LOG_DURATION, |duration_s| log(None, duration_s));
+    probe("first contact of a log", &INSTANT, |impact_s| log(Some(impact_s), None, 4.0));
+    probe("duration of a log", &LOG_DURATION, |duration_s| log(None, None, duration_s));
+    assert!(log(None, Some(15.0), 4.0).is_ok() && log(None, Some(0.5), 4.0).is_err());
 }
 
 #[test]

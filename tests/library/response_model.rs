@@ -20,7 +20,7 @@ fn case(yaw_rate_rad_s: f64) -> ResponseCase {
     truth.tires.cornering_coefficient_front_per_rad *= 0.8;
     let initial = VehicleState { yaw_rate_rad_s, ..VehicleState::driving_straight(20.0) };
     let inputs = vec![VehicleInput::released(); 200];
-    let states = rollout(&truth, initial, &inputs, |_, _| [0.0; 4]);
+    let states = rollout(&truth, initial, &inputs, [0.0; 4]);
     let name = format!("{yaw_rate_rad_s}");
     ResponseCase { digest: name.clone(), name, vehicle, states, inputs, spins: false }
 }
@@ -56,7 +56,7 @@ fn go_on(_: &TrainingReport) -> ControlFlow<()> {
 fn errors_m(model: &ResponseModel) -> [f64; 2] {
     let unseen = case(0.6);
     let (start, inputs) = (unseen.states[0], &unseen.inputs);
-    let plain = rollout(&unseen.vehicle, start, inputs, |_, _| [0.0; 4]);
+    let plain = rollout(&unseen.vehicle, start, inputs, [0.0; 4]);
     let path = model.predictor(&unseen.vehicle).expect("a predictor").central_path(&start, inputs);
     [plain, path].map(|path| average_error_m(&path, &unseen.states))
 }

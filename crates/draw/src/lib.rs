@@ -23,6 +23,6 @@ pub use caveats::picture_ui;
 pub use density::{DensityError, DensityGpu};
 pub use gpu::GpuError;
 pub use offscreen::{Canvas, RenderError, draw_offscreen, figure_image, save_png};
-pub use plot::{FigureOptions, FigureResponse, figure_ui};
+pub use plot::{Backdrop, FigureOptions, FigureResponse, figure_ui};
 pub use report::{report_drawing, report_picture};
 pub use software::SoftwareRenderer;

@@ -3,7 +3,10 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use egui::{Color32, ColorImage, Id, Pos2, Stroke, TextureHandle, TextureOptions, Ui, Vec2, Vec2b};
+use egui::{
+    Color32, ColorImage, Id, Pos2, Stroke, TextureHandle, TextureId, TextureOptions, Ui, Vec2,
+    Vec2b,
+};
 use egui_plot::{
     Arrows, FilledArea, Line, LineStyle as PlotLineStyle, Plot, PlotBounds, PlotImage, PlotPoint,
     PlotPoints, PlotUi, Points, Polygon, VLine,
@@ -18,7 +21,7 @@ use crate::ticks::{
     X_TICK_CELLS, Y_TICK_CELLS, grid, log_grid, log_tick_label, name_grid, name_label, tick_label,
 };
 use impactlab_core::units::{NumberFormat, significant};
-use impactlab_document::figure::{Figure, FigureElement, HeatMap, LineStyle, Path, Series};
+use impactlab_document::figure::{Figure, FigureElement, HeatMap, LineStyle, Path, Role, Series};
 
 /// Opacity of the largest value of a heat map.
 const HEAT_OPACITY: f32 = 0.85;
@@ -33,6 +36,19 @@ const LEAST_HEIGHT: f32 = 2.0 * X_AXIS_HEIGHT;
 
 /// Logarithm of the zoom for each point that the wheel scrolls.
 const ZOOM_PER_POINT: f32 = 0.004;
+
+/// A picture below a figure on screen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Backdrop {
+    /// The picture.
+    pub texture: TextureId,
+    /// Its middle, in the units of the axes.
+    pub centre: [f64; 2],
+    /// Its width and height, in the units of the axes.
+    pub size: [f64; 2],
+    /// By what it is turned about its middle, counter-clockwise, rad.
+    pub turn_rad: f64,
+}
 
 /// Options for the placement of a figure.
 #[derive(Debug, Clone)]
@@ -59,6 +75,10 @@ pub struct FigureOptions {
     pub legend_rows: usize,
     /// Whether the primary pointer button moves the view of a figure seen from above.
     pub pans: bool,
+    /// What lies below the elements of the figure.
+    pub backdrop: Option<Backdrop>,
+    /// Lines between both that are not of the figure, in the units of the axes.
+    pub lines_below: Vec<Vec<[f64; 2]>>,
 }
 
 impl Default for FigureOptions {
@@ -75,6 +95,8 @@ impl Default for FigureOptions {
             legend: true,
             legend_rows: usize::MAX,
             pans: true,
+            backdrop: None,
+            lines_below: Vec::new(),
         }
     }
 }
@@ -140,6 +162,16 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
     let response = plot.show(ui, |plot_ui| {
         if let Some([low, high]) = options.view {
             plot_ui.set_plot_bounds(PlotBounds::from_min_max(low, high));
+        }
+        if let Some(Backdrop { texture, centre: [x, y], size, turn_rad }) = options.backdrop {
+            let (at, size) = (PlotPoint::new(x, y), size.map(|side| side as f32));
+            let picture = PlotImage::new("", texture, at, size).rotate(turn_rad);
+            plot_ui.image(picture.allow_hover(false));
+        }
+        for points in &options.lines_below {
+            let stroke = Stroke::new(theme::THIN_LINE_WIDTH, theme::color(Role::Muted, dark));
+            let line = Line::new("", PlotPoints::from(points.clone())).stroke(stroke);
+            plot_ui.line(line.allow_hover(false));
         }
         for element in figure.elements.iter().filter(|of| !hidden.contains(of.name())) {
             draw_element(plot_ui, dark, element, figure.log_y);
@@ -385,7 +417,7 @@ fn reaches(figure: &Figure, x: f64) -> bool {
 mod tests {
     use super::*;
     use impactlab_core::units::{Quantity, UnitSystem};
-    use impactlab_document::figure::{Axis, Role};
+    use impactlab_document::figure::Axis;
 
     #[test]
     fn a_cursor_reaches_as_far_as_the_curves() {

@@ -9,6 +9,7 @@
 //! Left out: paint callbacks, which the figures do not use.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use egui::epaint::{ClippedPrimitive, ImageDelta, Mesh, Primitive, TextureId, Vertex};
 use egui::{Color32, ColorImage, ImageData, Pos2, Rect, TexturesDelta};
@@ -112,7 +113,7 @@ impl Frame {
     }
 
     fn draw_triangle(&mut self, [a, mut b, mut c]: [Vertex; 3], texture: &ColorImage, clip: Rect) {
-        let mut area = edge(a.pos, b.pos, c.pos);
+        let mut area = Edge { from: a.pos, to: b.pos }.area(c.pos);
         if area < 0.0 {
             std::mem::swap(&mut b, &mut c);
             area = -area;
@@ -129,18 +130,14 @@ impl Frame {
         let flat = a.color == b.color && b.color == c.color;
         let untextured = a.uv == b.uv && b.uv == c.uv;
         let constant_texel = untextured.then(|| sample(texture, a.uv));
+        let edges = [(b, c), (c, a), (a, b)].map(|(from, to)| Edge { from: from.pos, to: to.pos });
+        let columns = pixel_range(bounds.min.x, bounds.max.x, self.width);
         for y in pixel_range(bounds.min.y, bounds.max.y, self.height) {
-            for x in pixel_range(bounds.min.x, bounds.max.x, self.width) {
-                let p = Pos2::new(x as f32 + 0.5, y as f32 + 0.5);
-                let weights = [edge(b.pos, c.pos, p), edge(c.pos, a.pos, p), edge(a.pos, b.pos, p)];
-                let owns = [(b.pos, c.pos), (c.pos, a.pos), (a.pos, b.pos)]
-                    .into_iter()
-                    .zip(weights)
-                    .all(|((from, to), w)| w > 0.0 || (w == 0.0 && is_top_left(from, to)));
-                if !owns {
-                    continue;
-                }
-                let [wa, wb, wc] = weights.map(|weight| weight / area);
+            let y_center = y as f32 + 0.5;
+            let inside = |columns: Range<usize>, edge: &Edge| edge.owned(columns, y_center);
+            for x in edges.iter().fold(columns.clone(), inside) {
+                let p = Pos2::new(x as f32 + 0.5, y_center);
+                let [wa, wb, wc] = edges.map(|edge| edge.area(p) / area);
                 let color = if flat {
                     channels(a.color)
                 } else {
@@ -157,16 +154,48 @@ impl Frame {
     }
 }
 
-/// Twice the signed area of the triangle (`from`, `to`, `p`): positive if it is clockwise on
-/// screen, where y points down.
-fn edge(from: Pos2, to: Pos2, p: Pos2) -> f32 {
-    (to.x - from.x) * (p.y - from.y) - (to.y - from.y) * (p.x - from.x)
+/// An edge of a triangle that is clockwise on screen, where y points down.
+#[derive(Clone, Copy)]
+struct Edge {
+    from: Pos2,
+    to: Pos2,
 }
 
-/// Whether an edge is a top or a left edge of its triangle. A pixel centre on such an edge belongs
-/// to the triangle, so that a pixel on an edge shared by two triangles is drawn once.
-fn is_top_left(from: Pos2, to: Pos2) -> bool {
-    (from.y == to.y && to.x > from.x) || to.y < from.y
+impl Edge {
+    /// Twice the signed area of the triangle of the edge and `p`: positive on the inner side.
+    fn area(self, p: Pos2) -> f32 {
+        let Self { from, to } = self;
+        (to.x - from.x) * (p.y - from.y) - (to.y - from.y) * (p.x - from.x)
+    }
+
+    /// Whether `p` belongs to the triangle as far as this edge says.
+    fn owns(self, p: Pos2) -> bool {
+        let area = self.area(p);
+        area > 0.0 || (area == 0.0 && self.is_top_left())
+    }
+
+    /// Whether it is a top or a left edge of its triangle. A pixel centre on such an edge belongs to
+    /// the triangle, so that a pixel on an edge shared by two triangles is drawn once.
+    fn is_top_left(self) -> bool {
+        let Self { from, to } = self;
+        (from.y == to.y && to.x > from.x) || to.y < from.y
+    }
+
+    /// Those of the columns of a row of pixels that it owns. Along a row the area grows or shrinks all
+    /// the way, rounding included, so that they are all on one side of a column.
+    fn owned(self, columns: Range<usize>, y: f32) -> Range<usize> {
+        let shrinks = self.to.y > self.from.y;
+        let (mut low, mut high) = (columns.start, columns.end);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if self.owns(Pos2::new(middle as f32 + 0.5, y)) == shrinks {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        if shrinks { columns.start..low } else { low..columns.end }
+    }
 }
 
 fn channels(color: Color32) -> [f32; 4] {
@@ -186,8 +215,8 @@ fn sample(texture: &ColorImage, uv: Pos2) -> [f32; 4] {
     }
     let along = |share: f32, n: usize| {
         let at = (share * n as f32 - 0.5).clamp(0.0, (n - 1) as f32);
-        let low = at.floor() as usize;
-        (low, (low + 1).min(n - 1), at - at.floor())
+        let low = at as usize;
+        (low, (low + 1).min(n - 1), at - low as f32)
     };
     let ((x0, x1, fx), (y0, y1, fy)) = (along(uv.x, width), along(uv.y, height));
     let texel = |x: usize, y: usize| channels(texture.pixels[y * width + x]);
@@ -202,8 +231,15 @@ fn sample(texture: &ColorImage, uv: Pos2) -> [f32; 4] {
 fn blend(under: Color32, over: [f32; 4]) -> Color32 {
     let keep = 1.0 - over[3] / 255.0;
     let under = channels(under);
-    let [r, g, b, a] = std::array::from_fn(|i| (over[i] + under[i] * keep).round() as u8);
+    let [r, g, b, a] = std::array::from_fn(|i| rounded(over[i] + under[i] * keep));
     Color32::from_rgba_premultiplied(r, g, b, a)
+}
+
+/// A channel of 0 to 255, rounded as [`f32::round`] does, which is a function call for each channel on
+/// processors for which no newer instructions are assumed.
+fn rounded(channel: f32) -> u8 {
+    let whole = channel as u8;
+    whole.saturating_add(u8::from(channel - f32::from(whole) >= 0.5))
 }
 
 #[cfg(test)]
@@ -233,6 +269,39 @@ mod tests {
                 assert_eq!(image.get_pixel(x, y).0, expected, "at {x}, {y}");
             }
         }
+    }
+
+    #[test]
+    fn channels_are_rounded_as_numbers_are() {
+        let halves = (0..1100).map(|i| i as f32 / 4.0 - 10.0);
+        let near = [0.499_999_97, 0.500_000_06, 254.499_98, 255.49, 1e9, -1e9, f32::NAN];
+        for channel in halves.chain(near) {
+            assert_eq!(rounded(channel), channel.round() as u8, "{channel}");
+        }
+    }
+
+    /// Corners at centres and corners of pixels too, where edges go through centres.
+    #[test]
+    fn an_edge_owns_the_same_columns_of_a_row_as_pixel_by_pixel() {
+        let mut state = 1_u64;
+        let mut random = |step: f32| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            let share = (state >> 40) as f32 / (1_u64 << 24) as f32;
+            ((share * 60.0 - 10.0) / step).round() * step
+        };
+        let mut n_owned = 0;
+        for i in 0..3000 {
+            let step = [1e-4, 0.5, 1.0][i % 3];
+            let [from, to] = [(); 2].map(|()| Pos2::new(random(step), random(step)));
+            let edge = Edge { from, to };
+            for y in [0.5, 7.5, 20.5] {
+                let alone = |x: &usize| edge.owns(Pos2::new(*x as f32 + 0.5, y));
+                let expected: Vec<usize> = (2..40).filter(alone).collect();
+                assert_eq!(edge.owned(2..40, y).collect::<Vec<_>>(), expected, "{from} {to} {y}");
+                n_owned += expected.len();
+            }
+        }
+        assert!((100_000..242_000).contains(&n_owned), "{n_owned} of 342000");
     }
 
     #[test]

@@ -15,6 +15,10 @@ pub const STRIKING_BRAKES_BEFORE: f64 = 0.4;
 /// Probability that he brakes then or later.
 pub const STRIKING_BRAKES: f64 = 0.8;
 
+/// Probability that the brakes of a single car have an anti-lock system of which nothing is known: half of the
+/// draws have one, since it decides how much a wheel brakes that is braked too hard.
+pub const ANTI_LOCK_PROBABILITY: f64 = 0.5;
+
 /// Probability that the driver of a car that hits a flank behind the CG steers in and pushes on, as in a
 /// PIT manoeuvre, where nobody says whether he does.
 pub const PUSH_PROBABILITY: f64 = 0.5;
@@ -185,6 +189,12 @@ latents! {
     StartCourse: "start_course_rad", "rad", "course at the start";
     /// Friction of the zones of the ground over that which the site says, in all of them alike.
     ZoneFrictionFactor: "zone_friction_factor", "", "friction of the zones over that of the site";
+    /// Whether the brakes of the struck or the single car have an anti-lock system: below 0 they do.
+    AntiLockDecision: "anti_lock_decision", "", "whether the brakes have an anti-lock system";
+    /// The same of the striking car.
+    #[serde(rename = "bullet_anti_lock_decision")]
+    StrikingAntiLockDecision: "bullet_anti_lock_decision", "",
+        "whether the brakes of the striking car have an anti-lock system";
 }
 
 impl Latent {
@@ -232,6 +242,13 @@ impl LatentValues {
             true => Some(0.0),
             false => (decision < STRIKING_BRAKES).then(|| self.get(Latent::StrikingBrakeStart)),
         }
+    }
+
+    /// Whether brakes have an anti-lock system.
+    ///
+    /// - `which`: [`Latent::AntiLockDecision`] or [`Latent::StrikingAntiLockDecision`].
+    pub fn has_anti_lock(&self, which: Latent) -> bool {
+        self.get(which) < 0.0
     }
 
     /// Whether the driver of the striking car steers in and pushes on.

@@ -53,8 +53,8 @@ pub use hand::{HandCalculation, HandCheck, HandSpeed};
 pub use hinges::{SpeedChange, SpeedHinge};
 pub use impact_state::ImpactState;
 pub use latent::{
-    BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues, PUSH_PROBABILITY,
-    STRIKING_BRAKES, STRIKING_BRAKES_BEFORE,
+    ANTI_LOCK_PROBABILITY, BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues,
+    PUSH_PROBABILITY, STRIKING_BRAKES, STRIKING_BRAKES_BEFORE,
 };
 pub use left_out::LeftOut;
 pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};

@@ -24,6 +24,7 @@
 //! | … with a share of the largest force | log-normal, 0.8, factor 2.2 | locks the wheels in two of five |
 //! | … that rises within | log-normal, 0.4 s, factor 1.6 | usual emergency braking to half-hearted |
 //! | … more of it on the front axle than where both axles reach the limit together | normal, 0 ± 0.05 of the whole | either axle may lock first |
+//! | … with an anti-lock system | never, unless the evidence says that it has one or how likely that is | assumed |
 //! | engine braking where he does not | uniform, 0 to 0.8 m/s² | neutral to third gear |
 //! | front wheels turned by | normal, 0 ± 0.9° | toe, play, a hand on the wheel |
 //! | each wheel near the damage blocked | 1 of 5, if nobody looked | assumed |
@@ -397,6 +398,7 @@ impl Prior {
             self.assume(Latent::FrontBrakeShift, normal(0.0, 0.05, -0.2, 0.2));
             let share = (PriorSource::Assumed, log_normal(0.8, 0.79, 0.05, 3.0));
             self.open(Latent::BrakeShare, ranges.brake_share, share);
+            self.add_anti_lock(Latent::AntiLockDecision, &evidence.after, 0.0);
         }
         self.assume(Latent::EngineBraking, Distribution::Uniform { low: 0.0, high: 0.8 });
         self.assume(Latent::SteerAngle, normal(0.0, 0.015, -0.2, 0.2));
@@ -436,6 +438,25 @@ impl Prior {
         }
     }
 
+    /// Whether the brakes of a car have an anti-lock system: below 0 they do.
+    ///
+    /// - `usual`: how likely that is where nobody says it.
+    fn add_anti_lock(&mut self, latent: Latent, after: &After, usual: f64) {
+        let source = match after.anti_lock_probability {
+            Some(_) => PriorSource::Given,
+            None => PriorSource::Assumed,
+        };
+        let probability = after.anti_lock_probability(usual);
+        if probability <= 0.0 {
+            self.fixed.set(latent, 1.0);
+        } else if probability >= 1.0 {
+            self.fixed.set(latent, -1.0);
+        } else {
+            let decision = Distribution::Uniform { low: -probability, high: 1.0 - probability };
+            self.add(latent, source, decision);
+        }
+    }
+
     /// Wheels that damage holds: one of two near it where nobody looked.
     fn add_held_wheels(&mut self, after: &After, [which, drag]: [Latent; 2]) {
         if !after.wheels_are_known() {
@@ -467,6 +488,7 @@ impl Prior {
                 self.open(Latent::StrikingBrakeStart, ranges.striking_brake_start_s, start);
                 let share = (PriorSource::Assumed, log_normal(0.8, 0.79, 0.05, 3.0));
                 self.open(Latent::StrikingBrakeShare, ranges.striking_brake_share, share);
+                self.add_anti_lock(Latent::StrikingAntiLockDecision, after, 0.0);
             }
             None => self.fixed.set(Latent::StrikingBrakeDecision, 1.0),
         }

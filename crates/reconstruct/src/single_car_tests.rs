@@ -101,6 +101,59 @@ fn a_straight_skid_with_locked_wheels_has_the_speed_of_its_energy() {
     assert!((check.value_m_s - expected_m_s).abs() < 1e-9, "{check:?}");
 }
 
+/// Wheels that slide hold the car back by less than wheels near the peak, so that a car that stopped over the
+/// same distance was slower. Of what nobody says, each is drawn with one half.
+#[test]
+fn a_car_with_anti_lock_brakes_was_faster_than_one_whose_wheels_slid() {
+    let skid = |anti_lock: &str| {
+        let wheels = format!("driver_braked = \"yes\"\n{anti_lock}");
+        let start = "heading_deg = 0\nbrake_start_s = [0, 0.05]\nbrake_share = [1.5, 2]\n";
+        let evidence = SKID
+            .replace("drag_factor", "friction")
+            .replace("blocked_wheels = [\"FL\", \"FR\", \"RL\", \"RR\"]", &wheels)
+            .replacen("heading_deg = 0\n", start, 1);
+        read(&evidence)
+    };
+    let speed_m_s = |anti_lock: &str| {
+        let target = target(&skid(anti_lock));
+        let posterior = Posterior::new(&target, &sampled(&target, 120, 0));
+        posterior.quantities()[0].estimate.clone()
+    };
+    let [unknown, slid, held] = ["", "anti_lock = \"no\"", "anti_lock = \"yes\""].map(speed_m_s);
+    // 0.95 of the peak against some 0.8 of it: √(0.95/0.8) is 1.09.
+    let ratio = held.median / slid.median;
+    assert!((1.03..1.2).contains(&ratio), "{} with it, {} without", held.median, slid.median);
+    let [low, high] = unknown.ninety();
+    assert!(low < slid.median && held.median < high, "{low} to {high} m/s holds both");
+    let certain = speed_m_s("anti_lock_probability = 1");
+    assert_eq!(certain.median.to_bits(), held.median.to_bits());
+    for said in ["anti_lock = \"yes\"", "anti_lock_probability = 0.25"] {
+        let text = skid(said).to_toml();
+        assert_eq!(read(&text), skid(said), "{text}");
+    }
+}
+
+/// Draws of the prior have an anti-lock system as often as it is likely, and only where the driver may brake.
+#[test]
+fn anti_lock_brakes_are_drawn_as_often_as_they_are_likely() {
+    let share = |wheels: &str| {
+        let evidence = read(&format!("{CASES}[wheels]\n{wheels}\n"));
+        let model = ForwardModel::new(&evidence, Cars::new(&evidence, None, None));
+        let mut rng = random_stream(3, "anti-lock", 0);
+        let n = 2000;
+        let has = |rng: &mut ChaCha8Rng| {
+            let z = standard_normals(model.prior().components().len(), rng);
+            model.prior().values(&z).has_anti_lock(Latent::AntiLockDecision)
+        };
+        (0..n).filter(|_| has(&mut rng)).count() as f64 / f64::from(n)
+    };
+    assert!((share("") - 0.5).abs() < 0.05);
+    assert!((share("anti_lock_probability = 0.2") - 0.2).abs() < 0.04);
+    assert_eq!(share("anti_lock = \"yes\""), 1.0);
+    assert_eq!(share("anti_lock = \"no\""), 0.0);
+    assert_eq!(share("anti_lock = \"yes\"\ndriver_braked = \"no\""), 0.0);
+}
+
 /// Twelve cars drawn from what is taken to be likely beforehand, braked and not, straight and turning.
 #[test]
 fn simulated_cars_lie_in_their_intervals() {

@@ -70,6 +70,7 @@ impl State {
             return reasons;
         }
         let Session { force, response, replays, tasks, reconstruction, report, .. } = &self.session;
+        let is_replaying = self.session.recorder_replay.is_running();
         for (is_running, what) in [
             (force.training.run.is_running(), "The training of the force network"),
             (response.training.run.is_running(), "The training of the response network"),
@@ -84,6 +85,7 @@ impl State {
             (response.comparison.progress().is_some(), "A comparison or evaluation"),
             (force.evaluation.is_running(), "The evaluation of the force network"),
             (reconstruction.run.is_running(), "The reconstruction"),
+            (is_replaying, "The replay of a recorder"),
             (report.is_running, "The report that is being made"),
             (
                 replays.values().any(|replay| replay.question.is_running()),

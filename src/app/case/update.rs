@@ -12,6 +12,7 @@ use crate::app::found::Found;
 use crate::app::output::Output;
 use crate::app::panes::Pane;
 use crate::app::project::Project;
+use crate::app::question_job::QuestionJob;
 use crate::app::source::Source;
 use crate::app::state::{Session, State, Subject};
 use crate::app::tasks::TaskKey;
@@ -152,6 +153,9 @@ impl State {
             |project: &Project| project.reconstruct.as_ref().map(|of| of.evidence.clone());
         if evidence(project) != evidence(&before) {
             self.drop_reconstruction();
+        }
+        if self.project.replay != before.replay {
+            self.session.recorder_replay = QuestionJob::default();
         }
         self.drop_answers();
         self.session.offered = None;

@@ -59,15 +59,15 @@ fn dialog_ui(ui: &mut Ui, dialog: &mut Dialog, state: &mut State, commands: &mut
         Dialog::Unread(paths) => unread_ui(ui, paths, commands),
         Dialog::Path(dialog) => dialog.ui(ui, commands),
         Dialog::Models(dialog) => models_dialog_ui(ui, dialog, commands),
-        Dialog::CrashTest(form) => crash_test_ui(ui, form, commands),
-        Dialog::Recorder(form) => recorder_ui(ui, form, commands),
+        Dialog::CrashTest(form) => crash_test_ui(ui, form, state.view.units, commands),
+        Dialog::Recorder(form) => recorder_ui(ui, form, state.view.units, commands),
         Dialog::Film(form) => {
             let is_busy = state.session.tasks.film().is_some();
             film_ui(ui, form, is_busy, commands);
         }
         Dialog::Cloud(form) => {
             let progress = state.session.tasks.progress(&TaskKey::MakeGround);
-            cloud_ui(ui, form, progress.map(|(progress, _)| progress), commands);
+            cloud_ui(ui, form, state.view.units, progress.map(|(progress, _)| progress), commands);
         }
     }
 }

@@ -33,6 +33,7 @@ impl State {
 
     fn poll_training(&mut self) {
         let was_running = self.session.force.training.run.is_running();
+        let may_be_used = self.takes_trained();
         let Session { force, library, archive, tasks, .. } = &mut self.session;
         match force.training.poll() {
             None => {}
@@ -42,7 +43,8 @@ impl State {
                     format!("trained on {}, epoch {}", record.data, record.detail.best_epoch);
                 let of = format!("{name} of {}", record.history.len());
                 let draft = force.training.archive_note(&model, name.clone(), is_complete);
-                let used = is_complete.then_some(&mut self.project.predict_force.model);
+                let used =
+                    (is_complete && may_be_used).then_some(&mut self.project.predict_force.model);
                 let taken = force.model.take_trained(model, name, library, used);
                 let draft = draft.map(|draft| ArchiveEntry { name: taken.1, ..draft });
                 let ForceSession { model: status, training, .. } = force;
@@ -56,6 +58,12 @@ impl State {
         }
     }
 
+    /// Whether the network of a completed training is put into use by itself: not where it would change the
+    /// answers about a scenario, which were asked with another one.
+    pub(in crate::app) fn takes_trained(&self) -> bool {
+        self.project.subject() != Some(Subject::Scenario)
+    }
+
     /// Tells the user that a training has ended.
     ///
     /// - `name`: description of the trained model;
@@ -64,7 +72,11 @@ impl State {
         self.say(
             Severity::Info,
             match is_complete {
-                true => format!("training over: {name}"),
+                true if self.takes_trained() => format!("training over: {name}, which is in use now"),
+                true => format!(
+                    "training over: {name}, which changes no answer about the scenario until it is put \
+                     into use (Training, or Models)"
+                ),
                 false => format!("training cancelled: {name}, which is not in use"),
             },
         );

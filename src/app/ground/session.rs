@@ -9,6 +9,7 @@ use crate::app::tasks::{TaskKey, Tasks};
 use impactlab_core::data::Severity;
 use impactlab_core::error_chain;
 use impactlab_core::site::PixelMap;
+use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::LoadedGround;
 
 /// The ground that was read.
@@ -78,13 +79,14 @@ impl GroundSession {
 
     /// Takes what was read, unless another ground was asked for meanwhile.
     ///
-    /// - `extent_m`: smallest and largest `[X, Y]` of the scene, m;
+    /// - `extent_m`: smallest and largest `[X, Y]` of the scene, m; `None` if there is no motion;
     /// - returns what the user has to know.
     pub(in crate::app) fn take(
         &mut self,
         path: &Path,
         result: Result<Arc<LoadedGround>, String>,
-        extent_m: [[f64; 2]; 2],
+        extent_m: Option<[[f64; 2]; 2]>,
+        units: UnitSystem,
     ) -> Vec<(Severity, String)> {
         if !self.is_loading || self.path.as_deref() != Some(path) {
             return Vec::new();
@@ -93,8 +95,8 @@ impl GroundSession {
         match result {
             Ok(ground) => {
                 let notes = ground.notes.iter().map(|note| (Severity::Info, note.clone()));
-                let far = ground.far_notes(extent_m);
-                let far = far.into_iter().map(|note| (Severity::Warning, note));
+                let far = extent_m.map(|extent_m| ground.far_notes(extent_m, units));
+                let far = far.into_iter().flatten().map(|note| (Severity::Warning, note));
                 let messages = notes.chain(far).collect();
                 self.read = Some(ground);
                 messages

@@ -52,8 +52,10 @@ impl State {
             GroundCommand::StopCloud => self.session.tasks.cancel(&TaskKey::MakeGround),
             GroundCommand::CloudMade(made) => self.take_made_ground(made),
             GroundCommand::Read(path, result) => {
-                let extent_m = self.session.scene.extent_m().unwrap_or_default();
-                for (severity, text) in self.session.ground.take(&path, result, extent_m) {
+                let extent_m = self.session.scene.extent_m();
+                let extent_m = self.project.subject().map(|_| extent_m.unwrap_or_default());
+                let units = self.view.units;
+                for (severity, text) in self.session.ground.take(&path, result, extent_m, units) {
                     self.say(severity, text);
                 }
             }

@@ -151,12 +151,13 @@ impl Choices {
         choices
     }
 
-    /// Takes the SI unit for every column that is used.
+    /// Takes the SI unit for every column that is used, but for a time the one that its numbers or the file
+    /// say.
     pub fn take_si_units(&mut self) {
         for column in &mut self.columns {
-            if let Some(channel) = column.channel() {
-                column.unit = Some(channel.quantity().si_unit());
-            }
+            let Some(channel) = column.channel() else { continue };
+            let of_time = column.proposal.time_unit().filter(|_| channel == Channel::Time);
+            column.unit = of_time.or(Some(channel.quantity().si_unit()));
         }
     }
 

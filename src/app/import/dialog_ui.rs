@@ -212,9 +212,9 @@ impl ImportDialog {
                 }
             });
         });
-        let si =
-            ui.small_button("All SI").on_hover_text("The SI unit for every column: s, m, rad, N");
-        if si.clicked() {
+        let hint = "The SI unit for every column: s, m, rad, N. A time keeps the unit that the file states, and \
+                    one that counts from 1970 has the unit of its numbers";
+        if ui.small_button("All SI").on_hover_text(hint).clicked() {
             self.choices.take_si_units();
         }
         if let Some(channel) = self.choices.missing_force() {
@@ -370,7 +370,7 @@ impl ImportDialog {
         Grid::new("import start").num_columns(2).show(ui, |ui| {
             file_vehicle_ui(ui, &mut said.vehicle, self.units);
             if preview.kind == FileKind::Force {
-                start_fields(ui, &mut said.start, self.units);
+                start_fields(ui, &mut said.start, preview.begins_m_s, self.units);
             }
         });
         if preview.impulse_n_s.is_some_and(|impulse_n_s| said.pulls(impulse_n_s)) {

@@ -31,6 +31,8 @@ pub struct Preview {
     pub first_s: f64,
     /// The impulse of a force that has no yaw moment of its own, along the heading at the start, N s.
     pub impulse_n_s: Option<[f64; 2]>,
+    /// Velocity with which the car of a finite-element run begins, if the file says it, m/s.
+    pub begins_m_s: Option<[f64; 2]>,
 }
 
 /// A remark on what was read.
@@ -86,6 +88,7 @@ impl Preview {
             fit,
             first_s: loaded.series.time_s().first().copied().unwrap_or(0.0),
             impulse_n_s: impulse_n_s(&loaded),
+            begins_m_s: loaded.model_start.as_ref().and_then(|start| start.of_force_m_s),
         })
     }
 }

@@ -14,7 +14,7 @@ use impactlab_core::jobs::ProgressCallback;
 use impactlab_study::{Library, ModelChoice};
 
 /// The state of the model of one network: the model in use, the one that is being loaded or saved,
-/// and the one that a cancelled training has left.
+/// and the one that a training has left beside it.
 pub struct ModelStatus<M> {
     /// The model that was requested last; `None` if none has been requested yet, or if it must be read
     /// again.
@@ -27,8 +27,8 @@ pub struct ModelStatus<M> {
     n_trained: usize,
     /// The model that answers questions; `None` before the first one is loaded.
     pub current: Option<CurrentModel<M>>,
-    /// The model of the last training that is not in use, because the training was cancelled. It
-    /// answers only after the user has asked for it.
+    /// The model of the last training that is not in use, because the training was cancelled or the
+    /// answers are about a scenario. It answers only after the user has asked for it.
     pub set_aside: Option<CurrentModel<M>>,
     /// The reason why the model that the project requests could not be loaded.
     pub problem: Option<String>,

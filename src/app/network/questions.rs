@@ -28,6 +28,10 @@ pub struct NetworkQuestions {
     pub log: Option<PathBuf>,
     /// The file with the contact force of the log; `None` estimates it from the motion.
     pub log_force: Option<PathBuf>,
+    /// Whether nothing was struck in the log, as in a test drive.
+    pub log_is_without_impact: bool,
+    /// Angle of the steering wheel of the log over that of the road wheels.
+    pub log_steering_ratio: Option<f64>,
     /// The comparison of response models. The evaluation of the current one shares its data set, its seed
     /// and what happens to cases that cannot be used.
     pub compare: CompareRequest,
@@ -47,6 +51,8 @@ impl Default for NetworkQuestions {
             mode: TrainingMode::default(),
             log: None,
             log_force: None,
+            log_is_without_impact: false,
+            log_steering_ratio: None,
             compare: CompareRequest::new(""),
             response_cases: EvaluatedCases::default(),
             evaluate_force: EvaluateForceRequest { for_figures: true, ..evaluate_force },

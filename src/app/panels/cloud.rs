@@ -17,6 +17,7 @@ const UNITS: [LengthUnit; 3] = [LengthUnit::Metre, LengthUnit::Foot, LengthUnit:
 pub fn cloud_ui(
     ui: &mut Ui,
     form: &mut CloudForm,
+    units: UnitSystem,
     progress: Option<&Progress>,
     commands: &mut Vec<Command>,
 ) {
@@ -32,7 +33,7 @@ pub fn cloud_ui(
     }
     ui.label("It becomes a picture from above with its place, in a folder of its own.");
     Grid::new("cloud").num_columns(2).show(ui, |ui| {
-        quantity_field(ui, "Pixel", &mut form.pixel_m, &PIXEL_SIZE, UnitSystem::Si);
+        quantity_field(ui, "Pixel", &mut form.pixel_m, &PIXEL_SIZE, units);
         if let Some(unit) = &mut form.unit {
             let name = ui.label("Unit of its coordinates");
             let list = ComboBox::from_id_salt("unit of a point cloud").selected_text(unit.word());

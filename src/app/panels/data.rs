@@ -1,11 +1,14 @@
 //! The “Data” pane: the open data sets with their problems, the open single files, and the
 //! scenario.
 
-use egui::{CollapsingHeader, Response, RichText, ScrollArea, Ui};
+use std::path::{Path, PathBuf};
+
+use egui::{CollapsingHeader, Id, Response, RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::looks::{Icon, icon_button};
+use crate::app::panels::replay::replay_button_ui;
 use crate::app::panes::PaneContext;
 use crate::app::project::Project;
 use crate::app::shipped_datasets;
@@ -96,9 +99,26 @@ fn source_ui(
                 if can_map && ui.button("Say which column is which…").clicked() {
                     commands.push(Command::AskMapping(source.path.clone()));
                 }
+                if can_map {
+                    replay_button_ui(ui, &source.path, commands);
+                }
             });
             source_menu(&response.header_response, source, commands);
         }
+    }
+}
+
+/// Scrolls to the data set that is listed when it becomes another one, such as one that was just opened.
+fn show_once(ui: &Ui, entry: &Response, path: &Path) {
+    let id = Id::unique("the data set in view");
+    let is_other = ui.data_mut(|data| {
+        let before = data.get_temp_mut_or_default::<PathBuf>(id);
+        let is_other = before.as_path() != path;
+        *before = path.to_owned();
+        is_other
+    });
+    if is_other {
+        entry.scroll_to_me(None);
     }
 }
 
@@ -120,6 +140,9 @@ fn dataset_ui(
     let text = format!("{} · {} {kind}", source.name(), dataset.cases.len());
     let response = ui.selectable_label(listed, text);
     let response = response.on_hover_text(source.path.display().to_string());
+    if listed {
+        show_once(ui, &response, &source.path);
+    }
     if response.clicked() {
         commands.push(Command::List(source.path.clone()));
     }
@@ -186,6 +209,9 @@ fn file_ui(
         commands.push(Command::Select(Subject::File(source.path.clone())));
     }
     source_menu(&response, source, commands);
+    if file.loaded.kind == FileKind::Steer {
+        ui.indent((&source.path, "replay"), |ui| replay_button_ui(ui, &source.path, commands));
+    }
     for flag in &file.flags {
         let color = theme::severity_color(flag.severity, ui.visuals().dark_mode);
         ui.indent((&source.path, flag.to_string()), |ui| ui.colored_label(color, flag.to_string()));
@@ -204,6 +230,9 @@ fn source_menu(response: &Response, source: &Source, commands: &mut Vec<Command>
             let is_file = matches!(source.content, Content::File(_) | Content::Failed(_));
             if is_file && ui.button("Columns…").clicked() {
                 commands.push(Command::AskMapping(source.path.clone()));
+            }
+            if is_file {
+                replay_button_ui(ui, &source.path, commands);
             }
             if ui.button("Load again").clicked() {
                 commands.push(Command::Open(vec![source.opened.clone()]));

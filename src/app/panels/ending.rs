@@ -16,6 +16,8 @@ use impactlab_core::vehicle::{
     USUAL_STEERING_RATIO, Wheel,
 };
 
+/// What a vehicle does for which nothing is chosen.
+const COASTS: &str = "coasts";
 /// Share of the friction with which a driver brakes hard.
 const HARD_BRAKING: f64 = 0.8;
 /// Time from the impact to the reaction of a driver, s.
@@ -42,10 +44,7 @@ pub(super) fn ending_form(
     steering_ratio: &mut Option<f64>,
     units: UnitSystem,
 ) {
-    let title = match ending.as_ref().is_none_or(Ending::is_coasting) {
-        true => format!("After the impact: the {vehicle} coasts"),
-        false => format!("After the impact: the {vehicle}"),
-    };
+    let title = format!("After the impact: the {vehicle} {}", ending_in_words(ending.as_ref()));
     CollapsingHeader::new(title).id_salt(("ending", vehicle)).show(ui, |ui| {
         let mut edited = ending.clone().unwrap_or_default();
         Grid::new(("ending", vehicle)).num_columns(2).show(ui, |ui| {
@@ -64,6 +63,23 @@ pub(super) fn ending_form(
             *ending = (!edited.is_coasting()).then_some(edited);
         }
     });
+}
+
+/// What a vehicle does after the impact, such as “brakes, steers”.
+pub(in crate::app) fn ending_in_words(ending: Option<&Ending>) -> String {
+    let Some(ending) = ending else { return COASTS.to_owned() };
+    let parts = [
+        (ending.brake.is_some(), "brakes"),
+        (ending.engine.is_some(), "is slowed by its engine"),
+        (ending.drive.is_some(), "accelerates"),
+        (!ending.damage.is_empty(), "drags damaged wheels"),
+        (ending.steer.is_some(), "steers"),
+        (ending.esc.is_some(), "has ESC"),
+        (ending.countersteer.is_some(), "countersteers"),
+        (ending.pit.is_some(), "turns into the other car"),
+    ];
+    let told: Vec<&str> = parts.into_iter().filter_map(|(is, word)| is.then_some(word)).collect();
+    if told.is_empty() { COASTS.to_owned() } else { told.join(", ") }
 }
 
 /// Draws a check box that adds or removes a part of the ending.
@@ -337,7 +353,8 @@ mod tests {
             },
             Some(asked.clone()),
         );
-        harness.get_by_label("After the impact: the struck vehicle").click();
+        let said = "has ESC, countersteers, turns into the other car";
+        harness.get_by_label(&format!("After the impact: the struck vehicle {said}")).click();
         harness.run();
         assert_eq!(harness.state(), &Some(asked.clone()), "what is drawn is not stated");
         for (typed, stated) in [("0.15", Some(0.15)), (" ", None)] {

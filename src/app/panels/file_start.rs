@@ -25,7 +25,8 @@ pub(super) fn file_start_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ui.strong("For single files");
     Grid::new("file start").num_columns(2).show(ui, |ui| {
         let start = project.start_mut();
-        start_fields(ui, start, view.units);
+        let begins_m_s = start.force.as_ref().and_then(|force| begins_m_s(&session.sources, force));
+        start_fields(ui, start, begins_m_s, view.units);
         let files = |kind| open_files(&session.sources, kind);
         file_ui(ui, "Steering", &mut start.steer, &files(FileKind::Steer), commands);
         ratio_ui(ui, start, view.units);
@@ -39,9 +40,25 @@ pub(super) fn file_start_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ending_form(ui, "struck vehicle", ending, &mut beside.steering_ratio, view.units);
 }
 
+/// The velocity with which the car of an open force of a finite-element run begins, m/s.
+fn begins_m_s(sources: &[Source], force: &SeriesFile) -> Option<[f64; 2]> {
+    let source = sources.iter().find(|of| of.path == force.path && of.map == force.map)?;
+    match &source.content {
+        Content::File(file) => file.loaded.model_start.as_ref()?.of_force_m_s,
+        _ => None,
+    }
+}
+
 /// Draws rows of a two-column grid with the speed before the impact and the contact point.
-pub(in crate::app) fn start_fields(ui: &mut Ui, start: &mut Drive, units: UnitSystem) {
-    speed_ui(ui, start, units);
+///
+/// - `begins_m_s`: velocity with which the car of a finite-element run begins, if the file says it.
+pub(in crate::app) fn start_fields(
+    ui: &mut Ui,
+    start: &mut Drive,
+    begins_m_s: Option<[f64; 2]>,
+    units: UnitSystem,
+) {
+    speed_ui(ui, start, begins_m_s, units);
     contact_ui(ui, start, units);
 }
 
@@ -115,19 +132,28 @@ fn ratio_ui(ui: &mut Ui, start: &mut Drive, units: UnitSystem) {
     }
 }
 
-/// Draws the speed before the impact if the user has set it, otherwise the value that is assumed.
-fn speed_ui(ui: &mut Ui, start: &mut Drive, units: UnitSystem) {
+/// Draws the speed before the impact if the user has set it, otherwise the value that is taken.
+fn speed_ui(ui: &mut Ui, start: &mut Drive, begins_m_s: Option<[f64; 2]>, units: UnitSystem) {
     let label = "Speed before impact";
     let Some(speed_m_s) = &mut start.speed_m_s else {
-        let assumed = Quantity::Speed.shown(ASSUMED_SPEED_M_S, units);
-        if assumed_ui(ui, label, &assumed) {
-            start.speed_m_s = Some(ASSUMED_SPEED_M_S);
+        let shown = |speed_m_s: f64| Quantity::Speed.shown(speed_m_s, units);
+        let (speed_m_s, vy_m_s, text) = match begins_m_s {
+            Some([vx, vy]) => (vx, Some(vy), format!("{}, as the file begins", shown(vx))),
+            None => (ASSUMED_SPEED_M_S, None, shown(ASSUMED_SPEED_M_S)),
+        };
+        if assumed_ui(ui, label, &text) {
+            start.speed_m_s = Some(speed_m_s);
+            start.vy_m_s = vy_m_s.filter(|_| start.vy_m_s == 0.0).unwrap_or(start.vy_m_s);
         }
         return;
     };
     quantity_field(ui, label, speed_m_s, &SPEED, units);
     if leave_open_ui(ui, "Speed not known") {
         start.speed_m_s = None;
+        // What was taken from this file with the speed says nothing of the next one.
+        if begins_m_s.is_some_and(|[_, vy_m_s]| vy_m_s == start.vy_m_s) {
+            start.vy_m_s = 0.0;
+        }
     }
 }
 
@@ -178,4 +204,34 @@ fn leave_open_ui(ui: &mut Ui, label: &str) -> bool {
     let is_clicked = ui.small_button(label).on_hover_text("Assume a value").clicked();
     ui.end_row();
     is_clicked
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    use super::*;
+
+    #[test]
+    fn a_velocity_taken_from_a_file_goes_with_the_speed_but_not_one_that_was_stated() {
+        let begins_m_s = [10.0, 1.5];
+        for (stated_m_s, set_m_s, left_m_s) in [(0.0, 1.5, 0.0), (-2.0, -2.0, -2.0)] {
+            let mut harness = Harness::new_ui_state(
+                |ui, start: &mut Drive| {
+                    Grid::new("start").num_columns(2).show(ui, |ui| {
+                        start_fields(ui, start, Some(begins_m_s), UnitSystem::Si);
+                    });
+                },
+                Drive { vy_m_s: stated_m_s, ..Drive::default() },
+            );
+            harness.run();
+            harness.get_all_by_label("Set").next().unwrap().click();
+            harness.run();
+            assert_eq!((harness.state().speed_m_s, harness.state().vy_m_s), (Some(10.0), set_m_s));
+            harness.get_by_label("Speed not known").click();
+            harness.run();
+            assert_eq!((harness.state().speed_m_s, harness.state().vy_m_s), (None, left_m_s));
+        }
+    }
 }

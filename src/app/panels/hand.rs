@@ -9,12 +9,15 @@ use crate::app::widgets::{EmptyField, caveats_ui, facts_ui, optional_quantity};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_draw::theme;
-use impactlab_reconstruct::evidence::Stated;
+use impactlab_reconstruct::evidence::{Evidence, Stated};
 use impactlab_reconstruct::hand::{HandDefault, HandField, HandInputs, HandMethod};
 use impactlab_study::HandRequest;
 
 /// Width of the texts, points.
 const TEXT_WIDTH: f32 = 620.0;
+
+/// Points of a mark through which there is one circle.
+const LEAST_POINTS: usize = 3;
 
 /// Draws the choice of the method, its inputs and its answer.
 pub fn hand_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -25,6 +28,10 @@ pub fn hand_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let Some(request) = &mut project.hand else { return };
         ui.add(Label::new(request.method.equation()).wrap());
         inputs_ui(ui, request, view.units);
+        if request.method.takes_points() {
+            let preview = session.reconstruction.preview.as_ref();
+            points_ui(ui, request, preview.map(|preview| &preview.evidence));
+        }
         ui.add_space(looks::PART);
         match &session.hand.answer {
             None => drop(ui.spinner()),
@@ -34,7 +41,7 @@ pub fn hand_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             }
             Some(Ok(answer)) => {
                 let report = &answer.report;
-                super::faded(ui, session.hand.is_late(), |ui| {
+                super::faded_if(ui, session.hand.is_late(), |ui| {
                     caveats_ui(ui, &report.caveats, view.units, commands);
                     facts_ui(ui, report.name, &report.facts(), view.units);
                 });
@@ -75,14 +82,33 @@ fn inputs_ui(ui: &mut Ui, request: &mut HandRequest, units: UnitSystem) {
             ui.end_row();
         }
     });
-    let n = request.points_m.len();
-    if method.takes_points() {
-        let text = match n {
-            0 => "Points of a mark are given by the command or in the case file.".to_owned(),
-            n => format!("{n} points of the mark, from the case file."),
-        };
-        ui.weak(text);
-    }
+}
+
+/// Draws which points of a mark are taken: those of a mark of the evidence, which are clicked in the plan.
+fn points_ui(ui: &mut Ui, request: &mut HandRequest, evidence: Option<&Evidence>) {
+    ui.horizontal_wrapped(|ui| {
+        match request.points_m.len() {
+            0 => drop(ui.weak("Or points along the mark, as those of a mark of the evidence.")),
+            n => {
+                ui.weak(format!("{n} points along the mark."));
+                if ui.add(Button::new("Remove points").small()).clicked() {
+                    request.points_m.clear();
+                }
+            }
+        }
+        let marks = evidence.iter().flat_map(|of| of.marks.iter().chain(&of.striking_marks));
+        for (number, mark) in
+            (1..).zip(marks).filter(|(_, mark)| mark.points_m.len() >= LEAST_POINTS)
+        {
+            let take = ui.add(Button::new(format!("Take mark {number}")).small());
+            if take.on_hover_text("Its points instead of chord and middle ordinate").clicked() {
+                request.points_m.clone_from(&mark.points_m);
+                for key in ["chord_m", "middle_ordinate_m", "radius_m"] {
+                    request.inputs.remove(key);
+                }
+            }
+        }
+    });
 }
 
 fn input_ui(ui: &mut Ui, field: &HandField, inputs: &mut HandInputs, units: UnitSystem) {

@@ -9,7 +9,8 @@ use impactlab_study::SimulateAnswer;
 /// Share of its colour that an answer keeps which is not of what is asked any more.
 const FADED: f32 = 0.35;
 
-/// Draws an answer, greyed if it is not of what is asked any more.
+/// Draws an answer, greyed if it is not of what is asked any more; the bar of its tab says that it is being
+/// computed.
 pub(super) fn faded_if<R>(ui: &mut Ui, is_late: bool, draw: impl FnOnce(&mut Ui) -> R) -> R {
     let drawn = ui.scope(|ui| {
         if is_late {
@@ -18,22 +19,6 @@ pub(super) fn faded_if<R>(ui: &mut Ui, is_late: bool, draw: impl FnOnce(&mut Ui)
         draw(ui)
     });
     drawn.inner
-}
-
-/// Draws an answer, greyed and marked as being computed if it is not of what is asked any more.
-pub fn faded<R>(ui: &mut Ui, is_late: bool, draw: impl FnOnce(&mut Ui) -> R) -> R {
-    let area = ui.available_rect_before_wrap();
-    let drawn = faded_if(ui, is_late, draw);
-    if is_late {
-        let corner = area.right_top() + egui::vec2(-6.0, 4.0);
-        let font = egui::TextStyle::Body.resolve(ui.style());
-        let color = ui.visuals().strong_text_color();
-        let text = ui.painter().layout_no_wrap("computing…".to_owned(), font, color);
-        let place = egui::Align2::RIGHT_TOP.anchor_size(corner, text.size());
-        ui.painter().rect_filled(place.expand(4.0), 3.0, ui.visuals().extreme_bg_color);
-        ui.painter().galley(place.min, text, color);
-    }
-    drawn
 }
 
 /// Returns the simulation of the selected subject. If there is none, it draws the reason (an error,

@@ -1,11 +1,12 @@
 //! The list of the panels: what each pane of the window is called and how it is drawn.
 
-use egui::{Ui, WidgetText};
-use egui_tiles::{Behavior, SimplificationOptions, TileId, Tiles, UiResponse};
+use egui::{Align2, Response, TextStyle, Ui, WidgetText, vec2};
+use egui_tiles::{Behavior, SimplificationOptions, Tabs, Tile, TileId, Tiles, UiResponse};
 
 use crate::app::looks::{self, Icon};
 use crate::app::panels;
 use crate::app::panes::{Pane, PaneContext};
+use crate::app::state::Session;
 
 /// Number of pane titles that the tab of a container shows before it ends in “…”.
 const MAX_TITLES: usize = 2;
@@ -40,6 +41,7 @@ pub fn panel(pane: Pane) -> Panel {
         }
         Pane::Speeds => ("Speeds", Icon::Sigma, panels::speeds_ui),
         Pane::Hand => ("By hand", Icon::Calculator, panels::hand_ui),
+        Pane::Replay => ("Replay", Icon::History, panels::replay_ui),
         Pane::Variants => ("Variants", Icon::Layers, panels::variants_ui),
         Pane::Models => ("Models", Icon::BrainCircuit, panels::models_ui),
         Pane::Training => ("Training", Icon::GraduationCap, panels::training_ui),
@@ -58,8 +60,8 @@ pub fn panel(pane: Pane) -> Panel {
 impl Behavior<Pane> for PaneContext<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, pane: &mut Pane) -> UiResponse {
         let frame = egui::Frame::new().inner_margin(looks::MARGIN);
-        let is_late = pane.is_answer() && self.session.is_simulation_late();
-        frame.show(ui, |ui| panels::faded(ui, is_late, |ui| (panel(*pane).ui)(ui, self)));
+        let is_faded = pane.is_answer() && is_late(*pane, self.session);
+        frame.show(ui, |ui| panels::faded_if(ui, is_faded, |ui| (panel(*pane).ui)(ui, self)));
         UiResponse::None
     }
 
@@ -77,16 +79,77 @@ impl Behavior<Pane> for PaneContext<'_> {
         format!("{}{more}", names.join(", ")).into()
     }
 
+    /// Says that an answer which is shown is not of what is asked any more: beside the tabs, where it lies
+    /// over nothing.
+    fn top_bar_right_ui(
+        &mut self,
+        tiles: &Tiles<Pane>,
+        ui: &mut Ui,
+        _: TileId,
+        tabs: &Tabs,
+        _: &mut f32,
+    ) {
+        let shown = tabs.active.and_then(|active| tiles.get(active));
+        if let Some(Tile::Pane(pane)) = shown
+            && is_late(*pane, self.session)
+        {
+            ui.add_space(looks::GRID);
+            ui.label("computing…");
+        }
+    }
+
+    /// A tab for which there is no room ends in “…”, and says its whole title on hovering.
+    fn on_tab_button(
+        &mut self,
+        tiles: &mut Tiles<Pane>,
+        tile_id: TileId,
+        button: Response,
+    ) -> Response {
+        let mut names = Vec::new();
+        collect_titles(tiles, tile_id, &mut names);
+        let (whole, seen) = (button.rect, button.interact_rect);
+        if seen.is_positive() && whole.right() > seen.right() + 1.0 {
+            end_in_dots(&button);
+        }
+        match names.len() > MAX_TITLES || !seen.expand(1.0).contains_rect(whole) {
+            true => button.on_hover_text(names.join(", ")),
+            false => button,
+        }
+    }
+
     fn simplification_options(&self) -> SimplificationOptions {
         SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
     }
 }
 
+/// Whether what a pane shows is not of what is asked any more, for so long that a person sees it.
+fn is_late(pane: Pane, session: &Session) -> bool {
+    match pane {
+        Pane::ForcePrediction => session.force.forecast.is_late(),
+        Pane::MotionForecast => session.is_motion_late(),
+        Pane::Hand => session.hand.is_late(),
+        pane => pane.is_answer() && session.is_simulation_late(),
+    }
+}
+
+/// Draws “…” at the right end of what is seen of a tab.
+fn end_in_dots(button: &Response) {
+    let style = button.ctx.global_style();
+    let color = style.visuals.text_color();
+    let painter = button.ctx.layer_painter(button.layer_id).with_clip_rect(button.interact_rect);
+    let font = TextStyle::Button.resolve(&style);
+    let dots = painter.layout_no_wrap("…".to_owned(), font, color);
+    let end = button.interact_rect.right_center();
+    let place = Align2::RIGHT_CENTER.anchor_size(end, dots.size());
+    painter.rect_filled(place.expand2(vec2(2.0, 0.0)), 0.0, style.visuals.panel_fill);
+    painter.galley(place.min, dots, color);
+}
+
 /// Collects the titles of the panes in a tile, in their order.
 fn collect_titles(tiles: &Tiles<Pane>, tile_id: TileId, titles: &mut Vec<&'static str>) {
     match tiles.get(tile_id) {
-        Some(egui_tiles::Tile::Pane(pane)) => titles.push(panel(*pane).title),
-        Some(egui_tiles::Tile::Container(container)) => {
+        Some(Tile::Pane(pane)) => titles.push(panel(*pane).title),
+        Some(Tile::Container(container)) => {
             for child in container.children() {
                 collect_titles(tiles, *child, titles);
             }

@@ -83,8 +83,8 @@ pub fn model_row_ui<M: TrainedModel>(
 }
 
 /// Draws the row of the current model for the training pane. In addition to the buttons, it has a
-/// text field for the path, for systems without file dialogs, and it offers the model that a
-/// cancelled training has left.
+/// text field for the path, for systems without file dialogs, and it offers the model of a
+/// training that is not in use.
 pub fn save_model_ui<M: TrainedModel>(
     ui: &mut Ui,
     model: &mut ModelStatus<M>,
@@ -92,7 +92,7 @@ pub fn save_model_ui<M: TrainedModel>(
 ) {
     if let Some(set_aside) = &model.set_aside {
         ui.horizontal_wrapped(|ui| {
-            ui.label(format!("The cancelled training left a model: {}", set_aside.name));
+            ui.label(format!("Not in use, of the last training: {}", set_aside.name));
             let hint = "Answer by it from now on; otherwise the model before stays in use";
             if ui.button("Use it").on_hover_text(hint).clicked() {
                 commands.push(Command::UseTrained(M::NETWORK));

@@ -78,7 +78,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             if let Some(shown) = shown_forecast(session) {
                 ui.separator();
                 let answer = shown.answer;
-                super::faded(ui, shown.is_late, |ui| {
+                super::faded_if(ui, shown.is_late, |ui| {
                     let report = &answer.answer.report;
                     sentences_ui(ui, &report.answer_card(), view.units);
                     ui.separator();
@@ -95,7 +95,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 return;
             }
             if let Some(shown) = shown_forecast(session) {
-                return super::faded(ui, shown.is_late, |ui| {
+                return super::faded_if(ui, shown.is_late, |ui| {
                     figures_ui(ui, &shown, session, variants, view, commands);
                 });
             }
@@ -130,7 +130,7 @@ fn shown_forecast(session: &Session) -> Option<ShownForecast<'_>> {
     let forecast = &session.response.forecast;
     let is_late = session.is_motion_late();
     if let Some((answer, is_of_latest)) = forecast.coarse() {
-        let is_late = is_late && (!is_of_latest || session.analysis.is_late());
+        let is_late = is_late && (!is_of_latest || session.analysis.is_unfinished());
         return Some(ShownForecast { answer, is_late, is_coarse: true });
     }
     Some(ShownForecast { answer: forecast.ok()?, is_late, is_coarse: false })

@@ -41,7 +41,7 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             if let Some(answer) = session.force.forecast.ok() {
                 ui.separator();
                 let is_late = session.force.forecast.is_late();
-                super::faded(ui, is_late, |ui| {
+                super::faded_if(ui, is_late, |ui| {
                     let report = &answer.report;
                     caveats_ui(ui, &report.caveats, view.units, commands);
                     facts_ui(ui, &report.scenario, &report.facts(), view.units);
@@ -61,7 +61,7 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 choices_ui(ui, view, &mut project.predict_force);
                 let shown = Shown { answer, session: &session.force, reset: session.fit_plots };
                 let is_late = session.force.forecast.is_late();
-                super::faded(ui, is_late, |ui| plots_ui(ui, shown, view, commands));
+                super::faded_if(ui, is_late, |ui| plots_ui(ui, shown, view, commands));
             }
         },
     );

@@ -1,25 +1,32 @@
 //! The form that asks what of an event data recorder becomes evidence.
 
-use egui::{ComboBox, Grid, Ui};
+use egui::{Button, ComboBox, Grid, Ui};
 
 use crate::app::command::Command;
+use crate::app::panels::replay::REPLAY;
 use crate::app::recorder::{RecorderCommand, RecorderForm, title};
 use impactlab_core::collision::Role;
-use impactlab_core::data::{RecordedDeltaV, RecorderRecord, Severity};
+use impactlab_core::data::{RecordedDeltaV, RecordedSpeed, RecorderRecord, Severity};
+use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_draw::theme;
 
 /// Width of the form, points.
-const WIDTH: f32 = 560.0;
+const WIDTH: f32 = 640.0;
 
 /// Draws the form and adds a command when the user has answered.
-pub fn recorder_ui(ui: &mut Ui, form: &mut RecorderForm, commands: &mut Vec<Command>) {
+pub fn recorder_ui(
+    ui: &mut Ui,
+    form: &mut RecorderForm,
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
     ui.set_width(WIDTH);
     ui.heading(title(form));
     let Some(record) = form.record() else { return };
     ui.label(&record.description);
     Grid::new("recorder").num_columns(2).show(ui, |ui| {
         choices_ui(ui, form);
-        for (name, value) in recorded(&record) {
+        for (name, value) in recorded(&record, units) {
             ui.label(name);
             ui.label(value);
             ui.end_row();
@@ -30,12 +37,20 @@ pub fn recorder_ui(ui: &mut Ui, form: &mut RecorderForm, commands: &mut Vec<Comm
         ui.colored_label(color, format!("• {doubt}"));
     }
     ui.separator();
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let hint = "Δv within 10 %, the last speed before within 4 %, as a new edit of the evidence. Undo takes \
                     it back";
         if ui.button("Make evidence of it").on_hover_text(hint).clicked() {
             let (record, car) = (Box::new(record.clone()), form.car);
             commands.push(Command::Recorder(RecorderCommand::MakeEvidence { record, car }));
+        }
+        let hint = "Follow speed and steering up to the first contact with the car that is chosen above";
+        let can_replay = !record.before.steering_wheel_rad.is_empty();
+        let replay = ui.add_enabled(can_replay, Button::new(REPLAY)).on_hover_text(hint);
+        let lacks = "The angle of the steering wheel was not recorded at every sample";
+        if replay.on_disabled_hover_text(lacks).clicked() {
+            let (path, event, car) = (form.path.clone(), form.event_number(), form.car);
+            commands.push(Command::Recorder(RecorderCommand::Replay { path, event, car }));
         }
         let controls = ui.button("Controls as a series");
         if controls.on_hover_text("Speed and steering before the crash, as a table").clicked() {
@@ -86,14 +101,16 @@ fn choices_ui(ui: &mut Ui, form: &mut RecorderForm) {
 }
 
 /// What was recorded, by its names.
-fn recorded(record: &RecorderRecord) -> Vec<(&'static str, String)> {
+fn recorded(record: &RecorderRecord, units: UnitSystem) -> Vec<(&'static str, String)> {
     let delta_v = |delta_v: RecordedDeltaV| {
         let until = delta_v.ends_s.map_or_else(String::new, |ends_s| format!(" up to {ends_s} s"));
         let cut = if delta_v.is_cut { ", where the record is cut off" } else { "" };
-        format!("{:.2} m/s{until}{cut}", delta_v.delta_v_m_s)
+        format!("{}{until}{cut}", Quantity::Speed.shown(delta_v.delta_v_m_s, units))
     };
     let speed = record.speed_before;
-    let speed = speed.map(|speed| format!("{:.2} m/s at {} s", speed.speed_m_s, speed.at_s));
+    let speed = speed.map(|RecordedSpeed { speed_m_s, at_s }| {
+        format!("{} at {at_s} s", Quantity::Speed.shown(speed_m_s, units))
+    });
     let rows = [
         ("Δv ahead", record.delta_v_ahead.map(delta_v)),
         ("Δv to the right", record.delta_v_right.map(delta_v)),

@@ -26,7 +26,7 @@ use impactlab_core::ranges::{
     PULSE_DURATION, RESTITUTION, ROAD_CROSS_SLOPE, ROAD_FRICTION, ROAD_FRICTION_SIGMA, ROAD_GRADE,
     Range, SKID_LENGTH, SPEED, YAW_RATE,
 };
-use impactlab_core::units::{NumberFormat, UnitSystem, significant};
+use impactlab_core::units::{NumberFormat, UnitSystem};
 use impactlab_core::vehicle::{
     BuiltInVehicle, FixedObject, ROAD_FRICTION_SPREAD, RoadSlope, VehicleParameters,
 };
@@ -303,16 +303,17 @@ fn road_form(
     let default = || BuiltInVehicle::from_id(DEFAULT_VEHICLE.id()).map(|of| &of.parameters);
     let usual = vehicle.or_else(default).map_or(0.8, |of| of.tires.friction);
     let spread = ROAD_FRICTION_SPREAD * friction.unwrap_or(usual);
+    let shown = |value| NumberFormat::english(units).rounded(ROAD_FRICTION.quantity, value);
     egui::CollapsingHeader::new("Road").default_open(true).show(ui, |ui| {
         Grid::new("road").num_columns(2).show(ui, |ui| {
             let name = ui.label("Friction μ");
-            let text = format!("{} (vehicle)", significant(usual));
+            let text = format!("{} (vehicle)", shown(usual));
             let empty = EmptyField { text: &text, start_si: usual };
             let field = optional_quantity(ui, friction, empty, &ROAD_FRICTION, units);
             field.labelled_by(name.id);
             ui.end_row();
             let name = ui.label("± (standard deviation)");
-            let text = format!("{} (usual)", significant(spread));
+            let text = format!("{} (usual)", shown(spread));
             let empty = EmptyField { text: &text, start_si: spread };
             let field = optional_quantity(ui, sigma, empty, &ROAD_FRICTION_SIGMA, units);
             let hint = "How well the friction is known; it is drawn in the forecast. 0: exactly";

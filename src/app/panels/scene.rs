@@ -36,6 +36,9 @@ use impactlab_study::RestState;
 /// Seconds of the motion that can be played in a second.
 const SPEEDS: [f64; 5] = [0.05, 0.1, 0.25, 0.5, 1.0];
 
+/// Height below the tools from which badges stand above the picture, points.
+const ROOMY: f32 = 240.0;
+
 /// What can be done with the mouse in each view.
 const HINTS: [&str; 2] = [
     "Drag moves the scene, the wheel zooms, a double click shows all of it",
@@ -46,7 +49,7 @@ const HINTS: [&str; 2] = [
 /// Draws the time slider and the scene.
 pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     if analysis_or_hint(ui, pane.session).is_none() {
-        return;
+        return bare_ground_ui(ui, pane);
     }
     let Some(answer) = pane.session.analysis.ok().cloned() else { return };
     let (analysis, report) = (&answer.analysis, &answer.report);
@@ -59,8 +62,6 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let end_s = series.time_s().last().copied().unwrap_or(0.0);
     let span = (end_s, &*analysis.contacts_s(end_s));
     clock_ui(ui, &session.playback, span, &mut view.playback_speed, commands);
-    restrictions_ui(ui, &report.caveats, view.units);
-    rest_ui(ui, report.rest.as_ref(), view.units);
     let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
     let recorded = overlaid(project.beside.recording.as_ref(), &session.sources);
     let n_recorded = recorded.as_ref().map_or(0, |(_, series, _)| series.n_samples());
@@ -113,18 +114,53 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         },
         commands,
     );
+    // Below the tools, which therefore stay where they are when badges come and go.
+    // In a low pane the picture has the room; it has a line of what restricts it itself.
+    if ui.available_height() >= ROOMY {
+        restrictions_ui(ui, &report.caveats, view.units);
+        rest_ui(ui, report.rest.as_ref(), view.units);
+    }
     if session.fit_plots {
         session.scene.view.fit();
     }
-    measure_bar_ui(ui, &mut session.scene.measuring, view.units, commands);
-    session.scene.view.takes_clicks = session.scene.measuring.measure.is_some();
     session.scene.place_by_keys(&project.beside.camera_keys, &mut view.scene, (&scene, time_s));
-    let SceneSettings { camera, follow, .. } = &mut view.scene;
+    picture_ui(ui, (&scene, time_s), &mut session.scene, &mut view.scene, commands);
+}
+
+/// Draws the ground by itself before anything is chosen that moves on it.
+fn bare_ground_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext { project, view, session, commands, .. } = pane;
+    let loaded = session.ground.shown().filter(|_| project.subject().is_none()).cloned();
+    let Some(loaded) = loaded else { return };
+    let scene = session.scene.of_ground(&loaded, view.units);
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ground_menu_ui(ui, &session.ground, &scene, commands);
+            measure_menu_ui(ui, &mut session.scene.measuring, loaded.ground.has_picture());
+            view_ui(ui, &scene, &mut view.scene);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(egui::Label::new(RichText::new(&scene.title).strong()).truncate());
+            });
+        });
+    });
+    picture_ui(ui, (&scene, 0.0), &mut session.scene, &mut view.scene, commands);
+}
+
+/// Draws the picture at a time, with what is measured in it.
+fn picture_ui(
+    ui: &mut Ui,
+    (scene, time_s): (&Arc<Scene>, f64),
+    session: &mut SceneSession,
+    settings: &mut SceneSettings,
+    commands: &mut Vec<Command>,
+) {
+    measure_bar_ui(ui, &mut session.measuring, scene.units, commands);
+    session.view.takes_clicks = session.measuring.measure.is_some();
+    let SceneSettings { camera, follow, .. } = settings;
     let height = ui.available_height();
-    let response =
-        scene_view_ui(ui, &scene, time_s, &mut session.scene.view, camera, *follow, height);
-    let SceneSession { view: drawn, measuring, .. } = &mut session.scene;
-    measured_ui(ui, &response, drawn, measuring, view.units);
+    let response = scene_view_ui(ui, scene, time_s, &mut session.view, camera, *follow, height);
+    let SceneSession { view: drawn, measuring, .. } = session;
+    measured_ui(ui, &response, drawn, measuring, scene.units);
 }
 
 /// Draws when and where the vehicle comes to rest, if it does.

@@ -29,13 +29,13 @@ pub fn ground_menu_ui(
         match (shown, &ground.problem) {
             (Some(loaded), _) => {
                 ui.strong(&loaded.site.name);
-                for part in loaded.contents() {
+                for part in loaded.contents(scene.units) {
                     ui.label(part);
                 }
                 for note in &loaded.notes {
                     ui.weak(note);
                 }
-                for note in loaded.far_notes(scene.extent_m()) {
+                for note in loaded.far_notes(scene.extent_m(), scene.units) {
                     ui.weak(note);
                 }
             }

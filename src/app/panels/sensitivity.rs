@@ -1,9 +1,9 @@
 //! The “What moves it” pane: the Sobol indices of the outcome of the map.
 
-use egui::{Label, RichText, Ui};
+use egui::{Label, RichText, ScrollArea, Ui};
 
 use crate::app::panes::PaneContext;
-use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, figure_frame};
+use crate::app::widgets::{TITLE_HEIGHT, figure_frame};
 use impactlab_document::figure::sensitivity_figure;
 use impactlab_draw::FigureOptions;
 use impactlab_sweep::atlas::Measure;
@@ -11,6 +11,11 @@ use impactlab_sweep::atlas::Measure;
 /// What the bars are, as one line above them.
 const MEANING: &str = "Sobol indices: the share of the variance that each input moves alone, and in all \
     together with others. What a draw leaves open counts as one input, the unknowns.";
+
+/// Height at which a bar has its name beside it, points.
+const BAR_HEIGHT: f32 = 24.0;
+/// Height of the axis and the legend, points.
+const AXIS_HEIGHT: f32 = 70.0;
 
 /// Draws the indices as bars.
 pub fn sensitivity_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -30,12 +35,16 @@ pub fn sensitivity_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     };
     ui.add(Label::new(RichText::new(MEANING).weak()).wrap());
     let figure = sensitivity_figure(choice.measure.label(), &indices);
+    // In a low pane the bars are scrolled: squeezed, they lose their names.
+    let least = BAR_HEIGHT * figure.y.names.len() as f32 + AXIS_HEIGHT;
     let options = FigureOptions {
         id: "sensitivity".to_owned(),
-        height: Some((ui.available_height() - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT)),
+        height: Some((ui.available_height() - TITLE_HEIGHT).max(least)),
         reset: session.fit_plots,
         pans: false,
         ..FigureOptions::default()
     };
-    figure_frame(ui, &figure.title, &figure, &options, commands);
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        figure_frame(ui, &figure.title, &figure, &options, commands);
+    });
 }

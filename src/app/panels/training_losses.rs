@@ -130,7 +130,7 @@ fn last_epoch_ui(ui: &mut Ui, last: &EpochSummary, best_epoch: Option<usize>) {
         value_row(ui, "Balance, weight of physics", &balance);
     }
     value_row(ui, "Learning rate", &format!("{:.2e}", last.learning_rate));
-    value_row(ui, "Longest gradient", &significant(last.gradient_norm));
+    value_row(ui, "Longest gradient", &format!("{:.2e}", last.gradient_norm));
     if let Some(seconds) = last.seconds {
         value_row(ui, "Time per epoch", &format!("{seconds:.2} s"));
     }

@@ -54,6 +54,7 @@ pub fn network_training_ui<M: TrainedModel>(
         _ if status.run.is_running() => {
             drop(ui.weak("The losses of this training are drawn here from its first epoch on."));
         }
+        _ if status.report.is_some() => drop(ui.weak("The training had no epochs, so no losses.")),
         Some(current) => {
             let (of, data) = (&current.model, current.model.data());
             let title = format!("Losses while training on {data} (model {})", current.name);

@@ -8,9 +8,11 @@ use crate::app::network::{NetworkQuestions, TrainingMode};
 use crate::app::panels::file_start::{file_list_ui, open_files};
 use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
 use crate::app::source::{Source, open_datasets};
-use crate::app::widgets::{dataset_choice, seed_field};
+use crate::app::widgets::{EmptyField, dataset_choice, optional_quantity, seed_field};
 use impactlab_core::data::FileKind;
-use impactlab_core::ranges::TRAJECTORIES;
+use impactlab_core::ranges::{STEERING_RATIO, TRAJECTORIES};
+use impactlab_core::units::UnitSystem;
+use impactlab_core::vehicle::USUAL_STEERING_RATIO;
 
 /// Draws the form and returns whether a data set or a log that suits the training mode is open.
 ///
@@ -68,6 +70,9 @@ fn log_ui(ui: &mut Ui, form: &mut NetworkQuestions, sources: &[Source]) -> bool 
     ui.end_row();
     let is_of_log = form.log.as_ref().is_some_and(|log| logs.contains(log));
     if is_of_log {
+        log_rows_ui(ui, form);
+    }
+    if is_of_log && !form.log_is_without_impact {
         let forces = open_files(sources, FileKind::Force);
         let hint = "On the clock of the log, at the contact point of the Vehicle pane";
         let open = "estimated from the motion";
@@ -75,6 +80,22 @@ fn log_ui(ui: &mut Ui, form: &mut NetworkQuestions, sources: &[Source]) -> bool 
         ui.end_row();
     }
     is_of_log
+}
+
+/// Draws what a log does not say itself: whether anything was struck, and how far the wheels turn.
+fn log_rows_ui(ui: &mut Ui, form: &mut NetworkQuestions) {
+    let name = ui.label("Impact in the log");
+    let hint = "Without one, as in a test drive, no force is looked for in the motion";
+    let tick = ui.checkbox(&mut form.log_is_without_impact, "none, a test drive");
+    tick.labelled_by(name.id).on_hover_text(hint);
+    ui.end_row();
+    let name = ui.label("Steering ratio of the log");
+    let empty = EmptyField { text: "road wheels", start_si: USUAL_STEERING_RATIO };
+    let ratio = &mut form.log_steering_ratio;
+    optional_quantity(ui, ratio, empty, &STEERING_RATIO, UnitSystem::default())
+        .labelled_by(name.id)
+        .on_hover_text("For a log with the angle of the steering wheel");
+    ui.end_row();
 }
 
 /// Draws the number of trajectories, the seeds and the settings in a two-column grid. Pre-training

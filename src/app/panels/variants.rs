@@ -16,15 +16,15 @@ use impactlab_study::facts::{FactWriter, Term};
 const COLUMNS: [&str; 11] = [
     "Variant",
     "What differs",
-    "Notes",
     "Turn beyond 90°",
-    "Δv with tires",
-    "4DOF: X, Y at the end",
-    "4DOF: at rest after",
     "Forecast: X (90 %)",
     "Forecast: Y (90 %)",
     "Heading (90 %)",
     "Warnings",
+    "Δv with tires",
+    "4DOF: X, Y at the end",
+    "4DOF: at rest after",
+    "Notes",
 ];
 /// What the columns are, as the hint of their headings.
 const MEANING: &str = "What differs: from the first variant. Turn beyond 90°: how probable it is at the end of \
@@ -36,7 +36,9 @@ const NONE: &str = "–";
 /// Differences that are named; the others are told on hover.
 const MOST_NAMED: usize = 4;
 /// Width of texts in the table, points.
-const TEXT_WIDTH: f32 = 210.0;
+const TEXT_WIDTH: f32 = 170.0;
+/// Between columns and between rows of the table, points.
+const COLUMN_SPACING: [f32; 2] = [16.0, 4.0];
 
 /// Draws the table, in which a click on the name of a variant shows it.
 pub fn variants_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -54,10 +56,11 @@ pub fn variants_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ui.weak("This case has one variant. Copy in the bar above makes another, to be changed.");
     }
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-        Grid::new("variants").num_columns(COLUMNS.len()).striped(true).show(ui, |ui| {
+        let grid = Grid::new("variants").num_columns(COLUMNS.len()).striped(true);
+        grid.spacing(COLUMN_SPACING).show(ui, |ui| {
             let titles = COLUMNS.map(|column| ui.strong(column).on_hover_text(MEANING).id);
             ui.end_row();
-            let [_, _, notes, ..] = titles;
+            let [.., notes] = titles;
             for variant in variants.iter() {
                 row_ui(ui, variant, view.units, notes, commands);
             }
@@ -79,7 +82,7 @@ fn row_ui(
     if name.on_hover_text("Show it in the forms").clicked() && !variant.is_shown {
         commands.push(Command::Variant(VariantCommand::Show(variant.name.clone())));
     }
-    let [_, differs, _, figures @ .., warnings] = cells(variant, units);
+    let [_, differs, turn, x, y, heading, warnings, delta_v, end, rest, _] = cells(variant, units);
     ui.vertical(|ui| {
         ui.set_max_width(TEXT_WIDTH);
         let all = variant.differs.as_deref().unwrap_or_default();
@@ -88,6 +91,27 @@ fn row_ui(
             text.on_hover_text(all.join("\n"));
         }
     });
+    let show = |ui: &mut Ui, cells: &[String]| {
+        for cell in cells {
+            let text = RichText::new(cell).monospace();
+            ui.label(if variant.is_waiting { text.weak() } else { text });
+        }
+    };
+    if let Some(problem) = &variant.problem {
+        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+        ui.colored_label(color, "not computed").on_hover_text(problem);
+        // All columns but those of the name, what differs, the problem and the notes.
+        (0..COLUMNS.len() - 4).for_each(|_| drop(ui.label("")));
+    } else {
+        show(ui, &[turn, x, y, heading]);
+        let texts = warning_texts(variant, units);
+        let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        match texts.is_empty() {
+            true => ui.label(warnings),
+            false => ui.colored_label(warning, warnings).on_hover_text(texts.join("\n")),
+        };
+        show(ui, &[delta_v, end, rest]);
+    }
     let mut notes = variant.notes.clone();
     let field = TextEdit::multiline(&mut notes).id_salt(("variant notes", &variant.name));
     let field = field.desired_rows(1).desired_width(TEXT_WIDTH);
@@ -95,22 +119,6 @@ fn row_ui(
         let name = variant.name.clone();
         commands.push(Command::Variant(VariantCommand::Note { name, notes }));
     }
-    if let Some(problem) = &variant.problem {
-        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-        ui.colored_label(color, "not computed").on_hover_text(problem);
-        ui.end_row();
-        return;
-    }
-    for cell in figures {
-        let text = RichText::new(cell).monospace();
-        ui.label(if variant.is_waiting { text.weak() } else { text });
-    }
-    let texts = warning_texts(variant, units);
-    let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-    match texts.is_empty() {
-        true => ui.label(warnings),
-        false => ui.colored_label(warning, warnings).on_hover_text(texts.join("\n")),
-    };
     ui.end_row();
 }
 
@@ -140,7 +148,7 @@ fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 11] {
     let rest = report.and_then(|report| report.rest.as_ref());
     let format = NumberFormat::english(units);
     let spread = |quantity: Quantity, of: fn(&MotionOutcome) -> &Estimate| {
-        forecast.map(|report| format.estimate_in_words(quantity, of(&report.outcome)))
+        forecast.map(|report| format.drawn_in_words(quantity, of(&report.outcome)))
     };
     let turn = forecast.and_then(|report| {
         report.answer_table().value_text(Term::QuarterTurn, &FactWriter::english(units))
@@ -148,11 +156,7 @@ fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 11] {
     [
         variant.name.clone(),
         differs(variant),
-        variant.notes.clone(),
         of(turn),
-        of(delta_v.map(|m_s| Quantity::Speed.shown(m_s, units))),
-        of(end.map(|end| Quantity::Length.shown_vector([end.x_m, end.y_m], units))),
-        of(rest.map(|rest| Quantity::Time.shown(rest.time_s, units))),
         of(spread(Quantity::Length, |outcome| &outcome.x_m)),
         of(spread(Quantity::Length, |outcome| &outcome.y_m)),
         of(spread(Quantity::Angle, |outcome| &outcome.heading_change_rad)),
@@ -160,6 +164,10 @@ fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 11] {
             0 => NONE.to_owned(),
             n => n.to_string(),
         },
+        of(delta_v.map(|m_s| Quantity::Speed.shown(m_s, units))),
+        of(end.map(|end| Quantity::Length.shown_vector([end.x_m, end.y_m], units))),
+        of(rest.map(|rest| Quantity::Time.shown(rest.time_s, units))),
+        variant.notes.clone(),
     ]
 }
 

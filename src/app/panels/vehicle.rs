@@ -9,6 +9,7 @@ use crate::app::panels::until_rest::until_rest_ui;
 use crate::app::panels::vehicle_form::vehicle_form_ui;
 use crate::app::panes::PaneContext;
 use crate::app::project::Project;
+use crate::app::state::Subject;
 use crate::app::vehicles::vehicle_title;
 use crate::app::widgets::{VehiclePicker, facts_ui, quantity_field, value_ui, vehicle_name};
 use impactlab_core::collision::Role;
@@ -59,8 +60,11 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         for role in Role::ALL {
             sheet_ui(ui, role, project, view.units, commands);
         }
-        ui.separator();
-        file_start_ui(ui, pane);
+        // A scenario says all of it itself.
+        if pane.project.subject() != Some(Subject::Scenario) {
+            ui.separator();
+            file_start_ui(ui, pane);
+        }
         uncertainty_ui(ui, pane);
         for role in Role::ALL {
             let chosen = pane.session.chosen_vehicles.get(role);

@@ -18,8 +18,10 @@ pub use stored_runs::StoredRuns;
 
 use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
+use std::time::Duration;
 
 use crate::app::question_job::QuestionJob;
+use impactlab_core::jobs::Progress;
 use impactlab_core::vehicle::{Path, TireMark};
 use impactlab_reconstruct::evidence::Evidence;
 use impactlab_study::{NamedPath, ReconstructRequest, ReconstructedPaths};
@@ -104,6 +106,12 @@ impl ReconstructionSession {
         self.run.ok().map(std::sync::Arc::as_ref)
     }
 
+    /// The time that the run still takes, as far as that can be told.
+    pub fn time_left(&self) -> Option<Duration> {
+        let job = self.run.job()?;
+        told_time(job.progress(), job.time_left()?)
+    }
+
     /// Whether the answer is not of what is asked now.
     pub fn is_outdated(&self, request: Option<&ReconstructRequest>) -> bool {
         let latest = self.run.latest.as_ref();
@@ -153,5 +161,38 @@ impl ReconstructionSession {
         let paths = followed.into_iter().chain(self.other_paths().iter().map(|of| &of.path));
         let ends_s = paths.filter_map(|path| path.points.last()).map(|point| point.time_s);
         ends_s.fold(0.0, f64::max)
+    }
+}
+
+/// The time left as it is told: nothing before a twentieth of the work is done since the run began or went on,
+/// since its first steps say little of the others; then rounded up, so that it does not flicker.
+fn told_time(progress: &Progress, left: Duration) -> Option<Duration> {
+    let &Progress { done, done_before, total, .. } = progress;
+    let (passed, all) = (done.saturating_sub(done_before), total.saturating_sub(done_before));
+    let left_s = left.as_secs_f64().ceil() as u64;
+    let step_s = match left_s {
+        0..60 => 5,
+        60..600 => 30,
+        _ => 300,
+    };
+    (all > 0 && 20 * passed >= all)
+        .then(|| Duration::from_secs(left_s.div_ceil(step_s).saturating_mul(step_s)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_left_is_told_late_and_in_round_numbers() {
+        let told = |done, total, left_ms| {
+            let progress = Progress::new(done, total, "").going_on_from(200);
+            told_time(&progress, Duration::from_millis(left_ms)).map(|left| left.as_secs())
+        };
+        assert_eq!([told(200, 1000, 9000), told(239, 1000, 9000), told(300, 0, 9000)], [None; 3]);
+        assert_eq!(told(240, 1000, 12_300), Some(15));
+        assert_eq!(told(500, 1000, 61_000), Some(90));
+        assert_eq!(told(500, 1000, 700_000), Some(900));
+        assert_eq!(told(1000, 1000, 0), Some(0));
     }
 }

@@ -24,8 +24,8 @@ use impactlab_document::report::{Language, Paper, ReportDate, ReportSettings, Se
 pub struct ReportView {
     /// Language.
     pub language: Language,
-    /// Size of the pages.
-    pub paper: Paper,
+    /// Size of the pages; `None` is the usual one where the units are.
+    pub pages: Option<Paper>,
     /// The date that the report bears as the user typed it; today if it is empty.
     pub date: String,
     /// Whether only the variant that is shown is told of.
@@ -83,7 +83,7 @@ impl ReportView {
     /// # Errors
     /// As for [`ReportView::report_date`].
     pub fn settings(&self, units: UnitSystem) -> Result<ReportSettings, String> {
-        let Self { language, paper, .. } = *self;
+        let (language, paper) = (self.language, self.pages.unwrap_or_else(|| Paper::usual(units)));
         Ok(ReportSettings { language, units, paper, date: self.report_date()? })
     }
 }
@@ -127,6 +127,17 @@ impl ReportSession {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pages_are_those_that_go_with_the_units_unless_they_are_chosen() {
+        let paper = |pages: Option<Paper>, units: UnitSystem| {
+            let view = ReportView { pages, ..ReportView::default() };
+            view.settings(units).unwrap().paper
+        };
+        assert_eq!(paper(None, UnitSystem::Si), Paper::A4);
+        assert_eq!(paper(None, UnitSystem::Us), Paper::Letter);
+        assert_eq!(paper(Some(Paper::A4), UnitSystem::Us), Paper::A4);
+    }
 
     #[test]
     fn a_date_is_the_one_that_was_typed_or_today() {

@@ -35,6 +35,7 @@ impl State {
 
     fn poll_response_training(&mut self) {
         let was_running = self.session.response.training.run.is_running();
+        let may_be_used = self.takes_trained();
         let Session { response, library, archive, tasks, .. } = &mut self.session;
         match response.training.poll() {
             None => {}
@@ -45,7 +46,8 @@ impl State {
                     n => format!("trained on {n} trajectories of {}", record.data),
                 };
                 let draft = response.training.archive_note(&model, name.clone(), is_complete);
-                let used = is_complete.then_some(&mut self.project.predict_motion.response_model);
+                let used = (is_complete && may_be_used)
+                    .then_some(&mut self.project.predict_motion.response_model);
                 let taken = response.model.take_trained(model, name.clone(), library, used);
                 let draft = draft.map(|draft| ArchiveEntry { name: taken.1, ..draft });
                 let ResponseSession { model: status, training, .. } = response;

@@ -12,8 +12,8 @@ use crate::app::variants::AnsweredVariant;
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::{
-    ForecastScene, OtherMotion, Scene, SceneGround, SceneRole, SimulationScene, add_forecast,
-    simulation_scene,
+    ForecastScene, LoadedGround, OtherMotion, Scene, SceneGround, SceneRole, SimulationScene,
+    add_forecast, simulation_scene,
 };
 use impactlab_draw::scene::{CameraKey, SceneView};
 use impactlab_study::{PredictMotionAnswer, SimulateAnswer};
@@ -32,6 +32,8 @@ pub struct SceneSession {
     pub measuring: Measuring,
     keyed: KeyedCamera,
     built: Option<(SceneSource, Arc<Scene>)>,
+    /// The scene of a ground with nothing on it.
+    bare: Option<Arc<Scene>>,
 }
 
 /// What a scene is built from. It is built anew when this changes.
@@ -176,7 +178,23 @@ impl SceneSession {
         if is_new {
             self.view.fit();
         }
-        self.built = Some((source, Arc::clone(&scene)));
+        (self.built, self.bare) = (Some((source, Arc::clone(&scene))), None);
+        scene
+    }
+
+    /// The scene of a ground with nothing on it. Another ground is seen from the start.
+    pub fn of_ground(&mut self, loaded: &LoadedGround, units: UnitSystem) -> Arc<Scene> {
+        let LoadedGround { site, ground, .. } = loaded;
+        let is_on = |scene: &Scene| scene.ground.as_ref().is_some_and(|on| Arc::ptr_eq(on, ground));
+        let before = self.bare.take().filter(|scene| is_on(scene));
+        if before.is_none() {
+            self.view.fit();
+        }
+        let scene = before.filter(|scene| scene.units == units).unwrap_or_else(|| {
+            let (title, ground) = (site.name.clone(), Some(Arc::clone(ground)));
+            Arc::new(Scene { title, ground, units, ..Scene::default() })
+        });
+        (self.built, self.bare) = (None, Some(Arc::clone(&scene)));
         scene
     }
 }

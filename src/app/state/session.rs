@@ -17,6 +17,7 @@ use crate::app::import::SaidOfFile;
 use crate::app::latest::Latest;
 use crate::app::motion_plots::MotionPlots;
 use crate::app::playback::Playback;
+use crate::app::question_job::QuestionJob;
 use crate::app::reconstruction::ReconstructionSession;
 use crate::app::replay::Replays;
 use crate::app::report::ReportSession;
@@ -33,7 +34,7 @@ use crate::app::widgets::BetweenCursors;
 use impactlab_core::data::Severity;
 use impactlab_core::uncertainty::Caveats;
 use impactlab_study::{
-    Answer, HandRequest, ImpactRequest, Library, SimulateReport, SimulateRequest,
+    Answer, HandRequest, ImpactRequest, Library, ReplayRequest, SimulateReport, SimulateRequest,
 };
 
 /// Loaded data, answers and running work, which are not saved.
@@ -51,6 +52,8 @@ pub struct Session {
     pub impact: Latest<ImpactRequest>,
     /// The calculation by hand.
     pub hand: Latest<HandRequest>,
+    /// The replay of a recorder.
+    pub recorder_replay: QuestionJob<ReplayRequest>,
     /// What is known of the case as it is now.
     pub known_case: KnownCase,
     /// The answers of the variants that are not in the forms.
@@ -149,9 +152,9 @@ impl Session {
     }
 
     /// Whether the forecast of the motion that is shown is not of what is asked any more. It is asked
-    /// once the simulation is there.
+    /// once all of the simulation is there.
     pub fn is_motion_late(&self) -> bool {
-        self.analysis.is_late() || self.response.forecast.is_late()
+        self.analysis.is_unfinished() || self.response.forecast.is_late()
     }
 }
 

@@ -39,6 +39,20 @@ pub fn evidence_assumptions_ui(
     assumptions_at_ui(ui, (caveats, units), place, commands);
 }
 
+/// The same for the replay of a recorder, whose own pane says all but the vehicle.
+pub fn replay_assumptions_ui(
+    ui: &mut Ui,
+    caveats: &Caveats,
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
+    let place = |subject: CaveatSubject| match subject {
+        CaveatSubject::VehicleParameter => place(subject),
+        _ => None,
+    };
+    assumptions_at_ui(ui, (caveats, units), place, commands);
+}
+
 /// Where a subject is set, as [`place`] says it.
 type Place = Option<(&'static str, Pane)>;
 

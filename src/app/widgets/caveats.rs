@@ -63,7 +63,7 @@ fn chip_ui(ui: &mut Ui, caveat: &Caveat, units: UnitSystem) {
             looks::icon_ui(ui, icon, color);
             // Not selectable, so that the pointer over the text is over the chip.
             let text = RichText::new(chip_text(caveat, units)).color(color);
-            ui.add(Label::new(text).selectable(false));
+            ui.add(Label::new(text).selectable(false).truncate());
         });
     });
     chip.response.interact(Sense::hover()).on_hover_text(caveat.in_units(units).text);

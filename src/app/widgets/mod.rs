@@ -13,7 +13,7 @@ mod time_figure;
 mod vehicle_picker;
 mod written;
 
-pub use assumptions::{assumptions_ui, evidence_assumptions_ui};
+pub use assumptions::{assumptions_ui, evidence_assumptions_ui, replay_assumptions_ui};
 pub use bad_cases::bad_cases_ui;
 pub use caveats::{caveats_ui, restrictions_ui};
 pub use cost::cost_ui;

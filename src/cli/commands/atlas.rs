@@ -211,6 +211,8 @@ fn describe(atlas: &Atlas, note: &str, console: &mut Console<'_>) -> Result<(), 
 #[derive(Debug, Serialize)]
 pub(super) struct Held {
     axis: String,
+    #[serde(skip)]
+    label: String,
     bin: usize,
     text: String,
 }
@@ -237,15 +239,16 @@ impl HeldArgs {
 pub(super) fn listed(atlas: &Atlas, bins: &[Option<usize>], units: UnitSystem) -> Vec<Held> {
     let held = |(axis, bin): (&Axis, &Option<usize>)| {
         let bin = (*bin)?;
-        Some(Held { axis: axis.name.clone(), bin, text: axis.bin_text(bin, units) })
+        let (name, label) = (axis.name.clone(), axis.label.clone());
+        Some(Held { axis: name, label, bin, text: axis.bin_text(bin, units) })
     };
     atlas.axes.iter().zip(bins).filter_map(held).collect()
 }
 
 /// Prints what is held.
 pub(super) fn print_held(out: &mut dyn Write, held: &[Held]) -> io::Result<()> {
-    for Held { axis, text, .. } in held {
-        writeln!(out, "held: {axis}, {text}")?;
+    for Held { label, text, .. } in held {
+        writeln!(out, "{label}: {text}")?;
     }
     Ok(())
 }

@@ -306,7 +306,7 @@ fn crush_section(test: &CrashTest) -> Result<(String, Vec<String>), String> {
     let test = BarrierTest::from_crash_test(test)?;
     let found = test.stiffness().map_err(|error| error.to_string())?;
     let mean_m = test.mean_crush_m();
-    let one_n_per_m2 = test.mass_kg * test.speed_m_s.powi(2) / (test.width_m * mean_m.powi(2));
+    let one_n_per_m2 = test.single_stiffness_n_per_m2();
     let section = format!(
         "[crush.front]\nonset_n_per_m = {:.0}\nstiffness_n_per_m2 = {:.0}\n",
         found.onset_n_per_m, found.stiffness_n_per_m2

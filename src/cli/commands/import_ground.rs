@@ -15,6 +15,7 @@ use impactlab_core::site::{
     CloudFormat, CloudOptions, LengthUnit, Site, SiteError, SurveyFormat, SurveyOptions,
     import_cloud,
 };
+use impactlab_core::units::UnitSystem;
 use impactlab_study::Event;
 
 /// How a ground is read.
@@ -129,7 +130,7 @@ fn import_survey(
     write_atomically(&staging.join("site.toml"), Existing::Refuse, |out| {
         out.write_all(text.as_bytes())
     })?;
-    let notes = site.contents(None).into_iter().chain(site.notes).collect();
+    let notes = site.contents(None, UnitSystem::Si).into_iter().chain(site.notes).collect();
     Ok(Imported { kind: "ground", files: vec!["site.toml".into()], notes })
 }
 

@@ -31,6 +31,7 @@ mod render_figure;
 mod render_film;
 mod render_forecast;
 mod render_reconstruction;
+mod render_replay;
 mod render_scene;
 pub(super) mod replay;
 pub(super) mod report;

@@ -29,16 +29,23 @@ use impactlab_study::{
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct PredictMotionArgs {
     /// The scenario, both vehicles and where they meet: a file, or `pit-right-rear`
-    #[arg(long, value_name = "NAME|FILE", required_unless_present_any = ["dataset", "trajectory"])]
+    #[arg(long, value_name = "NAME|FILE", requires = "out",
+        required_unless_present_any = ["dataset", "trajectory", "force"])]
     scenario: Option<PathBuf>,
     /// Instead: a data set, of which --case says the impact
-    #[arg(long, value_name = "DIR", requires = "case", conflicts_with = "scenario")]
+    #[arg(
+        long,
+        value_name = "DIR",
+        requires = "case",
+        requires = "out",
+        conflicts_with = "scenario"
+    )]
     dataset: Option<PathBuf>,
     /// The case of the data set
     #[arg(long, value_name = "NAME", requires = "dataset")]
     case: Option<String>,
     /// Instead: a recorded motion, whose own force is taken
-    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["scenario", "dataset"])]
+    #[arg(long, value_name = "FILE.csv", requires = "out", conflicts_with_all = ["scenario", "dataset"])]
     trajectory: Option<PathBuf>,
     /// Which column of the recorded motion is what: time=1:ms,x=2:m,fx=Kraft X:kN
     #[arg(long, value_name = "MAP", requires = "trajectory")]
@@ -105,8 +112,9 @@ pub(in crate::cli) struct PredictMotionArgs {
     #[arg(long, value_parser = window_s, value_name = "FROM,TO")]
     window: Option<[f64; 2]>,
     /// Folder for trajectory.csv, density.csv, outcome.json, pictures and their numbers
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
+    // A force alone reaches `source`, which says what it lacks.
+    #[arg(long, value_name = "DIR", required_unless_present = "force")]
+    out: Option<PathBuf>,
     /// Replace files that exist already
     #[arg(long)]
     overwrite: bool,
@@ -186,7 +194,8 @@ pub(in crate::cli) fn run(
     }
     let mut files = Vec::new();
     let existing = OverwriteArg::from_flag(args.overwrite).into();
-    let out = (args.out.as_path(), existing, &KNOWN_FILES[..]);
+    let folder = args.out.as_deref().ok_or(CliError::NothingToPredict)?;
+    let out = (folder, existing, &KNOWN_FILES[..]);
     let answer = console.ask_into(&request, Some(out), |output, answer| {
         check_window_end(args.window, duration_s(&answer.forecast))?;
         let (staging, units) = (output.staging(), args.units.into());
@@ -232,8 +241,9 @@ fn source(args: &PredictMotionArgs) -> Result<MotionSource, CliError> {
         let contact = args.contact;
         return Ok(MotionSource::Trajectory { file, contact });
     }
-    match (args.dataset.clone(), args.case.clone()) {
-        (Some(dataset), Some(case)) => Ok(MotionSource::Case { dataset, case }),
+    match (args.dataset.clone(), args.case.clone(), args.force.clone()) {
+        (Some(dataset), Some(case), _) => Ok(MotionSource::Case { dataset, case }),
+        (_, _, Some(path)) => Err(CliError::ForceAlone { path }),
         _ => Err(CliError::NothingToPredict),
     }
 }

@@ -10,6 +10,7 @@ use crate::cli::commands::render_figure;
 use crate::cli::commands::render_film::{self, FilmArgs};
 use crate::cli::commands::render_forecast::{self, ForecastArgs};
 use crate::cli::commands::render_reconstruction::{self, ReconstructionArgs};
+use crate::cli::commands::render_replay::{self, ReplayFigureArgs};
 use crate::cli::commands::render_scene::{self, SceneArgs, ShownScene};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{
@@ -87,6 +88,10 @@ impactlab render forecast datasets/trajectories-fea --case FE_c002 --channel yaw
     #[command(after_help = "\
 Example:\n  impactlab render reconstruction case.toml --plot target-speed --out speed.png")]
     Reconstruction(ReconstructionArgs),
+    /// The path of a car by its event data recorder, or what was recorded beside what was replayed
+    #[command(after_help = "\
+Example:\n  impactlab render replay report.csv --steering-ratio 14.5 --plot yaw-rate --out yaw-rate.png")]
+    Replay(Box<ReplayFigureArgs>),
     /// The impact of a scenario from above: impulse and delta-v
     #[command(after_help = "\
 Example:\n  impactlab render impact pit-right-rear --out impact.png")]
@@ -275,6 +280,7 @@ fn figure(args: &FigureArgs, console: &mut Console<'_>) -> Result<Verdict, CliEr
         FigureArgs::Scene(args) => &args.output,
         FigureArgs::Forecast(args) => &args.output,
         FigureArgs::Reconstruction(args) => &args.output,
+        FigureArgs::Replay(args) => &args.output,
         FigureArgs::Impact(args) => &args.output,
     };
     let ending = output.out.extension().map(|end| end.to_ascii_lowercase());
@@ -314,6 +320,7 @@ fn figure(args: &FigureArgs, console: &mut Console<'_>) -> Result<Verdict, CliEr
             scene = cars;
             noted
         }
+        FigureArgs::Replay(args) => render_replay::figure(args, units, console)?,
         FigureArgs::Impact(args) => {
             let scenario = ScenarioChoice::File(args.scenario.clone());
             let request = ImpactRequest { paper: args.paper, ..ImpactRequest::new(scenario) };

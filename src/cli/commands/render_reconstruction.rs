@@ -190,7 +190,8 @@ impl Reconstructed {
 
     /// What of the ground lies too far from the scene to be seen.
     fn far_notes(&self, scene: &Scene) -> Vec<String> {
-        self.ground.iter().flat_map(|ground| ground.far_notes(scene.extent_m())).collect()
+        let far = |ground: &LoadedGround| ground.far_notes(scene.extent_m(), scene.units);
+        self.ground.iter().flat_map(far).collect()
     }
 
     fn cars(&self, paths: &ReconstructedPaths, units: UnitSystem) -> Scene {

@@ -252,7 +252,7 @@ pub(super) fn add_ground(
     console: &mut Console<'_>,
 ) -> Result<Vec<String>, CliError> {
     let loaded = console.ground(site)?;
-    let far = loaded.far_notes(scene.extent_m());
+    let far = loaded.far_notes(scene.extent_m(), scene.units);
     let LoadedGround { ground, notes, .. } = loaded;
     scene.ground = Some(ground);
     Ok(notes.into_iter().chain(far).collect())

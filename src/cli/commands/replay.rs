@@ -25,6 +25,21 @@ use impactlab_study::{Answer, ContactPose, DEFAULT_REPLAY_DRAWS, ReplayReport, R
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct ReplayArgs {
+    #[command(flatten)]
+    record: RecordArgs,
+    /// Write the path of the recorded numbers as CSV, 100 Hz, time 0 at the first contact
+    #[arg(long, value_name = "PATH.csv")]
+    write: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: OverwriteArg,
+    /// Units of the text (JSON is always SI)
+    #[arg(long, value_enum, default_value_t)]
+    units: UnitsArg,
+}
+
+/// The record, and how it is followed.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct RecordArgs {
     /// The recorder's file: a Bosch CDR report as CSV, or a table with time, speed and steering wheel
     #[arg(value_name = "FILE")]
     file: PathBuf,
@@ -80,20 +95,36 @@ pub(in crate::cli) struct ReplayArgs {
     /// Seed of the draws
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// Write the path of the recorded numbers as CSV, 100 Hz, time 0 at the first contact
-    #[arg(long, value_name = "PATH.csv")]
-    write: Option<PathBuf>,
-    #[command(flatten)]
-    overwrite: OverwriteArg,
-    /// Units of the text (JSON is always SI)
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+}
+
+impl RecordArgs {
+    /// The question.
+    pub(in crate::cli) fn request(&self) -> ReplayRequest {
+        ReplayRequest {
+            event: self.event,
+            yaw_rate_left: self.yaw_rate == Side::Left,
+            steering_right: self.steering == Side::Right,
+            vehicle: VehicleArg::choice(&self.vehicle),
+            driven_axle: self.driven,
+            steering_ratio: self.steering_ratio,
+            steering_ratio_sigma: self.steering_ratio_sigma,
+            speed_sigma: self.speed_sigma,
+            friction: self.friction,
+            friction_sigma: self.friction_sigma,
+            from_s: self.from,
+            contact: ContactPose { x_m: self.x, y_m: self.y, yaw_rad: self.heading },
+            draws: self.draws,
+            seed: self.seed,
+            ..ReplayRequest::new(self.file.clone())
+        }
+    }
 }
 
 const EXAMPLES: &str = "\
 Examples:
   impactlab replay report.csv --vehicle toyota-camry-2018 --steering-ratio 14.5
   impactlab replay edr.csv --steering-ratio 15.8 --from -3 --x 12.4 --y -3.1 --heading 20deg --write path.csv
+  impactlab render replay report.csv --steering-ratio 14.5 --plot yaw-rate --out yaw-rate.png
 
 A table needs a header with units, such as Time [s], Speed [km/h], Steering Wheel Angle [deg]; Yaw Rate [deg/s],
 Service Brake and ABS Activity are used if they are there. Time 0 is the crash, before it is negative.
@@ -128,23 +159,7 @@ pub(in crate::cli) fn run(
     args: &ReplayArgs,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
-    let request = ReplayRequest {
-        event: args.event,
-        yaw_rate_left: args.yaw_rate == Side::Left,
-        steering_right: args.steering == Side::Right,
-        vehicle: VehicleArg::choice(&args.vehicle),
-        driven_axle: args.driven,
-        steering_ratio: args.steering_ratio,
-        steering_ratio_sigma: args.steering_ratio_sigma,
-        speed_sigma: args.speed_sigma,
-        friction: args.friction,
-        friction_sigma: args.friction_sigma,
-        from_s: args.from,
-        contact: ContactPose { x_m: args.x, y_m: args.y, yaw_rad: args.heading },
-        draws: args.draws,
-        seed: args.seed,
-        ..ReplayRequest::new(args.file.clone())
-    };
+    let request = args.record.request();
     let (out, existing) = (args.write.as_deref(), args.overwrite.into());
     console.check_target(out, existing)?;
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };

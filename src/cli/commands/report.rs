@@ -48,9 +48,9 @@ pub(in crate::cli) struct ReportArgs {
     /// Units of the numbers
     #[arg(long, value_enum, default_value_t)]
     units: UnitsArg,
-    /// Size of the pages
-    #[arg(long, value_parser = one_of(PAPERS), default_value = "a4")]
-    paper: Paper,
+    /// Size of the pages; letter with US units and A4 with others if not given
+    #[arg(long, value_parser = one_of(PAPERS))]
+    paper: Option<Paper>,
     /// The date that the report bears; today in UTC if not given
     #[arg(long, value_name = "YYYY-MM-DD")]
     date: Option<ReportDate>,
@@ -162,10 +162,11 @@ impl ReportArgs {
     }
 
     fn settings(&self) -> Result<ReportSettings, CliError> {
-        let (language, paper) = (self.language, self.paper);
+        let (language, units) = (self.language, self.units.into());
+        let paper = self.paper.unwrap_or_else(|| Paper::usual(units));
         let today = || ReportDate::from_instant(SystemTime::now());
         let date = self.date.or_else(today).ok_or(CliError::NoClock)?;
-        Ok(ReportSettings { language, units: self.units.into(), paper, date })
+        Ok(ReportSettings { language, units, paper, date })
     }
 }
 

@@ -121,7 +121,8 @@ Exit code 1 if any case failed.";
 /// What one vehicle does.
 #[derive(Debug, Args)]
 struct SingleArgs {
-    /// Forward speed at the start, m/s, or with a unit: 72km/h, 45mph; 20 m/s if not given
+    /// Forward speed at the start, m/s, or with a unit: 72km/h, 45mph; if not given, that
+    /// with which a finite-element run begins, or else 20 m/s
     #[arg(long, value_parser = number(SPEED), allow_hyphen_values = true)]
     speed: Option<f64>,
     /// Leftward speed at the start, as --speed

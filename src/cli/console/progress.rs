@@ -23,11 +23,11 @@ pub(in crate::cli) fn under_bar<T>(work: impl FnOnce(&mut Observer<'_>) -> T) ->
     if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
         bar.set_style(style);
     }
-    let mut fits = None;
+    let mut fitted = None;
     let result = work(&mut |event| {
         let (progress, line) = match event {
             Event::Progress(progress) => (progress, None),
-            Event::Training(report) => training(report, &mut fits),
+            Event::Training(report) => training(report, &mut fitted),
             Event::Sampling(_) => return ControlFlow::Continue(()),
         };
         if let (false, Some(line)) = (is_seen, line) {
@@ -45,22 +45,19 @@ pub(in crate::cli) fn under_bar<T>(work: impl FnOnce(&mut Observer<'_>) -> T) ->
 
 /// How far a training is, and the line that is due, if any.
 ///
-/// - `fits`: fits before the first epoch that are done, and all of them, as of the report before.
-fn training(
-    report: &TrainingReport,
-    fits: &mut Option<(usize, usize)>,
-) -> (Progress, Option<String>) {
+/// - `fitted`: what was fitted before the first epoch or after the last one, as of the report before.
+fn training(report: &TrainingReport, fitted: &mut Option<String>) -> (Progress, Option<String>) {
     let (done, total, message) = match report {
-        TrainingReport::Fit { what, done, n_fits } => (*done, *n_fits, what.clone()),
+        TrainingReport::Fit(fit) => (fit.done, fit.n_steps, fit.to_string()),
         TrainingReport::Epoch(epoch) => {
             let (done, total) = epoch.progress();
             (done, total, epoch.to_string())
         }
     };
     let line = match report {
-        TrainingReport::Fit { what, done, n_fits } => {
-            let is_due = fits.replace((*done, *n_fits)) != Some((*done, *n_fits));
-            is_due.then(|| format!("before the epochs: {what}"))
+        TrainingReport::Fit(fit) => {
+            let before = fitted.replace(fit.what.clone());
+            (before.as_ref() != Some(&fit.what)).then(|| message.clone())
         }
         TrainingReport::Epoch(report) => {
             let (epoch, n, seconds) =
@@ -76,18 +73,33 @@ fn training(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impactlab_networks::learning::FitReport;
 
     #[test]
-    fn each_fit_before_the_epochs_is_told_once() {
-        let mut fits = None;
-        let mut line = |what: &str, done, n_fits| {
-            training(&TrainingReport::Fit { what: what.to_owned(), done, n_fits }, &mut fits)
+    fn each_fit_is_told_once_and_its_steps_move_the_bar() {
+        let mut fitted = None;
+        let mut step = |what: &str, done, cost| {
+            let (what, n_steps) = (what.to_owned(), 24);
+            let fit = FitReport { what, done, n_steps, cost, is_after_epochs: false };
+            training(&TrainingReport::Fit(fit), &mut fitted)
         };
-        let (progress, first) = line("fitting crush law 1 of 2, cost 9", 0, 2);
-        assert_eq!((progress.done, progress.total), (0, 2));
-        assert_eq!(first.as_deref(), Some("before the epochs: fitting crush law 1 of 2, cost 9"));
-        assert_eq!(line("fitting crush law 1 of 2, cost 8", 0, 2).1, None);
-        assert!(line("fitting crush law 2 of 2, cost 9", 1, 2).1.is_some());
-        assert!(line("fitting regression 1 of 4", 0, 4).1.is_some());
+        let (progress, first) = step("fitting crush law 1 of 2", 0, Some(9.0));
+        assert_eq!((progress.done, progress.total), (0, 24));
+        let expected = "before the epochs: fitting crush law 1 of 2, cost 9.000";
+        assert_eq!(first.as_deref(), Some(expected));
+        let (progress, second) = step("fitting crush law 1 of 2", 1, Some(8.0));
+        assert_eq!((progress.done, second), (1, None));
+        assert!(progress.message.ends_with("cost 8.000"), "{}", progress.message);
+        assert!(step("fitting crush law 2 of 2", 10, Some(9.0)).1.is_some());
+        assert!(step("fitting regression 1 of 4", 20, None).1.is_some());
+    }
+
+    #[test]
+    fn what_is_fitted_after_the_epochs_says_so() {
+        let what = "how cars differ, motions of cars that were left out".to_owned();
+        let fit = FitReport { is_after_epochs: true, what, n_steps: 5, ..FitReport::default() };
+        let (progress, line) = training(&TrainingReport::Fit(fit), &mut None);
+        assert_eq!((progress.done, progress.total), (0, 5));
+        assert!(line.is_some_and(|line| line.starts_with("after the epochs: how cars differ")));
     }
 }

@@ -17,7 +17,7 @@ use impactlab_core::vehicle::{
 
 /// What the driver does and what the damage does to the wheels.
 #[derive(Debug, Clone, Default, Args)]
-#[command(next_help_heading = "After the first contact")]
+#[command(next_help_heading = "Driver and damage")]
 #[command(group(ArgGroup::new("engine").multiple(true).args(["engine_braking", "drive_torque"])))]
 #[command(group(ArgGroup::new("turned").args(["steer_angle", "steering_wheel"])))]
 pub(in crate::cli) struct EndingArgs {

@@ -6,7 +6,9 @@ use clap::Args;
 
 use crate::cli::options::{VehicleArg, contact_point, count, number};
 use impactlab_core::data::ColumnMap;
-use impactlab_core::ranges::{INSTANT, LOG_DURATION, TEST_SHARE as SHARE_OF_TEST, TRAJECTORIES};
+use impactlab_core::ranges::{
+    INSTANT, LOG_DURATION, STEERING_RATIO, TEST_SHARE as SHARE_OF_TEST, TRAJECTORIES,
+};
 use impactlab_core::vehicle::ContactPoint;
 use impactlab_networks::learning::TEST_SHARE;
 use impactlab_study::{DEFAULT_LOG_DURATION_S, FineTuneRequest, MotionLogs};
@@ -38,8 +40,8 @@ pub(in crate::cli) struct LearningDataArgs {
 /// Where logs come from.
 #[derive(Debug, Args)]
 struct LogArgs {
-    /// A log of one impact instead of a data set: CSV with time, x, y, yaw, and perhaps yaw_rate, vx
-    /// and vy, roll, steer; or a folder of such files. May be given several times
+    /// A log of one impact instead of a data set: a file with time, x, y, yaw, and perhaps yaw_rate, vx
+    /// and vy, roll, steer; or a folder of CSV files. May be given several times
     #[arg(long, value_name = "LOG.csv|DIR", requires = "vehicle", conflicts_with_all = ["data", "trajectories", "test_share"])]
     log: Vec<PathBuf>,
     /// The contact force of each log, in their order and on their clock; without it, estimated from
@@ -59,6 +61,12 @@ struct LogArgs {
     /// First contact on the logs' clock, s; from the force, or from the motion, if not given
     #[arg(long, value_name = "TIME", value_parser = number(INSTANT), allow_hyphen_values = true, requires = "log")]
     impact: Option<f64>,
+    /// Nothing was struck, as in a test drive: no force is looked for in the motion
+    #[arg(long, requires = "log", conflicts_with_all = ["force", "impact"])]
+    no_impact: bool,
+    /// Angle of the steering wheel over that of the road wheels, for logs with steering_wheel
+    #[arg(long, value_name = "RATIO", value_parser = number(STEERING_RATIO), requires = "log")]
+    steering_ratio: Option<f64>,
     /// How much of a log from the first contact on is learned from, s
     #[arg(long, value_name = "TIME", value_parser = number(LOG_DURATION), default_value_t = DEFAULT_LOG_DURATION_S, requires = "log")]
     duration: f64,
@@ -89,6 +97,8 @@ impl LogArgs {
             force_map: self.force_map.clone(),
             contact: self.contact,
             impact_s: self.impact,
+            without_impact: self.no_impact,
+            steering_ratio: self.steering_ratio,
             duration_s: self.duration,
         })
     }

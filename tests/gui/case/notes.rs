@@ -13,6 +13,10 @@ use crate::harness::{apply, step_until};
 /// Clicks the last field of a name and types into it.
 fn type_into(harness: &mut Harness<'_, App>, name: &str) {
     let fields = harness.query_all_by_role_and_label(Role::MultilineTextInput, name);
+    let field = fields.last().expect("a field");
+    field.scroll_to_me();
+    harness.run_steps(4);
+    let fields = harness.query_all_by_role_and_label(Role::MultilineTextInput, name);
     fields.last().expect("a field").click();
     harness.run_steps(4);
     for (key, text) in [(None, "wet"), (Some(Key::Space), " "), (None, "road")] {

@@ -9,7 +9,7 @@ use crate::data::{
     TimeSeries,
 };
 use crate::numerics::quantile_of_sorted;
-use crate::units::Quantity;
+use crate::units::{Quantity, Unit};
 
 /// Seconds since 1970 in the years 2001 to 2096, by which such a clock is known.
 const UNIX_S: std::ops::Range<f64> = 1e9..4e9;
@@ -136,8 +136,7 @@ pub(super) fn check_unit(
     let [Term { number, .. }] = time.terms[..] else { return Ok(()) };
     let first = number.checked_sub(1).and_then(|idx| table.number(0, idx));
     let Some(first) = first.filter(|_| !time.unit_is_stated) else { return Ok(()) };
-    let parts = || Quantity::Time.units().iter().filter(|unit| unit.si_per_unit < 1.0);
-    let Some(unit) = parts().find(|unit| UNIX_S.contains(&unit.to_si(first))) else {
+    let Some(unit) = unit_since_1970(first).filter(|unit| unit.si_per_unit < 1.0) else {
         return Ok(());
     };
     let what = format!(
@@ -145,12 +144,18 @@ pub(super) fn check_unit(
          that lets the record begin at 0",
         time.name, unit.symbol
     );
-    let answer = ColumnSource { column: ColumnRef::Number(number), unit: Some(*unit) };
+    let answer = ColumnSource { column: ColumnRef::Number(number), unit: Some(unit) };
     let mut map = map.cloned().unwrap_or_default();
     if map.settings.time_shift_s.is_none() {
         map.settings.time_shift_s = Some(0.0 - unit.to_si(first));
     }
     Err(open_question(table, Some(&map), what, [(Channel::Time, answer)]))
+}
+
+/// The unit in which a number counts the time since 1970; `None` if it does not, to judge by its size.
+pub(super) fn unit_since_1970(number: f64) -> Option<Unit> {
+    let units = Quantity::Time.units().iter().filter(|unit| unit.si_per_unit <= 1.0);
+    units.copied().find(|unit| UNIX_S.contains(&unit.to_si(number)))
 }
 
 /// The shift with which a record begins at zero, if it begins elsewhere: at the seconds of a clock, or
@@ -221,6 +226,16 @@ pub(super) fn shift_to_zero(first_s: f64) -> Correction {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_unit_of_a_stamp_follows_from_its_size() {
+        for (number, symbol) in [(1.7e9, "s"), (1.7e12, "ms"), (1.7e15, "µs"), (1.7e18, "ns")] {
+            assert_eq!(unit_since_1970(number).map(|unit| unit.symbol), Some(symbol));
+        }
+        for number in [0.0, -1.7e18, 5e8, 9e9, 1e30, f64::NAN] {
+            assert_eq!(unit_since_1970(number), None, "{number}");
+        }
+    }
 
     #[test]
     fn seconds_that_begin_again_go_on() {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::data::columns::{ColumnUse, Term};
+use crate::data::columns::{ColumnUse, Term, column_use, stated_unit};
 use crate::data::spelling::letters_and_digits;
 use crate::data::{Channel, Formula, Note, Table};
 
@@ -18,14 +18,23 @@ const QUATERNIONS: [[&str; 4]; 4] = [
     ["orientationw", "orientationx", "orientationy", "orientationz"],
 ];
 
-/// The channels of a table that are computed from several of its columns.
+/// Ends of headers of a ROS message with a pose, in SI units (REP 103) unless they say others, with their
+/// channels; those of a twist are of `nav_msgs/Odometry`, whose twist is in the axes of the vehicle.
+const ROS_CHANNELS: [(&str, Channel); 5] = [
+    ("posepositionx", Channel::X),
+    ("posepositiony", Channel::Y),
+    ("twisttwistlinearx", Channel::Vx),
+    ("twisttwistlineary", Channel::Vy),
+    ("twisttwistangularz", Channel::YawRate),
+];
+
+/// The channels of a table that are computed from several of its columns, and those of a ROS message with an
+/// orientation, whose headers end in what they are.
 pub(super) fn columns(table: &Table) -> Vec<ColumnUse> {
     let keys: Vec<String> = table.header().iter().map(|name| key(name)).collect();
+    let is_named = |key: &str, name: &str| key == name || (name.len() > 4 && key.ends_with(name));
     let position = |names: &[&str]| {
-        let is = |key: &String| {
-            let has_end = |name: &&str| key == name || (name.len() > 4 && key.ends_with(name));
-            names.iter().any(has_end)
-        };
+        let is = |key: &String| names.iter().any(|name| is_named(key, name));
         keys.iter().position(is).map(|idx| idx + 1)
     };
     let mut found = Vec::new();
@@ -35,12 +44,23 @@ pub(super) fn columns(table: &Table) -> Vec<ColumnUse> {
             found.push(column(table, channel, formula, &numbers));
         }
     }
+    // Of two messages in one table a map says which is that of the vehicle.
+    let only = |is: &dyn Fn(&str) -> bool| {
+        let mut found = (1..).zip(&keys).filter(|(_, key)| is(key));
+        let (number, _) = found.next()?;
+        found.next().is_none().then_some(number)
+    };
     let quaternion = |names: &[&str; 4]| {
-        let numbers = names.map(|name| position(&[name]));
+        let numbers = names.map(|name| only(&|key| is_named(key, name)));
         numbers.into_iter().collect::<Option<Vec<usize>>>()
     };
     if let Some(numbers) = QUATERNIONS.iter().find_map(quaternion) {
         found.push(column(table, Channel::Yaw, Formula::Quaternion, &numbers));
+        let of_message = ROS_CHANNELS.into_iter().filter_map(|(end, channel)| {
+            let number = only(&|key| key.ends_with(end))?;
+            plain_column(table, channel, number)
+        });
+        found.extend(of_message);
     }
     found
 }
@@ -74,6 +94,17 @@ pub(super) fn column(
         terms: numbers.iter().map(|&number| Term { number, sign: 1.0, unit }).collect(),
         formula: Some(formula),
     }
+}
+
+/// A channel that a column holds in the unit that the file states, else in SI units; `None` where the unit does
+/// not measure it.
+fn plain_column(table: &Table, channel: Channel, number: usize) -> Option<ColumnUse> {
+    let idx = number.checked_sub(1)?;
+    let name = table.header().get(idx)?;
+    let quantity = channel.quantity();
+    let stated = stated_unit(name, table.unit_text(idx), quantity).ok()?;
+    let unit = stated.unwrap_or_else(|| quantity.si_unit());
+    Some(column_use(channel, number, name.clone(), Some(unit)))
 }
 
 /// Says from where positions are counted that follow from latitude and longitude.

@@ -7,9 +7,9 @@ use std::path::Path;
 use crate::data::si_values::{instants_s, si_values};
 use crate::data::velocity_fit::in_body_axes;
 use crate::data::{
-    Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, ReadSettings, Sampling,
-    SeriesError, Table, Thousands, TimeSeries, VelocityAxes, antenna, clock, computed, corrections,
-    degrees, impulse, path_speed,
+    Channel, ColumnMap, ColumnRef, ColumnUse, Columns, DataError, Dialect, ModelStart, Note,
+    ReadSettings, Sampling, SeriesError, Table, Thousands, TimeSeries, VelocityAxes, antenna,
+    clock, computed, corrections, degrees, impulse, path_speed,
 };
 use crate::ranges::TIME_STEP;
 
@@ -44,6 +44,8 @@ pub struct Loaded {
     pub dialect: Dialect,
     /// Character encoding of the file, such as `UTF-8`.
     pub encoding: &'static str,
+    /// Of a force of a finite-element run: the velocities with which its cars begin, where the file says them.
+    pub model_start: Option<ModelStart>,
 }
 
 impl Loaded {
@@ -327,6 +329,8 @@ fn load_columns(
     notes.extend(path_speed::note(table, &by_channel, &series));
     // What is checked above is what the receiver has measured.
     notes.extend(move_to_cg(&mut series, &settings, table)?);
+    let model_start = table.model_start().filter(|_| kind == FileKind::Force && is_as_written(map));
+    let model_start = model_start.map(|start| start.along_axes(settings.y_to_right));
     let columns = by_channel.into_values().collect();
     Ok(Loaded {
         kind,
@@ -335,7 +339,22 @@ fn load_columns(
         notes,
         dialect: table.dialect(),
         encoding: table.encoding(),
+        model_start,
     })
+}
+
+/// Whether a map takes the force of a finite-element run as it was written: neither that on the other car nor
+/// along other axes.
+fn is_as_written(map: Option<&ColumnMap>) -> bool {
+    let is_own = |channel: Channel, column: usize| {
+        let source = map.and_then(|map| map.get(channel)).map(|source| &source.column);
+        source.is_none_or(|source| match source {
+            ColumnRef::Number(number) => *number == column,
+            ColumnRef::Name(name) => name.starts_with(channel.short_name()),
+            ColumnRef::Sum(_) | ColumnRef::Computed(..) | ColumnRef::Zero => false,
+        })
+    };
+    is_own(Channel::Fx, 2) && is_own(Channel::Fy, 3)
 }
 
 fn insert(

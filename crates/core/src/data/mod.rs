@@ -96,7 +96,7 @@ pub use formats::{
     BarrierForce, BarrierMomentum, CrashTest, RecordedControls, RecordedDeltaV, RecordedSpeed,
     RecorderRecord, TestChannel, TestVehicle,
 };
-pub use formats::{DeckUnits, parts_beside};
+pub use formats::{DeckUnits, ModelStart, parts_beside};
 pub use formula::{Formula, FormulaPart};
 pub use geographic::GeographicPlace;
 pub use json::{finite_or_null, finite_or_nulls, null_as_nan, nulls_as_nan};

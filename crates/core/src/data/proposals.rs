@@ -7,7 +7,7 @@ use crate::data::columns::{is_summed, meanings, stated_unit, sum};
 use crate::data::spelling::{self, Meaning};
 use crate::data::{
     Channel, ColumnMap, ColumnRef, ColumnSource, DataError, FormulaPart, ReadSettings, Table,
-    computed,
+    clock, computed,
 };
 use crate::units::{Quantity, Unit};
 
@@ -39,6 +39,16 @@ impl ColumnProposal {
     /// The text of a unit that does not measure `quantity`.
     pub fn stated_unit(&self, quantity: Quantity) -> Result<Option<Unit>, String> {
         stated_unit(&self.name, self.units_cell.as_deref(), quantity)
+    }
+
+    /// The unit of a time: that in which its numbers count the time since 1970, or else the one that the file
+    /// states.
+    pub fn time_unit(&self) -> Option<Unit> {
+        let first: Option<f64> = self.samples.first().and_then(|text| text.trim().parse().ok());
+        let stated = || self.stated_unit(Quantity::Time).ok().flatten();
+        let guessed =
+            || self.guess.and_then(|(channel, unit)| unit.filter(|_| channel == Channel::Time));
+        first.and_then(clock::unit_since_1970).or_else(stated).or_else(guessed)
     }
 
     /// The channel that is worth a proposal in a dialog: the guess, or what words in the header

@@ -16,7 +16,7 @@ use crate::data::spelling;
 use crate::data::text::{Text, read_text};
 use crate::data::vbo;
 use crate::data::workbook::{Sheet, is_archive, read_sheet};
-use crate::data::{DataError, DeckUnits, Note, ReadSettings, marks};
+use crate::data::{DataError, DeckUnits, ModelStart, Note, ReadSettings, marks};
 
 /// The column that holds the names in a table of cases; a header with it is recognised by this
 /// name.
@@ -205,6 +205,11 @@ impl Table {
     pub fn proposed_deck(&self) -> Option<(DeckUnits, &str)> {
         let open = self.said.as_ref()?.open_units.as_ref()?;
         Some((open.proposed, &open.why))
+    }
+
+    /// With which velocities the cars of such a model begin, if that is known.
+    pub(super) fn model_start(&self) -> Option<&ModelStart> {
+        self.said.as_ref()?.model_start.as_ref()
     }
 
     /// What is said of the file if it is of a format of its own; none for a plain table.

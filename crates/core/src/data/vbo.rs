@@ -26,6 +26,13 @@ const DESCRIPTION: &str = "a Racelogic VBO file: places from latitude and longit
 const OPEN_SIDE: &str = "the sign of the yaw rate could not be compared with the course, as the car hardly turns \
      where it drives; by the type of the sensor it is positive clockwise or counterclockwise";
 
+/// What is said of a channel that is taken for the angle of the steering wheel.
+const OF_STEERING: &str = "the steering angle is taken as that of the steering wheel, positive to the left, \
+     which the file does not say";
+
+/// Names of channels with the angle of the steering wheel.
+const STEERING: [&str; 3] = ["steeringangle", "steeringwheelangle", "steeringwheel"];
+
 /// The unit of a channel for which the file has one that cannot be its own; no quantity has it, so that the column
 /// is left out until a map says its unit.
 const UNCLEAR: &str = "unit unclear";
@@ -126,7 +133,8 @@ impl Course {
         });
         let side = (has("yawrate") && !tells_sides(&self.turned_rad)).then(|| OPEN_SIDE.to_owned());
         let course = has("heading").then(|| OF_COURSE.to_owned());
-        course.into_iter().chain(slow).chain(side).collect()
+        let steering = steering(names).map(|_| OF_STEERING.to_owned());
+        course.into_iter().chain(slow).chain(side).chain(steering).collect()
     }
 }
 
@@ -146,8 +154,15 @@ pub(super) fn as_table(text: &str) -> Option<Converted> {
     }
     let units = units(&names, section("[channel units]").collect());
     let velocity = velocity(section("[header]"));
-    let columns: Vec<(Column, String)> =
-        names.iter().zip(units).map(|(name, unit)| column(name, unit, &velocity)).collect();
+    let steering = steering(&names);
+    let of_columns = names.iter().zip(units).enumerate();
+    let columns: Vec<(Column, String)> = of_columns
+        .map(|(idx, (name, unit))| match steering == Some(idx) {
+            // Nothing else in the file contradicts an angle that is taken in a wrong unit.
+            true => column("steering_wheel", unit.or(Some(UNCLEAR)), &velocity),
+            false => column(name, unit, &velocity),
+        })
+        .collect();
     let header: Vec<&str> = columns.iter().map(|(_, name)| name.as_str()).collect();
     let mut table = "\n".repeat(start);
     table.push_str(&header.join("\t"));
@@ -195,6 +210,14 @@ pub(super) fn as_table(text: &str) -> Option<Converted> {
         ..Said::default()
     };
     Some(Converted { text: table, said })
+}
+
+/// The index of the one channel with the angle of the steering wheel.
+fn steering(names: &[&str]) -> Option<usize> {
+    let mut found =
+        names.iter().enumerate().filter(|(_, name)| STEERING.contains(&plain(name).as_str()));
+    let (idx, _) = found.next()?;
+    found.next().is_none().then_some(idx)
 }
 
 /// The letters and digits of a name, small.
@@ -321,6 +344,28 @@ mod tests {
             "sats|YawRate [unit unclear]|WheelSpeed [unit unclear]"
         );
         assert_eq!(header("", "sats YawRate"), "sats|YawRate");
+    }
+
+    #[test]
+    fn one_steering_angle_is_that_of_the_steering_wheel() {
+        let read = |names: &str| {
+            let n = names.split_whitespace().count() - 1;
+            let units = "deg\n".repeat(n);
+            let text = format!("[channel units]\n{units}\n[column names]\n{names}\n\n[data]\n1\n");
+            let table = as_table(&text).unwrap();
+            let header = table.text.lines().find(|line| !line.is_empty()).unwrap().to_owned();
+            (header, table.said.doubts.contains(&OF_STEERING.to_owned()))
+        };
+        assert_eq!(
+            read("time Steering_Angle"),
+            ("time [s]\tsteering_wheel [deg]".to_owned(), true)
+        );
+        // Without a list of units degrees would be taken for radians.
+        let text = "[column names]\ntime Steering_Angle\n\n[data]\n1\n";
+        assert!(as_table(text).unwrap().text.contains("steering_wheel [unit unclear]"));
+        // Which of two it is, is asked by a map.
+        let (header, is_said) = read("time Steering_Angle SteeringWheel");
+        assert!(header.contains("Steering_Angle [deg]") && !is_said, "{header}");
     }
 
     #[test]

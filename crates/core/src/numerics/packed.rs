@@ -39,14 +39,18 @@ impl<S: Simd> Packed<S> {
     /// A number for each lane; those beyond [`Packed::N`] are left out.
     #[inline(always)]
     pub fn new(simd: S, values: &[f64; MAX_LANES]) -> Self {
-        Self { simd, lanes: simd.partial_load_f64s(&values[..Self::N]) }
+        // A load of so many numbers as are there would call an assembler routine that jumps to their number.
+        let lanes =
+            pulp::bytemuck::pod_read_unaligned(pulp::bytemuck::cast_slice(&values[..Self::N]));
+        Self { simd, lanes }
     }
 
     /// The numbers of the lanes; those beyond [`Packed::N`] are zero.
     #[inline(always)]
     pub fn to_array(self) -> [f64; MAX_LANES] {
         let mut values = [0.0; MAX_LANES];
-        self.simd.partial_store_f64s(&mut values[..Self::N], self.lanes);
+        let lanes = pulp::bytemuck::cast_slice(std::slice::from_ref(&self.lanes));
+        values[..Self::N].copy_from_slice(lanes);
         values
     }
 

@@ -235,6 +235,12 @@ macro_rules! lanes_of_dual {
         fn is_nothing(self) -> bool {
             false
         }
+
+        // Each operation is many: in place at every call, one step alone takes a megabyte.
+        #[inline(never)]
+        fn apart<W: NullaryFnOnce>(self, work: W) -> W::Output {
+            work.call()
+        }
     };
 }
 

@@ -49,9 +49,9 @@ ranges! {
 
 ranges! {
     /// What brakes, drags and steers a vehicle after the impact.
-    CONTROLS = "driver and damage after the impact";
+    CONTROLS = "driver and damage";
     CONTROL_TIME: "start of a control" = real(Quantity::Time, [0.0, 3600.0]),
-        "when brake, drag or steering begins, after the first contact";
+        "when brake, drag or steering begins, from the start of the motion";
     STEERING_WHEEL_ANGLE: "steering-wheel angle" = real(Quantity::Angle, [-25.0, 25.0]),
         "angle of the steering wheel, positive to the left";
     ROAD_WHEEL_RATE: "rate of the road wheels" = real(Quantity::AngularVelocity, [1e-3, 20.0]),
@@ -64,6 +64,8 @@ ranges! {
         "braking force over the largest that the road can hold; more than 1 locks the wheels";
     BRAKE_FRONT_SHARE: "front share of the braking" = real(Quantity::Ratio, [0.0, 1.0]),
         "share of the front axle in the braking force";
+    PROBABILITY: "probability" = real(Quantity::Ratio, [0.0, 1.0]),
+        "how likely something is that nobody knows";
     BRAKE_RISE: "rise of a control" = real(Quantity::Time, [0.01, 60.0]),
         "time over which brake or steering reach their full value";
     DRAG_SHARE: "drag" = real(Quantity::Ratio, [0.0, 3.0]),
@@ -323,7 +325,7 @@ ranges! {
     SKID_LENGTH: "length of a skid" = real(Quantity::Length, [0.1, 500.0]),
         "distance over which a car skidded to the first contact";
     EVIDENCE_TIME: "time of evidence" = real(Quantity::Time, [0.0, 60.0]),
-        "time after the first contact";
+        "time from the start of the motion";
     PULSE_END: "end of a recorded pulse" = real(Quantity::Time, [0.005, 5.0]),
         "time after the first contact at which a recorder ends";
 }

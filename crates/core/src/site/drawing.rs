@@ -19,6 +19,7 @@ use crate::site::drawing_curves::{arc, bulged, spline};
 use crate::site::frozen_layers::frozen_layers;
 use crate::site::parts::{extent_of, extent_text};
 use crate::site::{DrawingFile, LengthUnit, SiteError, SiteOrigin};
+use crate::units::UnitSystem;
 
 /// What the first line of a binary drawing has, and that of a format that drawings are not read in.
 const BINARY: &[u8] = b"AutoCAD Binary DXF";
@@ -84,10 +85,10 @@ impl Drawing {
 
 impl DrawingSummary {
     /// In words, after the name of the drawing.
-    pub fn contents(&self) -> String {
+    pub fn contents(&self, units: UnitSystem) -> String {
         let Self { unit, n_lines, extent_m } = self;
         let lines = if *n_lines == 1 { "line" } else { "lines" };
-        let place = extent_m.map(extent_text).unwrap_or_default();
+        let place = extent_m.map(|extent_m| extent_text(extent_m, units)).unwrap_or_default();
         format!(" in {unit}, {n_lines} {lines}{place}")
     }
 }

@@ -3,6 +3,7 @@ use dxf::enums::{AcadVersion, Units};
 use dxf::{LwPolylineVertex, Point};
 
 use crate::site::{DrawingFile, LengthUnit, SiteOrigin, read_drawing};
+use crate::units::UnitSystem;
 
 fn on(layer: &str, specific: EntityType) -> Entity {
     let mut entity = Entity::new(specific);
@@ -156,7 +157,7 @@ fn a_large_arc_in_millimetres_is_within_5_mm_of_its_chords() {
     let (_folder, file) = saved(&drawing);
     let read = read_drawing(&file, &SiteOrigin::default()).unwrap();
     assert_eq!(
-        read.summary().contents(),
+        read.summary().contents(UnitSystem::Si),
         " in mm, 1 line, X -1000.0 to 1000.0 m, Y -1000.0 to 1000.0 m"
     );
     for pair in read.lines[0].points_m.windows(2) {

@@ -1,6 +1,7 @@
 use std::path::Path;
 
 use crate::site::{EdgeLine, Site, SiteOrigin};
+use crate::units::UnitSystem;
 
 const SITE: &str = r#"name = "Crossing"
 
@@ -113,8 +114,10 @@ fn the_unit_of_a_world_file_and_feet_of_the_survey_are_read_and_come_back() {
         assert!((map.per_column_m[0] - 0.5 * foot_m).abs() < 1e-12, "{foot}: {map:?}");
         let again = read(folder.path(), &site.to_toml(folder.path()).unwrap()).unwrap();
         assert_eq!(again.orthophoto, site.orthophoto, "{foot}");
-        let contents = site.contents(None).join("; ");
+        let contents = site.contents(None, UnitSystem::Si).join("; ");
         assert!(contents.ends_with(&format!("world file in {foot}")), "{contents}");
+        let in_feet = site.contents(None, UnitSystem::Us).join("; ");
+        assert!(in_feet.contains(" ft, Y ") && !in_feet.contains(" m,"), "{in_feet}");
     }
     let mixed = text("ft").replace("easting_ft", "easting_m = 1\neasting_ft");
     assert!(read(folder.path(), &mixed).unwrap_err().contains("easting_"));
@@ -205,7 +208,7 @@ fn the_slope_of_the_road_is_read_told_and_comes_back() {
     let site = read(folder.path(), "[road]\ngrade_percent = 4\ncross_slope = -0.02\n").unwrap();
     let slope = site.slope.unwrap();
     assert!((slope.grade - 0.04).abs() < 1e-15 && slope.cross_slope == -0.02, "{slope:?}");
-    assert_eq!(site.contents(None), ["slope of 4.0 % along X, -2.0 % along Y"]);
+    assert_eq!(site.contents(None, UnitSystem::Si), ["slope of 4.0 % along X, -2.0 % along Y"]);
     let text = site.to_toml(folder.path()).unwrap();
     assert_eq!(read(folder.path(), &text).unwrap(), site, "{text}");
 }

@@ -7,7 +7,7 @@ use crate::site::{
     DrawingSummary, GeographicFrame, PixelMap, SiteError, SiteOrigin, WorldFile, picture_size_px,
     world_file_beside,
 };
-use crate::units::US_SURVEY_FOOT;
+use crate::units::{Quantity, US_SURVEY_FOOT, UnitSystem};
 use crate::vehicle::{FrictionZone, RoadSlope};
 
 /// Side of a pixel of a picture of which nothing says where it lies, m; its middle is then at the origin.
@@ -252,8 +252,10 @@ impl Site {
 
     /// What it consists of, in words.
     ///
-    /// - `drawing`: what of its drawing was read, if that is known.
-    pub fn contents(&self, drawing: Option<&DrawingSummary>) -> Vec<String> {
+    /// - `drawing`: what of its drawing was read, if that is known;
+    /// - `units`: of its lengths.
+    pub fn contents(&self, drawing: Option<&DrawingSummary>, units: UnitSystem) -> Vec<String> {
+        let unit = Quantity::Length.display_unit(units);
         let counted = |n: usize, what: &str| match n {
             0 => None,
             1 => Some(format!("1 {what}")),
@@ -261,22 +263,22 @@ impl Site {
         };
         let orthophoto = self.orthophoto.as_ref().map(|orthophoto| {
             let [width, height] = orthophoto.size_px;
-            let [pixel_m, _] = orthophoto.map.pixel_size_m();
+            let pixel = unit.from_si(orthophoto.map.pixel_size_m()[0]);
             let place = match (orthophoto.is_placed, &orthophoto.world_file) {
                 (false, _) => ", place and scale not known".to_owned(),
-                (true, None) => extent_text(orthophoto.extent_m()),
+                (true, None) => extent_text(orthophoto.extent_m(), units),
                 (true, Some(_)) => {
                     format!(
                         "{}, world file in {}",
-                        extent_text(orthophoto.extent_m()),
+                        extent_text(orthophoto.extent_m(), units),
                         orthophoto.world_unit.word()
                     )
                 }
             };
-            format!("orthophoto of {width} x {height} pixels of {pixel_m:.4} m{place}")
+            format!("orthophoto of {width} x {height} pixels of {pixel:.4} {}{place}", unit.symbol)
         });
         let drawing = self.drawing.as_ref().map(|file| {
-            let contents = drawing.map(|summary| summary.contents()).unwrap_or_default();
+            let contents = drawing.map(|summary| summary.contents(units)).unwrap_or_default();
             format!("drawing {}{contents}", file_name(&file.file))
         });
         let zones = counted(self.friction_zones.len(), "friction zone");
@@ -286,20 +288,20 @@ impl Site {
             format!("slope of {along:.1} % along X, {across:.1} % along Y")
         });
         let counts = counts.into_iter().flatten().chain(slope);
-        let counts = counts.chain(self.surveyed_text()).chain(self.place_text());
+        let counts = counts.chain(self.surveyed_text(units)).chain(self.place_text(units));
         orthophoto.into_iter().chain(counts).chain(drawing).collect()
     }
 
     /// What of it was surveyed, and where that lies.
-    fn surveyed_text(&self) -> Option<String> {
+    fn surveyed_text(&self, units: UnitSystem) -> Option<String> {
         let lines = self.lines.iter().flat_map(|line| line.line_m.iter().copied());
         let extent = extent_of(lines.chain(self.points.iter().map(|point| point.at_m)))?;
         let (n_lines, n_points) = (self.lines.len(), self.points.len());
-        Some(format!("surveyed lines: {n_lines}, points: {n_points}{}", extent_text(extent)))
+        Some(format!("surveyed lines: {n_lines}, points: {n_points}{}", extent_text(extent, units)))
     }
 
     /// Where its origin lies, for a site with surveyed lines or on the earth.
-    fn place_text(&self) -> Option<String> {
+    fn place_text(&self, units: UnitSystem) -> Option<String> {
         if let Some(place) = self.geographic {
             let [latitude_deg, longitude_deg] = place.degrees();
             return Some(format!(
@@ -307,8 +309,11 @@ impl Site {
             ));
         }
         let is_surveyed = !self.lines.is_empty() || !self.points.is_empty();
-        let [easting_m, northing_m] = self.origin.filter(|_| is_surveyed)?.survey_m;
-        Some(format!("origin at easting {easting_m} m, northing {northing_m} m"))
+        let survey_m = self.origin.filter(|_| is_surveyed)?.survey_m;
+        let unit = Quantity::Length.display_unit(units);
+        let [easting, northing] = survey_m.map(|value| rounded(unit.from_si(value)));
+        let symbol = unit.symbol;
+        Some(format!("origin at easting {easting} {symbol}, northing {northing} {symbol}"))
     }
 }
 
@@ -329,8 +334,16 @@ pub fn extent_of(points_m: impl IntoIterator<Item = [f64; 2]>) -> Option<[[f64; 
 }
 
 /// Where something lies, after what it is.
-pub(super) fn extent_text([low, high]: [[f64; 2]; 2]) -> String {
-    format!(", X {:.1} to {:.1} m, Y {:.1} to {:.1} m", low[0], high[0], low[1], high[1])
+pub(super) fn extent_text(extent_m: [[f64; 2]; 2], units: UnitSystem) -> String {
+    let unit = Quantity::Length.display_unit(units);
+    let [[x_low, y_low], [x_high, y_high]] = extent_m.map(|at| at.map(|value| unit.from_si(value)));
+    let symbol = unit.symbol;
+    format!(", X {x_low:.1} to {x_high:.1} {symbol}, Y {y_low:.1} to {y_high:.1} {symbol}")
+}
+
+/// A coordinate of a survey, to a millimetre or better.
+fn rounded(value: f64) -> f64 {
+    (value * 1e3).round() / 1e3
 }
 
 /// The name of a file without its folder.

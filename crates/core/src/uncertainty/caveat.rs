@@ -169,13 +169,13 @@ impl Caveat {
         text_in((reason, self.reason_phrase.as_ref()), format, term)
     }
 
-    /// The same caveat with its texts in English in the units of a reader.
+    /// The same caveat with its texts in English in the units of a reader, as numbers stand beside it.
     #[must_use]
     pub fn in_units(&self, units: UnitSystem) -> Self {
         let format = NumberFormat::english(units);
-        let own = str::to_owned;
-        let text = self.text_in(&format, &own).unwrap_or_else(|| self.text.clone());
-        let reason = self.reason.as_ref().and_then(|_| self.reason_in(&format, &own));
+        let shown = |phrase: &Phrase| phrase.say_shown(&format, &str::to_owned);
+        let text = self.text_phrase.as_ref().map_or_else(|| self.text.clone(), shown);
+        let reason = self.reason_phrase.as_ref().map(shown).or_else(|| self.reason.clone());
         Self { text, reason, ..self.clone() }
     }
 
@@ -255,7 +255,7 @@ mod tests {
         let us = caveat.in_units(UnitSystem::Us);
         assert_eq!(us.text, "not at rest: at 11.2 mph");
         assert_eq!(us.statement(), "at 11.2 mph");
-        assert_eq!(caveat.in_units(UnitSystem::Si), caveat);
+        assert_eq!(caveat.in_units(UnitSystem::Si).text, "not at rest: at 18.0 km/h");
         let english = Caveat::new(CaveatKind::Note, "sampled at 1 kHz");
         assert_eq!(english.text_in(&DE, &own), None);
         assert_eq!(english.text_in(&US, &own).unwrap(), "sampled at 1 kHz");

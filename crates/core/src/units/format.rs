@@ -113,11 +113,17 @@ impl NumberFormat {
     /// A number in SI units without an interval: four significant digits and the unit of display, such
     /// as `12.35 kN`.
     pub fn value(&self, quantity: Quantity, value_si: f64) -> String {
+        let (value, symbol) = self.displayed(quantity, value_si);
+        self.with_unit(&significant(value), symbol)
+    }
+
+    /// A number in its unit of display, in which what hardly moves stands still, and the symbol of that.
+    fn displayed(&self, quantity: Quantity, value_si: f64) -> (f64, &'static str) {
         let unit = quantity.display_unit(self.units);
         let value = unit.from_si(value_si);
         let is_rate = matches!(quantity, Quantity::Speed | Quantity::AngularVelocity);
-        let value = if is_rate && value.abs() < STANDSTILL { 0.0 } else { value };
-        self.with_unit(&significant(value), unit.symbol)
+        let stands = is_rate && value.abs() < STANDSTILL;
+        (if stands { 0.0 } else { value }, unit.symbol)
     }
 
     /// A pure number with four significant digits.
@@ -144,7 +150,32 @@ impl NumberFormat {
 
     /// A number with a fixed number of decimals.
     pub fn fixed(&self, value: f64, decimals: usize) -> String {
-        self.local(&format!("{:.decimals$}", value + 0.0))
+        let text = format!("{value:.decimals$}");
+        let is_digit = |character: char| ('1'..='9').contains(&character);
+        let is_zero = value.is_finite() && !text.contains(is_digit);
+        // What rounds to zero has no sign.
+        self.local(if is_zero { text.trim_start_matches('-') } else { &text })
+    }
+
+    /// A number that is known to two significant digits, such as the median of a forecast that has no
+    /// interval. Places and headings are no better known near zero than far from it: they have all digits
+    /// before the decimal point.
+    pub fn rough(&self, quantity: Quantity, value_si: f64) -> String {
+        let (value, symbol) = self.displayed(quantity, value_si);
+        let is_place = matches!(quantity, Quantity::Length | Quantity::Angle);
+        let number = match is_place && value.abs() >= 100.0 {
+            true => format!("{value:.0}"),
+            false => two_digits(value),
+        };
+        self.with_unit(&number, symbol)
+    }
+
+    /// The same of a vector, such as `3.0 kN s (x 1.1, y 2.8)`.
+    pub fn rough_vector(&self, quantity: Quantity, [x, y]: [f64; 2], names: [&str; 2]) -> String {
+        let unit = quantity.display_unit(self.units);
+        let [px, py] = [x, y].map(|si| self.local(&two_digits(unit.from_si(si))));
+        let length = self.rough(quantity, x.hypot(y));
+        self.with_components(&length, [&px, &py], names)
     }
 
     /// A share of one.
@@ -176,11 +207,15 @@ impl NumberFormat {
     pub fn vector(&self, quantity: Quantity, [x, y]: [f64; 2], names: [&str; 2]) -> String {
         let unit = quantity.display_unit(self.units);
         let [px, py] = [x, y].map(|si| self.number(unit.from_si(si)));
+        let length = self.value(quantity, x.hypot(y));
+        self.with_components(&length, [&px, &py], names)
+    }
+
+    fn with_components(&self, length: &str, [x, y]: [&str; 2], names: [&str; 2]) -> String {
         let [first, second] = names;
         // A comma is the decimal sign of German.
         let between = if self.language == Language::De { ";" } else { "," };
-        let length = self.value(quantity, x.hypot(y));
-        format!("{length} ({first} {px}{between} {second} {py})")
+        format!("{length} ({first} {x}{between} {second} {y})")
     }
 
     /// A median with its intervals. The interval of 90 %, or the widest if there is none, decides the
@@ -225,8 +260,20 @@ impl NumberFormat {
             return self.with_unit(&median, unit.symbol);
         }
         let [low, high] = bounds([low, high], width).map(|bound| self.local(&bound));
+        if (unit.symbol, self.language) == ("deg", Language::De) {
+            return format!("{median}° ({low}° {} {high}°)", self.to());
+        }
         let text = format!("{median} ({low} {} {high})", self.to());
         self.with_unit(&text, unit.symbol)
+    }
+
+    /// The same of what is computed with draws: where an interval cannot be told, the median is as
+    /// [`NumberFormat::rough`] writes it.
+    pub fn drawn_in_words(&self, quantity: Quantity, estimate: &Estimate) -> String {
+        match estimate.intervals.is_empty() {
+            true => self.rough(quantity, estimate.median),
+            false => self.estimate_in_words(quantity, estimate),
+        }
     }
 
     /// A value with its standard deviation, such as `46.2 ± 3.1 km/h`; that decides the digits.
@@ -293,6 +340,20 @@ pub fn significant(value: f64) -> String {
     }
     let decimals = (3 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
     let text = format!("{value:.decimals$}");
+    let is_zero = text.chars().all(|character| !('1'..='9').contains(&character));
+    if is_zero { "0".to_owned() } else { text }
+}
+
+/// A number as text with two significant digits, without an exponent.
+pub fn two_digits(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return significant(value);
+    }
+    let scale = 10.0_f64.powi(1 - value.abs().log10().floor() as i32);
+    let rounded = (value * scale).round() / scale;
+    // 9.96 is 10, which has no decimals.
+    let decimals = (1 - rounded.abs().log10().floor() as i32).clamp(0, 6) as usize;
+    let text = format!("{rounded:.decimals$}");
     let is_zero = text.chars().all(|character| !('1'..='9').contains(&character));
     if is_zero { "0".to_owned() } else { text }
 }
@@ -377,6 +438,29 @@ mod tests {
         assert_eq!(EN.measured(Quantity::Speed, 12.34, 0.876), "44.4 ± 3.2 km/h");
     }
 
+    /// “28.30 km/h” was the mean of a forecast whose places were known to some metres.
+    #[test]
+    fn what_is_drawn_and_has_no_interval_has_two_digits() {
+        let rough = |value| EN.rough(Quantity::Length, value);
+        assert_eq!(
+            [28.3, -0.098_63, 13_602.0, 9.96, 0.0, -1e-9].map(rough),
+            ["28 m", "-0.099 m", "13602 m", "10 m", "0 m", "0 m"]
+        );
+        // A place 43 m off was told, and one that stood still was said to turn.
+        assert_eq!([99.6, -1243.2].map(rough), ["100 m", "-1243 m"]);
+        assert_eq!(EN.rough(Quantity::Angle, 187.4_f64.to_radians()), "187 deg");
+        assert_eq!(EN.rough(Quantity::Force, 123_400.0), "120 kN");
+        assert_eq!(EN.rough(Quantity::AngularVelocity, -5.6e-7), "0 deg/s");
+        assert_eq!(
+            EN.rough_vector(Quantity::Impulse, [1124.0, 2810.0], ["x", "y"]),
+            "3.0 kN s (x 1.1, y 2.8)"
+        );
+        let estimate = Estimate::new(30.741, [26.52, 57.24], [26.52, 57.24]);
+        let drawn = |of: &Estimate| EN.drawn_in_words(Quantity::Length, of);
+        assert_eq!(drawn(&estimate), "31 (26 to 58) m");
+        assert_eq!(drawn(&estimate.without_intervals()), "31 m");
+    }
+
     #[test]
     fn german_has_its_decimal_sign_and_degrees() {
         assert_eq!(DE_US.value(Quantity::Speed, 44.704), "100,0 mph");
@@ -384,6 +468,7 @@ mod tests {
         assert_eq!(DE_US.local("2.5 kN. v1.x 3.0"), "2,5 kN. v1.x 3,0");
         let turn = Estimate::new(0.5, [0.4, 0.6], [0.3, 0.7]);
         assert_eq!(DE_US.estimate(Quantity::Angle, &turn).intervals[1].range, "17° bis 41°");
+        assert_eq!(DE_US.estimate_in_words(Quantity::Angle, &turn), "29° (17° bis 41°)");
     }
 
     #[test]
@@ -393,6 +478,7 @@ mod tests {
         assert_eq!(EN.given(Quantity::Speed, 15.0), "54 km/h");
         assert_eq!(EN.given_number(0.1 + 0.2), "0.3");
         assert_eq!(EN.given_number(0.0), "0");
+        assert_eq!([-0.02, -0.06, 0.0].map(|value| EN.fixed(value, 1)), ["0.0", "-0.1", "0.0"]);
         assert_eq!(EN.rounded(Quantity::Mass, 1999.4567), "1999 kg");
     }
 

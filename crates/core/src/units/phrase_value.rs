@@ -208,8 +208,8 @@ impl PhraseNumber {
             }
             PhraseDigits::Three => three_digits(value),
             PhraseDigits::Four => significant(value),
-            PhraseDigits::Given if !is_of_phrase => trimmed(significant(value)),
-            PhraseDigits::Given if unit.si_per_unit == 1.0 => value.to_string(),
+            PhraseDigits::Given if unit.symbol != of_phrase.symbol => trimmed(significant(value)),
+            PhraseDigits::Given if is_of_phrase && unit.si_per_unit == 1.0 => value.to_string(),
             PhraseDigits::Given => NumberFormat::default().given_number(value),
         };
         match self.is_bare {

@@ -107,8 +107,7 @@ pub fn simulate_paths<R: Send>(
         .flat_map(|alike| alike.chunks(RUNS_PER_TASK))
         .collect();
     let ended = parts.into_par_iter().map(|part| {
-        let task = Task { waiting: part, limit };
-        let paths = pulp::Arch::new().dispatch(task);
+        let paths = Task { waiting: part, limit }.paths();
         paths.into_iter().map(|(idx, path)| (idx, evaluate(idx, path))).collect::<Vec<_>>()
     });
     let mut ended: Vec<(usize, R)> = ended.flatten_iter().collect();
@@ -291,6 +290,15 @@ impl<'a> Lane<'a> {
 struct Task<'l, 'a> {
     waiting: &'l [Lane<'a>],
     limit: PathLimit,
+}
+
+impl Task<'_, '_> {
+    /// The numbers of the runs and their paths. It is not generic and never inlined, so that it is
+    /// compiled here and not once more in each crate that simulates.
+    #[inline(never)]
+    fn paths(self) -> Vec<(usize, Path)> {
+        pulp::Arch::new().dispatch(self)
+    }
 }
 
 impl WithSimd for Task<'_, '_> {

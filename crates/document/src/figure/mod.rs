@@ -16,6 +16,7 @@ mod motion;
 mod motion_forecast;
 mod reconstruction;
 mod reconstruction_scene;
+mod replay;
 mod scene;
 mod statistics;
 mod training;
@@ -47,6 +48,7 @@ pub use reconstruction_scene::{
     FollowedPath, ReconstructionScene, STRIKING_AT_REST, reconstruction_scene_figure,
     struck_at_rest,
 };
+pub use replay::{ReplayCurve, replay_curve_figure, replay_path_figure};
 pub use scene::{SceneFigure, SceneVehicle, pose_at, scene_figure, vehicle_outline};
 pub use statistics::{CurveStatistics, curve_statistics};
 pub use training::{LossCurve, balance_figure, loss_figure};

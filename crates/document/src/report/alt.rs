@@ -61,7 +61,6 @@ fn figure_text(title: &str, figure: &Figure, wording: &Wording) -> String {
 /// The values of an element, in the units of the axes; none of what has no few values.
 fn element_text(element: &FigureElement, figure: &Figure, wording: &Wording) -> Option<String> {
     let words = wording.words;
-    let number = |value: f64| wording.number(value);
     if !(figure.x.names.is_empty() && figure.y.names.is_empty()) {
         return None;
     }
@@ -72,12 +71,14 @@ fn element_text(element: &FigureElement, figure: &Figure, wording: &Wording) -> 
         FigureElement::Arrow(series) => line_text(series, true, wording),
         FigureElement::Band(band) => {
             let (x, low, high) = (band.x.last()?, band.low.last()?, band.high.last()?);
-            let [x, low, high] = [*x, *low, *high].map(number);
+            let of_axis = largest(band.low.iter().chain(&band.high).copied());
+            let x = read_off(*x, largest(band.x.iter().copied()), wording);
+            let [low, high] = [*low, *high].map(|value| read_off(value, of_axis, wording));
             let values = [("name", &*band.name), ("x", &*x), ("low", &*low), ("high", &*high)];
             Some(fill(words.band_alt, &values))
         }
         FigureElement::VerticalLine { name, x, .. } => {
-            Some(fill(words.instant_alt, &[("name", name), ("x", &number(*x))]))
+            Some(fill(words.instant_alt, &[("name", name), ("x", &wording.number(*x))]))
         }
         FigureElement::Points(_)
         | FigureElement::Polygon(_)
@@ -93,9 +94,12 @@ fn line_text(series: &Series, is_plan: bool, wording: &Wording) -> Option<String
     let (first, last) = (finite.first()?, finite.last()?);
     let least = finite.iter().min_by(|a, b| a[1].total_cmp(&b[1]))?;
     let greatest = finite.iter().max_by(|a, b| a[1].total_cmp(&b[1]))?;
-    let [x0, y0, x1, y1] = [first[0], first[1], last[0], last[1]].map(|it| wording.number(it));
-    let [low, at_low] = [least[1], least[0]].map(|it| wording.number(it));
-    let [high, at_high] = [greatest[1], greatest[0]].map(|it| wording.number(it));
+    let largest_x = largest(finite.iter().map(|[x, _]| *x));
+    let largest_y = largest(finite.iter().map(|[_, y]| *y));
+    let number =
+        |[x, y]: [f64; 2]| [read_off(x, largest_x, wording), read_off(y, largest_y, wording)];
+    let ([x0, y0], [x1, y1]) = (number(*first), number(*last));
+    let ([at_low, low], [at_high, high]) = (number(*least), number(*greatest));
     let template = if is_plan { wording.words.place_alt } else { wording.words.line_alt };
     let values = [
         ("name", &*series.name),
@@ -109,6 +113,20 @@ fn line_text(series: &Series, is_plan: bool, wording: &Wording) -> Option<String
         ("at_high", &*at_high),
     ];
     (!series.name.is_empty()).then(|| fill(template, &values))
+}
+
+/// The largest size of some values.
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.map(f64::abs).fold(0.0, f64::max)
+}
+
+/// A value as it can be read off a curve: to about a thousandth of the largest one.
+fn read_off(value: f64, largest: f64, wording: &Wording) -> String {
+    if largest == 0.0 || !largest.is_finite() {
+        return wording.number(value);
+    }
+    let decimals = (2 - largest.log10().floor() as i32).clamp(0, 6) as usize;
+    wording.fixed(value, decimals)
 }
 
 /// Names, each once.
@@ -127,6 +145,16 @@ mod tests {
     use super::*;
     use crate::figure::{Axis, Role};
     use impactlab_core::units::UnitSystem;
+
+    /// A yaw rate ended at “-0.000032 deg/s”, and the names of a curve had no more than that.
+    #[test]
+    fn a_curve_has_no_digits_that_cannot_be_read_off() {
+        let wording = Wording::english(UnitSystem::Si);
+        assert_eq!(read_off(-0.000_032, 122.5, &wording), "0");
+        assert_eq!(read_off(-122.46, 122.5, &wording), "-122");
+        assert_eq!(read_off(1.84, 4.0, &wording), "1.84");
+        assert_eq!(read_off(0.25, 0.0, &wording), "0.2500");
+    }
 
     #[test]
     fn a_curve_is_told_by_its_ends_and_its_extremes() {

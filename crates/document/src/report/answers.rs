@@ -2,7 +2,7 @@
 //! other.
 
 use crate::report::beside::{Said, beside_each_other};
-use crate::report::build::VariantParts;
+use crate::report::build::{VariantParts, parts_of};
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::Part;
 use crate::report::{Block, Language, ReportDate, Table};
@@ -52,13 +52,14 @@ pub(super) fn answer_blocks(
         let said = question.answers.iter().map(|(name, part)| {
             let variant = variants.iter().find(|variant| variant.name == *name);
             let others = Others::of(part, variant, wording);
-            Said { name, blocks: part_blocks(part, others, wording) }
+            let speaks = variant.is_some_and(|variant| speaks_for(part, variant));
+            Said { name, blocks: part_blocks(part, others, speaks, wording) }
         });
         let said: Vec<Said<'_>> = said.collect();
         told.extend(beside_each_other(&said, wording));
         told.extend(not_answered(&question, variants, wording));
     }
-    blocks.extend(without_repeated_tables(told));
+    blocks.extend(without_what_was_told(told, wording));
     blocks
 }
 
@@ -151,14 +152,26 @@ impl<'a> Others<'a> {
     }
 }
 
-/// A question with what may be wrong with its answer, and the answer without what others say of the
-/// force of the same collision.
-fn part_blocks(part: &Part, others: Others<'_>, wording: &Wording) -> Vec<Block> {
+/// Whether the tables of the opinion on a variant have all figures of an answer: of several of the highest
+/// rank they have those of the first.
+fn speaks_for(part: &Part, variant: &VariantParts) -> bool {
+    let rank = |part: &Part| part.opinion.as_ref().map(|opinion| opinion.rank);
+    let highest = parts_of(variant).filter_map(rank).max();
+    let first = parts_of(variant).find(|part| highest.is_some() && rank(part) == highest);
+    first.is_some_and(|first| std::ptr::eq(first, part))
+}
+
+/// A question with what may be wrong with its answer, and the answer without what the opinion has, or
+/// others say of the force of the same collision.
+///
+/// - `speaks`: whether the opinion has it.
+fn part_blocks(part: &Part, others: Others<'_>, speaks: bool, wording: &Wording) -> Vec<Block> {
     let warnings = part.caveats.iter().filter(|caveat| caveat.is_warning());
     let notices = warnings.map(|caveat| Block::notice(warning(caveat, wording)));
     let (question, rest) = part.answer.split_at(part.answer.len().min(1));
     let is_said = others.impact.is_some() && others.force.is_some();
     let rest = rest.iter().filter(|block| !(is_said && part.of_first_force.contains(block)));
+    let rest = rest.filter(|block| !(speaks && part.in_opinion.contains(block)));
     let rest = rest.map(|block| match block {
         Block::Table(table) if part.kind == wording.words.title_motion => {
             let rows = table.rows.iter().filter(|row| !others.has_row(table, row));
@@ -169,15 +182,18 @@ fn part_blocks(part: &Part, others: Others<'_>, wording: &Wording) -> Vec<Block>
     question.iter().cloned().chain(notices).chain(rest).collect()
 }
 
-/// Blocks in which each table stands once: what several answers have in common, such as the two methods
-/// beside each other, is said with the first of them, and so is what stands below such a table.
-fn without_repeated_tables(blocks: Vec<Block>) -> Vec<Block> {
+/// Blocks in which each table and note stands once: what several answers have in common, such as the two
+/// methods beside each other, is said with the first of them, and so is what stands below such a table.
+fn without_what_was_told(blocks: Vec<Block>, wording: &Wording) -> Vec<Block> {
+    let note = wording.words.noted.split('{').next().unwrap_or_default();
     let mut kept: Vec<Block> = Vec::new();
     let mut is_below_repeated = false;
     for block in blocks {
-        let is_told_again = match block {
+        let is_told_again = match &block {
             Block::Table(_) => kept.contains(&block),
-            Block::Paragraph { .. } => is_below_repeated && kept.contains(&block),
+            Block::Paragraph { text } => {
+                (is_below_repeated || text.starts_with(note)) && kept.contains(&block)
+            }
             _ => false,
         };
         is_below_repeated = is_told_again;
@@ -186,4 +202,48 @@ fn without_repeated_tables(blocks: Vec<Block>) -> Vec<Block> {
         }
     }
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::opinion::{PartOpinion, Rank};
+
+    fn forecast(distance: &str, rank: Rank) -> Part {
+        let figures = vec![["distance".to_owned(), distance.to_owned()]];
+        let rows = vec![figures[0].clone()];
+        let table = Block::Table(Table::new("Numbers", ["Quantity", "Value"], rows));
+        let opinion = PartOpinion {
+            rank,
+            question: "Where does it go?".to_owned(),
+            answer: String::new(),
+            courses: Vec::new(),
+            figures,
+            held: None,
+            hinges: Vec::new(),
+        };
+        Part {
+            opinion: Some(opinion),
+            answer: vec![Block::paragraph("Where does it go?"), table.clone()],
+            in_opinion: vec![table],
+            ..Part::default()
+        }
+    }
+
+    /// Of two forecasts of a variant the numbers of the second stood nowhere.
+    #[test]
+    fn only_what_the_opinion_has_is_left_out_of_an_answer() {
+        let parts = [
+            forecast("1 m", Rank::Simulation),
+            forecast("2 m", Rank::Forecast),
+            forecast("3 m", Rank::Forecast),
+        ];
+        let answers = parts.into_iter().map(Ok).collect();
+        let variant = VariantParts { name: "a".to_owned(), notes: String::new(), answers };
+        let wording = Wording::english(UnitSystem::Si);
+        let others = Others { impact: None, force: None };
+        let n_blocks =
+            |part: &Part| part_blocks(part, others, speaks_for(part, &variant), &wording).len();
+        assert_eq!(parts_of(&variant).map(n_blocks).collect::<Vec<_>>(), [2, 1, 2]);
+    }
 }

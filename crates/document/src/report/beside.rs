@@ -229,16 +229,26 @@ fn below_each_other(tables: &[(String, &Table)], wording: &Wording) -> Table {
             names.push(name);
         }
     }
-    let mut rows = Vec::new();
+    let mut rows: Vec<(&Vec<String>, Vec<&str>)> = Vec::new();
     for name in names {
         for (variant, table) in tables {
             for row in table.rows.iter().filter(|row| row.first() == Some(name)) {
-                let mut row = row.clone();
-                row.insert(1, variant.clone());
-                rows.push(row);
+                let is_of_others = |(known, of): &&mut (&Vec<String>, Vec<&str>)| {
+                    *known == row && of.iter().all(|name| name != variant)
+                };
+                match rows.iter_mut().find(is_of_others) {
+                    Some((_, of)) => of.push(variant),
+                    None => rows.push((row, vec![variant.as_str()])),
+                }
             }
         }
     }
+    let with_variants = |(row, of): (&Vec<String>, Vec<&str>)| {
+        let mut row = row.clone();
+        row.insert(1, of.join(", "));
+        row
+    };
+    let rows = rows.into_iter().map(with_variants).collect();
     let mut columns = first.columns.clone();
     let title = wording.words.variant_column.to_owned();
     columns.insert(1.min(columns.len()), Column { title, is_numeric: false });
@@ -374,5 +384,12 @@ mod tests {
         assert_eq!(table.columns[1].title, "Variant");
         let rows: Vec<String> = table.rows.iter().map(|row| row.join(" ")).collect();
         assert_eq!(rows, ["rear left coasts 3 m", "rear left coasts 1 m", "rear left brakes 7 m"]);
+        // What two of them have alike is one row.
+        let said = |name, lengths: &[&str]| Said { name, blocks: marks(lengths) };
+        let said = [said("coasts", &["3 m", "1 m"]), said("brakes", &["3 m"])];
+        let blocks = beside_each_other(&said, &wording);
+        let rows = &only_table(&blocks).rows;
+        let rows: Vec<String> = rows.iter().map(|row| row.join(" ")).collect();
+        assert_eq!(rows, ["rear left coasts, brakes 3 m", "rear left coasts 1 m"]);
     }
 }

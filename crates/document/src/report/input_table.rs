@@ -97,8 +97,10 @@ fn said_table(caption: &str, rows: &[&InputRow], wording: &Wording) -> Block {
     let mut cells: Vec<[String; 5]> = Vec::new();
     for (group, rows) in by_group(rows.iter().copied()) {
         let of = group.strip_prefix(&*within).unwrap_or(group);
-        let pairs = rows.chunks(2).map(pair_cells);
-        cells.extend(pairs.map(|[label, value, other, its_value]| {
+        let pairs = rows.chunks(2).map(pair_cells).enumerate();
+        // What the rows belong to stands in the first of them.
+        cells.extend(pairs.map(|(idx, [label, value, other, its_value])| {
+            let of = if idx == 0 { of } else { "" };
             [of.to_owned(), label, value, other, its_value]
         }));
     }
@@ -274,7 +276,7 @@ mod tests {
             said.rows,
             [
                 ["car", "a", "a kg", "b", "b kg"],
-                ["car", "c", "c kg", "", ""],
+                ["", "c", "c kg", "", ""],
                 ["road", "d", "d kg", "", ""]
             ]
         );

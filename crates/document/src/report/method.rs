@@ -114,24 +114,27 @@ impl Method {
     }
 }
 
-/// Of two texts that of collisions, that of a single car, or both, by what the methods answer.
+/// Of three texts those of collisions, of the reconstruction of a single car, and of one that is driven, by
+/// what the methods answer.
 pub(super) fn of_kinds(
     methods: &BTreeSet<Method>,
-    [collision, single_car]: [&'static str; 2],
+    [collision, single_car, driven]: [&'static str; 3],
 ) -> impl Iterator<Item = &'static str> {
     const OF_SINGLE_CAR: [Method; 3] = [Method::FourDofAlone, Method::SingleCar, Method::DataSheet];
     let is_single_car = methods.contains(&Method::SingleCar);
-    let is_collision =
-        !is_single_car || methods.iter().any(|method| !OF_SINGLE_CAR.contains(method));
-    let told = [is_collision.then_some(collision), is_single_car.then_some(single_car)];
-    told.into_iter().flatten()
+    let is_driven = !is_single_car && methods.contains(&Method::FourDofAlone);
+    let is_alone = is_single_car || is_driven;
+    let is_collision = !is_alone || methods.iter().any(|method| !OF_SINGLE_CAR.contains(method));
+    let told = [(is_collision, collision), (is_single_car, single_car), (is_driven, driven)];
+    told.into_iter().filter_map(|(is_told, text)| is_told.then_some(text))
 }
 
 /// A paragraph for each method, and the sources of all, numbered.
 pub(super) fn method_blocks(methods: &BTreeSet<Method>, wording: &Wording) -> Vec<Block> {
     let words = wording.words;
     let mut cited: Vec<&'static str> = Vec::new();
-    let axes = of_kinds(methods, [words.axes_text, words.axes_single_car_text]);
+    let axes = [words.axes_text, words.axes_single_car_text, words.axes_driven_text];
+    let axes = of_kinds(methods, axes);
     let mut blocks: Vec<Block> = axes.map(Block::paragraph).collect();
     for method in methods {
         let numbers: Vec<String> = method

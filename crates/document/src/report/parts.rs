@@ -68,6 +68,8 @@ pub(super) struct Part {
     /// Of these what is left out where the impact and the force of the same collision are questions of
     /// their own.
     pub of_first_force: Vec<Block>,
+    /// Of these what the opinion has, if this answer speaks for its variant.
+    pub in_opinion: Vec<Block>,
     /// Scenes and curves.
     pub pictures: Vec<PartPicture>,
     /// What it rests on.

@@ -3,13 +3,14 @@
 
 use crate::report::alt::alt_text;
 use crate::report::answer::capitalized;
-use crate::report::build::VariantParts;
+use crate::report::build::{VariantParts, parts_of};
 use crate::report::document::Picture;
 use crate::report::numbers::Wording;
 use crate::report::parts::{Part, PartPicture};
 use crate::report::{Block, Language, PictureContent};
 use crate::scene::SceneStill;
 use impactlab_core::uncertainty::{Caveat, Caveats};
+use impactlab_core::units::{Phrase, PhraseValue};
 
 /// A picture with those that have it.
 struct Held<'a> {
@@ -23,8 +24,9 @@ struct Held<'a> {
 /// variant after the other.
 pub(super) fn picture_blocks(variants: &[VariantParts], wording: &Wording) -> Vec<Block> {
     let held = held_pictures(variants);
-    let is_density = |picture: &PartPicture| matches!(&picture.content, PictureContent::Scene(it) if it.scene.density.is_some());
     let has_forecast = held.iter().any(|held| is_density(held.picture));
+    let held: Vec<Held<'_>> =
+        held.into_iter().filter(|it| !is_in_forecast(it, variants, wording)).collect();
     let are_several = held.iter().any(|it| held.iter().any(|of| of.collision != it.collision));
     let mut kinds: Vec<&str> = Vec::new();
     for Held { picture, .. } in &held {
@@ -83,6 +85,30 @@ fn held_pictures(variants: &[VariantParts]) -> Vec<Held<'_>> {
         }
     }
     all
+}
+
+/// Whether a picture is the end of a motion that the forecast of each of its variants shows too.
+fn is_in_forecast(held: &Held<'_>, variants: &[VariantParts], wording: &Wording) -> bool {
+    let PictureContent::Scene(end) = &held.picture.content else { return false };
+    let shows_it = |picture: &PartPicture| match &picture.content {
+        PictureContent::Scene(of) => {
+            is_density(picture) && end.scene.cars.iter().all(|car| of.scene.cars.contains(car))
+        }
+        PictureContent::Figure(_) => false,
+    };
+    let has_forecast = |name: &&str| {
+        let variant = variants.iter().find(|variant| variant.name == **name);
+        let mut parts = variant.into_iter().flat_map(parts_of);
+        parts.any(|part| part.pictures.iter().any(shows_it))
+    };
+    // What its ground lacks may stand behind the caption.
+    let is_end = held.picture.caption.starts_with(wording.words.scene_picture);
+    is_end && held.variants.iter().all(has_forecast)
+}
+
+/// Whether a picture shows where a vehicle may come to.
+fn is_density(picture: &PartPicture) -> bool {
+    matches!(&picture.content, PictureContent::Scene(it) if it.scene.density.is_some())
 }
 
 /// What the heading of a part says behind the kind of its question.
@@ -148,17 +174,28 @@ fn shown_still(still: &SceneStill, wording: &Wording) -> SceneStill {
 fn told(caveats: &Caveats, wording: &Wording) -> Caveats {
     let told = |caveat: &Caveat| {
         let text = wording.caveat_text(caveat);
-        Caveat { text, text_phrase: None, ..caveat.clone() }
+        // It is in the language of the report already: a picture puts it in no quotation marks.
+        let text_phrase = Some(Phrase::of(PhraseValue::Name(text.clone())));
+        Caveat { text, text_phrase, ..caveat.clone() }
     };
     caveats.iter().map(told).collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::figure::{Axis, Figure, FigureElement, Role};
     use crate::report::{Paper, ReportDate, ReportSettings};
+    use crate::scene::{
+        CarBody, CarLook, CarMotion, CarShape, Scene, SceneCar, SceneDensity, SceneRole, ViewKind,
+    };
+    use impactlab_core::collision::{Footprint, Pose};
+    use impactlab_core::uncertainty::PlanarGrid;
     use impactlab_core::units::{Quantity, UnitSystem};
+    use impactlab_core::vehicle::Preset;
+    use impactlab_study::analysis::DensityMap;
 
     fn part(heading: f64) -> Part {
         let [x, y] =
@@ -205,6 +242,54 @@ mod tests {
                 "Figure 3 (b): Another",
             ]
         );
+    }
+
+    /// A car along X at a speed, and over it a density, if it is a forecast.
+    fn scene(speed_m_s: f64, is_forecast: bool) -> PartPicture {
+        let vehicle = Preset::Reference.parameters();
+        let body = CarBody::new(&vehicle, &Footprint::from(&vehicle.geometry));
+        let poses = [0.0, 1.0].map(|s| Pose { x_m: speed_m_s * s, y_m: 0.0, yaw_rad: 0.0 });
+        let motion = CarMotion::from_poses(&poses, 1.0, &body).unwrap();
+        let car = SceneCar {
+            name: "4DOF simulation".to_owned(),
+            tag: "struck".to_owned(),
+            role: SceneRole::Simulated,
+            look: CarLook::Solid,
+            shape: Arc::new(CarShape::new(body)),
+            motion: Arc::new(motion),
+        };
+        let grid = PlanarGrid { low_m: [0.0; 2], step_m: [1.0; 2], size: [1; 2] };
+        let map = DensityMap {
+            window_s: [1.0; 2],
+            grid,
+            values: Arc::new(vec![1.0]),
+            regions: Vec::new(),
+        };
+        let density = SceneDensity { name: "density".to_owned(), map: Arc::new(map), peak: 1.0 };
+        let scene =
+            Scene { cars: vec![car], density: is_forecast.then_some(density), ..Scene::default() };
+        let words = Wording::english(UnitSystem::Si).words;
+        let caption = if is_forecast { words.forecast_scene_picture } else { words.scene_picture };
+        let still = SceneStill {
+            scene: Arc::new(scene),
+            time_s: 1.0,
+            view: ViewKind::Above,
+            near_m: None,
+            is_half_wide: false,
+        };
+        PartPicture::still(caption.to_owned(), still)
+    }
+
+    /// The end of a motion that another question of the collision has otherwise was left out, too.
+    #[test]
+    fn only_a_motion_that_a_forecast_shows_has_no_picture_of_its_end() {
+        let n_shown = |speed_m_s: f64| {
+            let scenes = vec![scene(speed_m_s, false), scene(15.0, true)];
+            let part = Part { pictures: scenes, ..part(1.0) };
+            let variants = [variant("a", part)];
+            pictures(&picture_blocks(&variants, &Wording::english(UnitSystem::Si))).len()
+        };
+        assert_eq!([15.0, 12.0].map(n_shown), [1, 2]);
     }
 
     /// Axes and legends of a German report were English, and the title of a picture repeated its caption.

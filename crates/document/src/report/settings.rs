@@ -48,6 +48,14 @@ pub struct DateError {
 }
 
 impl Paper {
+    /// The paper that is usual where the units are.
+    pub fn usual(units: UnitSystem) -> Self {
+        match units {
+            UnitSystem::Si => Self::A4,
+            UnitSystem::Us => Self::Letter,
+        }
+    }
+
     /// Width and height, points of 1/72 in.
     pub fn size_pt(self) -> [f32; 2] {
         match self {

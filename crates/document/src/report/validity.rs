@@ -112,15 +112,9 @@ fn caveat_rows(variants: &[VariantParts], wording: &Wording) -> Vec<[String; 4]>
 fn sentence(caveat: &Caveat, wording: &Wording) -> String {
     let words = wording.words;
     let mut text = wording.caveat_text(caveat);
-    // A whole number of the text, so that 0 is not said by 10.
-    let is_number = |c: char| c.is_ascii_digit() || c == '.' || c == '-';
-    let is_in_text = |value: f64| {
-        let numbers = caveat.text.split(|c| !is_number(c));
-        let mut numbers = numbers.map(|number| number.trim_end_matches('.'));
-        numbers.any(|number| number == significant(value) || is_rounded(number, value))
-    };
     if let Some(CaveatQuantity { name, unit, value, range }) = caveat.quantity_in(wording)
-        && !caveat.value.is_some_and(is_in_text)
+        && !caveat.value.is_some_and(|value_si| has_number(&caveat.text, value_si))
+        && !has_number(&text.replace(',', "."), value)
     {
         let number = |value: f64| wording.local(&trimmed(significant(value)));
         let range = match range {
@@ -137,6 +131,14 @@ fn sentence(caveat: &Caveat, wording: &Wording) -> String {
         text = format!("{text}. {}.", fill(words.allowed_range, &values));
     }
     text
+}
+
+/// Whether a text has a value as a whole number of its own, so that 0 is not said by 10.
+fn has_number(text: &str, value: f64) -> bool {
+    let is_number = |c: char| c.is_ascii_digit() || c == '.' || c == '-';
+    let numbers = text.split(|c| !is_number(c));
+    let mut numbers = numbers.map(|number| number.trim_end_matches('.'));
+    numbers.any(|number| number == significant(value) || is_rounded(number, value))
 }
 
 /// Whether a text says a value, or that in per cent, with fewer digits, of which there are two or more.
@@ -188,5 +190,6 @@ mod tests {
         assert!(is_rounded("7.9", 7.914) && is_rounded("10.3", 0.1031) && is_rounded("4.00", 4.0));
         assert!(!is_rounded("7.8", 7.914) && !is_rounded("8", 7.914) && !is_rounded("0.0", 0.01));
         assert!(!is_rounded("", 0.2));
+        assert!(has_number("it still moves at 2.1 km/h", 2.072) && !has_number("10 m", 0.0));
     }
 }

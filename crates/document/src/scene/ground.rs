@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::scene::GroundPicture;
 use impactlab_core::site::{
     Drawing, EdgeLine, GeographicFrame, Lane, MapFeature, Site, SiteOrigin, SurveyedPoint,
-    map_features,
+    extent_of, map_features,
 };
 use impactlab_core::vehicle::FrictionZone;
 
@@ -121,6 +121,17 @@ impl SceneGround {
         // The origin of a place on the earth has no coordinates of a survey.
         let origin = site.origin.filter(|_| geographic.is_none());
         Self { picture, areas, lines, north_rad: site.north_rad(), origin, geographic }
+    }
+
+    /// Smallest and largest `[X, Y]` of all that is drawn of it, m; `None` if nothing is.
+    pub fn extent_m(&self) -> Option<[[f64; 2]; 2]> {
+        let of_picture = |picture: &Arc<GroundPicture>| {
+            picture.map.corners_m(picture.size().map(|side| side as u32))
+        };
+        let corners = self.picture.iter().flat_map(of_picture);
+        let borders = self.areas.iter().flat_map(|area| area.border_m.iter().copied());
+        let lines = self.lines.iter().flat_map(|line| line.points_m.iter().copied());
+        extent_of(corners.chain(borders).chain(lines))
     }
 
     /// Whether there is a picture.

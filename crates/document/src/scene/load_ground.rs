@@ -7,6 +7,7 @@ use crate::scene::{GroundLineKind, GroundPicture, SceneGround};
 use impactlab_core::site::{
     DrawingSummary, PixelMap, Site, SiteError, extent_of, read_drawing, read_picture,
 };
+use impactlab_core::units::{Quantity, UnitSystem};
 
 /// A ground that was read.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,15 +58,17 @@ impl LoadedGround {
     }
 
     /// What the site consists of, in words.
-    pub fn contents(&self) -> Vec<String> {
-        self.site.contents(self.drawing.as_ref())
+    pub fn contents(&self, units: UnitSystem) -> Vec<String> {
+        self.site.contents(self.drawing.as_ref(), units)
     }
 
     /// What lies so far from a scene that it cannot be seen in it: an orthophoto or a drawing in survey
     /// coordinates without an origin, or in another unit than it is said to be.
     ///
-    /// - `scene_m`: smallest and largest `[X, Y]` of the scene, m.
-    pub fn far_notes(&self, scene_m: [[f64; 2]; 2]) -> Vec<String> {
+    /// - `scene_m`: smallest and largest `[X, Y]` of the scene, m;
+    /// - `units`: of the distance that is said.
+    pub fn far_notes(&self, scene_m: [[f64; 2]; 2], units: UnitSystem) -> Vec<String> {
+        let unit = Quantity::Length.display_unit(units);
         let photo = self.site.orthophoto.as_ref().map(|orthophoto| {
             let remedy = "[origin] of the site file, or unit of its world file";
             (&orthophoto.file, gap_m(orthophoto.extent_m(), scene_m), remedy)
@@ -80,9 +83,11 @@ impl LoadedGround {
         let far = photo.into_iter().chain(drawing).filter(|(_, gap_m, _)| *gap_m > FAR_M);
         far.map(|(file, gap_m, remedy)| {
             format!(
-                "{}: lies {gap_m:.0} m away from the scene, so that nothing of it is seen there; is {remedy} \
+                "{}: lies {:.0} {} away from the scene, so that nothing of it is seen there; is {remedy} \
                  missing or wrong?",
-                file.display()
+                file.display(),
+                unit.from_si(gap_m),
+                unit.symbol
             )
         })
         .collect()

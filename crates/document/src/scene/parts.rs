@@ -290,7 +290,8 @@ impl Scene {
         extent_of(&self.places_m())
     }
 
-    /// Places on the ground that hold between them everything that is shown at any time, `[X, Y]`, m.
+    /// Places on the ground that hold between them everything that is shown at any time, `[X, Y]`, m. The
+    /// ground itself counts where nothing is on it.
     pub fn places_m(&self) -> Vec<[f64; 2]> {
         let mut points: Vec<[f64; 2]> = Vec::new();
         for car in &self.cars {
@@ -306,6 +307,9 @@ impl Scene {
         points.extend(self.points.iter().map(|point| point.at_m));
         points.extend(self.arrows.iter().flat_map(|arrow| arrow.ends_m));
         points.extend(self.crosses.iter().map(|cross| cross.at_m));
+        if points.is_empty() {
+            points.extend(self.ground.iter().filter_map(|ground| ground.extent_m()).flatten());
+        }
         points.retain(|point| point.iter().all(|value| value.is_finite()));
         let [low, high] = extent_of(&points);
         let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];

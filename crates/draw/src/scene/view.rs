@@ -30,6 +30,8 @@ const ZOOM_PER_KEY: f64 = 1.25;
 /// Step by which a fitted camera goes back to clear the edge of the picture, and most steps.
 const STEP_BACK: f64 = 1.05;
 const MAX_STEPS_BACK: i32 = 8;
+/// Height from which a scene has a legend above it, points: in less, the picture has the room.
+const LEGEND_FROM: f32 = 200.0;
 
 /// Which car the camera follows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -171,7 +173,8 @@ impl SceneView {
     }
 }
 
-/// Draws the legend of a scene, and the scene at a time below it in the space that is left.
+/// Draws the legend of a scene, where there is room for it, and the scene at a time below it in the space
+/// that is left.
 ///
 /// - `height`: of both, points;
 /// - `usual`: the camera with the kind of view and the directions that are wanted; it is fitted to the
@@ -186,7 +189,9 @@ pub fn scene_view_ui(
     height: f32,
 ) -> Response {
     let top = ui.cursor().top();
-    legend_ui(ui, scene);
+    if height >= LEGEND_FROM {
+        legend_ui(ui, scene);
+    }
     let used = ui.cursor().top() - top;
     let size = Vec2::new(ui.available_width().max(32.0), (height - used).max(64.0));
     scene_picture_ui(ui, (scene, time_s), view, usual, follow, size)

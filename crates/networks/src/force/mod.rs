@@ -34,8 +34,8 @@ pub use input::{ContactLaw, ForceCase, ForceCaseError, ForceScenario, curve_on_g
 pub use metrics::CurvePrediction;
 pub use network::{OpenFeatures, OutsideTraining, Standardisation};
 pub use physics::{
-    CentreCurve, CentreFit, CentreModel, MOMENTUM_DIRECTION_STD_RAD, MOMENTUM_IMPULSE_LOG_STD,
-    MomentumModel, regression,
+    CentreCurve, CentreModel, MOMENTUM_DIRECTION_STD_RAD, MOMENTUM_IMPULSE_LOG_STD, MomentumModel,
+    regression,
 };
 pub use predict::{ForcePrediction, SHARE_OF_NETWORK};
 pub use regression::ColumnSet;

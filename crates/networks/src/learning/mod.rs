@@ -37,8 +37,10 @@ pub use memory::MAX_MEMORY_BYTES;
 pub(crate) use memory::{check_memory, sum};
 pub use model_file::ModelFile;
 pub use record::{EpochDetail, EpochRecord, TrainingRecord};
+pub(crate) use report::FitSteps;
 pub use report::{
-    EpochReport, EpochSummary, NamedLoss, PhysicsBalance, TrainingProgress, TrainingReport,
+    EpochReport, EpochSummary, FitReport, NamedLoss, PhysicsBalance, TrainingProgress,
+    TrainingReport,
 };
 pub use setting::{check_relation, check_settings, load_settings};
 pub use split::{Split, TEST_SHARE, folds, split};

@@ -13,17 +13,59 @@ pub type TrainingProgress<'a> = dyn FnMut(&TrainingReport) -> ControlFlow<()> + 
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TrainingReport {
-    /// Something is fitted before the first epoch.
-    Fit {
-        /// What is being fitted, for a person.
-        what: String,
-        /// Fits that are over.
-        done: usize,
-        /// Fits in all.
-        n_fits: usize,
-    },
+    /// Something is fitted before the first epoch or after the last one.
+    Fit(FitReport),
     /// An epoch is over.
     Epoch(EpochReport),
+}
+
+/// How far the fits before the first epoch or after the last one have come.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct FitReport {
+    /// Whether the epochs are over.
+    pub is_after_epochs: bool,
+    /// What is being fitted, for a person: the same for all steps of one fit.
+    pub what: String,
+    /// Cost of the fit after the latest step, where it is known.
+    pub cost: Option<f64>,
+    /// Steps of all fits that are over; a fit that ends early counts as all of its steps.
+    pub done: usize,
+    /// Steps of all fits.
+    pub n_steps: usize,
+}
+
+/// The steps of all fits before the first epoch or after the last one, as they are reported.
+pub(crate) struct FitSteps<'a, 'b> {
+    report: &'a mut TrainingProgress<'b>,
+    latest: FitReport,
+}
+
+impl<'a, 'b> FitSteps<'a, 'b> {
+    /// - `n_steps`: steps of all fits.
+    pub fn new(
+        report: &'a mut TrainingProgress<'b>,
+        is_after_epochs: bool,
+        n_steps: usize,
+    ) -> Self {
+        let latest = FitReport { is_after_epochs, n_steps, ..FitReport::default() };
+        Self { report, latest }
+    }
+
+    /// Says what is fitted from the next report on.
+    pub fn name(&mut self, what: impl Into<String>) {
+        self.latest.what = what.into();
+    }
+
+    /// Says how many steps of all fits are over.
+    pub fn at(&mut self, done: usize, cost: Option<f64>) -> ControlFlow<()> {
+        (self.latest.done, self.latest.cost) = (done.min(self.latest.n_steps), cost);
+        (self.report)(&TrainingReport::Fit(self.latest.clone()))
+    }
+
+    /// Says that more steps are over.
+    pub fn advance(&mut self, n: usize) -> ControlFlow<()> {
+        self.at(self.latest.done + n, None)
+    }
 }
 
 /// An epoch that is over, and where in its training it stands.
@@ -121,6 +163,15 @@ impl EpochSummary {
     }
 }
 
+/// One line: when, what, and the cost.
+impl fmt::Display for FitReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let when = if self.is_after_epochs { "after" } else { "before" };
+        write!(f, "{when} the epochs: {}", self.what)?;
+        self.cost.map_or(Ok(()), |cost| write!(f, ", cost {cost:.3}"))
+    }
+}
+
 /// One line: losses, balance, and whether the weights are the best so far.
 impl fmt::Display for EpochReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -166,6 +217,26 @@ mod tests {
         let calibration = EpochReport { training_idx: 2, ..report() };
         assert_eq!(calibration.progress(), (22, 30));
         assert!((calibration.share_done() - 22.0 / 30.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_steps_of_fits_are_counted_over_all_of_them() {
+        let mut told = Vec::new();
+        let mut report = |report: &TrainingReport| {
+            if let TrainingReport::Fit(fit) = report {
+                told.push((fit.to_string(), fit.done, fit.n_steps));
+            }
+            ControlFlow::Continue(())
+        };
+        let mut steps = FitSteps::new(&mut report, true, 8);
+        steps.name("first");
+        let _ = steps.at(3, Some(0.5));
+        steps.name("second");
+        let _ = steps.advance(0);
+        let _ = steps.advance(9);
+        let line = |line: &str, done| (format!("after the epochs: {line}"), done, 8);
+        let expected = [line("first, cost 0.500", 3), line("second", 3), line("second", 8)];
+        assert_eq!(told, expected);
     }
 
     #[test]

@@ -136,8 +136,8 @@ fn struck_at(case: &PairCase, time_s: f64) -> Result<Pose, SeriesError> {
 fn found_turning() -> After {
     After {
         blocked_wheels: Some(Vec::new()),
-        dragging_wheels: None,
         driver_braked: DriverBraked::Unknown,
+        ..After::default()
     }
 }
 

@@ -47,6 +47,8 @@
 //! blocked_wheels = ["RR"]           # locked: FL, FR, RL, RR; [] if all turn
 //! dragging_wheels = ["RL"]          # turn, but are held back by the damage
 //! driver_braked = "unknown"         # yes, no: the car coasts
+//! anti_lock = "unknown"             # yes, no: wheels that are braked too hard lock
+//! anti_lock_probability = 0.5       # where it is unknown
 //!
 //! [[mark]]                          # and [[striking_mark]]
 //! wheel = "RR"

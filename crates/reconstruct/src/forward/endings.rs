@@ -8,8 +8,9 @@ use impactlab_core::data::{ForceAxes, ForceHistory, Sampling};
 use impactlab_core::ranges::{ROAD_FRICTION, STRUCK_TURN};
 use impactlab_core::units::STANDARD_GRAVITY_M_S2;
 use impactlab_core::vehicle::{
-    Braking, ContactLoad, ContactPoint, DEFAULT_BRAKE_RISE_S, DrivenAxle, Ending, EngineBraking,
-    FrictionZone, HeldSteer, Manoeuvre, PitDriver, PitEnd, VehicleParameters, VehicleState,
+    AntiLock, Braking, ContactLoad, ContactPoint, DEFAULT_BRAKE_RISE_S, DrivenAxle, Ending,
+    EngineBraking, FrictionZone, HeldSteer, Manoeuvre, PitDriver, PitEnd, VehicleParameters,
+    VehicleState,
 };
 
 /// When the front wheels are turned, s after the first contact.
@@ -53,9 +54,16 @@ impl ForwardModel {
                 values.get(Latent::BrakeRise),
             );
             let shift = values.get(Latent::FrontBrakeShift);
+            let abs = anti_lock(values, Latent::AntiLockDecision);
+            // Wheels that an anti-lock system keeps turning need no time to stop.
+            let lock_delay_s = match abs {
+                Some(_) => 0.0,
+                None => lock_delay_s(vehicle, &brake, self.speed_m_s(values)),
+            };
             Braking {
                 front_share: Some(brake.ideal_front_share(vehicle) + shift),
-                lock_delay_s: lock_delay_s(vehicle, &brake, self.speed_m_s(values)),
+                lock_delay_s,
+                abs,
                 ..brake
             }
         });
@@ -134,6 +142,7 @@ impl ForwardModel {
         let brake_share = brakes_from_s.map(|_| {
             values.get(Latent::StrikingBrakeShare) * values.get(Latent::LongitudinalFrictionRatio)
         });
+        let abs = anti_lock(values, Latent::StrikingAntiLockDecision);
         if values.striking_pushes() {
             let end = brake_share.map_or(PitEnd::Straighten, |_| PitEnd::Brake);
             let inwards_rad = values.get(Latent::PushSteeringWheel);
@@ -147,13 +156,22 @@ impl ForwardModel {
                 brake_share,
                 ..PitDriver::default()
             };
-            return Ending { damage, pit: Some(pit), ..Ending::default() };
+            // The system belongs to the service brake, whose pedal he presses as the driver of the PIT.
+            let released = Braking::new(0.0, 0.0, DEFAULT_BRAKE_RISE_S);
+            let brake = abs.map(|abs| Braking { abs: Some(abs), ..released });
+            return Ending { brake, damage, pit: Some(pit), ..Ending::default() };
         }
         let brake = brakes_from_s
             .zip(brake_share)
-            .map(|(start_s, share)| Braking::new(start_s, share, DEFAULT_BRAKE_RISE_S));
+            .map(|(start_s, share)| Braking::new(start_s, share, DEFAULT_BRAKE_RISE_S))
+            .map(|brake| Braking { abs, ..brake });
         Ending { brake, damage, ..Ending::default() }
     }
+}
+
+/// The anti-lock system of a car in a draw, if it has one.
+fn anti_lock(values: &LatentValues, which: Latent) -> Option<AntiLock> {
+    values.has_anti_lock(which).then(AntiLock::default)
 }
 
 /// Time that wheels need to stop turning under a force that the road cannot hold, s:

@@ -22,7 +22,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::Cars;
-use crate::evidence::{After, DriverBraked, Evidence, Mark, MarkKind, Measured, RestPose, ends};
+use crate::evidence::{
+    After, AntiLockBrakes, DriverBraked, Evidence, Mark, MarkKind, Measured, RestPose, ends,
+};
 use crate::hand::momentum::{LEAST_ANGLE_RAD, speed_in_line, speeds_at_angles};
 use crate::hand::slide::{LEAST_SPIN_RAD, SPIN_DRAG, SPIN_DRAG_SIGMA, slide_speed_m_s};
 use crate::single_car::StartPlace;
@@ -198,18 +200,19 @@ fn drag(
     let is_braked_hard = after.driver_braked == DriverBraked::Yes
         && start_s.is_some_and(|[_, last]| last <= AT_ONCE_S)
         && share.is_some_and(|[least, _]| least > 1.0);
-    if after.is_all_locked() || has_four_locked_marks(marks, way_m) {
+    let has_anti_lock = after.anti_lock == AntiLockBrakes::Yes;
+    if after.is_all_locked() || (!has_anti_lock && has_four_locked_marks(marks, way_m)) {
         let holds = match evidence.is_single_car() {
-            true => "way to rest; all wheels were locked from the start on",
-            false => "way to rest; all wheels were locked from the impact on",
+            true => "distance to rest; all wheels were locked from the start on",
+            false => "distance to rest; all wheels were locked from the impact on",
         };
         return locked.map(|drag| (drag, holds));
     }
     if evidence.is_single_car() {
         return None;
     }
-    if is_braked_hard {
-        return locked.map(|drag| (drag, "way to rest; the brakes locked all wheels at once"));
+    if is_braked_hard && !has_anti_lock {
+        return locked.map(|drag| (drag, "distance to rest; the brakes locked all wheels at once"));
     }
     let turned = rest.heading().map(|heading| wrap_angle_rad(heading.value).abs());
     let has_spun = turned.is_some_and(|turned| turned > LEAST_SPIN_RAD);
@@ -219,7 +222,7 @@ fn drag(
     let value = SPIN_DRAG * road.value;
     let relative = (SPIN_DRAG_SIGMA / SPIN_DRAG).hypot(road.sigma / road.value);
     let drag = Measured { value, sigma: relative * value };
-    Some((drag, "way to rest; it spun with wheels that turned, with half of the friction"))
+    Some((drag, "distance to rest; it spun with wheels that turned, with half of the friction"))
 }
 
 /// Whether no wheel is known to be held.

@@ -11,6 +11,7 @@
 //! | driver brakes | 3 of 4 | assumed |
 //! | … from | normal, −0.2 ± 0.7 s about a start by a mark | marks begin where somebody brakes; assumed |
 //! | … | uniform, −1.5 to 4 s about a stated start | a place says nothing of the driver; assumed |
+//! | … with an anti-lock system | 1 of 2 | nothing is known; without it, wheels lock where the road does not hold them |
 //! | wheels | those that somebody found locked or dragged are so from the start on | |
 //!
 //! Four locked wheels leave no part for brakes, engine and steering. The mass is that which is stated: friction,
@@ -20,7 +21,7 @@ use crate::cars::Cars;
 use crate::evidence::{DriverBraked, Evidence, Measured};
 use crate::prior::{HIGHEST_SPEED_M_S, Prior, PriorSource, log_normal, normal};
 use crate::single_car::StartPlace;
-use crate::{Distribution, Latent, LatentValues};
+use crate::{ANTI_LOCK_PROBABILITY, Distribution, Latent, LatentValues};
 use std::f64::consts::PI;
 
 impl Prior {
@@ -100,6 +101,7 @@ impl Prior {
             self.assume(Latent::FrontBrakeShift, normal(0.0, 0.05, -0.2, 0.2));
             let share = log_normal(0.8, 0.79, 0.05, 3.0);
             self.open(Latent::BrakeShare, ranges.brake_share, assumed(share));
+            self.add_anti_lock(Latent::AntiLockDecision, after, ANTI_LOCK_PROBABILITY);
         }
         self.assume(Latent::EngineBraking, Distribution::Uniform { low: 0.0, high: 0.8 });
         let steer = normal(0.0, 0.087, -0.6, 0.6);

@@ -105,6 +105,22 @@ pub enum StudyError {
         /// The angle and its range.
         source: OutOfRange,
     },
+    /// The car on which a force of a finite-element run acts drives in a direction that is not taken for its
+    /// heading.
+    #[error(
+        "{}: the parts on which the force acts begin with ({vx_m_s:.2}, {vy_m_s:.2}) m/s along the axes of the \
+         model, and the vehicle of a force heads along x: give the force along its own axes, such as with \
+         --map fx=-2,fy=-3 where it drives against x, and its speed with --speed",
+        path.display()
+    )]
+    ModelHeading {
+        /// The file.
+        path: PathBuf,
+        /// Velocity along x of the model, m/s.
+        vx_m_s: f64,
+        /// Velocity along y of the model, m/s.
+        vy_m_s: f64,
+    },
     /// Two things control the vehicle alike.
     #[error("{name}: more than one of file, fishhook and ending {what} the vehicle, expected one")]
     TwoControls {

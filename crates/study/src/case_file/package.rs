@@ -153,6 +153,8 @@ fn placed_files(used: &[PathBuf]) -> Result<Vec<(PathBuf, String)>, CaseError> {
 pub fn file_stem(name: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
     let plain: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+    // A colon or comma before a space is no word.
+    let plain = plain.replace("_ ", " ");
     let plain = plain.trim();
     if plain.is_empty() { "case".to_owned() } else { plain.to_owned() }
 }

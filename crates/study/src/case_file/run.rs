@@ -6,10 +6,14 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::case_file::{CaseError, CaseFile, Change, UsedModel, Variant};
-use crate::{AnyAnswer, Library, Observer, Report, Request, StudyError};
+use crate::{AnyAnswer, Event, Library, Observer, Report, Request, StudyError};
 use impactlab_core::data::Outcome;
 use impactlab_core::data::write::ModelDigest;
 use impactlab_core::error_chain;
+use impactlab_core::jobs::Progress;
+
+/// Units of work of a question in the progress of all of them.
+const STEPS: u64 = 1000;
 
 /// The answers to all questions of a case.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -84,11 +88,22 @@ impl CaseFile {
         let is_chosen =
             |variant: &&Variant| variants.is_empty() || variants.contains(&variant.name);
         self.check_writable()?;
+        let chosen = || self.variants.iter().filter(is_chosen);
+        let n: usize = chosen().map(|variant| variant.questions.len()).sum();
+        let mut n_asked = 0;
         let mut reports = Vec::new();
-        for variant in self.variants.iter().filter(is_chosen) {
+        for variant in chosen() {
             let mut answers = Vec::new();
             for request in &variant.questions {
-                let answered = match request.answer(library, observer) {
+                let mut watch = |event: Event<'_>| match event {
+                    Event::Progress(progress) => {
+                        observer(Event::Progress(of_all(progress, n_asked, n as u64)))
+                    }
+                    event => observer(event),
+                };
+                let answer = request.answer(library, &mut watch);
+                n_asked += 1;
+                let answered = match answer {
                     Ok(Outcome::Complete(answer)) => {
                         listener(variant, request, Ok(&answer));
                         (Some(answer.into_report()), None)
@@ -122,6 +137,16 @@ impl CaseFile {
         };
         self.models.iter().filter(is_other).map(change).collect()
     }
+}
+
+/// The progress of all questions, each of which counts alike.
+///
+/// - `progress`: of the question that is asked;
+/// - `n_before`: questions before it, of `n`.
+fn of_all(progress: Progress, n_before: u64, n: u64) -> Progress {
+    let share = f64::from(progress.fraction().unwrap_or(0.0));
+    let done = n_before * STEPS + (share * STEPS as f64) as u64;
+    Progress::new(done, n * STEPS, progress.message)
 }
 
 impl VariantReport {
@@ -165,6 +190,15 @@ mod tests {
     use impactlab_core::collision::Scenario;
 
     const PIT: &str = include_str!("../../../../assets/scenarios/pit_right_rear.toml");
+
+    /// The bar of a report stood at 100 % once for each question.
+    #[test]
+    fn questions_of_a_case_have_one_progress() {
+        let told = |done, n_before| of_all(Progress::new(done, 100, "at work"), n_before, 4);
+        assert_eq!(told(50, 1), Progress::new(1500, 4 * STEPS, "at work"));
+        assert_eq!(told(100, 3).fraction(), Some(1.0));
+        assert_eq!(of_all(Progress::new(7, 0, ""), 2, 4).done, 2 * STEPS);
+    }
 
     #[test]
     fn the_networks_that_answered_are_found_and_others_than_before_are_changes() {

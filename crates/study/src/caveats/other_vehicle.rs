@@ -2,7 +2,7 @@
 
 use impactlab_core::collision::{Role, Scenario, SharedNumber};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
-use impactlab_core::units::{NumberFormat, Phrase, PhraseValue};
+use impactlab_core::units::{NumberFormat, Phrase, PhraseValue, UnitSystem};
 use impactlab_core::vehicle::VehicleParameters;
 
 use crate::VehicleChoice;
@@ -67,6 +67,7 @@ pub(crate) fn taken_over(
     scenario: &Scenario,
     role: Role,
     vehicle: &VehicleParameters,
+    units: UnitSystem,
 ) -> Option<String> {
     let before = scenario.vehicle(role);
     let mut now = before.clone();
@@ -76,7 +77,7 @@ pub(crate) fn taken_over(
         (now_is != before_was).then(|| instead(&now, now_is, before_was))
     };
     let numbers = now.beside(vehicle).into_iter().zip(before.beside(vehicle));
-    let said = Phrase::joined(numbers.filter_map(told), ", ").say(&NumberFormat::default());
+    let said = Phrase::joined(numbers.filter_map(told), ", ").say(&NumberFormat::english(units));
     (!said.is_empty())
         .then(|| format!("{}: {} as {} has it: {said}", scenario.name, role.label(), vehicle.name))
 }
@@ -91,7 +92,7 @@ fn instead(number: &SharedNumber, value: f64, before: f64) -> Phrase {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impactlab_core::units::{Language, UnitSystem, three_digits};
+    use impactlab_core::units::{Language, three_digits};
     use impactlab_core::vehicle::built_in_vehicle;
 
     #[test]

@@ -10,7 +10,7 @@ use crate::{
 };
 use impactlab_core::collision::{Footprint, ScenarioGeometry, TOUCH_TOLERANCE_M};
 use impactlab_core::data::{
-    CONTACT_SHARE_OF_PEAK, Case, Flag, FlagKind, ForceAxes, ForceHistory, Loaded, Severity,
+    CONTACT_SHARE_OF_PEAK, Case, Flag, FlagKind, ForceAxes, ForceHistory, Loaded, Note, Severity,
     check_case, check_file, cut_at_s,
 };
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
@@ -100,6 +100,19 @@ pub(crate) fn doubtful_data_caveats(name: &str, loaded: &Loaded) -> Vec<Caveat> 
     doubts(name, check_file(loaded))
 }
 
+/// What a file says of itself that puts its numbers in doubt, for an answer that has no remarks on files.
+///
+/// - `name`: of the file.
+pub(crate) fn doubtful_note_caveats(name: &str, loaded: &Loaded) -> Vec<Caveat> {
+    let doubt = |note: &Note| {
+        let text = Phrase::new("{0}: {1}", "{0}: {1}")
+            .with(PhraseValue::Name(name.to_owned()))
+            .with(PhraseValue::English(note.to_string()));
+        Caveat::new(CaveatKind::DoubtfulData, text)
+    };
+    loaded.notes.iter().filter(|note| note.is_doubt()).map(doubt).collect()
+}
+
 /// A force that pulls at the point where it acts, as no contact does.
 ///
 /// - `yaw_rad`: heading of the vehicle at the start, rad.
@@ -174,7 +187,7 @@ fn few_draws_caveat(error: &MonteCarloError) -> Option<Caveat> {
     let is_much = share > MOST_CHANCE || share.is_nan();
     is_much.then(|| {
         Caveat::new(CaveatKind::FewDraws, text())
-            .with_value("standard error of an interval end as a share of the width", share)
+            .with_value("standard error of an end over the width of the interval", share)
             .with_range([0.0, MOST_CHANCE])
     })
 }
@@ -397,10 +410,13 @@ mod tests {
         let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
         let told = |caveat: &Caveat| {
             let german = caveat.text_in(&german, &str::to_owned).unwrap();
-            [caveat.text.clone(), caveat.in_units(UnitSystem::Us).text, german]
+            let [si, us] =
+                [UnitSystem::Si, UnitSystem::Us].map(|units| caveat.in_units(units).text);
+            [caveat.text.clone(), si, us, german]
         };
         let expected = [
             "the vehicle still moves at 10.0 m/s after 4.00 s: its end is not where it comes to rest",
+            "the vehicle still moves at 36.0 km/h after 4.00 s: its end is not where it comes to rest",
             "the vehicle still moves at 22.4 mph after 4.00 s: its end is not where it comes to rest",
             "Das Fahrzeug bewegt sich nach 4,00 s noch mit 36,0 km/h: Der Endpunkt der Bewegung ist nicht \
              seine Endlage",
@@ -409,6 +425,7 @@ mod tests {
         let (quantity, range) = ("mass [kg]", [800.0, 2500.0]);
         let heavy = outside_domain_caveat(&OutsideDomain { quantity, value: 3000.0, range });
         let expected = [
+            "mass [kg] is 3000, the response network has learned from 800.0 to 2500",
             "mass [kg] is 3000, the response network has learned from 800.0 to 2500",
             "mass [lb] is 6614, the response network has learned from 1764 to 5512",
             "mass [kg] beträgt 3000; das Bewegungsnetz hat an Werten von 800,0 bis 2500 gelernt",

@@ -160,7 +160,7 @@ impl PredictMotionReport {
 /// A place with its intervals.
 pub(super) fn place_at(x_m: &Estimate, y_m: &Estimate) -> Value {
     let of = |axis: &str, estimate: &Estimate| {
-        let estimate = Value::Estimate(Quantity::Length, estimate.clone());
+        let estimate = Value::drawn(Quantity::Length, estimate);
         Value::Joined(vec![Value::Text(axis.to_owned()), estimate], " ")
     };
     Value::Joined(vec![of("X", x_m), of("Y", y_m)], ", ")

@@ -43,7 +43,7 @@ impl PredictMotionReport {
         let mut parts = match &self.rest {
             Some(rest) => {
                 let share = Value::ShareOfDraws(rest.share_at_rest, rest.n_draws);
-                let distance = Value::Estimate(Quantity::Length, rest.distance_m.clone());
+                let distance = Value::drawn(Quantity::Length, &rest.distance_m);
                 let mut parts = vec![
                     words(vec![Term::RestsIn.into(), share]),
                     words(vec![Term::At.into(), place_at(&rest.x_m, &rest.y_m)]),

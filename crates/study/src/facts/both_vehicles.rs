@@ -82,7 +82,7 @@ impl ContactsOutcome {
     /// The phases of contact, at their medians; none without any.
     fn phase_table(&self) -> Option<FactTable> {
         let row = |(number, phase): (usize, &PhaseForecast)| {
-            let median = |quantity, it: &Estimate| Value::Number(quantity, it.median);
+            let median = |quantity, it: &Estimate| Value::Rough(quantity, it.median);
             let of_vehicle = |it: &PhaseOfVehicleForecast| {
                 let pdof = it.pdof_rad.as_ref().map(|angle| angle.median);
                 [median(Quantity::Speed, &it.delta_v_m_s), pdof_value(pdof)]
@@ -150,14 +150,14 @@ impl StrikingReport {
             None => {
                 let is_at_rest = outcome.is_at_rest;
                 let end = if is_at_rest { Term::AtRestAfter } else { Term::StillMovingAfter };
-                facts.push(Fact::number(end, Quantity::Time, outcome.time_s));
+                facts.push(Fact::new(end, Value::Rounded(Quantity::Time, outcome.time_s)));
             }
         }
         facts.extend([
-            Fact::estimate(Term::EndX, Quantity::Length, &outcome.x_m),
-            Fact::estimate(Term::EndY, Quantity::Length, &outcome.y_m),
-            Fact::estimate(Term::HeadingChange, Quantity::Angle, &outcome.heading_change_rad),
-            Fact::number(Term::SpeedAtEnd, Quantity::Speed, outcome.speed_m_s),
+            Fact::drawn(Term::EndX, Quantity::Length, &outcome.x_m),
+            Fact::drawn(Term::EndY, Quantity::Length, &outcome.y_m),
+            Fact::drawn(Term::HeadingChange, Quantity::Angle, &outcome.heading_change_rad),
+            Fact::rough(Term::SpeedAtEnd, Quantity::Speed, outcome.speed_m_s),
         ]);
         let region = outcome.region_90_m2.filter(|_| self.rest.is_none());
         facts.extend(region.map(|area_m2| Fact::new(Term::Region90, Value::Area(area_m2))));

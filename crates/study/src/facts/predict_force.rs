@@ -63,9 +63,9 @@ impl PredictForceReport {
         let columns = [Term::Impulse, Term::PeakForce, Term::ContactDuration];
         let row = |mode: &crate::analysis::Mode| {
             let values = vec![
-                Value::Vector(Quantity::Impulse, mode.impulse_n_s, ["x", "y"]),
-                Value::Number(Quantity::Force, mode.peak_n),
-                Value::Number(Quantity::Time, mode.duration_s),
+                Value::RoughVector(Quantity::Impulse, mode.impulse_n_s, ["x", "y"]),
+                Value::Rough(Quantity::Force, mode.peak_n),
+                Value::Rough(Quantity::Time, mode.duration_s),
             ];
             Fact::row(Value::Chance(mode.weight, None), values)
         };

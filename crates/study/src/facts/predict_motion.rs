@@ -124,12 +124,15 @@ impl PredictMotionReport {
         let mut facts = vec![
             Fact::new(Term::MethodsVerdict, Value::Term(agree)),
             Fact::new(Term::OtherMethod, Value::Term(method)),
-            Fact::number(Term::ComparedAfter, Quantity::Time, rival.time_s),
+            Fact::new(Term::ComparedAfter, Value::Rounded(Quantity::Time, rival.time_s)),
             Fact::new(Term::ForecastPlace, Value::Place(rival.forecast_m)),
             Fact::new(Term::RivalPlace, Value::Place([rival.x_m, rival.y_m])),
-            Fact::number(Term::RivalHeading, Quantity::Angle, rival.heading_change_rad),
-            Fact::number(Term::Apart, Quantity::Length, rival.apart_m),
-            Fact::number(Term::RivalError, Quantity::Length, rival.known_error_m),
+            Fact::new(
+                Term::RivalHeading,
+                Value::Decimals(Quantity::Angle, rival.heading_change_rad, 0),
+            ),
+            Fact::rough(Term::Apart, Quantity::Length, rival.apart_m),
+            Fact::rough(Term::RivalError, Quantity::Length, rival.known_error_m),
         ];
         if is_known {
             facts.push(Fact::new(Term::RivalRegion, Value::Share(rival.region_level)));
@@ -188,20 +191,20 @@ impl PredictMotionReport {
             None => {
                 let end =
                     if outcome.is_at_rest { Term::AtRestAfter } else { Term::StillMovingAfter };
-                facts.push(Fact::number(end, Quantity::Time, outcome.time_s));
+                facts.push(Fact::new(end, Value::Rounded(Quantity::Time, outcome.time_s)));
             }
         }
         // A motion to rest has said its end with the rest.
         if self.rest.is_none() {
             facts.extend([
-                Fact::estimate(Term::EndX, Quantity::Length, &outcome.x_m),
-                Fact::estimate(Term::EndY, Quantity::Length, &outcome.y_m),
+                Fact::drawn(Term::EndX, Quantity::Length, &outcome.x_m),
+                Fact::drawn(Term::EndY, Quantity::Length, &outcome.y_m),
             ]);
         }
         facts.extend([
-            Fact::estimate(Term::HeadingChange, Quantity::Angle, &outcome.heading_change_rad),
-            Fact::number(Term::SpeedAtEnd, Quantity::Speed, outcome.speed_m_s),
-            Fact::number(Term::YawRateAtEnd, Quantity::AngularVelocity, outcome.yaw_rate_rad_s),
+            Fact::drawn(Term::HeadingChange, Quantity::Angle, &outcome.heading_change_rad),
+            Fact::rough(Term::SpeedAtEnd, Quantity::Speed, outcome.speed_m_s),
+            Fact::rough(Term::YawRateAtEnd, Quantity::AngularVelocity, outcome.yaw_rate_rad_s),
         ]);
         let contacts = self.flags.iter().filter_map(|flag| flag.contact);
         let second = contacts.filter_map(|contact| contact.probability);

@@ -75,7 +75,7 @@ impl ReconstructReport {
             let step = Value::Sigma(hinge.quantity(), hinge.step);
             let name = vec![Value::Phrase(hinge.input.label().to_owned()), step];
             let change = |of: SpeedChange| {
-                Value::Measured(Quantity::Speed, of.change_m_s, of.standard_error_m_s)
+                Value::Change(Quantity::Speed, of.change_m_s, of.standard_error_m_s)
             };
             let speeds = std::iter::once(hinge.struck_speed).chain(hinge.striking_speed);
             Fact::row(Value::Joined(name, " + "), speeds.map(change).collect())
@@ -104,7 +104,7 @@ impl ReconstructReport {
     pub fn course_table(&self) -> FactTable {
         let row = |mode: &Mode| {
             let speed = mode.quantities.first();
-            let speed = speed.map(|of| Value::Estimate(of.quantity(), of.estimate.clone()));
+            let speed = speed.map(|of| Value::drawn(of.quantity(), &of.estimate));
             let values = vec![
                 Value::Share(mode.probability),
                 Value::ShareError(mode.standard_error),
@@ -152,8 +152,7 @@ impl ReconstructReport {
                 part.p.map_or_else(nothing, Value::Probability),
                 Value::Fixed(part.ess, 0),
                 Value::Term(verdict),
-                speed
-                    .map_or_else(nothing, |of| Value::Estimate(of.quantity(), of.estimate.clone())),
+                speed.map_or_else(nothing, |of| Value::drawn(of.quantity(), &of.estimate)),
             ];
             let name = Value::Phrase(part.evidence.clone());
             Fact { is_warning: part.is_contradicted, ..Fact::row(name, values) }
@@ -170,7 +169,7 @@ impl ReconstructReport {
 
     /// The marks that were found beside those of a particle of median speed; none if none was found.
     pub fn mark_table(&self) -> Option<FactTable> {
-        let length = |m| Value::Number(Quantity::Length, m);
+        let length = |m| Value::Decimals(Quantity::Length, m, 2);
         let known = |m: Option<f64>| m.map_or(Value::Term(Term::NoMark), length);
         let row = |mark: &MarkComparison| {
             // A wheel that leaves no mark has no computed length, and not one of 0 m.
@@ -205,7 +204,7 @@ impl ReconstructReport {
         let row = |item: &&BudgetItem| {
             let sigma = Value::Sigma(item.quantity(), item.sigma);
             let name = vec![Value::Phrase(item.measurement().to_owned()), sigma];
-            let half = |m_s| Value::Number(Quantity::Speed, m_s);
+            let half = |m_s| Value::Rough(Quantity::Speed, m_s);
             let then = match item.believable {
                 true => half(item.then_m_s),
                 false => Value::Term(Term::NotBelievable),
@@ -223,7 +222,7 @@ impl ReconstructReport {
 }
 
 fn quantity_fact(of: &QuantityEstimate) -> Fact {
-    let value = Value::Estimate(of.quantity(), of.estimate.clone());
+    let value = Value::drawn(of.quantity(), &of.estimate);
     Fact::row(Value::Phrase(of.label().to_owned()), vec![value])
 }
 
@@ -239,9 +238,13 @@ fn fit_fact(item: &EvidenceFit) -> Fact {
     Fact { is_warning, ..Fact::row(Value::Phrase(item.evidence.clone()), values) }
 }
 
-/// A number of an item of the evidence, whose unit is that of SI.
+/// A number of an item of the evidence, whose unit is that of SI, as finely as such things are measured.
 fn in_unit(value: f64, unit: &str) -> Value {
     match Quantity::from_si_symbol(unit) {
+        Some(quantity @ Quantity::Length) => Value::Decimals(quantity, value, 2),
+        Some(quantity @ (Quantity::Angle | Quantity::Speed | Quantity::AngularVelocity)) => {
+            Value::Decimals(quantity, value, 1)
+        }
         Some(quantity) => Value::Number(quantity, value),
         None => Value::Fixed(value, 3),
     }
@@ -271,8 +274,8 @@ mod tests {
         let cells: Vec<&str> =
             text.rows.iter().flat_map(|row| &row.cells).map(String::as_str).collect();
         let expected = [
-            ["rest x", "1.000 ft", "2.000 ft", "< 0.001", "not explained"],
-            ["EDR speed", "1.000 mph", "2.000 mph", "< 0.001", "not explained"],
+            ["rest x", "1.00 ft", "2.00 ft", "< 0.001", "not explained"],
+            ["EDR speed", "1.0 mph", "2.0 mph", "< 0.001", "not explained"],
         ];
         assert_eq!(cells, expected.concat());
         assert!(text.rows.iter().all(|row| row.is_warning));

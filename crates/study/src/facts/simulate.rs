@@ -38,7 +38,7 @@ impl SimulateReport {
         let mut facts = vec![
             Fact::new(Term::Vehicle, Value::Name(self.vehicle.clone())),
             Fact::new(Term::Equations, Value::Phrase(self.equations.clone())),
-            Fact::new(Term::Integration, Value::Phrase(self.integrator.clone())),
+            Fact::new(Term::Integration, Value::Phrase(integration(&self.integrator).to_owned())),
             Fact::new(Term::RoadFriction, Value::Given(Quantity::Ratio, self.friction)),
             Fact::new(Term::Duration, Value::Given(Quantity::Time, self.duration_s)),
         ];
@@ -55,9 +55,9 @@ impl SimulateReport {
             facts.push(Fact::vector(Term::EndPosition, Quantity::Length, [end.x_m, end.y_m]));
             let distance = self.distance_m;
             facts.extend(distance.map(|m| Fact::number(Term::Distance, Quantity::Length, m)));
-            facts.push(Fact::number(Term::FinalHeading, Quantity::Angle, end.yaw_rad));
+            facts.push(angle(Term::FinalHeading, end.yaw_rad));
             let turn = self.largest_yaw_change_rad;
-            facts.extend(turn.map(|rad| Fact::number(Term::LargestTurn, Quantity::Angle, rad)));
+            facts.extend(turn.map(|rad| angle(Term::LargestTurn, rad)));
             facts.push(Fact::number(Term::FinalSpeed, Quantity::Speed, end.speed_m_s));
             match &self.rest {
                 Some(rest) => facts.extend(rest.facts()),
@@ -86,10 +86,10 @@ impl SimulateReport {
             let wheel = [mark.vehicle, mark.wheel.label()].map(|of| Value::Phrase(of.to_owned()));
             let values = vec![
                 Value::Phrase(mark.kind.label().to_owned()),
-                Value::Number(Quantity::Length, mark.length_m),
-                Value::Number(Quantity::Time, mark.from_s),
+                Value::Decimals(Quantity::Length, mark.length_m, 1),
+                Value::Decimals(Quantity::Time, mark.from_s, 2),
                 Value::Place(mark.start_m),
-                Value::Number(Quantity::Time, mark.to_s),
+                Value::Decimals(Quantity::Time, mark.to_s, 2),
                 Value::Place(mark.end_m),
             ];
             Fact::row(Value::Joined(wheel.to_vec(), ", "), values)
@@ -97,6 +97,20 @@ impl SimulateReport {
         let rows = self.tire_marks.iter().map(row).collect();
         let table = FactTable::new(Term::Marks, rows).with_rows(Term::Wheel);
         table.with_columns(&columns).unless_empty()
+    }
+}
+
+/// An angle of a motion, to a tenth of a degree.
+fn angle(term: Term, angle_rad: f64) -> Fact {
+    Fact::new(term, Value::Decimals(Quantity::Angle, angle_rad, 1))
+}
+
+/// What a method of integration is called, by its word.
+fn integration(word: &str) -> &str {
+    match word {
+        "rk4" => "Runge–Kutta, 4th order",
+        "euler" => "Euler",
+        other => other,
     }
 }
 
@@ -124,7 +138,7 @@ impl ForceReport {
         let words = |text: &str| Value::Phrase(text.replace('_', " "));
         let file = self.path.clone().map(|path| Fact::new(Term::ForceFile, Value::File(path)));
         let contact = self.contact_start_s.zip(self.contact_end_s).map(|(from_s, to_s)| {
-            let ends = [from_s, to_s].map(|s| Value::Number(Quantity::Time, s));
+            let ends = [from_s, to_s].map(|s| Value::Rounded(Quantity::Time, s));
             Fact::new(Term::Contact, Value::span(ends))
         });
         let facts = [
@@ -141,10 +155,10 @@ impl ForceReport {
 impl RestState {
     fn facts(&self) -> [Fact; 4] {
         [
-            Fact::number(Term::AtRestAfter, Quantity::Time, self.time_s),
+            Fact::new(Term::AtRestAfter, Value::Rounded(Quantity::Time, self.time_s)),
             Fact::number(Term::DistanceToRest, Quantity::Length, self.distance_m),
             Fact::vector(Term::RestPosition, Quantity::Length, [self.x_m, self.y_m]),
-            Fact::number(Term::HeadingAtRest, Quantity::Angle, self.yaw_rad),
+            angle(Term::HeadingAtRest, self.yaw_rad),
         ]
     }
 }
@@ -162,7 +176,7 @@ impl VehicleUncertainty {
 
     /// How the end varies over the drawn vehicles.
     pub fn draw_table(&self) -> FactTable {
-        let estimate = Fact::estimate;
+        let estimate = Fact::drawn;
         let mut facts = vec![Fact::new(Term::VehiclesDrawn, Value::Count(self.n_draws))];
         if self.n_failed > 0 {
             facts.push(Fact::new(Term::LeftOut, Value::Count(self.n_failed)));
@@ -218,8 +232,8 @@ impl RestOutcome {
             (Term::HeadingAtRest, Quantity::Angle, &self.yaw_rad),
         ];
         facts.extend(estimates.map(|(term, quantity, estimate)| match is_known {
-            true => Fact::estimate(term, quantity, estimate),
-            false => Fact::estimate(term, quantity, &estimate.without_intervals()),
+            true => Fact::drawn(term, quantity, estimate),
+            false => Fact::drawn(term, quantity, &estimate.without_intervals()),
         }));
         let regions = [(Term::Region50, self.region_50_m2), (Term::Region90, self.region_90_m2)];
         let regions = regions.into_iter().filter(|_| is_known);

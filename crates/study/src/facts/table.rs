@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use impactlab_core::units::{Estimate, IntervalText, Language, NumberFormat, Quantity, UnitSystem};
+use impactlab_core::units::{
+    Estimate, IntervalText, Language, NumberFormat, Quantity, UnitSystem, two_digits,
+};
 
 use crate::facts::Term;
 
@@ -42,19 +44,27 @@ pub enum Value {
     Number(Quantity, f64),
     /// The same with a fixed number of decimals.
     Decimals(Quantity, f64, usize),
+    /// The same without zeros at the end of its decimals.
+    Rounded(Quantity, f64),
+    /// A number of a distribution that has no interval, SI units, see [`NumberFormat::rough`].
+    Rough(Quantity, f64),
+    /// The same of the components of a vector.
+    RoughVector(Quantity, [f64; 2], [&'static str; 2]),
     /// A number that was given, SI units: written with all its digits.
     Given(Quantity, f64),
     /// A standard deviation, SI units.
     Sigma(Quantity, f64),
     /// A number with its standard deviation, SI units.
     Measured(Quantity, f64, f64),
+    /// The same of what is added, with its sign.
+    Change(Quantity, f64, f64),
     /// A median with its intervals, SI units.
     Estimate(Quantity, Estimate),
     /// Components of a vector, SI units, with their names.
     Vector(Quantity, [f64; 2], [&'static str; 2]),
-    /// A place, SI units.
+    /// A place, SI units, to a tenth of the unit that is shown.
     Place([f64; 2]),
-    /// An area, m².
+    /// An area that holds a place with a probability, m²: two significant digits.
     Area(f64),
     /// An hour of the clock.
     Clock(u8),
@@ -130,6 +140,9 @@ pub struct FactWriter<'a> {
 /// Probability below which a table says only that it is smaller.
 const LEAST_PROBABILITY: f64 = 0.001;
 
+/// Probability from which on it would be written as certain, and a table says only that it is larger.
+const MOST_PROBABILITY: f64 = 0.9995;
+
 /// Levels of the intervals of a predicted quantity.
 pub(super) const PREDICTED: &[f64] = &[0.5, 0.9];
 
@@ -155,6 +168,16 @@ impl Fact {
     /// A number without an interval.
     pub(super) fn number(term: Term, quantity: Quantity, value_si: f64) -> Self {
         Self::new(term, Value::Number(quantity, value_si))
+    }
+
+    /// A number of a distribution without an interval.
+    pub(super) fn rough(term: Term, quantity: Quantity, value_si: f64) -> Self {
+        Self::new(term, Value::Rough(quantity, value_si))
+    }
+
+    /// A number of draws with its intervals, where they can be told.
+    pub(super) fn drawn(term: Term, quantity: Quantity, estimate: &Estimate) -> Self {
+        Self::new(term, Value::drawn(quantity, estimate))
     }
 
     /// A number with its intervals.
@@ -188,6 +211,14 @@ impl Value {
         match self {
             Self::Term(term) => term.hint(),
             _ => None,
+        }
+    }
+
+    /// A median of draws with its intervals; rough where these cannot be told.
+    pub(super) fn drawn(quantity: Quantity, estimate: &Estimate) -> Self {
+        match estimate.intervals.is_empty() {
+            true => Self::Rough(quantity, estimate.median),
+            false => Self::Estimate(quantity, estimate.clone()),
         }
     }
 
@@ -388,21 +419,33 @@ impl FactWriter<'_> {
             Value::Probability(p) if *p < LEAST_PROBABILITY => {
                 format!("< {}", format.fixed(LEAST_PROBABILITY, 3))
             }
+            Value::Probability(p) if *p >= MOST_PROBABILITY => {
+                format!("> {}", format.fixed(1.0 - LEAST_PROBABILITY, 3))
+            }
             Value::Probability(p) => format.fixed(*p, 3),
             Value::Fixed(number, decimals) => format.fixed(*number, *decimals),
             Value::Number(quantity, si) => format.value(*quantity, *si),
             Value::Decimals(quantity, si, decimals) => {
                 let unit = quantity.display_unit(format.units);
-                let number = format!("{:.decimals$}", unit.from_si(*si) + 0.0);
-                format.with_unit(&number, unit.symbol)
+                format.with_unit(&format.fixed(unit.from_si(*si), *decimals), unit.symbol)
             }
+            Value::Rounded(quantity, si) => format.rounded(*quantity, *si),
+            Value::Rough(quantity, si) => format.rough(*quantity, *si),
             Value::Given(quantity, si) => format.given(*quantity, *si),
             Value::Sigma(quantity, si) => format.sigma(*quantity, *si),
             Value::Measured(quantity, si, sigma) => format.measured(*quantity, *si, *sigma),
+            Value::Change(quantity, si, sigma) => {
+                let sign = if *si > 0.0 { "+" } else { "" };
+                format!("{sign}{}", format.measured(*quantity, *si, *sigma))
+            }
             Value::Estimate(quantity, estimate) => format.estimate_in_words(*quantity, estimate),
             Value::Vector(quantity, components, names) => {
                 let names = names.map(|name| (self.phrase)(name));
                 format.vector(*quantity, *components, names.each_ref().map(String::as_str))
+            }
+            Value::RoughVector(quantity, components, names) => {
+                let names = names.map(|name| (self.phrase)(name));
+                format.rough_vector(*quantity, *components, names.each_ref().map(String::as_str))
             }
             Value::Place(place_m) => self.place(*place_m),
             Value::Area(area_m2) => self.area(*area_m2),
@@ -419,7 +462,7 @@ impl FactWriter<'_> {
 
     fn place(&self, place_m: [f64; 2]) -> String {
         let unit = Quantity::Length.display_unit(self.format.units);
-        let [x, y] = place_m.map(|si| self.format.fixed(unit.from_si(si), 2));
+        let [x, y] = place_m.map(|si| self.format.fixed(unit.from_si(si), 1));
         format!("({x}; {y}) {}", unit.symbol)
     }
 
@@ -427,7 +470,7 @@ impl FactWriter<'_> {
     fn area(&self, area_m2: f64) -> String {
         let unit = Quantity::Length.display_unit(self.format.units);
         let area = area_m2 / unit.si_per_unit.powi(2);
-        self.format.with_unit(&format!("{area:.1}"), &format!("{}²", unit.symbol))
+        self.format.with_unit(&two_digits(area), &format!("{}²", unit.symbol))
     }
 }
 
@@ -446,8 +489,25 @@ mod tests {
         let text = table.to_text(&FactWriter::english(UnitSystem::Si));
         assert_eq!(text.header, ["quantity", "median", "50 %", "90 %"]);
         assert_eq!(text.rows[0].cells, ["X at the end", "32 m", "30 to 35 m", "26 to 38 m"]);
-        assert_eq!(text.rows[1].cells[1..], ["90.7 m²", "", ""]);
+        assert_eq!(text.rows[1].cells[1..], ["91 m²", "", ""]);
         assert_eq!(text.rows[0].hint, Some("Of the CG, along the road from the impact"));
+    }
+
+    /// “163.9 m²” had a standard error of 17 m², and a place of a forecast its centimetres.
+    #[test]
+    fn no_fact_of_a_distribution_has_digits_that_it_does_not_know() {
+        let writer = FactWriter::english(UnitSystem::Si);
+        let text = |value: Value| writer.value(&value);
+        let known = Estimate::new(-193.45, [-195.0, -190.0], [-208.0, -143.0]);
+        let unknown = known.without_intervals();
+        assert_eq!(text(Value::drawn(Quantity::Length, &known)), "-193 (-208 to -143) m");
+        assert_eq!(text(Value::drawn(Quantity::Length, &unknown)), "-193 m");
+        assert_eq!(text(Value::Change(Quantity::Length, 1.234, 0.12)), "+1.23 ± 0.12 m");
+        assert_eq!(text(Value::Area(163.9)), "160 m²");
+        assert_eq!(text(Value::Place([43.98, -5.944])), "(44.0; -5.9) m");
+        assert_eq!(text(Value::Rounded(Quantity::Time, 0.003)), "0.003 s");
+        assert_eq!(text(Value::Probability(1.0)), "> 0.999");
+        assert_eq!(text(Value::Probability(0.675)), "0.675");
     }
 
     #[test]

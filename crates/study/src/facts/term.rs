@@ -181,7 +181,7 @@ terms! {
     LeftOut: "could not be computed and are left out", "ließen sich nicht berechnen und fehlen";
     EndX: "X at the end", "X am Ende", "Of the CG, along the road from the impact";
     EndY: "Y at the end", "Y am Ende", "Of the CG, to the left";
-    TimeToRest: "time to rest", "Zeit bis zum Stillstand", "From the first contact";
+    TimeToRest: "time to rest", "Zeit bis zum Stillstand", "From the start of the motion";
     RestX: "X at rest", "X im Stillstand";
     RestY: "Y at rest", "Y im Stillstand";
     ShareAtRest: "comes to rest in", "kommt zum Stillstand in",

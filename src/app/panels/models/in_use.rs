@@ -64,7 +64,7 @@ fn network_ui<M: TrainedModel>(
     }
     if let Some(set_aside) = &model.set_aside {
         ui.horizontal_wrapped(|ui| {
-            ui.label(format!("Not in use, of the cancelled training: {}", set_aside.name));
+            ui.label(format!("Not in use, of the last training: {}", set_aside.name));
             if ui.button("Use it").clicked() {
                 commands.push(Command::UseTrained(M::NETWORK));
             }

@@ -38,7 +38,8 @@ pub fn cards_ui(
         evidence.items(&mut AddMenu { ui });
     });
     let side = evidence.damage.side;
-    let mut cards = Cards { ui, units, sheets, adds_to, group: Group::Scene, command: None };
+    let width = ui.available_width() - egui::Frame::group(ui.style()).total_margin().sum().x;
+    let mut cards = Cards { ui, width, units, sheets, adds_to, group: Group::Scene, command: None };
     evidence.items(&mut cards);
     cards.group = Group::Cars;
     evidence.items(&mut cards);
@@ -67,6 +68,8 @@ fn icon(section: &Section) -> Icon {
 /// Draws the items of a group.
 struct Cards<'u, 's> {
     ui: &'u mut Ui,
+    /// Width inside of a card, points: a row that is wider widens no other card.
+    width: f32,
     units: UnitSystem,
     sheets: SheetChoices<'s>,
     adds_to: Option<MarkKey>,
@@ -87,7 +90,8 @@ impl Cards<'_, '_> {
     ) -> bool {
         let number = idx.map_or(String::new(), |idx| format!(" {}", idx + 1));
         let title = sentence_case(&format!("{}{number}", section.title));
-        let Self { units, adds_to, sheets, command, .. } = self;
+        let Self { units, width, adds_to, sheets, command, .. } = self;
+        let width = *width;
         let [struck, striking] = &mut sheets.chosen;
         let chosen = match section.key {
             key if [STRUCK_CAR.key, SINGLE_CAR.key].contains(&key) => Some(struck),
@@ -96,7 +100,7 @@ impl Cards<'_, '_> {
         };
         let mut is_removed = false;
         egui::Frame::group(self.ui.style()).show(self.ui, |ui| {
-            ui.set_width(ui.available_width());
+            ui.set_width(width);
             ui.horizontal(|ui| {
                 looks::icon_ui(ui, icon(section), ui.visuals().hyperlink_color);
                 ui.strong(&title);

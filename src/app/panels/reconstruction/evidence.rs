@@ -4,12 +4,13 @@ use egui::{ProgressBar, ScrollArea, TextEdit, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
+use crate::app::ground::GroundCommand;
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::output::Output;
 use crate::app::panels::reconstruction::cards::{SheetChoices, cards_ui};
 use crate::app::panels::reconstruction::notice_ui;
 use crate::app::panels::reconstruction::priors::{prior_ranges_ui, priors_ui};
-use crate::app::panes::PaneContext;
+use crate::app::panes::{Pane, PaneContext};
 use crate::app::reconstruction::{EvidencePreview, ReconstructionCommand, ReconstructionSession};
 use crate::app::widgets::{count_field, duration_text, seed_field};
 use impactlab_core::data::Severity;
@@ -131,10 +132,21 @@ fn case_ui(
     }
     if let Some(site) = &request.site {
         let name = site.file_name().unwrap_or_default().to_string_lossy();
-        let text = format!("The wheels stand on the friction zones of {name}");
-        ui.add(egui::Label::new(egui::RichText::new(text).weak()).wrap()).on_hover_text(
-            "Its axes are those of the evidence. To leave the zones out, take the ground away in the Scene",
+        let text = format!(
+            "The wheels stand on the friction zones of {name}, the ground of this case, in the axes of the \
+             evidence. Evidence of another place belongs into a new case, or to no ground."
         );
+        notice_ui(ui, Severity::Info, &text);
+        ui.horizontal_wrapped(|ui| {
+            let hint = "Where it is looked at, measured, saved and taken away";
+            if ui.small_button("Show the ground").on_hover_text(hint).clicked() {
+                commands.push(Command::Show(Pane::Scene));
+            }
+            let hint = "The wheels then stand on the friction of the evidence. Undo takes it back";
+            if ui.small_button("Take the ground away").on_hover_text(hint).clicked() {
+                commands.push(Command::Ground(GroundCommand::Remove));
+            }
+        });
     }
 }
 
@@ -180,13 +192,16 @@ fn run_ui(
                 command(ReconstructionCommand::Cancel);
             }
             let progress = job.progress();
-            let left = job.time_left().map(duration_text).filter(|_| !is_cancelled);
+            let left = session.time_left().map(duration_text).filter(|_| !is_cancelled);
             let left = left.map_or(String::new(), |left| format!(", about {left} left"));
             let text = match is_cancelled {
                 true => "keeping what was sampled".to_owned(),
                 false => format!("{}{left}", progress.message),
             };
-            ui.add(ProgressBar::new(progress.fraction().unwrap_or(0.0)).text(text));
+            match progress.fraction() {
+                Some(fraction) => drop(ui.add(ProgressBar::new(fraction).text(text))),
+                None => drop((ui.spinner(), ui.add(egui::Label::new(text).truncate()))),
+            }
         });
     }
     if let Some(problem) = session.run.problem() {

@@ -6,7 +6,7 @@ use egui::{ComboBox, Response, Ui};
 use crate::app::reconstruction::{MarkKey, ReconstructionCommand};
 use crate::app::widgets::{EmptyField, optional_quantity};
 use impactlab_core::ranges::Range;
-use impactlab_core::units::{UnitSystem, percent};
+use impactlab_core::units::{NumberFormat, UnitSystem, percent};
 use impactlab_reconstruct::evidence::{
     Bounds, Choice, Field, Fields, PlaceMut, PointsMut, Sigma, Stated, Word,
 };
@@ -87,7 +87,10 @@ impl<'u> FieldRows<'u> {
         let start_si = sigma.default_at(value.unwrap_or(0.0));
         let text = match (value, sigma.relative()) {
             (None, Some(share)) => format!("({} of it)", percent(share)),
-            _ => format!("({})", sigma.field.range.quantity.shown(start_si, self.units)),
+            _ => {
+                let format = NumberFormat::english(self.units);
+                format!("({})", format.rounded(sigma.field.range.quantity, start_si))
+            }
         };
         let empty = EmptyField { text: &text, start_si };
         let response = self.quantity(stated, empty, &sigma.field.range);

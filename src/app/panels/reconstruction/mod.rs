@@ -1,5 +1,6 @@
 //! The panes of the reconstruction: the evidence, the scene, and the speeds.
 
+mod backdrop;
 mod cards;
 mod evidence;
 mod fields;

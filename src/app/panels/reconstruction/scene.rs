@@ -8,6 +8,7 @@ use impactlab_core::uncertainty::Caveats;
 
 use crate::app::command::Command;
 use crate::app::looks::{Icon, icon_button};
+use crate::app::panels::reconstruction::backdrop::{backdrop, lines_below};
 use crate::app::panels::reconstruction::scene_edit::SceneEdit;
 use crate::app::panels::reconstruction::{OUTDATED, notice_ui};
 use crate::app::panels::scene::{clock_ui, scene_heading_ui};
@@ -26,7 +27,7 @@ use impactlab_core::vehicle::{Path, TireMark};
 use impactlab_document::figure::{
     Figure, FollowedPath, ReconstructionScene, reconstruction_scene_figure,
 };
-use impactlab_document::scene::ReconstructionParts;
+use impactlab_document::scene::{ReconstructionParts, SceneGround};
 use impactlab_draw::FigureOptions;
 use impactlab_draw::scene::{
     CameraKey, ScenePicture, courses_have_room, courses_view_ui, scene_view_ui,
@@ -74,8 +75,11 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         let scene = ReconstructionScene { evidence, cars, drawn, followed, others, marks };
         reconstruction_scene_figure(&scene, caveats, units)
     };
+    let ground = session.ground.shown().map(|loaded| &loaded.ground);
     if !view.reconstruction.shows_cars {
-        let moved = plan_ui(ui, preview, of.adds_to, session.fit_plots, figure(), commands);
+        let (adds_to, resets) = (of.adds_to, session.fit_plots);
+        let ground = ground.map(Arc::as_ref);
+        let moved = plan_ui(ui, preview, adds_to, resets, figure(), ground, commands);
         if let (Some(evidence), Some(request)) = (moved, &mut project.reconstruct) {
             request.evidence = EvidenceChoice::Inline(Box::new(evidence));
         }
@@ -101,7 +105,6 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         units: view.units,
         caveats,
     };
-    let ground = session.ground.shown().map(|loaded| &loaded.ground);
     let built = cars.scene(source, &parts, &courses, ground);
     if session.fit_plots {
         cars.fit();
@@ -200,13 +203,14 @@ fn kind_ui(ui: &mut Ui, shown: &mut ReconstructionView, has_room: Option<bool>) 
     });
 }
 
-/// Draws the plan; returns the evidence if it was changed in it.
+/// Draws the plan over picture and lines of the ground; returns the evidence if it was changed in it.
 fn plan_ui(
     ui: &mut Ui,
     preview: &EvidencePreview,
     adds_to: Option<MarkKey>,
     resets: bool,
     mut figure: Figure,
+    ground: Option<&SceneGround>,
     commands: &mut Vec<Command>,
 ) -> Option<Evidence> {
     let mut evidence = preview.evidence.clone();
@@ -220,6 +224,8 @@ fn plan_ui(
         view: edit.view(),
         pans: edit.pans(),
         height: Some(height),
+        backdrop: ground.and_then(|ground| backdrop(ui, ground, figure.x.unit)),
+        lines_below: ground.map_or_else(Vec::new, |ground| lines_below(ground, &figure)),
         ..FigureOptions::default()
     };
     let shown = figure_frame(ui, &figure.title, &figure, &options, commands);

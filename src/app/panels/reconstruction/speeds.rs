@@ -82,14 +82,14 @@ pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     });
 }
 
-/// Draws what the speeds hinge on, the table of quantities, and what was assumed.
+/// Draws the table of quantities, what the speeds hinge on, and what was assumed.
 fn numbers_ui(
     ui: &mut Ui,
     report: &Answer<ReconstructReport>,
     units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
-    let tables = [report.hinge_table(), Some(report.speed_table()), report.hand_table()];
+    let tables = [Some(report.speed_table()), report.hinge_table(), report.hand_table()];
     let tables: Vec<FactTable> = tables.into_iter().flatten().collect();
     facts_ui(ui, &report.case, &tables, units);
     evidence_assumptions_ui(ui, &report.caveats, units, commands);

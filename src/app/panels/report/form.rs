@@ -42,7 +42,12 @@ fn settings_ui(ui: &mut Ui, view: &mut ReportView, units: UnitSystem) {
         choice_ui(ui, "report language", &mut view.language, &LANGUAGES);
         ui.end_row();
         ui.label("Pages");
-        choice_ui(ui, "report paper", &mut view.paper, &PAPERS);
+        let before = view.pages.unwrap_or_else(|| Paper::usual(units));
+        let mut pages = before;
+        choice_ui(ui, "report paper", &mut pages, &PAPERS);
+        if pages != before {
+            view.pages = Some(pages);
+        }
         ui.end_row();
         ui.label("Units");
         let name = match units {

@@ -334,6 +334,11 @@ impl BarrierTest {
         (c1 / 2.0 + c2 + c3 + c4 + c5 + c6 / 2.0) / 5.0
     }
 
+    /// Kv = m V²/(L C̄²): the one coefficient of a face that is crushed from the first, N/m².
+    pub fn single_stiffness_n_per_m2(&self) -> f64 {
+        self.mass_kg * self.speed_m_s.powi(2) / (self.width_m * self.mean_crush_m().powi(2))
+    }
+
     /// A and B of the face.
     ///
     /// # Errors

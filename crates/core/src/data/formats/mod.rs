@@ -27,8 +27,8 @@ use std::path::{Path, PathBuf};
 
 use crate::data::{DataError, ReadSettings, Sheet, SheetRef, open_file};
 
-pub use fem::DeckUnits;
 pub(super) use fem::OpenUnits;
+pub use fem::{DeckUnits, ModelStart};
 pub use nhtsa::{CrashTest, TestChannel, TestVehicle};
 pub use nhtsa_curves::{BarrierForce, BarrierMomentum};
 pub(super) use positions::{NAUTICAL_MILE_M, OF_COURSE};
@@ -63,6 +63,8 @@ pub(super) struct Said {
     pub is_model: bool,
     /// What is proposed for the units of the model, if nobody has said them.
     pub open_units: Option<OpenUnits>,
+    /// With which velocities the cars of the model begin, if that is known.
+    pub model_start: Option<ModelStart>,
 }
 
 /// Bytes at the beginning of a file by which it is known to have others beside it.

@@ -5,6 +5,7 @@ use crate::site::{
     EdgeLine, GeographicFrame, Kerb, Lane, LengthUnit, MapFormat, Site, SiteOrigin, SurveyFormat,
     SurveyOptions, SurveyedLine, SurveyedPoint, map_features, map_file,
 };
+use crate::units::UnitSystem;
 use crate::vehicle::FrictionZone;
 
 fn read_as(name: &str, text: &str, options: &SurveyOptions) -> Result<Site, String> {
@@ -201,7 +202,7 @@ fn a_site_file_has_what_was_surveyed() {
         (site.origin, site.geographic, site.lanes.clone(), site.lines.clone(), site.points.clone())
     };
     assert_eq!(parts(&back), parts(&site));
-    let contents = back.contents(None).join("; ");
+    let contents = back.contents(None, UnitSystem::Si).join("; ");
     assert!(contents.contains("origin at latitude 47.1234568°"), "{contents}");
 }
 

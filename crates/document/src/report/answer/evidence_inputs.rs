@@ -199,8 +199,7 @@ fn prior_row(prior: &PriorComponent, wording: &Wording) -> InputRow {
         Distribution::Normal { mean, sigma, low, high } => fill(
             words.normal_cut,
             &[
-                ("mean", &value(mean)),
-                ("sigma", &value(sigma)),
+                ("value", &wording.measured(quantity, mean, sigma)),
                 ("low", &value(low)),
                 ("high", &value(high)),
             ],
@@ -209,7 +208,7 @@ fn prior_row(prior: &PriorComponent, wording: &Wording) -> InputRow {
             words.log_normal_cut,
             &[
                 ("median", &value(median)),
-                ("sigma", &wording.rounded(Quantity::Ratio, sigma)),
+                ("sigma", &wording.sigma(Quantity::Ratio, sigma)),
                 ("low", &value(low)),
                 ("high", &value(high)),
             ],

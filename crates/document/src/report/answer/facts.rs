@@ -4,9 +4,10 @@ use std::path::Path;
 
 use crate::report::answer::Context;
 use crate::report::language::phrase_of;
-use crate::report::numbers::Wording;
+use crate::report::numbers::{Wording, fill};
 use crate::report::parts::PartProvenance;
 use crate::report::{Block, Column, Table};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_study::Provenance;
 use impactlab_study::facts::{FactTable, FactWriter, TextTable};
 
@@ -44,6 +45,16 @@ pub(in crate::report) fn with_writer<T>(
     })
 }
 
+/// What a person should know of how an answer was made, a paragraph each.
+pub(super) fn notes(caveats: &Caveats, wording: &Wording) -> Vec<Block> {
+    let noted = |note: &Caveat| {
+        let note = wording.caveat_text(note);
+        Block::paragraph(fill(wording.words.noted, &[("note", note.trim_end_matches('.'))]))
+    };
+    let notes = caveats.iter().filter(|caveat| caveat.kind == CaveatKind::Note);
+    notes.map(noted).collect()
+}
+
 /// Version, seeds and numbers of draws of an answer.
 pub(super) fn provenance_of(
     provenance: &Provenance,
@@ -62,7 +73,8 @@ impl From<TextTable> for Table {
     /// The first letter of a title is a capital one, as in the other tables of a report.
     fn from(table: TextTable) -> Self {
         let is_list = table.is_list();
-        let is_number = |cell: &str| cell.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+        let is_number =
+            |cell: &str| cell.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '+'));
         let column = |(idx, title): (usize, &String)| {
             let mut cells = table.rows.iter().filter_map(|row| row.cells.get(idx));
             let is_numeric = idx > 0 && !is_list && cells.all(|cell| is_number(cell));

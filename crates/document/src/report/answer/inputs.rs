@@ -77,6 +77,7 @@ pub(in crate::report) fn given_rows(
             }
         }
     }
+    tell_speeds(&mut question);
     let defaults = flatten(&default_settings(request), wording, paths);
     let given = |row: FlatRow| {
         let is_file = ["file", "path", "dataset", "recorder"].contains(&row.key.as_str());
@@ -94,6 +95,24 @@ pub(in crate::report) fn given_rows(
         }
     };
     flatten(&question, wording, paths).into_iter().map(given).collect()
+}
+
+/// Puts speed and course, as people say them, in the place of the components of each velocity.
+fn tell_speeds(value: &mut Value) {
+    match value {
+        Value::Object(fields) => {
+            let component = |key: &str| fields.get(key).and_then(Value::as_f64);
+            if let (Some(vx_m_s), Some(vy_m_s)) = (component("vx_m_s"), component("vy_m_s")) {
+                fields.remove("vx_m_s");
+                fields.remove("vy_m_s");
+                fields.insert("speed_m_s".to_owned(), vx_m_s.hypot(vy_m_s).into());
+                fields.insert("course_rad".to_owned(), vy_m_s.atan2(vx_m_s).into());
+            }
+            fields.values_mut().for_each(tell_speeds);
+        }
+        Value::Array(items) => items.iter_mut().for_each(tell_speeds),
+        _ => {}
+    }
 }
 
 /// Leaves out the settings of a collision that nobody changed, and names the one car.

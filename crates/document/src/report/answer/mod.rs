@@ -39,6 +39,7 @@ pub(super) use crate::report::answer::inputs::given_rows;
 
 pub use crate::report::answer::vehicle_inputs::{VehicleParameter, vehicle_parameters};
 
+use crate::report::answer::facts::notes;
 use crate::report::answer::stills::Grounds;
 use crate::report::numbers::Wording;
 use crate::report::parts::Part;
@@ -59,7 +60,7 @@ pub(super) struct Context<'a> {
 /// What an answer contributes. A kind of answer that has no text of its own is told as a table of all
 /// that is in it.
 pub(super) fn part_of(request: &Request, answer: &AnyAnswer, context: Context<'_>) -> Part {
-    let part = match (request, answer) {
+    let mut part = match (request, answer) {
         (_, AnyAnswer::Impact(answer)) => impact::part(answer, context),
         (_, AnyAnswer::Hand(answer)) => hand::part(&answer.report, context),
         (_, AnyAnswer::Replay(answer)) => replay::part(&answer.report, context),
@@ -75,5 +76,6 @@ pub(super) fn part_of(request: &Request, answer: &AnyAnswer, context: Context<'_
         }
         (request, other) => generic::part(request, other, context),
     };
+    part.answer.extend(notes(&part.caveats, context.wording));
     inputs::with_request(part, request, context)
 }

@@ -36,10 +36,11 @@ pub(super) fn part(answer: &PredictForceAnswer, context: Context<'_>) -> Part {
 
 /// How far a network applies.
 pub(super) fn applicability(network: &str, share: f64, wording: &Wording) -> String {
+    let words = wording.words;
+    // A share that is written as all of it leaves no rest.
+    let template = if share < 0.9995 { words.applicability } else { words.applies };
     let share = wording.percent(share);
-    // Of a network that applies throughout no decimals are told.
-    let share = if share.starts_with("100") { "100 %".to_owned() } else { share };
-    fill(wording.words.applicability, &[("network", network), ("share", &share)])
+    fill(template, &[("network", network), ("share", &share)])
 }
 
 fn picture(answer: &PredictForceAnswer, wording: &Wording) -> PartPicture {
@@ -57,4 +58,19 @@ fn picture(answer: &PredictForceAnswer, wording: &Wording) -> PartPicture {
     };
     let caption = wording.words.force_forecast_picture.to_owned();
     PartPicture::figure(caption, forecast_figure(ForceComponent::Magnitude, &input))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::units::UnitSystem;
+
+    /// A network counts in full a little way outside of its ranges, too, of which a warning tells.
+    #[test]
+    fn a_network_that_counts_in_full_is_not_said_to_have_learned_from_the_like() {
+        let wording = Wording::english(UnitSystem::Si);
+        let told = |share| applicability("force network", share, &wording);
+        assert!(told(0.9996).contains("in full") && !told(0.9996).contains("learned"));
+        assert!(told(0.9994).contains("partly outside") && told(0.9994).contains("99.9 %"));
+    }
 }

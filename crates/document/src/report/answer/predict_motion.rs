@@ -33,8 +33,13 @@ pub(super) fn part(
     let names = [("name", &*report.scenario), ("vehicle", &vehicle)];
     let question = fill(words.ask_motion, &names);
     let mut blocks = vec![Block::paragraph(question.clone())];
-    blocks.extend(report.course_table().iter().map(|table| facts_table(table, context)));
-    blocks.push(facts_table(&report.answer_table(), context));
+    let courses = report.course_table();
+    let in_opinion: Vec<Block> = courses
+        .iter()
+        .chain([&report.answer_table()])
+        .map(|table| facts_table(table, context))
+        .collect();
+    blocks.extend(in_opinion.iter().cloned());
     let force_table = report.force_table();
     let of_first_force: Vec<Block> =
         force_table.iter().map(|table| facts_table(table, context)).collect();
@@ -67,6 +72,7 @@ pub(super) fn part(
         opinion: Some(opinion_of_forecast(report, &question, context)),
         answer: blocks,
         of_first_force,
+        in_opinion,
         pictures: pictures(request, answer, context).into_iter().chain(in_atlas.picture).collect(),
         inputs: vehicle_rows(&answer.analysis.vehicle, words.struck_vehicle, wording),
         sensitivity: shares.chain(in_atlas.blocks).collect(),

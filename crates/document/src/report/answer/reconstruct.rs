@@ -43,8 +43,8 @@ pub(super) fn part(
     let question = fill(ask, &[("name", &report.case)]);
     let mut blocks = vec![Block::paragraph(question.clone())];
     if report.modes.len() > 1 {
+        // Their table stands in the opinion, and with the evidence.
         blocks.push(Block::paragraph(words.several_courses));
-        blocks.push(facts_table(&report.course_table(), context));
     }
     if let Some(hinges) = report.hinge_table() {
         blocks.extend([facts_table(&hinges, context), Block::paragraph(words.hinges_text)]);

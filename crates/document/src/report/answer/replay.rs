@@ -1,10 +1,11 @@
 //! The replay of an event data recorder in a report.
 
+use crate::figure::{ReplayCurve, replay_curve_figure, replay_path_figure};
 use crate::report::Block;
 use crate::report::answer::Context;
 use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
 use crate::report::numbers::fill;
-use crate::report::parts::Part;
+use crate::report::parts::{Part, PartPicture};
 use impactlab_study::{Answer, ReplayReport};
 
 /// What the replay of a recorder contributes.
@@ -22,8 +23,22 @@ pub(super) fn part(answer: &Answer<ReplayReport>, context: Context<'_>) -> Part 
         kind: wording.key("replay"),
         title: format!("{}: {}", wording.key("replay"), answer.name),
         answer: blocks,
+        pictures: pictures(answer, context),
         caveats: answer.caveats.clone(),
         provenance: provenance_of(&answer.provenance, &draws, wording),
         ..Part::default()
     }
+}
+
+/// The path from above, then what was recorded beside what was replayed.
+fn pictures(answer: &Answer<ReplayReport>, context: Context<'_>) -> Vec<PartPicture> {
+    let (words, units) = (context.wording.words, context.wording.units);
+    let path = replay_path_figure(answer, units);
+    let curve = |curve: ReplayCurve| {
+        let quantity = context.wording.term(curve.label());
+        let caption = fill(words.replay_picture, &[("quantity", &*quantity)]);
+        PartPicture::figure(caption, replay_curve_figure(answer, curve, units))
+    };
+    let path = PartPicture::figure(words.replay_path_picture.to_owned(), path);
+    std::iter::once(path).chain(ReplayCurve::ALL.map(curve)).collect()
 }

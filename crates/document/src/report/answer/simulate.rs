@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use crate::figure::{analysis_force_figure, analysis_motion_figure, control_figures};
+use crate::figure::{
+    FigureElement, analysis_force_figure, analysis_motion_figure, control_figures,
+};
 use crate::report::Block;
 use crate::report::answer::Context;
 use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
@@ -15,8 +17,10 @@ use crate::report::numbers::fill;
 use crate::report::opinion::opinion_of_simulation;
 use crate::report::parts::{Part, PartPicture};
 use impactlab_core::data::Channel;
-use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_study::{SimulateAnswer, SimulateRequest};
+
+/// What figures call the vehicle that is simulated.
+const STRUCK: &str = "struck vehicle";
 
 /// What a simulation contributes.
 pub(super) fn part(
@@ -28,7 +32,9 @@ pub(super) fn part(
     let words = wording.words;
     let vehicle = wording.name(&report.vehicle);
     let names = [("name", &*report.name), ("vehicle", &vehicle)];
-    let question = fill(words.ask_simulate, &names);
+    let is_alone = is_alone(answer);
+    let ask = if is_alone { words.ask_drive } else { words.ask_simulate };
+    let question = fill(ask, &names);
     let mut blocks = vec![Block::paragraph(question.clone())];
     blocks.extend(facts_with_meaning(&report.motion_table(), "", context));
     let beside = report.rival.as_ref();
@@ -44,13 +50,13 @@ pub(super) fn part(
         sensitivity.extend(shares.map(|table| facts_table(&table, context)));
         draws.push((words.vehicles_drawn, uncertainty.n_draws.to_string()));
     }
-    let noted = |note: &Caveat| fill(words.noted, &[("note", &wording.caveat_text(note))]);
-    let notes = report.caveats.iter().filter(|caveat| caveat.kind == CaveatKind::Note);
-    blocks.extend(notes.map(|note| Block::paragraph(noted(note))));
     let scenario = report.momentum.as_ref().map(|_| Method::Impact);
     let contact = (!report.contacts.is_empty()).then_some(Method::ContactLaw);
     let network = beside.map(|_| Method::ForceNetwork);
     let sheet = report.uncertainty.as_ref().map(|_| Method::DataSheet);
+    let motion = if is_alone { Method::FourDofAlone } else { Method::FourDof };
+    let car = wording.term("car");
+    let of_car: &str = if is_alone { &car } else { words.struck_vehicle };
     Part {
         kind: words.title_simulate.to_owned(),
         title: format!("{}: {}", words.title_simulate, report.name),
@@ -58,14 +64,14 @@ pub(super) fn part(
         answer: blocks,
         pictures: pictures(request.site.as_deref(), answer, context),
         inputs: [
-            vehicle_rows(&answer.analysis.vehicle, words.struck_vehicle, wording),
+            vehicle_rows(&answer.analysis.vehicle, of_car, wording),
             zone_rows(&answer.analysis.friction_zones, wording),
         ]
         .concat(),
         sensitivity,
         caveats: report.caveats.clone(),
         provenance: provenance_of(&report.provenance, &draws, wording),
-        methods: [Method::FourDof]
+        methods: [motion]
             .into_iter()
             .chain(scenario)
             .chain(contact)
@@ -74,6 +80,15 @@ pub(super) fn part(
             .collect(),
         ..Part::default()
     }
+}
+
+/// Whether the car is driven and touches nothing.
+fn is_alone(answer: &SimulateAnswer) -> bool {
+    let report = &answer.report;
+    report.force.is_none()
+        && report.momentum.is_none()
+        && report.contacts.is_empty()
+        && answer.analysis.pair.is_none()
 }
 
 fn pictures(
@@ -96,9 +111,15 @@ fn pictures(
     pictures.extend(force.map(|figure| PartPicture::figure(force_caption, figure)));
     let yaw_rate = analysis_motion_figure(analysis, caveats, Channel::YawRate, units);
     if !yaw_rate.elements.is_empty() {
-        pictures.push(PartPicture::figure(words.yaw_rate_picture.to_owned(), yaw_rate));
+        let alone = is_alone(answer);
+        let caption = if alone { words.yaw_rate_alone_picture } else { words.yaw_rate_picture };
+        pictures.push(PartPicture::figure(caption.to_owned(), yaw_rate));
     }
-    pictures.extend(control_figures(analysis, caveats, units).into_iter().map(|figure| {
+    pictures.extend(control_figures(analysis, caveats, units).into_iter().map(|mut figure| {
+        let struck = figure.elements.iter_mut().map(FigureElement::name_mut);
+        struck.filter(|name| is_alone(answer) && name.as_str() == STRUCK).for_each(|name| {
+            "car".clone_into(name);
+        });
         let quantity = context.wording.term(&figure.y.label);
         let names = [("quantity", &*quantity)];
         PartPicture::figure(fill(words.controls_picture, &names), figure)

@@ -128,7 +128,7 @@ fn on_ground(
         None => String::new(),
         Some(Err(why)) => fill(wording.words.ground_not_drawn, &[("why", &quoted(&why))]),
         Some(Ok(loaded)) => {
-            let far = loaded.far_notes(scene.extent_m());
+            let far = loaded.far_notes(scene.extent_m(), scene.units);
             let notes = loaded.notes.iter().chain(&far);
             scene.ground = Some(Arc::clone(&loaded.ground));
             notes.map(|note| format!("; {}", quoted(note))).collect()

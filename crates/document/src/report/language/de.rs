@@ -71,6 +71,7 @@ pub(super) const WORDS: Words = Words {
         der Zusammenstoß „{name}“ nach der ebenen Stoßmechanik?",
     ask_simulate: "Frage: Wie bewegt sich das gestoßene Fahrzeug ({vehicle}) nach dem Aufprall „{name}“, \
         nach dem 4DOF-Fahrzeugmodell?",
+    ask_drive: "Frage: Wie bewegt sich das Fahrzeug ({vehicle}) in „{name}“ nach dem 4DOF-Fahrzeugmodell?",
     ask_force: "Frage: Welche Stoßkraft bewirkt der Zusammenstoß „{name}“ nach dem Kraftnetz, und wie \
         sicher ist das?",
     ask_motion: "Frage: Wohin bewegt sich das gestoßene Fahrzeug ({vehicle}) nach dem Aufprall „{name}“ \
@@ -93,6 +94,7 @@ pub(super) const WORDS: Words = Words {
     ground_not_drawn: "; das Gelände ist nicht gezeichnet: {why}",
     force_picture: "Stoßkraft auf das gestoßene Fahrzeug über der Zeit, {axes}",
     yaw_rate_picture: "Gierrate des gestoßenen Fahrzeugs über der Zeit",
+    yaw_rate_alone_picture: "Gierrate des Fahrzeugs über der Zeit",
     controls_picture: "{quantity} über der Zeit",
     vehicles_drawn: "gezogene Fahrzeuge:",
     forces_drawn: "Kräfte:",
@@ -100,7 +102,9 @@ pub(super) const WORDS: Words = Words {
         Kraftnetzes. Wie oft solche Bereiche zutrafen, steht in Abschnitt 7, soweit es geprüft wurde.",
     force_network: "Kraftnetz",
     response_network: "Bewegungsnetz",
-    applicability: "Das {network} trägt {share} der Verteilung; der Rest ist die der Physik allein.",
+    applicability: "Der Fall liegt teilweise außerhalb dessen, woran das {network} gelernt hat: {share} der \
+        Verteilung stammen vom Netz, der Rest allein aus der Physik.",
+    applies: "Das {network} zählt voll: Kein Teil der Verteilung stammt allein aus der Physik.",
     force_forecast_picture: "Vorhergesagte Kraft auf das gestoßene Fahrzeug: Betrag über der Zeit mit Bändern",
     meaning_motion: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach der Verteilung des \
         Bewegungsnetzes über die gezogenen Kräfte und Fahrzeuge. Wie oft solche Bereiche des Ortes zutrafen, \
@@ -108,8 +112,8 @@ pub(super) const WORDS: Words = Words {
     meaning_motion_one: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach der Verteilung des \
         Bewegungsnetzes für diese eine Kraft und dieses Fahrzeug, deren eigene Unsicherheit fehlt. Wie oft \
         solche Bereiche des Ortes zutrafen, steht in Abschnitt 7.",
-    learned_duration: "Das Bewegungsnetz hat aus Bewegungen von bis zu {time} gelernt; was danach kommt, ist \
-        die Physik mit den gelernten Stärken.",
+    learned_duration: "Das Bewegungsnetz hat aus Bewegungen von bis zu {time} gelernt; danach rechnet die \
+        Vorhersage mit dem 4DOF-Modell und den angepassten Effekten weiter.",
     forecast_scene_picture: "Vorhersage von oben: Bahnen, Dichte und Bereiche von 50 und 90 % am Ende",
     forecast_paths_picture: "Vorhersage von oben: Bahnen; keine Dichte, da sich die Fahrzeuge vor dem Ende erneut \
         berühren",
@@ -140,6 +144,9 @@ pub(super) const WORDS: Words = Words {
         die dieser Bewegung ist und ihre Fehler so sind, wie sie gezogen wurden; wie oft solche Bereiche \
         zutreffen, hat niemand gemessen.",
     draws_replay: "Ziehungen der Aufzeichnung:",
+    replay_path_picture: "Bahn bis zum ersten Kontakt von oben, mit dem Band von 90 % der Ziehungen quer zu ihr",
+    replay_picture: "{quantity} über der Uhr des Datenspeichers: aufgezeichnet und nachgefahren, mit dem Band von \
+                     90 %",
     meaning_hand: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, wenn das Verfahren gilt und die \
                    Eingaben so unsicher sind wie angegeben und nicht voneinander abhängen.",
     meaning_posterior: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach den vorgefundenen Spuren, \
@@ -177,32 +184,32 @@ pub(super) const WORDS: Words = Words {
         die Spuren des Fahrzeugs selbst, nicht die der aus dem Datenblatt gezogenen Fahrzeuge.",
     marks_compared_text: "Jede gefundene Spur steht neben der nächsten, die ihr Rad in einer Bewegung hinterlässt, der eines \
         Partikels mittlerer Geschwindigkeit; die Abstände sind die der Stellen auf der gefundenen Spur zur gerechneten.",
-    prior: "vorab angenommene Verteilung",
+    prior: "Vorabverteilungen, ohne die Anknüpfungstatsachen",
     uniform: "zwischen {low} und {high}, jeder Wert gleich wahrscheinlich",
-    normal_cut: "normal, {mean} ± {sigma}, abgeschnitten bei {low} und {high}",
+    normal_cut: "normal, {value}, abgeschnitten bei {low} und {high}",
     log_normal_cut: "lognormal, Median {median}, σ des Logarithmus {sigma}, abgeschnitten bei {low} \
         und {high}",
-    source_prior_given: "Vorabverteilung; mit den Spuren oder durch das gewählte Fahrzeug vorgegeben",
-    source_prior_measured: "Vorabverteilung; gemessen, nach den Spuren",
+    source_prior_given: "Vorabverteilung; mit den Anknüpfungstatsachen oder durch das Fahrzeug vorgegeben",
+    source_prior_measured: "Vorabverteilung; gemessen, nach den Anknüpfungstatsachen",
     source_prior_rule: "Vorabverteilung; Regel des Datenblatts mit ihrer Streuung",
     source_prior: "Vorabverteilung; Vorgabewert des Programms",
-    source_evidence_sigma: "Spuren",
-    source_default_sigma: "Spuren; ± ist das des Programms, wo die Spuren keines nennen",
+    source_evidence_sigma: "Anknüpfungstatsachen",
+    source_default_sigma: "Anknüpfungstatsachen; ± vom Programm, da dort nicht genannt",
     source_program: "Vorgabe des Programms",
     decision_prior: "mit einer Wahrscheinlichkeit von {share}",
     decision_by_number: "jedes der beiden Räder am Schaden mit einer Wahrscheinlichkeit von {share}, sonst keines",
-    source_evidence: "Spuren",
+    source_evidence: "Anknüpfungstatsachen",
     source_question: "Frage",
     source_file: "Datei, siehe Abschnitt 9",
     follows_from_sheet: "Datenblatt, oder folgt aus den Schätzwerten unten",
-    inputs_text: "„Vorgegeben“ ist, was die Frage oder die Spuren ohne Standardabweichung nennen, auch \
+    inputs_text: "„Vorgegeben“ ist, was die Frage oder die Anknüpfungstatsachen ohne Standardabweichung nennen, auch \
         Einstellungen der Rechnung; „gemessen“ hat eine Standardabweichung (±) oder ist die \
         Grenze einer Aufzeichnung; „nach Regel“ folgt aus anderen Werten nach einer \
-        Regel mit bekannter Streuung; „angenommen“ ist, was niemand angegeben hat.",
+        Regel mit bekannter Streuung; „angenommen“ hat das Programm, was niemand angegeben hat.",
     inputs_caption: "{name}: {group}",
-    inputs_said: "{caption}; laut Frage",
-    inputs_assumed: "was niemand angegeben hat",
-    inputs_left: "Wie vom Programm vorgegeben: {values}.",
+    inputs_said: "{caption}; wie in der Frage angegeben",
+    inputs_assumed: "vom Programm angenommen",
+    inputs_left: "Bei den Vorgaben des Programms belassen: {values}.",
     validity_text: "Was die Modelle des Gutachtens vernachlässigen, steht dort. Es folgt jede Einschränkung, \
         die das Programm gefunden hat, mit Begründung und Abhilfe.",
     validity_models: "Die übrigen Modelle vernachlässigen:",
@@ -254,6 +261,8 @@ pub(super) const WORDS: Words = Words {
     axes_single_car_text: "Achsen nach ISO 8855: x nach vorn, y nach links, Gierwinkel nach links positiv. Weltachsen \
         der Rekonstruktion eines einzelnen Fahrzeugs sind die, in denen die Spuren vermessen wurden. Intervalle \
         lassen unten so viel weg wie oben.",
+    axes_driven_text: "Achsen nach ISO 8855: x nach vorn, y nach links, Gierwinkel nach links positiv. Weltachsen sind \
+        die der Lageskizze.",
     method_impact: "Ebener Stoß",
     method_impact_text: "Beide Fahrzeuge sind starre Körper in der Ebene, die an einem Kontaktpunkt in unendlich \
         kurzer Zeit einen Impuls austauschen. Impuls und Drall bleiben erhalten; die \
@@ -404,7 +413,7 @@ pub(super) const WORDS: Words = Words {
     case_as_saved: "ihr Inhalt ist der, den das Programm gespeichert hat",
     case_edited: "sie wurde bearbeitet, seit das Programm sie gespeichert hat",
     case_without_seal: "sie trägt kein Siegel des Programms: von Hand oder mit einer früheren Version geschrieben",
-    case_in_no_file: "Der Fall, wie er hier ist, steht in keiner Datei.",
+    case_in_no_file: "Der Fall selbst wurde nicht als Datei gespeichert.",
     log_caption: "Was wann geschah, UTC",
     time: "Zeit",
     event: "Vorgang",
@@ -421,6 +430,6 @@ pub(super) const WORDS: Words = Words {
     picture_elsewhere: "Das Bild steht im PDF dieses Berichts.",
     noted: "Hinweis: {note}.",
     seed: "Startwert",
-    domain_caption: "Wie weit die Netze gelten",
+    domain_caption: "Gültigkeitsbereich der Netze",
     signature: "Ort, Datum, Unterschrift: ______________________________",
 };

@@ -57,19 +57,19 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ),
     // When a speed by hand holds.
     (
-        "way to rest; all wheels were locked from the start on",
+        "distance to rest; all wheels were locked from the start on",
         "Weg bis zum Stillstand; alle Räder waren von Anfang an blockiert",
     ),
     (
-        "way to rest; all wheels were locked from the impact on",
+        "distance to rest; all wheels were locked from the impact on",
         "Weg bis zum Stillstand; alle Räder waren vom Stoß an blockiert",
     ),
     (
-        "way to rest; the brakes locked all wheels at once",
+        "distance to rest; the brakes locked all wheels at once",
         "Weg bis zum Stillstand; die Bremsen blockierten sofort alle Räder",
     ),
     (
-        "way to rest; it spun with wheels that turned, with half of the friction",
+        "distance to rest; it spun with wheels that turned, with half of the friction",
         "Weg bis zum Stillstand; es schleuderte mit drehenden Rädern, mit dem halben Reibbeiwert",
     ),
     (

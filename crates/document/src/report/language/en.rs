@@ -70,6 +70,7 @@ pub(super) const WORDS: Words = Words {
         bring about, by planar impact mechanics?",
     ask_simulate: "Question: how does the struck vehicle ({vehicle}) move after the impact “{name}”, by the \
         4DOF vehicle model?",
+    ask_drive: "Question: how does the car ({vehicle}) move in “{name}”, by the 4DOF vehicle model?",
     ask_force: "Question: which contact force does the collision “{name}” bring about, by the force \
         network, and how sure is that?",
     ask_motion: "Question: where does the struck vehicle ({vehicle}) go after the impact “{name}”, by the \
@@ -91,6 +92,7 @@ pub(super) const WORDS: Words = Words {
     ground_not_drawn: "; the ground is not drawn: {why}",
     force_picture: "Contact force on the struck vehicle over time, {axes} axes",
     yaw_rate_picture: "Yaw rate of the struck vehicle over time",
+    yaw_rate_alone_picture: "Yaw rate of the car over time",
     controls_picture: "{quantity} over time",
     vehicles_drawn: "vehicles drawn:",
     forces_drawn: "forces:",
@@ -98,7 +100,9 @@ pub(super) const WORDS: Words = Words {
         network. Section 7 says how often such intervals held, for those quantities that were validated.",
     force_network: "force network",
     response_network: "response network",
-    applicability: "The {network} carries {share} of the distribution; the rest is that of the physics alone.",
+    applicability: "The case lies partly outside of what the {network} has learned from: {share} of the \
+        distribution is that of the network, the rest that of the physics alone.",
+    applies: "The {network} counts in full: no part of the distribution is that of the physics alone.",
     force_forecast_picture: "Predicted force on the struck vehicle: size over time with its bands",
     meaning_motion: "Each value lies in its interval of 90 % with that probability, by the distribution of the response \
         network over the forces and vehicles that were drawn. Section 7 says how often such regions of the \
@@ -106,8 +110,8 @@ pub(super) const WORDS: Words = Words {
     meaning_motion_one: "Each value lies in its interval of 90 % with that probability, by the distribution of the response \
         network for this one force and vehicle, whose own uncertainty is left out. Section 7 says how often \
         such regions of the position held.",
-    learned_duration: "The response network has learned from motions of up to {time}; what comes after that is \
-        the physics with the strengths that it knows.",
+    learned_duration: "The response network has learned from motions of up to {time}; after that the forecast \
+        goes on with the 4DOF model and its fitted effects.",
     forecast_scene_picture: "Forecast from above: paths, and density with the regions of 50 and 90 % at the end",
     forecast_paths_picture: "Forecast from above: paths; no density, since the vehicles meet again before the end",
     atlas_heading: "The case in the atlas of the PIT manoeuvre",
@@ -135,6 +139,8 @@ pub(super) const WORDS: Words = Words {
     meaning_replay: "Each value lies in its interval of 90 % with that probability if the record is of this motion and \
         its errors are as they were drawn; nobody has measured how often such intervals hold.",
     draws_replay: "draws of the record:",
+    replay_path_picture: "Path up to the first contact from above, with the band of 90 % of the draws across it",
+    replay_picture: "{quantity} on the clock of the recorder: recorded and replayed, with the band of 90 %",
     meaning_hand: "Each value lies in its interval of 90 % with that probability if the method holds, the inputs are as \
                    uncertain as they say, and do not depend on each other.",
     meaning_posterior: "Each value lies in its interval of 90 % with that probability, given the evidence, if the assumptions \
@@ -171,9 +177,9 @@ pub(super) const WORDS: Words = Words {
         more than {speed}. The simulation of the vehicle itself leaves these marks, not those drawn from its data sheet.",
     marks_compared_text: "Each found mark stands beside the nearest one that its wheel leaves in one motion, that of a particle \
         of median speed; the distances are those of places on the found mark to the computed one.",
-    prior: "taken to be likely before",
+    prior: "prior distributions, before the evidence",
     uniform: "between {low} and {high}, each value equally likely",
-    normal_cut: "normal, {mean} ± {sigma}, cut off at {low} and {high}",
+    normal_cut: "normal, {value}, cut off at {low} and {high}",
     log_normal_cut: "log-normal, median {median}, σ of the logarithm {sigma}, cut off at {low} and \
         {high}",
     source_prior_given: "prior; given with the evidence, or by the chosen vehicle",
@@ -192,11 +198,12 @@ pub(super) const WORDS: Words = Words {
     inputs_text: "“Given” is what the question or the evidence says without a standard deviation, settings \
         of the computation included; “measured” has a standard deviation (±) or is a bound of a \
         record; “estimated by rule” follows from other values by a rule with known scatter; \
-        “assumed” is what nobody said.",
+        “assumed” is what the program \
+        chose, since nobody stated it.",
     inputs_caption: "{name}: {group}",
-    inputs_said: "{caption}; said by the question",
-    inputs_assumed: "what nobody said",
-    inputs_left: "Left as the program has them: {values}.",
+    inputs_said: "{caption}; as stated in the question",
+    inputs_assumed: "assumed by the program",
+    inputs_left: "Left at the defaults of the program: {values}.",
     validity_text: "What the models of the opinion leave out is said there. Each restriction that the \
         program found follows, with its sentence and a remedy.",
     validity_models: "The other models leave out:",
@@ -247,6 +254,8 @@ pub(super) const WORDS: Words = Words {
     axes_single_car_text: "Axes are those of ISO 8855: x forward, y to the left, yaw positive to the left. World \
         axes of the reconstruction of a single car are those in which the evidence was measured. Intervals leave \
         out as much below as above.",
+    axes_driven_text: "Axes are those of ISO 8855: x forward, y to the left, yaw positive to the left. World axes are \
+        those of the scene.",
     method_impact: "Planar impact",
     method_impact_text: "Both vehicles are rigid bodies in the plane that exchange one impulse at one contact \
         point, in no time. Momentum and angular momentum are conserved; the normal component \
@@ -304,7 +313,7 @@ pub(super) const WORDS: Words = Words {
         a car rolls out has not been compared with a record.",
     method_reconstruction: "Reconstruction from evidence",
     method_reconstruction_text: "Everything that is not known (speeds, heading, contact, friction, masses, braking, …) \
-        has a distribution that was taken to be likely before. For each drawn set of values the \
+        has a prior distribution. For each drawn set of values the \
         impact and the motion to rest are computed, and weighed by how well they go with what \
         was found, with the standard deviation of each measurement and an error of the model \
         that grows along the path. A sequential Monte Carlo sampler draws from the prior, then \
@@ -316,7 +325,7 @@ pub(super) const WORDS: Words = Words {
         assumed of them. A motion is followed for 40 s.",
     method_single_car: "Reconstruction of a single car",
     method_single_car_text: "Everything that is not known (speed, sideslip angle and yaw rate at the start, friction, \
-        braking, steering, …) has a distribution that was taken to be likely before. For each drawn set of values \
+        braking, steering, …) has a prior distribution. For each drawn set of values \
         the motion from the start to rest is computed, and weighed by how well it goes with what was found, with \
         the standard deviation of each measurement and an error of the model that grows along the path. A \
         sequential Monte Carlo sampler draws from the prior, then from mixtures of normals that follow the evidence \
@@ -389,7 +398,7 @@ pub(super) const WORDS: Words = Words {
     case_as_saved: "its content is what the program saved",
     case_edited: "it was edited since the program saved it",
     case_without_seal: "it has no seal of the program: it was written by hand or by an earlier version",
-    case_in_no_file: "The case as it is here stands in no file.",
+    case_in_no_file: "The case itself was not saved to a file.",
     log_caption: "What was done and when, UTC",
     time: "Time",
     event: "Event",
@@ -406,6 +415,6 @@ pub(super) const WORDS: Words = Words {
     picture_elsewhere: "The picture is in the PDF of this report.",
     noted: "Note: {note}.",
     seed: "seed",
-    domain_caption: "How far the networks apply",
+    domain_caption: "Domain of the networks",
     signature: "Place, date, signature: ______________________________",
 };

@@ -98,7 +98,7 @@ fn caveat_label(language: Language, text: &str) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::WheelInput;
+    use crate::figure::{ReplayCurve, WheelInput};
     use impactlab_core::vehicle::sheet::{DataSheet, SheetQuantity, VehicleClass};
     use impactlab_core::vehicle::{BuiltInVehicle, built_in_vehicle};
     use impactlab_reconstruct::hand::HandMethod;
@@ -120,7 +120,8 @@ mod tests {
         let quantities = ReconstructedQuantity::EVERY.iter().map(|quantity| quantity.label());
         let sheet = SheetQuantity::ALL.iter().map(|quantity| quantity.label());
         let controls = WheelInput::ALL.into_iter().map(WheelInput::label);
-        for label in latents.chain(quantities).chain(sheet).chain(controls) {
+        let replayed = ReplayCurve::ALL.into_iter().map(ReplayCurve::label);
+        for label in latents.chain(quantities).chain(sheet).chain(controls).chain(replayed) {
             assert!(phrase_of(Language::De, label).is_some(), "{label}");
         }
         for method in HandMethod::ALL {

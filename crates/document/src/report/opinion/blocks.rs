@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::report::Block;
+use crate::report::answer::capitalized;
 use crate::report::beside::{NamedRows, beside};
 use crate::report::build::{VariantParts, parts_of};
 use crate::report::method::{Method, of_kinds};
@@ -177,7 +178,7 @@ fn held(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     if blocks.is_empty() {
         blocks.push(Block::paragraph(words.not_counted));
     }
-    let errors = [words.known_error, words.known_error_single_car];
+    let errors = [words.known_error, words.known_error_single_car, words.known_error_driven];
     blocks.extend(of_kinds(&methods_of(spoken), errors).map(Block::paragraph));
     blocks
 }
@@ -225,7 +226,8 @@ fn warnings(variants: &[VariantParts], wording: &Wording) -> Vec<Block> {
         _ => format!("{label} ({})", of.join(", ")),
     };
     let all: Vec<String> = found.into_iter().map(item).collect();
-    vec![Block::paragraph(format!("{}. {}", all.join("; "), words.warnings_told))]
+    let all = capitalized(&all.join("; "));
+    vec![Block::paragraph(format!("{all}. {}", words.warnings_told))]
 }
 
 /// Who gives the opinion, for whom, from which materials; and the place for the signature.

@@ -126,6 +126,15 @@ mod tests {
         assert!(in_kilograms[0].starts_with("struck vehicle, mass: 2500"), "{in_kilograms:?}");
         let in_pounds = of(&heavy, UnitSystem::Us);
         assert!(in_pounds.len() == 1 && in_pounds[0].ends_with(" lb"), "{in_pounds:?}");
+        let mut scenario = Scenario::example();
+        let [vx_m_s, vy_m_s] = [scenario.striking.vx_world_m_s, scenario.striking.vy_world_m_s];
+        scenario.striking.vx_world_m_s *= 20.0 / vx_m_s.hypot(vy_m_s);
+        scenario.striking.vy_world_m_s *= 20.0 / vx_m_s.hypot(vy_m_s);
+        scenario.contact.restitution = Some(0.15);
+        let asked = ImpactRequest::new(ScenarioChoice::Inline(Box::new(scenario)));
+        let fast = Variant { questions: vec![asked.into()], ..Variant::default() };
+        let told = of(&fast, UnitSystem::Si);
+        assert!(told.len() == 1 && told[0].starts_with("striking vehicle, speed: 72"), "{told:?}");
         let open = of(&variant(2000.0, None), UnitSystem::Si);
         assert!(open.len() == 1 && open[0].starts_with("without "), "{open:?}");
     }

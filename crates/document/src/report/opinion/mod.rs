@@ -20,3 +20,5 @@ pub(super) use of_answer::{
     opinion_of_simulation,
 };
 pub(super) use part::PartOpinion;
+#[cfg(test)]
+pub(super) use part::Rank;

@@ -44,12 +44,12 @@ pub(in crate::report) fn opinion_of_forecast(
     let turns = [("quarter", &*cell(Term::QuarterTurn)), ("half", &*cell(Term::HalfTurn))];
     let mut sentences = vec![fill(words.turns, &turns)];
     let format = &**context.wording;
-    let time = format.given(Quantity::Time, report.outcome.time_s);
+    let time = format.rounded(Quantity::Time, report.outcome.time_s);
     match &report.rest {
         Some(rest) => {
             let share = format.percent(rest.share_at_rest);
             let limit = format.given(Quantity::Time, rest.limit_s);
-            let distance = format.estimate_in_words(Quantity::Length, &rest.distance_m);
+            let distance = format.drawn_in_words(Quantity::Length, &rest.distance_m);
             let values = [("share", &*share), ("limit", &*limit), ("distance", &*distance)];
             sentences.push(fill(words.comes_to_rest, &values));
             if rest.share_at_rest < ENOUGH_AT_REST {
@@ -103,7 +103,9 @@ pub(in crate::report) fn opinion_of_reconstruction(
     if report.modes.len() > 1 {
         sentences.push(words.several_courses.to_owned());
     }
-    sentences.push(capitalized(&told(&figures, 3)));
+    // Both speeds, or that of the single car; the table below has the other figures.
+    let n_told = if report.kind.is_collision() { 2 } else { 1 };
+    sentences.push(capitalized(&told(&figures, n_told)));
     if !report.has_intervals() {
         sentences.push(words.no_intervals.to_owned());
     }

@@ -22,6 +22,7 @@ pub(super) struct OpinionWords {
     pub not_counted: &'static str,
     pub known_error: &'static str,
     pub known_error_single_car: &'static str,
+    pub known_error_driven: &'static str,
     pub hinges: &'static str,
     pub warnings: &'static str,
     pub no_warnings: &'static str,
@@ -87,6 +88,8 @@ const EN: OpinionWords = OpinionWords {
         confidence.",
     known_error_single_car: "The method was tried on single cars that the program simulated itself, and was not \
         validated against real ones; what is known of its model stands in section 7.",
+    known_error_driven: "The model was compared with multibody models of cars; its known errors are in section 7. It was \
+        not validated against real cars.",
     hinges: "What the answer hinges on",
     warnings: "Warnings",
     no_warnings: "The program warns of nothing.",
@@ -152,6 +155,8 @@ const DE: OpinionWords = OpinionWords {
         mit einer Sicherheit von 95 %.",
     known_error_single_car: "Das Verfahren wurde an einzelnen Fahrzeugen geprüft, die das Programm selbst berechnet \
         hat, und ist nicht an realen validiert; was von seinem Modell bekannt ist, steht in Abschnitt 7.",
+    known_error_driven: "Das Modell wurde mit Mehrkörpermodellen von Fahrzeugen verglichen; seine bekannten Fehler stehen \
+        in Abschnitt 7. Es ist nicht an realen Fahrzeugen validiert.",
     hinges: "Wovon die Antwort abhängt",
     warnings: "Warnungen",
     no_warnings: "Das Programm warnt vor nichts.",

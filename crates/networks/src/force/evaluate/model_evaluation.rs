@@ -150,7 +150,7 @@ pub fn cross_validate(
         let (mut is_cancelled, first) = (false, (i * config.training.epochs) as u64);
         let model = train(&set, &train_settings, &mut |progress| {
             let (done, what) = match progress {
-                TrainingReport::Fit { what, .. } => (0, format!("{}: {what}", set.name)),
+                TrainingReport::Fit(fit) => (0, format!("{}: {}", set.name, fit.what)),
                 TrainingReport::Epoch(trained) => {
                     let epoch = trained.summary.epoch;
                     (epoch as u64, format!("{}: epoch {epoch}", set.name))

@@ -1,16 +1,13 @@
 //! The force curve and impulse that physics and regressions predict for a collision. The network
 //! learns corrections of this curve, which is therefore called the centre.
 
-use std::fmt;
-use std::ops::ControlFlow;
-
 use serde::{Deserialize, Serialize};
 
 use crate::force::physics::bare::BareForce;
 use crate::force::physics::committee::Committee;
 use crate::force::physics::crush_laws::{NO_NAME, body_name, crush_scenario, fit_laws};
 use crate::force::{Centre, CrushConfig, ForceCase, ForceError, ForceScenario, MomentumModel};
-use crate::learning::{LearningError, Split, folds};
+use crate::learning::{FitSteps, LearningError, Split, TrainingProgress, folds};
 use crate::nn::{Expected, NnError, check_length, check_number, check_numbers};
 use impactlab_core::collision::crush::{CrushHistory, CrushLaw, CrushScenario};
 use impactlab_core::collision::{Impact, PulseShape};
@@ -18,6 +15,8 @@ use impactlab_core::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve
 
 /// Share of the peak below which a force does not count as contact.
 const CONTACT_SHARE: f64 = 0.01;
+/// How many steps of the fit of a crush law take as long as a regression.
+const REGRESSION_STEPS: usize = 1;
 
 /// The physics of one scenario on the time grid, in canonical axes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -71,49 +70,6 @@ impl CentreCurve {
     }
 }
 
-/// Progress of fitting a centre.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum CentreFit {
-    /// A law of the crush model is being fitted.
-    Crush {
-        /// The fold, from 0.
-        fit: usize,
-        /// Number of folds.
-        n_fits: usize,
-        /// Cost of the fit after the latest step.
-        cost: f64,
-    },
-    /// A regression is being fitted.
-    Regression {
-        /// The regression, from 0.
-        fit: usize,
-        /// Number of regressions.
-        n_fits: usize,
-    },
-}
-
-impl fmt::Display for CentreFit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Crush { fit, n_fits, cost } => {
-                write!(f, "fitting crush law {} of {n_fits}, cost {cost:.3}", fit + 1)
-            }
-            Self::Regression { fit, n_fits } => {
-                write!(f, "fitting regression {} of {n_fits}", fit + 1)
-            }
-        }
-    }
-}
-
-impl CentreFit {
-    /// Number of fits of this kind that are done, and number of all of them.
-    pub fn progress(self) -> (usize, usize) {
-        match self {
-            Self::Crush { fit, n_fits, .. } | Self::Regression { fit, n_fits } => (fit, n_fits),
-        }
-    }
-}
-
 /// Force and contact of one crush law on the time grid.
 struct CentreHistory {
     curve: ForceCurve,
@@ -149,7 +105,7 @@ pub struct CentreModel {
 impl CentreModel {
     /// Fits the physics on training cases.
     ///
-    /// - `report`: called after each accepted step; if it breaks, the fits end where they are.
+    /// - `report`: called before each step of a fit; if it breaks, the fits end where they are.
     /// - returns the model and, for each training case, the curve of those parts of the model that
     ///   were fitted without the case.
     ///
@@ -161,7 +117,7 @@ impl CentreModel {
         kind: Centre,
         config: CrushConfig,
         seed: u64,
-        report: &mut dyn FnMut(CentreFit) -> ControlFlow<()>,
+        report: &mut TrainingProgress<'_>,
     ) -> Result<(Self, Vec<CentreCurve>), ForceError> {
         let n = cases.len();
         if n < config.folds {
@@ -182,12 +138,19 @@ impl CentreModel {
             momentum: MomentumModel::fit(&plain, true),
         };
         let folds = folds(cases, config.folds, seed);
-        model.laws = fit_laws(cases, &folds, kind, config, report)?;
+        let n_crush = if kind.has_crush() { folds.len() * config.max_steps } else { 0 };
+        let n_regressions = if kind == Centre::Committee { folds.len() + 1 } else { 0 };
+        let n_steps = n_crush + n_regressions * REGRESSION_STEPS;
+        let mut steps = FitSteps::new(report, false, n_steps);
+        model.laws = fit_laws(cases, &folds, kind, config, &mut steps)?;
         let mut histories = model.unseen_histories(cases, &folds)?;
         if kind == Centre::Committee {
             let crush: Vec<ForceCurve> =
                 histories.iter().map(|history| history.curve.clone()).collect();
-            let mut on_fit = |fit, n_fits| report(CentreFit::Regression { fit, n_fits });
+            let mut on_fit = |fit: usize, n_fits: usize| {
+                steps.name(format!("fitting regression {} of {n_fits}", fit + 1));
+                steps.at(n_crush + fit * REGRESSION_STEPS, None)
+            };
             let fitted = Committee::fit(cases, &folds, &crush, seed, &mut on_fit)?;
             if let Some((committee, curves)) = fitted {
                 model.committee = Some(committee);

@@ -1,10 +1,7 @@
 //! The crush laws of the centre curve: fitted to the cases outside of each fold.
 
-use std::ops::ControlFlow;
-
-use crate::force::physics::centre::CentreFit;
 use crate::force::{Centre, CrushConfig, ForceCase, ForceError, ForceScenario};
-use crate::learning::Split;
+use crate::learning::{FitSteps, Split};
 use impactlab_core::collision::crush::{
     BodyCrush, CrushFit, CrushLaw, CrushSample, CrushScenario, Nose,
 };
@@ -93,7 +90,7 @@ pub(super) fn fit_laws(
     folds: &[Split],
     kind: Centre,
     config: CrushConfig,
-    report: &mut dyn FnMut(CentreFit) -> ControlFlow<()>,
+    steps: &mut FitSteps<'_, '_>,
 ) -> Result<Vec<CrushLaw>, ForceError> {
     let prior = prior_law(cases);
     if !kind.has_crush() {
@@ -110,7 +107,13 @@ pub(super) fn fit_laws(
         let train = fold.train.iter().filter_map(|&idx| cases.get(idx));
         let samples: Vec<CrushSample> =
             train.filter_map(|case| sample(case, &prior, config.hooked_weight)).collect();
-        let mut on_fit = |cost| report(CentreFit::Crush { fit, n_fits, cost });
+        let mut done = fit * config.max_steps;
+        steps.name(format!("fitting crush law {} of {n_fits}", fit + 1));
+        let mut on_fit = |cost| {
+            let flow = steps.at(done, Some(cost));
+            done += 1;
+            flow
+        };
         let law = prior.fit(&samples, settings, &mut on_fit);
         law.ok_or(ForceError::NoCrushFit { n_cases: samples.len() })
     };

@@ -19,6 +19,6 @@ pub use bare::{
 };
 #[cfg(test)]
 pub(crate) use centre::tests::haversine_centre;
-pub use centre::{CentreCurve, CentreFit, CentreModel};
+pub use centre::{CentreCurve, CentreModel};
 pub use momentum::MomentumModel;
 pub(crate) use residuals::{DURATION_UNIT_S, ResidualModel};

@@ -10,9 +10,7 @@ use crate::force::physics::{CentreCurve, CentreModel, ResidualModel};
 use crate::force::train::batch::CaseTensors;
 use crate::force::train::loss::{Loss, LossTerms};
 use crate::force::train::{CalibrationCase, ForceModel, VarianceCalibration};
-use crate::force::{
-    CentreFit, ForceCase, ForceConfig, ForceEpoch, ForceError, ForceRecord, ForceTraining,
-};
+use crate::force::{ForceCase, ForceConfig, ForceEpoch, ForceError, ForceRecord, ForceTraining};
 use crate::learning::{
     CaseId, EpochLoop, EpochRecord, EpochReport, LearningError, SavedTraining, TrainSettings,
     TrainingFile, TrainingProgress, TrainingReport, TrainingSet, run_epochs, split,
@@ -126,11 +124,7 @@ pub fn fit_physics(
     report: &mut TrainingProgress<'_>,
 ) -> Result<(CentreModel, Vec<CentreCurve>), ForceError> {
     let (kind, crush) = (settings.config.network.centre, settings.config.crush);
-    let mut on_fit = |fit: CentreFit| {
-        let (done, n_fits) = fit.progress();
-        report(&TrainingReport::Fit { what: fit.to_string(), done, n_fits })
-    };
-    CentreModel::fit(&set.train, kind, crush, settings.seed, &mut on_fit)
+    CentreModel::fit(&set.train, kind, crush, settings.seed, report)
 }
 
 /// Runs the epochs that are left and builds the model.

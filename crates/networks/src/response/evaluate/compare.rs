@@ -222,7 +222,7 @@ impl<'a, 'b> Work<'a, 'b> {
             let model = fine_tune(Some(start), set, &settings, &mut |progress| {
                 let part = match progress {
                     TrainingReport::Epoch(epoch) => epoch.part().unwrap_or_default(),
-                    TrainingReport::Fit { what, .. } => what.clone(),
+                    TrainingReport::Fit(fit) => fit.what.clone(),
                 };
                 self.tell(share_done(progress), &format!("{label} on {n} trajectories, {part}"))
             })?;

@@ -41,7 +41,7 @@ pub fn compare_on_unseen_cars(
     };
     let mut on_progress = |progress: &TrainingReport| match progress {
         TrainingReport::Epoch(epoch) => tell(0.8 * epoch.share_done(), "training on other cars"),
-        TrainingReport::Fit { .. } => ControlFlow::Continue(()),
+        TrainingReport::Fit(_) => ControlFlow::Continue(()),
     };
     let parts = train_parts(start, set, &training, &mut on_progress)?;
     if is_broken.get() {
@@ -54,7 +54,18 @@ pub fn compare_on_unseen_cars(
         let is_learned = |case: &&ResponseCase| part.model.is_trained_on(case);
         let train: Vec<ResponseCase> = set.train.iter().filter(is_learned).cloned().collect();
         let mut model = part.model.copied()?;
-        learn_population(&mut model, &unseen, &train)?;
+        let mut on_fit = |progress: &TrainingReport| match progress {
+            TrainingReport::Fit(fit) => {
+                let share = fit.done as f64 / fit.n_steps.max(1) as f64;
+                let done = 0.8 + 0.2 * (number as f64 + share) / parts.len() as f64;
+                tell(done, "cars that were left out")
+            }
+            TrainingReport::Epoch(_) => ControlFlow::Continue(()),
+        };
+        learn_population(&mut model, &unseen, &train, &mut on_fit)?;
+        if is_broken.get() {
+            return Ok(None);
+        }
         for cases in part.unseen(set).cars {
             compared.compare(&model, &cases)?;
         }

@@ -79,7 +79,7 @@ impl MotionModel {
     pub(crate) fn predict(&self, case: &ResponseCase) -> Result<PredictedMotion, LearningError> {
         let initial = case.states.first().copied().unwrap_or_default();
         let four_dof = |vehicle| {
-            let states = rollout(vehicle, initial, &case.inputs, |_, _| [0.0; N_RESIDUAL]);
+            let states = rollout(vehicle, initial, &case.inputs, [0.0; N_RESIDUAL]);
             PredictedMotion { paths: vec![states.clone()], states, distribution: None }
         };
         Ok(match self {

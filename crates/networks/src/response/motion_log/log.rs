@@ -1,28 +1,23 @@
 //! A log as it was read, and what can be wrong with it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use impactlab_core::collision::PulseError;
-use impactlab_core::data::{
-    ColumnMap, ContactOutside, DataError, SeriesError, TimeSeries, read_motion_log,
-};
+use impactlab_core::data::{ContactOutside, SeriesError, TimeSeries};
 
 /// A log as it was read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionLog {
     /// The file of the log.
     pub path: PathBuf,
-    /// Time, x, y, yaw, and perhaps yaw rate, v_x and v_y, roll, roll rate, steer; the rest is not
-    /// looked at.
+    /// Time, x, y, yaw, and perhaps yaw rate, v_x and v_y, roll, roll rate, steer of the road wheels; the
+    /// rest is not looked at.
     pub series: TimeSeries,
 }
 
 /// A log from which nothing can be learned.
 #[derive(Debug, thiserror::Error)]
 pub enum LogError {
-    /// The file cannot be read.
-    #[error(transparent)]
-    Data(#[from] DataError),
     /// The log lacks a column.
     #[error("{}: cannot be used", path.display())]
     Series {
@@ -95,15 +90,6 @@ pub enum LogError {
 }
 
 impl MotionLog {
-    /// Reads a log.
-    ///
-    /// # Errors
-    /// [`DataError`], with the place in the file and what to do.
-    pub fn read(path: &Path, map: Option<&ColumnMap>) -> Result<Self, DataError> {
-        let series = read_motion_log(path, map)?.series;
-        Ok(Self { path: path.to_owned(), series })
-    }
-
     /// First and last instant, s.
     pub(super) fn ends_s(&self) -> [f64; 2] {
         let time_s = self.series.time_s();

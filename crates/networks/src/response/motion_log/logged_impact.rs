@@ -22,6 +22,8 @@ use impactlab_core::vehicle::{
 pub struct LogSettings {
     /// The struck vehicle, on its road.
     pub vehicle: VehicleParameters,
+    /// Whether the vehicle was struck. Else its steering alone moved it, and no force is looked for.
+    pub has_impact: bool,
     /// First contact on the log's clock, s; `None`: from the force, else from the motion.
     pub impact_s: Option<f64>,
     /// Duration of the motion from the first contact on that is learned from, s.
@@ -76,18 +78,20 @@ impl LoggedImpact {
         }
         let window: LogWindow = match &load {
             Some(load) => contact_interval(&load.force).map(|(start, end)| [start, end]),
-            None => log.contact(settings.impact_s)?,
+            None if settings.has_impact => log.contact(settings.impact_s)?,
+            None => None,
         };
         let found_s = settings.impact_s.or(window.map(|window| window[0]));
         let start_s = found_s.unwrap_or(log.ends_s()[0]);
         let times_s = grid(log, start_s, settings.duration_s)?;
         let (states, noise) = log.states_at(&times_s, window)?;
         let vehicle = &settings.vehicle;
+        let controls = Controls { steer: steer(&log.series, start_s), ..Controls::default() };
         let (load, force) = match (load, window) {
             (Some(load), _) => (Some(earlier(load, start_s)), ForceOrigin::Recorded),
             (None, None) => (None, ForceOrigin::None),
             (None, Some([from_s, to_s])) => {
-                let load = estimated_load(vehicle, &states, to_s - from_s);
+                let load = estimated_load(vehicle, &controls, &states, to_s - from_s);
                 let path = || log.path.clone();
                 (
                     load.map_err(|source| LogError::Pulse { path: path(), source })?,
@@ -105,7 +109,7 @@ impl LoggedImpact {
         let manoeuvre = Manoeuvre {
             initial: states.first().copied().unwrap_or_default(),
             contact_load: load,
-            controls: Controls { steer: steer(&log.series, start_s), ..Controls::default() },
+            controls,
             duration_s: settings.duration_s,
             ..Manoeuvre::default()
         };

@@ -66,7 +66,7 @@ fn gnss_imu() -> Vec<(Channel, f64)> {
 
 fn settings() -> LogSettings {
     let vehicle = Preset::ScaledStruck.parameters();
-    LogSettings { vehicle, impact_s: None, duration_s: 4.0 }
+    LogSettings { vehicle, has_impact: true, impact_s: None, duration_s: 4.0 }
 }
 
 /// Root mean square errors of position along one axis, velocity along one axis, yaw, yaw rate.
@@ -149,6 +149,16 @@ fn contact_is_found_where_it_was_and_nowhere_else() {
         assert_eq!((found.force, found.contact_s, found.start_s), (ForceOrigin::None, None, 0.0));
         assert!(found.case.inputs.iter().all(|input| input.collision.is_none()));
     }
+}
+
+#[test]
+fn a_motion_without_an_impact_has_no_force_wherever_it_is_lively() {
+    let motion = simulated(&truth_vehicle(), Some(load()), 1.5);
+    let struck = log(&motion, 1, 0, &gnss_imu());
+    let drive = LogSettings { has_impact: false, ..settings() };
+    let found = LoggedImpact::from_log(&struck, None, &drive).unwrap();
+    assert_eq!((found.force, found.contact_s, found.start_s), (ForceOrigin::None, None, 0.0));
+    assert!(found.case.inputs.iter().all(|input| input.collision.is_none()));
 }
 
 #[test]

@@ -6,26 +6,21 @@ use impactlab_core::vehicle::{VehicleInput, VehicleParameters, VehicleState};
 
 /// The states at the beginning of each step and at the end: one more than inputs.
 ///
-/// - `residual`: the residual acceleration of a step, given its number and the state.
+/// - `residual`: the residual acceleration of every step.
 pub fn rollout(
     vehicle: &VehicleParameters,
     initial: VehicleState<f64>,
     inputs: &[VehicleInput<f64>],
-    mut residual: impl FnMut(usize, &VehicleState<f64>) -> [f64; N_RESIDUAL],
+    residual: [f64; N_RESIDUAL],
 ) -> Vec<VehicleState<f64>> {
     let mut states = Vec::with_capacity(inputs.len() + 1);
     let model = StepModel::new(vehicle);
     let mut state = initial;
     states.push(state);
-    for (i, input) in inputs.iter().enumerate() {
+    for input in inputs {
         let now = model.constants.evaluate(&state, input);
-        state = Correction::Acceleration.step_from(
-            &model,
-            &state,
-            input,
-            &now.derivative,
-            residual(i, &state),
-        );
+        let correction = Correction::Acceleration;
+        state = correction.step_from(&model, &state, input, &now.derivative, residual);
         states.push(state);
     }
     states

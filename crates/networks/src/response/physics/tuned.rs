@@ -113,7 +113,7 @@ impl Tuning {
     fn error_m(&self, case: &ResponseCase) -> f64 {
         let Some(&initial) = case.states.first() else { return 0.0 };
         let vehicle = self.apply(&case.vehicle);
-        let states = rollout(&vehicle, initial, &case.inputs, |_, _| [0.0; N_RESIDUAL]);
+        let states = rollout(&vehicle, initial, &case.inputs, [0.0; N_RESIDUAL]);
         average_error_m(&states, &case.states)
     }
 
@@ -200,7 +200,7 @@ mod tests {
         let vehicle = Preset::Reference.parameters();
         let initial = VehicleState { yaw_rate_rad_s: 1.2, ..VehicleState::driving_straight(20.0) };
         let inputs = vec![VehicleInput::released(); 150];
-        let states = rollout(&truth.apply(&vehicle), initial, &inputs, |_, _| [0.0; N_RESIDUAL]);
+        let states = rollout(&truth.apply(&vehicle), initial, &inputs, [0.0; N_RESIDUAL]);
         let name = "made".to_owned();
         ResponseCase { name, vehicle, states, inputs, spins: true, digest: String::new() }
     }

@@ -7,7 +7,9 @@ use rayon::prelude::*;
 use crate::nn::NnError;
 use crate::response::network::response_network::ResponseNetwork;
 use crate::response::physics::effects::is_of_collision;
-use crate::response::population::linearized::{Linearized, N_ROWS, Predicted};
+use crate::response::population::linearized::{
+    Linearized, N_ROWS, PATHS_PER_LINEARIZATION, Predicted,
+};
 use crate::response::population::strengths::Evidence;
 use crate::response::predict::{Latents, N_OF_COLLISION};
 use crate::response::{CarStrengths, N_EFFECTS, N_LATENTS, ResponseCase, Widths, vehicle_tokens};
@@ -144,6 +146,11 @@ impl StrengthPopulation {
             remainder: self.remainder,
             widths: self.widths,
         }
+    }
+
+    /// How many paths of [`LEARNED_STEPS`] are computed to learn the strengths of a car.
+    pub(crate) fn n_paths_of_car(n_cases: usize) -> usize {
+        N_ROUNDS * n_cases * PATHS_PER_LINEARIZATION
     }
 
     /// The strengths of a car after trajectories.

@@ -3,10 +3,13 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::learning::FitSteps;
 use crate::nn::NnError;
 use crate::response::network::response_network::ResponseNetwork;
 use crate::response::population::distribution::{EVIDENCE_SHARE, LEARNED_STEPS, window_weights};
-use crate::response::population::linearized::{Linearized, N_ROWS, Predicted};
+use crate::response::population::linearized::{
+    Linearized, N_ROWS, PATHS_PER_LINEARIZATION, Predicted,
+};
 use crate::response::population::strengths::Evidence;
 use crate::response::{CarStrengths, N_EFFECTS, ResponseCase, StrengthPopulation, Widths};
 
@@ -87,18 +90,30 @@ impl Rows {
 }
 
 impl StrengthPopulation {
-    /// The distribution over the cars of a fleet, each predicted by a network that has not seen it.
+    /// How many steps [`StrengthPopulation::fit`] reports: paths of [`LEARNED_STEPS`] that are computed.
+    pub(crate) fn n_fit_steps(cars: &[UnseenCar<'_>]) -> usize {
+        let n_cases: usize = cars.iter().map(|car| car.cases.len()).sum();
+        n_cases * (REMAINDERS.len() + N_LINEARIZATIONS * PATHS_PER_LINEARIZATION)
+    }
+
+    /// The distribution over the cars of a fleet, each predicted by a network that has not seen it;
+    /// `None` if it was broken off.
     ///
     /// # Errors
     /// [`NnError`] if a tensor cannot be read.
-    pub(crate) fn fit(cars: &[UnseenCar<'_>]) -> Result<Self, NnError> {
-        let remainder = remainder_of(cars)?;
+    pub(crate) fn fit(
+        cars: &[UnseenCar<'_>],
+        steps: &mut FitSteps<'_, '_>,
+    ) -> Result<Option<Self>, NnError> {
+        steps.name("how much of the network holds for other cars");
+        let Some(remainder) = remainder_of(cars, steps)? else { return Ok(None) };
         let mut population = Self { remainder, ..Self::guess() };
         let mut fitted = cars
             .iter()
             .map(|unseen| Car::new(unseen, remainder))
             .collect::<Result<Vec<Car<'_>>, NnError>>()?;
-        for _ in 0..N_LINEARIZATIONS {
+        for round in 1..=N_LINEARIZATIONS {
+            steps.name(format!("how cars differ, round {round} of {N_LINEARIZATIONS}"));
             for car in &mut fitted {
                 let mean = &car.strengths.mean;
                 car.linearized = car
@@ -106,6 +121,9 @@ impl StrengthPopulation {
                     .par_iter()
                     .map(|motion| motion.linearized(mean, LEARNED_STEPS))
                     .collect();
+                if steps.advance(car.predicted.len() * PATHS_PER_LINEARIZATION).is_break() {
+                    return Ok(None);
+                }
             }
             for _ in 0..N_ITERATIONS {
                 population.expect(&mut fitted);
@@ -115,7 +133,7 @@ impl StrengthPopulation {
         population.spread(&fitted);
         population.bare = bare(&fitted);
         population.importance = importance(&fitted);
-        Ok(population)
+        Ok(Some(population))
     }
 
     /// A guess before any car is seen.
@@ -252,8 +270,16 @@ impl<'a> Car<'a> {
 }
 
 /// The share of the remainder of a network that errs least on cars that the network has not learned
-/// from: it learns the cars that it sees by heart, and what it says of others is partly theirs.
-fn remainder_of(cars: &[UnseenCar<'_>]) -> Result<f64, NnError> {
+/// from: it learns the cars that it sees by heart, and what it says of others is partly theirs. `None` if
+/// it was broken off.
+fn remainder_of(
+    cars: &[UnseenCar<'_>],
+    steps: &mut FitSteps<'_, '_>,
+) -> Result<Option<f64>, NnError> {
+    // The time left is counted from this report on.
+    if steps.advance(0).is_break() {
+        return Ok(None);
+    }
     let mut best = (f64::INFINITY, 1.0);
     for share in REMAINDERS {
         let errors_m: Vec<f64> = cars
@@ -265,8 +291,11 @@ fn remainder_of(cars: &[UnseenCar<'_>]) -> Result<f64, NnError> {
         if sum < best.0 {
             best = (sum, share);
         }
+        if steps.advance(errors_m.len()).is_break() {
+            return Ok(None);
+        }
     }
-    Ok(best.1)
+    Ok(Some(best.1))
 }
 
 /// Second moment over cars of all their strengths.

@@ -31,6 +31,8 @@ const N_OBSERVED: usize = 6;
 const INSTANTS: [f64; 2] = [0.5, 1.0];
 /// Rows of a window.
 pub(super) const N_ROWS: usize = INSTANTS.len() * N_OBSERVED;
+/// Paths that are computed for a linearisation: one, and one for each strength.
+pub(super) const PATHS_PER_LINEARIZATION: usize = N_EFFECTS + 1;
 /// Change of a strength by which the path is differentiated.
 const PROBE: f64 = 0.02;
 

@@ -16,7 +16,7 @@ fn predictor() -> Predictor {
     let vehicle = Preset::Reference.parameters();
     let initial = VehicleState { yaw_rate_rad_s: 1.0, ..VehicleState::driving_straight(20.0) };
     let inputs = vec![VehicleInput::released(); 100];
-    let states = rollout(&vehicle, initial, &inputs, |_, _| [0.1, 0.0, 0.0, 0.0]);
+    let states = rollout(&vehicle, initial, &inputs, [0.1, 0.0, 0.0, 0.0]);
     let case = ResponseCase {
         name: String::new(),
         vehicle: vehicle.clone(),

@@ -15,14 +15,16 @@ mod training_data;
 mod training_run;
 
 mod fleet;
+mod strengths_over_cars;
 
 mod stages;
 
 pub use case::{ResponseCase, ResponseCaseError};
 pub(crate) use fleet::train_parts;
-pub use fleet::{UnseenCars, condition, learn_population, train_fleet};
+pub use fleet::{condition, train_fleet};
 pub use record::{ResponseEpoch, ResponseRecord, ResponseStage, ResponseTraining};
 pub use simulated::ImpactRecord;
 pub(crate) use stages::check_start;
 pub use stages::{ResponseTrainSettings, ResponseTrainingSet, fine_tune, pretrain};
+pub use strengths_over_cars::{UnseenCars, learn_population};
 pub use training_run::RESPONSE_CHECKPOINT;

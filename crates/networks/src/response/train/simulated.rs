@@ -104,7 +104,7 @@ pub(crate) fn simulate(
             VehicleState { vx_body_m_s: record.initial.vx_body_m_s * speed, ..record.initial };
         let inputs: Vec<VehicleInput<f64>> =
             record.inputs.iter().map(|input| scaled(input, force)).collect();
-        let states = rollout(&vehicle, initial, &inputs, |_, _| [0.0; N_RESIDUAL]);
+        let states = rollout(&vehicle, initial, &inputs, [0.0; N_RESIDUAL]);
         let data_sheet = record.vehicle.clone();
         Some(SimulatedMotion { data_sheet, vehicle, states, inputs })
     };

@@ -98,21 +98,22 @@ impl Fits {
         let mut watch = Watch::start();
         let (mut crush_s, mut regression_s) = (None, None);
         let physics = fit_physics(set, settings, &mut |report| {
-            let TrainingReport::Fit { what, done, .. } = report else {
+            let TrainingReport::Fit(fit) = report else {
                 return ControlFlow::Continue(());
             };
-            let flow = observer(Event::Progress(Progress::new(0, 0, format!("measuring: {what}"))));
+            let what = format!("measuring: {}", fit.what);
+            let flow = observer(Event::Progress(Progress::new(0, 0, what)));
             watch.is_broken |= flow.is_break();
-            if !what.starts_with(REGRESSION) {
+            if !fit.what.starts_with(REGRESSION) {
                 return flow;
             }
             let now_s = watch.seconds();
-            let since_s = now_s - *crush_s.get_or_insert(now_s);
-            if *done > 0 {
-                regression_s = Some(since_s);
-                return ControlFlow::Break(());
-            }
-            flow
+            let Some(before_s) = crush_s else {
+                crush_s = Some(now_s);
+                return flow;
+            };
+            regression_s = Some(now_s - before_s);
+            ControlFlow::Break(())
         })?;
         if watch.is_broken {
             return Ok(None);
@@ -123,7 +124,7 @@ impl Fits {
     }
 }
 
-/// How the report of a regression begins, see [`CentreFit`](impactlab_networks::force::CentreFit).
+/// How the report of a regression begins.
 const REGRESSION: &str = "fitting regression";
 
 impl EvaluateForceRequest {

@@ -1,6 +1,7 @@
 //! A scenario takes over the vehicles that are chosen for it: one vehicle has one mass.
 
 use impactlab_core::collision::{Role, Scenario};
+use impactlab_core::units::UnitSystem;
 
 use crate::caveats::other_vehicle::taken_over;
 use crate::{MotionSource, ScenarioChoice, SimulateRequest, StudyError, VehicleChoice};
@@ -8,6 +9,7 @@ use crate::{MotionSource, ScenarioChoice, SimulateRequest, StudyError, VehicleCh
 /// Gives a vehicle of a scenario the mass, yaw inertia and outline of the one that is chosen for it. One that
 /// is left open, or that the scenario names itself, stays as the scenario has it.
 ///
+/// - `units`: in which it is told;
 /// - returns what is another value than before, in words; `None` if nothing is.
 ///
 /// # Errors
@@ -16,6 +18,7 @@ pub fn take_vehicle(
     scenario: &mut Scenario,
     role: Role,
     choice: &VehicleChoice,
+    units: UnitSystem,
 ) -> Result<Option<String>, StudyError> {
     let name = match choice {
         VehicleChoice::Preset(id) => Some(id.clone()),
@@ -23,7 +26,7 @@ pub fn take_vehicle(
     };
     let is_named = name.is_some() && scenario.vehicle_name(role) == name.as_deref();
     let Some(vehicle) = choice.chosen()?.filter(|_| !is_named) else { return Ok(None) };
-    let told = taken_over(scenario, role, &vehicle);
+    let told = taken_over(scenario, role, &vehicle, units);
     scenario.vehicle_mut(role).take(&vehicle);
     scenario.name_vehicle(role, name);
     Ok(told)
@@ -33,7 +36,7 @@ impl SimulateRequest {
     /// Gives the vehicles of the scenario, if it is about one, the mass, yaw inertia and outline of those that
     /// are chosen. The question then has the scenario in it, in place of its file.
     ///
-    /// - returns what is another value than before, in words.
+    /// - returns what is another value than before, in words, with SI units.
     ///
     /// # Errors
     /// [`StudyError`] if the scenario or a vehicle cannot be read.
@@ -48,7 +51,7 @@ impl SimulateRequest {
         let mut scenario = choice.load()?;
         let mut told = Vec::new();
         for (role, choice) in Role::ALL.into_iter().zip(choices) {
-            told.extend(take_vehicle(&mut scenario, role, choice)?);
+            told.extend(take_vehicle(&mut scenario, role, choice, UnitSystem::Si)?);
         }
         *choice = ScenarioChoice::Inline(Box::new(scenario));
         Ok(told)

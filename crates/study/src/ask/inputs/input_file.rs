@@ -18,6 +18,7 @@ use impactlab_core::error_chain;
 use impactlab_core::site::{
     CloudFormat, CloudSummary, Site, SiteError, read_drawing, read_picture, survey_cloud,
 };
+use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::VehicleParameters;
 use impactlab_networks::nn::kind_of_file;
 use impactlab_networks::response::evaluate::Comparison;
@@ -206,7 +207,8 @@ impl InputFile {
                 let summary = drawing.as_ref().map(|drawing| drawing.summary());
                 let of_drawing = drawing.iter().zip(&site.drawing);
                 let of_drawing = of_drawing.flat_map(|(drawing, file)| drawing.notes(&file.file));
-                let contents = site.contents(summary.as_ref()).into_iter().chain(of_drawing);
+                let contents =
+                    site.contents(summary.as_ref(), UnitSystem::Si).into_iter().chain(of_drawing);
                 Ok(contents.chain(site.notes.iter().cloned()).collect())
             }
             Self::Cloud(summary) => {

@@ -97,8 +97,8 @@ pub(crate) fn struck_vehicle(
         }
     };
     let reason = Phrase::new(
-        "{0}; this is the car that the shipped response network has learned; another one: --vehicle",
-        "{0}; dies ist das Fahrzeug, das das mitgelieferte Bewegungsnetz gelernt hat; ein anderes: --vehicle",
+        "{0}; this is the car that the shipped response network has learned from; another one: --vehicle",
+        "{0}; dies ist das Fahrzeug, an dem das mitgelieferte Bewegungsnetz gelernt hat; ein anderes: --vehicle",
     )
     .with(PhraseValue::phrase(reason));
     caveats.push(Caveat::assumed(CaveatSubject::Vehicle, name_of(DEFAULT_VEHICLE.id()), reason));

@@ -88,7 +88,7 @@ impl CaseQuestion<'_> {
         let started = Instant::now();
         let answer = request.answer(library, &mut watch)?;
         let seconds = || started.elapsed().as_secs_f64();
-        // A reconstruction that is stopped answers with what it has, which is not of the posterior.
+        // A reconstruction that is stopped near its end answers with what it has.
         let Outcome::Complete(answer) = answer else { return Ok(Outcome::Cancelled) };
         if is_stopped {
             return Ok(Outcome::Cancelled);

@@ -220,6 +220,11 @@ pub(super) fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Cave
         ];
         add(CaveatSubject::RoadFriction, value, reason);
     }
+    if !is_single_car {
+        for (subject, reason) in without_anti_lock(evidence, prior) {
+            add(subject, Phrase::new("no anti-lock brakes", "kein Antiblockiersystem"), reason);
+        }
+    }
     let estimated = cars.struck.estimated().count();
     if estimated > 0 {
         let value = Phrase::new("{0} estimated from the rest", "{0} aus den übrigen geschätzt")
@@ -244,6 +249,44 @@ pub(super) fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Cave
         add(CaveatSubject::StrikingParameter, value, reason);
     }
     all
+}
+
+/// The cars of a collision whose drivers may brake and of whose brakes nobody says whether they have an
+/// anti-lock system, with why none is assumed.
+fn without_anti_lock(
+    evidence: &Evidence,
+    prior: &Prior,
+) -> Vec<(CaveatSubject, [&'static str; 2])> {
+    let both = [
+        (
+            &evidence.after,
+            Latent::BrakeShare,
+            CaveatSubject::Vehicle,
+            [
+                "wheels that are braked too hard lock and slide; otherwise: [after] anti_lock, or \
+                 anti_lock_probability to draw it",
+                "zu stark gebremste Räder blockieren und gleiten; sonst: [after] anti_lock, oder \
+                 anti_lock_probability, um es zu ziehen",
+            ],
+        ),
+        (
+            &evidence.striking_after,
+            Latent::StrikingBrakeShare,
+            CaveatSubject::Striking,
+            [
+                "its wheels that are braked too hard lock and slide; otherwise: [striking_after] anti_lock, \
+                 or anti_lock_probability to draw it",
+                "seine zu stark gebremsten Räder blockieren und gleiten; sonst: [striking_after] anti_lock, \
+                 oder anti_lock_probability, um es zu ziehen",
+            ],
+        ),
+    ];
+    let brakes =
+        |share: Latent| prior.components().iter().any(|component| component.latent == share);
+    let is_open =
+        |after: &After| after.anti_lock.is_unknown() && after.anti_lock_probability.is_none();
+    let open = both.into_iter().filter(|(after, share, ..)| is_open(after) && brakes(*share));
+    open.map(|(_, _, subject, reason)| (subject, reason)).collect()
 }
 
 /// What the evidence says and the answer does not depend on.
@@ -311,6 +354,11 @@ fn text(PriorComponent { latent, distribution, .. }: &PriorComponent) -> Phrase 
             Phrase::new("the driver brakes with {0}", "der Fahrer bremst mit {0}")
                 .with(percent(share_below(BRAKE_PROBABILITY)))
         }
+        Latent::AntiLockDecision | Latent::StrikingAntiLockDecision => Phrase::new(
+            "the brakes have an anti-lock system with {0}",
+            "die Bremsen haben mit {0} ein Antiblockiersystem",
+        )
+        .with(percent(share_below(0.0))),
         Latent::BlockedWheel | Latent::StrikingBlockedWheel => Phrase::new(
             "each of two wheels near the damage is blocked with {0}",
             "jedes von zwei Rädern nahe dem Schaden ist mit {0} blockiert",
@@ -363,7 +411,7 @@ mod tests {
     use crate::examples::spin;
     use impactlab_core::units::{Language, NumberFormat, UnitSystem};
     use impactlab_reconstruct::Cars;
-    use impactlab_reconstruct::evidence::RestPose;
+    use impactlab_reconstruct::evidence::{AntiLockBrakes, RestPose};
 
     /// What is drawn and not stated stands in the list, whatever it is.
     #[test]
@@ -423,6 +471,14 @@ mod tests {
         };
         let has = |texts: &[String], part: &str| texts.iter().any(|text| text.contains(part));
         assert!(has(&assumed(&evidence), "brakes from 0.4"), "{:?}", assumed(&evidence));
+        let (none, drawn) = ("no anti-lock brakes", "anti-lock system with");
+        assert!(has(&assumed(&evidence), none) && !has(&assumed(&evidence), drawn));
+        let mut said = evidence.clone();
+        said.after.anti_lock = AntiLockBrakes::No;
+        assert!(!has(&assumed(&said), none), "{:?}", assumed(&said));
+        said.after.anti_lock = AntiLockBrakes::Unknown;
+        said.after.anti_lock_probability = Some(0.5);
+        assert!(!has(&assumed(&said), none) && !has(&assumed(&said), drawn), "it is given");
         evidence.prior.brake_start_s = Some([Some(0.0), Some(0.1)]);
         assert!(!has(&assumed(&evidence), "brakes from"), "{:?}", assumed(&evidence));
     }

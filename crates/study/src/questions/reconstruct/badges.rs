@@ -66,20 +66,12 @@ fn weakened(particles: &Particles) -> Caveat {
 
 /// That the particles are not of the posterior.
 fn out_of_sight(particles: &Particles) -> Caveat {
-    let text = match particles.is_stopped {
-        true => Phrase::new(
-            "sampling was stopped before all of the evidence was used: these particles are \
-             not of the posterior, and no intervals are given; let the run end",
-            "Die Rechnung wurde abgebrochen, bevor alle Anknüpfungstatsachen berücksichtigt waren. Es \
-             werden keine Intervalle angegeben; die Rechnung ist bis zum Ende zu führen",
-        ),
-        false => Phrase::new(
-            "hardly a motion goes with all of the evidence: these particles are not of the posterior, and \
-             no intervals are given",
-            "Kaum eine Bewegung ist mit allen Anknüpfungstatsachen vereinbar. Es werden keine Intervalle \
-             angegeben",
-        ),
-    };
+    let text = Phrase::new(
+        "hardly a motion goes with all of the evidence: these particles are not of the posterior, and \
+         no intervals are given",
+        "Kaum eine Bewegung ist mit allen Anknüpfungstatsachen vereinbar. Es werden keine Intervalle \
+         angegeben",
+    );
     Caveat::new(CaveatKind::FewParticles, text)
         .with_value("temperature", particles.temperature)
         .with_range([1.0, f64::INFINITY])

@@ -293,8 +293,8 @@ impl ReconstructRequest {
         let mut watch = |name: &str, report: SamplerReport<'_>| {
             let motions = report.n_evaluations;
             let message = format!("{motions} motions without the {name}");
-            let done = (500.0 * report.temperature.powf(0.2)) as u64;
-            observer(Event::Progress(Progress::new(done, 1000, message)))
+            // How many parts are still to be sampled anew is not known.
+            observer(Event::Progress(Progress::new(motions as u64, 0, message)))
         };
         let is_doubtful = fit.iter().any(EvidenceFit::is_unexplained);
         LeftOut::each(target, particles, is_doubtful, self.seed, &mut watch)
@@ -392,6 +392,10 @@ impl Question for ReconstructRequest {
             let model = target.model().clone().through_later_contacts(&evidence);
             let start = Some(&particles.start);
             (target, particles, _) = self.sampled(&evidence, model, start, observer)?;
+        }
+        // What was sampled until then is mostly the prior: its medians would pass for speeds.
+        if particles.is_stopped && !particles.is_posterior() {
+            return Ok(Outcome::Cancelled);
         }
         let mut assumptions = assumptions(&evidence, target.model());
         assumptions.extend(match is_single_car {

@@ -5,7 +5,9 @@ use crate::{ReconstructRequest, VehicleChoice};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
 use impactlab_core::units::Phrase;
 use impactlab_reconstruct::Latent;
-use impactlab_reconstruct::evidence::{DriverBraked, Evidence, Start};
+use impactlab_reconstruct::evidence::{
+    AntiLockBrakes, DriverBraked, Evidence, Mark, MarkKind, Start,
+};
 
 /// What is assumed of everything but the friction that nobody stated.
 pub(super) const GROUPS: &[Group] = &[
@@ -55,6 +57,16 @@ pub(super) const GROUPS: &[Group] = &[
     },
     Group {
         subject: CaveatSubject::Wheels,
+        latents: &[Latent::AntiLockDecision],
+        reason: [
+            "without it, wheels that are braked too hard lock and slide, and the car was slower; otherwise: \
+             [wheels] anti_lock, anti_lock_probability",
+            "ohne es blockieren und gleiten zu stark gebremste Räder, und das Fahrzeug war langsamer; sonst: \
+             [wheels] anti_lock, anti_lock_probability",
+        ],
+    },
+    Group {
+        subject: CaveatSubject::Wheels,
         latents: &[Latent::EngineBraking, Latent::SteerAngle],
         reason: [
             "neutral to third gear where the driver does not brake; front wheels held at one angle; \
@@ -85,6 +97,8 @@ pub(super) fn unused(request: &ReconstructRequest, evidence: &Evidence) -> Vec<C
         "its driver is said not to have braked, or all wheels are said to have been locked",
         "sein Fahrer bremste nach der Angabe nicht, oder alle Räder waren blockiert",
     ];
+    let is_anti_lock =
+        after.anti_lock == AntiLockBrakes::Yes || after.anti_lock_probability.is_some();
     let told = [
         (
             request.striking != VehicleChoice::Automatic,
@@ -93,6 +107,7 @@ pub(super) fn unused(request: &ReconstructRequest, evidence: &Evidence) -> Vec<C
         ),
         (request.one_contact, ["the choice of one contact", "die Wahl eines Kontakts"], alone),
         (is_idle && brakes.is_some(), ["ranges of the braking", "Bereiche der Bremsung"], locked),
+        (is_idle && is_anti_lock, ["anti-lock brakes", "das Antiblockiersystem"], locked),
         (
             is_all_locked && road_wheel_rad.is_some(),
             ["range of the angle of the front wheels", "Bereich des Winkels der Vorderräder"],
@@ -108,7 +123,22 @@ pub(super) fn unused(request: &ReconstructRequest, evidence: &Evidence) -> Vec<C
 
 /// What the intervals do not allow for.
 pub(super) fn restrictions(evidence: &Evidence) -> Vec<Caveat> {
-    end_open(evidence).into_iter().chain([of_validation()]).collect()
+    let open = end_open(evidence).into_iter().chain(beside_locked_marks(evidence));
+    open.chain([of_validation()]).collect()
+}
+
+/// Marks of locked wheels that an anti-lock system would not have left.
+fn beside_locked_marks(evidence: &Evidence) -> Option<Caveat> {
+    let is_locked = |mark: &Mark| mark.kind == Some(MarkKind::Locked);
+    let has_marks = evidence.marks.iter().any(is_locked) && !evidence.after.is_all_locked();
+    let text = Phrase::new(
+        "marks of locked wheels do not go with anti-lock brakes: look again at the marks, or at whether the system \
+         worked",
+        "Spuren blockierter Räder passen nicht zu einem Antiblockiersystem: die Spuren noch einmal ansehen, oder ob \
+         das System arbeitete",
+    );
+    (has_marks && evidence.after.anti_lock == AntiLockBrakes::Yes)
+        .then(|| Caveat::new(CaveatKind::Disagreement, text))
 }
 
 /// That the end of the marks stands for the place of rest where nobody says this.
@@ -128,10 +158,56 @@ fn end_open(evidence: &Evidence) -> Option<Caveat> {
 fn of_validation() -> Caveat {
     let text = Phrase::new(
         "intervals of a single car were tried on cars that this program simulated with its own equations of \
-         motion, and on no real one; marks of a car with an anti-lock system are taken for those of locked wheels",
+         motion, and on no real one; an anti-lock system leaves no marks in it, real ones leave faint ones",
         "Die Intervalle eines einzelnen Fahrzeugs wurden an Fahrzeugen geprüft, die dieses Programm mit seinen \
-         eigenen Bewegungsgleichungen berechnet hat, und an keinem realen. Spuren eines Fahrzeugs mit \
-         Antiblockiersystem gelten als die blockierter Räder",
+         eigenen Bewegungsgleichungen berechnet hat, und an keinem realen. Ein Antiblockiersystem hinterlässt \
+         darin keine Spuren, in Wirklichkeit schwache",
     );
     Caveat::new(CaveatKind::HardlyValidated, text)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::questions::reconstruct::assumed::assumptions;
+    use impactlab_core::data::TomlFile;
+    use impactlab_reconstruct::{Cars, ForwardModel};
+
+    fn evidence(start: &str, wheels: &str) -> Evidence {
+        let mark = "[[mark]]\nwheel = \"FL\"\nkind = \"locked\"\npoints_m = [[0, 0], [9, 0]]\n";
+        let text = format!(
+            "case = \"skid\"\nkind = \"single_car\"\n[car]\n[start]\n{start}\n[wheels]\n{wheels}\n{mark}"
+        );
+        Evidence::from_toml(TomlFile { path: Path::new("case.toml"), text: &text }).unwrap()
+    }
+
+    #[test]
+    fn what_is_taken_of_anti_lock_brakes_is_said() {
+        let drawn = |wheels: &str| {
+            let evidence = evidence("", wheels);
+            let model = ForwardModel::new(&evidence, Cars::new(&evidence, None, None));
+            let all = assumptions(&evidence, &model);
+            let found = all.iter().find(|caveat| caveat.to_string().contains("anti-lock system"));
+            found.map(ToString::to_string)
+        };
+        let (yes, no) = ("anti_lock = \"yes\"", "anti_lock = \"no\"");
+        let locked = "blocked_wheels = [\"FL\", \"FR\", \"RL\", \"RR\"]";
+        let half = drawn("").unwrap();
+        assert!(half.contains("have an anti-lock system with 50 %"), "{half}");
+        assert!(half.contains("[wheels] anti_lock"), "{half}");
+        for said in [yes, no, locked, "driver_braked = \"no\"", "anti_lock_probability = 0.9"] {
+            assert_eq!(drawn(said), None, "{said}");
+        }
+        let with_marks = |wheels: &str| {
+            let all = restrictions(&evidence("", wheels));
+            all.iter().any(|caveat| caveat.text.contains("do not go with anti-lock brakes"))
+        };
+        let both = format!("{locked}\n{yes}");
+        assert!(with_marks(yes) && !with_marks(no) && !with_marks(&both) && !with_marks(""));
+        let request = ReconstructRequest::new(crate::EvidenceChoice::File("case.toml".into()));
+        assert!(!unused(&request, &evidence("", &both)).is_empty());
+        assert!(unused(&request, &evidence("", yes)).is_empty());
+    }
 }

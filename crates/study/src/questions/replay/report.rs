@@ -137,6 +137,8 @@ pub struct ReplayPoint {
     pub y_range_m: [f64; 2],
     /// Range of the heading, rad.
     pub yaw_range_rad: [f64; 2],
+    /// Range of the distance to the left of this place, across this heading, m.
+    pub left_range_m: [f64; 2],
 }
 
 /// A sample of the recorder beside the computed motion.
@@ -154,6 +156,8 @@ pub struct ReplaySample {
     pub vx_body_m_s: Estimate,
     /// Computed yaw rate, rad/s to the left.
     pub yaw_rate_rad_s: Estimate,
+    /// Steer angle of the front road wheels that is imposed, rad, to the left.
+    pub steer_rad: Estimate,
 }
 
 /// A vehicle up to the first contact, as it is answered.
@@ -187,6 +191,7 @@ pub(super) struct DrawnMotion {
 pub(super) struct DrawnSample {
     pub vx_body_m_s: f64,
     pub yaw_rate_rad_s: f64,
+    pub steer_rad: f64,
     /// Largest share of the friction that was used from the first sample on.
     pub friction_use: f64,
 }
@@ -194,23 +199,23 @@ pub(super) struct DrawnSample {
 impl DrawnMotion {
     /// - `start_s`: when the first sample was taken in this draw;
     /// - `path_s`: times of the path;
-    /// - `samples_s`: when each sample was taken in this draw;
+    /// - `samples`: when each sample was taken in this draw, s, and the steer angle then, rad;
     /// - `steering_ratio`, `yaw_rate_error`: those of this draw.
     pub fn new(
         motion: &RecordedMotion,
         start_s: f64,
         path_s: &[f64],
-        samples_s: impl Iterator<Item = f64>,
+        samples: impl Iterator<Item = [f64; 2]>,
         [steering_ratio, yaw_rate_error]: [f64; 2],
     ) -> Option<Self> {
         let pose = |time_s: &f64| {
             let point = motion.at(*time_s)?;
             Some([point.x_m, point.y_m, point.yaw_rad])
         };
-        let sample = |time_s: f64| {
+        let sample = |[time_s, steer_rad]: [f64; 2]| {
             let PathPoint { vx_body_m_s, yaw_rate_rad_s, .. } = motion.at(time_s)?;
             let friction_use = motion.friction_use_until(time_s);
-            Some(DrawnSample { vx_body_m_s, yaw_rate_rad_s, friction_use })
+            Some(DrawnSample { vx_body_m_s, yaw_rate_rad_s, steer_rad, friction_use })
         };
         let from_start = motion.points.iter().filter(|point| point.time_s >= start_s);
         let start = motion.at(start_s)?;
@@ -226,7 +231,7 @@ impl DrawnMotion {
             start,
             length_m: places.windows(2).map(step_m).sum(),
             poses: path_s.iter().map(pose).collect::<Option<_>>()?,
-            at_samples: samples_s.map(sample).collect::<Option<_>>()?,
+            at_samples: samples.map(sample).collect::<Option<_>>()?,
             friction_use: motion.friction_use_until(0.0),
             steering_ratio,
             yaw_rate_error,
@@ -296,9 +301,14 @@ impl ReplayPoint {
     ) -> Vec<Self> {
         let point = |(idx, time_s): (usize, &f64)| {
             let at = central.at(*time_s)?;
-            let range = |axis: usize| {
-                let pose = |draw: &DrawnMotion| draw.poses.get(idx).map(|pose| pose[axis]);
-                Estimate::from_draws(draws.iter().filter_map(pose).collect()).ninety()
+            let range_of = |of: &dyn Fn(&[f64; 3]) -> f64| {
+                let value = |draw: &DrawnMotion| draw.poses.get(idx).map(of);
+                Estimate::from_draws(draws.iter().filter_map(value).collect()).ninety()
+            };
+            let range = |axis: usize| range_of(&|pose| pose[axis]);
+            let left_m = |pose: &[f64; 3]| {
+                let [_, left_m] = body_from_world(at.yaw_rad, [pose[0] - at.x_m, pose[1] - at.y_m]);
+                left_m
             };
             Some(Self {
                 time_s: *time_s,
@@ -311,6 +321,7 @@ impl ReplayPoint {
                 x_range_m: range(0),
                 y_range_m: range(1),
                 yaw_range_rad: range(2),
+                left_range_m: range_of(&left_m),
             })
         };
         path_s.iter().enumerate().filter_map(point).collect()

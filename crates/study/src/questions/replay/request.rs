@@ -20,6 +20,7 @@ use crate::questions::replay::unknowns::{Known, Unknowns};
 use crate::{Answer, Event, Library, Observer, Provenance, Question, StudyError, VehicleChoice};
 use impactlab_core::data::{Outcome, SeriesError, TimeSeries};
 use impactlab_core::jobs::Progress;
+use impactlab_core::numerics::interpolate;
 use impactlab_core::ranges::{
     HEADING, POSITION, RECORDED_SPEED_SIGMA, REPLAY_DRAWS, REPLAY_START, ROAD_FRICTION,
     ROAD_FRICTION_SIGMA, STEERING_RATIO, STEERING_RATIO_SIGMA,
@@ -233,9 +234,15 @@ impl ReplayRequest {
                 let motion = motion.ending_at(self.pose());
                 let [_, last_s] = record.ends_s();
                 let shift_s = last_s + unknowns.gap_s(record);
-                let samples_s = record.samples.time_s.iter().map(|time_s| time_s - shift_s);
+                let steer_rad = |time_s: f64| {
+                    interpolate(&drive.time_s, &drive.steer_rad, time_s).unwrap_or(0.0)
+                };
+                let samples = record.samples.time_s.iter().map(|time_s| {
+                    let time_s = time_s - shift_s;
+                    [time_s, steer_rad(time_s)]
+                });
                 let of_draw = [unknowns.steering_ratio(&known), unknowns.yaw_rate_error];
-                let motion = DrawnMotion::new(&motion, drive.start_s(), path_s, samples_s, of_draw);
+                let motion = DrawnMotion::new(&motion, drive.start_s(), path_s, samples, of_draw);
                 drawn.extend(motion);
             }
         }
@@ -293,6 +300,7 @@ fn samples(record: &Record, draws: &[DrawnMotion]) -> Vec<ReplaySample> {
             recorded_yaw_rate_rad_s: of(&record.yaw_rate_rad_s, idx),
             vx_body_m_s: computed(|at| at.vx_body_m_s),
             yaw_rate_rad_s: computed(|at| at.yaw_rate_rad_s),
+            steer_rad: computed(|at| at.steer_rad),
         })
     };
     record.samples.time_s.iter().enumerate().filter_map(sample).collect()

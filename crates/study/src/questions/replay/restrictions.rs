@@ -336,6 +336,23 @@ fn left_out(record: &Record, report: &ReplayReport) -> Vec<Caveat> {
     earlier.into_iter().chain(failed).collect()
 }
 
+/// A yaw rate that goes with another steering ratio, where its difference alone is none that is out of the
+/// usual.
+fn other_ratio(report: &ReplayReport) -> Option<Caveat> {
+    let check = report.yaw_rate.as_ref().filter(|check| !check.disagrees)?;
+    let implied = check.implied_steering_ratio.as_ref()?;
+    let [low, high] = implied.ninety();
+    let text = Phrase::new(
+        "the recorded yaw rate goes with a steering ratio of {0} rather than with {1}: look it up for this car",
+        "Die aufgezeichnete Gierrate passt eher zu einer Lenkübersetzung von {0} als zu {1}: für diesen Wagen \
+         nachsehen",
+    )
+    .with(PhraseValue::estimate(Quantity::Ratio, implied))
+    .with(PhraseValue::fixed(Quantity::Ratio, report.steering_ratio, 1));
+    let is_other = !(low..=high).contains(&report.steering_ratio);
+    is_other.then(|| Caveat::new(CaveatKind::Note, text))
+}
+
 fn notes(report: &ReplayReport, vehicle: &VehicleParameters) -> Vec<Caveat> {
     let note = |en: &str, de: &str| Caveat::new(CaveatKind::Note, Phrase::new(en, de));
     let untried = Caveat::new(
@@ -365,5 +382,6 @@ fn notes(report: &ReplayReport, vehicle: &VehicleParameters) -> Vec<Caveat> {
             "Die Fahrzeugparameter gelten bis auf die Reibung als genau; die eines Datenblatts sind gezogen",
         )
     });
-    std::iter::once(untried).chain(unchecked).chain(exact).chain([steady]).collect()
+    let ratio = other_ratio(report);
+    std::iter::once(untried).chain(ratio).chain(unchecked).chain(exact).chain([steady]).collect()
 }

@@ -116,6 +116,11 @@ fn a_wrong_steering_ratio_is_found_by_the_yaw_rate_before_the_tires_slide() {
         let [low, high] = implied.ninety();
         assert!(nearer && high - low > 2.0, "{stated}: {check:?}");
     }
+    let tells = |stated: f64| {
+        let answer = replayed(&table(&truth, 1.0), |of| of.steering_ratio = Some(stated)).unwrap();
+        told(&answer, "with a steering ratio of")
+    };
+    assert!([8.0, 10.0, 25.0].into_iter().all(tells) && !tells(RATIO));
     let answer = replayed(&table(&truth, 1.0), |of| of.steering_ratio = Some(8.0)).unwrap();
     let check = answer.yaw_rate.as_ref().unwrap();
     assert!(check.disagrees && answer.caveats.has(CaveatKind::Disagreement), "{check:?}");

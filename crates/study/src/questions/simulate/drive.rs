@@ -1,5 +1,7 @@
 //! A start with the files of what pushes, steers, brakes and drives the vehicle.
 
+use std::path::Path;
+
 use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -23,6 +25,9 @@ use impactlab_core::vehicle::{
 
 /// Speed of the struck vehicle before the impact where nothing says it, m/s: 72 km/h.
 pub const ASSUMED_SPEED_M_S: f64 = 20.0;
+
+/// Speed below which a car of a model stands, so that its heading does not follow from it, m/s.
+const STANDING_M_S: f64 = 0.5;
 
 /// How a vehicle starts and what pushes and steers it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -75,20 +80,12 @@ impl Drive {
         library: &Library,
         caveats: &mut Caveats,
     ) -> Result<DriveSetup, StudyError> {
-        let speed_m_s = self.speed_m_s.unwrap_or_else(|| {
-            let reason = Phrase::new(
-                "the speed before the impact is not known; another one: --speed",
-                "die Geschwindigkeit vor dem Anstoß ist nicht bekannt; eine andere: --speed",
-            );
-            let value = Phrase::of(PhraseValue::given(Quantity::Speed, ASSUMED_SPEED_M_S));
-            caveats.push(Caveat::assumed(CaveatSubject::Speed, value, reason));
-            ASSUMED_SPEED_M_S
-        });
         self.check_one_control(&settings.ending)?;
+        let loaded = self.force.as_ref().map(|file| library.series(file)).transpose()?;
+        let [speed_m_s, vy_m_s] = self.velocity_m_s(loaded.as_deref(), caveats)?;
         let mut notes = Vec::new();
-        let load = match &self.force {
-            Some(file) => {
-                let loaded = library.series(file)?;
+        let load = match self.force.as_ref().zip(loaded) {
+            Some((file, loaded)) => {
                 notes.extend(loaded.notes.iter().map(ToString::to_string));
                 caveats.extend(doubtful_data_caveats(&file.title(), &loaded));
                 let force = force_of(&loaded, self.sampling, file)?;
@@ -97,7 +94,7 @@ impl Drive {
             None => None,
         };
         let initial = VehicleState {
-            vy_body_m_s: self.vy_m_s,
+            vy_body_m_s: vy_m_s,
             yaw_rate_rad_s: self.yaw_rate_rad_s,
             ..VehicleState::driving_straight(speed_m_s)
         };
@@ -106,7 +103,7 @@ impl Drive {
             Some(file) if !self.fishhook => {
                 let loaded = read_steer_file(&file.path, file.map.as_ref())
                     .map_err(|error| error.of_option("--steer-map"))?;
-                let steer = steer_history(file, &loaded.series, self.steering_ratio)?;
+                let steer = steer_history(&file.path, &loaded.series, self.steering_ratio)?;
                 let acts = |sample: usize| steer.steer_rad.get(sample).is_some_and(|a| *a != 0.0);
                 caveats.extend(covered(file, &loaded, duration_s, acts)?);
                 Some(steer)
@@ -128,6 +125,35 @@ impl Drive {
             None => None,
         };
         Ok(DriveSetup { initial, load, steer, wheels, notes })
+    }
+
+    /// Velocity forwards and to the left at the start: as it is said, or as the file of the force begins.
+    fn velocity_m_s(
+        &self,
+        loaded: Option<&Loaded>,
+        caveats: &mut Caveats,
+    ) -> Result<[f64; 2], StudyError> {
+        if let Some(speed_m_s) = self.speed_m_s {
+            return Ok([speed_m_s, self.vy_m_s]);
+        }
+        let start = loaded.and_then(|loaded| loaded.model_start.as_ref());
+        let of_file = self.force.as_ref().zip(start.and_then(|start| start.of_force_m_s));
+        if let Some((file, velocity_m_s)) = of_file {
+            let [vx_m_s, vy_m_s] = velocity_along_x(&file.path, velocity_m_s)?;
+            let vy_m_s = if self.vy_m_s == 0.0 { vy_m_s } else { self.vy_m_s };
+            caveats.push(start_of_model(&file.title(), [vx_m_s, vy_m_s]));
+            return Ok([vx_m_s, vy_m_s]);
+        }
+        let reason = match start {
+            Some(start) => unknown_parts(&start.all_m_s),
+            None => Phrase::new(
+                "the speed before the impact is not known; another one: --speed",
+                "die Geschwindigkeit vor dem Anstoß ist nicht bekannt; eine andere: --speed",
+            ),
+        };
+        let value = Phrase::of(PhraseValue::given(Quantity::Speed, ASSUMED_SPEED_M_S));
+        caveats.push(Caveat::assumed(CaveatSubject::Speed, value, reason));
+        Ok([ASSUMED_SPEED_M_S, self.vy_m_s])
     }
 
     /// Checks that not two things steer the vehicle, nor brake or drive it.
@@ -176,6 +202,58 @@ impl Drive {
         };
         fishhook(vehicle, initial, amplitude_rad, ratio).map(Some).map_err(failed)
     }
+}
+
+/// The velocity with which the parts of a model begin, if the car can head along x of the model with it.
+///
+/// # Errors
+/// [`StudyError::ModelHeading`] if it drives in another direction; [`StudyError::OutOfRange`] if no car is as
+/// fast.
+fn velocity_along_x(path: &Path, velocity_m_s: [f64; 2]) -> Result<[f64; 2], StudyError> {
+    let [vx_m_s, vy_m_s] = velocity_m_s;
+    for component_m_s in velocity_m_s {
+        check("speed_m_s", &SPEED, component_m_s)?;
+    }
+    let is_along = vx_m_s >= vy_m_s.abs() || vx_m_s.hypot(vy_m_s) < STANDING_M_S;
+    let error = || StudyError::ModelHeading { path: path.to_owned(), vx_m_s, vy_m_s };
+    is_along.then_some(velocity_m_s).ok_or_else(error)
+}
+
+/// That the speed is the one with which the file of the force begins.
+fn start_of_model(file: &str, [vx_m_s, vy_m_s]: [f64; 2]) -> Caveat {
+    let speed = |value_m_s| PhraseValue::significant(Quantity::Speed, value_m_s);
+    let value = match vy_m_s.abs() < STANDING_M_S {
+        true => Phrase::of(speed(vx_m_s)),
+        false => Phrase::new("{0}, to the left {1}", "{0}, nach links {1}")
+            .with(speed(vx_m_s))
+            .with(speed(vy_m_s)),
+    };
+    let reason = Phrase::new(
+        "in {0} the parts on which this force acts, by their momenta, begin with it, taken to head along x of \
+         the model; another one: --speed",
+        "in {0} beginnen die Teile, auf die diese Kraft nach ihren Impulsen wirkt, mit ihr, Fahrzeugrichtung \
+         längs der x-Achse des Modells; eine andere: --speed",
+    )
+    .with(PhraseValue::Name(file.to_owned()));
+    Caveat::assumed(CaveatSubject::Speed, value, reason)
+}
+
+/// Why a speed is assumed although a file says how fast its parts or nodes begin.
+fn unknown_parts(velocities_m_s: &[[f64; 2]]) -> Phrase {
+    let velocity = |[vx_m_s, vy_m_s]: &[f64; 2]| {
+        let speed = |value_m_s| PhraseValue::significant(Quantity::Speed, value_m_s);
+        Phrase::new("{0} along x, {1} along y", "{0} längs x, {1} längs y")
+            .with(speed(*vx_m_s))
+            .with(speed(*vy_m_s))
+    };
+    let all = Phrase::joined(velocities_m_s.iter().map(velocity), "; ");
+    Phrase::new(
+        "which parts of the model this force acts on does not follow from the file; they begin with: \
+         {0}; another one: --speed",
+        "auf welche Teile des Modells diese Kraft wirkt, geht aus der Datei nicht hervor; sie beginnen mit: \
+         {0}; eine andere: --speed",
+    )
+    .with(PhraseValue::phrase(all))
 }
 
 /// The force of a file, under its own meaning of a sample or a given one.
@@ -267,12 +345,12 @@ fn held_steer(steer: &SteerHistory, duration_s: f64) -> Option<Caveat> {
 
 /// The road-wheel angle of a file: that of the front axle, the mean of its wheels, or that of the
 /// steering wheel over the steering ratio.
-fn steer_history(
-    file: &SeriesFile,
+pub(crate) fn steer_history(
+    path: &Path,
     series: &TimeSeries,
     steering_ratio: Option<f64>,
 ) -> Result<SteerHistory, StudyError> {
-    let path = || file.path.clone();
+    let path = || path.to_owned();
     let history = |steer_rad| SteerHistory { time_s: series.time_s().to_vec(), steer_rad };
     let road_wheel = match (series.get(Channel::Steer), front_wheels(series)) {
         (Some(steer), _) => Some(steer.to_vec()),

@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use impactlab_core::uncertainty::CaveatSubject;
+use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
+use impactlab_core::units::Phrase;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -123,7 +124,7 @@ impl FineTuneRequest {
             let vehicle = struck_vehicle(&self.vehicle, &OpenVehicle::Unknown, &mut notes.caveats)?;
             let medians = assumed::medians(CaveatSubject::VehicleParameter, &vehicle);
             notes.caveats.extend(medians);
-            let (train, reports) = logs.read(vehicle)?;
+            let (train, reports) = logs.read(vehicle, &mut notes.caveats)?;
             notes.logs = reports;
             let names: Vec<&str> = train.iter().map(|case| case.name.as_str()).collect();
             let set = ResponseTrainingSet { name: names.join(", "), train, test: Vec::new() };
@@ -214,7 +215,38 @@ impl Question for FineTuneRequest {
         };
         let started = Instant::now();
         let model = self.learned(start.as_deref(), &set, &settings, observer)?;
+        notes.caveats.extend(cars_not_learned(self.learning, &model));
         let answer = ResponseTrainingAnswer::new(model, started.elapsed().as_secs_f64(), notes)?;
         Ok(Outcome::Complete(answer))
+    }
+}
+
+/// That a training on a fleet was stopped before it had learned how cars differ: of its epochs nothing is
+/// missing then.
+fn cars_not_learned(learning: Learning, model: &ResponseModel) -> Option<Caveat> {
+    let text = Phrase::new(
+        "the training was stopped before it learned how cars differ: the network takes every car for those of \
+         the data, and its intervals are too narrow for others; let the training end",
+        "Das Training wurde abgebrochen, bevor gelernt war, wie sich Fahrzeuge unterscheiden. Das Netz hält jedes \
+         Fahrzeug für eines der Daten, und für andere sind seine Intervalle zu eng; das Training ist bis zum Ende \
+         zu führen",
+    );
+    (learning == Learning::Fleet && model.population().is_none())
+        .then(|| Caveat::new(CaveatKind::OutsideDomain, text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_networks::shipped::ModelSource;
+
+    #[test]
+    fn a_fleet_that_was_not_learned_from_to_the_end_is_warned_of() {
+        let of_one_kind = ModelSource::ShippedPretrained.response_model().unwrap();
+        let caveat = cars_not_learned(Learning::Fleet, &of_one_kind).unwrap();
+        assert!(caveat.is_warning(), "{caveat:?}");
+        assert_eq!(cars_not_learned(Learning::Network, &of_one_kind), None);
+        let of_fleet = ModelSource::Shipped.response_model().unwrap();
+        assert_eq!(cars_not_learned(Learning::Fleet, &of_fleet), None);
     }
 }

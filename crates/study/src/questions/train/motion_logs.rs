@@ -7,10 +7,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::StudyError;
 use crate::ask::checks::{check, check_contact, check_given};
+use crate::caveats::restrictions::{doubtful_data_caveats, doubtful_note_caveats};
+use crate::questions::simulate::drive::steer_history;
 use crate::questions::simulate::motion_source::acting_force;
-use impactlab_core::data::{ColumnMap, ForceHistory, list_folder, read_any_series};
-use impactlab_core::ranges::{INSTANT, LOG_DURATION};
-use impactlab_core::uncertainty::Caveats;
+use impactlab_core::data::{
+    Channel, ColumnMap, ForceHistory, list_folder, read_any_series, read_motion_log,
+};
+use impactlab_core::ranges::{INSTANT, LOG_DURATION, STEERING_RATIO};
+use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
+use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::{ContactLoad, ContactPoint, VehicleParameters};
 use impactlab_networks::response::{
     ForceOrigin, LogNoise, LogSettings, LoggedImpact, MotionLog, ResponseCase,
@@ -18,6 +23,10 @@ use impactlab_networks::response::{
 
 /// How much of a log from the first contact on is learned from where nobody says it, s.
 pub const DEFAULT_LOG_DURATION_S: f64 = 4.0;
+
+/// Channels that say how the front wheels are turned.
+const STEERING: [Channel; 4] =
+    [Channel::Steer, Channel::SteerFl, Channel::SteerFr, Channel::SteeringWheel];
 
 /// Logs of single impacts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -40,6 +49,12 @@ pub struct MotionLogs {
     /// First contact on the clock of the logs, s; from the force, or from the motion, if not given.
     #[serde(default)]
     pub impact_s: Option<f64>,
+    /// Whether nothing was struck, as in a test drive: then no force is looked for in the motion.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub without_impact: bool,
+    /// Angle of the steering wheel over that of the road wheels, for logs that have the former.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub steering_ratio: Option<f64>,
     /// How much of a log from the first contact on is learned from, s.
     #[serde(default = "default_duration_s")]
     pub duration_s: f64,
@@ -73,6 +88,7 @@ impl MotionLogs {
     pub(crate) fn check(&self) -> Result<(), StudyError> {
         check_contact(self.contact.as_ref())?;
         check_given("impact_s", &INSTANT, self.impact_s)?;
+        check_given("steering_ratio", &STEERING_RATIO, self.steering_ratio)?;
         check("duration_s", &LOG_DURATION, self.duration_s)
     }
 
@@ -80,22 +96,30 @@ impl MotionLogs {
     pub(crate) fn read(
         &self,
         vehicle: VehicleParameters,
+        caveats: &mut Caveats,
     ) -> Result<(Vec<ResponseCase>, Vec<LogReport>), StudyError> {
         let paths = self.paths()?;
         if !self.forces.is_empty() && self.forces.len() != paths.len() {
             let (n_forces, n_logs) = (self.forces.len(), paths.len());
             return Err(StudyError::ForcesOfLogs { n_forces, n_logs });
         }
-        let settings =
-            LogSettings { vehicle, impact_s: self.impact_s, duration_s: self.duration_s };
+        let settings = LogSettings {
+            vehicle,
+            has_impact: !self.without_impact,
+            impact_s: self.impact_s,
+            duration_s: self.duration_s,
+        };
         let (mut cases, mut reports) = (Vec::new(), Vec::new());
         for (i, path) in paths.iter().enumerate() {
-            let log = MotionLog::read(path, self.map.as_ref())?;
+            let log = self.log(path, caveats)?;
             let load = match self.forces.get(i) {
                 Some(force) => Some(self.load(force, &settings.vehicle)?),
                 None => None,
             };
             let found = LoggedImpact::from_log(&log, load, &settings)?;
+            if found.force == ForceOrigin::Estimated {
+                caveats.push(estimated_force(path, &found));
+            }
             reports.push(LogReport {
                 log: path.clone(),
                 start_s: found.start_s,
@@ -108,6 +132,23 @@ impl MotionLogs {
             cases.push(found.case);
         }
         Ok((cases, reports))
+    }
+
+    /// A log with its steering as an angle of the road wheels. What is in doubt about it is said.
+    fn log(&self, path: &Path, caveats: &mut Caveats) -> Result<MotionLog, StudyError> {
+        let loaded = read_motion_log(path, self.map.as_ref())?;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        caveats.extend(doubtful_data_caveats(&name, &loaded));
+        caveats.extend(doubtful_note_caveats(&name, &loaded));
+        let mut series = loaded.series;
+        let in_file = |source| StudyError::Series { path: path.to_owned(), source };
+        if STEERING.iter().any(|channel| series.get(*channel).is_some()) {
+            let steer = steer_history(path, &series, self.steering_ratio)?;
+            series.insert(Channel::Steer, steer.steer_rad).map_err(in_file)?;
+        } else {
+            caveats.push(straight_ahead(&name));
+        }
+        Ok(MotionLog { path: path.to_owned(), series })
     }
 
     /// The files, those of a folder by name.
@@ -145,4 +186,31 @@ impl MotionLogs {
             acting_force(force, self.contact, vehicle, 0.0, &mut Caveats::default());
         Ok(ContactLoad { recorded_moment: force.mz_n_m.is_some(), force, contact })
     }
+}
+
+/// A log without steering is that of a vehicle whose front wheels stand straight ahead.
+///
+/// - `name`: of the log.
+fn straight_ahead(name: &str) -> Caveat {
+    let value = Phrase::new("0° throughout", "durchweg 0°");
+    let reason = Phrase::new(
+        "{0} has no steering: columns steer, or steering_wheel with --steering-ratio",
+        "{0} hat keine Lenkung: Spalten steer, oder steering_wheel mit --steering-ratio",
+    );
+    let reason = reason.with(PhraseValue::Name(name.to_owned()));
+    Caveat::assumed(CaveatSubject::Steer, value, reason)
+}
+
+/// A force that is in no file.
+fn estimated_force(path: &Path, found: &LoggedImpact) -> Caveat {
+    let [x, y] = found.impulse_n_s;
+    let value = Phrase::new("{0} from {1} on", "{0} ab {1}")
+        .with(PhraseValue::three_digits(Quantity::Impulse, x.hypot(y)))
+        .with(PhraseValue::fixed(Quantity::Time, found.start_s, 2));
+    let reason = Phrase::new(
+        "{0} has no force, and this explains its motion; where nothing was struck: --no-impact",
+        "{0} hat keine Kraft, und diese erklärt die Bewegung; ohne Anstoß: --no-impact",
+    );
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Caveat::assumed(CaveatSubject::Pulse, value, reason.with(PhraseValue::Name(name)))
 }

@@ -12,6 +12,7 @@ use std::path::Path;
 
 use crate::data::formats::fem::deck::{DeckUnits, Dimension, shown};
 use crate::data::formats::fem::results::{History, Kind, MOMENT, Results};
+use crate::data::formats::fem::start::ModelStart;
 use crate::data::{DataError, Sheet, SheetRef};
 use crate::numerics::counted_turns_rad;
 
@@ -233,6 +234,12 @@ impl<'a> Chosen<'a> {
             [only] if only.kind == Kind::Contact => momenta.check(&only.force()?, deck),
             _ => None,
         }
+    }
+
+    /// The velocities with which the cars of the model begin, if a force is read and its units are known.
+    pub(super) fn start(&self, results: &Results, deck: Option<DeckUnits>) -> Option<ModelStart> {
+        let What::Forces(parts) = &self.what else { return None };
+        ModelStart::new(results, parts, deck?)
     }
 
     /// The text of the table, in SI units if those of the model are known.

@@ -16,6 +16,7 @@ mod radioss;
 mod rcforc;
 mod results;
 mod secforc;
+mod start;
 mod states;
 mod tokens;
 
@@ -29,6 +30,7 @@ pub use deck::DeckUnits;
 pub(in crate::data) use deck::OpenUnits;
 pub use parts::parts_beside;
 use results::Results;
+pub use start::ModelStart;
 use tokens::damaged_line;
 
 /// Lines at the start of a text in which the marks of a solver are looked for, and the longest line
@@ -100,6 +102,7 @@ fn converted(
         device: results.labels().join("\n"),
         open_units: settings.deck.is_none().then(|| results.open_units()),
         is_model: true,
+        model_start: chosen.start(results, settings.deck),
         ..Said::default()
     };
     Ok(Converted { text: chosen.table(settings.deck), said })

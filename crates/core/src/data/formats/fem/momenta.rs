@@ -35,35 +35,14 @@ impl Momenta {
         force: &ForceHistory,
         deck: Option<DeckUnits>,
     ) -> Option<(String, bool)> {
-        let from = self.time.first()?.max(*force.time_s.first()?);
-        let to = self.time.last()?.min(*force.time_s.last()?);
-        let impulse = force.cumulative();
-        let over = |knots: &[f64], values: &[f64]| {
-            Some(interpolate(knots, values, to)? - interpolate(knots, values, from)?)
-        };
-        let [px, py] = [&impulse.px_n_s, &impulse.py_n_s].map(|sum| over(&impulse.knots_s, sum));
-        let (px, py) = (px?, py?);
-        let size = px.hypot(py);
-        if to <= from || !size.is_finite() || size <= 0.0 {
-            return None;
-        }
+        let acting = self.acting(force)?;
         let groups = self.groups();
         let [_, _] = groups.as_slice() else {
             let text = "the momenta of the parts are not compared with the impulse: which parts are one \
                         car does not follow from their first velocities";
             return Some((text.to_owned(), false));
         };
-        let error = |group: &Vec<usize>| -> Option<f64> {
-            let gained = |axis: usize| -> Option<f64> {
-                let parts = group.iter().filter_map(|at| self.parts.get(*at));
-                parts.map(|part| over(&self.time, part.momentum.get(axis)?)).sum()
-            };
-            Some((gained(0)? - px).hypot(gained(1)? - py) / size)
-        };
-        let errors = groups.iter().filter_map(|group| Some((group, error(group)?)));
-        let errors = errors.filter(|(_, error)| error.is_finite());
-        let (group, error) = errors.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let start = group.first().and_then(|at| self.parts.get(*at)).map(|part| part.start)?;
+        let (start, error) = self.nearest(&groups, &acting)?;
         let per_unit = deck.map_or(1.0, |deck| deck.si_per_unit(Dimension::Velocity));
         let unit = deck.map_or("", |_| " m/s");
         let [x, y] = start.map(|component| shown(component * per_unit));
@@ -88,25 +67,93 @@ impl Momenta {
         }
     }
 
+    /// The velocity at the start of the parts that a force acts on, in the units of the model; `None` where
+    /// their momenta do not tell which these are, or are not known from before the force.
+    pub(super) fn start_of(&self, force: &ForceHistory) -> Option<[f64; 2]> {
+        let acting = self.acting(force)?;
+        let groups = self.groups();
+        let [_, _] = groups.as_slice() else { return None };
+        let (start, error) = self.nearest(&groups, &acting)?;
+        let is_known = error <= LARGEST && acting.share_before <= LARGEST;
+        is_known.then_some(start).filter(|start| start.iter().all(|value| value.is_finite()))
+    }
+
+    /// The velocities of all parts at the start, in the units of the model.
+    pub(super) fn starts(&self) -> Vec<[f64; 2]> {
+        self.parts.iter().map(|part| part.start).collect()
+    }
+
+    /// What a force gives while the momenta are known; `None` if that is nothing.
+    fn acting(&self, force: &ForceHistory) -> Option<Acting> {
+        let from = self.time.first()?.max(*force.time_s.first()?);
+        let to = self.time.last()?.min(*force.time_s.last()?);
+        let sum = force.cumulative();
+        let at = |time: f64| -> Option<[f64; 2]> {
+            let [x, y] =
+                [&sum.px_n_s, &sum.py_n_s].map(|sums| interpolate(&sum.knots_s, sums, time));
+            Some([x?, y?])
+        };
+        let ([x0, y0], [x1, y1]) = (at(from)?, at(to)?);
+        let impulse = [x1 - x0, y1 - y0];
+        let size = impulse[0].hypot(impulse[1]);
+        let is_some = to > from && size.is_finite() && size > 0.0;
+        is_some.then(|| Acting { from, to, impulse, size, share_before: x0.hypot(y0) / size })
+    }
+
+    /// The velocity at the start of the parts whose momentum changes most nearly by an impulse, and by how
+    /// much it differs, as a share of the impulse.
+    fn nearest(&self, groups: &[Vec<usize>], acting: &Acting) -> Option<([f64; 2], f64)> {
+        let Acting { from, to, impulse: [px, py], size, .. } = *acting;
+        let over = |values: &[f64]| {
+            Some(interpolate(&self.time, values, to)? - interpolate(&self.time, values, from)?)
+        };
+        let error = |group: &Vec<usize>| -> Option<f64> {
+            let gained = |axis: usize| -> Option<f64> {
+                let parts = group.iter().filter_map(|at| self.parts.get(*at));
+                parts.map(|part| over(part.momentum.get(axis)?)).sum()
+            };
+            Some((gained(0)? - px).hypot(gained(1)? - py) / size)
+        };
+        let errors = groups.iter().filter_map(|group| Some((group, error(group)?)));
+        let errors = errors.filter(|(_, error)| error.is_finite());
+        let (group, error) = errors.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let start = group.first().and_then(|at| self.parts.get(*at)).map(|part| part.start)?;
+        Some((start, error))
+    }
+
     /// The parts by their velocities at the start.
     fn groups(&self) -> Vec<Vec<usize>> {
-        let sizes = self.parts.iter().map(|part| part.start[0].hypot(part.start[1]));
-        let largest = sizes.fold(0.0, f64::max);
-        let mut groups: Vec<([f64; 2], Vec<usize>)> = Vec::new();
-        for (at, part) in self.parts.iter().enumerate() {
-            let is_same = |velocity: &[f64; 2]| {
-                let apart = (velocity[0] - part.start[0]).hypot(velocity[1] - part.start[1]);
-                apart <= SAME_VELOCITY * largest
-            };
-            let is_many = groups.len() > MOST_GROUPS;
-            match groups.iter_mut().find(|(velocity, _)| is_same(velocity)) {
-                Some((_, group)) => group.push(at),
-                None if is_many => break,
-                None => groups.push((part.start, vec![at])),
-            }
-        }
-        groups.into_iter().map(|(_, group)| group).collect()
+        by_velocity(&self.starts()).into_iter().map(|(_, group)| group).collect()
     }
+}
+
+/// What a force gives over a time.
+struct Acting {
+    from: f64,
+    to: f64,
+    impulse: [f64; 2],
+    /// Magnitude of the impulse.
+    size: f64,
+    /// What it gave before, as a share of the impulse.
+    share_before: f64,
+}
+
+/// The indices of velocities that hardly differ, with the first of them.
+pub(super) fn by_velocity(velocities: &[[f64; 2]]) -> Vec<([f64; 2], Vec<usize>)> {
+    let largest = velocities.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
+    let mut groups: Vec<([f64; 2], Vec<usize>)> = Vec::new();
+    for (at, velocity) in velocities.iter().enumerate() {
+        let is_same = |of: &[f64; 2]| {
+            (of[0] - velocity[0]).hypot(of[1] - velocity[1]) <= SAME_VELOCITY * largest
+        };
+        let is_many = groups.len() > MOST_GROUPS;
+        match groups.iter_mut().find(|(of, _)| is_same(of)) {
+            Some((_, group)) => group.push(at),
+            None if is_many => break,
+            None => groups.push((*velocity, vec![at])),
+        }
+    }
+    groups
 }
 
 /// More groups than this are not those of two cars.
@@ -144,6 +191,11 @@ mod tests {
         };
         let (text, is_wrong) = pair(4.0).check(&force(1.0), Some(DeckUnits::KgMmMs)).unwrap();
         assert!(!is_wrong && text.contains("(0, 0) m/s"), "{text}");
+        assert_eq!(pair(4.0).start_of(&force(1.0)), Some([0.0, 0.0]));
+        assert_eq!(pair(4.0).start_of(&force(-1.0)), Some([10.0, 0.0]));
+        assert_eq!(pair(3.0).start_of(&force(1.0)), None, "the momenta contradict the force");
+        let late = Momenta { time: vec![1.0, 2.0], ..pair(2.0) };
+        assert_eq!(late.start_of(&force(1.0)), None, "half of the force acted before");
         let (text, is_wrong) = pair(4.0).check(&force(-1.0), None).unwrap();
         assert!(!is_wrong && text.contains("(10.00, 0) changes"), "{text}");
         let (text, is_wrong) = pair(3.0).check(&force(1.0), None).unwrap();

@@ -262,7 +262,7 @@ mod tests {
     use crate::report::{Language, Paper, Picture, PictureContent, Section, Table};
     use impactlab_core::units::{Quantity, UnitSystem};
 
-    fn document(blocks: Vec<Block>) -> ReportDocument {
+    fn document(paper: Paper, blocks: Vec<Block>) -> ReportDocument {
         ReportDocument {
             title: "x".repeat(300),
             case: "a case".to_owned(),
@@ -271,7 +271,7 @@ mod tests {
             day: (2026, 11, 24),
             language: Language::En,
             units: UnitSystem::Si,
-            paper: Paper::A4,
+            paper,
             program: "0".to_owned(),
             sections: vec![Section {
                 kind: SectionKind::Answers,
@@ -294,9 +294,14 @@ mod tests {
             Block::Table(table),
             Block::paragraph(long.clone()),
         ];
+        for paper in [Paper::A4, Paper::Letter] {
+            keeps_within_margins(&document(paper, blocks.clone()));
+        }
+    }
+
+    fn keeps_within_margins(document: &ReportDocument) {
         let fonts = Fonts::load().unwrap();
-        let document = document(blocks);
-        let flow = Flow::from_document(&document, &fonts).unwrap();
+        let flow = Flow::from_document(document, &fonts).unwrap();
         assert!(flow.pages.len() > 20);
         let [width_pt, height_pt] = flow.size_pt;
         let mut headers = 0;
@@ -315,21 +320,31 @@ mod tests {
         assert!(headers > 10, "the header of the table is repeated {headers} times");
     }
 
+    /// The last row of a table stood alone on the next page.
     #[test]
-    fn no_table_goes_on_after_fewer_than_four_rows() {
+    fn no_table_is_divided_after_fewer_than_four_rows_or_before_fewer_than_three() {
         let fonts = Fonts::load().unwrap();
-        for n_lines in 30..60 {
+        let papers = [Paper::A4, Paper::Letter];
+        let all = (30..60).flat_map(|n| [(n, 9), (n, 6)]);
+        for (paper, (n_lines, n_all)) in
+            papers.into_iter().flat_map(|of| all.clone().map(move |n| (of, n)))
+        {
             let mut blocks = vec![Block::paragraph("above"); n_lines];
-            let rows = (0..9).map(|n| [format!("row {n}"), "a value".to_owned()]).collect();
+            let rows = (0..n_all).map(|n| [format!("row {n}"), "a value".to_owned()]).collect();
             blocks.push(Block::Table(Table::new("A table", ["name", "value"], rows)));
-            let document = document(blocks);
+            let document = document(paper, blocks);
             let flow = Flow::from_document(&document, &fonts).unwrap();
             let n_rows = |page: &PageItems| {
                 let is_row = |item: &&Item| matches!(item, Item::Text { text, .. } if text.starts_with("row "));
                 page.items.iter().filter(is_row).count()
             };
-            let first = flow.pages.iter().map(n_rows).find(|n| *n > 0);
-            assert!(first.is_some_and(|n| n >= 4), "{n_lines} lines above: {first:?} rows");
+            let parts: Vec<usize> = flow.pages.iter().map(n_rows).filter(|n| *n > 0).collect();
+            let is_kept = match parts[..] {
+                [all] => all == n_all,
+                [first, last] => n_all > 6 && first >= 4 && last >= 3,
+                _ => false,
+            };
+            assert!(is_kept, "{paper:?}, {n_lines} lines above: {parts:?} rows");
         }
     }
 
@@ -346,7 +361,7 @@ mod tests {
                 content: PictureContent::Figure(Box::new(figure.clone())),
             }))
         };
-        let mut document = document((0..9).map(plot).collect());
+        let mut document = document(Paper::A4, (0..9).map(plot).collect());
         document.title = "short".to_owned();
         let flow = Flow::from_document(&document, &fonts).unwrap();
         let places = |page: &PageItems| -> Vec<[f32; 4]> {

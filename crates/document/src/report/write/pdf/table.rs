@@ -19,6 +19,8 @@ const PADDING_PT: f32 = 3.5;
 const HIGH_PADDING_PT: f32 = 1.1;
 /// Rows that a table has at the least before it goes on on the next page.
 const KEPT_ROWS: usize = 4;
+/// Rows that it has at the least there; with fewer than both it is not divided.
+const LAST_ROWS: usize = 3;
 
 /// A table that is being set.
 struct Setting<'a> {
@@ -58,7 +60,11 @@ pub(super) fn flow_table(flow: &mut Flow<'_>, table: &Table) {
         flow.y_pt += 1.5;
     }
     setting.header(flow, &header, true);
-    for row in &table.rows {
+    let first_of_last = table.rows.len().saturating_sub(LAST_ROWS);
+    for (idx, row) in table.rows.iter().enumerate() {
+        if idx > 0 && idx == first_of_last {
+            setting.keep_last(flow, &header);
+        }
         setting.row(flow, row, &header);
     }
 }
@@ -77,7 +83,9 @@ impl Setting<'_> {
     }
 
     fn beginning_pt(&self, flow: &Flow<'_>) -> f32 {
-        let rows = self.table.rows.iter().take(KEPT_ROWS);
+        let n_rows = self.table.rows.len();
+        let n_kept = if n_rows < KEPT_ROWS + LAST_ROWS { n_rows } else { KEPT_ROWS };
+        let rows = self.table.rows.iter().take(n_kept);
         let rows_pt: f32 = rows.map(|row| height_pt(&self.cells(row, flow.fonts))).sum();
         let caption_pt = match self.table.caption.is_empty() {
             true => 0.0,
@@ -99,6 +107,16 @@ impl Setting<'_> {
             .collect();
         let all = cells.iter().map(Vec::len).max().unwrap_or(0);
         self.slice(flow, cells, &owners, 0, all, true);
+    }
+
+    /// Goes on with a new page where the last rows do not all fit, so that none of them stands alone.
+    fn keep_last(&self, flow: &mut Flow<'_>, header: &Cells) {
+        let last = self.table.rows.iter().rev().take(LAST_ROWS);
+        let last_pt: f32 = last.map(|row| height_pt(&self.cells(row, flow.fonts))).sum();
+        if flow.room_pt() < last_pt && last_pt < 0.4 * flow.page_pt() {
+            flow.new_page();
+            self.header(flow, header, false);
+        }
     }
 
     fn row(&self, flow: &mut Flow<'_>, row: &[String], header: &Cells) {

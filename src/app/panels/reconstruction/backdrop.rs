@@ -1,0 +1,198 @@
+//! Picture and lines of the ground below the plan in which evidence is placed.
+
+use std::sync::Arc;
+
+use egui::{Color32, ColorImage, Id, TextureHandle, TextureOptions, Ui};
+
+use impactlab_core::site::extent_of;
+use impactlab_core::units::Unit;
+use impactlab_document::figure::{Figure, FigureElement, Path};
+use impactlab_document::scene::{GroundLineKind, GroundPicture, PictureLevel, SceneGround, TILE};
+use impactlab_draw::Backdrop;
+
+/// Longest side of the picture, pixels.
+const MAX_SIDE: usize = 2048;
+
+/// Cosine of the largest angle by which the sides of a picture may not be at right angles.
+const SQUARE: f64 = 1e-3;
+
+/// Distance from the evidence beyond which lines are left out, m: they would make the plan too small.
+const NEAR_M: f64 = 100.0;
+
+/// Most lines that are drawn.
+const MAX_LINES: usize = 5000;
+
+/// The picture as the graphics card has it.
+#[derive(Clone)]
+struct Loaded {
+    picture: Arc<GroundPicture>,
+    texture: TextureHandle,
+}
+
+/// The picture of a ground, if it has one that is not skewed or mirrored.
+///
+/// - `unit`: of the axes of the plan.
+pub(super) fn backdrop(ui: &Ui, ground: &SceneGround, unit: Unit) -> Option<Backdrop> {
+    let picture = ground.picture.as_ref()?;
+    let (corner_m, column_m, row_m) =
+        (picture.map.corner_m, picture.map.per_column_m, picture.map.per_row_m);
+    let [across_m, down_m] = [column_m, row_m].map(|[x, y]| x.hypot(y));
+    let scalar = column_m[0] * row_m[0] + column_m[1] * row_m[1];
+    let cross = column_m[0] * row_m[1] - column_m[1] * row_m[0];
+    if scalar.abs() > SQUARE * across_m * down_m || cross >= 0.0 {
+        return None;
+    }
+    let [width, height] = picture.size().map(|side| side as f64);
+    let middle =
+        |axis: usize| corner_m[axis] + (width * column_m[axis] + height * row_m[axis]) / 2.0;
+    Some(Backdrop {
+        texture: texture(ui, picture)?.id(),
+        centre: [middle(0), middle(1)].map(|value| unit.from_si(value)),
+        size: [width * across_m, height * down_m].map(|side| unit.from_si(side)),
+        turn_rad: column_m[1].atan2(column_m[0]),
+    })
+}
+
+/// The lines of a ground about what a plan shows, in the units of its axes: those of a survey, then kerbs and
+/// those of a drawing.
+pub(super) fn lines_below(ground: &SceneGround, figure: &Figure) -> Vec<Vec<[f64; 2]>> {
+    let shown = figure.elements.iter().filter_map(|element| match element {
+        FigureElement::Line(series)
+        | FigureElement::Points(series)
+        | FigureElement::Polygon(series)
+        | FigureElement::Path(Path { series, .. })
+        | FigureElement::Arrow(series) => Some(&series.points),
+        _ => None,
+    });
+    let unit = figure.x.unit;
+    let Some([low, high]) = extent_of(shown.flatten().copied()) else { return Vec::new() };
+    let room = unit.from_si(NEAR_M);
+    let shown = |at: &[f64; 2]| at.map(|value| unit.from_si(value));
+    let is_far = |at_m: &[f64; 2]| {
+        let at = shown(at_m);
+        (0..2).any(|axis| at[axis] < low[axis] - room || at[axis] > high[axis] + room)
+    };
+    let kinds = [GroundLineKind::Surveyed, GroundLineKind::Kerb, GroundLineKind::Drawing];
+    let of_kind = |kind| ground.lines.iter().filter(move |line| line.kind == kind);
+    let parts = |points_m: &Vec<[f64; 2]>| -> Vec<Vec<[f64; 2]>> {
+        let near = points_m.split(is_far).filter(|part| part.len() > 1);
+        near.map(|part| part.iter().map(shown).collect()).collect()
+    };
+    let lines = kinds.into_iter().flat_map(of_kind);
+    lines.flat_map(|line| parts(&line.points_m)).take(MAX_LINES).collect()
+}
+
+/// The texture of a picture, made anew for another one.
+fn texture(ui: &Ui, picture: &Arc<GroundPicture>) -> Option<TextureHandle> {
+    let id = Id::unique("ground below the plan");
+    let loaded: Option<Loaded> = ui.data(|data| data.get_temp(id));
+    if let Some(loaded) = loaded.filter(|loaded| loaded.picture.has_pixels_of(picture)) {
+        return Some(loaded.texture);
+    }
+    let is_small = |level: &&PictureLevel| level.size().iter().all(|side| *side <= MAX_SIDE);
+    let level = picture.levels().iter().find(is_small).or(picture.levels().last())?;
+    let texture =
+        ui.ctx().load_texture("ground below the plan", image(level), TextureOptions::LINEAR);
+    let loaded = Loaded { picture: Arc::clone(picture), texture: texture.clone() };
+    ui.data_mut(|data| data.insert_temp(id, loaded));
+    Some(texture)
+}
+
+fn image(level: &PictureLevel) -> ColorImage {
+    let [width, height] = level.size();
+    let mut pixels = vec![Color32::TRANSPARENT; width * height];
+    for ([left, top], tile) in level.tiles() {
+        let n = TILE.min(width.saturating_sub(left));
+        for (y, line) in (top..height).zip(tile.chunks_exact(TILE)) {
+            let start = y * width + left;
+            let Some(place) = pixels.get_mut(start..start + n) else { continue };
+            for (pixel, [red, green, blue, opacity]) in place.iter_mut().zip(line) {
+                *pixel = Color32::from_rgba_unmultiplied(*red, *green, *blue, *opacity);
+            }
+        }
+    }
+    ColorImage::new([width, height], pixels)
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Context, RawInput};
+    use image::RgbaImage;
+
+    use super::*;
+    use impactlab_core::site::PixelMap;
+    use impactlab_core::units::{Quantity, UnitSystem};
+    use impactlab_document::figure::{Axis, Role};
+    use impactlab_document::scene::GroundLine;
+
+    fn placed(map: PixelMap) -> Option<Backdrop> {
+        let picture = Arc::new(GroundPicture::new(&RgbaImage::new(200, 100), map));
+        let ground = SceneGround { picture: Some(picture), ..SceneGround::default() };
+        let unit = Quantity::Length.display_unit(UnitSystem::Si);
+        let mut found = None;
+        let _ = Context::default().run_ui(RawInput::default(), |ui| {
+            found = backdrop(ui, &ground, unit);
+            // The same texture again.
+            assert_eq!(backdrop(ui, &ground, unit), found);
+        });
+        found
+    }
+
+    #[test]
+    fn a_picture_lies_where_its_pixels_do() {
+        let upright =
+            PixelMap { corner_m: [10.0, 20.0], per_column_m: [0.1, 0.0], per_row_m: [0.0, -0.1] };
+        let at = placed(upright).unwrap();
+        let near = |found: [f64; 2], expected: [f64; 2]| {
+            found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-9)
+        };
+        assert!(near(at.centre, [20.0, 15.0]) && near(at.size, [20.0, 10.0]), "{at:?}");
+        assert_eq!(at.turn_rad, 0.0);
+        // Its columns run along Y.
+        let turned =
+            PixelMap { corner_m: [0.0, 0.0], per_column_m: [0.0, 0.1], per_row_m: [0.1, 0.0] };
+        let at = placed(turned).unwrap();
+        assert!(near(at.centre, [5.0, 10.0]) && near(at.size, [20.0, 10.0]), "{at:?}");
+        assert!((at.turn_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+        let mirrored = PixelMap { per_row_m: [0.0, 0.1], ..upright };
+        let skewed = PixelMap { per_row_m: [0.05, -0.1], ..upright };
+        assert_eq!([mirrored, skewed].map(placed), [None; 2]);
+    }
+
+    #[test]
+    fn surveyed_lines_lie_below_a_plan_in_its_units_but_not_those_far_from_it() {
+        let line = |kind, points_m: &[[f64; 2]]| GroundLine {
+            kind,
+            points_m: points_m.to_vec(),
+            width_m: 0.0,
+        };
+        let surveyed = [[0.0, 3.048], [30.48, 3.048], [5000.0, 3.048]];
+        let mut lines = vec![line(GroundLineKind::Marking, &[[0.0, 0.0], [1.0, 0.0]])];
+        // As many as are drawn at most, none of which is.
+        let far = line(GroundLineKind::Surveyed, &[[4000.0, 0.0], [4001.0, 0.0]]);
+        lines.resize(lines.len() + MAX_LINES, far);
+        lines.push(line(GroundLineKind::Surveyed, &surveyed));
+        let ground = SceneGround { lines, ..SceneGround::default() };
+        let axis = || Axis::shown("X", Quantity::Length, UnitSystem::Us);
+        let plan = |elements| Figure::new("plan", [axis(), axis()], elements);
+        let evidence = FigureElement::line("mark", Role::Muted, vec![[0.0, 0.0], [50.0, 0.0]]);
+        let found = lines_below(&ground, &plan(vec![evidence]));
+        assert_eq!(found.len(), 1, "{found:?}");
+        let ends: Vec<[f64; 2]> = found[0].iter().map(|at| at.map(f64::round)).collect();
+        assert_eq!(ends, [[0.0, 10.0], [100.0, 10.0]]);
+        assert!(lines_below(&ground, &plan(Vec::new())).is_empty());
+    }
+
+    #[test]
+    fn pixels_keep_their_places() {
+        let map = PixelMap { corner_m: [0.0; 2], per_column_m: [1.0, 0.0], per_row_m: [0.0, -1.0] };
+        let mut pixels = RgbaImage::new(150, 140);
+        pixels.put_pixel(149, 130, image::Rgba([255, 0, 0, 255]));
+        let picture = GroundPicture::new(&pixels, map);
+        let shown = image(&picture.levels()[0]);
+        assert_eq!(shown.size, [150, 140]);
+        let red: Vec<usize> =
+            (0..shown.pixels.len()).filter(|idx| shown.pixels[*idx] == Color32::RED).collect();
+        assert_eq!(red, [130 * 150 + 149]);
+    }
+}

@@ -1,0 +1,124 @@
+//! The pictures of the window in the tutorials. `UPDATE_GUIDE=1` draws them anew; look at the difference.
+
+use std::path::Path;
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use impactlab::app::{
+    App, Command, Network, Pane, ReconstructionCommand, State, TrainingCommand, VariantCommand,
+};
+use impactlab_study::ConfigChoice;
+
+use crate::harness::{apply, is_idle, open_at, step_until};
+use crate::pictures::save;
+use crate::settings::SMALL_FORCE;
+
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/guide/pictures");
+const PIT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/guide/examples/pit.toml");
+const SITE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/sites/country-road/site.toml");
+const EVIDENCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/staged/evidence/s24.toml");
+const FORCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea");
+
+/// A trial with the simplest centre, as the tutorial begins.
+const TRIAL: &str = "\
+centre = \"momentum\"
+[crush]
+folds = 2
+";
+
+fn opened(path: &str) -> Harness<'static, App> {
+    open_at(([1280.0, 800.0], 1.0), &[path], None)
+}
+
+fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
+    harness.state().state()
+}
+
+/// Draws a step of a tutorial, whose picture must be in the guide and of this size.
+fn step(harness: &mut Harness<'_, App>, name: &str) {
+    harness.run_steps(4);
+    save(harness, name);
+    let image = harness.render().expect("the software renderer always draws");
+    let path = Path::new(FOLDER).join(name);
+    if std::env::var_os("UPDATE_GUIDE").is_some() {
+        image.save(&path).expect("a picture is written");
+    }
+    let kept = image::open(&path).expect("UPDATE_GUIDE=1 draws it").to_rgba8();
+    assert_eq!(kept.dimensions(), image.dimensions(), "{name}: UPDATE_GUIDE=1 draws it anew");
+}
+
+fn is_forecast(state: &State) -> bool {
+    let forecast = &state.session.response.forecast;
+    is_idle(state) && forecast.ok().is_some() && !forecast.is_waiting()
+}
+
+#[test]
+fn a_pit_from_the_scenario_to_two_variants() {
+    let mut harness = opened(PIT);
+    step_until(&mut harness, "the forecast", is_forecast);
+    step(&mut harness, "tutorial-pit-window-scenario.png");
+
+    apply(&mut harness, Command::Open(vec![SITE.into()]));
+    step_until(&mut harness, "the ground", |state| state.session.ground.shown().is_some());
+    let asked = &mut harness.state_mut().state_mut().project.simulate;
+    (asked.until_rest, asked.duration_s) = (true, 120.0);
+    harness.run_steps(4);
+    step_until(&mut harness, "the forecast to rest", is_forecast);
+    apply(&mut harness, Command::Show(Pane::MotionForecast));
+    step(&mut harness, "tutorial-pit-window-forecast.png");
+
+    apply(&mut harness, Command::Variant(VariantCommand::Duplicate));
+    let scenario = harness.state_mut().state_mut().project.scenario_mut().expect("a scenario");
+    scenario.striking.vx_world_m_s *= 1.1;
+    scenario.striking.vy_world_m_s *= 1.1;
+    harness.run_steps(4);
+    apply(&mut harness, Command::Show(Pane::Variants));
+    step_until(&mut harness, "both variants", |state| {
+        let variants = state.answered_variants();
+        variants.len() == 2 && variants.iter().all(|of| of.forecast.is_some() && !of.is_waiting)
+    });
+    step(&mut harness, "tutorial-pit-window-variants.png");
+}
+
+#[test]
+fn a_staged_collision_from_its_evidence_to_the_speeds() {
+    let mut harness = opened(EVIDENCE);
+    harness.run_steps(4);
+    step(&mut harness, "tutorial-reconstruction-window-evidence.png");
+
+    let request = harness.state_mut().state_mut().project.reconstruct.as_mut();
+    request.expect("evidence").particles = 500;
+    apply(&mut harness, Command::Reconstruct(ReconstructionCommand::Run));
+    step_until(&mut harness, "the speeds", |state| {
+        let of = &state.session.reconstruction;
+        !of.run.is_running() && of.answer().is_some()
+    });
+    step(&mut harness, "tutorial-reconstruction-window-speeds.png");
+}
+
+#[test]
+fn own_data_from_the_cases_to_a_training() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = folder.path().join("trial.toml");
+    std::fs::write(&config, [SMALL_FORCE, TRIAL].concat()).expect("a file");
+    let mut harness = opened(FORCES);
+    step_until(&mut harness, "the data", is_idle);
+    apply(&mut harness, Command::Show(Pane::Cases));
+    step(&mut harness, "tutorial-own-data-window-cases.png");
+
+    let form = &mut harness.state_mut().state_mut().project.networks.train_force;
+    form.epochs = Some(20);
+    form.training.config = ConfigChoice::File(config);
+    apply(&mut harness, Command::Show(Pane::Training));
+    apply(&mut harness, Command::Train(Network::Force, TrainingCommand::Start));
+    step_until(&mut harness, "the end", |state| {
+        let training = &state.session.force.training;
+        training.is_over && !training.run.is_running()
+    });
+    assert!(state(&harness).session.force.training.problem.is_none());
+    // What stands in the field for the file of settings is a path of this machine.
+    let form = &mut harness.state_mut().state_mut().project.networks.train_force;
+    form.training.config = ConfigChoice::default();
+    assert!(harness.query_all_by_label_contains("Losses while training on").count() > 0);
+    step(&mut harness, "tutorial-own-data-window-training.png");
+}
