@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{
-    Color32, ColorImage, Id, Pos2, Stroke, TextureHandle, TextureId, TextureOptions, Ui, Vec2,
-    Vec2b,
+    Color32, ColorImage, Id, Pos2, Rect, Stroke, TextureHandle, TextureId, TextureOptions, Ui,
+    Vec2, Vec2b, pos2,
 };
 use egui_plot::{
     Arrows, FilledArea, Line, LineStyle as PlotLineStyle, Plot, PlotBounds, PlotImage, PlotPoint,
@@ -42,9 +42,11 @@ const ZOOM_PER_POINT: f32 = 0.004;
 pub struct Backdrop {
     /// The picture.
     pub texture: TextureId,
-    /// Its middle, in the units of the axes.
+    /// The part of it that is drawn: its left upper and right lower corner as shares of width and height.
+    pub part: [[f64; 2]; 2],
+    /// The middle of this part, in the units of the axes.
     pub centre: [f64; 2],
-    /// Its width and height, in the units of the axes.
+    /// Width and height of this part, in the units of the axes.
     pub size: [f64; 2],
     /// By what it is turned about its middle, counter-clockwise, rad.
     pub turn_rad: f64,
@@ -163,10 +165,8 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         if let Some([low, high]) = options.view {
             plot_ui.set_plot_bounds(PlotBounds::from_min_max(low, high));
         }
-        if let Some(Backdrop { texture, centre: [x, y], size, turn_rad }) = options.backdrop {
-            let (at, size) = (PlotPoint::new(x, y), size.map(|side| side as f32));
-            let picture = PlotImage::new("", texture, at, size).rotate(turn_rad);
-            plot_ui.image(picture.allow_hover(false));
+        if let Some(backdrop) = options.backdrop {
+            draw_backdrop(plot_ui, backdrop);
         }
         for points in &options.lines_below {
             let stroke = Stroke::new(theme::THIN_LINE_WIDTH, theme::color(Role::Muted, dark));
@@ -210,6 +210,14 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         view: [transform.bounds().min(), transform.bounds().max()],
         x_per_point: transform.dvalue_dpos()[0].abs(),
     }
+}
+
+fn draw_backdrop(plot_ui: &mut PlotUi<'_>, backdrop: Backdrop) {
+    let Backdrop { texture, part, centre: [x, y], size, turn_rad } = backdrop;
+    let (at, size) = (PlotPoint::new(x, y), size.map(|side| side as f32));
+    let [from, to] = part.map(|[u, v]| pos2(u as f32, v as f32));
+    let picture = PlotImage::new("", texture, at, size).rotate(turn_rad);
+    plot_ui.image(picture.uv(Rect::from_min_max(from, to)).allow_hover(false));
 }
 
 /// Draws the legend and returns the names that it hides.

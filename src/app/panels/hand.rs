@@ -9,7 +9,7 @@ use crate::app::widgets::{EmptyField, caveats_ui, facts_ui, optional_quantity};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_draw::theme;
-use impactlab_reconstruct::evidence::{Evidence, Stated};
+use impactlab_reconstruct::evidence::{Evidence, Mark, Stated};
 use impactlab_reconstruct::hand::{HandDefault, HandField, HandInputs, HandMethod};
 use impactlab_study::HandRequest;
 
@@ -96,11 +96,12 @@ fn points_ui(ui: &mut Ui, request: &mut HandRequest, evidence: Option<&Evidence>
                 }
             }
         }
-        let marks = evidence.iter().flat_map(|of| of.marks.iter().chain(&of.striking_marks));
-        for (number, mark) in
-            (1..).zip(marks).filter(|(_, mark)| mark.points_m.len() >= LEAST_POINTS)
-        {
-            let take = ui.add(Button::new(format!("Take mark {number}")).small());
+        let marks = evidence.into_iter().flat_map(|of| {
+            numbered("Take mark", &of.marks)
+                .chain(numbered("Take mark of the striking car", &of.striking_marks))
+        });
+        for (text, mark) in marks.filter(|(_, mark)| mark.points_m.len() >= LEAST_POINTS) {
+            let take = ui.add(Button::new(text).small());
             if take.on_hover_text("Its points instead of chord and middle ordinate").clicked() {
                 request.points_m.clone_from(&mark.points_m);
                 for key in ["chord_m", "middle_ordinate_m", "radius_m"] {
@@ -109,6 +110,11 @@ fn points_ui(ui: &mut Ui, request: &mut HandRequest, evidence: Option<&Evidence>
             }
         }
     });
+}
+
+/// Marks of a car with their numbers after a text.
+fn numbered<'a>(text: &'static str, marks: &'a [Mark]) -> impl Iterator<Item = (String, &'a Mark)> {
+    (1..).zip(marks).map(move |(number, mark)| (format!("{text} {number}"), mark))
 }
 
 fn input_ui(ui: &mut Ui, field: &HandField, inputs: &mut HandInputs, units: UnitSystem) {

@@ -66,8 +66,13 @@ fn log_ui(ui: &mut Ui, form: &mut NetworkQuestions, sources: &[Source]) -> bool 
     }
     let hint = "Learn from a log of one impact instead of a data set: a file that is open, with \
                 time, x, y, yaw. The vehicle is that of the Vehicle pane";
+    let before = form.log.clone();
     file_list_ui(ui, "Log", "none, from a data set", hint, &mut form.log, &logs);
     ui.end_row();
+    if form.log != before {
+        // What was said of one log is not known of another.
+        (form.log_force, form.log_is_without_impact, form.log_steering_ratio) = (None, false, None);
+    }
     let is_of_log = form.log.as_ref().is_some_and(|log| logs.contains(log));
     if is_of_log {
         log_rows_ui(ui, form);

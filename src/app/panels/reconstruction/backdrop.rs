@@ -5,7 +5,6 @@ use std::sync::Arc;
 use egui::{Color32, ColorImage, Id, TextureHandle, TextureOptions, Ui};
 
 use impactlab_core::site::extent_of;
-use impactlab_core::units::Unit;
 use impactlab_document::figure::{Figure, FigureElement, Path};
 use impactlab_document::scene::{GroundLineKind, GroundPicture, PictureLevel, SceneGround, TILE};
 use impactlab_draw::Backdrop;
@@ -16,8 +15,8 @@ const MAX_SIDE: usize = 2048;
 /// Cosine of the largest angle by which the sides of a picture may not be at right angles.
 const SQUARE: f64 = 1e-3;
 
-/// Distance from the evidence beyond which lines are left out, m: they would make the plan too small.
-const NEAR_M: f64 = 100.0;
+/// Distance from the evidence beyond which the ground is left out, m: it would make the plan too small.
+const NEAR_M: f64 = 40.0;
 
 /// Most lines that are drawn.
 const MAX_LINES: usize = 5000;
@@ -29,33 +28,38 @@ struct Loaded {
     texture: TextureHandle,
 }
 
-/// The picture of a ground, if it has one that is not skewed or mirrored.
-///
-/// - `unit`: of the axes of the plan.
-pub(super) fn backdrop(ui: &Ui, ground: &SceneGround, unit: Unit) -> Option<Backdrop> {
+/// The picture of a ground about what a plan shows, if it has one that is not skewed or mirrored.
+pub(super) fn backdrop(ui: &Ui, ground: &SceneGround, figure: &Figure) -> Option<Backdrop> {
     let picture = ground.picture.as_ref()?;
-    let (corner_m, column_m, row_m) =
-        (picture.map.corner_m, picture.map.per_column_m, picture.map.per_row_m);
+    let (column_m, row_m) = (picture.map.per_column_m, picture.map.per_row_m);
     let [across_m, down_m] = [column_m, row_m].map(|[x, y]| x.hypot(y));
     let scalar = column_m[0] * row_m[0] + column_m[1] * row_m[1];
     let cross = column_m[0] * row_m[1] - column_m[1] * row_m[0];
     if scalar.abs() > SQUARE * across_m * down_m || cross >= 0.0 {
         return None;
     }
-    let [width, height] = picture.size().map(|side| side as f64);
-    let middle =
-        |axis: usize| corner_m[axis] + (width * column_m[axis] + height * row_m[axis]) / 2.0;
+    let unit = figure.x.unit;
+    let [low_m, high_m] = about(figure)?.map(|at| at.map(|value| unit.to_si(value)));
+    let corners_m = [low_m, [high_m[0], low_m[1]], high_m, [low_m[0], high_m[1]]];
+    let [from, to] = extent_of(corners_m.map(|corner_m| picture.map.pixel(corner_m)))?;
+    let sides = picture.size().map(|side| side as f64);
+    let [from, to] = [from, to].map(|at| [0, 1].map(|axis| at[axis].clamp(0.0, sides[axis])));
+    if (0..2).any(|axis| to[axis] <= from[axis]) {
+        return None;
+    }
+    let middle_m = picture.map.ground_m([0, 1].map(|axis| (from[axis] + to[axis]) / 2.0));
+    let size_m = [(to[0] - from[0]) * across_m, (to[1] - from[1]) * down_m];
     Some(Backdrop {
         texture: texture(ui, picture)?.id(),
-        centre: [middle(0), middle(1)].map(|value| unit.from_si(value)),
-        size: [width * across_m, height * down_m].map(|side| unit.from_si(side)),
+        part: [from, to].map(|at| [0, 1].map(|axis| at[axis] / sides[axis])),
+        centre: middle_m.map(|value| unit.from_si(value)),
+        size: size_m.map(|side| unit.from_si(side)),
         turn_rad: column_m[1].atan2(column_m[0]),
     })
 }
 
-/// The lines of a ground about what a plan shows, in the units of its axes: those of a survey, then kerbs and
-/// those of a drawing.
-pub(super) fn lines_below(ground: &SceneGround, figure: &Figure) -> Vec<Vec<[f64; 2]>> {
+/// Lowest and highest coordinates of what a plan shows and of the ground about it, in the units of its axes.
+fn about(figure: &Figure) -> Option<[[f64; 2]; 2]> {
     let shown = figure.elements.iter().filter_map(|element| match element {
         FigureElement::Line(series)
         | FigureElement::Points(series)
@@ -64,13 +68,20 @@ pub(super) fn lines_below(ground: &SceneGround, figure: &Figure) -> Vec<Vec<[f64
         | FigureElement::Arrow(series) => Some(&series.points),
         _ => None,
     });
+    let room = figure.x.unit.from_si(NEAR_M);
+    let [low, high] = extent_of(shown.flatten().copied())?;
+    Some([low.map(|value| value - room), high.map(|value| value + room)])
+}
+
+/// The lines of a ground about what a plan shows, in the units of its axes: those of a survey, then kerbs and
+/// those of a drawing.
+pub(super) fn lines_below(ground: &SceneGround, figure: &Figure) -> Vec<Vec<[f64; 2]>> {
     let unit = figure.x.unit;
-    let Some([low, high]) = extent_of(shown.flatten().copied()) else { return Vec::new() };
-    let room = unit.from_si(NEAR_M);
+    let Some([low, high]) = about(figure) else { return Vec::new() };
     let shown = |at: &[f64; 2]| at.map(|value| unit.from_si(value));
     let is_far = |at_m: &[f64; 2]| {
         let at = shown(at_m);
-        (0..2).any(|axis| at[axis] < low[axis] - room || at[axis] > high[axis] + room)
+        (0..2).any(|axis| at[axis] < low[axis] || at[axis] > high[axis])
     };
     let kinds = [GroundLineKind::Surveyed, GroundLineKind::Kerb, GroundLineKind::Drawing];
     let of_kind = |kind| ground.lines.iter().filter(move |line| line.kind == kind);
@@ -125,17 +136,28 @@ mod tests {
     use impactlab_document::figure::{Axis, Role};
     use impactlab_document::scene::GroundLine;
 
+    /// A plan that shows two places.
+    fn plan(points: Vec<[f64; 2]>) -> Figure {
+        let axis = || Axis::shown("X", Quantity::Length, UnitSystem::Si);
+        let marks = FigureElement::line("marks", Role::Simulation, points);
+        Figure::new("plan", [axis(), axis()], vec![marks])
+    }
+
     fn placed(map: PixelMap) -> Option<Backdrop> {
         let picture = Arc::new(GroundPicture::new(&RgbaImage::new(200, 100), map));
         let ground = SceneGround { picture: Some(picture), ..SceneGround::default() };
-        let unit = Quantity::Length.display_unit(UnitSystem::Si);
+        let figure = plan(vec![[10.0, 0.0], [30.0, 20.0]]);
         let mut found = None;
         let _ = Context::default().run_ui(RawInput::default(), |ui| {
-            found = backdrop(ui, &ground, unit);
+            found = backdrop(ui, &ground, &figure);
             // The same texture again.
-            assert_eq!(backdrop(ui, &ground, unit), found);
+            assert_eq!(backdrop(ui, &ground, &figure), found);
         });
         found
+    }
+
+    fn is_near(found: [f64; 2], expected: [f64; 2]) -> bool {
+        found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-9)
     }
 
     #[test]
@@ -143,20 +165,31 @@ mod tests {
         let upright =
             PixelMap { corner_m: [10.0, 20.0], per_column_m: [0.1, 0.0], per_row_m: [0.0, -0.1] };
         let at = placed(upright).unwrap();
-        let near = |found: [f64; 2], expected: [f64; 2]| {
-            found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-9)
-        };
-        assert!(near(at.centre, [20.0, 15.0]) && near(at.size, [20.0, 10.0]), "{at:?}");
-        assert_eq!(at.turn_rad, 0.0);
+        assert!(is_near(at.centre, [20.0, 15.0]) && is_near(at.size, [20.0, 10.0]), "{at:?}");
+        assert_eq!((at.turn_rad, at.part), (0.0, [[0.0; 2], [1.0; 2]]));
         // Its columns run along Y.
         let turned =
             PixelMap { corner_m: [0.0, 0.0], per_column_m: [0.0, 0.1], per_row_m: [0.1, 0.0] };
         let at = placed(turned).unwrap();
-        assert!(near(at.centre, [5.0, 10.0]) && near(at.size, [20.0, 10.0]), "{at:?}");
+        assert!(is_near(at.centre, [5.0, 10.0]) && is_near(at.size, [20.0, 10.0]), "{at:?}");
         assert!((at.turn_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
         let mirrored = PixelMap { per_row_m: [0.0, 0.1], ..upright };
         let skewed = PixelMap { per_row_m: [0.05, -0.1], ..upright };
         assert_eq!([mirrored, skewed].map(placed), [None; 2]);
+    }
+
+    /// A picture of a whole district made the plan a dot.
+    #[test]
+    fn of_a_large_picture_the_part_about_the_evidence_is_shown() {
+        let large = PixelMap {
+            corner_m: [-990.0, 510.0],
+            per_column_m: [10.0, 0.0],
+            per_row_m: [0.0, -10.0],
+        };
+        let at = placed(large).unwrap();
+        assert!(is_near(at.centre, [20.0, 10.0]) && is_near(at.size, [100.0, 100.0]), "{at:?}");
+        assert!(is_near(at.part[0], [0.48, 0.45]) && is_near(at.part[1], [0.53, 0.55]), "{at:?}");
+        assert_eq!(placed(PixelMap { corner_m: [500.0, 510.0], ..large }), None);
     }
 
     #[test]

@@ -224,7 +224,7 @@ fn plan_ui(
         view: edit.view(),
         pans: edit.pans(),
         height: Some(height),
-        backdrop: ground.and_then(|ground| backdrop(ui, ground, figure.x.unit)),
+        backdrop: ground.and_then(|ground| backdrop(ui, ground, &figure)),
         lines_below: ground.map_or_else(Vec::new, |ground| lines_below(ground, &figure)),
         ..FigureOptions::default()
     };
