@@ -6,7 +6,7 @@ impactlab reconstructs tests/data/evidence/inline.toml: one car hits another fro
 to rest on locked wheels. Its posterior has no function in Python, so the peers have the closed form of
 that collision, which ten of its variables decide: momentum, restitution, v² = 2 a d. impactlab has 21
 more and simulates each motion with the 4DOF model, so that samples a second compare two models; what
-compares the samplers is the number of effective samples for a thousand evaluations.
+compares the samplers is how many evaluations a thousand effective samples take.
 Effective sample sizes are of the speed of the striking car from the autocorrelation of the chains, and
 of the weights of impactlab's independent draws; an evaluation of NUTS has a gradient. That compiling
 and adapting take long is not counted. The speeds are printed: they have to agree.
@@ -65,7 +65,7 @@ def speeds(z):
 def row(name, effective, evaluations, spent, interval):
     low, median, high = interval
     print(
-        f"| {name} | {effective:.0f} | {evaluations} | {1000 * effective / evaluations:.3g}"
+        f"| {name} | {effective:.0f} | {evaluations} | {evaluations / effective:.3g}"
         f" | {shown(spent)} | {effective / spent:.3g} | {median:.1f} ({low:.1f} to {high:.1f}) |",
         flush=True,
     )
@@ -128,7 +128,7 @@ def main():
     parser.add_argument("--steps", type=int, default=20_000)
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args()
-    names = ["sampler", "effective samples", "evaluations", "for 1000", "time", "a second"]
+    names = ["sampler", "effective samples", "evaluations", "thousands for 1000", "time", "a second"]
     print(f"| {' | '.join(names)} | speed, m/s, 90 % |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     by_impactlab(arguments.impactlab.resolve(), arguments.particles)

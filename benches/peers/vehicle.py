@@ -1,5 +1,8 @@
 """The 4DOF vehicle that coasts under a collision force: the formulas of crates/core/src/vehicle/
 {four_dof,tire,loads}.rs, by numpy for several cars side by side and by numba for one car.
+They are written twice so that each peer has what is fastest for it: numpy the four wheels of all cars in
+one array, numba one number after the other. With the tire in functions of both, to the same last bit,
+numba took 6.4 ms a motion instead of 5.6.
 
 States are v_x, v_y, ψ, r, φ, φ̇, X, Y; forces F_x, F_y, M_z in body axes, held over 10 ms.
 """

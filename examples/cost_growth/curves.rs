@@ -25,6 +25,10 @@ const FRAME_PX: [u32; 2] = [640, 360];
 /// Particles of a reconstruction whose evidence grows.
 const PARTICLES: usize = 100;
 
+/// A size and the folder of what is asked about.
+type Prepare = fn(u64, &Path) -> Measured<()>;
+type Ask = fn(u64, &Path) -> Measured<Option<u64>>;
+
 /// Cost of a question over its size.
 pub struct Curve {
     /// Its name as an argument.
@@ -36,80 +40,86 @@ pub struct Curve {
     /// Whether the cost is that of each motion, since chance decides how many motions there are.
     pub is_per_motion: bool,
     /// Writes what is asked about.
-    pub prepare: fn(u64, &Path) -> Measured<()>,
+    pub prepare: Prepare,
     /// Asks and gives the number of simulated motions, where the answer says it.
-    pub ask: fn(u64, &Path) -> Measured<Option<u64>>,
+    pub ask: Ask,
 }
 
 /// All curves.
 pub const CURVES: &[Curve] = &[
+    Curve::new(
+        "cases",
+        "cases of a data set, loaded and checked",
+        [100, 10_000],
+        inputs::cases,
+        cases,
+    ),
+    Curve::new(
+        "one-car",
+        "draws of a forecast, one car over 4 s",
+        [10, 3_000],
+        inputs::nothing,
+        draws_of_one_car,
+    ),
+    Curve::new(
+        "both-cars",
+        "draws of a forecast, both cars over 4 s",
+        [10, 3_000],
+        inputs::nothing,
+        draws_of_both_cars,
+    ),
+    Curve::new(
+        "particles",
+        "particles of a reconstruction from a place of rest",
+        [50, 1_600],
+        |_, folder| inputs::evidence(1, folder),
+        |n, folder| reconstruct(usize::try_from(n)?, folder),
+    ),
     Curve {
-        name: "cases",
-        grows: "cases of a data set, loaded and checked",
-        ends: [100, 10_000],
-        is_per_motion: false,
-        prepare: inputs::cases,
-        ask: cases,
-    },
-    Curve {
-        name: "one-car",
-        grows: "draws of a forecast, one car over 4 s",
-        ends: [10, 3_000],
-        is_per_motion: false,
-        prepare: inputs::nothing,
-        ask: |n, _| forecast(n, true),
-    },
-    Curve {
-        name: "both-cars",
-        grows: "draws of a forecast, both cars over 4 s",
-        ends: [10, 3_000],
-        is_per_motion: false,
-        prepare: inputs::nothing,
-        ask: |n, _| forecast(n, false),
-    },
-    Curve {
-        name: "particles",
-        grows: "particles of a reconstruction from a place of rest",
-        ends: [50, 1_600],
-        is_per_motion: false,
-        prepare: |_, folder| inputs::evidence(1, folder),
-        ask: |n, folder| reconstruct(usize::try_from(n)?, folder),
-    },
-    Curve {
-        name: "evidence",
-        grows: "positions in the evidence of a reconstruction",
-        ends: [3, 300],
         is_per_motion: true,
-        prepare: inputs::evidence,
-        ask: |_, folder| reconstruct(PARTICLES, folder),
+        ..Curve::new(
+            "evidence",
+            "positions in the evidence of a reconstruction",
+            [3, 300],
+            inputs::evidence,
+            |_, folder| reconstruct(PARTICLES, folder),
+        )
     },
-    Curve {
-        name: "rows",
-        grows: "rows of a table of forces, read and checked",
-        ends: [1_000, 1_000_000],
-        is_per_motion: false,
-        prepare: inputs::rows,
-        ask: rows,
-    },
-    Curve {
-        name: "frames",
-        grows: "frames of a film of 640 × 360 pixels",
-        ends: [30, 3_000],
-        is_per_motion: false,
-        prepare: inputs::nothing,
-        ask: frames,
-    },
-    Curve {
-        name: "sweep",
-        grows: "rows of a sweep, chunks of 100, computed and merged",
-        ends: [10, 1_000],
-        is_per_motion: false,
-        prepare: inputs::plan,
-        ask: sweep,
-    },
+    Curve::new(
+        "rows",
+        "rows of a table of forces, read and checked",
+        [1_000, 1_000_000],
+        inputs::rows,
+        rows,
+    ),
+    Curve::new(
+        "frames",
+        "frames of a film of 640 × 360 pixels",
+        [30, 3_000],
+        inputs::nothing,
+        frames,
+    ),
+    Curve::new(
+        "sweep",
+        "rows of a sweep, chunks of 100, computed and merged",
+        [10, 1_000],
+        inputs::plan,
+        sweep,
+    ),
 ];
 
 impl Curve {
+    /// A curve of the cost of the whole answer.
+    const fn new(
+        name: &'static str,
+        grows: &'static str,
+        ends: [u64; 2],
+        prepare: Prepare,
+        ask: Ask,
+    ) -> Self {
+        Self { name, grows, ends, is_per_motion: false, prepare, ask }
+    }
+
     /// The sizes, two for each power of ten.
     ///
     /// - `largest`: instead of that of the curve.
@@ -167,13 +177,24 @@ fn pit() -> MotionSource {
     MotionSource::Scenario { scenario, pulse: PulseSetup::default() }
 }
 
-fn forecast(n: u64, one_contact: bool) -> Measured<Option<u64>> {
+/// A forecast of the PIT manoeuvre, which follows both cars through all contacts.
+fn forecast(n: u64) -> Measured<PredictMotionRequest> {
     let draws = usize::try_from(n)?;
     let force = ForceSource::Predicted(ModelChoice::default());
     let mut request = PredictMotionRequest { draws, ..PredictMotionRequest::new(pit(), force) };
-    request.motion.one_contact = one_contact;
     request.motion.vehicle_draws = Some(draws);
+    Ok(request)
+}
+
+fn draws_of_one_car(n: u64, _folder: &Path) -> Measured<Option<u64>> {
+    let mut request = forecast(n)?;
+    request.motion.one_contact = true;
     answered(&request)?;
+    Ok(None)
+}
+
+fn draws_of_both_cars(n: u64, _folder: &Path) -> Measured<Option<u64>> {
+    answered(&forecast(n)?)?;
     Ok(None)
 }
 

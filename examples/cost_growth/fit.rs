@@ -43,9 +43,3 @@ pub fn exponent_of_n_log_n(points: &[(f64, f64)]) -> Option<f64> {
     let points: Vec<(f64, f64)> = points.iter().map(|&(n, _)| (n, n * n.ln())).collect();
     Some(growth(&points)?.exponent)
 }
-
-/// The middle value, of an even number of values the lower one of the two; `None` of nothing.
-pub fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len().saturating_sub(1) / 2).copied()
-}

@@ -1,5 +1,5 @@
 //! Measures how the cost of questions grows with their size, each point in a process of its own,
-//! and prints a table for `BENCHMARKS.md` and the points as CSV; all of it takes about an hour.
+//! and prints a table for `BENCHMARKS.md` and the points as CSV; all of it takes long.
 //!
 //! ```text
 //! cargo run --release --example cost_growth
@@ -24,7 +24,7 @@ use std::path::Path;
 use clap::Parser;
 
 use crate::curves::{CURVES, Curve};
-use crate::fit::{Growth, exponent_of_n_log_n, growth, median, upper_half};
+use crate::fit::{Growth, exponent_of_n_log_n, growth, upper_half};
 use crate::point::{Cost, Point};
 
 /// What a step of a measurement gives.

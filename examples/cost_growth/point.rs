@@ -4,9 +4,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use cpu_time::ProcessTime;
+use impactlab_core::numerics::Summary;
 use serde::{Deserialize, Serialize};
 
-use crate::{Curve, Measured, median};
+use crate::{Curve, Measured};
 
 /// What one answer took.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -68,14 +69,13 @@ impl Point {
 
     /// The medians of the runs of a point; `None` without a run.
     pub fn new(size: u64, runs: &[Cost]) -> Option<Self> {
-        let times_s: Vec<f64> = runs.iter().map(|run| run.processor_s).collect();
-        let fastest_s = times_s.iter().copied().fold(f64::INFINITY, f64::min);
-        let slowest_s = times_s.iter().copied().fold(0.0, f64::max);
+        let time_s = Summary::from_values(runs.iter().map(|run| run.processor_s))?;
+        let peak_mib = Summary::from_values(runs.iter().filter_map(|run| run.peak_mib));
         Some(Self {
             size,
-            processor_s: median(times_s)?,
-            range_s: [fastest_s, slowest_s],
-            peak_mib: median(runs.iter().filter_map(|run| run.peak_mib).collect()),
+            processor_s: time_s.median,
+            range_s: [time_s.min, time_s.max],
+            peak_mib: peak_mib.map(|peak_mib| peak_mib.median),
             motions: runs.first()?.motions,
         })
     }

@@ -9,7 +9,8 @@ use impactlab_core::data::{Dataset, DatasetKind};
 use impactlab_core::jobs::Progress;
 use impactlab_core::numerics::sha256_hex;
 use impactlab_networks::force::{
-    ForceCase, ForceConfig, ForceTrainSettings, ForceTrainingSet, fit_physics, train_around,
+    ForceCase, ForceConfig, ForceModel, ForceTrainSettings, ForceTrainingSet, fit_physics,
+    train_around,
 };
 use impactlab_networks::learning::{TrainSettings, TrainingReport, check_kind, folds};
 use serde_json::json;
@@ -170,31 +171,23 @@ impl Task {
         sha256_hex([settings.as_bytes(), self.set.digest().as_bytes(), tests.as_bytes()])
     }
 
-    /// Trains and judges the rows that are not done yet. Rows with the same physics share its fit.
+    /// Trains and judges the rows that are not done yet. Rows with the same physics share its fit, and
+    /// rows of one network that follow each other its training.
     pub fn run(&self, rows: &[Row], store: &Mutex<Store>) -> Answer<()> {
         let mut fitted: Vec<(String, Physics)> = Vec::new();
+        let mut latest: Option<(&ForceConfig, ForceModel)> = None;
         for row in rows {
             let identity = self.identity(row);
             if held(store).find(&identity).is_some() {
                 continue;
             }
             let started = Instant::now();
-            let key = self.physics_identity(row);
-            let known =
-                fitted.iter().find(|(of, _)| *of == key).map(|(_, physics)| physics.clone());
-            let physics = match known {
-                Some(physics) => physics,
-                None => {
-                    let physics = self.physics(row, &key, store)?;
-                    fitted.push((key, physics.clone()));
-                    physics
-                }
+            let (_, model) = match latest.take().filter(|(config, _)| **config == row.config) {
+                Some(known) => latest.insert(known),
+                None => latest.insert((&row.config, self.trained(row, &mut fitted, store)?)),
             };
-            let (set, settings) = (&self.set, self.settings(row));
-            let go_on = &mut |_: &TrainingReport| ControlFlow::Continue(());
-            let model = train_around(physics, set, &settings, go_on).map_err(told)?;
             let judge = |(stream, case): (usize, &ForceCase)| {
-                JudgedCase::new(&model, case, row.is_theta_alone, stream as u64)
+                JudgedCase::new(model, case, row.is_theta_alone, stream as u64)
             };
             let cases = self.test.iter().enumerate().map(judge).collect::<Answer<Vec<_>>>()?;
             let seconds = started.elapsed().as_secs_f64();
@@ -209,6 +202,29 @@ impl Task {
             })?;
         }
         Ok(())
+    }
+
+    /// The network of a row.
+    ///
+    /// - `fitted`: physics of rows before, to which its own is added.
+    fn trained(
+        &self,
+        row: &Row,
+        fitted: &mut Vec<(String, Physics)>,
+        store: &Mutex<Store>,
+    ) -> Answer<ForceModel> {
+        let key = self.physics_identity(row);
+        let known = fitted.iter().find(|(of, _)| *of == key).map(|(_, physics)| physics.clone());
+        let physics = match known {
+            Some(physics) => physics,
+            None => {
+                let physics = self.physics(row, &key, store)?;
+                fitted.push((key, physics.clone()));
+                physics
+            }
+        };
+        let go_on = &mut |_: &TrainingReport| ControlFlow::Continue(());
+        train_around(physics, &self.set, &self.settings(row), go_on).map_err(told)
     }
 
     fn physics_identity(&self, row: &Row) -> String {

@@ -3,9 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::panes::Pane;
 use crate::app::state::State;
+use crate::app::tasks::TaskKey;
 use impactlab_core::collision::Role;
 use impactlab_core::collision::contact::{BarrierTest, FaceStiffness};
 use impactlab_core::data::{BarrierMomentum, CrashTest, Severity};
@@ -41,6 +43,8 @@ pub struct CrashTestForm {
 /// An action on a crash test that was opened.
 #[derive(Debug, Clone)]
 pub enum CrashTestCommand {
+    /// Take what was read of the test at a path, or why no stiffness follows from it.
+    Read(PathBuf, Result<Box<CrashTestForm>, String>),
     /// Take the stiffness into the data of a vehicle.
     TakeStiffness(Box<CrashTestForm>),
     /// Compute its crush energy by hand.
@@ -90,20 +94,30 @@ impl CrashTestForm {
 }
 
 impl State {
+    /// Starts to read a crash test of which it is to be asked what becomes of it.
+    pub(super) fn read_crash_test(&mut self, path: PathBuf) {
+        let read = path.clone();
+        self.session.tasks.start(
+            TaskKey::CrashTest(path.clone()),
+            move |_| CrashTestForm::read(&read).map(Box::new),
+            |result| Command::CrashTest(CrashTestCommand::Read(path, result)),
+        );
+    }
+
     /// Asks what becomes of a crash test. One without a stiffness is opened as a table, with the reason, and so
     /// is another one as long as that is asked of one.
-    pub(super) fn ask_crash_test(&mut self, path: PathBuf) {
+    fn ask_crash_test(&mut self, path: PathBuf, read: Result<Box<CrashTestForm>, String>) {
         let is_open = |dialog: &Dialog| matches!(dialog, Dialog::CrashTest(_));
         if self.session.dialogs.iter().any(is_open) {
             return self.load(path, None);
         }
-        match CrashTestForm::read(&path) {
+        match read {
             Ok(mut form) => {
                 let is_editable = |role: &Role| self.editable_sheet(*role).is_some();
                 form.editable =
                     [Role::Striking, Role::Struck].into_iter().filter(is_editable).collect();
                 form.role = form.editable.first().copied().unwrap_or(form.role);
-                self.session.dialogs.open(Dialog::CrashTest(Box::new(form)));
+                self.session.dialogs.open(Dialog::CrashTest(form));
             }
             Err(why) => {
                 self.say(Severity::Info, format!("no stiffness follows from this test: {why}"));
@@ -112,17 +126,29 @@ impl State {
         }
     }
 
-    /// Carries out what was chosen of a crash test.
+    /// Asks about a crash test that was read, or carries out what was chosen of it.
     pub(super) fn take_crash_test(&mut self, command: CrashTestCommand) {
-        self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::CrashTest(_)));
+        if !matches!(command, CrashTestCommand::Read(..)) {
+            self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::CrashTest(_)));
+        }
         match command {
+            CrashTestCommand::Read(path, read) => self.ask_crash_test(path, read),
             CrashTestCommand::OpenForce(path) => {
                 self.session.shows_doors = false;
                 self.load(path, None);
             }
             CrashTestCommand::TakeStiffness(form) => self.take_stiffness(&form),
             CrashTestCommand::CheckByHand(form) => {
-                self.project.hand = Some(form.by_hand());
+                let (of_test, before) = (form.by_hand(), self.project.hand.take());
+                let is_lost = |before: HandRequest| {
+                    before != of_test && before != HandRequest::new(before.method)
+                };
+                if before.is_some_and(is_lost) {
+                    let text = "the calculation by hand is that of the crash test now; Undo brings back the \
+                                inputs that were there";
+                    self.say(Severity::Warning, text);
+                }
+                self.project.hand = Some(of_test);
                 self.session.shows_doors = false;
                 self.view.workspaces.show_pane(Pane::Hand);
             }

@@ -60,7 +60,7 @@ impl State {
                 | InputKind::Checkpoint
                 | InputKind::Settings
                 | InputKind::UnknownToml) => self.open_file(path, kind),
-                InputKind::Series if CrashTest::is_test(&path) => self.ask_crash_test(path),
+                InputKind::Series if CrashTest::is_test(&path) => self.read_crash_test(path),
                 InputKind::Series if RecorderRecord::is_record(&path) => self.ask_recorder(path),
                 InputKind::Dataset | InputKind::Folder | InputKind::Series => {
                     if path.is_dir() && self.view.workspaces.shown == Workspace::Case {

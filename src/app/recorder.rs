@@ -134,10 +134,12 @@ impl State {
                 let vehicle = self.project.chosen_vehicle(car).into_owned();
                 // What was said of the same file stays.
                 let before = self.project.replay.take().filter(|before| before.recorder == path);
+                if before.is_none() {
+                    self.session.recorder_replay = QuestionJob::default();
+                }
                 let asked = before.unwrap_or_else(|| ReplayRequest::new(path));
                 let event = event.or(asked.event);
                 self.project.replay = Some(ReplayRequest { event, vehicle, ..asked });
-                self.session.recorder_replay = QuestionJob::default();
                 self.session.shows_doors = false;
                 self.view.workspaces.show_pane(Pane::Replay);
                 self.run_recorder_replay(context);

@@ -39,6 +39,8 @@ pub enum TaskKey {
     MakeGround,
     /// The table or the curve of a file is read for the import dialog.
     Import,
+    /// A crash test and the channels of its barrier are read, by the path of its description.
+    CrashTest(PathBuf),
     /// The desktop asks the user for a path.
     FileDialog,
     /// A trained network is read.
@@ -267,6 +269,7 @@ impl TaskKey {
             Self::Ground(_) => "ground",
             Self::MakeGround => "make ground",
             Self::Import => "import",
+            Self::CrashTest(_) => "read crash test",
             Self::FileDialog => "file dialog",
             Self::LoadModel(_) => "load model",
             Self::SaveModel(_) => "save model",

@@ -9,7 +9,7 @@ use crate::app::network::TrainedModel;
 use crate::app::training::{TrainingEnd, TrainingSlot, time_left};
 use crate::app::unfinished::{TrainingDiary, training_options};
 use crate::app::widgets::duration_text;
-use impactlab_core::jobs::{Progress, TimeLeft};
+use impactlab_core::jobs::TimeLeft;
 use impactlab_networks::learning::{EpochSummary, FitReport, TrainingReport};
 use impactlab_study::{Library, Question, Request};
 
@@ -129,10 +129,10 @@ impl<M: TrainedModel> TrainingStatus<M> {
 
     fn take(&mut self, report: TrainingReport) {
         match &report {
-            TrainingReport::Fit(fit) => {
+            TrainingReport::Fit(_) => {
                 let (left, at) = &mut self.fits_left;
                 *at = self.started.elapsed();
-                left.take(*at, &steps_of(fit));
+                left.take(*at, &report.progress());
             }
             TrainingReport::Epoch(epoch) => {
                 self.seconds.extend(epoch.summary.seconds);
@@ -179,9 +179,9 @@ impl<M: TrainedModel> TrainingStatus<M> {
     pub fn progress(&self) -> (Option<f32>, Option<Duration>) {
         match self.latest.as_ref().filter(|_| !self.is_over) {
             None => (None, None),
-            Some(TrainingReport::Fit(fit)) => {
+            Some(report @ TrainingReport::Fit(_)) => {
                 let (left, at) = &self.fits_left;
-                (steps_of(fit).fraction(), left.at(*at))
+                (report.progress().fraction(), left.at(*at))
             }
             Some(TrainingReport::Epoch(epoch)) => {
                 let (done, total) = epoch.progress();
@@ -205,10 +205,6 @@ impl<M: TrainedModel> TrainingStatus<M> {
         };
         if self.run.is_paused() { format!("paused: {what}") } else { what }
     }
-}
-
-fn steps_of(fit: &FitReport) -> Progress {
-    Progress::new(fit.done as u64, fit.n_steps as u64, "")
 }
 
 #[cfg(test)]

@@ -278,6 +278,31 @@ fn a_test_drive_is_learned_from_with_its_steering_and_without_a_force() {
     // What steers the car is not found in the motion: it is said that nothing was taken to.
     let unknown = report(&straight, &["--no-impact"]);
     assert!(unknown["caveats"].to_string().contains("straight.csv has no steering"), "{unknown}");
+    // Neither steering that turns the wheels ten times as far nor a blow goes by without a word.
+    let unexplained = "the path in drive.csv is on average";
+    assert!(!known["caveats"].to_string().contains(unexplained), "{known}");
+    let wrong = report(&drive, &["--no-impact", "--steering-ratio", "1.5"]);
+    assert!(wrong["caveats"].to_string().contains(unexplained), "{wrong}");
+    // How one wheel is turned does not say it of both, nor that it is the steering wheel.
+    let text = fs::read_to_string(&drive).unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let (names, _) = header.rsplit_once(',').unwrap();
+    let one = folder.path().join("one.csv");
+    fs::write(&one, format!("{names},steer_fl [rad]\n{rows}")).unwrap();
+    let text = error(&mut condition(&one, &["--no-impact"]));
+    assert!(text.contains("one.csv") && text.contains("steer_fr"), "{text}");
     let both = error(&mut condition(&drive, &["--no-impact", "--impact", "1"]));
     assert!(both.contains("cannot be used with"), "{both}");
+}
+
+/// A log in which a car was struck, told to be a test drive, taught the network that the car turns by itself.
+#[test]
+fn a_blow_in_what_is_said_to_be_a_test_drive_is_told() {
+    let folder = TempDir::new().unwrap();
+    let [log, _] = write_log(folder.path(), "struck", (4, 1));
+    let mut command = program();
+    command.current_dir(folder.path()).args(["condition", "response", "--json", "--out", "model"]);
+    command.args(["--vehicle", VEHICLE, "--no-impact", "--log"]).arg(&log);
+    let report = json(&ok(command.output().unwrap()));
+    assert!(report["caveats"].to_string().contains("is on average"), "{report}");
 }

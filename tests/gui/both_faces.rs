@@ -1,26 +1,24 @@
 //! Every kind of question is asked in the window and on the command line. Both must give the same
 //! report, to the last digit that is printed.
 
-use std::path::{Path, PathBuf};
+mod networks;
+
+use std::path::Path;
 use std::process::{Command as Program, Output};
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{
-    App, Command, ComparisonCommand, Latest, Network, Pane, QuestionJob, ReconstructionCommand,
-    RecorderCommand, State, Subject, TrainingCommand, TrainingMode,
+    App, Command, Latest, Pane, QuestionJob, ReconstructionCommand, RecorderCommand, State, Subject,
 };
 use impactlab_core::collision::Role;
-use impactlab_study::{
-    ConfigChoice, ForceSource, ModelChoice, Question, Request, SimulateAnswer, VehicleChoice,
-};
+use impactlab_study::{ForceSource, ModelChoice, Question, Request, SimulateAnswer, VehicleChoice};
 use serde::Serialize;
 use serde_json::Value;
 
 use crate::harness::{apply, is_idle, open, step_until};
 use crate::reconstruct::evidence_in;
 use crate::recorder::BEFORE;
-use crate::settings::{QUICK_CRUSH, SMALL_FORCE, SMALL_RESPONSE};
 
 const FORCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea");
 const TRAJECTORIES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea");
@@ -392,127 +390,6 @@ fn a_recorder_is_replayed_alike() {
     let car = ["--vehicle", "toyota-camry-2018", "--steering-ratio", "14.5", "--x", "12"];
     let args = [&["replay", &file][..], &car, &["--draws", "60", "--seed", "3"]].concat();
     CommandLine::new(&args).compare(request, &answer.report);
-}
-
-fn train(harness: &mut Harness<'_, App>, network: Network) {
-    apply(harness, Command::Train(network, TrainingCommand::Start));
-    step_until(harness, "the model", |state| {
-        !state.session.force.training.run.is_running()
-            && !state.session.response.training.run.is_running()
-    });
-}
-
-#[test]
-fn a_force_network_is_trained_and_evaluated_alike() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let config = write(folder.path(), "tiny.toml", &[SMALL_FORCE, QUICK_CRUSH].concat());
-    let model = folder.path().join("force.safetensors").display().to_string();
-    let mut harness = open_on(FORCES);
-    {
-        let form = &mut harness.state_mut().state_mut().project.networks.train_force;
-        (form.epochs, form.training.seed) = (Some(2), 3);
-        form.training.config = ConfigChoice::File(config.clone().into());
-    }
-    train(&mut harness, Network::Force);
-    let training = &state(&harness).session.force.training;
-    let request = training.request.clone().expect("a question");
-    let report = training.report.as_ref().expect("a report");
-    let args = ["train", "force", "--data", FORCES, "--config", &config, "--epochs", "2"];
-    CommandLine::new(&[&args[..], &["--seed", "3", "--out", &model]].concat())
-        .prints(&["model"])
-        .asks_differently(&["checkpoint", "overwrite"])
-        .compare(request, report);
-
-    apply(&mut harness, Command::Open(vec![PathBuf::from(&model)]));
-    step_until(&mut harness, "the model that the command wrote", |state| {
-        let current = state.session.force.model.current.as_ref();
-        current.is_some_and(|current| current.choice.to_string() == model)
-    });
-    apply(&mut harness, Command::Evaluate);
-    step_until(&mut harness, "the evaluation", |state| {
-        !state.session.force.evaluation.is_running()
-    });
-    let (request, answer) = finished(&state(&harness).session.force.evaluation);
-    CommandLine::new(&["evaluate", "force", "--model", &model, "--data", FORCES])
-        .asks_differently(&["for_figures"])
-        .compare(request, &answer.report);
-}
-
-#[test]
-fn a_response_network_is_trained_fine_tuned_and_evaluated_alike() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let config = write(folder.path(), "tiny.toml", SMALL_RESPONSE);
-    let file = |name: &str| folder.path().join(name).display().to_string();
-    let (pretrained, tuned) = (file("pretrained.safetensors"), file("tuned.safetensors"));
-    let mut harness = open(&[FORCES, TRAJECTORIES]);
-    step_until(&mut harness, "the data", is_idle);
-    {
-        let form = &mut harness.state_mut().state_mut().project.networks;
-        (form.mode, form.fine_tune.data) = (TrainingMode::Pretrain, vec![FORCES.into()]);
-        form.fine_tune.training.config = ConfigChoice::File(config.clone().into());
-        form.fine_tune.training.seed = 1;
-    }
-    train(&mut harness, Network::Response);
-    let training = &state(&harness).session.response.training;
-    let request = training.request.clone().expect("a question");
-    let report = training.report.as_ref().expect("a report");
-    let args = ["train", "response", "--data", FORCES, "--config", &config, "--seed", "1"];
-    CommandLine::new(&[&args[..], &["--out", &pretrained]].concat())
-        .prints(&["model"])
-        .asks_differently(&["checkpoint", "overwrite"])
-        .compare(request, report);
-
-    let has_model = |path: String| {
-        move |state: &State| {
-            let current = state.session.response.model.current.as_ref();
-            current.is_some_and(|current| current.choice.to_string() == path)
-        }
-    };
-    apply(&mut harness, Command::Open(vec![PathBuf::from(&pretrained)]));
-    step_until(&mut harness, "the pre-trained model", has_model(pretrained.clone()));
-    {
-        let form = &mut harness.state_mut().state_mut().project.networks;
-        (form.mode, form.fine_tune.data) = (TrainingMode::FineTuneCurrent, Vec::new());
-        (form.fine_tune.trajectories, form.fine_tune.choice) = (Some(3), Some(2));
-    }
-    train(&mut harness, Network::Response);
-    let training = &state(&harness).session.response.training;
-    let request = training.request.clone().expect("a question");
-    let report = training.report.as_ref().expect("a report");
-    let args = ["fine-tune", "response", "--model", &pretrained, "--data", TRAJECTORIES];
-    let numbers = ["--trajectories", "3", "--seed", "1", "--choice", "2", "--config", &config];
-    CommandLine::new(&[&args[..], &numbers, &["--out", &tuned]].concat())
-        .prints(&["model"])
-        .asks_differently(&["checkpoint", "overwrite"])
-        .compare(request, report);
-
-    apply(&mut harness, Command::Open(vec![PathBuf::from(&tuned)]));
-    step_until(&mut harness, "the fine-tuned model", has_model(tuned.clone()));
-    apply(&mut harness, Command::Compare(ComparisonCommand::Evaluate));
-    let is_over = |state: &State| !state.session.response.comparison.is_running();
-    step_until(&mut harness, "the evaluation", is_over);
-    let (request, answer) = finished(&state(&harness).session.response.comparison.evaluate);
-    CommandLine::new(&["evaluate", "response", "--model", &tuned, "--data", TRAJECTORIES])
-        .compare(request, &answer.report);
-}
-
-#[test]
-fn models_are_compared_alike() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let config = write(folder.path(), "tiny.toml", SMALL_RESPONSE);
-    let mut harness = open_on(TRAJECTORIES);
-    {
-        let form = &mut harness.state_mut().state_mut().project.networks.compare;
-        form.config = ConfigChoice::File(config.clone().into());
-        (form.trajectories, form.choices) = (vec![3], 1);
-    }
-    apply(&mut harness, Command::Compare(ComparisonCommand::Start));
-    let is_over = |state: &State| !state.session.response.comparison.is_running();
-    step_until(&mut harness, "the comparison", is_over);
-    let (request, answer) = finished(&state(&harness).session.response.comparison.compare);
-    let args = ["compare", "--data", TRAJECTORIES, "--trajectories", "3", "--choices", "1"];
-    CommandLine::new(&[&args[..], &["--config", &config]].concat())
-        .compare(request, &answer.report);
 }
 
 #[test]

@@ -52,7 +52,14 @@ fn a_calculation_by_hand_is_answered_and_kept() {
 fn the_crush_energy_of_a_crash_test_is_checked_by_hand() {
     const TEST: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fuzz/corpus/ev5/v1.EV5");
     let mut harness = open(&[]);
+    let entered = Stated { value: Some(1500.0), sigma: None };
+    let mut before = HandRequest::new(HandMethod::CrushEnergy);
+    before.inputs.insert("mass_1_kg".to_owned(), entered);
+    harness.state_mut().state_mut().project.hand = Some(before.clone());
+    // What stays for a second can be brought back.
+    harness.run_steps(80);
     apply(&mut harness, Command::Open(vec![TEST.into()]));
+    step_until(&mut harness, "the test", |state| state.session.dialogs.is_any_open());
     harness.run_steps(4);
     // No vehicle is chosen that could get the stiffness, which is said before a click.
     assert!(harness.query_all_by_label_contains("whose data can be edited").next().is_some());
@@ -66,6 +73,10 @@ fn the_crush_energy_of_a_crash_test_is_checked_by_hand() {
         report.results.iter().find(|result| result.key == "energy_1_j").expect("an energy");
     // ½ · 1000 kg · (10 m/s)²; the crush is the same all over the width.
     assert!((energy.value - 50_000.0).abs() < 1.0, "{}", energy.value);
+    // What was entered before is not lost without a word.
+    assert!(state.session.messages.iter().any(|of| of.text.contains("Undo brings back")));
+    apply(&mut harness, Command::Undo);
+    assert_eq!(harness.state().state().project.hand.as_ref(), Some(&before));
 }
 
 /// The points of a mark that were clicked in the plan are those of the calculation.

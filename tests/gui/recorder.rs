@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{Command, Dialog, Pane, RecorderCommand};
+use impactlab::app::{App, Command, Dialog, Pane, RecorderCommand};
 use impactlab_core::collision::Role;
 use impactlab_core::collision::contact::BarrierTest;
 use impactlab_core::data::{CrashTest, RecorderRecord, Severity};
@@ -110,9 +111,26 @@ fn a_recorder_is_replayed_with_the_car_and_the_case_keeps_the_question() {
     step_until(&mut harness, "the end", |state| !state.session.recorder_replay.is_running());
     assert!(harness.state().state().session.recorder_replay.ok().is_some());
 
-    // Asked for again, the same file keeps what was said of it.
+    // Another vehicle of the Vehicle pane is taken by a click alone.
+    assert!(harness.query_by_label("As the struck vehicle of the Vehicle pane").is_some());
+    let other = VehicleChoice::Preset("toyota-corolla-2020".to_owned());
+    apply(&mut harness, Command::ChooseVehicle(Role::Struck, Box::new(other.clone())));
+    harness.run_steps(2);
+    let vehicle = |harness: &Harness<'_, App>| {
+        harness.state().state().project.replay.as_ref().map(|of| of.vehicle.clone())
+    };
+    assert_eq!(vehicle(&harness), Some(car.clone()));
+    assert!(harness.query_by_label_contains("Of the replay alone").is_some());
+    harness.get_by_label("Take the struck vehicle").click();
+    harness.run_steps(2);
+    assert_eq!(vehicle(&harness), Some(other));
+    assert!(harness.query_by_label_contains("Replay again").is_some());
+    apply(&mut harness, Command::ChooseVehicle(Role::Struck, Box::new(car.clone())));
+
+    // Asked for again, the same file keeps what was said of it, and its last answer until the next is there.
     let again = RecorderCommand::Replay { path, event: None, car: Role::Struck };
     apply(&mut harness, Command::Recorder(again));
+    assert!(harness.state().state().session.recorder_replay.ok().is_some());
     let request = harness.state().state().project.replay.clone().expect("a question");
     assert_eq!((request.steering_ratio, request.event), (Some(14.5), Some(1)));
     assert_eq!(request.vehicle, car);
@@ -127,8 +145,16 @@ fn what_keeps_a_recorder_from_being_replayed_is_said() {
     let command = RecorderCommand::Replay { path, event: None, car: Role::Struck };
     apply(&mut harness, Command::Recorder(command));
     step_until(&mut harness, "why", |state| state.session.recorder_replay.problem().is_some());
-    let problem = harness.query_all_by_label_contains("Not replayed: ").next();
-    assert!(problem.is_some());
+    harness.run_steps(2);
+    let is_said = |harness: &Harness<'_, App>| {
+        harness.query_all_by_label_contains("Not replayed: ").next().is_some()
+    };
+    assert!(is_said(&harness));
+    // It says nothing of other settings.
+    let asked = harness.state_mut().state_mut().project.replay.as_mut().expect("a question");
+    asked.event = Some(1);
+    harness.run_steps(2);
+    assert!(!is_said(&harness));
 }
 
 #[test]
@@ -174,6 +200,7 @@ fn the_stiffness_of_a_crash_test_goes_into_a_vehicle() {
     apply(&mut harness, Command::ChooseVehicle(Role::Striking, Box::new(choice.clone())));
     harness.run_steps(80);
     apply(&mut harness, Command::Open(vec![TEST.into()]));
+    step_until(&mut harness, "the test", |state| state.session.dialogs.is_any_open());
     harness.run_steps(4);
     harness.get_by_label("Stiffness into the vehicle").click();
     harness.run_steps(4);

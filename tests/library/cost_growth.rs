@@ -3,7 +3,7 @@
 #[path = "../../examples/cost_growth/fit.rs"]
 mod fit;
 
-use fit::{exponent_of_n_log_n, growth, median, upper_half};
+use fit::{exponent_of_n_log_n, growth, upper_half};
 
 fn points(cost: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
     (2..10).map(|step| 10_f64.powf(f64::from(step) / 2.0)).map(|n| (n, cost(n))).collect()
@@ -53,11 +53,4 @@ fn what_determines_no_line_has_no_exponent() {
     assert_eq!(growth(&[(10.0, 1.0); 3]), None);
     assert_eq!(growth(&[(10.0, 1.0), (100.0, 0.0), (1000.0, 2.0)]), None);
     assert_eq!(exponent_of_n_log_n(&[(1.0, 1.0), (3.0, 1.0), (10.0, 1.0)]), None);
-}
-
-#[test]
-fn the_median_is_a_value_that_was_measured() {
-    assert_eq!(median(vec![3.0, 1.0, 2.0]), Some(2.0));
-    assert_eq!(median(vec![4.0, 1.0, 2.0, 3.0]), Some(2.0));
-    assert_eq!(median(Vec::new()), None);
 }

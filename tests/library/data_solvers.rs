@@ -235,10 +235,12 @@ fn binout_forces(states: &[usize]) -> Vec<u8> {
     bytes
 }
 
-/// The momenta of two cars of 1000 kg, of which the second drives at 9 m/s at the start.
+/// The momenta of two cars of 1000 kg.
 ///
-/// - `share`: what of the impulse the first one gains.
-fn binout_momenta(share: f64) -> Vec<u8> {
+/// - `share`: what of the impulse the first one gains;
+/// - `starts_m_s`: their speeds at the start.
+fn binout_momenta(share: f64, starts_m_s: [f64; 2]) -> Vec<u8> {
+    let [first_m_s, second_m_s] = starts_m_s;
     let mut bytes = [LSDA.to_vec(), record(2, b"/matsum/metadata"), ids(&[1, 2])].concat();
     let mut gained = 0.0;
     for (state, time_ms) in TIME_MS.into_iter().enumerate() {
@@ -246,9 +248,10 @@ fn binout_momenta(share: f64) -> Vec<u8> {
         gained += share * 10.0 * (FORCE_KN[state] + before);
         bytes.extend(record(2, format!("../d{:06}", state + 1).as_bytes()));
         bytes.extend(floats("time", &[time_ms]));
-        bytes.extend(floats("x_momentum", &[gained, 9000.0 - gained]));
+        let momenta = [1000.0 * first_m_s + gained, 1000.0 * second_m_s - gained];
+        bytes.extend(floats("x_momentum", &momenta));
         bytes.extend(floats("y_momentum", &[0.0, 0.0]));
-        bytes.extend(floats("x_rbvelocity", &[gained / 1000.0, 9.0 - gained / 1000.0]));
+        bytes.extend(floats("x_rbvelocity", &momenta.map(|momentum| momentum / 1000.0)));
         bytes.extend(floats("y_rbvelocity", &[0.0, 0.0]));
     }
     bytes
@@ -257,7 +260,7 @@ fn binout_momenta(share: f64) -> Vec<u8> {
 /// A binout in three parts, of which the second repeats a state of the first.
 fn binout(folder: &TempDir, share: f64) -> PathBuf {
     file(folder, "binout0000%001", binout_forces(&[2, 3, 4]));
-    file(folder, "binout0001", binout_momenta(share));
+    file(folder, "binout0001", binout_momenta(share, [0.0, 9.0]));
     file(folder, "binout0000", binout_forces(&[0, 1, 2]))
 }
 
@@ -331,6 +334,23 @@ fn the_car_of_a_binout_drives_as_its_parts_begin() {
     assert_eq!(read(&lost, &slave).model_start.unwrap().of_force_m_s, None);
     let (_, said) = speed_of(&lost, &slave).unwrap();
     assert!(said.contains("which parts of the model"), "{said}");
+}
+
+/// A car of a model all of which stood at the start drove 72 km/h.
+#[test]
+fn parts_that_begin_alike_say_how_the_car_begins() {
+    let folder = TempDir::new().unwrap();
+    let path = binout(&folder, 1.0);
+    for begins_m_s in [0.0, 9.0] {
+        file(&folder, "binout0001", binout_momenta(1.0, [begins_m_s; 2]));
+        let (speed_m_s, said) = speed_of(&path, &format!("{DECK},sheet=contact 3 slave")).unwrap();
+        assert!((speed_m_s - begins_m_s).abs() < 1e-5, "{speed_m_s} m/s");
+        assert!(said.contains("all parts begin with it"), "{said}");
+    }
+    // A part whose velocity is no number may be the car.
+    file(&folder, "binout0001", binout_momenta(1.0, [0.0, f64::NAN]));
+    let (speed_m_s, said) = speed_of(&path, &format!("{DECK},sheet=contact 3 master")).unwrap();
+    assert!(speed_m_s == 20.0 && said.contains("which parts of the model"), "{said}");
 }
 
 #[test]

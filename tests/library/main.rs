@@ -31,6 +31,7 @@ mod ranges;
 mod report;
 mod report_german;
 mod report_opinion;
+mod report_pdf;
 mod report_pictures;
 mod report_stills;
 mod report_tables;

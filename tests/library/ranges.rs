@@ -420,6 +420,19 @@ fn numbers_of_things_in_questions_are_checked() {
     assert!(log(None, Some(15.0), 4.0).is_ok() && log(None, Some(0.5), 4.0).is_err());
 }
 
+/// By its file a test drive could have a first contact, which the command line refuses.
+#[test]
+fn a_drive_in_which_nothing_was_struck_has_no_first_contact() {
+    let is_taken = |without_impact: bool| {
+        let text = format!(
+            r#"{{"logs": ["drive.csv"], "impact_s": 1.0, "without_impact": {without_impact}}}"#
+        );
+        let logs: MotionLogs = serde_json::from_str(&text).unwrap();
+        checked(&FineTuneRequest { logs: Some(logs), ..FineTuneRequest::default() }).is_ok()
+    };
+    assert!(is_taken(false) && !is_taken(true));
+}
+
 #[test]
 fn what_is_shipped_lies_inside() {
     for preset in Preset::ALL {

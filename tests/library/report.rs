@@ -1,5 +1,5 @@
-//! Reports: every section, the numbers of the answers as the window shows them, the same bytes from the
-//! same case, and a PDF that other programs read.
+//! Reports: every section, the numbers of the answers as the window shows them, and the same bytes from the
+//! same case.
 
 use std::fs;
 use std::ops::ControlFlow;
@@ -12,8 +12,8 @@ use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_core::units::{Estimate, NumberFormat, Phrase, Quantity, UnitSystem};
 use impactlab_core::vehicle::Integrator;
 use impactlab_document::report::{
-    Block, Drawn, Language, Medium, Paper, PictureContent, Pixels, ReportDate, ReportDocument,
-    ReportSettings, SectionKind, pdf, report_case,
+    Block, Language, Paper, ReportDate, ReportDocument, ReportSettings, SectionKind, pdf,
+    report_case,
 };
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::case_file::{CaseFile, CaseReport, Variant, pack, unpack};
@@ -22,6 +22,8 @@ use impactlab_study::{
     PredictMotionRequest, ReconstructRequest, Report, ScenarioChoice, SimulateDatasetRequest,
     VehicleChoice,
 };
+
+use crate::report_pdf::gray;
 
 /// Particles of a reconstruction that is asked only for the look of its report.
 const FEW_PARTICLES: usize = 200;
@@ -289,57 +291,6 @@ fn the_same_case_gives_the_same_bytes_also_from_its_package() {
     assert!(first == again, "the PDF of the package is another one");
 }
 
-/// Draws any figure as a gray field.
-pub fn gray(_: &PictureContent, _: Medium) -> Result<Drawn, String> {
-    Ok(Drawn::Pixels(Pixels { size_px: [16, 9], rgba: [128, 128, 128, 255].repeat(16 * 9) }))
-}
-
-#[test]
-fn the_pdf_is_read_back_with_its_pages_fonts_tags_and_text() {
-    let (document, _) = pit();
-    let bytes = pdf(document, Some(&gray)).expect("a PDF");
-    let read = lopdf::Document::load_mem(&bytes).expect("readable");
-    let pages = read.get_pages();
-    // An opinion of two pages and an annex of sixteen.
-    assert!((8..=18).contains(&pages.len()), "{} pages", pages.len());
-    let catalog = read.catalog().expect("a catalog");
-    for key in ["StructTreeRoot", "MarkInfo", "Outlines", "Lang"] {
-        assert!(catalog.has(key.as_bytes()), "the catalog has no {key}");
-    }
-    let fonts = read.objects.values().filter_map(|object| object.as_dict().ok());
-    let described = fonts.filter(|font| {
-        font.get(b"Type").and_then(|of| of.as_name()).is_ok_and(|name| name == b"FontDescriptor")
-    });
-    let mut n_fonts = 0;
-    for font in described {
-        n_fonts += 1;
-        assert!(font.has(b"FontFile2") || font.has(b"FontFile3"), "a font is not embedded");
-    }
-    assert!(n_fonts > 0);
-    let numbers: Vec<u32> = pages.keys().copied().collect();
-    let text: String =
-        numbers.iter().map(|page| read.extract_text(&[*page]).expect("text")).collect();
-    let joined: String = text.split_whitespace().collect();
-    for wanted in ["Questionsandanswers", "Page1of", "impulseonthestruckvehicle", "Kudlich", "Δv"]
-    {
-        assert!(joined.contains(wanted), "{wanted} cannot be extracted");
-    }
-}
-
-/// The German report had two pages more than the English one.
-#[test]
-fn neither_german_nor_other_units_make_the_report_longer() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/examples/pit.impactlab");
-    let case = CaseFile::load(&path).expect("a case");
-    for (language, units) in [(Language::De, UnitSystem::Si), (Language::En, UnitSystem::Us)] {
-        let (document, _) = report(&case, &settings(language, units, Paper::A4));
-        let bytes = pdf(&document, Some(&gray)).expect("a PDF");
-        let read = lopdf::Document::load_mem(&bytes).expect("readable");
-        let n_pages = read.get_pages().len();
-        assert!(n_pages <= 18, "{language:?}, {units:?}: {n_pages} pages");
-    }
-}
-
 /// “28.30 km/h” and “163.9 m²” stood beside places that are known to some metres.
 #[test]
 fn what_a_forecast_knows_roughly_has_two_digits() {
@@ -389,24 +340,6 @@ fn no_table_of_the_opinion_is_told_again() {
     let again: Vec<_> =
         rows(SectionKind::Answers).into_iter().filter(|row| told.contains(row)).collect();
     assert!(told.len() > 5 && again.is_empty(), "{again:?}");
-}
-
-#[test]
-fn pages_have_the_size_of_the_paper() {
-    for (paper, size) in [(Paper::A4, [595.276, 841.89]), (Paper::Letter, [612.0, 792.0])] {
-        let case = impact_case("size", "");
-        let (document, _) = report(&case, &settings(Language::En, UnitSystem::Si, paper));
-        let bytes = pdf(&document, None).expect("a PDF");
-        let read = lopdf::Document::load_mem(&bytes).expect("readable");
-        for id in read.get_pages().values() {
-            let page = read.get_dictionary(*id).expect("a page");
-            let media = page.get(b"MediaBox").and_then(|of| of.as_array()).expect("a box");
-            let ends = [&media[2], &media[3]].map(|of| of.as_float().expect("a number"));
-            for (end, expected) in ends.into_iter().zip(size) {
-                assert!((end - expected).abs() < 0.01, "{paper:?}: {end} {expected}");
-            }
-        }
-    }
 }
 
 #[test]

@@ -4,7 +4,8 @@ use impactlab_document::report::{
     Drawn, Medium, PictureContent, ReportFormat, VectorMark, VectorPicture, VectorShape, pdf,
 };
 
-use crate::report::{gray, pit};
+use crate::report::pit;
+use crate::report_pdf::gray;
 
 /// Draws a plot as an area with a word on it, and a scene as a gray field.
 fn lettered(content: &PictureContent, medium: Medium) -> Result<Drawn, String> {

@@ -80,7 +80,7 @@ pub struct FigureOptions {
     /// What lies below the elements of the figure.
     pub backdrop: Option<Backdrop>,
     /// Lines between both that are not of the figure, in the units of the axes.
-    pub lines_below: Vec<Vec<[f64; 2]>>,
+    pub lines_below: Arc<Vec<Vec<[f64; 2]>>>,
 }
 
 impl Default for FigureOptions {
@@ -98,7 +98,7 @@ impl Default for FigureOptions {
             legend_rows: usize::MAX,
             pans: true,
             backdrop: None,
-            lines_below: Vec::new(),
+            lines_below: Arc::default(),
         }
     }
 }
@@ -168,7 +168,7 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         if let Some(backdrop) = options.backdrop {
             draw_backdrop(plot_ui, backdrop);
         }
-        for points in &options.lines_below {
+        for points in options.lines_below.iter() {
             let stroke = Stroke::new(theme::THIN_LINE_WIDTH, theme::color(Role::Muted, dark));
             let line = Line::new("", PlotPoints::from(points.clone())).stroke(stroke);
             plot_ui.line(line.allow_hover(false));

@@ -1,6 +1,6 @@
 use super::*;
 use crate::evidence::examples::{SPIN, read};
-use crate::evidence::{AntiLockBrakes, DriverBraked, Mark, Measured, RestPose, Weighing};
+use crate::evidence::{Mark, Measured, RestPose, Weighing, YesNoUnknown};
 use crate::sampler::Target;
 use crate::{
     Discrepancy, EvidenceFit, MarkComparison, PriorComponent, PriorSource, ReconstructionTarget,
@@ -270,7 +270,7 @@ fn an_anti_lock_system_that_is_said_acts_on_the_brakes_of_its_car() {
     evidence.striking_rest =
         Some(RestPose { x_m: Some(40.0), y_m: Some(3.0), ..RestPose::default() });
     for after in [&mut evidence.after, &mut evidence.striking_after] {
-        after.driver_braked = DriverBraked::Yes;
+        after.driver_braked = YesNoUnknown::Yes;
     }
     let has_abs = |evidence: &Evidence| {
         let model = ForwardModel::new(evidence, Cars::new(evidence, None, None));
@@ -282,21 +282,13 @@ fn an_anti_lock_system_that_is_said_acts_on_the_brakes_of_its_car() {
             closed_loop.is_some_and(|it| it.abs.is_some() && it.brake.is_some())
         })
     };
-    let is_drawn = |evidence: &Evidence, latent: Latent| {
-        let prior = Prior::new(evidence, &Cars::new(evidence, None, None));
-        prior.components().iter().any(|component| component.latent == latent)
-    };
     assert_eq!(has_abs(&evidence), [false, false]);
-    assert!(!is_drawn(&evidence, Latent::AntiLockDecision));
-    evidence.after.anti_lock = AntiLockBrakes::Yes;
+    evidence.after.anti_lock = YesNoUnknown::Yes;
     assert_eq!(has_abs(&evidence), [true, false]);
-    evidence.striking_after.anti_lock = AntiLockBrakes::Yes;
+    evidence.striking_after.anti_lock = YesNoUnknown::Yes;
     assert_eq!(has_abs(&evidence), [true, true]);
-    evidence.striking_after.anti_lock = AntiLockBrakes::Unknown;
-    evidence.striking_after.anti_lock_probability = Some(0.3);
-    assert!(is_drawn(&evidence, Latent::StrikingAntiLockDecision));
-    evidence.striking_after.driver_braked = DriverBraked::No;
-    assert!(!is_drawn(&evidence, Latent::StrikingAntiLockDecision));
+    evidence.after.anti_lock = YesNoUnknown::No;
+    assert_eq!(has_abs(&evidence), [false, true]);
 }
 
 #[test]

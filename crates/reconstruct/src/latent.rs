@@ -189,12 +189,8 @@ latents! {
     StartCourse: "start_course_rad", "rad", "course at the start";
     /// Friction of the zones of the ground over that which the site says, in all of them alike.
     ZoneFrictionFactor: "zone_friction_factor", "", "friction of the zones over that of the site";
-    /// Whether the brakes of the struck or the single car have an anti-lock system: below 0 they do.
+    /// Whether the brakes of the struck or the single car have an anti-lock system: below its threshold they do.
     AntiLockDecision: "anti_lock_decision", "", "whether the brakes have an anti-lock system";
-    /// The same of the striking car.
-    #[serde(rename = "bullet_anti_lock_decision")]
-    StrikingAntiLockDecision: "bullet_anti_lock_decision", "",
-        "whether the brakes of the striking car have an anti-lock system";
 }
 
 impl Latent {
@@ -244,11 +240,9 @@ impl LatentValues {
         }
     }
 
-    /// Whether brakes have an anti-lock system.
-    ///
-    /// - `which`: [`Latent::AntiLockDecision`] or [`Latent::StrikingAntiLockDecision`].
-    pub fn has_anti_lock(&self, which: Latent) -> bool {
-        self.get(which) < 0.0
+    /// Whether the brakes of the struck or the single car have an anti-lock system.
+    pub fn has_anti_lock(&self) -> bool {
+        self.get(Latent::AntiLockDecision) < ANTI_LOCK_PROBABILITY
     }
 
     /// Whether the driver of the striking car steers in and pushes on.

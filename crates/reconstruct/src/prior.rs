@@ -24,7 +24,7 @@
 //! | … with a share of the largest force | log-normal, 0.8, factor 2.2 | locks the wheels in two of five |
 //! | … that rises within | log-normal, 0.4 s, factor 1.6 | usual emergency braking to half-hearted |
 //! | … more of it on the front axle than where both axles reach the limit together | normal, 0 ± 0.05 of the whole | either axle may lock first |
-//! | … with an anti-lock system | never, unless the evidence says that it has one or how likely that is | assumed |
+//! | … with an anti-lock system | only if the evidence says that it has one | assumed |
 //! | engine braking where he does not | uniform, 0 to 0.8 m/s² | neutral to third gear |
 //! | front wheels turned by | normal, 0 ± 0.9° | toe, play, a hand on the wheel |
 //! | each wheel near the damage blocked | 1 of 5, if nobody looked | assumed |
@@ -42,6 +42,7 @@
 //! | yaw inertia, tire curves, sliding friction, rolling resistance | the rules of the data sheet with their scatter | [`DataSheet`](impactlab_core::vehicle::DataSheet) |
 
 mod single_car;
+mod wheels;
 
 use std::f64::consts::PI;
 
@@ -50,10 +51,8 @@ use serde::Serialize;
 
 use crate::cars::{Car, Cars};
 use crate::evidence::{
-    After, Bounds, DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, DEFAULT_MASS_SHARE, DriverBraked,
-    Evidence, Measured, ends,
+    Bounds, DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, DEFAULT_MASS_SHARE, Evidence, Measured, ends,
 };
-use crate::latent::{STRIKING_BRAKES, STRIKING_BRAKES_BEFORE};
 use crate::{Distribution, Latent, LatentValues};
 use impactlab_core::collision::{ContactDistribution, Side};
 use impactlab_core::vehicle::sheet::SheetQuantity;
@@ -112,12 +111,6 @@ const ZONE_FRICTION_SCATTER: f64 = 0.15;
 
 /// Scatter of the loads that crush both cars about those of their classes: that of a side.
 const CONTACT_STIFFNESS_SCATTER: f64 = 0.4;
-
-/// Turn of the steering wheel by which a car is pushed in a PIT manoeuvre, rad: 90° to 180°.
-const PUSH_STEERING_WHEEL_RAD: [f64; 2] = [PI / 2.0, PI];
-
-/// Turn of the steering wheel up to which nobody pushes, rad: 5°, the play of a hand on the wheel.
-const LEAST_PUSH_STEERING_RAD: f64 = 0.0873;
 
 /// Least scatter of sliding over peak friction, for the same reason.
 const SLIDING_SCATTER: f64 = 0.08;
@@ -180,23 +173,6 @@ impl Prior {
             self.add_striking_ending(evidence);
         }
         self
-    }
-
-    /// The driver of a striking car that hits a flank behind the CG: whether he steers in and pushes on.
-    fn add_push(&mut self, evidence: &Evidence) {
-        self.assume(Latent::StrikingYawRate, normal(0.3, 0.2, -0.5, 1.2));
-        let [any, usual] = [[0.0, 1.0], PUSH_STEERING_WHEEL_RAD]
-            .map(|[low, high]| Distribution::Uniform { low, high });
-        let range = evidence.prior.striking_steering_wheel_rad;
-        match ends(range) {
-            None => self.assume(Latent::PushDecision, any),
-            Some([_, high]) if high > LEAST_PUSH_STEERING_RAD => {
-                self.fixed.set(Latent::PushDecision, 0.0);
-            }
-            Some(_) => return self.fixed.set(Latent::PushDecision, 1.0),
-        }
-        self.open(Latent::PushSteeringWheel, range, (PriorSource::Assumed, usual));
-        self.assume(Latent::PushDuration, log_normal(0.5, 0.7, 0.05, 4.0));
     }
 
     /// Its components, in the order of z.
@@ -382,33 +358,6 @@ impl Prior {
         }
     }
 
-    fn add_ending(&mut self, evidence: &Evidence) {
-        let ranges = &evidence.prior;
-        match evidence.after.driver_braked {
-            DriverBraked::Unknown => {
-                self.assume(Latent::BrakeDecision, Distribution::Uniform { low: 0.0, high: 1.0 });
-            }
-            DriverBraked::Yes => self.fixed.set(Latent::BrakeDecision, 0.0),
-            DriverBraked::No => self.fixed.set(Latent::BrakeDecision, 1.0),
-        }
-        if evidence.after.driver_braked != DriverBraked::No {
-            let start = (PriorSource::Assumed, log_normal(0.9, 0.47, 0.1, 6.0));
-            self.open(Latent::BrakeStart, ranges.brake_start_s, start);
-            self.assume(Latent::BrakeRise, log_normal(0.4, 0.5, 0.1, 1.5));
-            self.assume(Latent::FrontBrakeShift, normal(0.0, 0.05, -0.2, 0.2));
-            let share = (PriorSource::Assumed, log_normal(0.8, 0.79, 0.05, 3.0));
-            self.open(Latent::BrakeShare, ranges.brake_share, share);
-            self.add_anti_lock(Latent::AntiLockDecision, &evidence.after, 0.0);
-        }
-        self.assume(Latent::EngineBraking, Distribution::Uniform { low: 0.0, high: 0.8 });
-        self.assume(Latent::SteerAngle, normal(0.0, 0.015, -0.2, 0.2));
-        let of_struck = [Latent::BlockedWheel, Latent::BlockedDrag];
-        self.add_held_wheels(&evidence.after, of_struck);
-        if evidence.follows_striking_car() {
-            self.add_striking_ending(evidence);
-        }
-    }
-
     /// Skids before the impact: what was measured of them.
     fn add_skids(&mut self, evidence: &Evidence) {
         for (skid, length, drag) in [
@@ -426,75 +375,6 @@ impl Prior {
         if evidence.striking_skid_before.is_some() {
             self.assume_striking_tires();
         }
-    }
-
-    /// How the tires of the striking car differ from those of a friction test, unless that is assumed
-    /// already.
-    fn assume_striking_tires(&mut self) {
-        let latent = Latent::StrikingTireFrictionFactor;
-        if self.components.iter().all(|component| component.latent != latent) {
-            let factor = log_normal(TIRE_FRICTION_FACTOR, TIRE_FRICTION_SCATTER, 0.7, 1.4);
-            self.assume(latent, factor);
-        }
-    }
-
-    /// Whether the brakes of a car have an anti-lock system: below 0 they do.
-    ///
-    /// - `usual`: how likely that is where nobody says it.
-    fn add_anti_lock(&mut self, latent: Latent, after: &After, usual: f64) {
-        let source = match after.anti_lock_probability {
-            Some(_) => PriorSource::Given,
-            None => PriorSource::Assumed,
-        };
-        let probability = after.anti_lock_probability(usual);
-        if probability <= 0.0 {
-            self.fixed.set(latent, 1.0);
-        } else if probability >= 1.0 {
-            self.fixed.set(latent, -1.0);
-        } else {
-            let decision = Distribution::Uniform { low: -probability, high: 1.0 - probability };
-            self.add(latent, source, decision);
-        }
-    }
-
-    /// Wheels that damage holds: one of two near it where nobody looked.
-    fn add_held_wheels(&mut self, after: &After, [which, drag]: [Latent; 2]) {
-        if !after.wheels_are_known() {
-            self.assume(which, Distribution::Uniform { low: 0.0, high: 1.0 });
-            self.assume(drag, Distribution::Uniform { low: 0.2, high: 1.6 });
-        } else if after.dragging_wheels.iter().flatten().next().is_some() {
-            self.assume(drag, Distribution::Uniform { low: 0.1, high: 1.0 });
-        }
-    }
-
-    /// What driver and damage did to the wheels of the striking car.
-    fn add_striking_ending(&mut self, evidence: &Evidence) {
-        let (after, ranges) = (&evidence.striking_after, &evidence.prior);
-        // Who says when he begins, says that he does not before.
-        let first = match ranges.striking_brake_start_s {
-            Some(_) => STRIKING_BRAKES_BEFORE,
-            None => 0.0,
-        };
-        let last = match after.driver_braked {
-            DriverBraked::Unknown => Some(1.0),
-            DriverBraked::Yes => Some(STRIKING_BRAKES),
-            DriverBraked::No => None,
-        };
-        match last {
-            Some(last) => {
-                let decision = Distribution::Uniform { low: first, high: last };
-                self.assume(Latent::StrikingBrakeDecision, decision);
-                let start = (PriorSource::Assumed, log_normal(0.9, 0.47, 0.1, 6.0));
-                self.open(Latent::StrikingBrakeStart, ranges.striking_brake_start_s, start);
-                let share = (PriorSource::Assumed, log_normal(0.8, 0.79, 0.05, 3.0));
-                self.open(Latent::StrikingBrakeShare, ranges.striking_brake_share, share);
-                self.add_anti_lock(Latent::StrikingAntiLockDecision, after, 0.0);
-            }
-            None => self.fixed.set(Latent::StrikingBrakeDecision, 1.0),
-        }
-        self.assume_striking_tires();
-        let latents = [Latent::StrikingBlockedWheel, Latent::StrikingBlockedDrag];
-        self.add_held_wheels(after, latents);
     }
 }
 

@@ -125,17 +125,13 @@ fn a_car_with_anti_lock_brakes_was_faster_than_one_whose_wheels_slid() {
     assert!((1.03..1.2).contains(&ratio), "{} with it, {} without", held.median, slid.median);
     let [low, high] = unknown.ninety();
     assert!(low < slid.median && held.median < high, "{low} to {high} m/s holds both");
-    let certain = speed_m_s("anti_lock_probability = 1");
-    assert_eq!(certain.median.to_bits(), held.median.to_bits());
-    for said in ["anti_lock = \"yes\"", "anti_lock_probability = 0.25"] {
-        let text = skid(said).to_toml();
-        assert_eq!(read(&text), skid(said), "{text}");
-    }
+    let said = skid("anti_lock = \"yes\"");
+    assert_eq!(read(&said.to_toml()), said);
 }
 
-/// Draws of the prior have an anti-lock system as often as it is likely, and only where the driver may brake.
+/// Half of the draws have an anti-lock system where nobody says it, and only where the driver may brake.
 #[test]
-fn anti_lock_brakes_are_drawn_as_often_as_they_are_likely() {
+fn anti_lock_brakes_are_drawn_where_nobody_says_them() {
     let share = |wheels: &str| {
         let evidence = read(&format!("{CASES}[wheels]\n{wheels}\n"));
         let model = ForwardModel::new(&evidence, Cars::new(&evidence, None, None));
@@ -143,15 +139,14 @@ fn anti_lock_brakes_are_drawn_as_often_as_they_are_likely() {
         let n = 2000;
         let has = |rng: &mut ChaCha8Rng| {
             let z = standard_normals(model.prior().components().len(), rng);
-            model.prior().values(&z).has_anti_lock(Latent::AntiLockDecision)
+            model.prior().values(&z).has_anti_lock()
         };
         (0..n).filter(|_| has(&mut rng)).count() as f64 / f64::from(n)
     };
     assert!((share("") - 0.5).abs() < 0.05);
-    assert!((share("anti_lock_probability = 0.2") - 0.2).abs() < 0.04);
     assert_eq!(share("anti_lock = \"yes\""), 1.0);
     assert_eq!(share("anti_lock = \"no\""), 0.0);
-    assert_eq!(share("anti_lock = \"yes\"\ndriver_braked = \"no\""), 0.0);
+    assert_eq!(share("driver_braked = \"no\""), 0.0);
 }
 
 /// Twelve cars drawn from what is taken to be likely beforehand, braked and not, straight and turning.

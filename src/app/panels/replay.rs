@@ -23,7 +23,7 @@ use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::{ReplayCurve, replay_curve_figure, replay_path_figure};
 use impactlab_draw::{FigureOptions, theme};
-use impactlab_study::{Answer, ReplayReport, ReplayRequest, VehicleChoice};
+use impactlab_study::{Answer, ReplayReport, ReplayRequest};
 
 /// What the buttons say that ask for a replay.
 pub(in crate::app) const REPLAY: &str = "Replay it with this car";
@@ -38,17 +38,13 @@ const CURVE_HEIGHT: f32 = 200.0;
 /// Draws the settings of the replay, its run and its answer.
 pub fn replay_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
-    let is_own =
-        |of: &&VehicleChoice| matches!(of, VehicleChoice::File(_) | VehicleChoice::Sheet(_));
-    let simulate = &project.simulate;
-    let own: Vec<VehicleChoice> =
-        [&simulate.vehicle, &simulate.striking].into_iter().filter(is_own).cloned().collect();
+    let of_pane = Role::ALL.map(|role| (role, project.chosen_vehicle(role).into_owned()));
     let asked = &mut project.replay;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let Some(request) = &mut *asked else { return start_ui(ui, &session.sources, commands) };
         let is_removed = file_ui(ui, request, commands);
-        settings_ui(ui, request, &own, view.units);
-        run_ui(ui, &session.recorder_replay, commands);
+        settings_ui(ui, request, &of_pane, view.units);
+        run_ui(ui, request, &session.recorder_replay, commands);
         ui.add_space(looks::PART);
         answer_ui(ui, request, &session.recorder_replay, view.units, session.fit_plots, commands);
         if is_removed {
@@ -112,7 +108,12 @@ fn file_ui(ui: &mut Ui, request: &ReplayRequest, commands: &mut Vec<Command>) ->
 }
 
 /// Draws the button that starts the run, its progress, and why there is no answer.
-fn run_ui(ui: &mut Ui, run: &QuestionJob<ReplayRequest>, commands: &mut Vec<Command>) {
+fn run_ui(
+    ui: &mut Ui,
+    request: &ReplayRequest,
+    run: &QuestionJob<ReplayRequest>,
+    commands: &mut Vec<Command>,
+) {
     ui.horizontal(|ui| {
         let Some(job) = run.job() else {
             if ui.add(icon_button(Icon::Play, "Replay")).clicked() {
@@ -130,7 +131,8 @@ fn run_ui(ui: &mut Ui, run: &QuestionJob<ReplayRequest>, commands: &mut Vec<Comm
         let text = format!("{}{left}", progress.message);
         ui.add(ProgressBar::new(progress.fraction().unwrap_or(0.0)).text(text));
     });
-    if let Some(problem) = run.problem() {
+    let is_asked = run.latest.as_ref().is_some_and(|latest| latest.question == *request);
+    if let Some(problem) = run.problem().filter(|_| is_asked) {
         notice_ui(ui, Severity::Error, &format!("Not replayed: {problem}"));
     }
 }
@@ -146,7 +148,7 @@ fn answer_ui(
 ) {
     let (Some(answer), Some(latest)) = (run.ok(), &run.latest) else { return };
     let is_outdated = latest.question != *request;
-    if is_outdated {
+    if is_outdated && !run.is_running() {
         notice_ui(ui, Severity::Warning, OUTDATED);
     }
     let report = &answer.report;

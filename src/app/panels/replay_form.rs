@@ -2,28 +2,43 @@
 
 use egui::{ComboBox, Grid, Ui};
 
+use crate::app::panels::training_parts::optional_number_ui;
 use crate::app::widgets::{
     EmptyField, VehiclePicker, count_field, optional_quantity, quantity_field, seed_field,
     vehicle_name,
 };
+use impactlab_core::collision::Role;
 use impactlab_core::ranges::{
     HEADING, POSITION, RECORDED_SPEED_SIGMA, REPLAY_DRAWS, REPLAY_START, ROAD_FRICTION,
     ROAD_FRICTION_SIGMA, Range, STEERING_RATIO, STEERING_RATIO_SIGMA,
 };
-use impactlab_core::units::UnitSystem;
-use impactlab_core::vehicle::{DrivenAxle, USUAL_STEERING_RATIO};
-use impactlab_study::{DEFAULT_VEHICLE, ReplayRequest, VehicleChoice};
+use impactlab_core::units::{NumberFormat, UnitSystem, percent};
+use impactlab_core::vehicle::{DrivenAxle, ROAD_FRICTION_SPREAD, USUAL_STEERING_RATIO};
+use impactlab_study::{DEFAULT_VEHICLE, RECORDED_SPEED_SHARE, ReplayRequest, VehicleChoice};
+
+/// Which event of a file is replayed.
+const EVENT: Range =
+    Range::whole("event", [1, 1000], "number of the event among those of the recorder's file");
 
 /// Draws everything that can be said of a replay but its file.
 ///
-/// - `own`: vehicles of the user that can be chosen.
+/// - `of_pane`: the vehicles of the Vehicle pane.
 pub(super) fn settings_ui(
     ui: &mut Ui,
     request: &mut ReplayRequest,
-    own: &[VehicleChoice],
+    of_pane: &[(Role, VehicleChoice)],
     units: UnitSystem,
 ) {
+    let is_own =
+        |of: &&VehicleChoice| matches!(of, VehicleChoice::File(_) | VehicleChoice::Sheet(_));
+    let own: Vec<VehicleChoice> =
+        of_pane.iter().map(|(_, choice)| choice).filter(is_own).cloned().collect();
     Grid::new("replay settings").num_columns(2).show(ui, |ui| {
+        let name = ui.label("Event");
+        optional_number_ui(ui, &mut request.event, "the first", &EVENT)
+            .on_hover_text(EVENT.meaning)
+            .labelled_by(name.id);
+        ui.end_row();
         let name = ui.label("Vehicle");
         let open = format!("left open (else {})", vehicle_name(DEFAULT_VEHICLE.id()));
         let hint = "The car in which the recorder was";
@@ -32,11 +47,12 @@ pub(super) fn settings_ui(
             name: &name,
             hint,
             open: &open,
-            own,
+            own: &own,
             units,
         };
         picker.show(ui, &mut request.vehicle);
         ui.end_row();
+        of_pane_ui(ui, &mut request.vehicle, of_pane);
         let axles = [DrivenAxle::Front, DrivenAxle::Rear, DrivenAxle::All];
         choice_ui(ui, "Driven axle", &mut request.driven_axle, &axles, |axle| match axle {
             DrivenAxle::Front => "front",
@@ -64,13 +80,38 @@ pub(super) fn settings_ui(
     });
 }
 
+/// Draws a row that says whether the vehicle is one of the Vehicle pane, and offers those that are chosen there.
+fn of_pane_ui(ui: &mut Ui, vehicle: &mut VehicleChoice, of_pane: &[(Role, VehicleChoice)]) {
+    ui.label("");
+    ui.vertical(|ui| {
+        match of_pane.iter().find(|(_, choice)| *choice == *vehicle) {
+            Some((role, _)) => ui.weak(format!("As the {} of the Vehicle pane", role.label())),
+            None => {
+                ui.weak("Of the replay alone: what is changed in the Vehicle pane is not in it")
+            }
+        };
+        for (role, choice) in of_pane {
+            if *choice == VehicleChoice::Automatic || *choice == *vehicle {
+                continue;
+            }
+            let take = ui.small_button(format!("Take the {}", role.label()));
+            let hint = "As it is in the Vehicle pane now; what is changed there later is not taken";
+            if take.on_hover_text(hint).clicked() {
+                vehicle.clone_from(choice);
+            }
+        }
+    });
+    ui.end_row();
+}
+
 /// Draws the numbers that may be left open.
 fn numbers_ui(ui: &mut Ui, request: &mut ReplayRequest, units: UnitSystem) {
+    let format = NumberFormat::english(units);
     let usual_ratio = format!("{USUAL_STEERING_RATIO} is assumed");
-    let (usual_sigma, start_sigma) = match request.steering_ratio {
-        Some(ratio) => ("3 % of it", 0.03 * ratio),
-        None => ("2", 2.0),
-    };
+    let ratio_sigma = request.usual_steering_ratio_sigma();
+    let usual_sigma = format.rounded(STEERING_RATIO_SIGMA.quantity, ratio_sigma);
+    let usual_share = format.rounded(RECORDED_SPEED_SIGMA.quantity, RECORDED_SPEED_SHARE);
+    let usual_spread = format!("by the data sheet, else {} of it", percent(ROAD_FRICTION_SPREAD));
     let numbers: [(&str, &mut Option<f64>, &str, f64, &Range); 6] = [
         (
             "Steering ratio",
@@ -82,15 +123,15 @@ fn numbers_ui(ui: &mut Ui, request: &mut ReplayRequest, units: UnitSystem) {
         (
             "± steering ratio",
             &mut request.steering_ratio_sigma,
-            usual_sigma,
-            start_sigma,
+            &usual_sigma,
+            ratio_sigma,
             &STEERING_RATIO_SIGMA,
         ),
         (
             "± speed, as a share of it",
             &mut request.speed_sigma,
-            "0.04",
-            0.04,
+            &usual_share,
+            RECORDED_SPEED_SHARE,
             &RECORDED_SPEED_SIGMA,
         ),
         (
@@ -100,13 +141,7 @@ fn numbers_ui(ui: &mut Ui, request: &mut ReplayRequest, units: UnitSystem) {
             0.8,
             &ROAD_FRICTION,
         ),
-        (
-            "± friction",
-            &mut request.friction_sigma,
-            "by the data sheet, else 7.5 % of it",
-            0.06,
-            &ROAD_FRICTION_SIGMA,
-        ),
+        ("± friction", &mut request.friction_sigma, &usual_spread, 0.06, &ROAD_FRICTION_SIGMA),
         (
             "From, on the clock of the recorder",
             &mut request.from_s,

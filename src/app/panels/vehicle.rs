@@ -35,7 +35,7 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             }
             let equations = [None, Some(Equations::Corrected), Some(Equations::Paper)];
             list_ui(ui, "Equations", &mut project.simulate.equations, &equations, equations_label);
-            let integrators = [Integrator::Rk4, Integrator::Euler];
+            let integrators = Integrator::ALL;
             list_ui(
                 ui,
                 "Integration",

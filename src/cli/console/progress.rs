@@ -47,13 +47,8 @@ pub(in crate::cli) fn under_bar<T>(work: impl FnOnce(&mut Observer<'_>) -> T) ->
 ///
 /// - `fitted`: what was fitted before the first epoch or after the last one, as of the report before.
 fn training(report: &TrainingReport, fitted: &mut Option<String>) -> (Progress, Option<String>) {
-    let (done, total, message) = match report {
-        TrainingReport::Fit(fit) => (fit.done, fit.n_steps, fit.to_string()),
-        TrainingReport::Epoch(epoch) => {
-            let (done, total) = epoch.progress();
-            (done, total, epoch.to_string())
-        }
-    };
+    let progress = report.progress();
+    let message = &progress.message;
     let line = match report {
         TrainingReport::Fit(fit) => {
             let before = fitted.replace(fit.what.clone());
@@ -67,7 +62,7 @@ fn training(report: &TrainingReport, fitted: &mut Option<String>) -> (Progress, 
             is_due.then(|| format!("epoch {epoch} of {n}: {message}{pace}"))
         }
     };
-    (Progress::new(done as u64, total as u64, message), line)
+    (progress, line)
 }
 
 #[cfg(test)]

@@ -41,14 +41,14 @@ impl ColumnProposal {
         stated_unit(&self.name, self.units_cell.as_deref(), quantity)
     }
 
-    /// The unit of a time: that in which its numbers count the time since 1970, or else the one that the file
-    /// states.
+    /// The unit of a time: the one that the file states, or else that in which its numbers count the time since
+    /// 1970.
     pub fn time_unit(&self) -> Option<Unit> {
         let first: Option<f64> = self.samples.first().and_then(|text| text.trim().parse().ok());
-        let stated = || self.stated_unit(Quantity::Time).ok().flatten();
+        let stated = self.stated_unit(Quantity::Time).ok().flatten();
         let guessed =
             || self.guess.and_then(|(channel, unit)| unit.filter(|_| channel == Channel::Time));
-        first.and_then(clock::unit_since_1970).or_else(stated).or_else(guessed)
+        stated.or_else(|| first.and_then(clock::unit_since_1970)).or_else(guessed)
     }
 
     /// The channel that is worth a proposal in a dialog: the guess, or what words in the header
@@ -114,4 +114,27 @@ pub fn map_from_proposals(proposals: &[ColumnProposal]) -> ColumnMap {
         _ => None,
     };
     by_channel.into_iter().filter_map(choice).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_stated_unit_of_a_time_counts_before_that_of_a_clock() {
+        let unit = |name: &str, first: &str| {
+            let column = ColumnProposal {
+                number: 1,
+                name: name.to_owned(),
+                samples: vec![first.to_owned()],
+                guess: None,
+                part: None,
+                units_cell: None,
+            };
+            column.time_unit().map(|unit| unit.symbol)
+        };
+        assert_eq!(unit("uptime [ms]", "1700000000"), Some("ms"));
+        assert_eq!(unit("stamp", "1700000000000000000"), Some("ns"));
+        assert_eq!(unit("stamp", "12.5"), None);
+    }
 }

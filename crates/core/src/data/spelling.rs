@@ -49,6 +49,12 @@ pub(crate) fn meaning(header: &str) -> Meaning {
         }
     }
     match (channel(header), wrong_unit) {
+        // The name alone does not tell `steering_wheel [%]` from a header without a unit.
+        (Some(_), Some(Meaning::WrongUnit(channel, text)))
+            if letters_and_digits(&text).is_empty() && is_unit(&text) =>
+        {
+            Meaning::WrongUnit(channel, text)
+        }
         (Some(channel), _) => Meaning::Channel(channel, None),
         (None, Some(wrong_unit)) => wrong_unit,
         (None, None) => Meaning::Unknown,
@@ -338,6 +344,8 @@ mod tests {
             ("Mz [mNm]", Channel::Mz, "mNm"),
             ("fx_kg", Channel::Fx, "kg"),
             ("time [furlong]", Channel::Time, "furlong"),
+            ("steering_wheel [%]", Channel::SteeringWheel, "%"),
+            ("Fx (%)", Channel::Fx, "%"),
         ] {
             let expected = Meaning::WrongUnit(channel, unit.to_owned());
             assert_eq!(meaning(header), expected, "{header}");

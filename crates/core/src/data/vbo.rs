@@ -159,7 +159,10 @@ pub(super) fn as_table(text: &str) -> Option<Converted> {
     let columns: Vec<(Column, String)> = of_columns
         .map(|(idx, (name, unit))| match steering == Some(idx) {
             // Nothing else in the file contradicts an angle that is taken in a wrong unit.
-            true => column("steering_wheel", unit.or(Some(UNCLEAR)), &velocity),
+            true => {
+                let is_angle = |unit: &&str| spelling::unit(Quantity::Angle, unit).is_some();
+                column("steering_wheel", unit.filter(is_angle).or(Some(UNCLEAR)), &velocity)
+            }
             false => column(name, unit, &velocity),
         })
         .collect();
@@ -363,6 +366,12 @@ mod tests {
         // Without a list of units degrees would be taken for radians.
         let text = "[column names]\ntime Steering_Angle\n\n[data]\n1\n";
         assert!(as_table(text).unwrap().text.contains("steering_wheel [unit unclear]"));
+        for unit in ["%", "counts", "V"] {
+            let text = format!(
+                "[channel units]\n{unit}\n[column names]\ntime Steering_Angle\n\n[data]\n1 2\n"
+            );
+            assert!(as_table(&text).unwrap().text.contains("[unit unclear]"), "{unit}");
+        }
         // Which of two it is, is asked by a map.
         let (header, is_said) = read("time Steering_Angle SteeringWheel");
         assert!(header.contains("Steering_Angle [deg]") && !is_said, "{header}");

@@ -64,8 +64,6 @@ ranges! {
         "braking force over the largest that the road can hold; more than 1 locks the wheels";
     BRAKE_FRONT_SHARE: "front share of the braking" = real(Quantity::Ratio, [0.0, 1.0]),
         "share of the front axle in the braking force";
-    PROBABILITY: "probability" = real(Quantity::Ratio, [0.0, 1.0]),
-        "how likely something is that nobody knows";
     BRAKE_RISE: "rise of a control" = real(Quantity::Time, [0.01, 60.0]),
         "time over which brake or steering reach their full value";
     DRAG_SHARE: "drag" = real(Quantity::Ratio, [0.0, 3.0]),

@@ -66,6 +66,8 @@ pub enum CaveatKind {
     DriverOpen,
     /// How often the intervals hold the truth has hardly been tried.
     HardlyValidated,
+    /// Every input counts as exact, so that nothing says how far the answer may be off.
+    NoInterval,
     /// Cases or draws could not be used and are left out.
     LeftOut,
     /// A network is judged by cases that it has learned from.
@@ -155,6 +157,7 @@ impl CaveatKind {
             Self::SeveralCourses => "several courses of events",
             Self::DriverOpen => "driver open",
             Self::HardlyValidated => "no real-world validation",
+            Self::NoInterval => "no interval",
             Self::LeftOut => "left out",
             Self::TrainedOn => "trained on",
             Self::Assumed => "assumed",
@@ -188,6 +191,7 @@ impl CaveatKind {
             Self::SeveralCourses => "mehrere Abläufe",
             Self::DriverOpen => "Fahrer offen",
             Self::HardlyValidated => "nicht an realen Fällen validiert",
+            Self::NoInterval => "ohne Bereich",
             Self::LeftOut => "ausgelassen",
             Self::TrainedOn => "im Training enthalten",
             Self::Assumed => "angenommen",

@@ -17,8 +17,12 @@ pub enum Language {
 
 /// How numbers are written: their units, and the language of decimal signs and symbols.
 ///
-/// The digits of a number follow its uncertainty: with an interval two digits of the width of that,
-/// without one four significant digits.
+/// The digits of a number follow its uncertainty:
+///
+/// - with an interval, two digits of the width of that ([`NumberFormat::estimate`]);
+/// - of draws without an interval, two significant digits, but all of a place or a heading before the
+///   decimal point, which is no better known near zero than far from it ([`NumberFormat::rough`]);
+/// - of anything else, four significant digits ([`NumberFormat::value`]).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct NumberFormat {
     /// Units.
@@ -157,9 +161,7 @@ impl NumberFormat {
         self.local(if is_zero { text.trim_start_matches('-') } else { &text })
     }
 
-    /// A number that is known to two significant digits, such as the median of a forecast that has no
-    /// interval. Places and headings are no better known near zero than far from it: they have all digits
-    /// before the decimal point.
+    /// A number of draws that has no interval, such as the median of a forecast, see [`NumberFormat`].
     pub fn rough(&self, quantity: Quantity, value_si: f64) -> String {
         let (value, symbol) = self.displayed(quantity, value_si);
         let is_place = matches!(quantity, Quantity::Length | Quantity::Angle);

@@ -39,6 +39,17 @@ pub enum Integrator {
 }
 
 impl Integrator {
+    /// Both methods.
+    pub const ALL: [Self; 2] = [Self::Rk4, Self::Euler];
+
+    /// What it is called.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Rk4 => "Runge–Kutta, 4th order",
+            Self::Euler => "Euler",
+        }
+    }
+
     /// Time step of the method, s.
     pub fn step_s(self) -> f64 {
         match self {

@@ -8,6 +8,9 @@ use impactlab_core::units::{Quantity, UnitSystem, significant};
 use impactlab_core::vehicle::{BRAKE_TORQUES, Controls, DRIVE_TORQUES, Wheel};
 use impactlab_study::analysis::Analysis;
 
+/// What figures of the inputs to the wheels call the vehicle that is simulated.
+pub(crate) const STRUCK: &str = "struck vehicle";
+
 /// What a figure of the inputs to the wheels shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WheelInput {
@@ -138,7 +141,7 @@ fn vehicles(analysis: &Analysis) -> Vec<DrivenVehicle<'_>> {
     let struck = analysis.simulation.as_ref().map(|motion| {
         let radius_m = analysis.vehicle.tires.rolling_radius_m;
         DrivenVehicle {
-            name: "struck vehicle",
+            name: STRUCK,
             role: Role::Simulation,
             style: LineStyle::Solid,
             motion: &motion.series,

@@ -80,8 +80,9 @@ impl ReplayCurve {
     }
 }
 
-/// A curve of a replay over the clock of the recorder: what was recorded as points, what was replayed as a
-/// line, and the band of 90 % at the samples. The recorded steering wheel is shown over the steering ratio.
+/// A curve of a replay over the clock of the recorder: what was recorded as points on a dashed line, what was
+/// replayed as a line, and the band of 90 % at the samples. The recorded steering wheel is shown over the
+/// steering ratio.
 pub fn replay_curve_figure(
     report: &Answer<ReplayReport>,
     curve: ReplayCurve,
@@ -125,7 +126,7 @@ pub fn replay_curve_figure(
 }
 
 /// The path of a replay from above, with a tick along the heading each half second, the band across it in which
-/// 90 % of the draws are, and the range of the first sample.
+/// 90 % of the draws are, and the ranges of X and of Y at the first sample, which hold fewer draws together.
 pub fn replay_path_figure(report: &Answer<ReplayReport>, units: UnitSystem) -> Figure {
     let x = Axis::shown("X", Quantity::Length, units);
     let y = Axis::shown("Y, to the left", Quantity::Length, units);
@@ -141,7 +142,11 @@ pub fn replay_path_figure(report: &Answer<ReplayReport>, units: UnitSystem) -> F
     let mut elements = vec![
         edge(0),
         edge(1),
-        FigureElement::polygon("first sample, 90 %", Role::Muted, shown(unit, corners)),
+        FigureElement::polygon(
+            "first sample, X and Y each 90 %",
+            Role::Muted,
+            shown(unit, corners),
+        ),
         FigureElement::Path(Path {
             series: Series {
                 name: REPLAYED.to_owned(),

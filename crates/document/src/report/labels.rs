@@ -2,6 +2,8 @@
 //! for them. The German ones stand with the other German terms.
 
 use impactlab_core::collision::{PulseShape, RestitutionForm, Side};
+use impactlab_core::vehicle::Integrator;
+use impactlab_study::word;
 
 /// Names whose words do not say what they mean.
 const NAMES: [(&str, &str); 36] = [
@@ -44,14 +46,10 @@ const NAMES: [(&str, &str); 36] = [
 ];
 
 /// Words by which a choice is written, with the name that the choice stands at.
-const CHOICES: [(&str, &str, &str); 17] = [
+const CHOICES: [(&str, &str, &str); 13] = [
     ("vehicle", "Automatic", "not named"),
     ("bullet", "Automatic", "not named"),
     ("striking", "Automatic", "not named"),
-    ("integrator", "Rk4", "Runge–Kutta, 4th order"),
-    ("integrator", "rk4", "Runge–Kutta, 4th order"),
-    ("integrator", "Euler", "Euler"),
-    ("integrator", "euler", "Euler"),
     ("equations", "corrected", "corrected"),
     ("equations", "paper", "as the paper prints them"),
     ("friction_model", "limit", "no sliding, up to the limit"),
@@ -70,20 +68,25 @@ pub(super) fn name_label(key: &str) -> Option<&'static str> {
 }
 
 /// What a choice is called in English; `None` if it is none, such as the name of a file.
-pub(super) fn choice_label(key: &str, word: &str) -> Option<&'static str> {
+pub(super) fn choice_label(key: &str, written: &str) -> Option<&'static str> {
     let of_type = match key {
         "restitution_form" => {
-            let form = RestitutionForm::ALL.into_iter().find(|form| is_written(form, word));
+            let form = RestitutionForm::ALL.into_iter().find(|form| is_written(form, written));
             form.map(RestitutionForm::label)
         }
         "shape" => {
-            PulseShape::ALL.into_iter().find(|it| is_written(it, word)).map(PulseShape::label)
+            PulseShape::ALL.into_iter().find(|it| is_written(it, written)).map(PulseShape::label)
         }
-        "side" => Side::ALL.into_iter().find(|side| is_written(side, word)).map(Side::label),
+        "integrator" => {
+            // Reports have another word for it than questions.
+            let is_it = |of: &Integrator| is_written(of, written) || word(of) == written;
+            Integrator::ALL.into_iter().find(is_it).map(Integrator::label)
+        }
+        "side" => Side::ALL.into_iter().find(|side| is_written(side, written)).map(Side::label),
         _ => None,
     };
     of_type.or_else(|| {
-        let found = CHOICES.iter().find(|(of, written, _)| *of == key && *written == word);
+        let found = CHOICES.iter().find(|(of, choice, _)| *of == key && *choice == written);
         found.map(|(_, _, label)| *label)
     })
 }
@@ -100,7 +103,7 @@ mod tests {
     use crate::report::keys::bare;
     use crate::report::language::phrase_of;
     use impactlab_core::collision::FrictionModel;
-    use impactlab_core::vehicle::{Equations, Integrator};
+    use impactlab_core::vehicle::Equations;
     use impactlab_study::{ModelChoice, VehicleChoice};
 
     fn written(choice: impl serde::Serialize) -> String {
@@ -128,6 +131,7 @@ mod tests {
             let label = choice_label(key, &word).unwrap_or_else(|| panic!("{key}: {word}"));
             assert!(phrase_of(Language::De, label).is_some(), "{label}");
         }
+        assert_eq!(choice_label("integrator", "rk4"), choice_label("integrator", "Rk4"));
         assert_eq!(choice_label("vehicle", "a.toml"), None);
     }
 

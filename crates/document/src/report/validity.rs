@@ -173,6 +173,7 @@ fn remedy(kind: CaveatKind, wording: &Wording) -> &'static str {
         CaveatKind::SeveralCourses => words.remedy_several_courses,
         CaveatKind::DriverOpen => words.remedy_driver_open,
         CaveatKind::HardlyValidated => words.remedy_hardly_validated,
+        CaveatKind::NoInterval => words.remedy_no_interval,
         CaveatKind::LeftOut => words.remedy_left_out,
         CaveatKind::TrainedOn => words.remedy_trained_on,
         CaveatKind::Assumed => words.remedy_assumed,

@@ -4,6 +4,7 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
+use impactlab_core::jobs::Progress;
 use serde::Serialize;
 
 /// The callback of a training. Breaking ends the training, and the weights so far are kept.
@@ -17,6 +18,17 @@ pub enum TrainingReport {
     Fit(FitReport),
     /// An epoch is over.
     Epoch(EpochReport),
+}
+
+impl TrainingReport {
+    /// The same as of any computation: steps of the fits, or epochs.
+    pub fn progress(&self) -> Progress {
+        let ((done, total), message) = match self {
+            Self::Fit(fit) => ((fit.done, fit.n_steps), fit.to_string()),
+            Self::Epoch(epoch) => (epoch.progress(), epoch.to_string()),
+        };
+        Progress::new(done as u64, total as u64, message)
+    }
 }
 
 /// How far the fits before the first epoch or after the last one have come.

@@ -17,8 +17,7 @@ use toml::{Table, Value};
 
 use crate::evaluate::recorded_car::RecordedCar;
 use crate::evidence::{
-    After, CarEvidence, Damage, DriverBraked, Edr, Evidence, Mark, MarkKind, Measured, RestPose,
-    Road,
+    After, CarEvidence, Damage, Edr, Evidence, Mark, MarkKind, Measured, RestPose, Road,
 };
 use impactlab_core::collision::{Pose, Side};
 use impactlab_core::compare::PairCase;
@@ -134,11 +133,7 @@ fn struck_at(case: &PairCase, time_s: f64) -> Result<Pose, SeriesError> {
 
 /// Nobody knows what the driver did; all wheels were found to turn.
 fn found_turning() -> After {
-    After {
-        blocked_wheels: Some(Vec::new()),
-        driver_braked: DriverBraked::Unknown,
-        ..After::default()
-    }
+    After { blocked_wheels: Some(Vec::new()), ..After::default() }
 }
 
 /// Draws what an investigator states.

@@ -1,12 +1,11 @@
 //! What driver and damage did to the wheels of a car after the impact: it decides what the forward model
 //! leaves open.
 
-use impactlab_core::ranges::PROBABILITY;
 use impactlab_core::vehicle::Wheel;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::evidence::{Choice, Field, Fields, Group, Item, Section, Word};
+use crate::evidence::{Choice, Fields, Group, Item, Section, Word};
 
 /// What happened to the struck car after the impact in a file, a form and a report.
 pub const STRUCK: Section = Section {
@@ -26,8 +25,6 @@ const DRIVER_BRAKED: Choice =
     Choice { key: "driver_braked", label: "driver braked", is_required: false, none: "" };
 const ANTI_LOCK: Choice =
     Choice { key: "anti_lock", label: "anti-lock brakes (ABS)", is_required: false, none: "" };
-const ANTI_LOCK_PROBABILITY: Field =
-    Field::new("anti_lock_probability", "probability of anti-lock brakes", PROBABILITY);
 const BLOCKED_WHEELS: Choice = Choice {
     key: "blocked_wheels",
     label: "blocked wheels",
@@ -41,7 +38,7 @@ const DRAGGING_WHEELS: Choice = Choice {
     none: "none that is known",
 };
 
-/// Whether the driver braked after the impact.
+/// Whether something was so.
 #[derive(
     Debug,
     Clone,
@@ -56,64 +53,24 @@ const DRAGGING_WHEELS: Choice = Choice {
 )]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
-pub enum DriverBraked {
-    /// He did.
+pub enum YesNoUnknown {
+    /// It was.
     Yes,
-    /// He did not.
+    /// It was not.
     No,
     /// Nobody knows.
     #[default]
     Unknown,
 }
 
-impl Word for DriverBraked {
-    const ALL: &'static [Self] = &[Self::Yes, Self::No, Self::Unknown];
-
-    fn word(self) -> &'static str {
-        self.into()
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Unknown => "not known",
-            other => other.word(),
-        }
-    }
-}
-
-/// Whether the brakes of a car have an anti-lock system that works.
-#[derive(
-    Debug,
-    Clone,
-    Copy,
-    Default,
-    PartialEq,
-    Eq,
-    Serialize,
-    Deserialize,
-    strum::IntoStaticStr,
-    JsonSchema,
-)]
-#[serde(rename_all = "snake_case")]
-#[strum(serialize_all = "snake_case")]
-pub enum AntiLockBrakes {
-    /// They do: the slip of braked wheels stays near the peak of the friction.
-    Yes,
-    /// They do not: wheels that are braked beyond what the road holds lock and slide.
-    No,
-    /// Nobody knows.
-    #[default]
-    Unknown,
-}
-
-impl AntiLockBrakes {
-    /// Whether nobody says it.
+impl YesNoUnknown {
+    /// Whether nobody knows.
     pub fn is_unknown(&self) -> bool {
         *self == Self::Unknown
     }
 }
 
-impl Word for AntiLockBrakes {
+impl Word for YesNoUnknown {
     const ALL: &'static [Self] = &[Self::Yes, Self::No, Self::Unknown];
 
     fn word(self) -> &'static str {
@@ -138,27 +95,18 @@ pub struct After {
     /// Wheels that turn, but are held back by the damage; `None` if none is known.
     pub dragging_wheels: Option<Vec<Wheel>>,
     /// Whether the driver braked.
-    pub driver_braked: DriverBraked,
-    /// Whether the brakes have an anti-lock system.
-    #[serde(skip_serializing_if = "AntiLockBrakes::is_unknown")]
-    pub anti_lock: AntiLockBrakes,
-    /// How likely they have one, where nobody knows; `None` for what is usual in the program.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub anti_lock_probability: Option<f64>,
+    pub driver_braked: YesNoUnknown,
+    /// Whether the brakes have an anti-lock system that works: the slip of braked wheels stays near the peak
+    /// of the friction. Without it wheels that are braked beyond what the road holds lock and slide.
+    #[serde(skip_serializing_if = "YesNoUnknown::is_unknown")]
+    pub anti_lock: YesNoUnknown,
 }
 
 impl Item for After {
     fn fields(&mut self, visitor: &mut impl Fields) {
-        let Self {
-            blocked_wheels,
-            dragging_wheels,
-            driver_braked,
-            anti_lock,
-            anti_lock_probability,
-        } = self;
+        let Self { blocked_wheels, dragging_wheels, driver_braked, anti_lock } = self;
         visitor.choice(&DRIVER_BRAKED, driver_braked);
         visitor.choice(&ANTI_LOCK, anti_lock);
-        visitor.number(&ANTI_LOCK_PROBABILITY, anti_lock_probability);
         visitor.choices(&BLOCKED_WHEELS, blocked_wheels);
         visitor.choices(&DRAGGING_WHEELS, dragging_wheels);
     }
@@ -168,17 +116,6 @@ impl After {
     /// Whether somebody has looked which wheels are held.
     pub fn wheels_are_known(&self) -> bool {
         self.blocked_wheels.is_some() || self.dragging_wheels.is_some()
-    }
-
-    /// How likely the brakes have an anti-lock system.
-    ///
-    /// - `usual`: how likely that is where nobody says it.
-    pub(crate) fn anti_lock_probability(&self, usual: f64) -> f64 {
-        match self.anti_lock {
-            AntiLockBrakes::Yes => 1.0,
-            AntiLockBrakes::No => 0.0,
-            AntiLockBrakes::Unknown => self.anti_lock_probability.unwrap_or(usual),
-        }
     }
 
     /// Whether all four wheels were found locked.

@@ -8,8 +8,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::evidence::{
-    After, CarEvidence, Damage, DriverBraked, Edr, EvidenceKind, Item, Items, Mark, Measured,
-    PriorRanges, RecordedSpeed, RestPose, Road, SkidBefore, Start, VideoPosition, Weighing, after,
+    After, CarEvidence, Damage, Edr, EvidenceKind, Item, Items, Mark, Measured, PriorRanges,
+    RecordedSpeed, RestPose, Road, SkidBefore, Start, VideoPosition, Weighing, YesNoUnknown, after,
     car, damage, mark, position, prior_ranges, recorder, rest, road, skid, speed, start, weighing,
 };
 use crate::likelihood::{Compared, ComparedCar, Comparison, Discrepancy, PathResidual, Track};
@@ -325,7 +325,7 @@ impl Evidence {
             striking_steering_wheel_rad: wheel_rad,
             ..
         } = self.prior;
-        self.striking_after.driver_braked != DriverBraked::Unknown
+        self.striking_after.driver_braked != YesNoUnknown::Unknown
             || self.striking_after.is_all_locked()
             || [start_s, share, wheel_rad].iter().any(Option::is_some)
     }

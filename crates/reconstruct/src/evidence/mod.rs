@@ -28,7 +28,7 @@ mod visit;
 mod weighing;
 mod write;
 
-pub use after::{After, AntiLockBrakes, DriverBraked};
+pub use after::{After, YesNoUnknown};
 pub use car::{
     CarEvidence, DEFAULT_MASS_SHARE, SINGLE as SINGLE_CAR, STRIKING as STRIKING_CAR,
     STRUCK as STRUCK_CAR,

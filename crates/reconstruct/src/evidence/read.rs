@@ -48,7 +48,6 @@
 //! dragging_wheels = ["RL"]          # turn, but are held back by the damage
 //! driver_braked = "unknown"         # yes, no: the car coasts
 //! anti_lock = "unknown"             # yes, no: wheels that are braked too hard lock
-//! anti_lock_probability = 0.5       # where it is unknown
 //!
 //! [[mark]]                          # and [[striking_mark]]
 //! wheel = "RR"

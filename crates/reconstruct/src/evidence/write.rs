@@ -145,7 +145,7 @@ mod tests {
             rest = { x_m = 30.25, y_m = -4, heading_deg = 190 }
             striking_rest = { x_m = 60, y_m = 2 }
             after = { driver_braked = "yes", anti_lock = "no" }
-            striking_after = { blocked_wheels = [], dragging_wheels = ["FR"], anti_lock_probability = 0.3 }
+            striking_after = { blocked_wheels = [], dragging_wheels = ["FR"], anti_lock = "yes" }
             [edr]
             delta_v_x_min_m_s = 1
             delta_v_x_max_m_s = 2

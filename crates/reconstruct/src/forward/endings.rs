@@ -1,5 +1,6 @@
 //! The cars of a particle, and what happens to their wheels.
 
+use crate::evidence::YesNoUnknown;
 use crate::forward::{CONTACT_HEIGHT_M, ForwardModel, HELD_BEFORE_S, LONGEST_MOTION_S};
 use crate::prior::towards;
 use crate::{ImpactState, Latent, LatentValues};
@@ -54,7 +55,7 @@ impl ForwardModel {
                 values.get(Latent::BrakeRise),
             );
             let shift = values.get(Latent::FrontBrakeShift);
-            let abs = anti_lock(values, Latent::AntiLockDecision);
+            let abs = values.has_anti_lock().then(AntiLock::default);
             // Wheels that an anti-lock system keeps turning need no time to stop.
             let lock_delay_s = match abs {
                 Some(_) => 0.0,
@@ -142,7 +143,8 @@ impl ForwardModel {
         let brake_share = brakes_from_s.map(|_| {
             values.get(Latent::StrikingBrakeShare) * values.get(Latent::LongitudinalFrictionRatio)
         });
-        let abs = anti_lock(values, Latent::StrikingAntiLockDecision);
+        let has_anti_lock = striking.after.anti_lock == YesNoUnknown::Yes;
+        let abs = has_anti_lock.then(AntiLock::default);
         if values.striking_pushes() {
             let end = brake_share.map_or(PitEnd::Straighten, |_| PitEnd::Brake);
             let inwards_rad = values.get(Latent::PushSteeringWheel);
@@ -167,11 +169,6 @@ impl ForwardModel {
             .map(|brake| Braking { abs, ..brake });
         Ending { brake, damage, ..Ending::default() }
     }
-}
-
-/// The anti-lock system of a car in a draw, if it has one.
-fn anti_lock(values: &LatentValues, which: Latent) -> Option<AntiLock> {
-    values.has_anti_lock(which).then(AntiLock::default)
 }
 
 /// Time that wheels need to stop turning under a force that the road cannot hold, s:

@@ -22,9 +22,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::Cars;
-use crate::evidence::{
-    After, AntiLockBrakes, DriverBraked, Evidence, Mark, MarkKind, Measured, RestPose, ends,
-};
+use crate::evidence::{After, Evidence, Mark, MarkKind, Measured, RestPose, YesNoUnknown, ends};
 use crate::hand::momentum::{LEAST_ANGLE_RAD, speed_in_line, speeds_at_angles};
 use crate::hand::slide::{LEAST_SPIN_RAD, SPIN_DRAG, SPIN_DRAG_SIGMA, slide_speed_m_s};
 use crate::single_car::StartPlace;
@@ -197,10 +195,10 @@ fn drag(
         }
     };
     let [start_s, share] = ranges.map(ends);
-    let is_braked_hard = after.driver_braked == DriverBraked::Yes
+    let is_braked_hard = after.driver_braked == YesNoUnknown::Yes
         && start_s.is_some_and(|[_, last]| last <= AT_ONCE_S)
         && share.is_some_and(|[least, _]| least > 1.0);
-    let has_anti_lock = after.anti_lock == AntiLockBrakes::Yes;
+    let has_anti_lock = after.anti_lock == YesNoUnknown::Yes;
     if after.is_all_locked() || (!has_anti_lock && has_four_locked_marks(marks, way_m)) {
         let holds = match evidence.is_single_car() {
             true => "distance to rest; all wheels were locked from the start on",
@@ -216,7 +214,7 @@ fn drag(
     }
     let turned = rest.heading().map(|heading| wrap_angle_rad(heading.value).abs());
     let has_spun = turned.is_some_and(|turned| turned > LEAST_SPIN_RAD);
-    let turns = after.driver_braked == DriverBraked::No && is_free(after);
+    let turns = after.driver_braked == YesNoUnknown::No && is_free(after);
     (which == Which::Struck && has_spun && turns).then_some(())?;
     let road = friction?;
     let value = SPIN_DRAG * road.value;

@@ -18,10 +18,11 @@
 //! inertia and cornering stiffness go with it, so that the motion hardly depends on it.
 
 use crate::cars::Cars;
-use crate::evidence::{DriverBraked, Evidence, Measured};
-use crate::prior::{HIGHEST_SPEED_M_S, Prior, PriorSource, log_normal, normal};
+use crate::evidence::{Evidence, Measured, YesNoUnknown};
+use crate::prior::wheels::ANY_DECISION;
+use crate::prior::{HIGHEST_SPEED_M_S, Prior, PriorSource, normal};
 use crate::single_car::StartPlace;
-use crate::{ANTI_LOCK_PROBABILITY, Distribution, Latent, LatentValues};
+use crate::{Distribution, Latent, LatentValues};
 use std::f64::consts::PI;
 
 impl Prior {
@@ -83,29 +84,20 @@ impl Prior {
             }
             return;
         }
-        let assumed = |distribution| (PriorSource::Assumed, distribution);
-        match after.driver_braked {
-            DriverBraked::Unknown => {
-                self.assume(Latent::BrakeDecision, Distribution::Uniform { low: 0.0, high: 1.0 });
-            }
-            DriverBraked::Yes => self.fixed.set(Latent::BrakeDecision, 0.0),
-            DriverBraked::No => self.fixed.set(Latent::BrakeDecision, 1.0),
-        }
-        if after.driver_braked != DriverBraked::No {
-            let start = match ranges.place_m() {
-                Some(_) => Distribution::Uniform { low: -1.5, high: 4.0 },
-                None => normal(-0.2, 0.7, -1.5, 6.0),
-            };
-            self.open(Latent::BrakeStart, ranges.brake_start_s, assumed(start));
-            self.assume(Latent::BrakeRise, log_normal(0.4, 0.5, 0.1, 1.5));
-            self.assume(Latent::FrontBrakeShift, normal(0.0, 0.05, -0.2, 0.2));
-            let share = log_normal(0.8, 0.79, 0.05, 3.0);
-            self.open(Latent::BrakeShare, ranges.brake_share, assumed(share));
-            self.add_anti_lock(Latent::AntiLockDecision, after, ANTI_LOCK_PROBABILITY);
+        let start = match ranges.place_m() {
+            Some(_) => Distribution::Uniform { low: -1.5, high: 4.0 },
+            None => normal(-0.2, 0.7, -1.5, 6.0),
+        };
+        self.add_brakes(after, [ranges.brake_start_s, ranges.brake_share], start);
+        match after.anti_lock {
+            _ if after.driver_braked == YesNoUnknown::No => {}
+            YesNoUnknown::Unknown => self.assume(Latent::AntiLockDecision, ANY_DECISION),
+            YesNoUnknown::Yes => self.fixed.set(Latent::AntiLockDecision, 0.0),
+            YesNoUnknown::No => self.fixed.set(Latent::AntiLockDecision, 1.0),
         }
         self.assume(Latent::EngineBraking, Distribution::Uniform { low: 0.0, high: 0.8 });
         let steer = normal(0.0, 0.087, -0.6, 0.6);
-        self.open(Latent::SteerAngle, ranges.road_wheel_rad, assumed(steer));
+        self.open(Latent::SteerAngle, ranges.road_wheel_rad, (PriorSource::Assumed, steer));
         if after.wheels_are_known() {
             self.add_held_wheels(after, [Latent::BlockedWheel, Latent::BlockedDrag]);
         }

@@ -87,7 +87,7 @@ pub enum StudyError {
     /// A steering ratio is said for angles of the road wheels.
     #[error(
         "{}: holds angles of the road wheels, to which the steering ratio does not apply; angles \
-         of the steering wheel have the header steering_wheel, or --steer-map \
+         of the steering wheel have the header steering_wheel, or a map such as \
          time=1:s,steering_wheel=2:deg",
         path.display()
     )]
@@ -191,6 +191,9 @@ pub enum StudyError {
     /// The log of an impact cannot be used.
     #[error(transparent)]
     Log(Box<LogError>),
+    /// Nothing was struck, and yet a force or a first contact is given.
+    #[error("without_impact: nothing was struck, expected neither forces nor impact_s")]
+    ImpactOfDrive,
     /// There is not a force for every log.
     #[error("{n_forces} force files for {n_logs} logs, expected one for each or none")]
     ForcesOfLogs {

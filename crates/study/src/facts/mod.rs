@@ -7,6 +7,7 @@
 
 mod table;
 mod term;
+mod writer;
 
 mod answer;
 mod answer_card;
@@ -30,8 +31,9 @@ mod simulate;
 mod simulate_dataset;
 mod training;
 
-pub use table::{Fact, FactTable, FactWriter, TextRow, TextTable, Value};
+pub use table::{Fact, FactTable, TextRow, TextTable, Value};
 pub use term::Term;
 pub use training::{
     force_model_table, force_settings_table, response_model_table, response_settings_table,
 };
+pub use writer::FactWriter;

@@ -2,7 +2,7 @@
 
 use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
-use impactlab_core::vehicle::RoadSlope;
+use impactlab_core::vehicle::{Integrator, RoadSlope};
 
 use crate::analysis::{MonteCarloError, RestOutcome, Sensitivity};
 use crate::facts::both_vehicles::phase_table;
@@ -11,12 +11,12 @@ use crate::facts::{Fact, FactTable, Term, Value};
 use crate::questions::simulate::flag::is_no_rare_contact;
 use crate::{
     ForceReport, FrictionZoneReport, ImpulseRival, RestState, SimulateReport, SkidReport,
-    TireMarkReport, VehicleUncertainty,
+    TireMarkReport, VehicleUncertainty, word,
 };
 
 impl SimulateReport {
-    /// What the answer says: the motion, whether the force network gives the same impulse, the marks, and how its end varies with what the
-    /// data sheet leaves open.
+    /// What the answer says: the motion, whether the force network gives the same impulse, the marks, and how
+    /// its end varies with what the data sheet leaves open.
     pub fn facts(&self) -> Vec<FactTable> {
         let drawn = self.uncertainty.iter().flat_map(VehicleUncertainty::facts);
         let beside = self.rival.as_ref().map(ImpulseRival::table);
@@ -38,7 +38,7 @@ impl SimulateReport {
         let mut facts = vec![
             Fact::new(Term::Vehicle, Value::Name(self.vehicle.clone())),
             Fact::new(Term::Equations, Value::Phrase(self.equations.clone())),
-            Fact::new(Term::Integration, Value::Phrase(integration(&self.integrator).to_owned())),
+            Fact::new(Term::Integration, integration(&self.integrator)),
             Fact::new(Term::RoadFriction, Value::Given(Quantity::Ratio, self.friction)),
             Fact::new(Term::Duration, Value::Given(Quantity::Time, self.duration_s)),
         ];
@@ -105,13 +105,12 @@ fn angle(term: Term, angle_rad: f64) -> Fact {
     Fact::new(term, Value::Decimals(Quantity::Angle, angle_rad, 1))
 }
 
-/// What a method of integration is called, by its word.
-fn integration(word: &str) -> &str {
-    match word {
-        "rk4" => "Runge–Kutta, 4th order",
-        "euler" => "Euler",
-        other => other,
-    }
+/// What the method of integration of a report is called.
+///
+/// - `name`: its word in the report.
+pub(super) fn integration(name: &str) -> Value {
+    let known = Integrator::ALL.into_iter().find(|method| word(method) == name);
+    Value::Phrase(known.map_or_else(|| name.to_owned(), |method| method.label().to_owned()))
 }
 
 /// Zones with their own friction, if there are any.

@@ -5,6 +5,7 @@ use impactlab_core::numerics::Summary;
 use impactlab_core::units::Quantity;
 use impactlab_networks::pair::Compared;
 
+use crate::facts::simulate::integration;
 use crate::facts::training::left_out;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::{ReplayedCaseReport, SimulateDatasetReport, SimulatedPair, SimulatedPairs};
@@ -20,7 +21,7 @@ impl SimulateDatasetReport {
         let of = vec![
             Fact::new(Term::Vehicle, vehicle),
             Fact::new(Term::Equations, equations),
-            Fact::new(Term::Integration, Value::Phrase(self.integrator.clone())),
+            Fact::new(Term::Integration, integration(&self.integrator)),
         ];
         let cases = match &self.pairs {
             None => self.case_table(),
@@ -191,5 +192,7 @@ mod tests {
         let text = report.case_table().to_text(&FactWriter::english(UnitSystem::Us));
         assert_eq!(text.rows[0].cells, ["c1", "spin", "1.000 ft", "10.000 ft", "0.5 deg", ""]);
         assert_eq!(text.header.len(), text.rows[0].cells.len());
+        let of = report.facts()[0].to_text(&FactWriter::english(UnitSystem::Us));
+        assert_eq!(of.rows[2].cells[1], "Runge–Kutta, 4th order");
     }
 }

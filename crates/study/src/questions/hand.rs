@@ -288,7 +288,7 @@ fn caveats(answer: &HandAnswer, draws: usize, bias: Option<&YawMarkBias>) -> Cav
             "every input counts as exact, so that the answer has no interval",
             "Jede Eingabe gilt als genau, daher hat die Antwort keinen Bereich",
         );
-        all.push(Caveat::new(CaveatKind::HardlyValidated, phrase));
+        all.push(Caveat::new(CaveatKind::NoInterval, phrase));
     }
     all.extend(bias.and_then(bias_caveat));
     all.extend((answer.n_unsolved > 0).then(|| left_out(answer.n_unsolved, draws)));
@@ -403,7 +403,7 @@ mod tests {
         );
         let answer = answer(&asked);
         assert!(answer.caveats.has(CaveatKind::OutsideDomain), "{:?}", answer.caveats);
-        assert!(answer.caveats.has(CaveatKind::HardlyValidated), "{:?}", answer.caveats);
+        assert!(answer.caveats.has(CaveatKind::NoInterval), "{:?}", answer.caveats);
         assert!(answer.results[0].estimate.intervals.is_empty());
     }
 

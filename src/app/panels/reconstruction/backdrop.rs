@@ -1,10 +1,11 @@
 //! Picture and lines of the ground below the plan in which evidence is placed.
 
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 use egui::{Color32, ColorImage, Id, TextureHandle, TextureOptions, Ui};
 
 use impactlab_core::site::extent_of;
+use impactlab_core::units::Unit;
 use impactlab_document::figure::{Figure, FigureElement, Path};
 use impactlab_document::scene::{GroundLineKind, GroundPicture, PictureLevel, SceneGround, TILE};
 use impactlab_draw::Backdrop;
@@ -26,6 +27,18 @@ const MAX_LINES: usize = 5000;
 struct Loaded {
     picture: Arc<GroundPicture>,
     texture: TextureHandle,
+}
+
+/// Lines of a ground, in the units of the axes of a plan.
+type Lines = Arc<Vec<Vec<[f64; 2]>>>;
+
+/// The lines of a ground about what a plan shows, which stay the same from frame to frame.
+#[derive(Clone)]
+struct FoundLines {
+    ground: Weak<SceneGround>,
+    about: [[f64; 2]; 2],
+    unit: Unit,
+    lines: Lines,
 }
 
 /// The picture of a ground about what a plan shows, if it has one that is not skewed or mirrored.
@@ -75,22 +88,68 @@ fn about(figure: &Figure) -> Option<[[f64; 2]; 2]> {
 
 /// The lines of a ground about what a plan shows, in the units of its axes: those of a survey, then kerbs and
 /// those of a drawing.
-pub(super) fn lines_below(ground: &SceneGround, figure: &Figure) -> Vec<Vec<[f64; 2]>> {
+pub(super) fn lines_below(ui: &Ui, ground: &Arc<SceneGround>, figure: &Figure) -> Lines {
     let unit = figure.x.unit;
-    let Some([low, high]) = about(figure) else { return Vec::new() };
-    let shown = |at: &[f64; 2]| at.map(|value| unit.from_si(value));
-    let is_far = |at_m: &[f64; 2]| {
-        let at = shown(at_m);
-        (0..2).any(|axis| at[axis] < low[axis] || at[axis] > high[axis])
+    let Some(about) = about(figure) else { return Lines::default() };
+    let id = Id::unique("lines below the plan");
+    let found: Option<FoundLines> = ui.data(|data| data.get_temp(id));
+    let is_same = |of: &FoundLines| {
+        std::ptr::eq(of.ground.as_ptr(), Arc::as_ptr(ground))
+            && (of.about, of.unit) == (about, unit)
     };
+    if let Some(found) = found.filter(is_same) {
+        return found.lines;
+    }
+    let lines = Arc::new(lines_within(ground, about, unit));
+    let found =
+        FoundLines { ground: Arc::downgrade(ground), about, unit, lines: Arc::clone(&lines) };
+    ui.data_mut(|data| data.insert_temp(id, found));
+    lines
+}
+
+/// The parts of the lines of a ground within a rectangle, in the unit of that.
+fn lines_within(ground: &SceneGround, rect: [[f64; 2]; 2], unit: Unit) -> Vec<Vec<[f64; 2]>> {
     let kinds = [GroundLineKind::Surveyed, GroundLineKind::Kerb, GroundLineKind::Drawing];
     let of_kind = |kind| ground.lines.iter().filter(move |line| line.kind == kind);
-    let parts = |points_m: &Vec<[f64; 2]>| -> Vec<Vec<[f64; 2]>> {
-        let near = points_m.split(is_far).filter(|part| part.len() > 1);
-        near.map(|part| part.iter().map(shown).collect()).collect()
-    };
     let lines = kinds.into_iter().flat_map(of_kind);
-    lines.flat_map(|line| parts(&line.points_m)).take(MAX_LINES).collect()
+    let parts = lines.flat_map(|line| {
+        let points = line.points_m.iter().map(|at_m| at_m.map(|value| unit.from_si(value)));
+        parts_within(&points.collect::<Vec<_>>(), rect)
+    });
+    parts.take(MAX_LINES).collect()
+}
+
+/// The parts of a line within a rectangle.
+fn parts_within(points: &[[f64; 2]], rect: [[f64; 2]; 2]) -> Vec<Vec<[f64; 2]>> {
+    let mut parts: Vec<Vec<[f64; 2]>> = Vec::new();
+    let sides = points.iter().zip(points.iter().skip(1));
+    for [from, to] in sides.filter_map(|(from, to)| side_within([*from, *to], rect)) {
+        match parts.last_mut() {
+            Some(part) if part.last() == Some(&from) => part.push(to),
+            _ => parts.push(vec![from, to]),
+        }
+    }
+    parts
+}
+
+/// The part of the straight line between two points within a rectangle of the lowest and the highest
+/// coordinates.
+fn side_within(ends: [[f64; 2]; 2], [low, high]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
+    let [from, to] = ends;
+    let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+    for axis in 0..2 {
+        // Infinite along the edges of the rectangle.
+        let share = |edge: f64| (edge - from[axis]) / (to[axis] - from[axis]);
+        let (at_low, at_high) = (share(low[axis]), share(high[axis]));
+        enters = enters.max(at_low.min(at_high));
+        leaves = leaves.min(at_low.max(at_high));
+    }
+    let at = |share: f64| match share {
+        0.0 => from,
+        1.0 => to,
+        _ => [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis])),
+    };
+    (enters < leaves).then(|| [at(enters), at(leaves)])
 }
 
 /// The texture of a picture, made anew for another one.
@@ -205,15 +264,42 @@ mod tests {
         let far = line(GroundLineKind::Surveyed, &[[4000.0, 0.0], [4001.0, 0.0]]);
         lines.resize(lines.len() + MAX_LINES, far);
         lines.push(line(GroundLineKind::Surveyed, &surveyed));
-        let ground = SceneGround { lines, ..SceneGround::default() };
+        let ground = Arc::new(SceneGround { lines, ..SceneGround::default() });
         let axis = || Axis::shown("X", Quantity::Length, UnitSystem::Us);
         let plan = |elements| Figure::new("plan", [axis(), axis()], elements);
-        let evidence = FigureElement::line("mark", Role::Muted, vec![[0.0, 0.0], [50.0, 0.0]]);
-        let found = lines_below(&ground, &plan(vec![evidence]));
-        assert_eq!(found.len(), 1, "{found:?}");
-        let ends: Vec<[f64; 2]> = found[0].iter().map(|at| at.map(f64::round)).collect();
-        assert_eq!(ends, [[0.0, 10.0], [100.0, 10.0]]);
-        assert!(lines_below(&ground, &plan(Vec::new())).is_empty());
+        let mark = |end: f64| {
+            plan(vec![FigureElement::line("mark", Role::Muted, vec![[0.0, 0.0], [end, 0.0]])])
+        };
+        let _ = Context::default().run_ui(RawInput::default(), |ui| {
+            let found = lines_below(ui, &ground, &mark(50.0));
+            assert_eq!(found.len(), 1, "{found:?}");
+            // The last one ends 40 m beyond the mark.
+            let ends: Vec<[f64; 2]> = found[0].iter().map(|at| at.map(f64::round)).collect();
+            assert_eq!(ends, [[0.0, 10.0], [100.0, 10.0], [181.0, 10.0]]);
+            assert!(Arc::ptr_eq(&found, &lines_below(ui, &ground, &mark(50.0))));
+            let other = lines_below(ui, &ground, &mark(60.0));
+            assert_eq!(other[0][2][0].round(), 191.0);
+            let bare = Arc::new(SceneGround::default());
+            assert!(lines_below(ui, &bare, &mark(60.0)).is_empty());
+            assert!(lines_below(ui, &ground, &plan(Vec::new())).is_empty());
+        });
+    }
+
+    /// A straight edge whose ends both lie beyond the plan was missing in it.
+    #[test]
+    fn a_line_is_cut_where_it_leaves_the_plan() {
+        let within = |points: &[[f64; 2]]| parts_within(points, [[0.0, 0.0], [10.0, 20.0]]);
+        assert_eq!(within(&[[-5.0, 5.0], [15.0, 5.0]]), [[[0.0, 5.0], [10.0, 5.0]]]);
+        assert_eq!(within(&[[5.0, 30.0], [5.0, -10.0]]), [[[5.0, 20.0], [5.0, 0.0]]]);
+        assert_eq!(within(&[[-5.0, 0.0], [10.0, 15.0]]), [[[0.0, 5.0], [10.0, 15.0]]]);
+        // Out and in again, about a corner, and past it.
+        let twice = within(&[[5.0, 5.0], [15.0, 5.0], [15.0, 8.0], [6.0, 8.0]]);
+        assert_eq!(twice, [[[5.0, 5.0], [10.0, 5.0]], [[10.0, 8.0], [6.0, 8.0]]]);
+        let inside = [[1.0, 1.0], [2.0, 1.0], [2.0, 1.0], [2.0, 3.0]];
+        assert_eq!(within(&inside), [inside]);
+        assert!(within(&[[-5.0, 18.0], [5.0, 28.0]]).is_empty());
+        assert!(within(&[[11.0, 5.0], [11.0, 15.0]]).is_empty());
+        assert!(within(&[[3.0, 3.0]]).is_empty() && within(&[]).is_empty());
     }
 
     #[test]

@@ -186,7 +186,8 @@ fn run_ui(
     if let Some(job) = session.run.job() {
         ui.horizontal(|ui| {
             let is_cancelled = job.is_cancelled();
-            let hint = "What was sampled until now is kept, with a badge that says so";
+            let hint = "It gives no speeds before all of the evidence is used; Run goes on from what was \
+                        sampled";
             let button = ui.add_enabled(!is_cancelled, egui::Button::new("Cancel"));
             if button.on_hover_text(hint).clicked() {
                 command(ReconstructionCommand::Cancel);
@@ -195,7 +196,7 @@ fn run_ui(
             let left = session.time_left().map(duration_text).filter(|_| !is_cancelled);
             let left = left.map_or(String::new(), |left| format!(", about {left} left"));
             let text = match is_cancelled {
-                true => "keeping what was sampled".to_owned(),
+                true => "ending".to_owned(),
                 false => format!("{}{left}", progress.message),
             };
             match progress.fraction() {

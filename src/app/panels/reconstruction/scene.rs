@@ -78,7 +78,6 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
     let ground = session.ground.shown().map(|loaded| &loaded.ground);
     if !view.reconstruction.shows_cars {
         let (adds_to, resets) = (of.adds_to, session.fit_plots);
-        let ground = ground.map(Arc::as_ref);
         let moved = plan_ui(ui, preview, adds_to, resets, figure(), ground, commands);
         if let (Some(evidence), Some(request)) = (moved, &mut project.reconstruct) {
             request.evidence = EvidenceChoice::Inline(Box::new(evidence));
@@ -210,7 +209,7 @@ fn plan_ui(
     adds_to: Option<MarkKey>,
     resets: bool,
     mut figure: Figure,
-    ground: Option<&SceneGround>,
+    ground: Option<&Arc<SceneGround>>,
     commands: &mut Vec<Command>,
 ) -> Option<Evidence> {
     let mut evidence = preview.evidence.clone();
@@ -225,7 +224,7 @@ fn plan_ui(
         pans: edit.pans(),
         height: Some(height),
         backdrop: ground.and_then(|ground| backdrop(ui, ground, &figure)),
-        lines_below: ground.map_or_else(Vec::new, |ground| lines_below(ground, &figure)),
+        lines_below: ground.map(|ground| lines_below(ui, ground, &figure)).unwrap_or_default(),
         ..FigureOptions::default()
     };
     let shown = figure_frame(ui, &figure.title, &figure, &options, commands);

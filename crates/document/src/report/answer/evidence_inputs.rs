@@ -14,7 +14,8 @@ use impactlab_reconstruct::evidence::{
     Sigma, Stated, Word, ends,
 };
 use impactlab_reconstruct::{
-    BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Car, Distribution, Latent, PriorComponent, PriorSource,
+    ANTI_LOCK_PROBABILITY, BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Car, Distribution, Latent,
+    PriorComponent, PriorSource,
 };
 use impactlab_study::{ReconstructAnswer, ReconstructRequest};
 
@@ -189,6 +190,9 @@ fn prior_row(prior: &PriorComponent, wording: &Wording) -> InputRow {
         // Uniform draws that are compared with a bound.
         _ if prior.latent == Latent::BrakeDecision => {
             decision(words.decision_prior, BRAKE_PROBABILITY)
+        }
+        _ if prior.latent == Latent::AntiLockDecision => {
+            decision(words.decision_prior, ANTI_LOCK_PROBABILITY)
         }
         _ if prior.latent == Latent::BlockedWheel => {
             decision(words.decision_by_number, BLOCKED_PROBABILITY)

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::figure::{
-    FigureElement, analysis_force_figure, analysis_motion_figure, control_figures,
+    FigureElement, STRUCK, analysis_force_figure, analysis_motion_figure, control_figures,
 };
 use crate::report::Block;
 use crate::report::answer::Context;
@@ -18,9 +18,6 @@ use crate::report::opinion::opinion_of_simulation;
 use crate::report::parts::{Part, PartPicture};
 use impactlab_core::data::Channel;
 use impactlab_study::{SimulateAnswer, SimulateRequest};
-
-/// What figures call the vehicle that is simulated.
-const STRUCK: &str = "struck vehicle";
 
 /// What a simulation contributes.
 pub(super) fn part(

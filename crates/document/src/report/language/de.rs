@@ -246,6 +246,7 @@ pub(super) const WORDS: Words = Words {
     remedy_several_courses: "Die Werte jedes Ablaufs für sich verwenden; Spuren suchen, die zwischen ihnen entscheiden.",
     remedy_driver_open: "Angeben, ob der Fahrer bremst, lenkt oder rollen lässt, oder die Antwort für jeden dieser Fälle zeigen.",
     remedy_hardly_validated: "Das Intervall nur mit diesem Vorbehalt angeben.",
+    remedy_no_interval: "Die Standardabweichung jeder Eingabe angeben.",
     remedy_left_out: "Die fehlenden Fälle oder Ziehungen ansehen.",
     remedy_trained_on: "Das Netz an Fällen beurteilen, die es nicht kennt.",
     remedy_assumed: "Den Wert angeben, wenn er bekannt ist.",

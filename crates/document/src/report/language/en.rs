@@ -239,6 +239,7 @@ pub(super) const WORDS: Words = Words {
     remedy_several_courses: "Use the figures of each course of events; look for evidence that decides between them.",
     remedy_driver_open: "Say whether the driver brakes, steers or lets the vehicle roll, or show the answer for each.",
     remedy_hardly_validated: "Report the interval with this reservation.",
+    remedy_no_interval: "State the standard deviation of each input.",
     remedy_left_out: "Look at the cases or draws that are left out.",
     remedy_trained_on: "Judge the network by cases that it has not seen.",
     remedy_assumed: "Give the value if it is known.",

@@ -104,6 +104,7 @@ mod tests {
     use impactlab_reconstruct::hand::HandMethod;
     use impactlab_reconstruct::{Latent, ReconstructedQuantity};
     use impactlab_study::Measurements;
+    use impactlab_sweep::atlas::Measure;
 
     #[test]
     fn a_source_is_what_the_last_bracket_holds() {
@@ -121,7 +122,9 @@ mod tests {
         let sheet = SheetQuantity::ALL.iter().map(|quantity| quantity.label());
         let controls = WheelInput::ALL.into_iter().map(WheelInput::label);
         let replayed = ReplayCurve::ALL.into_iter().map(ReplayCurve::label);
-        for label in latents.chain(quantities).chain(sheet).chain(controls).chain(replayed) {
+        let measures = Measure::all().map(Measure::label);
+        let shown = controls.chain(replayed).chain(measures);
+        for label in latents.chain(quantities).chain(sheet).chain(shown) {
             assert!(phrase_of(Language::De, label).is_some(), "{label}");
         }
         for method in HandMethod::ALL {

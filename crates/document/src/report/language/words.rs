@@ -190,6 +190,7 @@ pub(in crate::report) struct Words {
     pub remedy_several_courses: &'static str,
     pub remedy_driver_open: &'static str,
     pub remedy_hardly_validated: &'static str,
+    pub remedy_no_interval: &'static str,
     pub remedy_left_out: &'static str,
     pub remedy_trained_on: &'static str,
     pub remedy_assumed: &'static str,

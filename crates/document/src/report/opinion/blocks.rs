@@ -34,16 +34,16 @@ pub(in crate::report) struct Asked<'a> {
     pub paths: &'a ShownPaths,
 }
 
-/// A variant with the answers that speak for it.
+/// A variant with an answer that speaks for it; a variant with several is told once for each.
 struct Spoken<'a> {
-    name: &'a str,
+    name: String,
     notes: &'a str,
-    parts: Vec<&'a Part>,
+    part: &'a Part,
 }
 
 impl<'a> Spoken<'a> {
     fn opinions(&self) -> impl Iterator<Item = &'a PartOpinion> {
-        self.parts.iter().filter_map(|part| part.opinion.as_ref())
+        self.part.opinion.iter()
     }
 }
 
@@ -79,14 +79,20 @@ fn spoken(variants: &[VariantParts]) -> Vec<Spoken<'_>> {
         let rank = |part: &&Part| part.opinion.as_ref().map(|opinion| opinion.rank);
         parts_of(variant).filter_map(|part| rank(&part)).max()
     };
-    let each = variants.iter().filter_map(|variant| {
-        let highest = of_variant(variant)?;
+    let each = variants.iter().flat_map(|variant| {
+        let highest = of_variant(variant);
         let is_highest =
-            |part: &&Part| part.opinion.as_ref().is_some_and(|opinion| opinion.rank == highest);
-        Some(Spoken {
-            name: &variant.name,
+            |part: &&Part| part.opinion.as_ref().is_some_and(|it| Some(it.rank) == highest);
+        let parts: Vec<&Part> = parts_of(variant).filter(is_highest).collect();
+        let n_parts = parts.len();
+        (1..).zip(parts).map(move |(number, part)| Spoken {
+            // Two forecasts of a variant have rows of the same names.
+            name: match n_parts {
+                1 => variant.name.clone(),
+                _ => format!("{} ({number})", variant.name),
+            },
             notes: variant.notes.trim(),
-            parts: parts_of(variant).filter(is_highest).collect(),
+            part,
         })
     });
     each.collect()
@@ -98,7 +104,7 @@ pub(in crate::report) fn considered_methods(variants: &[VariantParts]) -> BTreeS
 }
 
 fn methods_of(spoken: &[Spoken<'_>]) -> BTreeSet<Method> {
-    spoken.iter().flat_map(|it| &it.parts).flat_map(|part| &part.methods).copied().collect()
+    spoken.iter().flat_map(|it| &it.part.methods).copied().collect()
 }
 
 /// Each question once, and below it the answer of each variant.
@@ -107,7 +113,7 @@ fn answers(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     let mut questions: Vec<(&str, Vec<String>)> = Vec::new();
     for variant in spoken {
         for opinion in variant.opinions() {
-            let values = [("name", variant.name), ("answer", &*opinion.answer)];
+            let values = [("name", &*variant.name), ("answer", &*opinion.answer)];
             let answer = match spoken.len() {
                 1 => opinion.answer.clone(),
                 _ => fill(words.of_variant, &values),
@@ -136,7 +142,7 @@ fn courses(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     let words = opinion_words(wording.language);
     let rows = |it: &Spoken<'_>| it.opinions().flat_map(|of| of.courses.clone()).collect();
     let columns: Vec<(String, NamedRows)> =
-        spoken.iter().map(|it| (it.name.to_owned(), rows(it))).collect();
+        spoken.iter().map(|it| (it.name.clone(), rows(it))).collect();
     let titles = [words.course, words.probability];
     let mut blocks = beside(words.courses, titles, &columns, words.in_no_draw);
     let is_forecast = |of: &PartOpinion| of.rank == Rank::Forecast && !of.courses.is_empty();
@@ -154,13 +160,13 @@ fn figures(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     let column = |(idx, it): (usize, &Spoken<'_>)| {
         let differs = match (idx, spoken.first()) {
             (0, _) | (_, None) => words.first_variant.to_owned(),
-            (_, Some(first)) => differences(&first.parts, &it.parts, wording),
+            (_, Some(first)) => differences(&[first.part], &[it.part], wording),
         };
         let differs = (spoken.len() > 1).then(|| [words.differs.to_owned(), differs]);
         let notes = if it.notes.is_empty() { NONE } else { it.notes };
         let notes = has_notes.then(|| [words.notes.to_owned(), notes.to_owned()]);
         let figures = it.opinions().flat_map(|of| of.figures.clone());
-        (it.name.to_owned(), differs.into_iter().chain(notes).chain(figures).collect())
+        (it.name.clone(), differs.into_iter().chain(notes).chain(figures).collect())
     };
     let columns: Vec<(String, NamedRows)> = spoken.iter().enumerate().map(column).collect();
     beside(words.figures, [wording.words.quantity, wording.words.value], &columns, NONE)
@@ -189,8 +195,8 @@ fn hinges(spoken: &[Spoken<'_>]) -> Block {
     for variant in spoken {
         for sentence in variant.opinions().flat_map(|of| &of.hinges) {
             match items.iter_mut().find(|(known, _)| known == sentence) {
-                Some((_, of)) => of.push(variant.name),
-                None => items.push((sentence.clone(), vec![variant.name])),
+                Some((_, of)) => of.push(&variant.name),
+                None => items.push((sentence.clone(), vec![&*variant.name])),
             }
         }
     }
@@ -266,4 +272,37 @@ fn who(asked: Asked<'_>) -> Vec<Block> {
         Block::paragraph(words.traced),
         Block::paragraph(asked.wording.words.signature),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::units::UnitSystem;
+
+    /// Which of two forecasts of a variant an answer was of stood nowhere, and the figures were those of the
+    /// first.
+    #[test]
+    fn each_of_two_forecasts_of_a_variant_has_its_name_and_its_figures() {
+        let forecast = |answer: &str| Part {
+            opinion: Some(PartOpinion {
+                rank: Rank::Forecast,
+                question: "Where does it go?".to_owned(),
+                answer: answer.to_owned(),
+                courses: Vec::new(),
+                figures: vec![["distance".to_owned(), answer.to_owned()]],
+                held: None,
+                hinges: Vec::new(),
+            }),
+            ..Part::default()
+        };
+        let forecasts = ["1 m", "2 m"].map(|answer| Ok(forecast(answer))).into();
+        let variant =
+            VariantParts { name: "a".to_owned(), notes: String::new(), answers: forecasts };
+        let (variants, wording) = ([variant], Wording::english(UnitSystem::Si));
+        let spoken = spoken(&variants);
+        let told = format!("{:?}", answers(&spoken, &wording));
+        assert!(told.contains("a (1)") && told.contains("a (2)"), "{told}");
+        let told = format!("{:?}", figures(&spoken, &wording));
+        assert!(told.contains("1 m") && told.contains("2 m"), "{told}");
+    }
 }

@@ -15,8 +15,6 @@ use impactlab_core::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve
 
 /// Share of the peak below which a force does not count as contact.
 const CONTACT_SHARE: f64 = 0.01;
-/// How many steps of the fit of a crush law take as long as a regression.
-const REGRESSION_STEPS: usize = 1;
 
 /// The physics of one scenario on the time grid, in canonical axes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -140,8 +138,7 @@ impl CentreModel {
         let folds = folds(cases, config.folds, seed);
         let n_crush = if kind.has_crush() { folds.len() * config.max_steps } else { 0 };
         let n_regressions = if kind == Centre::Committee { folds.len() + 1 } else { 0 };
-        let n_steps = n_crush + n_regressions * REGRESSION_STEPS;
-        let mut steps = FitSteps::new(report, false, n_steps);
+        let mut steps = FitSteps::new(report, false, n_crush + n_regressions);
         model.laws = fit_laws(cases, &folds, kind, config, &mut steps)?;
         let mut histories = model.unseen_histories(cases, &folds)?;
         if kind == Centre::Committee {
@@ -149,7 +146,7 @@ impl CentreModel {
                 histories.iter().map(|history| history.curve.clone()).collect();
             let mut on_fit = |fit: usize, n_fits: usize| {
                 steps.name(format!("fitting regression {} of {n_fits}", fit + 1));
-                steps.at(n_crush + fit * REGRESSION_STEPS, None)
+                steps.at(n_crush + fit, None)
             };
             let fitted = Committee::fit(cases, &folds, &crush, seed, &mut on_fit)?;
             if let Some((committee, curves)) = fitted {

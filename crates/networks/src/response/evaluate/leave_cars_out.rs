@@ -54,9 +54,9 @@ pub fn compare_on_unseen_cars(
         let is_learned = |case: &&ResponseCase| part.model.is_trained_on(case);
         let train: Vec<ResponseCase> = set.train.iter().filter(is_learned).cloned().collect();
         let mut model = part.model.copied()?;
-        let mut on_fit = |progress: &TrainingReport| match progress {
-            TrainingReport::Fit(fit) => {
-                let share = fit.done as f64 / fit.n_steps.max(1) as f64;
+        let mut on_fit = |report: &TrainingReport| match report {
+            TrainingReport::Fit(_) => {
+                let share = f64::from(report.progress().fraction().unwrap_or(0.0));
                 let done = 0.8 + 0.2 * (number as f64 + share) / parts.len() as f64;
                 tell(done, "cars that were left out")
             }

@@ -104,7 +104,8 @@ impl Fits {
             let what = format!("measuring: {}", fit.what);
             let flow = observer(Event::Progress(Progress::new(0, 0, what)));
             watch.is_broken |= flow.is_break();
-            if !fit.what.starts_with(REGRESSION) {
+            // Crush laws come first and have a cost; regressions have none.
+            if fit.cost.is_some() {
                 return flow;
             }
             let now_s = watch.seconds();
@@ -123,9 +124,6 @@ impl Fits {
         Ok(Some((Self { step_s: step_s / n_fits, regression_s }, physics)))
     }
 }
-
-/// How the report of a regression begins.
-const REGRESSION: &str = "fitting regression";
 
 impl EvaluateForceRequest {
     /// Measures the evaluation for some seconds, and the curves of some cases.

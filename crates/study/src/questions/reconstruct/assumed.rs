@@ -4,10 +4,10 @@
 use crate::questions::reconstruct::single_car;
 use impactlab_core::uncertainty::{Caveat, CaveatSubject};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
-use impactlab_reconstruct::evidence::{After, DriverBraked, Evidence};
+use impactlab_reconstruct::evidence::{After, Evidence, YesNoUnknown};
 use impactlab_reconstruct::{
-    BLOCKED_PROBABILITY, BRAKE_PROBABILITY, ForwardModel, Latent, PUSH_PROBABILITY, Prior,
-    PriorComponent, PriorSource, STRIKING_BRAKES, STRIKING_BRAKES_BEFORE,
+    ANTI_LOCK_PROBABILITY, BLOCKED_PROBABILITY, BRAKE_PROBABILITY, ForwardModel, Latent,
+    PUSH_PROBABILITY, Prior, PriorComponent, PriorSource, STRIKING_BRAKES, STRIKING_BRAKES_BEFORE,
 };
 
 /// Standard normal variable below which 95 % lie.
@@ -263,10 +263,8 @@ fn without_anti_lock(
             Latent::BrakeShare,
             CaveatSubject::Vehicle,
             [
-                "wheels that are braked too hard lock and slide; otherwise: [after] anti_lock, or \
-                 anti_lock_probability to draw it",
-                "zu stark gebremste Räder blockieren und gleiten; sonst: [after] anti_lock, oder \
-                 anti_lock_probability, um es zu ziehen",
+                "wheels that are braked too hard lock and slide; otherwise: [after] anti_lock",
+                "zu stark gebremste Räder blockieren und gleiten; sonst: [after] anti_lock",
             ],
         ),
         (
@@ -274,18 +272,16 @@ fn without_anti_lock(
             Latent::StrikingBrakeShare,
             CaveatSubject::Striking,
             [
-                "its wheels that are braked too hard lock and slide; otherwise: [striking_after] anti_lock, \
-                 or anti_lock_probability to draw it",
-                "seine zu stark gebremsten Räder blockieren und gleiten; sonst: [striking_after] anti_lock, \
-                 oder anti_lock_probability, um es zu ziehen",
+                "its wheels that are braked too hard lock and slide; otherwise: [striking_after] anti_lock",
+                "seine zu stark gebremsten Räder blockieren und gleiten; sonst: [striking_after] anti_lock",
             ],
         ),
     ];
     let brakes =
         |share: Latent| prior.components().iter().any(|component| component.latent == share);
-    let is_open =
-        |after: &After| after.anti_lock.is_unknown() && after.anti_lock_probability.is_none();
-    let open = both.into_iter().filter(|(after, share, ..)| is_open(after) && brakes(*share));
+    let open = both
+        .into_iter()
+        .filter(|(after, share, ..)| after.anti_lock.is_unknown() && brakes(*share));
     open.map(|(_, _, subject, reason)| (subject, reason)).collect()
 }
 
@@ -314,12 +310,18 @@ pub(super) fn unused(evidence: &Evidence, are_followed: bool) -> Vec<Caveat> {
         ("struck", after, prior.brake_start_s.or(prior.brake_share)),
         ("striking", striking_after, striking_brakes),
     ];
-    let idle = both.into_iter().filter_map(|(car, after, range)| {
-        let is_idle = after.driver_braked == DriverBraked::No && range.is_some();
-        is_idle.then(|| {
+    let idle = both.into_iter().filter(|(_, after, _)| after.driver_braked == YesNoUnknown::No);
+    let stated = idle.flat_map(|(car, after, range)| {
+        let told = [
+            (range.is_some(), ["ranges of the braking of the {0}", "Bereiche der Bremsung, {0}"]),
+            (
+                after.anti_lock == YesNoUnknown::Yes,
+                ["anti-lock brakes of the {0}", "Antiblockiersystem, {0}"],
+            ),
+        ];
+        told.into_iter().filter(|(is_stated, _)| *is_stated).map(move |(_, [en, de])| {
             Caveat::not_used(
-                Phrase::new("ranges of the braking of the {0}", "Bereiche der Bremsung, {0}")
-                    .with(PhraseValue::Term(format!("{car} car"))),
+                Phrase::new(en, de).with(PhraseValue::Term(format!("{car} car"))),
                 Phrase::new(
                     "its driver is said not to have braked",
                     "sein Fahrer bremste nach der Angabe nicht",
@@ -327,7 +329,7 @@ pub(super) fn unused(evidence: &Evidence, are_followed: bool) -> Vec<Caveat> {
             )
         })
     });
-    idle.collect()
+    stated.collect()
 }
 
 impl Group {
@@ -354,11 +356,11 @@ fn text(PriorComponent { latent, distribution, .. }: &PriorComponent) -> Phrase 
             Phrase::new("the driver brakes with {0}", "der Fahrer bremst mit {0}")
                 .with(percent(share_below(BRAKE_PROBABILITY)))
         }
-        Latent::AntiLockDecision | Latent::StrikingAntiLockDecision => Phrase::new(
+        Latent::AntiLockDecision => Phrase::new(
             "the brakes have an anti-lock system with {0}",
             "die Bremsen haben mit {0} ein Antiblockiersystem",
         )
-        .with(percent(share_below(0.0))),
+        .with(percent(share_below(ANTI_LOCK_PROBABILITY))),
         Latent::BlockedWheel | Latent::StrikingBlockedWheel => Phrase::new(
             "each of two wheels near the damage is blocked with {0}",
             "jedes von zwei Rädern nahe dem Schaden ist mit {0} blockiert",
@@ -411,7 +413,7 @@ mod tests {
     use crate::examples::spin;
     use impactlab_core::units::{Language, NumberFormat, UnitSystem};
     use impactlab_reconstruct::Cars;
-    use impactlab_reconstruct::evidence::{AntiLockBrakes, RestPose};
+    use impactlab_reconstruct::evidence::RestPose;
 
     /// What is drawn and not stated stands in the list, whatever it is.
     #[test]
@@ -450,16 +452,18 @@ mod tests {
     fn what_is_said_and_not_used_is_listed() {
         let mut evidence = spin();
         assert_eq!(unused(&evidence, false), []);
-        evidence.striking_after.driver_braked = DriverBraked::Yes;
+        evidence.striking_after.driver_braked = YesNoUnknown::Yes;
         let texts = unused(&evidence, false).iter().map(Caveat::to_string).collect::<Vec<_>>();
         assert!(matches!(&texts[..], [text] if text.contains("[striking_rest]")), "{texts:?}");
         evidence.striking_rest =
             Some(RestPose { x_m: Some(20.0), y_m: Some(3.0), ..RestPose::default() });
         assert_eq!(unused(&evidence, false), []);
-        evidence.striking_after.driver_braked = DriverBraked::No;
+        evidence.striking_after.driver_braked = YesNoUnknown::No;
         evidence.prior.striking_brake_share = Some([Some(1.0), Some(1.2)]);
         let texts = unused(&evidence, false).iter().map(Caveat::to_string).collect::<Vec<_>>();
         assert!(matches!(&texts[..], [text] if text.contains("striking car")), "{texts:?}");
+        evidence.striking_after.anti_lock = YesNoUnknown::Yes;
+        assert_eq!(unused(&evidence, false).len(), 2);
     }
 
     #[test]
@@ -474,11 +478,8 @@ mod tests {
         let (none, drawn) = ("no anti-lock brakes", "anti-lock system with");
         assert!(has(&assumed(&evidence), none) && !has(&assumed(&evidence), drawn));
         let mut said = evidence.clone();
-        said.after.anti_lock = AntiLockBrakes::No;
+        said.after.anti_lock = YesNoUnknown::No;
         assert!(!has(&assumed(&said), none), "{:?}", assumed(&said));
-        said.after.anti_lock = AntiLockBrakes::Unknown;
-        said.after.anti_lock_probability = Some(0.5);
-        assert!(!has(&assumed(&said), none) && !has(&assumed(&said), drawn), "it is given");
         evidence.prior.brake_start_s = Some([Some(0.0), Some(0.1)]);
         assert!(!has(&assumed(&evidence), "brakes from"), "{:?}", assumed(&evidence));
     }

@@ -4,6 +4,7 @@
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::FrictionZone;
+use impactlab_reconstruct::evidence::{After, Evidence, Mark, MarkKind, YesNoUnknown};
 use impactlab_reconstruct::sampler::Particles;
 use impactlab_reconstruct::{
     EvidenceFit, LEAST_ESS_FOR_INTERVALS, LeftOut, Mode, ReconstructedQuantity,
@@ -122,6 +123,26 @@ pub(super) fn of_validation(zones: &[FrictionZone]) -> Caveat {
     )
     .with(PhraseValue::phrase(on_zones));
     Caveat::new(CaveatKind::HardlyValidated, text)
+}
+
+/// Marks of locked wheels that an anti-lock system would not have left, and damage did not.
+pub(super) fn beside_locked_marks(evidence: &Evidence) -> Option<Caveat> {
+    let cars =
+        [(&evidence.after, &evidence.marks), (&evidence.striking_after, &evidence.striking_marks)];
+    let is_odd = |(after, marks): (&After, &Vec<Mark>)| {
+        let blocked = after.blocked_wheels.as_deref().unwrap_or_default();
+        let is_by_brakes = evidence.is_single_car() || after.wheels_are_known();
+        let is_locked =
+            |mark: &Mark| mark.kind == Some(MarkKind::Locked) && !blocked.contains(&mark.wheel);
+        after.anti_lock == YesNoUnknown::Yes && is_by_brakes && marks.iter().any(is_locked)
+    };
+    let text = Phrase::new(
+        "marks of locked wheels do not go with anti-lock brakes: look again at the marks, or at whether the system \
+         worked",
+        "Spuren blockierter Räder passen nicht zu einem Antiblockiersystem: die Spuren noch einmal ansehen, oder ob \
+         das System arbeitete",
+    );
+    cars.into_iter().any(is_odd).then(|| Caveat::new(CaveatKind::Disagreement, text))
 }
 
 /// Parts of the evidence that the others contradict, though the answer follows them.

@@ -1,9 +1,13 @@
-//! Paths of particles of a reconstruction, simulated again for pictures.
+//! Particles of a reconstruction, simulated again: their paths for pictures, and marks beside those that were
+//! found.
 
 use crate::ReconstructAnswer;
 use impactlab_core::units::NumberFormat;
 use impactlab_core::vehicle::{Path, TireMark};
-use impactlab_reconstruct::{Mode, QuantityEstimate, ReconstructionTarget, StrikingMotion};
+use impactlab_reconstruct::sampler::Particles;
+use impactlab_reconstruct::{
+    MarkComparison, Mode, Posterior, QuantityEstimate, ReconstructionTarget, StrikingMotion,
+};
 
 /// Paths that are drawn.
 const N_PATHS: usize = 40;
@@ -110,4 +114,27 @@ fn followed(
     });
     let (marks, path) = motions.pop()?;
     Some((NamedPath { name: name.into(), path }, marks))
+}
+
+/// The marks that were found beside those of the particle of median speed, or of that of the most probable
+/// of several courses of events.
+pub(super) fn compared_marks(
+    target: &ReconstructionTarget,
+    particles: &Particles,
+    posterior: &Posterior,
+    quantities: &[QuantityEstimate],
+    modes: &[Mode],
+) -> Vec<MarkComparison> {
+    let evidence = target.evidence();
+    if evidence.marks.is_empty() && evidence.striking_marks.is_empty() {
+        return Vec::new();
+    }
+    let all: Vec<usize> = (0..particles.z.len()).collect();
+    let median = match modes.first() {
+        Some(course) => posterior.nearest_to_median(&course.members, &course.quantities),
+        None => posterior.nearest_to_median(&all, quantities),
+    };
+    let Some(z) = median.and_then(|idx| particles.z.get(idx)) else { return Vec::new() };
+    let compared = |motion| MarkComparison::of_both_cars(evidence, &motion);
+    target.model().motions(std::slice::from_ref(z), compared).concat()
 }

@@ -12,9 +12,10 @@ use crate::ask::checks::check_count;
 use crate::caveats::restrictions::slope_caveat;
 use crate::questions::reconstruct::assumed::{assumptions, unused};
 use crate::questions::reconstruct::badges::{
-    of_fit, of_left_out, of_particles, of_validation, several_courses,
+    beside_locked_marks, of_fit, of_left_out, of_particles, of_validation, several_courses,
 };
 use crate::questions::reconstruct::later_contacts::{LaterContactsReport, WhyNot, not_looked_for};
+use crate::questions::reconstruct::paths::compared_marks;
 use crate::questions::reconstruct::single_car;
 use crate::{
     Answer, Event, FrictionZoneReport, InputKind, Library, Observer, Provenance, Question,
@@ -420,7 +421,7 @@ impl Question for ReconstructRequest {
         caveats.extend(several_courses(&modes));
         caveats.extend(outside);
         caveats.extend(slope_caveat(&target.model().cars().struck.parameters.slope));
-        caveats.extend(of_fit(&fit));
+        caveats.extend(of_fit(&fit).into_iter().chain(beside_locked_marks(&evidence)));
         let left_out = self.left_out(&target, &particles, &fit, observer);
         let alone = left_out.iter().map(|part| part.n_simulations).sum::<usize>();
         caveats.extend(of_left_out(&left_out));
@@ -455,29 +456,6 @@ impl Question for ReconstructRequest {
         let report = Answer { report, caveats, provenance: Provenance::from_seed(self.seed) };
         Ok(Outcome::Complete(ReconstructAnswer { report, target, particles, posterior }))
     }
-}
-
-/// The marks that were found beside those of the particle of median speed, or of that of the most probable
-/// of several courses of events.
-fn compared_marks(
-    target: &ReconstructionTarget,
-    particles: &Particles,
-    posterior: &Posterior,
-    quantities: &[QuantityEstimate],
-    modes: &[Mode],
-) -> Vec<MarkComparison> {
-    let evidence = target.evidence();
-    if evidence.marks.is_empty() && evidence.striking_marks.is_empty() {
-        return Vec::new();
-    }
-    let all: Vec<usize> = (0..particles.z.len()).collect();
-    let median = match modes.first() {
-        Some(course) => posterior.nearest_to_median(&course.members, &course.quantities),
-        None => posterior.nearest_to_median(&all, quantities),
-    };
-    let Some(z) = median.and_then(|idx| particles.z.get(idx)) else { return Vec::new() };
-    let compared = |motion| MarkComparison::of_both_cars(evidence, &motion);
-    target.model().motions(std::slice::from_ref(z), compared).concat()
 }
 
 /// How far the sampling is: half of it is reaching the posterior.

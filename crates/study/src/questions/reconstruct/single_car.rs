@@ -5,9 +5,7 @@ use crate::{ReconstructRequest, VehicleChoice};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
 use impactlab_core::units::Phrase;
 use impactlab_reconstruct::Latent;
-use impactlab_reconstruct::evidence::{
-    AntiLockBrakes, DriverBraked, Evidence, Mark, MarkKind, Start,
-};
+use impactlab_reconstruct::evidence::{Evidence, Start, YesNoUnknown};
 
 /// What is assumed of everything but the friction that nobody stated.
 pub(super) const GROUPS: &[Group] = &[
@@ -60,9 +58,9 @@ pub(super) const GROUPS: &[Group] = &[
         latents: &[Latent::AntiLockDecision],
         reason: [
             "without it, wheels that are braked too hard lock and slide, and the car was slower; otherwise: \
-             [wheels] anti_lock, anti_lock_probability",
+             [wheels] anti_lock",
             "ohne es blockieren und gleiten zu stark gebremste Räder, und das Fahrzeug war langsamer; sonst: \
-             [wheels] anti_lock, anti_lock_probability",
+             [wheels] anti_lock",
         ],
     },
     Group {
@@ -92,13 +90,12 @@ pub(super) fn unused(request: &ReconstructRequest, evidence: &Evidence) -> Vec<C
     let (after, is_all_locked) = (&evidence.after, evidence.after.is_all_locked());
     let alone =
         ["the evidence is of a single car", "die Anknüpfungstatsachen sind die eines Fahrzeugs"];
-    let is_idle = after.driver_braked == DriverBraked::No || is_all_locked;
+    let is_idle = after.driver_braked == YesNoUnknown::No || is_all_locked;
     let locked = [
         "its driver is said not to have braked, or all wheels are said to have been locked",
         "sein Fahrer bremste nach der Angabe nicht, oder alle Räder waren blockiert",
     ];
-    let is_anti_lock =
-        after.anti_lock == AntiLockBrakes::Yes || after.anti_lock_probability.is_some();
+    let is_anti_lock = after.anti_lock == YesNoUnknown::Yes;
     let told = [
         (
             request.striking != VehicleChoice::Automatic,
@@ -123,22 +120,7 @@ pub(super) fn unused(request: &ReconstructRequest, evidence: &Evidence) -> Vec<C
 
 /// What the intervals do not allow for.
 pub(super) fn restrictions(evidence: &Evidence) -> Vec<Caveat> {
-    let open = end_open(evidence).into_iter().chain(beside_locked_marks(evidence));
-    open.chain([of_validation()]).collect()
-}
-
-/// Marks of locked wheels that an anti-lock system would not have left.
-fn beside_locked_marks(evidence: &Evidence) -> Option<Caveat> {
-    let is_locked = |mark: &Mark| mark.kind == Some(MarkKind::Locked);
-    let has_marks = evidence.marks.iter().any(is_locked) && !evidence.after.is_all_locked();
-    let text = Phrase::new(
-        "marks of locked wheels do not go with anti-lock brakes: look again at the marks, or at whether the system \
-         worked",
-        "Spuren blockierter Räder passen nicht zu einem Antiblockiersystem: die Spuren noch einmal ansehen, oder ob \
-         das System arbeitete",
-    );
-    (has_marks && evidence.after.anti_lock == AntiLockBrakes::Yes)
-        .then(|| Caveat::new(CaveatKind::Disagreement, text))
+    end_open(evidence).into_iter().chain([of_validation()]).collect()
 }
 
 /// That the end of the marks stands for the place of rest where nobody says this.
@@ -172,7 +154,9 @@ mod tests {
 
     use super::*;
     use crate::questions::reconstruct::assumed::assumptions;
+    use crate::questions::reconstruct::badges::beside_locked_marks;
     use impactlab_core::data::TomlFile;
+    use impactlab_reconstruct::evidence::EvidenceKind;
     use impactlab_reconstruct::{Cars, ForwardModel};
 
     fn evidence(start: &str, wheels: &str) -> Evidence {
@@ -197,15 +181,18 @@ mod tests {
         let half = drawn("").unwrap();
         assert!(half.contains("have an anti-lock system with 50 %"), "{half}");
         assert!(half.contains("[wheels] anti_lock"), "{half}");
-        for said in [yes, no, locked, "driver_braked = \"no\"", "anti_lock_probability = 0.9"] {
+        for said in [yes, no, locked, "driver_braked = \"no\""] {
             assert_eq!(drawn(said), None, "{said}");
         }
-        let with_marks = |wheels: &str| {
-            let all = restrictions(&evidence("", wheels));
-            all.iter().any(|caveat| caveat.text.contains("do not go with anti-lock brakes"))
-        };
+        let with_marks = |wheels: &str| beside_locked_marks(&evidence("", wheels)).is_some();
         let both = format!("{locked}\n{yes}");
         assert!(with_marks(yes) && !with_marks(no) && !with_marks(&both) && !with_marks(""));
+        assert!(!with_marks(&format!("blocked_wheels = [\"FL\"]\n{yes}")), "damage locked it");
+        let mut pair = evidence("", yes);
+        pair.kind = EvidenceKind::Collision;
+        assert_eq!(beside_locked_marks(&pair), None, "damage may have locked it");
+        pair.after.blocked_wheels = Some(Vec::new());
+        assert!(beside_locked_marks(&pair).is_some());
         let request = ReconstructRequest::new(crate::EvidenceChoice::File("case.toml".into()));
         assert!(!unused(&request, &evidence("", &both)).is_empty());
         assert!(unused(&request, &evidence("", yes)).is_empty());

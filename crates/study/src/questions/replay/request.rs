@@ -44,7 +44,7 @@ const ASSUMED_RATIO_SIGMA: f64 = 2.0;
 const STATED_RATIO_SHARE: f64 = 0.03;
 
 /// Standard deviation of a recorded speed, as a share of it, as in the evidence of a reconstruction.
-const SPEED_SHARE: f64 = 0.04;
+pub const RECORDED_SPEED_SHARE: f64 = 0.04;
 
 /// Draws that are computed together.
 const DRAWS_TOGETHER: usize = 64;
@@ -132,15 +132,20 @@ impl ReplayRequest {
         self.steering_ratio.unwrap_or(USUAL_STEERING_RATIO)
     }
 
-    pub(super) fn known(&self) -> Known {
-        let usual_sigma = match self.steering_ratio {
+    /// The standard deviation of the steering ratio where nobody states it.
+    pub fn usual_steering_ratio_sigma(&self) -> f64 {
+        match self.steering_ratio {
             Some(ratio) => STATED_RATIO_SHARE * ratio,
             None => ASSUMED_RATIO_SIGMA,
-        };
+        }
+    }
+
+    pub(super) fn known(&self) -> Known {
+        let usual_sigma = self.usual_steering_ratio_sigma();
         Known {
             steering_ratio: self.ratio(),
             steering_ratio_sigma: self.steering_ratio_sigma.unwrap_or(usual_sigma),
-            speed_sigma: self.speed_sigma.unwrap_or(SPEED_SHARE),
+            speed_sigma: self.speed_sigma.unwrap_or(RECORDED_SPEED_SHARE),
         }
     }
 

@@ -12,8 +12,8 @@ use crate::caveats::restrictions::doubtful_data_caveats;
 use crate::questions::simulate::motion_source::acting_force;
 use crate::{Library, SeriesFile, StudyError};
 use impactlab_core::data::{
-    Channel, ForceHistory, Loaded, Sampling, TIME_TOLERANCE_S, TimeSeries, read_force_file,
-    read_steer_file, read_wheels_file,
+    Channel, ForceHistory, Loaded, Sampling, SeriesError, TIME_TOLERANCE_S, TimeSeries,
+    read_force_file, read_steer_file, read_wheels_file,
 };
 use impactlab_core::ranges::{SPEED, STEER_ANGLE, STEERING_RATIO, YAW_RATE};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
@@ -140,9 +140,11 @@ impl Drive {
         let of_file = self.force.as_ref().zip(start.and_then(|start| start.of_force_m_s));
         if let Some((file, velocity_m_s)) = of_file {
             let [vx_m_s, vy_m_s] = velocity_along_x(&file.path, velocity_m_s)?;
-            let vy_m_s = if self.vy_m_s == 0.0 { vy_m_s } else { self.vy_m_s };
-            caveats.push(start_of_model(&file.title(), [vx_m_s, vy_m_s]));
-            return Ok([vx_m_s, vy_m_s]);
+            // A lateral speed that is said stands in place of that of the file.
+            let of_file_m_s = if self.vy_m_s == 0.0 { vy_m_s } else { 0.0 };
+            let is_alike = start.is_some_and(|start| start.all_m_s.len() == 1);
+            caveats.push(start_of_model(&file.title(), [vx_m_s, of_file_m_s], is_alike));
+            return Ok([vx_m_s, self.vy_m_s + of_file_m_s]);
         }
         let reason = match start {
             Some(start) => unknown_parts(&start.all_m_s),
@@ -220,7 +222,9 @@ fn velocity_along_x(path: &Path, velocity_m_s: [f64; 2]) -> Result<[f64; 2], Stu
 }
 
 /// That the speed is the one with which the file of the force begins.
-fn start_of_model(file: &str, [vx_m_s, vy_m_s]: [f64; 2]) -> Caveat {
+///
+/// - `is_alike`: whether all parts of the model begin with it.
+fn start_of_model(file: &str, [vx_m_s, vy_m_s]: [f64; 2], is_alike: bool) -> Caveat {
     let speed = |value_m_s| PhraseValue::significant(Quantity::Speed, value_m_s);
     let value = match vy_m_s.abs() < STANDING_M_S {
         true => Phrase::of(speed(vx_m_s)),
@@ -228,12 +232,19 @@ fn start_of_model(file: &str, [vx_m_s, vy_m_s]: [f64; 2]) -> Caveat {
             .with(speed(vx_m_s))
             .with(speed(vy_m_s)),
     };
-    let reason = Phrase::new(
-        "in {0} the parts on which this force acts, by their momenta, begin with it, taken to head along x of \
-         the model; another one: --speed",
-        "in {0} beginnen die Teile, auf die diese Kraft nach ihren Impulsen wirkt, mit ihr, Fahrzeugrichtung \
-         längs der x-Achse des Modells; eine andere: --speed",
-    )
+    let reason = match is_alike {
+        true => Phrase::new(
+            "in {0} all parts begin with it, taken to head along x of the model; another one: --speed",
+            "in {0} beginnen alle Teile mit ihr, Fahrzeugrichtung längs der x-Achse des Modells; eine andere: \
+             --speed",
+        ),
+        false => Phrase::new(
+            "in {0} the parts on which this force acts, by their momenta, begin with it, taken to head along x \
+             of the model; another one: --speed",
+            "in {0} beginnen die Teile, auf die diese Kraft nach ihren Impulsen wirkt, mit ihr, \
+             Fahrzeugrichtung längs der x-Achse des Modells; eine andere: --speed",
+        ),
+    }
     .with(PhraseValue::Name(file.to_owned()));
     Caveat::assumed(CaveatSubject::Speed, value, reason)
 }
@@ -354,7 +365,7 @@ pub(crate) fn steer_history(
     let history = |steer_rad| SteerHistory { time_s: series.time_s().to_vec(), steer_rad };
     let road_wheel = match (series.get(Channel::Steer), front_wheels(series)) {
         (Some(steer), _) => Some(steer.to_vec()),
-        (None, wheels) => wheels,
+        (None, wheels) => wheels.ok(),
     };
     match (road_wheel, series.get(Channel::SteeringWheel), steering_ratio) {
         (Some(steer_rad), _, None) => Ok(history(steer_rad)),
@@ -367,15 +378,27 @@ pub(crate) fn steer_history(
                 Some(source) => Err(StudyError::RoadWheel { path: path(), ratio, source }),
             }
         }
+        (None, None, _) if has_front_wheel(series) => {
+            let in_file = |source| StudyError::Series { path: path(), source };
+            front_wheels(series).map(history).map_err(in_file)
+        }
         (None, _, None) => Err(StudyError::NoSteeringRatio { path: path() }),
         (None, None, Some(_)) => Err(StudyError::NoSteeringWheel { path: path() }),
     }
 }
 
-/// Mean angle of the front wheels; `None` if one of them is not recorded.
-fn front_wheels(series: &TimeSeries) -> Option<Vec<f64>> {
-    let (left, right) = (series.get(Channel::SteerFl)?, series.get(Channel::SteerFr)?);
-    Some(left.iter().zip(right).map(|(left, right)| (left + right) / 2.0).collect())
+/// Whether the angle of a front wheel is recorded.
+fn has_front_wheel(series: &TimeSeries) -> bool {
+    [Channel::SteerFl, Channel::SteerFr].iter().any(|channel| series.get(*channel).is_some())
+}
+
+/// Mean angle of the front wheels.
+///
+/// # Errors
+/// [`SeriesError`] if one of them is not recorded.
+fn front_wheels(series: &TimeSeries) -> Result<Vec<f64>, SeriesError> {
+    let (left, right) = (series.require(Channel::SteerFl)?, series.require(Channel::SteerFr)?);
+    Ok(left.iter().zip(right).map(|(left, right)| (left + right) / 2.0).collect())
 }
 
 /// The torques of a file over the rolling radius. What it does not record is zero.

@@ -14,15 +14,20 @@ use impactlab_core::data::{
     Channel, ColumnMap, ForceHistory, list_folder, read_any_series, read_motion_log,
 };
 use impactlab_core::ranges::{INSTANT, LOG_DURATION, STEERING_RATIO};
-use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::{ContactLoad, ContactPoint, VehicleParameters};
 use impactlab_networks::response::{
-    ForceOrigin, LogNoise, LogSettings, LoggedImpact, MotionLog, ResponseCase,
+    ForceOrigin, LogNoise, LogSettings, LoggedImpact, MotionLog, N_RESIDUAL, ResponseCase,
+    average_error_m, rollout,
 };
 
 /// How much of a log from the first contact on is learned from where nobody says it, s.
 pub const DEFAULT_LOG_DURATION_S: f64 = 4.0;
+
+/// Largest mean distance between a recorded and a simulated path, as a share of the way and at least, m: beyond
+/// it something else moved the car than what its log says.
+const LARGEST_DISTANCE: (f64, f64) = (0.05, 0.5);
 
 /// Channels that say how the front wheels are turned.
 const STEERING: [Channel; 4] =
@@ -84,8 +89,11 @@ pub struct LogReport {
 }
 
 impl MotionLogs {
-    /// Checks every number.
+    /// Checks every number, and that nothing says of a drive where it was struck.
     pub(crate) fn check(&self) -> Result<(), StudyError> {
+        if self.without_impact && (!self.forces.is_empty() || self.impact_s.is_some()) {
+            return Err(StudyError::ImpactOfDrive);
+        }
         check_contact(self.contact.as_ref())?;
         check_given("impact_s", &INSTANT, self.impact_s)?;
         check_given("steering_ratio", &STEERING_RATIO, self.steering_ratio)?;
@@ -120,6 +128,7 @@ impl MotionLogs {
             if found.force == ForceOrigin::Estimated {
                 caveats.push(estimated_force(path, &found));
             }
+            caveats.extend(unexplained_motion(path, &found.case));
             reports.push(LogReport {
                 log: path.clone(),
                 start_s: found.start_s,
@@ -213,4 +222,30 @@ fn estimated_force(path: &Path, found: &LoggedImpact) -> Caveat {
     );
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     Caveat::assumed(CaveatSubject::Pulse, value, reason.with(PhraseValue::Name(name)))
+}
+
+/// That a motion is not the one that its steering and its force give. A network would learn the difference as
+/// that of the car.
+fn unexplained_motion(path: &Path, case: &ResponseCase) -> Option<Caveat> {
+    let initial = *case.states.first()?;
+    let simulated = rollout(&case.vehicle, initial, &case.inputs, [0.0; N_RESIDUAL]);
+    let distance_m = average_error_m(&simulated, &case.states);
+    let steps = case.states.iter().zip(case.states.iter().skip(1));
+    let way_m: f64 = steps.map(|(a, b)| (b.x_m - a.x_m).hypot(b.y_m - a.y_m)).sum();
+    let (share, least_m) = LARGEST_DISTANCE;
+    if distance_m <= (share * way_m).max(least_m) {
+        return None;
+    }
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let text = Phrase::new(
+        "the path in {0} is on average {1} from the one that its steering and its force give this vehicle over \
+         {2}; check unit, side and ratio of the steering, the vehicle, and whether it was struck or braked",
+        "Der Weg in {0} liegt im Mittel {1} neben dem, den Lenkung und Kraft diesem Fahrzeug auf {2} geben; zu \
+         prüfen sind Einheit, Seite und Übersetzung der Lenkung, das Fahrzeug und ob es angestoßen oder gebremst \
+         wurde",
+    )
+    .with(PhraseValue::Name(name))
+    .with(PhraseValue::three_digits(Quantity::Length, distance_m))
+    .with(PhraseValue::three_digits(Quantity::Length, way_m));
+    Some(Caveat::new(CaveatKind::DoubtfulData, text))
 }

@@ -74,8 +74,13 @@ impl Momenta {
         let groups = self.groups();
         let [_, _] = groups.as_slice() else { return None };
         let (start, error) = self.nearest(&groups, &acting)?;
-        let is_known = error <= LARGEST && acting.share_before <= LARGEST;
+        let is_known = error <= LARGEST && self.begin_before(force);
         is_known.then_some(start).filter(|start| start.iter().all(|value| value.is_finite()))
+    }
+
+    /// Whether the momenta are known from before a force.
+    pub(super) fn begin_before(&self, force: &ForceHistory) -> bool {
+        self.acting(force).is_some_and(|acting| acting.share_before <= LARGEST)
     }
 
     /// The velocities of all parts at the start, in the units of the model.

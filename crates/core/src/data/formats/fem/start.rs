@@ -10,8 +10,8 @@ const MOST_SHOWN: usize = 4;
 /// Velocities at the start of a finite-element run, m/s along the axes of the model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelStart {
-    /// That of the parts on which the force acts, by what their momenta gain; `None` where this does not tell
-    /// which parts these are.
+    /// That of the parts on which the force acts, by what their momenta gain, or of all parts where they begin
+    /// alike; `None` where this does not tell which parts these are.
     pub of_force_m_s: Option<[f64; 2]>,
     /// Those that parts begin with, or nodes in a file without parts.
     pub all_m_s: Vec<[f64; 2]>,
@@ -33,8 +33,23 @@ impl ModelStart {
         };
         let momenta = results.momenta.as_ref();
         let mut all = momenta.map_or_else(|| of_nodes(results), Momenta::starts);
+        let n_starts = all.len();
         all.retain(|velocity| velocity.iter().all(|value| value.is_finite()));
         let groups = by_velocity(&all);
+        // Where all parts begin alike, it does not matter on which of them the force acts.
+        let is_before = |parts: &Momenta| {
+            let begins = |history: &&History| {
+                history.force().is_some_and(|force| parts.begin_before(&force))
+            };
+            forces.iter().all(begins)
+        };
+        let of_all = match groups.as_slice() {
+            [(velocity, starts)] if starts.len() == n_starts && momenta.is_some_and(is_before) => {
+                Some(*velocity)
+            }
+            _ => None,
+        };
+        let of_force = of_force.or(of_all);
         let is_told = of_force.is_some() || (1..=MOST_SHOWN).contains(&groups.len());
         is_told.then(|| Self {
             of_force_m_s: of_force.map(in_si),
